@@ -26,6 +26,9 @@ function held({ points, width, height }) {
   return pixels;
 }
 
+/** A point in the axes of a range image: to the right, forward, up. */
+const within = ({ right, forward, up }, point) => [dot(point, right), dot(point, forward), dot(point, up)];
+
 /** Distance of a point to the ray of its pixel, and of neighbouring rays from each other there, metres. */
 function atRay(image, pixel, point) {
   const { frame, rows, first, step, width, height } = image;
@@ -34,31 +37,46 @@ function atRay(image, pixel, point) {
   const azimuth = first + ((pixel % width) + 0.5) * step;
   const length = Math.hypot(1, tangent);
   const along = [Math.sin(azimuth) / length, Math.cos(azimuth) / length, tangent / length];
-  const from = [dot(point, frame.right), dot(point, frame.forward), dot(point, frame.up) - origin];
+  const [right, forward, up] = within(frame, point);
+  const from = [right, forward, up - origin];
   const reach = dot(from, along);
   const distance = Math.hypot(...from.map((value, axis) => value - reach * along[axis]));
   const [above, below] = [Math.max(0, row - 1), Math.min(height - 1, row + 1)];
   const angle = Math.atan(rows[above].tangent) - Math.atan(rows[below].tangent);
-  const across = Math.hypot(from[0], from[1]) * step;
+  const across = Math.hypot(right, forward) * step;
   const down = (Math.hypot(...from) * angle) / Math.max(1, below - above);
   // The side of a square as large as the pixel.
   return { distance, sampling: Math.sqrt(across * Math.max(0, down)), across };
 }
 
-export const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1] ?? NaN;
+/** Of a z-buffer: whether the pixel that a point falls into holds a point of the same surface, or one before it. */
+function stands(image, point) {
+  const { frame, rows, first, step, width, height, points } = image;
+  const [right, forward, up] = within(frame, point);
+  const column = Math.min(width - 1, Math.max(0, Math.floor((Math.atan2(right, forward) - first) / step)));
+  const top = Math.atan(rows[0].tangent) + step / 2;
+  const row = Math.min(height - 1, Math.max(0, Math.floor((top - Math.atan2(up, Math.hypot(right, forward))) / step)));
+  const there = points.subarray(3 * (row * width + column), 3 * (row * width + column) + 3);
+  return Math.hypot(...there) - Math.hypot(...point) < Math.max(0.03, 0.02 * Math.hypot(...point));
+}
+
 const mean = (values) => values.reduce((sum, value) => sum + value, 0) / values.length;
 
-/** Of the points of a scan that a view's camera sees: how many, the share that is kept, and how far they lie from their rays. */
+/**
+ * Of the points of a scan that a view's camera sees: how many, the share that is kept, and how far they lie from their rays. Of a z-buffer
+ * `stood` is the share for which the point in their pixel stands, itself or one of its surface, or which that one hides.
+ */
 export function measured(scan, view, image) {
   const isSeen = sees(view);
   const pixels = held(image);
   const rays = [];
-  let count = 0;
+  let [count, stood] = [0, 0];
   for (let at = 0; at < scan.points.length; at += 3) {
     const point = [...scan.points.subarray(at, at + 3)];
     const range = Math.hypot(...point);
     if (!(range > 0.1 && range < 1e4) || !isSeen(point)) continue;
     count++;
+    if (image.how === "sphere" && stands(image, point)) stood++;
     const pixel = pixels.get(key(point));
     if (pixel !== undefined) rays.push(atRay(image, pixel, point));
   }
@@ -66,6 +84,7 @@ export function measured(scan, view, image) {
   return {
     count,
     kept: rays.length / count,
+    ...(image.how === "sphere" && { stood: stood / count }),
     distance,
     ofSampling: distance / mean(rays.map((ray) => ray.sampling)),
     ofColumn: distance / mean(rays.map((ray) => ray.across)),

@@ -59,6 +59,11 @@ pub struct RigView {
 }
 
 impl RigView {
+    /// Whether its depths are an organised cloud, in a frame of any axes.
+    pub(super) const fn is_cloud(&self) -> bool {
+        matches!(self.depth, DepthSamples::Cloud(_))
+    }
+
     /// The frame of this number as the check works on it, and warnings.
     ///
     /// # Errors
@@ -235,7 +240,7 @@ fn doubts(view: &RigView, grid: Size, points: &[[f32; 3]]) -> Vec<WarningKind> {
         doubts.push(WarningKind::EightBits);
     }
     let median = crate::numeric::quantile(&mut depths, 0.5);
-    let farthest = if matches!(view.depth, DepthSamples::Cloud(_)) { FARTHEST_OF_CLOUDS } else { FARTHEST };
+    let farthest = if view.is_cloud() { FARTHEST_OF_CLOUDS } else { FARTHEST };
     if !(NEAREST..=farthest).contains(&median) {
         let usual = [NEAREST, farthest].map(f64::from);
         doubts.push(WarningKind::UnusualDepths { metres: f64::from(median), usual });

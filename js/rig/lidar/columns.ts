@@ -42,7 +42,10 @@ function paceOf(azimuths: number[]): number | undefined {
   const means: number[] = [];
   for (let from = 0; from + WINDOW <= steps.length; from += WINDOW / 2) {
     const window = steps.slice(from, from + WINDOW);
-    if (window.every((step) => step < GAP * usual)) means.push(window.reduce((sum, step) => sum + step, 0) / WINDOW);
+    if (!window.every((step) => step < GAP * usual)) continue;
+    // A step of two usual ones has a pulse between them that did not come back.
+    const pulses = window.reduce((sum, step) => sum + Math.max(1, Math.round(step / usual)), 0);
+    means.push(window.reduce((sum, step) => sum + step, 0) / pulses);
   }
   return means.length > 0 ? median(means) : usual;
 }
@@ -54,9 +57,11 @@ function stepOf(members: number[][], azimuth: Float64Array): number {
   return TURN / Math.min(MOST_COLUMNS, Math.max(FEWEST_COLUMNS, Math.round(TURN / (SLACK * pace))));
 }
 
-/** A row's points in its cells, each at most a cell from where it belongs. */
+/** A row's points in its cells, each at most a cell from where it belongs, in the order of their azimuths. */
 class Line {
   readonly cells: Int32Array;
+  /** The cell that was filled last. */
+  #last = -1;
   readonly #due: (index: number) => number;
   readonly #range: (index: number) => number;
 
@@ -66,52 +71,42 @@ class Line {
     this.#range = range;
   }
 
-  #isFree(cell: number): boolean {
-    return cell >= 0 && cell < this.cells.length && this.cells[cell] === -1;
+  #set(cell: number, index: number): void {
+    this.cells[cell] = index;
+    this.#last = cell;
+  }
+
+  #fits(cell: number, index: number): boolean {
+    return cell < this.cells.length && Math.abs(cell + 0.5 - this.#due(index)) <= FARTHEST_SHIFT;
   }
 
   /** Points come in the order of their azimuths. */
   put(index: number): void {
     const cell = Math.min(this.cells.length - 1, Math.max(0, Math.floor(this.#due(index))));
+    const before = this.cells[this.#last] ?? -1;
     // A pulse with two returns has one place, and the nearer of them.
-    const before = this.cells[cell] === -1 ? (this.cells[cell - 1] ?? -1) : (this.cells[cell] ?? -1);
-    if (before >= 0 && this.#due(index) - this.#due(before) < ONE_PULSE_SHARE) {
-      const place = this.cells[cell] === before ? cell : cell - 1;
-      if (this.#range(index) < this.#range(before)) this.cells[place] = index;
-      return;
-    }
-    if (this.#isFree(cell)) this.cells[cell] = index;
-    else if (!this.#shiftBack(cell, index)) {
-      if (this.#isFree(cell + 1)) this.cells[cell + 1] = index;
-      else this.#nearest(cell, index);
-    }
+    const isOnePulse = before >= 0 && this.#due(index) - this.#due(before) < ONE_PULSE_SHARE;
+    if (!isOnePulse && cell > this.#last) this.#set(cell, index);
+    else if (!isOnePulse && this.#fits(this.#last, index) && this.#shiftBack()) this.#set(this.#last, index);
+    else if (!isOnePulse && this.#fits(this.#last + 1, index)) this.#set(this.#last + 1, index);
+    else if (this.#range(index) < this.#range(before)) this.#set(this.#last, index);
   }
 
-  /** Makes room at a cell by moving what is there back by one, and what is there in turn. */
-  #shiftBack(cell: number, index: number): boolean {
-    let free = cell;
-    while (free >= 0 && this.cells[free] !== -1 && cell - free < MOST_SHIFTED) free--;
-    if (!this.#isFree(free)) return false;
-    for (let at = free; at < cell; at++) {
-      const moved = this.cells[at + 1] ?? -1;
-      // Farther than a cell from where it belongs a point would misplace its neighbours.
-      if (Math.abs(at + 0.5 - this.#due(moved)) > FARTHEST_SHIFT) return false;
-    }
-    for (let at = free; at < cell; at++) this.cells[at] = this.cells[at + 1] ?? -1;
-    this.cells[cell] = index;
+  /** Makes room in the cell that was filled last by moving what is there back by one, and what is there in turn. */
+  #shiftBack(): boolean {
+    let free = this.#last;
+    while (free >= 0 && this.cells[free] !== -1 && this.#last - free < MOST_SHIFTED) free--;
+    if (free < 0 || this.cells[free] !== -1) return false;
+    for (let at = free; at < this.#last; at++) if (!this.#fits(at, this.cells[at + 1] ?? -1)) return false;
+    for (let at = free; at < this.#last; at++) this.cells[at] = this.cells[at + 1] ?? -1;
     return true;
-  }
-
-  #nearest(cell: number, index: number): void {
-    const there = this.cells[cell] ?? -1;
-    if (this.#range(index) < this.#range(there)) this.cells[cell] = index;
   }
 }
 /** Share of a cell within which two azimuths are one pulse's. */
 const ONE_PULSE_SHARE = 0.04;
 /** Cells that may move to make room. */
-const MOST_SHIFTED = 12;
-/** Cells from a point's azimuth to the middle of its cell, at most. */
+const MOST_SHIFTED = 64;
+/** Cells from a point's azimuth to the middle of its cell, at most: farther off it would misplace its neighbours. */
 const FARTHEST_SHIFT = 1.1;
 
 /** The range image of a full turn, with the seam behind `forward`. */
