@@ -1,5 +1,5 @@
 /** What was compressed by zlib, never more of it than is expected: memory and time are bounded by what the file declares. */
-import { Unzlib } from "fflate";
+import { Inflate, Unzlib } from "fflate";
 import { badFile } from "./errors.js";
 
 /** Bytes given to the decoder at a time. */
@@ -9,11 +9,16 @@ const MOST_OF_ONE = 1032;
 
 class TooLong extends Error {}
 
-/** Up to `most` bytes of what `bytes` inflate to, or why that cannot be had. */
-export function inflateUpTo(bytes: Uint8Array, most: number, what: string): Uint8Array {
+/** Up to `most` bytes of what `bytes` inflate to, or why that cannot be had; `Stream` knows what stands around them. */
+export function inflateUpTo(
+  bytes: Uint8Array,
+  most: number,
+  what: string,
+  Stream: typeof Unzlib | typeof Inflate = Unzlib,
+): Uint8Array {
   const out = new Uint8Array(most);
   let length = 0;
-  const stream = new Unzlib((piece) => {
+  const stream = new Stream((piece) => {
     if (length + piece.length > most) throw new TooLong();
     out.set(piece, length);
     length += piece.length;
@@ -30,10 +35,17 @@ export function inflateUpTo(bytes: Uint8Array, most: number, what: string): Uint
 }
 
 /** .. where it has to be exactly so many. */
-export function inflateExactly(bytes: Uint8Array, length: number, what: string): Uint8Array {
+function exactly(bytes: Uint8Array, length: number, what: string, Stream: typeof Unzlib | typeof Inflate): Uint8Array {
   if (length > MOST_OF_ONE * bytes.length)
     throw badFile(`${what} is cut off: ${bytes.length} bytes cannot inflate to the ${length} that it declares`);
-  const out = inflateUpTo(bytes, length, what);
+  const out = inflateUpTo(bytes, length, what, Stream);
   if (out.length < length) throw badFile(`${what} is cut off: it inflates to ${out.length} of ${length} bytes`);
   return out;
 }
+
+export const inflateExactly = (bytes: Uint8Array, length: number, what: string): Uint8Array =>
+  exactly(bytes, length, what, Unzlib);
+
+/** .. of deflate without zlib's header, as ZIP archives have it. */
+export const inflateRaw = (bytes: Uint8Array, length: number, what: string): Uint8Array =>
+  exactly(bytes, length, what, Inflate);

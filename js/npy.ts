@@ -1,10 +1,11 @@
 /**
- * NumPy's .npy, the few kinds that images and depth maps come in.
+ * NumPy's .npy: images, depth maps and clouds of any number type and byte order.
  *
  * Written here because npyjs (1.2) checks neither the length against the shape nor the order of axes, fails on data that
  * are not aligned, and brings a fetch library along.
  */
 import { badFile as bad } from "./errors.js";
+import { half } from "./half.js";
 
 /** Raster data with its channels interleaved. */
 export interface Raster<T> {
@@ -13,6 +14,8 @@ export interface Raster<T> {
   channels: number;
   data: T;
 }
+
+type Pixels = Float32Array | Uint16Array | Uint8Array;
 
 const MAGIC = "\x93NUMPY";
 /** Magic, two bytes of version, two or four of header length. */
@@ -23,28 +26,46 @@ const MOST_CHANNELS = 4;
 
 export const isNpy = (bytes: Uint8Array): boolean => [...MAGIC].every((letter, i) => bytes[i] === letter.charCodeAt(0));
 
-/** Bytes for each element, and how `count` of them are read from aligned little-endian memory. */
-const KINDS = {
-  "<f4": { size: 4, read: (memory: ArrayBuffer, count: number) => new Float32Array(memory, 0, count) },
-  "<f8": {
-    size: 8,
-    read: (memory: ArrayBuffer, count: number) => new Float32Array(new Float64Array(memory, 0, count)),
-  },
-  "<i4": { size: 4, read: (memory: ArrayBuffer, count: number) => new Float32Array(new Int32Array(memory, 0, count)) },
-  "<u2": { size: 2, read: (memory: ArrayBuffer, count: number) => new Uint16Array(memory, 0, count) },
-  "|u1": { size: 1, read: (memory: ArrayBuffer, count: number) => new Uint8Array(memory, 0, count) },
-  "|b1": { size: 1, read: (memory: ArrayBuffer, count: number) => new Uint8Array(memory, 0, count) },
-} as const;
+interface Kind {
+  /** Bytes of an element. */
+  size: number;
+  /** `count` elements of aligned memory in this machine's order. */
+  read: (memory: ArrayBuffer, count: number) => Pixels;
+}
 
-const isKind = (name: string): name is keyof typeof KINDS => Object.hasOwn(KINDS, name);
+const floats = (values: ArrayLike<number>): Float32Array => new Float32Array(values);
+const KINDS: Record<string, Kind> = {
+  f2: { size: 2, read: (memory, count) => Float32Array.from(new Uint16Array(memory, 0, count), half) },
+  f4: { size: 4, read: (memory, count) => new Float32Array(memory, 0, count) },
+  f8: { size: 8, read: (memory, count) => floats(new Float64Array(memory, 0, count)) },
+  i1: { size: 1, read: (memory, count) => floats(new Int8Array(memory, 0, count)) },
+  i2: { size: 2, read: (memory, count) => floats(new Int16Array(memory, 0, count)) },
+  i4: { size: 4, read: (memory, count) => floats(new Int32Array(memory, 0, count)) },
+  i8: { size: 8, read: (memory, count) => Float32Array.from(new BigInt64Array(memory, 0, count), Number) },
+  u1: { size: 1, read: (memory, count) => new Uint8Array(memory, 0, count) },
+  u2: { size: 2, read: (memory, count) => new Uint16Array(memory, 0, count) },
+  u4: { size: 4, read: (memory, count) => floats(new Uint32Array(memory, 0, count)) },
+  u8: { size: 8, read: (memory, count) => Float32Array.from(new BigUint64Array(memory, 0, count), Number) },
+  b1: { size: 1, read: (memory, count) => new Uint8Array(memory, 0, count) },
+};
+
+/** What to do about types that are not read. */
+function refusal(type: string): string {
+  const advice = "save it as float32 or uint16";
+  if (/^[<>|=]?O/.test(type))
+    return `a .npy file of type "${type}" holds Python objects (a pickle), which may run code; ${advice}`;
+  if (type.startsWith("["))
+    return `this .npy file is a structured array (${type.slice(0, 80)}); save the field that holds the depth, as float32 or uint16`;
+  return `a .npy file of type "${type}" is not read here; ${advice}`;
+}
+
+/** Elements of `size` bytes from the other byte order, in place. */
+function swap(body: Uint8Array, size: number): void {
+  for (let at = 0; at + size <= body.length; at += size) body.subarray(at, at + size).reverse();
+}
 
 /** Data in column order (the first index runs fastest) in row order. */
-function inRows<T extends Float32Array | Uint16Array | Uint8Array>(
-  data: T,
-  height: number,
-  width: number,
-  channels: number,
-): T {
+function inRows<T extends Pixels>(data: T, height: number, width: number, channels: number): T {
   const rows = data.slice() as T;
   for (let row = 0; row < height; row++) {
     for (let column = 0; column < width; column++) {
@@ -56,8 +77,56 @@ function inRows<T extends Float32Array | Uint16Array | Uint8Array>(
   return rows;
 }
 
-/** Reads rows x columns, or rows x columns x channels, in either order; 64-bit floats and 32-bit integers become 32-bit floats. */
-export function readNpy(bytes: Uint8Array): Raster<Float32Array | Uint16Array | Uint8Array> {
+/** Channels before rows and columns, as PyTorch has them, behind them. */
+function channelsLast<T extends Pixels>(data: T, channels: number): T {
+  const last = data.slice() as T;
+  const pixels = data.length / channels;
+  for (let channel = 0; channel < channels; channel++)
+    for (let at = 0; at < pixels; at++) last[at * channels + channel] = data[channel * pixels + at] ?? 0;
+  return last;
+}
+
+interface Shape {
+  height: number;
+  width: number;
+  channels: number;
+  isChannelFirst: boolean;
+}
+
+/** Rows, columns and channels of a shape; axes of length 1 around an image count for nothing. */
+function shapeOf(listed: string): Shape {
+  const parts = listed
+    .split(",")
+    .map((part) => part.trim())
+    .filter((part) => part !== "");
+  // Nothing but digits: Number() would also take "2.5", "-2" and "0x2".
+  if (!parts.every((axis) => /^[0-9]+$/.test(axis) && Number(axis) > 0))
+    throw bad(`this .npy file has the shape (${listed.trim()}); whole numbers above zero are needed`);
+  const axes = parts.map(Number);
+  // Batch and channel of a tensor.
+  if (axes.length === 4 && axes[0] === 1 && axes[1] === 1) axes.splice(0, 2);
+  while (axes.length > 3 && axes[0] === 1) axes.shift();
+  if (axes.length > 3 && axes.at(-1) === 1) axes.pop();
+  if (axes.length === 3 && axes[0] === 1 && (axes[2] ?? 0) > MOST_CHANNELS) axes.shift();
+  const [first = 0, second = 0, third = 1] = axes;
+  if (axes.length === 4)
+    throw bad(
+      `this .npy file has 4 axes (${axes.join(" x ")}): a stack of pictures. Save each of them as a file: rows and columns, or rows, columns and channels`,
+    );
+  if (axes.length < 2 || axes.length > 3)
+    throw bad(`this .npy file has ${axes.length} axes; rows and columns, or rows, columns and channels are needed`);
+  if (third <= MOST_CHANNELS) return { height: first, width: second, channels: third, isChannelFirst: false };
+  if (first <= MOST_CHANNELS) return { height: second, width: third, channels: first, isChannelFirst: true };
+  throw bad(
+    `this .npy file has ${third} channels; 1 to ${MOST_CHANNELS} are read here. If it is a stack of ${first} pictures, save each of them as a file`,
+  );
+}
+
+/**
+ * Reads rows x columns, or rows x columns x channels, in either order; floats of all sizes and whole numbers that may be negative or longer
+ * than 16 bits become 32-bit floats.
+ */
+export function readNpy(bytes: Uint8Array): Raster<Pixels> & { type: string } {
   if (bytes.length < SHORTEST) throw bad("this .npy file is cut off in its header");
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   const short = view.getUint8(6) === 1;
@@ -66,33 +135,32 @@ export function readNpy(bytes: Uint8Array): Raster<Float32Array | Uint16Array | 
   if (until > bytes.length) throw bad("this .npy file is cut off in its header");
   const header = new TextDecoder("latin1").decode(bytes.subarray(from, until));
 
-  const kind = /'descr': '([^']*)'/.exec(header)?.[1] ?? "unknown";
-  if (!isKind(kind)) {
-    throw bad(`a .npy file of type "${kind}" is not read here; save it as float32, float64, uint16, uint8 or int32`);
-  }
-  const order = /'fortran_order': (True|False)/.exec(header)?.[1];
-  if (!order) throw bad("this .npy file has no fortran_order");
-  const listed = /'shape': \(([^)]*)\)/.exec(header)?.[1] ?? "";
-  const axes = listed
-    .split(",")
-    .map((part) => part.trim())
-    .filter((part) => part !== "");
-  if (axes.length < 2 || axes.length > 3) {
-    throw bad(`this .npy file has ${axes.length} axes; rows and columns, or rows, columns and channels are needed`);
-  }
-  // Nothing but digits: Number() would also take "2.5", "-2" and "0x2".
-  if (!axes.every((axis) => /^[0-9]+$/.test(axis) && Number(axis) > 0)) {
-    throw bad(`this .npy file has the shape (${listed.trim()}); whole numbers above zero are needed`);
-  }
-  const [height = 0, width = 0, channels = 1] = axes.map(Number);
-  if (channels > MOST_CHANNELS)
-    throw bad(`this .npy file has ${channels} channels; 1 to ${MOST_CHANNELS} are read here`);
+  const type =
+    /'descr': (?:'([^']*)'|(\[.*?\]))/s
+      .exec(header)
+      ?.slice(1)
+      .find((each) => each !== undefined) ?? "unknown";
+  const [, order = "", name = ""] = /^([<>|=]?)([fiub]\d)$/.exec(type) ?? [];
+  const kind = Object.hasOwn(KINDS, name) ? KINDS[name] : undefined;
+  if (kind === undefined) throw bad(refusal(type));
+  const columns = /'fortran_order': (True|False)/.exec(header)?.[1];
+  if (!columns) throw bad("this .npy file has no fortran_order");
+  const { height, width, channels, isChannelFirst } = shapeOf(/'shape': \(([^)]*)\)/.exec(header)?.[1] ?? "");
   const count = height * width * channels;
-  const { size, read } = KINDS[kind];
   // A copy, because typed arrays want aligned memory; Node's Buffer would not make one by its own slice.
-  const body = new Uint8Array(bytes.subarray(until)).buffer;
-  if (body.byteLength < count * size)
-    throw bad(`this .npy file is cut off: ${body.byteLength} of ${count * size} bytes`);
-  const data = read(body, count);
-  return { width, height, channels, data: order === "True" ? inRows(data, height, width, channels) : data };
+  const body = new Uint8Array(bytes.subarray(until));
+  if (body.byteLength < count * kind.size)
+    throw bad(`this .npy file is cut off: ${body.byteLength} of ${count * kind.size} bytes`);
+  if (order === ">" && kind.size > 1) swap(body, kind.size);
+  const data = kind.read(body.buffer, count);
+  if (!isChannelFirst)
+    return {
+      width,
+      height,
+      channels,
+      type: name,
+      data: columns === "True" ? inRows(data, height, width, channels) : data,
+    };
+  const inOrder = columns === "True" ? inRows(data, channels, height, width) : data;
+  return { width, height, channels, type: name, data: channelsLast(inOrder, channels) };
 }

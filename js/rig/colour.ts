@@ -47,17 +47,33 @@ export function pictureMask(picture: Picture): Found<Extract<RigReading, { kind:
   };
 }
 
-/** Whether a grey picture of 8 bits has two levels only, one of them zero. */
-export function looksLikeMask(picture: Picture): boolean {
-  if (picture.bits > 8 || !isGrey(picture)) return false;
-  const { data, channels } = picture;
-  let level = 0;
-  let [dark, lit] = [false, false];
+/** Different levels of a grey picture of whole numbers, the lowest first; nothing where there are more than so many. */
+function levelsOf({ data, channels }: Picture, most: number): number[] | undefined {
+  const levels = new Set<number>();
   for (let at = 0; at < data.length; at += channels) {
-    const value = data[at] ?? 0;
-    if (value === 0) dark = true;
-    else if (level === 0 || value === level) [level, lit] = [value, true];
-    else return false;
+    levels.add(data[at] ?? 0);
+    if (levels.size > most) return undefined;
   }
-  return dark && lit;
+  return [...levels].sort((a, b) => a - b);
+}
+
+/** Whether a grey picture has two levels only, one of them zero. */
+export function looksLikeMask(picture: Picture): boolean {
+  if (picture.data instanceof Float32Array || !isGrey(picture)) return false;
+  const levels = levelsOf(picture, 2);
+  const isMask = levels?.length === 2 && levels[0] === 0;
+  // Of 16 bits a wall before nothing may be one, too; masks are as bright as can be, or ones.
+  return isMask && (picture.bits <= 8 || levels[1] === 0xffff || levels[1] === 1 || levels[1] === 255);
+}
+
+/** Objects that labels tell apart. */
+const MOST_LABELS = 64;
+/** Pixels of a picture whose few levels say something. */
+const FEWEST_PIXELS = 1000;
+
+/** Whether 16 bits hold a few small numbers, as no depth camera's millimetres are. */
+export function looksLikeLabels(picture: Picture): boolean {
+  if (!(picture.data instanceof Uint16Array) || picture.data.length < FEWEST_PIXELS || !isGrey(picture)) return false;
+  const levels = levelsOf(picture, MOST_LABELS);
+  return levels !== undefined && (levels.at(-1) ?? 0) <= MOST_LABELS;
 }

@@ -6,29 +6,39 @@
  */
 import { badFile } from "../errors.js";
 import { hasColour, single } from "../raster.js";
+import { checkAxes } from "./axes.js";
+import { decoded } from "./formats/coded.js";
 import type { Cloud, Picture } from "./formats/picture.js";
+import {
+  FARTHEST,
+  NEAREST,
+  type Unit,
+  isThere,
+  isVaried,
+  metresText,
+  nameOf,
+  otherUnits,
+  quantile,
+  sampled,
+  shareOf,
+  told,
+  unitOfFloats,
+  unitOfIntegers,
+} from "./guess.js";
 import { isOptical, turnedCloud } from "./scan.js";
+import { isScattered, looksLikeImage } from "./texture.js";
 import type { ReadOptions, RigReading } from "./types.js";
 import { type ReaderWarning, warning } from "./warnings.js";
 
 type Depth = Extract<RigReading, { kind: "depth" }>;
 export type Found<T> = Omit<T, "name">;
 
-/** Depths of which a rig's camera is expected to see, metres. */
-const NEAREST = 0.1;
-const FARTHEST = 20;
 /** More holes than this are worth a word. */
 const MANY_HOLES = 0.4;
 /** A few stray depths say nothing of the unit: of those beyond the range so many may be. */
 const STRAY = 0.01;
-/** Half of what indoor sensors with integer depths see lies nearer, metres; beyond it the unit is not the millimetre. */
-const USUAL = 8;
-/** Share of values that a rule about their last digits has to hold for. */
-const NEARLY_ALL = 0.99;
-/** .. and of SUN RGB-D's, where depths beyond 8.19 m wrap into the low bits. */
+/** Share of SUN RGB-D's values that are multiples of 8: depths beyond 8.19 m wrap into the low bits. */
 const MOSTLY = 0.9;
-/** Fewer different depths are a scene made by hand, whose round numbers say nothing of the unit. */
-const MANY_VALUES = 16;
 /** What a 16-bit sensor says where it is blind. */
 const SATURATED = 0xffff;
 /** Renderers write 1e10 where they saw nothing, and half floats their largest number. */
@@ -37,68 +47,7 @@ const LARGEST_HALF = 65_504;
 /** The Kinect's 11-bit disparity where it is blind. */
 const BLIND_DISPARITY = 2047;
 
-interface Unit {
-  /** Metres per stored unit. */
-  metres: number;
-  says: string;
-  isGuessed: boolean;
-}
-
-const NAMED: [number, string][] = [
-  [1, "metres"],
-  [0.001, "millimetres"],
-  [0.01, "centimetres"],
-  [0.0002, "fifths of a millimetre, 5000 to the metre"],
-  [0.0001, "tenths of a millimetre"],
-];
-const name = (metres: number): string =>
-  NAMED.find(([unit]) => Math.abs(metres / unit - 1) < 1e-6)?.[1] ??
-  `units of ${Number((1000 * metres).toPrecision(4))} mm`;
-
-const isThere = (value: number): boolean => value > 0 && value < 1e12;
-
-/** The valid values in order, at most so many of them: quantiles need no more. */
-const SAMPLE = 65_536;
-function sampled(values: ArrayLike<number>, step = 1, offset = 0): Float64Array {
-  const count = Math.floor((values.length - offset + step - 1) / step);
-  const stride = step * Math.max(1, Math.ceil(count / SAMPLE));
-  const found: number[] = [];
-  for (let at = offset; at < values.length; at += stride) {
-    const value = values[at] ?? 0;
-    if (isThere(value)) found.push(value);
-  }
-  return Float64Array.from(found).sort();
-}
-
-const quantile = (sorted: Float64Array, share: number): number =>
-  sorted[Math.floor(share * (sorted.length - 1))] ?? NaN;
-const shareOf = (values: Float64Array, rule: (value: number) => boolean): number =>
-  values.reduce((sum, value) => sum + (rule(value) ? 1 : 0), 0) / values.length;
-
-const isVaried = (values: Float64Array): boolean => new Set(values).size >= MANY_VALUES;
-
-/** The unit of whole numbers: of TUM's files all are multiples of 5, since they are fives of a Kinect's millimetres. */
-function unitOfIntegers(values: Float64Array): Unit {
-  const fives =
-    isVaried(values) &&
-    shareOf(values, (value) => value % 5 === 0) >= NEARLY_ALL &&
-    quantile(values, 0.5) > 1000 * NEAREST * 5;
-  if (fives)
-    return { metres: 0.0002, says: `${name(0.0002)} (guessed: all values are multiples of 5)`, isGuessed: true };
-  if (quantile(values, 0.5) > 1000 * USUAL)
-    return { metres: 0.0002, says: `${name(0.0002)} (guessed: too far for millimetres)`, isGuessed: true };
-  return { metres: 0.001, says: `${name(0.001)} (guessed)`, isGuessed: true };
-}
-
-/** The unit of floats: millimetres if half of them lay beyond what metres would reach. */
-function unitOfFloats(values: Float64Array): Unit {
-  const metres = quantile(values, 0.5) > FARTHEST ? 0.001 : 1;
-  return { metres, says: `${name(metres)} (guessed)`, isGuessed: true };
-}
-
-const told = (metres: number): Unit => ({ metres, says: name(metres), isGuessed: false });
 const percent = (share: number): string => `${(100 * share).toFixed(1)} %`;
-const metresText = (value: number): string => (value < 0.01 || value >= 1000 ? value.toPrecision(3) : value.toFixed(2));
 
 interface Seen {
   count: number;
@@ -143,7 +92,7 @@ function judged(
     warnings.push(
       warning(
         "unit-guessed",
-        `The file does not give its unit. It was read as ${name(unit.metres)}, so that depths are ${range}; give the unit if that is wrong.`,
+        `The file does not give its unit. It was read as ${nameOf(unit.metres)} by a guess, so that depths are ${range}${otherUnits(unit, nearest, farthest)}; give the unit if that is wrong.`,
         { unit: unit.metres },
       ),
     );
@@ -218,7 +167,8 @@ function ofIntegers(picture: Picture, integers: Uint8Array | Uint16Array, unit: 
       isGuessed: true,
     };
   }
-  found ??= picture.unit === undefined ? unitOfIntegers(sample) : told(picture.unit);
+  const isSparse = isScattered(data, picture.width);
+  found ??= picture.unit === undefined ? unitOfIntegers(sample, isSparse) : told(picture.unit);
   const depth = { width: picture.width, height: picture.height, data, unit: found.metres };
   const { says, measured, warnings: more } = judged(picture, `${picture.bits}-bit`, data, found);
   if (picture.bits <= 8)
@@ -228,6 +178,7 @@ function ofIntegers(picture: Picture, integers: Uint8Array | Uint16Array, unit: 
         "Depths of 8 bits are too coarse for a calibration, and often a picture of the depth rather than the depth itself.",
       ),
     );
+  if (picture.bits === 16 && looksLikeImage(data, picture.width)) warnings.push(warning("files-swapped", IMAGE));
   if (quantile(sample, 1) === BLIND_DISPARITY && shareOf(sample, (value) => value === BLIND_DISPARITY) > STRAY)
     warnings.push(warning("raw-disparity", DISPARITY));
   return {
@@ -239,6 +190,8 @@ function ofIntegers(picture: Picture, integers: Uint8Array | Uint16Array, unit: 
     warnings: [...warnings, ...more],
   };
 }
+const IMAGE =
+  "Its values change from pixel to pixel as those of an image do (infrared or intensities?), not as depths: is it the depth map?";
 const DISPARITY =
   "The largest value is 2047, and common: this looks like a Kinect's raw disparity, which is not depth (z = 351.3 / (1092.5 - d) m or so).";
 
@@ -275,6 +228,7 @@ export function cloudDepth(cloud: Cloud, { unit }: ReadOptions): Found<Depth> {
   if (behind > sample.length)
     throw badFile("its points lie behind the camera (z is negative): turn them so that z looks forward, y down");
   const found = unit === undefined ? unitOfFloats(sample) : told(unit);
+  checkAxes(points, cloud);
   const { says, measured, warnings } = judged(cloud, "an organised cloud", points, found, 3, 2);
   for (let at = 0; at < points.length; at += 3) {
     const there = isThere(points[at + 2] ?? NaN) && Number.isFinite(points[at]) && Number.isFinite(points[at + 1]);
@@ -299,6 +253,8 @@ export function pictureDepth(picture: Picture, options: ReadOptions): Found<Dept
     if (channels !== 1) throw badFile(`a depth map has 1 channel and a cloud 3, not ${channels}`);
     return ofFloats(picture, data, options.unit);
   }
+  const inside = hasColour(channels) && !isGrey(picture) ? decoded(picture) : undefined;
+  if (inside !== undefined) return pictureDepth(inside, options);
   if (hasColour(channels) && !isGrey(picture))
     throw badFile(
       "it is a colour picture where a depth map was asked for: were the files swapped, or is it a rendering of the depth?",

@@ -5,37 +5,37 @@
  */
 import { type Check, object, signal, word, wrong } from "../check.js";
 import { BimodalError, badFile, badNamed, refused } from "../errors.js";
-import { readNpy } from "../npy.js";
-import { looksLikeDepth, looksLikeMask, pictureColour, pictureMask } from "./colour.js";
-import { cloudDepth, isGrey, pictureDepth } from "./depth.js";
+import { pictureColour, pictureMask } from "./colour.js";
+import { cloudDepth, pictureDepth } from "./depth.js";
+import { knownContainer, knownText } from "./formats/containers.js";
 import { readExr } from "./formats/exr.js";
+import { type RasterKind, rasterKind } from "./formats/headerless.js";
 import { readJpeg, readWebp } from "./formats/jpeg.js";
-import { type Kind, kindOf } from "./formats/kinds.js";
-import { MOST_BYTES, checkSize } from "./formats/limits.js";
 import { readBin } from "./formats/bin.js";
+import { readLas } from "./formats/las.js";
+import { MOST_BYTES } from "./formats/limits.js";
+import { npyPicture, npzPicture } from "./formats/npy.js";
 import { readPcd } from "./formats/pcd.js";
 import type { Cloud, Picture, Points } from "./formats/picture.js";
 import { readPly } from "./formats/ply.js";
 import { pngPicture } from "./formats/png.js";
 import { readPfm, readPnm } from "./formats/pnm.js";
+import { isRawName, pointSize, pointsRefused, rawRefused, readColmapMap, readRaw } from "./formats/raw.js";
+import { pointList, readTable } from "./formats/table.js";
 import { readText, textOf } from "./formats/text.js";
 import { readTiff } from "./formats/tiff.js";
+import { kindOfPicture, nameWarnings, unitOfName } from "./recognise.js";
 import { pointsDepth } from "./scan.js";
+import { readXyz } from "./formats/xyz.js";
 import type { NamedFile, ReadOptions, RigReading } from "./types.js";
-import { inWords, strange } from "./words.js";
 import { distinct } from "./warnings.js";
+import { inWords } from "./words.js";
 
 type Unnamed<T> = T extends unknown ? Omit<T, "name"> : never;
 type Content = Unnamed<RigReading>;
 
-function npyPicture(bytes: Uint8Array): Picture {
-  const raster = readNpy(bytes);
-  checkSize(raster.width, raster.height);
-  return { ...raster, format: "npy", bits: 8 * raster.data.BYTES_PER_ELEMENT, notes: [], warnings: [] };
-}
-
 const PICTURES: Record<
-  Exclude<Kind, "ply" | "pcd">,
+  Exclude<RasterKind, "ply" | "pcd" | "las" | "points">,
   (bytes: Uint8Array, options: ReadOptions) => Picture | Promise<Picture>
 > = {
   png: pngPicture,
@@ -46,34 +46,22 @@ const PICTURES: Record<
   pfm: readPfm,
   pnm: readPnm,
   npy: npyPicture,
+  npz: npzPicture,
+  colmap: readColmapMap,
+  table: readTable,
 };
 
 /** Whether it is a file of pixels or points, and no text of cameras and poses. */
-export const isRasterFile = ({ name, bytes }: NamedFile): boolean =>
-  kindOf(bytes) !== undefined || readBin({ name, bytes }) !== undefined;
-
-const isColourful = (picture: Picture): boolean => picture.channels >= 3 && !isGrey(picture);
-
-const CALLED_MASK = /mask|segm/i;
-
-/** What a picture is where nobody said: by its content, and where both would do, by the name of its file. */
-function guessedKind(name: string, picture: Picture): "colour" | "depth" | "mask" {
-  // A drawn mask may have soft edges.
-  if (looksLikeMask(picture) || (CALLED_MASK.test(name) && picture.bits === 8 && isGrey(picture))) return "mask";
-  if (picture.data instanceof Float32Array && picture.channels === 3)
-    return picture.format === "npy" ? "depth" : "colour";
-  if (isColourful(picture)) return "colour";
-  const file = name.toLowerCase();
-  if (/depth|dist|disp|range/.test(file)) return "depth";
-  if (/rgb|colou?r|grey|gray|image|photo/.test(file)) return "colour";
-  return looksLikeDepth(picture) ? "depth" : "colour";
-}
+export const isRasterFile = (bytes: Uint8Array): boolean => rasterKind(bytes) !== undefined;
+/** Whether it is a text, of whatever. */
+export const isTextFile = (bytes: Uint8Array): boolean => textOf(bytes) !== undefined;
 
 function ofPicture(name: string, picture: Picture, options: ReadOptions): Content {
-  const kind = options.as ?? guessedKind(name, picture);
-  if (kind === "colour") return pictureColour(picture);
-  if (kind === "depth") return pictureDepth(picture, options);
-  if (kind === "mask") return pictureMask(picture);
+  const kind = options.as ?? kindOfPicture(name, picture);
+  const warnings = [...picture.warnings, ...nameWarnings(name, picture, kind, options)];
+  if (kind === "colour") return pictureColour({ ...picture, warnings });
+  if (kind === "depth") return pictureDepth({ ...picture, ...unitOfName(name, picture), warnings }, options);
+  if (kind === "mask") return pictureMask({ ...picture, warnings });
   throw badFile(`it is a picture (${picture.format}) where ${kind} were asked for`);
 }
 
@@ -95,6 +83,23 @@ async function ofText(text: string, { as }: ReadOptions): Promise<Content> {
     : { kind: "poses", poses, ...reading };
 }
 
+/** What is neither pixels nor points by its first bytes: raw pixels of a given size, or a text. */
+async function ofOthers(name: string, bytes: Uint8Array, options: ReadOptions): Promise<Content> {
+  const container = knownContainer(name, bytes);
+  if (container !== undefined) throw container;
+  if (options.size !== undefined && isRawName(name)) return ofPicture(name, readRaw(bytes, options.size), options);
+  const isPoints = rasterKind(bytes) === "points";
+  const scan = isPoints || (textOf(bytes) === undefined && /\.bin$/i.test(name)) ? readBin(bytes) : undefined;
+  if (scan) return ofCloud(scan, options);
+  if (isPoints) throw pointsRefused(pointSize(bytes) ?? 4);
+  const list = pointList(bytes) && readXyz(bytes);
+  if (list) return ofCloud(list, options);
+  const text = textOf(bytes);
+  const refusal = text === undefined ? (pointList(bytes) ?? rawRefused(bytes)) : (knownText(text) ?? pointList(bytes));
+  if (text === undefined || refusal !== undefined) throw refusal ?? rawRefused(bytes);
+  return ofText(text, options);
+}
+
 async function content({ name, bytes }: NamedFile, options: ReadOptions): Promise<Content> {
   if (bytes.length === 0) throw badFile("it is empty");
   if (bytes.length > MOST_BYTES)
@@ -103,15 +108,16 @@ async function content({ name, bytes }: NamedFile, options: ReadOptions): Promis
       undefined,
       { problem: "too-large" },
     );
-  const kind = kindOf(bytes);
+  const kind = rasterKind(bytes);
   if (kind === "ply") return ofCloud(readPly(bytes), options);
   if (kind === "pcd") return ofCloud(readPcd(bytes), options);
-  if (kind !== undefined) return ofPicture(name, await PICTURES[kind](bytes, options), options);
-  const scan = readBin({ name, bytes });
-  if (scan) return ofCloud(scan, options);
-  const text = textOf(bytes);
-  if (text === undefined) throw strange(bytes);
-  return ofText(text, options);
+  if (kind === "las") return ofCloud(readLas(bytes), options);
+  if (kind === undefined || kind === "points") return ofOthers(name, bytes, options);
+  const picture = await PICTURES[kind](bytes, options);
+  const { scan, format, notes, warnings } = picture;
+  if (scan) return ofCloud({ format, scan, isMetric: false, notes, warnings }, options);
+  // The array that was taken out of an archive has a name of its own.
+  return ofPicture(picture.name ?? name, picture, options);
 }
 
 function reasonOf(error: unknown): string {
@@ -138,7 +144,17 @@ export const metresPerUnit: Check = (value, field) => {
   if (!(typeof value === "number" && value > 0 && Number.isFinite(value)))
     throw new BimodalError("option", `${field}: metres per stored unit, above zero, are needed`, field, refused(value));
 };
-const checkOptions = object({ as: word("colour", "depth", "mask", "cameras", "poses"), unit: metresPerUnit, signal });
+export const pixelSize: Check = (value, field) => {
+  const isSide = (side: unknown) => Number.isInteger(side) && Number(side) > 0;
+  if (!(Array.isArray(value) && value.length === 2 && value.every(isSide)))
+    throw new BimodalError("option", `${field}: width and height in pixels are needed, [640, 480]`, field);
+};
+const checkOptions = object({
+  as: word("colour", "depth", "mask", "cameras", "poses"),
+  unit: metresPerUnit,
+  size: pixelSize,
+  signal,
+});
 
 function checked(file: NamedFile, options: ReadOptions): void {
   checkNamed(file, "file");

@@ -105,6 +105,8 @@ export interface ReadOptions {
   as?: RigReading["kind"];
   /** Metres per stored unit of a depth map or cloud; without it the values decide. */
   unit?: number;
+  /** Width and height of raw pixels, of which no header says them (.raw, .bin). */
+  size?: readonly [width: number, height: number];
   /** Breaks the reading off; the promise is rejected with its reason. */
   signal?: AbortSignal;
 }

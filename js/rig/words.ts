@@ -1,5 +1,4 @@
-/** Cameras, poses and strange files in plain words. */
-import { type BimodalError, badFile } from "../errors.js";
+/** Cameras and poses in plain words. */
 import type { NamedCamera, NamedPose } from "./types.js";
 
 const digits = (value: number): string => Number(value.toPrecision(5)).toString();
@@ -35,27 +34,3 @@ function listed<T>(all: T[], one: string, many: string, say: (each: T) => string
 
 export const inWords = (cameras: NamedCamera[], poses: NamedPose[]): string =>
   [...listed(cameras, "a camera", "cameras", ofCamera), ...listed(poses, "a pose", "poses", ofPose)].join(", ");
-
-/** First bytes of formats that are not read, what to do about them, and whether they are pictures, which a browser may read. */
-const STRANGE: [pattern: RegExp, advice: string, isPicture?: true][] = [
-  [/^GIF8/, "a GIF; save it as PNG", true],
-  [/^BM/, "a BMP; save it as PNG", true],
-  [/^PK\x03\x04/, "a ZIP archive (.npz is one); unpack it first"],
-  [/^\x1f\x8b/, "compressed by gzip; unpack it first"],
-  [/^\x89HDF/, "HDF5; save the array as .npy"],
-  [/^MATLAB/, "a .mat file of MATLAB; save the array as .npy or 16-bit PNG"],
-  [/^.{4}ftyp(?:heic|heix|mif1|avif)/s, "HEIC or AVIF; save it as PNG or JPEG", true],
-  [/^(?:.{4}ftyp|RIFF.{4}AVI )/s, "a video; save its frames as PNG"],
-  [/^#ROSBAG|^SQLite format|^\x89MCAP/, "a recording of ROS; export its images and camera_info first"],
-  [/^%PDF/, "a PDF"],
-  [/^\x80[\x02-\x05]/, "a pickle of Python, which may run code; save the array by numpy.save"],
-  [/^\xff\x4f\xff\x51|^.{4}jP {2}/s, "JPEG 2000; save it as PNG", true],
-];
-
-/** The error about a file of a format that is not read, with what it seems to be. */
-export function strange(bytes: Uint8Array): BimodalError {
-  const head = String.fromCharCode(...bytes.subarray(0, 16));
-  const [, advice, isPicture] = STRANGE.find(([pattern]) => pattern.test(head)) ?? [];
-  if (advice === undefined) return badFile("its format is not known here");
-  return badFile(`it is ${advice}`, undefined, isPicture && { problem: "picture" });
-}

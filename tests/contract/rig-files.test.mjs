@@ -71,7 +71,7 @@ describe("depth maps", () => {
   });
 
   // Large enough for their blocks to become shorter; halves hold these depths exactly.
-  for (const name of ["piz-half", "piz-float", "piz-colours", "pxr24-float", "pxr24-mixed"]) {
+  for (const name of ["piz-half", "piz-float", "piz-colours", "pxr24-float", "pxr24-mixed", "dwaa-depth"]) {
     test(`large-${name}.exr`, async () => {
       const reading = await readFixture(`large-${name}.exr`, { as: "depth" });
       assert.deepEqual([reading.depth.width, reading.depth.height], [LARGE, 48]);

@@ -126,7 +126,7 @@ const FILES = [
 
   ["cut.exr", cut("depth-zip.exr", 250), /EXR|beyond its own end/],
   ["b44.exr", fixture("large-b44.exr"), /compressed by B44/],
-  ["dwa.exr", fixture("large-dwaa-depth.exr"), /DWA, of which R, G, B and Y are read/],
+  ["dwa.exr", cut("large-dwaa-depth.exr", 1500), /EXR is cut off or damaged/],
   ["types.exr", packed("colour-and-depth.exr", 4), /channels of different types/],
   ["piz.exr", changed("large-piz-half.exr", [-200, 0], [-201, 0], [-202, 0], [-700, 255]), /EXR|damaged/],
   ["order.exr", exr(twice, "large-pxr24-float.exr"), /a block of it is missing/],

@@ -21,6 +21,8 @@ const FARTHEST = 500;
 const LEAST = 1e-6;
 /** Share of points that have to be places. */
 const NEARLY_ALL = 0.99;
+/** .. and that lie to the right, behind or below, so that a coordinate is negative: depths never are. */
+const LEAST_NEGATIVE = 0.1;
 /** Points that are looked at. */
 const LOOKED_AT = 20_000;
 
@@ -28,17 +30,18 @@ const LOOKED_AT = 20_000;
 function unevenness(values: Float32Array, floats: number): number | undefined {
   const count = Math.min(LOOKED_AT, values.length / floats);
   const isPlace = (value = NaN) => value === 0 || (Math.abs(value) > LEAST && Math.abs(value) < FARTHEST);
-  let places = 0;
+  let [places, negative] = [0, 0];
   const [steps, ranges]: [number[], number[]] = [[], []];
   for (let point = 0; point < count; point++) {
     const [x = 0, y = 0, z = 0] = values.subarray(floats * point, floats * point + 3);
     if (!isPlace(x) || !isPlace(y) || !isPlace(z)) continue;
     places++;
+    if (x < 0 || y < 0 || z < 0) negative++;
     ranges.push(Math.hypot(x, y, z));
     const [a = 0, b = 0, c = 0] = values.subarray(floats * point - floats, floats * point - floats + 3);
     if (point > 0) steps.push(Math.hypot(x - a, y - b, z - c));
   }
-  if (places < NEARLY_ALL * count) return undefined;
+  if (places < NEARLY_ALL * count || negative < LEAST_NEGATIVE * count) return undefined;
   const usual = (all: number[]) => all.sort((a, b) => a - b)[all.length >> 1] ?? 0;
   const range = usual(ranges);
   return range > 0.1 ? usual(steps) / range : undefined;
@@ -49,9 +52,9 @@ function isRing(values: Float32Array): boolean {
   return values.every((value) => Number.isInteger(value) && value >= 0 && value < 512) && new Set(values).size > 1;
 }
 
-/** The scan in a file called .bin; nothing where its numbers are no points. */
-export function readBin({ name, bytes }: { name: string; bytes: Uint8Array }): Points | undefined {
-  if (!/\.bin$/i.test(name) || bytes.length % 4 !== 0 || bytes.length > 24 * MOST_POINTS) return undefined;
+/** The scan in a file of nothing but floats; nothing where its numbers are no points. */
+export function readBin(bytes: Uint8Array): Points | undefined {
+  if (bytes.length % 4 !== 0 || bytes.length > 24 * MOST_POINTS) return undefined;
   const values = new Float32Array(bytes.slice().buffer);
   const fitting = LAYOUTS.flatMap(([floats, others, of]) => {
     const isWhole = values.length % floats === 0 && values.length / floats >= FEWEST_POINTS;

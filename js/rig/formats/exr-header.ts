@@ -5,6 +5,8 @@ import { checkSize } from "./limits.js";
 const COMPRESSIONS = ["none", "RLE", "ZIPS", "ZIP", "PIZ", "PXR24", "B44", "B44A", "DWAA", "DWAB"];
 /** Lines of a block, of those that are read. */
 const LINES: Record<number, number> = { 0: 1, 1: 1, 2: 1, 3: 16, 4: 32, 5: 16, 8: 32, 9: 256 };
+/** The first of the two compressions by DWA. */
+export const DWAA = 8;
 /** Bytes of a sample of each type. */
 export const SIZES = [4, 2, 4];
 const MOST_CHANNELS = 64;

@@ -1,13 +1,14 @@
 /**
  * OpenEXR of one part in scan lines, plain or by RLE, ZIPS or ZIP: half, float and whole numbers.
  *
- * PIZ, PXR24 and DWA are parse-exr's (exr-others.ts). It does not replace this: it knows neither a channel Z nor whole numbers, mistakes
+ * PIZ, PXR24 and the colours of DWA are parse-exr's (exr-others.ts), what DWA keeps without loss is in exr-dwa.ts. It does not replace this: it knows neither a channel Z nor whole numbers, mistakes
  * channels of different types, and checks nothing of what a file declares. Not read: B44, tiles, deep pixels, several parts; each is named.
  */
 import { badFile } from "../../errors.js";
 import { inflateExactly } from "../../inflate.js";
-import { type Channel, type Header, SIZES, blocks, readHeader, strideOf } from "./exr-header.js";
-import { half } from "./half.js";
+import { isKept, readKept } from "./exr-dwa.js";
+import { type Channel, DWAA, type Header, SIZES, blocks, readHeader, strideOf } from "./exr-header.js";
+import { half } from "../../half.js";
 import type { Picture } from "./picture.js";
 
 /** The last compression that is read here. */
@@ -87,6 +88,9 @@ export function readExr(bytes: Uint8Array, isDepth: boolean): Picture | Promise<
     ...{ format: "EXR", bits, notes: [], warnings: [] },
   });
   if (compression <= ZIP) return picture(readKnown(bytes, found, used));
+  const [only = 0, ...more] = used;
+  if (compression >= DWAA && more.length === 0 && channels[only] && isKept(channels[only]))
+    return picture(readKept(bytes, found, only));
   return import("./exr-others.js").then(({ readOthers }) => picture(readOthers(bytes, found, used)));
 }
 

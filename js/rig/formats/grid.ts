@@ -4,7 +4,7 @@ import { checkSize } from "./limits.js";
 import { type ReaderWarning, warning } from "../warnings.js";
 
 /** Images of depth cameras, by which points without rows and columns may still be told to have them. */
-const SIZES = [
+export const SIZES = [
   [640, 480],
   [320, 240],
   [640, 576],

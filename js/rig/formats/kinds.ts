@@ -1,6 +1,6 @@
 /** Files of pixels and points by their first bytes. */
 
-export type Kind = "png" | "jpeg" | "webp" | "tiff" | "exr" | "pfm" | "pnm" | "npy" | "ply" | "pcd";
+export type Kind = "png" | "jpeg" | "webp" | "tiff" | "exr" | "pfm" | "pnm" | "npy" | "npz" | "ply" | "pcd" | "las";
 
 const FIRST: [Kind, RegExp][] = [
   ["png", /^\x89PNG\r\n\x1a\n/],
@@ -11,7 +11,10 @@ const FIRST: [Kind, RegExp][] = [
   ["pfm", /^P[Ff]\s/],
   ["pnm", /^P[1-7]\s/],
   ["npy", /^\x93NUMPY/],
+  // NumPy writes the name of its first array where others name theirs.
+  ["npz", /^PK\x03\x04.{26}[^\0]{1,100}\.npy/s],
   ["ply", /^ply\s/],
+  ["las", /^LASF/],
   ["pcd", /^(?:#[^\n]*\n|\s)*(?:VERSION|FIELDS)\s/],
 ];
 

@@ -5,6 +5,8 @@ import type { Scan } from "../lidar/scan.js";
 import type { ReaderWarning } from "../warnings.js";
 
 export interface Picture extends Raster<Pixels> {
+  /** Of the array of an archive. */
+  name?: string;
   /** "PNG", "PFM" and so on. */
   format: string;
   /** Of a channel, as in the file. */
@@ -16,6 +18,8 @@ export interface Picture extends Raster<Pixels> {
   /** Additions to what is said, such as how it was turned. */
   notes: string[];
   warnings: ReaderWarning[];
+  /** In place of pixels: points in no rows and columns. */
+  scan?: Scan;
 }
 
 /** An organised cloud, NaN where there is no point. */

@@ -2,6 +2,8 @@
 import { badFile } from "../../errors.js";
 import { readColmap, isColmap } from "./colmap.js";
 import { MOST_TEXT } from "./limits.js";
+import { isMetadata, readMetadata } from "./metadata.js";
+import { isMiddlebury, readMiddlebury } from "./middlebury.js";
 import { readNumbers } from "./plain.js";
 import { isEnumeration, readEnumeration } from "./realsense.js";
 import { isEcho, isPublisher, readEcho, readPublishers } from "./ros.js";
@@ -81,6 +83,8 @@ export async function readText(text: string): Promise<Calibration & { format: st
   if (isPublisher(trimmed)) return { ...readPublishers(trimmed), format: "a static transform of ROS" };
   if (isEcho(trimmed)) return { ...readEcho(trimmed), format: "a transform of ROS" };
   if (isEnumeration(trimmed)) return { ...readEnumeration(trimmed), format: "RealSense's streams" };
+  if (isMetadata(trimmed)) return { ...readMetadata(trimmed), format: "metadata of realsense-viewer" };
+  if (isMiddlebury(trimmed)) return { ...readMiddlebury(trimmed), format: "Middlebury's calibration of a stereo pair" };
   if (trimmed.startsWith("<")) return searched(plainXml(readXml(trimmed)), "XML");
   if (isColmap(trimmed)) return { ...readColmap(trimmed), format: "COLMAP's cameras" };
   const numbers = readNumbers(trimmed);

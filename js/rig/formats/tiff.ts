@@ -10,7 +10,7 @@
 import { badFile } from "../../errors.js";
 import { inflateExactly } from "../../inflate.js";
 import { turnedBy } from "./exif.js";
-import { half } from "./half.js";
+import { half } from "../../half.js";
 import { OVERHEAD, checkSize } from "./limits.js";
 import type { Picture } from "./picture.js";
 import { lzw, packBits, undoFloats, undoIntegers } from "./tiff-coding.js";

@@ -1,0 +1,98 @@
+/** Files that are not read: what they are, by their first bytes or their names, and what to do about them. */
+import { type BimodalError, badFile } from "../../errors.js";
+
+type Row = [pattern: RegExp, advice: string, isPicture?: true];
+
+const EXPORT = "export its frames as colour images, 16-bit depth images and a file of the cameras";
+const CLOUD =
+  "points of a LiDAR or scanner in no rows and columns (unorganised); save them as PCD, PLY or LAS in the frame of one scan's sensor (CloudCompare, PDAL)";
+
+/** First bytes; advice for pictures that a browser may read. */
+const FIRST: Row[] = [
+  [/^GIF8/, "a GIF; save it as PNG", true],
+  [/^BM/, "a BMP; save it as PNG", true],
+  [/^PK\x03\x04/, "a ZIP archive (.usdz and .r3d are, too); unpack it first"],
+  [/^\x1f\x8b/, "compressed by gzip; unpack it first"],
+  [/^BZh/, "compressed by bzip2; unpack it first"],
+  [/^\xfd7zXZ/, "compressed by xz; unpack it first"],
+  [/^\x28\xb5\x2f\xfd/, "compressed by Zstandard; unpack it first"],
+  [/^7z\xbc\xaf/, "a 7z archive; unpack it first"],
+  [/^Rar!/, "a RAR archive; unpack it first"],
+  [
+    /^bvx[12n$-]/,
+    "compressed by LZFSE, as Record3D's depth maps and confidences are; unpack it by liblzfse and save it as .npy or .exr",
+  ],
+  [/^\x89HDF/, "HDF5; save the array as .npy"],
+  [/^CDF[\x01\x02\x05]/, "netCDF; save the array as .npy"],
+  [/^MATLAB/, "a .mat file of MATLAB; save the array as .npy or 16-bit PNG"],
+  [/^.{4}ftyp(?:heic|heix|hevc|mif1|msf1|avif)/s, "HEIC or AVIF; save it as PNG or JPEG", true],
+  [/^(?:.{4}ftyp|RIFF.{4}AVI )/s, "a video; save its frames as PNG"],
+  [
+    /^#ROSBAG|^SQLite format|^\x89MCAP/,
+    "a recording of ROS (.bag, .db3, .mcap); export its images and camera_info first",
+  ],
+  [/^\x1a\x45\xdf\xa3/, `a Matroska recording (.mkv, such as the Azure Kinect's); ${EXPORT} (k4arecorder's tools do)`],
+  [/^NI10/, `a recording of OpenNI (.oni); ${EXPORT}`],
+  [/^SVO/, `a recording of the ZED (.svo); ${EXPORT} by the ZED SDK`],
+  [/^ASTM-E57/, `E57: ${CLOUD}`],
+  [/^glTF/, "a mesh (glTF); render a depth map from it"],
+  [/^PXR-USDC|^#usda/, "a scene in USD; render a depth map from it"],
+  [/^Kaydara FBX/, "a mesh (FBX); render a depth map from it"],
+  [/^%PDF/, "a PDF"],
+  [/^\x80[\x02-\x05]/, "a pickle of Python, which may run code; save the array by numpy.save"],
+  [/^\xff\x4f\xff\x51|^.{4}jP {2}/s, "JPEG 2000; save it as PNG", true],
+  [/^PIEH/, "Sintel's .dpt or .flo; save the depth as .npy"],
+  [/^livox_tech/, "a recording of Livox (.lvx); save a scan of it as PCD or LAS by Livox Viewer"],
+  [/^.{4}OSF!/s, "a recording of Ouster (.osf); save a scan of it as PCD or LAS by ouster-cli"],
+  [/^PAR1/, "a table in Parquet; export its images first"],
+  [
+    /^\x0a\x0d\x0d\x0a|^\xd4\xc3\xb2\xa1|^\xa1\xb2\xc3\xd4/,
+    "packets of a LiDAR (.pcap); save a scan of it as PCD by the maker's viewer or driver",
+  ],
+];
+
+/** Endings of formats that have no first bytes of their own. */
+const NAMED: Row[] = [
+  [/\.klg$/i, `a log of Kintinuous and ElasticFusion (.klg); ${EXPORT}`],
+  [/\.oni$/i, `a recording of OpenNI (.oni); ${EXPORT}`],
+  [/\.svo2?$/i, `a recording of the ZED (.svo); ${EXPORT} by the ZED SDK`],
+  [/\.sens$/i, `a recording of ScanNet (.sens); ${EXPORT} by its SensReader`],
+  [/\.e57$/i, `E57: ${CLOUD}`],
+  [/\.(?:fls|fws|zfs|rcp|rcs|ptg|lsproj)$/i, `a scan in the format of its maker: ${CLOUD}`],
+  [/\.(?:xef|rssdk|xed)$/i, `a recording of a Kinect or RealSense in a format of its own; ${EXPORT}`],
+  [/\.r3d$/i, `a recording of Record3D (.r3d), which is a ZIP archive; ${EXPORT}`],
+  [/\.stl$/i, "a mesh (STL); render a depth map from it"],
+  [/\.(?:pt|pth|ckpt)$/i, "a file of PyTorch; save the array by numpy.save"],
+  [/\.(?:tfrecords?|tfrec)(?:-|$)/i, "records of TensorFlow; export their images first"],
+  [/\.lzf$/i, "compressed by LZF; unpack it first"],
+];
+
+/** What a text begins with that is no calibration. */
+const TEXTS: Row[] = [
+  [
+    /^(?:\s*#[^\n]*\n)*\s*(?:mtllib|usemtl|o\s|g\s|s\s|v\s|vn\s|vt\s)[^\n]*\n[\s\S]{0,4000}?^(?:v|vn|f)\s+[-\d.]/m,
+    "a mesh in Wavefront's OBJ; render a depth map from it, or save an organised cloud",
+  ],
+  [/^solid\b[^\n]*\n\s*(?:facet|endsolid)/, "a mesh (STL); render a depth map from it"],
+  [/^(?:ST|C|N|4|n)*OFF\s+\d+\s+\d+\s+\d+/, "a mesh (OFF); render a depth map from it"],
+  [/^#usda/, "a scene in USD; render a depth map from it"],
+  [/^# ?vtk DataFile/, "data of VTK; save it as an organised PLY or PCD"],
+  [/^#\s?(?:VRML|X3D)/, "a mesh (VRML); render a depth map from it"],
+];
+
+const refused = ([, advice, isPicture]: Row): BimodalError =>
+  badFile(`it is ${advice}`, undefined, isPicture && { problem: "picture" });
+
+/** The error about bytes of a format that is not read, with what it seems to be; nothing where that is not known. */
+export function knownContainer(name: string, bytes: Uint8Array): BimodalError | undefined {
+  const head = String.fromCharCode(...bytes.subarray(0, 16));
+  const row = FIRST.find(([pattern]) => pattern.test(head)) ?? NAMED.find(([pattern]) => pattern.test(name));
+  return row && refused(row);
+}
+
+/** .. about a text. */
+export function knownText(text: string): BimodalError | undefined {
+  const head = text.slice(0, 8192);
+  const row = TEXTS.find(([pattern]) => pattern.test(head));
+  return row && refused(row);
+}

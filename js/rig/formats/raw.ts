@@ -1,0 +1,119 @@
+/**
+ * Files without a header that describes them: raw pixels of a given size, COLMAP's depth maps, and the points of LiDARs in KITTI's and
+ * nuScenes' .bin.
+ */
+import { badFile } from "../../errors.js";
+import { type ReaderWarning, warning } from "../warnings.js";
+import { SIZES } from "./grid.js";
+import { checkBytes, checkSize } from "./limits.js";
+import type { Picture } from "./picture.js";
+
+export type Size = readonly [width: number, height: number];
+
+const COLMAP = /^(\d{1,5})&(\d{1,5})&(\d{1,2})&/;
+const headOf = (bytes: Uint8Array): string => String.fromCharCode(...bytes.subarray(0, 24));
+
+export const isColmapMap = (bytes: Uint8Array): boolean => COLMAP.test(headOf(bytes));
+
+/** "width&height&channels&" and floats, the columns of a row one after the other. */
+export function readColmapMap(bytes: Uint8Array): Picture {
+  const [head = "", width, height, channels] = COLMAP.exec(headOf(bytes)) ?? [];
+  const size = { width: Number(width), height: Number(height) };
+  checkSize(size.width, size.height);
+  if (channels !== "1")
+    throw badFile(`it is COLMAP's map of ${channels} channels (normals); the depth map is in stereo/depth_maps`);
+  const body = bytes.subarray(head.length);
+  checkBytes(4 * size.width * size.height, body.length, "this depth map of COLMAP");
+  const warnings: ReaderWarning[] = [
+    warning(
+      "unit-guessed",
+      "COLMAP's depths have the scale of its reconstruction, which was guessed to be metres; give the unit if it is another.",
+      { unit: 1 },
+    ),
+  ];
+  const data = new Float32Array(body.slice(0, 4 * size.width * size.height).buffer);
+  return { ...size, channels: 1, data, format: "COLMAP", bits: 32, unit: 1, notes: ["COLMAP's depth map"], warnings };
+}
+
+/** Points whose numbers are looked at. */
+const LOOKED_AT = 256;
+/** LiDARs see no farther, metres. */
+const REACH = 400;
+const [MOST_INTENSITY, MOST_RINGS] = [255, 256];
+
+/** Whether the first of so many floats a point look like x y z of a LiDAR, intensity, and ring or time. */
+function isCloudOf(view: DataView, floats: number): boolean {
+  const size = 4 * floats;
+  if (view.byteLength < 20 * size || view.byteLength % size !== 0) return false;
+  const count = view.byteLength / size;
+  const step = Math.max(1, Math.floor(count / LOOKED_AT));
+  let [seen, negative, there] = [0, 0, 0];
+  for (let point = 0; point < count; point += step) {
+    const at = (index: number) => view.getFloat32(point * size + 4 * index, true);
+    const [x, y, z, intensity] = [at(0), at(1), at(2), at(3)];
+    if (![x, y, z].every((value) => Math.abs(value) < REACH)) return false;
+    if (!(intensity >= 0 && intensity <= MOST_INTENSITY)) return false;
+    if (floats > 4 && !(at(4) >= -1 && at(4) < MOST_RINGS)) return false;
+    seen++;
+    if (x < 0 || y < 0) negative++;
+    // Numbers of another kind are, as floats, next to zero.
+    if (Math.hypot(x, y, z) > 0.1) there++;
+  }
+  return there > 0.5 * seen && negative > 0.1 * seen;
+}
+
+/** How many floats a point of this headerless file has: 4 as KITTI's, 5 as nuScenes'; nothing where it is no list of points. */
+export function pointSize(bytes: Uint8Array): 4 | 5 | undefined {
+  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  if (isCloudOf(view, 4)) return 4;
+  return isCloudOf(view, 5) ? 5 : undefined;
+}
+
+/** The error about a LiDAR's list of points. */
+export const pointsRefused = (floats: 4 | 5) =>
+  badFile(
+    `it is a list of points of a LiDAR (velodyne, ${floats} floats each, as ${floats === 4 ? "KITTI" : "nuScenes"} has them), in no rows and columns (unorganised), so that no neighbours are known; project it into a depth map, or save it as an organised cloud`,
+  );
+
+const EXTENSION = /\.(?:raw|bin|dat|depth|z16|data|yuv)$/i;
+export const isRawName = (name: string): boolean => EXTENSION.test(name);
+
+/** Whether four bytes each are floats of depths rather than whole numbers, which as floats are next to nothing. */
+function areFloats(values: Float32Array): boolean {
+  let [plausible, tiny] = [0, 0];
+  for (const value of values) {
+    if (value === 0 || (Math.abs(value) >= 1e-3 && Math.abs(value) < 1e7) || !Number.isFinite(value)) plausible++;
+    else tiny++;
+  }
+  return tiny < 0.01 * (plausible + tiny);
+}
+
+/** Pixels without a header, of a size that is known from elsewhere. */
+export function readRaw(bytes: Uint8Array, [width, height]: Size): Picture {
+  checkSize(width, height);
+  const each = bytes.length / (width * height);
+  const own = () => bytes.slice().buffer;
+  const size = { width, height, channels: 1, format: "raw", notes: ["raw pixels"], warnings: [] };
+  if (each === 1) return { ...size, data: new Uint8Array(own()), bits: 8 };
+  if (each === 2) return { ...size, data: new Uint16Array(own()), bits: 16 };
+  if (each === 8) return { ...size, data: new Float32Array(new Float64Array(own())), bits: 64 };
+  if (each === 4) {
+    const floats = new Float32Array(own());
+    return { ...size, data: areFloats(floats) ? floats : new Float32Array(new Uint32Array(own())), bits: 32 };
+  }
+  throw badFile(
+    `its ${bytes.length} bytes are not ${width}x${height} pixels of 1, 2, 4 or 8 bytes: is the size another, or has it a header?`,
+  );
+}
+
+/** The error about raw pixels whose size nobody gave, with those that would fit. */
+export function rawRefused(bytes: Uint8Array) {
+  const fitting = ([2, 4] as const).flatMap((each) =>
+    SIZES.filter(([width, height]) => width * height * each === bytes.length).map(
+      ([width, height]) => `${width}x${height} of ${8 * each} bits`,
+    ),
+  );
+  return badFile(
+    `its format is not known here; if it is raw data without a header, give its size in pixels (width and height)${fitting.length > 0 ? `: ${fitting.join(" or ")} would have its ${bytes.length} bytes` : ""}, or save it as 16-bit PNG or .npy`,
+  );
+}

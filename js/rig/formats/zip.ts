@@ -1,0 +1,78 @@
+/**
+ * ZIP archives by their central directory, for .npz: stored and deflated entries, none longer than a file may be.
+ *
+ * Not by fflate's unzip, which allocates what an entry declares.
+ */
+import { crc32 } from "../../crc.js";
+import { badFile } from "../../errors.js";
+import { inflateRaw } from "../../inflate.js";
+import { MOST_BYTES } from "./limits.js";
+
+export interface Entry {
+  name: string;
+  method: number;
+  packed: number;
+  length: number;
+  checksum: number;
+  /** Where its local header begins. */
+  at: number;
+}
+
+const END = 0x06054b50;
+const CENTRAL = 0x02014b50;
+const LOCAL = 0x04034b50;
+/** Bytes of the end record, and the longest comment behind it. */
+const [END_BYTES, COMMENT] = [22, 65_535];
+const MOST_ENTRIES = 1000;
+const [STORED, DEFLATED] = [0, 8];
+
+const damaged = () => badFile("this ZIP archive is damaged or cut off; unpack it and hand over its files");
+
+export function entriesOf(bytes: Uint8Array): Entry[] {
+  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  let end = bytes.length - END_BYTES;
+  const first = Math.max(0, end - COMMENT);
+  while (end >= first && view.getUint32(end, true) !== END) end--;
+  if (end < first) throw damaged();
+  const count = view.getUint16(end + 10, true);
+  if (count > MOST_ENTRIES) throw badFile(`it is a ZIP archive of ${count} files; unpack it first`);
+  const found: Entry[] = [];
+  for (let each = 0, at = view.getUint32(end + 16, true); each < count; each++) {
+    if (view.getUint32(at, true) !== CENTRAL) throw damaged();
+    const [name, extra, comment] = [28, 30, 32].map((offset) => view.getUint16(at + offset, true)) as [
+      number,
+      number,
+      number,
+    ];
+    found.push({
+      name: String.fromCharCode(...bytes.subarray(at + 46, at + 46 + Math.min(name, 256))),
+      method: view.getUint16(at + 10, true),
+      packed: view.getUint32(at + 20, true),
+      length: view.getUint32(at + 24, true),
+      checksum: view.getUint32(at + 16, true),
+      at: view.getUint32(at + 42, true),
+    });
+    at += 46 + name + extra + comment;
+  }
+  return found;
+}
+
+function content(body: Uint8Array, { method, length }: Entry): Uint8Array {
+  if (method === STORED) return body;
+  if (method === DEFLATED) return inflateRaw(body, length, "this ZIP archive");
+  throw badFile(`this ZIP archive is compressed by method ${method}, which is not read here; unpack it first`);
+}
+
+/** An entry's content. */
+export function unpacked(bytes: Uint8Array, entry: Entry): Uint8Array {
+  const { packed, length, checksum, at } = entry;
+  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  if (view.getUint32(at, true) !== LOCAL) throw damaged();
+  const from = at + 30 + view.getUint16(at + 26, true) + view.getUint16(at + 28, true);
+  if (from + packed > bytes.length) throw damaged();
+  if (length > MOST_BYTES)
+    throw badFile(`this ZIP archive holds a file of ${length} bytes; up to ${MOST_BYTES} are read`);
+  const found = content(bytes.subarray(from, from + packed), entry);
+  if (crc32(found) !== checksum) throw badFile("this ZIP archive is damaged: the checksum of a file in it is wrong");
+  return found;
+}

@@ -1,0 +1,53 @@
+/** Names of files: their parts, what the files of one frame have in common, and time stamps. */
+
+export const base = (name: string): string => name.slice(name.lastIndexOf("/") + 1);
+/** Endings in two parts: COLMAP's depth maps keep the name of their image whole, nuScenes' points are no PCD. */
+const DOUBLE = /(?:\.[a-z0-9]{1,5})?\.(?:geometric|photometric)\.bin$|\.pcd\.bin$/i;
+export const stem = (name: string): string =>
+  DOUBLE.test(name) ? base(name).replace(DOUBLE, "") : base(name).replace(/\.[a-z0-9]{1,5}$/i, "");
+export const folderOf = (name: string): string => name.slice(0, name.length - base(name).length);
+
+/** A name without what says which file of a frame it is. */
+const common = (name: string): string =>
+  name
+    .normalize("NFC")
+    .replace(/(?:depth|dpt|colou?r|rgb|image|img|mask|crop|registered|aligned)(?:(?:_?maps?|s)(?![a-z]))?/gi, " ");
+/** .. with its folders. */
+export const commonPath = (name: string): string => common(folderOf(name) + stem(name));
+
+/** What files of one frame have in common: letters of any script, in either case, and numbers without leading zeros. */
+export function key(name: string): string {
+  const words = common(stem(name))
+    .toLowerCase()
+    .split(/[^\p{L}\p{M}\p{N}.]+/u)
+    .map((word) => word.replace(/^\.+|\.+$/g, "").replace(/^0+(?=\d)/, ""));
+  return words.filter((word) => word !== "" && word !== "mm").join(" ");
+}
+
+/** Words that say what a file holds rather than which frame it is, where names are alike but for them. */
+const LOOSE = new Set(
+  "raw frame frames photo picture pic map maps groundtruth gt velodyne lidar cloud points scan sparse dense filtered z16 png cam camera ir infra infrared tof undistorted rectified rect vis".split(
+    " ",
+  ),
+);
+export const looseKey = (name: string): string =>
+  key(name)
+    .split(" ")
+    .filter((word) => !LOOSE.has(word))
+    .join(" ");
+
+/** Seconds from 2001 to 2100 since 1970, and how many of a clock's ticks a second has. */
+const [FROM, UNTIL] = [1e9, 4.2e9];
+const TICKS = [1, 1e3, 1e6, 1e9];
+
+/** The time in a file's name, seconds: ticks since 1970 of any common clock, or seconds with three decimals or more; nothing else. */
+export function timeOf(name: string): number | undefined {
+  const numbers = key(name)
+    .split(" ")
+    .filter((word) => /\d/.test(word));
+  const [only = "", ...others] = numbers;
+  if (others.length > 0 || !/^\d+(?:\.\d+)?$/.test(only)) return undefined;
+  const ticks = TICKS.find((each) => Number(only) >= FROM * each && Number(only) < UNTIL * each);
+  if (ticks !== undefined) return Number(only) / ticks;
+  return /\.\d{3,}$/.test(only) ? Number(only) : undefined;
+}

@@ -1,0 +1,228 @@
+/**
+ * Which pictures of a folder are one frame: by like names, by time stamps as names, or in their order.
+ *
+ * What a picture holds is told by its name and those of its folders (roles.ts). Pictures that are neither colours nor depths nor masks
+ * (confidences, labels, normals, renderings) are no frame's, and infrared images are where there are no colours.
+ */
+import { badFile } from "../errors.js";
+import { rasterKind } from "./formats/headerless.js";
+import { APART, type Pair, type Pairs, byTime } from "./lists.js";
+import { commonPath, folderOf, key, looseKey, stem, timeOf } from "./names.js";
+import { CONTENTS, type Role, roleOf } from "./roles.js";
+import type { NamedFile } from "./types.js";
+import { type ReaderWarning, ofFile, warning } from "./warnings.js";
+
+interface Sorted {
+  colours: NamedFile[];
+  depths: NamedFile[];
+  masks: NamedFile[];
+}
+
+const CLOUDS = new Set(["ply", "pcd", "points"]);
+/** What is a depth map whatever its name says nothing of. */
+const MAPS = new Set(["colmap", "table"]);
+const isCloud = ({ bytes }: NamedFile): boolean => CLOUDS.has(rasterKind(bytes) ?? "");
+
+function roleIn(file: NamedFile): Role | "unknown" {
+  const role = roleOf(file.name);
+  if (role !== undefined && role !== "colour") return role;
+  if (isCloud(file)) return "cloud";
+  return MAPS.has(rasterKind(file.bytes) ?? "") ? "depth" : (role ?? "unknown");
+}
+
+/** Pictures by what they hold, with a word on those that no frame needs. */
+function sorted(pictures: NamedFile[], warnings: ReaderWarning[]): Sorted {
+  const roles = new Map<Role | "unknown", NamedFile[]>();
+  for (const file of pictures) {
+    const role = roleIn(file);
+    roles.set(role, [...(roles.get(role) ?? []), file]);
+  }
+  const of = (role: Role | "unknown") => roles.get(role) ?? [];
+  const named = [...of("colour"), ...of("unknown")];
+  const depths = [...of("depth"), ...of("cloud")];
+  const colours = named.length > 0 ? named : of("infrared");
+  for (const role of Object.keys(CONTENTS) as (keyof typeof CONTENTS)[]) {
+    const [first, ...others] = role === "infrared" && named.length === 0 ? [] : of(role);
+    if (first === undefined) continue;
+    const more = others.length > 0 ? ` (and ${others.length} more like it)` : "";
+    const advice =
+      role === "disparity"
+        ? ", which are no depths: compute z = focal length * baseline / (disparity + doffs) and save that"
+        : "";
+    const message = `its name says that it holds ${CONTENTS[role]}${advice}; it was left out.${more}`;
+    warnings.push(ofFile(first.name, warning("file-left-out", message)));
+  }
+  return { colours, depths, masks: of("mask") };
+}
+
+function byKey(files: NamedFile[], keyOf: (name: string) => string): Map<string, NamedFile[]> {
+  const groups = new Map<string, NamedFile[]>();
+  for (const file of files) {
+    const group = groups.get(keyOf(file.name));
+    if (group) group.push(file);
+    else groups.set(keyOf(file.name), [file]);
+  }
+  return groups;
+}
+
+/** The number at the end of a folder's name: cameras are numbered in their folders. */
+const numberOfFolder = (name: string): string | undefined => /(\d+)\/$/.exec(folderOf(name))?.[1];
+const isSecond = (name: string): boolean => /right|(?:^|[^a-z])r(?:[^a-z]|$)/i.test(name);
+/** Folders that two names share. */
+function shared(one: string, other: string): number {
+  const [ours, theirs] = [one.split("/"), other.split("/")];
+  const at = ours.findIndex((part, index) => part !== theirs[index]);
+  return at < 0 ? ours.length : at;
+}
+
+/** Narrows colour images of one frame in several folders down to the depth map's: by their role, number and side. */
+function nearest(depth: NamedFile, colours: NamedFile[]): NamedFile[] {
+  const lowest = Math.min(...colours.map(({ name }) => Number(numberOfFolder(name) ?? Infinity)));
+  const rules = [
+    (file: NamedFile) => commonPath(file.name) === commonPath(depth.name),
+    (file: NamedFile) => roleOf(file.name) === "colour",
+    (file: NamedFile) => numberOfFolder(file.name) === numberOfFolder(depth.name),
+    (file: NamedFile) => !isSecond(file.name),
+    (file: NamedFile) => Number(numberOfFolder(file.name) ?? Infinity) === lowest,
+  ];
+  // In one folder names that differ in signs alone are as good as each other.
+  const folders = new Set(colours.map(({ name }) => folderOf(name)));
+  return rules.slice(0, folders.size > 1 ? rules.length : 1).reduce((left, rule) => {
+    const kept = left.filter(rule);
+    return left.length > 1 && kept.length > 0 ? kept : left;
+  }, colours);
+}
+
+/** Of colour images that several depth maps of one name may belong to, those of this one: by their folders. */
+function ownOf(depth: NamedFile, others: NamedFile[], colours: NamedFile[]): NamedFile[] {
+  if (others.length === 0) return colours;
+  const like = colours.filter(({ name }) => commonPath(name) === commonPath(depth.name));
+  if (like.length > 0) return like;
+  return colours.filter(({ name }) => others.every((other) => shared(name, depth.name) > shared(name, other.name)));
+}
+
+/** One depth map that was saved in several formats is one; depth maps come before clouds. */
+function alternatives(depths: NamedFile[]): NamedFile[][] {
+  const groups = new Map<string, NamedFile[]>();
+  const maps = depths.filter((file) => !isCloud(file));
+  for (const file of maps.length > 0 ? maps : depths) {
+    const path = folderOf(file.name) + stem(file.name);
+    groups.set(path, [...(groups.get(path) ?? []), file]);
+  }
+  return [...groups.values()];
+}
+
+/** Those that go together by their names; `others` are alone or may belong to several. */
+function byNames({ colours, depths, masks }: Sorted, warnings: ReaderWarning[], keyOf = key): Pair[] {
+  const maskOf = (name: string) =>
+    masks.find((mask) => keyOf(mask.name) === name) ??
+    (masks.length === 1 && key(masks[0]?.name ?? "") === "" ? masks[0] : undefined);
+  const likeColours = byKey(colours, keyOf);
+  /** Files of which something is said already. */
+  const said = new Set<string>();
+  const pairs = [...byKey(depths, keyOf)].flatMap(([name, likeDepths]) => {
+    const theirs = likeColours.get(name) ?? [];
+    const groups = alternatives(likeDepths);
+    return groups.flatMap(([depth, ...more]): Pair[] => {
+      if (depth === undefined) return [];
+      const rivals = groups.flatMap(([other]) => (other && other !== depth ? [other] : []));
+      const [colour, ...others] = nearest(depth, ownOf(depth, rivals, theirs));
+      if (colour && others.length === 0) {
+        for (const { name } of [depth, ...more, colour]) said.add(name);
+        const mask = maskOf(name);
+        return [{ name, colour, depths: [depth, ...more], ...(mask && { mask }) }];
+      }
+      if (theirs.length > 0) {
+        warnings.push(
+          ofFile(depth.name, warning("names-ambiguous", "several files have names like this one; it was left out.")),
+        );
+        for (const { name } of [depth, ...theirs]) said.add(name);
+      }
+      return [];
+    });
+  });
+  if (pairs.length > 0)
+    for (const { name } of [...depths, ...colours])
+      if (!said.has(name))
+        warnings.push(ofFile(name, warning("file-alone", "no other file's name fits it alone (left out).")));
+  return pairs;
+}
+
+/** Frames that are farther apart than so many times their distance in time from each other are one. */
+const CLEARLY = 4;
+
+/** By time stamps as names, which seldom are the same of two cameras; nothing where names are none. */
+function byStamps({ colours, depths }: Sorted, warnings: ReaderWarning[]): Pairs | undefined {
+  const stamped = (files: NamedFile[]) =>
+    files.flatMap(({ name }) => {
+      const time = timeOf(name);
+      return time === undefined ? [] : [{ time, path: name }];
+    });
+  const [ours, theirs] = [stamped(colours), stamped(depths)];
+  const isAll = ours.length === colours.length && theirs.length === depths.length;
+  // One of each belong together whatever their names.
+  if (!isAll || Math.min(ours.length, theirs.length) === 0 || ours.length + theirs.length === 2) return undefined;
+  const gaps = [...theirs]
+    .sort((a, b) => a.time - b.time)
+    .map(({ time }, at, all) => time - (all[at - 1]?.time ?? NaN));
+  const apart = Math.max(APART, Math.min(...gaps.filter((gap) => gap > 0)) / CLEARLY);
+  const found = byTime(ours, theirs, Number.isFinite(apart) ? apart : APART);
+  if (found.length === 0)
+    throw badFile(
+      `no pair of a colour image and a depth map was found: the time stamps of their names are more than ${1000 * APART} ms apart`,
+    );
+  const file = new Map([...colours, ...depths].map((each) => [each.name, each]));
+  const most = Math.max(...found.map(([, depth, time]) => Math.abs((timeOf(depth) ?? time) - time)));
+  if (most > APART)
+    warnings.push(
+      warning(
+        "pairs-by-order",
+        `The frames were paired by the time stamps of their names, which are up to ${(1000 * most).toFixed(0)} ms apart: nothing may have moved in that time.`,
+        { pairs: found.length },
+      ),
+    );
+  const used = new Set(found.flat());
+  for (const { name } of [...depths, ...colours])
+    if (!used.has(name))
+      warnings.push(ofFile(name, warning("file-alone", "no other file's time stamp is near its own (left out).")));
+  const pairs = found.flatMap(([one, other]): Pair[] => {
+    const [colour, depth] = [file.get(one), file.get(other)];
+    return colour && depth ? [{ name: key(one), colour, depths: [depth] }] : [];
+  });
+  return { pairs, says: `${pairs.length} pairs by their time stamps` };
+}
+
+const inOrder = (files: NamedFile[]): NamedFile[] =>
+  [...files].sort((a, b) => a.name.localeCompare(b.name, "en", { numeric: true }));
+
+/** Where names differ throughout, by their order. */
+function byOrder({ colours, depths }: Sorted, warnings: ReaderWarning[]): Pairs {
+  if (depths.length === 0 || depths.length !== colours.length) return { pairs: [], says: "" };
+  if (depths.length > 1)
+    warnings.push(
+      warning(
+        "pairs-by-order",
+        `No depth map has a name like a colour image's; the ${depths.length} of each were paired in the order of their names.`,
+        { pairs: depths.length },
+      ),
+    );
+  const ordered = inOrder(colours);
+  const pairs = inOrder(depths).flatMap((depth, index): Pair[] =>
+    ordered[index] ? [{ name: key(depth.name), colour: ordered[index], depths: [depth] }] : [],
+  );
+  return { pairs, says: `${depths.length} pairs in their order` };
+}
+
+export function pairsOf(pictures: NamedFile[], warnings: ReaderWarning[]): Pairs {
+  const found = sorted(pictures, warnings);
+  const same = new Set(found.colours.map(({ name }) => key(name)));
+  const isSame = found.depths.length > 0 && found.depths.every(({ name }) => same.has(key(name)));
+  const stamped = isSame ? undefined : byStamps(found, warnings);
+  if (stamped !== undefined) return stamped;
+  const own: ReaderWarning[] = [];
+  const strict = byNames(found, own);
+  // What is ambiguous by the very names is not less so without some of their words.
+  const pairs = strict.length > 0 || own.length > 0 ? strict : byNames(found, own, looseKey);
+  warnings.push(...own);
+  return pairs.length > 0 ? { pairs, says: `${pairs.length} pairs by their names` } : byOrder(found, warnings);
+}

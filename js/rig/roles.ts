@@ -1,0 +1,111 @@
+/**
+ * What the name of a picture says that it holds: of its own name, and of the folders around it, the innermost first.
+ *
+ * Limits: names are English and those of common tools; a name that says nothing leaves it to the content.
+ */
+
+/** "rendering": a picture of something for people, such as colour-mapped depths. "view": the second of two cameras of a kind. */
+export type Role =
+  | "colour"
+  | "depth"
+  | "cloud"
+  | "mask"
+  | "infrared"
+  | "disparity"
+  | "confidence"
+  | "normals"
+  | "labels"
+  | "rendering";
+
+/** Whole words only: "displayed" is no disparity, "undistorted" no distance. */
+const whole = (words: string): RegExp => new RegExp(`(?<![a-z])(?:${words})(?![a-z])`);
+
+/** What a picture holds beside colours and depths; these words count before "depth" and "colour" in the same name. */
+const SPECIAL: [Role, RegExp][] = [
+  ["mask", /mask|segm/],
+  ["confidence", whole("conf|confs|conf ?maps?|confidences?|confidence ?maps?|certainty|uncertainty|uncertainties")],
+  ["labels", whole("semantics?|labels?|instances?|panoptic|seg|annotations?|annos?")],
+  ["normals", whole("normals?|normal ?maps?")],
+  [
+    "rendering",
+    whole(
+      "vis|viz|visuals?|visuali[sz]ations?|colou?red|colou?ri[sz]ed|colou?r ?maps?|overlays?|previews?|thumbs?|thumbnails?|debug|heat ?maps?",
+    ),
+  ],
+  ["disparity", whole("disps?|disparity|disparities|disparity ?maps?")],
+  [
+    "infrared",
+    whole(
+      "ir|irs|nir|infra|infrared|infrareds|amplitudes?|intensity|intensities|reflectance|reflectivity|active ?brightness",
+    ),
+  ],
+];
+/** Colours that were carried into the depth camera's view keep the word "depth" in their name. */
+const COLOUR_IN_DEPTH =
+  /(?:colou?r|rgb|image)[^a-z]*(?:aligned|registered|transformed|warped|mapped)?[^a-z]*(?:to|2|in|into)[^a-z]*depth/;
+const DEPTH = /depth|dpt|(?<![a-z])(?:ranges?|distances?|tof|z ?maps?|z16)(?![a-z])/;
+const CLOUD = whole("velodyne|velodyne ?points|lidars?|clouds?|point ?clouds?|points|pcds?|lasers?|scans?");
+const COLOUR = whole("colou?rs?|rgbs?");
+/** Words that folders of colour images are called by, and files of anything. */
+const PICTURES = whole("images?|imgs?|photos?|pictures?|frames?");
+
+/** Lower case, words apart that capitals alone part. */
+const plain = (segment: string): string =>
+  segment
+    .replace(/\.[a-z0-9]{1,5}$/i, "")
+    .replace(/([a-z])([A-Z])/g, "$1 $2")
+    .toLowerCase()
+    .replace(/[_-]+/g, " ");
+
+const special = (segment: string): Role | undefined => SPECIAL.find(([, pattern]) => pattern.test(segment))?.[0];
+
+function common(segment: string): Role | undefined {
+  if (COLOUR_IN_DEPTH.test(segment)) return "colour";
+  if (DEPTH.test(segment)) return "depth";
+  if (COLOUR.test(segment)) return "colour";
+  return CLOUD.test(segment) ? "cloud" : undefined;
+}
+
+/** KITTI's depth maps, in folders that are called as those of its images; no file says that they have 256 units to the metre. */
+export const isKittiDepth = (name: string): boolean =>
+  /(?<![a-z])(?:proj_depth|velodyne_raw|groundtruth_depth)(?![a-z])/i.test(name);
+
+/** What a file's name says that it holds; nothing where it says nothing. */
+export function roleOf(name: string): Role | undefined {
+  if (isKittiDepth(name)) return "depth";
+  const [own = "", folder = "", ...outer] = name.split("/").map(plain).reverse();
+  const clear = special(own) ?? special(folder) ?? common(own);
+  if (clear !== undefined) return clear;
+  for (const segment of [folder, ...outer]) {
+    const found = common(segment) ?? (PICTURES.test(segment) ? "colour" : undefined);
+    if (found !== undefined) return found;
+  }
+  return PICTURES.test(own) ? "colour" : undefined;
+}
+
+/** What is said of a file that is neither colour nor depth by its name. */
+export const CONTENTS: Record<Exclude<Role, "colour" | "depth" | "cloud" | "mask">, string> = {
+  confidence: "confidences",
+  labels: "labels of objects",
+  normals: "normals",
+  rendering: "a rendering for people",
+  disparity: "disparities",
+  infrared: "infrared or intensities",
+};
+
+const ALIGNED = /(?<![a-z])(?:aligned|registered|transformed)(?![a-z])/;
+const DEPTH_IN_COLOUR = /depth[^a-z]*(?:to|2|in|into)[^a-z]*(?:colou?r|rgb)/;
+
+/** Whether a depth map's name, or its folder's, says that it was carried into the colour camera's view. */
+export function isAligned(name: string): boolean {
+  const near = name.split("/").slice(-2).map(plain);
+  return roleOf(name) === "depth" && near.some((each) => ALIGNED.test(each) || DEPTH_IN_COLOUR.test(each));
+}
+
+/** Whether a colour image's name, or its folder's, says that it was carried into the depth camera's view. */
+export const isInDepth = (name: string): boolean =>
+  name
+    .split("/")
+    .slice(-2)
+    .map(plain)
+    .some((each) => COLOUR_IN_DEPTH.test(each) || /(?<![a-z])transformed colou?r/.test(each));

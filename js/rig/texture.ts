@@ -1,0 +1,39 @@
+/** What the values of neighbouring pixels tell: depths of a LiDAR are scattered, and images change from pixel to pixel. */
+
+/** Fewer pixels say nothing. */
+const FEWEST = 1000;
+
+/** At most this share of pixels is valid in a projected scan, and of their neighbours hardly more. */
+const SPARSE = 0.35;
+/** .. and of the neighbours of valid pixels, at most so many are valid, too. */
+const ALONE = 0.6;
+
+/** Whether valid pixels are few and stand alone, as the points of a LiDAR that were projected; holes of depth cameras are in one piece. */
+export function isScattered(data: ArrayLike<number>, width: number): boolean {
+  if (data.length < FEWEST) return false;
+  let [valid, beside] = [0, 0];
+  for (let at = 1; at < data.length; at++) {
+    if (!((data[at] ?? 0) > 0)) continue;
+    valid++;
+    if (at % width !== 0 && (data[at - 1] ?? 0) > 0) beside++;
+  }
+  return valid > 0 && valid < SPARSE * data.length && beside < ALONE * valid;
+}
+
+/** A change between neighbours by more than this share is no surface's .. */
+const CHANGE = 0.04;
+/** .. and in a noisy infrared image more than this share of pixels changes so much, ten times as many as in a depth map. */
+const MANY = 0.3;
+
+/** Whether values change from pixel to pixel as those of an image do. */
+export function looksLikeImage(data: Uint16Array, width: number): boolean {
+  if (data.length < FEWEST) return false;
+  let [pairs, changed] = [0, 0];
+  for (let at = 1; at < data.length; at++) {
+    const [value, before] = [data[at] ?? 0, data[at - 1] ?? 0];
+    if (at % width === 0 || value === 0 || before === 0) continue;
+    pairs++;
+    if (Math.abs(value - before) > CHANGE * Math.max(value, before)) changed++;
+  }
+  return pairs > FEWEST / 2 && changed > MANY * pairs;
+}

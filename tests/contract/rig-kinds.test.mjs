@@ -1,0 +1,460 @@
+// Depth in the many files that people have: read right, or refused in words that name the file's kind and the way out.
+import assert from "node:assert/strict";
+import { describe, test } from "node:test";
+import { deflateRawSync } from "node:zlib";
+import { crc32 } from "node:zlib";
+import { readRigFile } from "../../pkg/rig.js";
+import { pcd } from "./malformed.mjs";
+import { H, W, close, metres, millimetres, read, refusedFile } from "./rig-support.mjs";
+import { npy, png } from "./support.mjs";
+
+const expected = millimetres.map((value) => value / 1000);
+const inMetres = (tolerance) => (reading) => close(metres(reading), expected, tolerance);
+const isMillimetres = inMetres(1e-9);
+const says = async (code, pattern, name, bytes, options) => {
+  const { warnings } = await read(name, bytes, options);
+  const found = warnings.find((each) => each.code === code && pattern.test(each.message));
+  assert.ok(found, JSON.stringify(warnings));
+  assert.ok(found.isDoubt);
+};
+const refused = (name, bytes, reason, options) => refusedFile(read(name, bytes, options), name, reason);
+const bytesOf = (array) => new Uint8Array(array.buffer, array.byteOffset, array.byteLength);
+const swapped = (array) => {
+  const bytes = bytesOf(array).slice();
+  const size = array.BYTES_PER_ELEMENT;
+  for (let at = 0; at < bytes.length; at += size) bytes.subarray(at, at + size).reverse();
+  return bytes;
+};
+
+describe(".npy of every type, order and shape", () => {
+  const kinds = {
+    "<u2": new Uint16Array(millimetres),
+    ">u2": swapped(new Uint16Array(millimetres)),
+    "<i2": new Int16Array(millimetres),
+    "<i4": new Int32Array(millimetres),
+    ">i4": swapped(new Int32Array(millimetres)),
+    "<u4": new Uint32Array(millimetres),
+    "<i8": new BigInt64Array(millimetres.map(BigInt)),
+    ">u8": swapped(new BigUint64Array(millimetres.map(BigInt))),
+    "<f8": new Float64Array(expected),
+    ">f4": swapped(new Float32Array(expected)),
+  };
+  for (const [descr, data] of Object.entries(kinds))
+    test(descr, async () => inMetres(1e-6)(await read("depth.npy", npy({ descr, shape: [H, W], data }))));
+
+  test("half floats, with infinity where nothing was seen", async () => {
+    // 1, 1.5, 2 and infinity.
+    const data = new Uint16Array([0x3c00, 0x3e00, 0x4000, 0x7c00]);
+    assert.deepEqual(metres(await read("depth.npy", npy({ descr: "<f2", shape: [2, 2], data }))), [1, 1.5, 2, 0]);
+  });
+
+  test("negative whole numbers are holes", async () => {
+    const data = new Int32Array([1000, -1, 1200, 1300]);
+    assert.deepEqual(metres(await read("depth.npy", npy({ descr: "<i4", shape: [2, 2], data }))), [1, 0, 1.2, 1.3]);
+  });
+
+  test("axes of length 1, as tensors have them", async () => {
+    const data = new Float32Array(expected);
+    for (const shape of [
+      [1, H, W],
+      [H, W, 1],
+      [1, 1, H, W],
+      [1, H, W, 1],
+    ])
+      inMetres(1e-6)(await read("depth.npy", npy({ descr: "<f4", shape, data })));
+  });
+
+  test("a cloud with its axes first", async () => {
+    const plane = (value) => Array.from({ length: H * W }, (_, at) => value(at % W, Math.floor(at / W)));
+    const data = new Float32Array([...plane((x) => x - 7.5), ...plane((_, y) => y - 5.5), ...plane(() => 10)]);
+    const { depth } = await read("cloud.npy", npy({ descr: "<f4", shape: [3, H, W], data }));
+    assert.deepEqual([depth.width, depth.height], [W, H]);
+    assert.deepEqual([...depth.points.slice(3 * (W + 2), 3 * (W + 3))], [-5.5, -4.5, 10]);
+  });
+
+  test("what is no picture is named", async () => {
+    const list = new Float32Array(3 * 500).fill(1);
+    await refused("points.npy", npy({ descr: "<f4", shape: [500, 3], data: list }), /500 points .*unorganised/);
+    await refused("a.npy", npy({ descr: "|O", shape: [1], data: list }), /Python objects/);
+    await refused(
+      "a.npy",
+      npy({ descr: "<f4", shape: [5, H, W], data: new Float32Array(5 * H * W) }),
+      /stack of 5 pictures/,
+    );
+    const fields = npy({ descr: "<f4", shape: [H, W], data: list });
+    const structured = Buffer.from(fields).toString("latin1").replace("'<f4'", "[('z', '<f4')]");
+    await refused("a.npy", new Uint8Array(Buffer.from(structured, "latin1")), /structured array/);
+  });
+});
+
+/** A ZIP archive of some files, deflated or stored. */
+function zip(files, isPacked) {
+  const [locals, central] = [[], []];
+  let at = 0;
+  for (const [name, content] of Object.entries(files)) {
+    const body = isPacked ? deflateRawSync(content) : Buffer.from(content);
+    const head = Buffer.alloc(30);
+    head.write("PK\x03\x04", 0, "latin1");
+    head.writeUInt16LE(isPacked ? 8 : 0, 8);
+    head.writeUInt16LE(name.length, 26);
+    locals.push(head, Buffer.from(name), body);
+    const entry = Buffer.alloc(46);
+    entry.write("PK\x01\x02", 0, "latin1");
+    entry.writeUInt16LE(isPacked ? 8 : 0, 10);
+    entry.writeUInt32LE(crc32(content), 16);
+    entry.writeUInt32LE(body.length, 20);
+    entry.writeUInt32LE(content.length, 24);
+    entry.writeUInt16LE(name.length, 28);
+    entry.writeUInt32LE(at, 42);
+    central.push(entry, Buffer.from(name));
+    at += 30 + name.length + body.length;
+  }
+  const end = Buffer.alloc(22);
+  end.write("PK\x05\x06", 0, "latin1");
+  end.writeUInt16LE(Object.keys(files).length, 10);
+  end.writeUInt32LE(at, 16);
+  return new Uint8Array(Buffer.concat([...locals, ...central, end]));
+}
+
+describe(".npz", () => {
+  const depth = npy({ descr: "<u2", shape: [H, W], data: new Uint16Array(millimetres) });
+  const rgb = npy({ descr: "|u1", shape: [H, W, 3], data: new Uint8Array(3 * H * W).fill(9) });
+  for (const isPacked of [false, true])
+    test(`the array that is called depth, ${isPacked ? "deflated" : "stored"}`, async () => {
+      const reading = await read("frame.npz", zip({ "rgb.npy": rgb, "depth.npy": depth }, isPacked));
+      isMillimetres(reading);
+      assert.match(reading.says, /its array "depth"/);
+    });
+
+  test("the only array; none that is told; an archive of something else", async () => {
+    isMillimetres(await read("frame.npz", zip({ "arr_0.npy": depth }, true)));
+    await refused("frame.npz", zip({ "arr_0.npy": depth, "arr_1.npy": depth }, true), /2 arrays \(arr_0, arr_1\)/);
+    await refused("a.zip", zip({ "a.txt": depth }, true), /ZIP archive .*unpack/);
+  });
+
+  test("a damaged one", async () => {
+    const whole = zip({ "depth.npy": depth }, true);
+    await refused("frame.npz", whole.slice(0, -30), /damaged or cut off/);
+    whole[whole.length - 22 - 55 + 16] ^= 1;
+    await refused("frame.npz", whole, /checksum/);
+  });
+});
+
+describe("what is not read is named, with the way out", () => {
+  const heads = {
+    "scan.las": ["LASF\x00\x00", /LAS or LAZ.*unorganised.*organised PLY or PCD/],
+    "scan.e57": ["ASTM-E57\x01\x00", /E57/],
+    "rec.oni": ["NI10\x01\x00", /OpenNI.*export/],
+    "rec.svo": ["SVO\x00\x01", /ZED.*export/],
+    "rec.klg": ["\x0a\x00\x00\x00", /ElasticFusion.*export/],
+    "scene.sens": ["\x04\x00\x00\x00\x11", /ScanNet.*SensReader/],
+    "rec.mkv": ["\x1a\x45\xdf\xa3\x01", /Matroska/],
+    "0.depth": ["bvx2\x01\x02", /LZFSE.*Record3D/],
+    "mesh.glb": ["glTF\x02\x00", /mesh \(glTF\)/],
+    "scan.fls": ["\x01\x02\x03\x00", /format of its maker/],
+    "a.xz": ["\xfd7zXZ\x00", /xz; unpack/],
+    "mesh.obj": ["# made\nmtllib a.mtl\no Cube\nv 1 2 3\nv 1 2 4\nf 1 2 3\n", /Wavefront's OBJ.*render a depth map/],
+    "mesh.stl": ["solid a\n facet normal 0 0 1\n  outer loop\n", /STL/],
+    "mesh.off": ["OFF\n8 6 12\n0 0 0\n", /OFF/],
+    "noise.bin": ["\x00\x01\x02\xff", /not known here; .*raw data without a header, give its size/],
+  };
+  for (const [name, [head, reason]] of Object.entries(heads))
+    test(name, () => refused(name, new Uint8Array(Buffer.from(head, "latin1")), reason));
+
+  const points = (columns, first = "") =>
+    first +
+    Array.from({ length: 40 }, (_, at) => Array.from({ length: columns }, (_, k) => at + k / 7).join(" ")).join("\n");
+  test("points as text: XYZ, PTS, CloudCompare's, PTX", async () => {
+    await refused("a.xyz", points(3), /list of points as text \(3 numbers each\).*unorganised/);
+    await refused("a.pts", points(7, "40\n"), /list of points/);
+    await refused("a.asc", points(6, "//X Y Z R G B\n"), /list of points/);
+    await refused(
+      "a.ptx",
+      `20\n2\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n${points(4)}`,
+      /PTX.*z forward/,
+    );
+  });
+
+  test("trajectories and matrices are no points", async () => {
+    const tum = Array.from({ length: 40 }, (_, at) => `${at}.5 ${at} 0 0 0 0 0 1`).join("\n");
+    assert.equal((await read("groundtruth.txt", tum)).poses.length, 40);
+    const log = Array.from({ length: 10 }, (_, at) => `0 0 ${at}\n1 0 0 ${at}\n0 1 0 0\n0 0 1 0\n0 0 0 1`).join("\n");
+    assert.equal((await read("trajectory.log", log)).poses.length, 10);
+  });
+
+  test("a LiDAR's points without a header", async () => {
+    const scan = (floats) =>
+      bytesOf(
+        Float32Array.from({ length: floats * 400 }, (_, at) => {
+          const [point, axis] = [Math.floor(at / floats), at % floats];
+          return [8 * Math.cos(point), 8 * Math.sin(point), (point % 7) / 7 - 1, 0.25, point % 32][axis];
+        }),
+      );
+    await refused("000000.bin", scan(4), /points of a LiDAR .*KITTI/);
+    await refused("sweep.pcd.bin", scan(5), /points of a LiDAR .*nuScenes/);
+  });
+});
+
+describe("depth maps without a format", () => {
+  const [columns, rows] = [32, 24];
+  const values = Array.from({ length: columns * rows }, (_, at) => (at % 29 === 0 ? 0 : 900 + at));
+  const table = (separator, format = String, ending = "\n") =>
+    Array.from({ length: rows }, (_, row) =>
+      values
+        .slice(row * columns, (row + 1) * columns)
+        .map(format)
+        .join(separator),
+    ).join(ending);
+  const wanted = values.map((value) => value / 1000);
+  const isTable = (reading) => {
+    assert.deepEqual([reading.kind, reading.depth.width, reading.depth.height], ["depth", columns, rows]);
+    close(metres(reading), wanted, 1e-6);
+  };
+
+  test("tables: commas, spaces of numpy.savetxt, semicolons with decimal commas, nan", async () => {
+    isTable(await read("depth.csv", table(",")));
+    isTable(await read("depth.csv", table(",", String, ",\r\n")));
+    isTable(
+      await read(
+        "depth.txt",
+        table(" ", (value) => (value / 1000).toExponential(18)),
+      ),
+    );
+    isTable(
+      await read(
+        "depth.csv",
+        table(";", (value) => (value / 1000).toFixed(4).replace(".", ",")),
+      ),
+    );
+    isTable(
+      await read(
+        "depth.csv",
+        table("\t", (value) => (value === 0 ? "nan" : String(value))),
+      ),
+    );
+  });
+
+  test("the numbers that pandas gives rows and columns are none of the depths", async () => {
+    const head = ["", ...Array(columns).keys()].join(",");
+    const body = table(",")
+      .split("\n")
+      .map((line, row) => `${row},${line}`);
+    isTable(await read("depth.csv", [head, ...body].join("\n")));
+  });
+
+  test("a table with a row too short", () =>
+    refused("depth.csv", `${table(",")}\n1,2,3`, /3 columns in row 25, and 32 in those before/));
+
+  test("raw pixels of a given size; without it the sizes that would fit are named", async () => {
+    const raw = (array) => read("depth.raw", bytesOf(array), { size: [columns, rows] });
+    isTable(await raw(new Uint16Array(values)));
+    isTable(await raw(new Float32Array(wanted)));
+    isTable(await raw(new Uint32Array(values)));
+    await refused(
+      "depth.raw",
+      bytesOf(new Uint16Array(640 * 480).fill(7)),
+      /640x480 of 16 bits would have its 614400 bytes/,
+    );
+    await refused("depth.raw", bytesOf(new Uint16Array(values)), /not 30x20 pixels of 1, 2, 4 or 8 bytes/, {
+      size: [30, 20],
+    });
+    await assert.rejects(readRigFile({ name: "a.raw", bytes: new Uint8Array(2) }, { size: [1, 0] }), {
+      code: "option",
+      field: "options.size",
+    });
+  });
+
+  test("COLMAP's depth maps, whose scale is no metre's; its normal maps", async () => {
+    const map = (head, array) => new Uint8Array([...Buffer.from(head), ...bytesOf(array)]);
+    const bytes = map(`${columns}&${rows}&1&`, new Float32Array(wanted));
+    isTable(await read("0001.png.geometric.bin", bytes));
+    await says("unit-guessed", /COLMAP.*scale/, "0001.png.geometric.bin", bytes);
+    await refused("0001.bin", map("2&1&3&", new Float32Array(6)), /normals/);
+    await refused("0001.bin", bytes.slice(0, 500), /cut off/);
+  });
+});
+
+/** A smooth depth map of 64x48 in whole numbers up to so many, with a step in it. */
+const [COLUMNS, ROWS] = [64, 48];
+const slope = (most) =>
+  Array.from({ length: COLUMNS * ROWS }, (_, at) =>
+    Math.round(most * (0.3 + (0.5 * (at % COLUMNS)) / COLUMNS + (0.15 * Math.floor(at / COLUMNS)) / ROWS)),
+  );
+const picture = (depth, colourType, pixel) =>
+  png({
+    width: COLUMNS,
+    height: ROWS,
+    depth,
+    colourType,
+    rows: Array.from({ length: ROWS }, (_, y) =>
+      Array.from({ length: COLUMNS }, (_, x) => pixel(y * COLUMNS + x)).flat(),
+    ),
+  });
+const grey16 = (values) => picture(16, 0, (at) => [values[at] >> 8, values[at] & 255]);
+
+describe("depths that are coded in colours", () => {
+  const [low, high] = [(value) => value & 255, (value) => (value >> 8) & 255];
+  const code16 = slope(4000);
+  const code24 = slope(2 ** 20);
+  const codes = {
+    "high byte in red": [(v) => [high(v), low(v), 0], code16, 0.001],
+    "low byte in red": [(v) => [low(v), high(v), 0], code16, 0.001],
+    "CARLA's 24 bits": [(v) => [low(v), high(v), v >> 16], code24, 1000 / (2 ** 24 - 1)],
+    "24 bits the other way round": [(v) => [v >> 16, high(v), low(v)], code24, 1000 / (2 ** 24 - 1)],
+  };
+  for (const [name, [code, values, unit]] of Object.entries(codes))
+    test(name, async () => {
+      const bytes = picture(8, 2, (at) => code(values[at]));
+      for (const options of [{}, { as: "depth" }]) {
+        const reading = await read("depth_1.png", bytes, options);
+        close(
+          metres(reading),
+          values.map((value) => value * unit),
+          1e-3,
+        );
+      }
+      await says("unit-guessed", /coded in the picture's colours/, "depth_1.png", bytes);
+      // Without a name that says depth it is a picture.
+      assert.equal((await read("1.png", bytes)).kind, "colour");
+    });
+
+  test("a rendering of depths is no depth map, and a photograph is none", async () => {
+    const rendering = picture(8, 2, (at) => [slope(255)[at], 80, 255 - slope(255)[at]]);
+    await says("files-swapped", /name says depth.*rendering/, "depth_1.png", rendering);
+    await refused("depth_1.png", rendering, /rendering of the depth/, { as: "depth" });
+    const photo = picture(8, 2, (at) => [(at * 7919) % 251, (at * 104729) % 241, (at * 1299709) % 239]);
+    await refused("depth_1.png", photo, /colour picture/, { as: "depth" });
+  });
+});
+
+describe("what a picture holds is told by its name and its values", () => {
+  const depth16 = grey16(slope(4000));
+  test("disparities are refused unless somebody says that they are depths", async () => {
+    for (const name of ["disp0.png", "disparity/1.png", "left_disp.png", "disp_occ_0/000000_10.png"]) {
+      await refused(name, depth16, /disparities.*focal length \* baseline/);
+      await refused(name, depth16, /disparities/, { as: "depth" });
+    }
+    const reading = await read("disp0.png", depth16, { unit: 0.001, as: "depth" });
+    assert.equal(reading.kind, "depth");
+    assert.equal((await read("display.png", depth16)).kind, "depth");
+    assert.equal((await read("undistorted.png", depth16)).kind, "depth");
+  });
+
+  test("infrared and confidences are no depth maps", async () => {
+    for (const name of ["ir_1.png", "infrared/1.png", "1_Infrared.png", "amplitude.png"])
+      assert.equal((await read(name, depth16)).kind, "colour", name);
+    await refused("confidence/1.png", depth16, /confidences: that is neither/);
+    await refused("depth_conf_1.png", depth16, /confidences/);
+    await says("files-swapped", /name says that it holds infrared/, "ir_1.png", depth16, { as: "depth" });
+    await refused("semantic/1.png", depth16, /labels of objects/);
+  });
+
+  test("the innermost word counts, and pictures of folders called depth are depths", async () => {
+    const dark = picture(8, 0, (at) => [at % 200]);
+    for (const name of ["depth/image_1.png", "images/depth/1.png", "a/rgb/depth_1.png"])
+      assert.equal((await read(name, dark)).kind, "depth", name);
+    for (const name of ["depth/rgb_1.png", "depth_set/images/1.png", "color_to_depth_1.png"])
+      assert.equal((await read(name, dark)).kind, "colour", name);
+  });
+
+  test("values that change from pixel to pixel are those of an image", async () => {
+    const noisy = grey16(Array.from({ length: COLUMNS * ROWS }, (_, at) => 300 + ((at * 7919) % 211)));
+    await says("files-swapped", /as those of an image do/, "1.png", noisy, { as: "depth" });
+    const { warnings } = await read("1.png", depth16);
+    assert.ok(!warnings.some(({ code }) => code === "files-swapped"));
+  });
+
+  test("16-bit masks and labels", async () => {
+    assert.equal((await read("x.png", grey16(slope(4000).map((_, at) => (at % 3 ? 65_535 : 0))))).kind, "mask");
+    await refused("x.png", grey16(slope(4000).map((_, at) => at % 7)), /labels of objects rather than depths/);
+  });
+
+  test("three floats are points where they lie to both sides, else colours", async () => {
+    const pfm = (value) => {
+      const floats = new Float32Array(3 * COLUMNS * ROWS).map((_, at) => value(at % 3, Math.floor(at / 3)));
+      return new Uint8Array([...Buffer.from(`PF\n${COLUMNS} ${ROWS}\n-1\n`), ...bytesOf(floats)]);
+    };
+    // Rows from the bottom up.
+    const cloud = pfm((axis, at) => [(at % COLUMNS) / 32 - 1, 0.7 - Math.floor(at / COLUMNS) / 32, 2][axis]);
+    assert.equal((await read("a.pfm", cloud)).kind, "depth");
+    assert.equal(
+      (
+        await read(
+          "a.pfm",
+          pfm((axis, at) => (axis + at) % 5),
+        )
+      ).kind,
+      "colour",
+    );
+  });
+});
+
+describe("units", () => {
+  test("of KITTI's depth maps by their names, else guessed and said to be", async () => {
+    const scattered = grey16(slope(4000).map((value, at) => (at % 17 === 0 ? value : 0)));
+    const reading = await read("2011_09_26/proj_depth/groundtruth/image_02/0000000005.png", scattered);
+    assert.equal(reading.depth.unit, 1 / 256);
+    assert.ok(!reading.warnings.some(({ code }) => code === "unit-guessed"));
+    await says("unit-guessed", /by a guess.*in 256 to the metre, as KITTI has it/, "depth.png", scattered);
+  });
+
+  test("other units are offered where the values would do for several", async () => {
+    const tenths = grey16(slope(60_000).map((value) => value - (value % 5) + 3));
+    await says("unit-guessed", /1\.\d+ to \d\.\d+ m in tenths of a millimetre/, "depth.png", tenths);
+  });
+});
+
+describe("axes of organised clouds", () => {
+  const [columns, rows] = [40, 20];
+  const cloud = (point) =>
+    pcd(
+      { WIDTH: String(columns), HEIGHT: String(rows), POINTS: String(columns * rows) },
+      Array.from({ length: columns * rows }, (_, at) => point(at % columns, Math.floor(at / columns)).join(" ")).join(
+        "\n",
+      ),
+    );
+  const angles = (x, y) => [((x - 20) * Math.PI) / 90, ((y - 10) * Math.PI) / 120];
+
+  test("a camera's, and a LiDAR's that was turned into optical axes", async () => {
+    assert.equal(
+      (
+        await read(
+          "a.pcd",
+          cloud((x, y) => [(x - 20) / 10, (y - 10) / 10, 2 + x / 40]),
+        )
+      ).kind,
+      "depth",
+    );
+    const optical = cloud((x, y) => {
+      const [azimuth, elevation] = angles(x, y);
+      return [
+        5 * Math.sin(azimuth) * Math.cos(elevation),
+        5 * Math.sin(elevation),
+        5 * Math.cos(azimuth) * Math.cos(elevation),
+      ];
+    });
+    assert.equal((await read("a.pcd", optical)).kind, "depth");
+  });
+
+  test("z that looks up, rows upside down, columns mirrored", async () => {
+    const lidar = cloud((x, y) => {
+      const [azimuth, elevation] = [angles(x, y)[0], ((rows - y) * Math.PI) / 120];
+      return [
+        5 * Math.cos(azimuth) * Math.cos(elevation),
+        -5 * Math.sin(azimuth) * Math.cos(elevation),
+        5 * Math.sin(elevation),
+      ];
+    });
+    await refused("a.pcd", lidar, /axes are those of a LiDAR.*z forward/);
+    await refused(
+      "a.pcd",
+      cloud((x, y) => [(x - 20) / 10, (10 - y) / 10, 2]),
+      /do not follow a camera's axes/,
+    );
+    await refused(
+      "a.pcd",
+      cloud((x, y) => [(20 - x) / 10, (y - 10) / 10, 2]),
+      /do not follow a camera's axes/,
+    );
+  });
+});
