@@ -161,6 +161,15 @@ export function readNpy(bytes: Uint8Array): Raster<Pixels> & { type: string } {
       type: name,
       data: columns === "True" ? inRows(data, height, width, channels) : data,
     };
+  if (
+    channels === 3 &&
+    kind.size > 1 &&
+    !data.some((value) => value < 0) &&
+    data.some((value) => value > 1 && value < Infinity)
+  )
+    throw bad(
+      "this .npy file has 3 planes without a value below zero: a stack of 3 pictures? Save each of them as a file",
+    );
   const inOrder = columns === "True" ? inRows(data, channels, height, width) : data;
   return { width, height, channels, type: name, data: channelsLast(inOrder, channels) };
 }

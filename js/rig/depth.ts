@@ -44,6 +44,8 @@ const SATURATED = 0xffff;
 /** Renderers write 1e10 where they saw nothing, and half floats their largest number. */
 const BEYOND = 1e9;
 const LARGEST_HALF = 65_504;
+/** Depths nearer than this share of the median are none. */
+const TINY = 1e-4;
 /** The Kinect's 11-bit disparity where it is blind. */
 const BLIND_DISPARITY = 2047;
 
@@ -197,7 +199,10 @@ const DISPARITY =
 
 function ofFloats(picture: Picture, stored: Float32Array, unit: number | undefined): Found<Depth> {
   const beyond = picture.bits === 16 ? LARGEST_HALF : BEYOND;
-  const data = stored.some((value) => value >= beyond) ? stored.map((value) => (value >= beyond ? 0 : value)) : stored;
+  // What a lossy compression leaves of holes.
+  const nothingThere = TINY * quantile(sampled(stored), 0.5);
+  const isHole = (value: number) => value >= beyond || (value > 0 && value < nothingThere);
+  const data = stored.some(isHole) ? stored.map((value) => (isHole(value) ? 0 : value)) : stored;
   const sample = sampled(data);
   if (sample.length === 0) throw nothing();
   const known = unit ?? picture.unit;
@@ -245,11 +250,19 @@ export function cloudDepth(cloud: Cloud, { unit }: ReadOptions): Found<Depth> {
   };
 }
 
+/** The first `kept` of every so many values. */
+const every = (data: Float32Array, channels: number, kept: number): Float32Array =>
+  data.filter((_, at) => at % channels < kept);
+
 /** A picture as a depth map; a float one of three channels is a cloud, as .npy has it. */
 export function pictureDepth(picture: Picture, options: ReadOptions): Found<Depth> {
   const { data, channels } = picture;
   if (data instanceof Float32Array) {
+    const isRepeated = channels === 3 && isGrey(picture);
+    if (isRepeated) return ofFloats(picture, every(data, 3, 1), options.unit);
     if (channels === 3) return cloudDepth({ ...picture, points: data }, options);
+    // x, y, z and intensity.
+    if (channels === 4) return cloudDepth({ ...picture, points: every(data, 4, 3) }, options);
     if (channels !== 1) throw badFile(`a depth map has 1 channel and a cloud 3, not ${channels}`);
     return ofFloats(picture, data, options.unit);
   }

@@ -18,18 +18,26 @@ const isOther = (role: Role | undefined): role is Other => role !== undefined &&
 /** Shares of the pixels of a cloud: half of a view lies left of its middle and half above it, and nothing behind. */
 const [ASIDE, BEHIND] = [0.1, 0.02];
 
-/** Whether three channels of floats are the points of a cloud rather than colours, which are not below zero. */
+/** Whether three channels of floats, or four with an intensity, are the points of a cloud rather than colours, which are not below zero. */
 function arePoints({ data, channels }: Picture): boolean {
-  if (!(data instanceof Float32Array) || channels !== 3) return false;
   const below = [0, 0, 0];
   let count = 0;
-  for (let at = 0; at < data.length; at += 3) {
+  for (let at = 0; at < data.length; at += channels) {
     if (!Number.isFinite(data[at]) || !data[at + 2]) continue;
     count++;
     for (let axis = 0; axis < 3; axis++) if ((data[at + axis] ?? 0) < 0) below[axis] = (below[axis] ?? 0) + 1;
   }
   const [x = 0, y = 0, z = 0] = below;
   return x > ASIDE * count && y > ASIDE * count && z < BEHIND * count;
+}
+
+/** Three or four channels of floats: a cloud, a depth map that a renderer repeated as grey, or colours. */
+function kindOfFloats(picture: Picture, role: Role | undefined): Kind {
+  const { data, format } = picture;
+  if (role === "cloud" || arePoints(picture)) return "depth";
+  const isBright = data.some((value) => value > 1 && Number.isFinite(value));
+  if (picture.channels === 3 && /^np[yz]$/.test(format)) return isBright || role === "depth" ? "depth" : "colour";
+  return picture.channels === 3 && isGrey(picture) && (isBright || role === "depth") ? "depth" : "colour";
 }
 
 const refusal = (role: Other) =>
@@ -45,11 +53,8 @@ export function kindOfPicture(name: string, picture: Picture): Kind {
   // A drawn mask may have soft edges.
   if (role !== "confidence" && looksLikeMask(picture)) return "mask";
   if (role === "mask" && picture.bits === 8 && isGrey(picture)) return "mask";
-  const isTriple = picture.data instanceof Float32Array && picture.channels === 3;
-  if (isTriple && role !== "normals")
-    return picture.format === "npy" || picture.format === "npz" || role === "cloud" || arePoints(picture)
-      ? "depth"
-      : "colour";
+  const isSeveral = picture.data instanceof Float32Array && picture.channels >= 3;
+  if (isSeveral && role !== "normals") return kindOfFloats(picture, role);
   if (isColourful(picture)) return isDepthRole(role) && decoded(picture) !== undefined ? "depth" : "colour";
   if (isDepthRole(role)) return "depth";
   if (role === "colour" || role === "infrared" || role === "rendering") return "colour";

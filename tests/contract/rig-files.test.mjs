@@ -84,6 +84,14 @@ describe("depth maps", () => {
     });
   }
 
+  test("large-b44.exr, by which the blocks with holes are coarse: a warning", async () => {
+    const reading = await readFixture("large-b44.exr");
+    assert.ok(reading.warnings.some(({ code, message }) => code === "eight-bits" && /with loss/.test(message)));
+    const wanted = large((x, y) => ((x + y) % 7 === 0 ? 0 : 0.75 + x / 64 + y / 128));
+    close(metres(reading), wanted, 0.12);
+    assert.match(reading.says, /85\.\d % valid/);
+  });
+
   test("a cloud keeps x and y, too", async () => {
     for (const name of ["cloud-compressed.pcd", "cloud-binary.ply", "cloud-columns.npy"]) {
       const { points } = (await readFixture(name)).depth;

@@ -125,7 +125,7 @@ const FILES = [
   ["palette.tif", tiff(tiffTags(4, 4, { 262: 3 })), /palette/],
 
   ["cut.exr", cut("depth-zip.exr", 250), /EXR|beyond its own end/],
-  ["b44.exr", fixture("large-b44.exr"), /compressed by B44/],
+  ["b44.exr", cut("large-b44.exr", 600), /EXR is cut off or damaged/],
   ["dwa.exr", cut("large-dwaa-depth.exr", 1500), /EXR is cut off or damaged/],
   ["types.exr", packed("colour-and-depth.exr", 4), /channels of different types/],
   ["piz.exr", changed("large-piz-half.exr", [-200, 0], [-201, 0], [-202, 0], [-700, 255]), /EXR|damaged/],

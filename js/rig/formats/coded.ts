@@ -46,12 +46,42 @@ const isEmpty = ({ data, channels }: Picture, channel: number): boolean => {
   return true;
 };
 
-/** By the two upper bytes; the lowest of three is mostly noise. */
+/** Of 24 bits the highest byte changes between few neighbours .. */
+const SELDOM = 0.1;
+/** .. the lowest changes by more than this between most, and the two lower ones together are smooth. */
+const [ROUGH, SMOOTH] = [16, 4096];
+
+/** Whether three bytes from the lowest to the highest are those of one smooth number. */
+function isSmooth({ data, width, channels }: Picture, [low = 0, middle = 0, high = 0]: readonly number[]): boolean {
+  const [changes, bends]: [number[], number[]] = [[], []];
+  let moved = 0;
+  for (let pixel = 2; pixel < data.length / channels; pixel++) {
+    if (pixel % width < 2) continue;
+    const byte = (channel: number, back: number) => data[(pixel - back) * channels + channel] ?? 0;
+    const pair = (back: number) => 256 * byte(middle, back) + byte(low, back);
+    // Holes are zero in all bytes.
+    if ([0, 1, 2].some((back) => pair(back) + byte(high, back) === 0)) continue;
+    if (byte(high, 0) !== byte(high, 1)) moved++;
+    changes.push(Math.abs(byte(low, 0) - byte(low, 1)));
+    const bend = (pair(0) - 2 * pair(1) + pair(2)) & 0xffff;
+    bends.push(Math.min(bend, 0x10000 - bend));
+  }
+  const middleOf = (values: number[]) => Float32Array.from(values).sort()[values.length >> 1] ?? 0;
+  return (
+    changes.length >= FEWEST_MOVES &&
+    moved < SELDOM * changes.length &&
+    middleOf(changes) > ROUGH &&
+    middleOf(bends) < SMOOTH
+  );
+}
+
+/** By carries, or of three bytes by their smoothness: near a camera the highest hardly changes. */
 function fits(picture: Picture, { order }: Code): boolean {
-  // Blue is the lowest or the highest byte of three, and not there of two.
-  if (isEmpty(picture, order.length === 2 ? 2 : (order[0] ?? 0)) !== (order.length === 2)) return false;
+  // Blue is one of three bytes, and not there of two.
+  const isTwo = order.length === 2;
+  if (isTwo ? !isEmpty(picture, 2) : order.some((channel) => isEmpty(picture, channel))) return false;
   const [low = 0, high = 1] = order.slice(-2);
-  return carries(picture, low, high) >= MOSTLY;
+  return carries(picture, low, high) >= MOSTLY || (order.length === 3 && isSmooth(picture, order));
 }
 
 const median = (values: Float32Array): number => {

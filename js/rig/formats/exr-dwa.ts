@@ -64,7 +64,9 @@ function plane(body: Uint8Array, header: Header, used: number, rows: number): Ui
   const own = channels[used] as Channel;
   const all = channels.filter(isUnknown).reduce((sum, each) => sum + size(each), 0);
   if (!isUnknown(own) || length !== all || start + packed > body.length)
-    throw badFile("this EXR by DWA keeps its depths in a way that is not read here, or is damaged; save it by ZIP");
+    throw badFile(
+      "this EXR by DWA (DWAA or DWAB) keeps its depths in a way that is not read here, or is damaged; save it by ZIP",
+    );
   return inflateExactly(body.subarray(start, start + packed), length, "this EXR").subarray(before, before + size(own));
 }
 

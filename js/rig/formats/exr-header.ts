@@ -2,11 +2,11 @@
 import { badFile } from "../../errors.js";
 import { checkSize } from "./limits.js";
 
-const COMPRESSIONS = ["none", "RLE", "ZIPS", "ZIP", "PIZ", "PXR24", "B44", "B44A", "DWAA", "DWAB"];
+export const COMPRESSIONS = ["none", "RLE", "ZIPS", "ZIP", "PIZ", "PXR24", "B44", "B44A", "DWAA", "DWAB"];
 /** Lines of a block, of those that are read. */
-const LINES: Record<number, number> = { 0: 1, 1: 1, 2: 1, 3: 16, 4: 32, 5: 16, 8: 32, 9: 256 };
-/** The first of the two compressions by DWA. */
-export const DWAA = 8;
+const LINES: Record<number, number> = { 0: 1, 1: 1, 2: 1, 3: 16, 4: 32, 5: 16, 6: 32, 7: 32, 8: 32, 9: 256 };
+/** The two compressions by B44, and the first of the two by DWA. */
+export const [B44, B44A, DWAA] = [6, 7, 8];
 /** Bytes of a sample of each type. */
 export const SIZES = [4, 2, 4];
 const MOST_CHANNELS = 64;

@@ -2,14 +2,14 @@
  * OpenEXR by PIZ, PXR24 or DWA, by parse-exr. Loaded when such a file comes.
  *
  * parse-exr trusts what a file declares and knows but the channels R, G, B, A and Y. So it is given a file that is made here: the
- * attributes that it needs, blocks in their order and checked, and the wanted channels under these names. Not read: B44, which parse-exr
- * does not know; PIZ and DWA of channels of different types, which it mistakes; DWA of channels but R, G, B and Y, which the blocks
- * themselves name.
+ * attributes that it needs, blocks in their order and checked, and the wanted channels under these names. Not read: PIZ and DWA of channels
+ * of different types, which it mistakes; DWA of channels but R, G, B and Y, which the blocks themselves name (exr-dwa.ts has those that
+ * are kept without loss).
  */
 import parseExr from "parse-exr";
 import { badFile } from "../../errors.js";
 import { inflateUpTo } from "../../inflate.js";
-import { type Header, blocks } from "./exr-header.js";
+import { COMPRESSIONS, type Header, blocks } from "./exr-header.js";
 
 /** three's number of a type, which parse-exr takes. */
 const FLOAT = 1015;
@@ -43,7 +43,9 @@ function names({ channels, compression }: Header, used: number[]): string[] {
   const given = channels.map(({ name }, index) => known[used.indexOf(index)] ?? `other ${name}`);
   const isDwa = compression === DWAA || compression === DWAB;
   if (isDwa && channels.some(({ name }, index) => used.includes(index) && name !== given[index]))
-    throw badFile("this EXR is compressed by DWA, of which R, G, B and Y are read; save it by ZIP");
+    throw badFile(
+      "this EXR is compressed by DWA (DWAA or DWAB), of which R, G and B, Y alone, and channels of other names are read; save it by ZIP",
+    );
   return isDwa ? channels.map(({ name }) => name) : given;
 }
 
@@ -56,7 +58,7 @@ function checkDwa(body: Uint8Array, length: number): void {
     ...[number, number, number, number],
   ];
   if (unknown > 0 || (ac > 0 && method !== 0))
-    throw badFile("this EXR is compressed by a kind of DWA that is not read here; save it by ZIP");
+    throw badFile("this EXR is compressed by a kind of DWA (DWAA or DWAB) that is not read here; save it by ZIP");
   const start = 88 + view.getUint16(88, true);
   if (Math.max(2 * acCount, 2 * dcCount, rleRaw) > 2 * length || start + ac + dc + rle > body.length)
     throw badFile("this EXR is damaged: a block of it declares more than the picture holds");
@@ -94,6 +96,20 @@ function plainFile(bytes: Uint8Array, header: Header, given: string[]): ArrayBuf
   return joined([head, new Uint8Array(8 * found.length), ...body]).buffer;
 }
 
+/** parse-exr fails on blocks by DWA whose luminance it takes for colours. */
+function parsed(file: ArrayBuffer, compression: number) {
+  try {
+    return parseExr(file, FLOAT);
+  } catch (error) {
+    const isOwn = error instanceof TypeError && (compression === DWAA || compression === DWAB);
+    if (!isOwn) throw error;
+    throw badFile(
+      "this EXR is compressed by DWA (DWAA or DWAB) in a way that is not read here, or damaged; save it by ZIP",
+      error,
+    );
+  }
+}
+
 export function readOthers(bytes: Uint8Array, header: Header, used: number[]): Float32Array {
   const { width, height, channels, compression } = header;
   const types = new Set(
@@ -103,9 +119,9 @@ export function readOthers(bytes: Uint8Array, header: Header, used: number[]): F
     throw badFile(`this EXR has ${channels.length} channels; up to ${MOST_CHANNELS} are read`);
   if (types.size > 1 || channels.some(({ type }) => type === WHOLE))
     throw badFile(
-      "this EXR has channels of different types or of whole numbers, which are read by ZIP alone; save it by ZIP",
+      `this EXR is compressed by ${COMPRESSIONS[compression] ?? "PIZ"} with channels of different types or of whole numbers, which are read by ZIP alone; save it by ZIP`,
     );
-  const { data } = parseExr(plainFile(bytes, header, names(header, used)), FLOAT);
+  const { data } = parsed(plainFile(bytes, header, names(header, used)), compression);
   const step = used.length === 1 ? 1 : 4;
   const out = new Float32Array(width * height * used.length);
   // Its first line is the lowest.

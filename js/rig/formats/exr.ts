@@ -1,15 +1,18 @@
 /**
  * OpenEXR of one part in scan lines, plain or by RLE, ZIPS or ZIP: half, float and whole numbers.
  *
- * PIZ, PXR24 and the colours of DWA are parse-exr's (exr-others.ts), what DWA keeps without loss is in exr-dwa.ts. It does not replace this: it knows neither a channel Z nor whole numbers, mistakes
- * channels of different types, and checks nothing of what a file declares. Not read: B44, tiles, deep pixels, several parts; each is named.
+ * PIZ, PXR24 and the colours of DWA are parse-exr's (exr-others.ts). It does not replace this: it knows neither a channel Z nor whole
+ * numbers, mistakes channels of different types, and checks nothing of what a file declares. B44 is in exr-b44.ts, what DWA keeps without
+ * loss in exr-dwa.ts. Not read: tiles, deep pixels, several parts; each is named.
  */
 import { badFile } from "../../errors.js";
 import { inflateExactly } from "../../inflate.js";
+import { readB44 } from "./exr-b44.js";
 import { isKept, readKept } from "./exr-dwa.js";
-import { type Channel, DWAA, type Header, SIZES, blocks, readHeader, strideOf } from "./exr-header.js";
+import { B44, B44A, type Channel, DWAA, type Header, SIZES, blocks, readHeader, strideOf } from "./exr-header.js";
 import { half } from "../../half.js";
 import type { Picture } from "./picture.js";
+import { warning } from "../warnings.js";
 
 /** The last compression that is read here. */
 const ZIP = 3;
@@ -76,6 +79,11 @@ function readKnown(bytes: Uint8Array, header: Header, used: number[]): Float32Ar
   return data;
 }
 
+const LOSSY = warning(
+  "eight-bits",
+  "Halves by B44 and colours by DWA are compressed with loss: beside holes and edges depths are up to a tenth off. Save the depth map by ZIP.",
+);
+
 export function readExr(bytes: Uint8Array, isDepth: boolean): Picture | Promise<Picture> {
   const found = readHeader(bytes);
   const { width, height, channels, compression } = found;
@@ -88,10 +96,17 @@ export function readExr(bytes: Uint8Array, isDepth: boolean): Picture | Promise<
     ...{ format: "EXR", bits, notes: [], warnings: [] },
   });
   if (compression <= ZIP) return picture(readKnown(bytes, found, used));
+  if (compression === B44 || compression === B44A) {
+    const isLossy = used.length === 1 && bits === 16;
+    return { ...picture(readB44(bytes, found, used)), warnings: isLossy ? [LOSSY] : [] };
+  }
   const [only = 0, ...more] = used;
   if (compression >= DWAA && more.length === 0 && channels[only] && isKept(channels[only]))
     return picture(readKept(bytes, found, only));
-  return import("./exr-others.js").then(({ readOthers }) => picture(readOthers(bytes, found, used)));
+  return import("./exr-others.js").then(({ readOthers }) => ({
+    ...picture(readOthers(bytes, found, used)),
+    warnings: isDepth && compression >= DWAA ? [LOSSY] : [],
+  }));
 }
 
 interface Block {

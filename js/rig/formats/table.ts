@@ -33,12 +33,12 @@ function splitter(line: string): (line: string) => string[] {
   return (each) => each.trim().split(/\s+/);
 }
 
-/** Some programs end each line by the separator. */
-export function wordsOf(line: string, split: (line: string) => string[]): string[] {
-  const words = split(line).map((word) => word.trim().replace(/^"(.*)"$/, "$1"));
-  if (words.at(-1) === "") words.pop();
-  return words;
-}
+export const wordsOf = (line: string, split: (line: string) => string[]): string[] =>
+  split(line).map((word) => word.trim().replace(/^"(.*)"$/, "$1"));
+
+/** Some programs end each line by the separator, and some leave holes empty, also at the end of a line. */
+const isTrailing = (rows: string[][]): boolean =>
+  rows.length > 0 && rows.filter((row) => row.at(-1) === "").length >= MOSTLY * rows.length;
 
 export const isNumbers = (words: string[]): boolean =>
   words.every((word) => isHole(word) || numberOf(word) !== undefined);
@@ -50,8 +50,13 @@ export function headOf(bytes: Uint8Array): { rows: string[][]; split: (line: str
   // What may be cut off within a line says nothing.
   if (bytes.length > HEAD_CHARACTERS && lines.length > 1 && lines.length < HEAD) lines.pop();
   const used = lines.filter((line) => !isComment(line));
-  const split = splitter(used[1] ?? used[0] ?? "");
-  return { rows: used.map((line) => wordsOf(line, split)), split };
+  const words = splitter(used[1] ?? used[0] ?? "");
+  const trailing = isTrailing(used.map((line) => wordsOf(line, words)));
+  const split = (line: string) => {
+    const found = wordsOf(line, words);
+    return trailing && found.at(-1) === "" ? found.slice(0, -1) : found;
+  };
+  return { rows: used.map(split), split };
 }
 
 /** Whether a text is a table of the size of a depth map: of its first lines, that those are rows of as many numbers. */
@@ -74,7 +79,7 @@ export function readTable(bytes: Uint8Array): Picture {
   const rows: number[][] = [];
   for (const line of new TextDecoder("latin1").decode(bytes).replace(/^ï»¿/, "").split(/\r?\n/)) {
     if (isComment(line)) continue;
-    const words = wordsOf(line, split);
+    const words = split(line);
     if (rows.length === 0 && !isNumbers(words)) continue;
     if (rows.length > MOST_SIDE) throw badFile(`its table has more than ${MOST_SIDE} rows`);
     const width = rows[0]?.length ?? words.length;
@@ -82,7 +87,7 @@ export function readTable(bytes: Uint8Array): Picture {
       throw badFile(`its table has ${words.length} columns in row ${rows.length + 1}, and ${width} in those before`);
     rows.push(words.map((word) => ofWord(word, rows.length)));
   }
-  if (rows.length > 1 && counts((rows[0] ?? []).slice(1))) rows.shift();
+  if (rows.length > 1 && (counts(rows[0] ?? []) || counts((rows[0] ?? []).slice(1)))) rows.shift();
   if (counts(rows.map((row) => row[0] ?? NaN))) for (const row of rows) row.shift();
   const [height, width] = [rows.length, rows[0]?.length ?? 0];
   checkSize(width, height);

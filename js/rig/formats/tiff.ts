@@ -14,6 +14,7 @@ import { half } from "../../half.js";
 import { OVERHEAD, checkSize } from "./limits.js";
 import type { Picture } from "./picture.js";
 import { lzw, packBits, undoFloats, undoIntegers } from "./tiff-coding.js";
+import { warning } from "../warnings.js";
 
 /** Bytes of all pixels. */
 const MOST_PIXELS = 2 ** 28;
@@ -50,7 +51,7 @@ const MOST_VALUES = 200_000;
 
 type Tags = Map<number, number[]>;
 
-function directory(view: DataView): { tags: Tags; little: boolean } {
+function directory(view: DataView): { tags: Tags; little: boolean; hasMore: boolean } {
   const little = view.getUint16(0) === 0x4949;
   const kind = view.getUint16(2, little);
   if (kind !== 42 && kind !== 43) throw badFile("this TIFF is of a kind that there is not");
@@ -81,7 +82,12 @@ function directory(view: DataView): { tags: Tags; little: boolean } {
       Array.from({ length }, (_, each) => number(from + size * each, size)),
     );
   }
-  return { tags, little };
+  const next = first + step * count;
+  return {
+    tags,
+    little,
+    hasMore: next + room <= view.byteLength && (isBig ? whole(next) : view.getUint32(next, little)) > 0,
+  };
 }
 
 interface Layout {
@@ -234,15 +240,17 @@ function swap(part: Uint8Array, size: number, little: boolean): void {
   for (let at = 0; at + size <= part.length; at += size) part.subarray(at, at + size).reverse();
 }
 
+const MORE = warning("file-left-out", "The file holds more pictures than one; the first was read.");
+
 export function readTiff(bytes: Uint8Array): Picture | Promise<Picture> {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
-  const { tags, little } = directory(view);
+  const { tags, little, hasMore } = directory(view);
   const found = layout(tags);
   if (![1, 2, 3].includes(found.predictor) || (found.predictor === 3 && !found.isFloat))
     throw badFile(`this TIFF has the predictor ${found.predictor}, which is not known here`);
   const picture = (codecs?: Codecs) =>
     turnedBy(
-      asPicture(pixels(bytes, found, little, codecs), found),
+      { ...asPicture(pixels(bytes, found, little, codecs), found), warnings: hasMore ? [MORE] : [] },
       tags.get(Tag.Orientation)?.[0] ?? 1,
       "its tag says",
     );
