@@ -49,6 +49,18 @@ export function isOptical(points: Float32Array): boolean {
   return Math.hypot(x, y, z) > ALL_AROUND && Math.abs(z) > Math.max(Math.abs(x), Math.abs(y));
 }
 
+/** Units of the file from the origin, and the spread of distances as a share of them, from which on points are those of a map. */
+const [FAR_OFF, NARROWLY] = [10_000, 0.05];
+
+/** Eastings and northings, or a mesh far off: a cloud that no sensor at its origin has measured. */
+function checkSensor(sorted: Float64Array): void {
+  const at = (share: number) => sorted[Math.floor(share * (sorted.length - 1))] ?? 0;
+  if (at(0.5) > FAR_OFF && at(0.99) - at(0.01) < NARROWLY * at(0.5))
+    throw badFile(
+      `its points lie ${at(0.5).toPrecision(3)} from the origin and close together, as in the coordinates of a map, in which no sensor is; move them into the frame of the sensor that extrinsics are given for`,
+    );
+}
+
 interface Unit {
   metres: number;
   warnings: ReaderWarning[];
@@ -133,6 +145,7 @@ export async function scanDepth(scan: Scan, view?: View): Promise<{ depth: Depth
 export async function pointsDepth(cloud: Points, { unit: told }: ReadOptions): Promise<Found<Depth>> {
   const { scan, format } = cloud;
   const sorted = ranges(scan.points);
+  checkSensor(sorted);
   const unit = unitOf(sorted, cloud.isMetric, told);
   if (unit.metres !== 1) scan.points = scan.points.map((value) => value * unit.metres);
   const { depth, image } = await scanDepth(scan);
