@@ -105,12 +105,14 @@ mod tests {
     fn of_a_scanner_what_lies_behind_the_camera_is_left_out_and_of_a_depth_camera_nothing() {
         let camera = Pinhole { fx: 10.0, fy: 10.0, cx: 9.5, cy: 4.5, lens: Lens::None };
         let size = Size::new("image", 20, 10).unwrap();
-        let kept = |points: Vec<[f32; 3]>| {
+        let kept = |mut points: Vec<[f32; 3]>| {
+            let count = points.len();
+            points.resize(16, [f32::NAN; 3]);
             let planes = Planes { size, pixels: vec![[0.5; 3]; size.len()] };
-            let grid = Size::new("depth", points.len(), 1).unwrap();
+            let grid = Size::new("depth", 4, 4).unwrap();
             let mut frame = Frame::new(String::new(), planes, camera, grid, points);
             leave_unseen_out(&mut frame, &[State::at(Similarity::identity())]);
-            frame.points.iter().map(|point| !point[2].is_nan()).collect::<Vec<_>>()
+            frame.points[..count].iter().map(|point| !point[2].is_nan()).collect::<Vec<_>>()
         };
         let (before, beside, aside) = ([0.0, 0.0, 2.0], [2.2, 0.0, 2.0], [9.0, 0.0, 2.0]);
         assert_eq!(kept(vec![before, beside, aside]), [true, true, true]);

@@ -35,6 +35,17 @@ export function rayOf(
   };
 }
 
+/** Rows and columns of the smallest image of the package. */
+const LEAST_SIDE = 4;
+
+/** A first and a last line that are at least so many apart, where there are so many. */
+function widened(first: number, last: number, count: number): [number, number] {
+  const missing = Math.max(0, LEAST_SIDE - (last - first + 1));
+  const end = Math.min(count - 1, last + Math.ceil(missing / 2));
+  const start = Math.max(0, Math.min(first, end - LEAST_SIDE + 1));
+  return [start, Math.min(count - 1, Math.max(end, start + LEAST_SIDE - 1))];
+}
+
 /** The points of interest alone, in the part of a range image that holds them. */
 export function cropped(image: Image, isOfInterest: (index: number) => boolean): Image {
   const { width, height, cells } = image;
@@ -46,6 +57,8 @@ export function cropped(image: Image, isOfInterest: (index: number) => boolean):
     [top, bottom] = [Math.min(top, row), Math.max(bottom, row)];
   });
   if (right < 0) return image;
+  [left, right] = widened(left, right, width);
+  [top, bottom] = widened(top, bottom, height);
   const size = { width: right - left + 1, height: bottom - top + 1 };
   const part = new Int32Array(size.width * size.height);
   for (let row = 0; row < size.height; row++) {

@@ -14,6 +14,7 @@ const COARSEST = 4 * degrees;
 /** Points to each cell that holds any, of points at random that are two thirds as many as the cells they fall on. */
 const FILLED = 1.37;
 const MOST_SIDE = 4096;
+const LEAST_SIDE = 4;
 /** Points are of one surface where their ranges differ by less than this share of them .. */
 const ONE_SURFACE = 0.02;
 /** .. or by this, metres. */
@@ -186,8 +187,8 @@ export function buffered(polar: Polar, points: Uint32Array): Image {
     left: area.left,
     top: area.top,
     step,
-    width: Math.floor(area.width / step) + 1,
-    height: Math.floor(area.height / step) + 1,
+    width: Math.max(LEAST_SIDE, Math.floor(area.width / step) + 1),
+    height: Math.max(LEAST_SIDE, Math.floor(area.height / step) + 1),
   };
   const buffer = new Buffer(sphere, grid);
   buffer.fill(points);
