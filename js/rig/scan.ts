@@ -6,6 +6,7 @@
 import { badFile } from "../errors.js";
 import { meanDirection } from "./lidar/frame.js";
 import type { RangeImage, Scan, View } from "./lidar/index.js";
+import { rangeOf } from "./lidar/scan.js";
 import type { Cloud, Points } from "./formats/picture.js";
 import type { ReadOptions, RigReading } from "./types.js";
 import { type ReaderWarning, warning } from "./warnings.js";
@@ -24,29 +25,25 @@ const HOW: Record<RangeImage["how"], string> = {
   sphere: "by a z-buffer over the sphere",
 };
 
-const isThere = (x = NaN, y = NaN, z = NaN): boolean => Math.hypot(x, y, z) > 0 && Math.hypot(x, y, z) < 1e12;
+const isThere = (range: number): boolean => range > 0 && range < 1e12;
 
 /** Distances of the points that are there, in order. */
 function ranges(points: Float32Array): Float64Array {
   const found = new Float64Array(points.length / 3);
   let count = 0;
   for (let at = 0; at < points.length; at += 3) {
-    const [x, y, z] = points.subarray(at, at + 3);
-    if (isThere(x, y, z)) found[count++] = Math.hypot(x ?? 0, y ?? 0, z ?? 0);
+    const range = rangeOf(points, at);
+    if (isThere(range)) found[count++] = range;
   }
   return found.slice(0, count).sort();
 }
 
 /** Whether z looks forward, as a depth camera's does: what is not seen all around, and mostly along z, or against it. */
 export function isOptical(points: Float32Array): boolean {
-  const there: number[] = [];
-  for (let at = 0; at < points.length; at += 3) {
-    const point = points.subarray(at, at + 3);
-    if (isThere(point[0], point[1], point[2])) there.push(...point);
-  }
-  const [x, y, z] = meanDirection(Float32Array.from(there));
-  if (there.length === 0) return true;
-  return Math.hypot(x, y, z) > ALL_AROUND && Math.abs(z) > Math.max(Math.abs(x), Math.abs(y));
+  const [x, y, z] = meanDirection(points);
+  const length = Math.hypot(x, y, z);
+  if (length === 0) return true;
+  return length > ALL_AROUND && Math.abs(z) > Math.max(Math.abs(x), Math.abs(y));
 }
 
 /** Units of the file from the origin, and the spread of distances as a share of them, from which on points are those of a map. */
@@ -108,7 +105,7 @@ export function turnedCloud(cloud: Cloud, told: number | undefined): Found<Depth
   const sorted = ranges(points);
   const unit = unitOf(sorted, false, told);
   for (let at = 0; at < points.length; at += 3) {
-    const there = isThere(points[at], points[at + 1], points[at + 2]);
+    const there = isThere(rangeOf(points, at));
     for (let axis = 0; axis < 3; axis++) points[at + axis] = there ? (points[at + axis] ?? NaN) * unit.metres : NaN;
   }
   const warnings = [...cloud.warnings, warning("lidar-axes", AXES)];

@@ -4,6 +4,8 @@
  * A spinning scanner turns about `up`. Columns count azimuths from `forward` to the right, rows elevations downwards, so that a range image
  * winds as a picture does.
  */
+import { rangeOf } from "./scan.js";
+
 export type Vector = [number, number, number];
 
 export interface Frame {
@@ -41,18 +43,18 @@ export const AXES: readonly Vector[] = [Z, Y_UP, X];
 /** What is up for one who looks this way: z, unless that is where he looks. */
 export const upright = (forward: Vector): Vector => (Math.abs(forward[2]) > Math.SQRT1_2 ? Y_UP : Z);
 
-/** Mean of all directions; its length says how narrow the field of view is: 1 a single ray, 0 all around. */
+/** Mean of the directions of all points that are there; its length says how narrow the field of view is: 1 a single ray, 0 all around. */
 export function meanDirection(points: Float32Array): Vector {
-  const sum: Vector = [0, 0, 0];
+  let [count, x, y, z] = [0, 0, 0, 0];
   for (let at = 0; at < points.length; at += 3) {
-    const [x = 0, y = 0, z = 0] = points.subarray(at, at + 3);
-    const range = Math.hypot(x, y, z);
-    sum[0] += x / range;
-    sum[1] += y / range;
-    sum[2] += z / range;
+    const range = rangeOf(points, at);
+    if (!(range > 0 && range < Infinity)) continue;
+    count++;
+    x += (points[at] ?? 0) / range;
+    y += (points[at + 1] ?? 0) / range;
+    z += (points[at + 2] ?? 0) / range;
   }
-  const count = Math.max(1, points.length / 3);
-  return [sum[0] / count, sum[1] / count, sum[2] / count];
+  return count === 0 ? [0, 0, 0] : [x / count, y / count, z / count];
 }
 
 /** Where the points lie in such axes. */
@@ -74,12 +76,14 @@ export function polarOf(points: Float32Array, frame: Frame): Polar {
     radius: new Float64Array(count),
     height: new Float64Array(count),
   };
+  const { right, forward, up } = frame;
   for (let index = 0; index < count; index++) {
-    const point: Vector = [points[3 * index] ?? 0, points[3 * index + 1] ?? 0, points[3 * index + 2] ?? 0];
-    const [right, forward] = [dot(point, frame.right), dot(point, frame.forward)];
-    polar.azimuth[index] = Math.atan2(right, forward);
-    polar.radius[index] = Math.hypot(right, forward);
-    polar.height[index] = dot(point, frame.up);
+    const [x, y, z] = [points[3 * index] ?? 0, points[3 * index + 1] ?? 0, points[3 * index + 2] ?? 0];
+    const across = x * right[0] + y * right[1] + z * right[2];
+    const along = x * forward[0] + y * forward[1] + z * forward[2];
+    polar.azimuth[index] = Math.atan2(across, along);
+    polar.radius[index] = Math.sqrt(across * across + along * along);
+    polar.height[index] = x * up[0] + y * up[1] + z * up[2];
   }
   return polar;
 }
@@ -92,9 +96,8 @@ export function leastScatter(
   const sums = new Map<number, number[]>();
   const directions = new Float64Array(points.length);
   for (let at = 0; at < points.length; at += 3) {
-    const [x = 0, y = 0, z = 0] = points.subarray(at, at + 3);
-    const range = Math.hypot(x, y, z);
-    directions.set([x / range, y / range, z / range], at);
+    const range = rangeOf(points, at);
+    for (let axis = 0; axis < 3; axis++) directions[at + axis] = (points[at + axis] ?? 0) / range;
     const key = group[at / 3] ?? 0;
     const sum = sums.get(key) ?? [0, 0, 0, 0];
     for (let axis = 0; axis < 3; axis++) sum[axis] = (sum[axis] ?? 0) + (directions[at + axis] ?? 0);

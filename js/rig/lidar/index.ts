@@ -70,7 +70,7 @@ function filled(image: Image, { points, intensity }: Scan): RangeImage {
   const strength = intensity && new Float32Array(image.cells.length).fill(NaN);
   image.cells.forEach((index, cell) => {
     if (index < 0) return;
-    cloud.set(points.subarray(3 * index, 3 * index + 3), 3 * cell);
+    for (let axis = 0; axis < 3; axis++) cloud[3 * cell + axis] = points[3 * index + axis] ?? NaN;
     if (strength) strength[cell] = intensity?.[index] ?? NaN;
   });
   return { ...image, points: cloud, ...(strength && { intensity: strength }) };

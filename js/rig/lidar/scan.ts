@@ -17,13 +17,18 @@ const NEAREST = 0.1;
 /** From here on, metres, a coordinate is a marker for a missing point. */
 const FARTHEST = 1e4;
 
+/** Distance from the origin of the point that begins at a place; by the root, which is many times faster than hypot. */
+export function rangeOf(points: Float32Array, at: number): number {
+  const [x, y, z] = [points[at] ?? NaN, points[at + 1] ?? NaN, points[at + 2] ?? NaN];
+  return Math.sqrt(x * x + y * y + z * z);
+}
+
 /** Indices of the points that are measurements. */
 export function measured({ points }: Scan): Uint32Array {
   const kept = new Uint32Array(points.length / 3);
   let count = 0;
   for (let index = 0; index < kept.length; index++) {
-    const [x = NaN, y = NaN, z = NaN] = points.subarray(3 * index, 3 * index + 3);
-    const range = Math.hypot(x, y, z);
+    const range = rangeOf(points, 3 * index);
     if (range >= NEAREST && range < FARTHEST) kept[count++] = index;
   }
   return kept.slice(0, count);
@@ -32,7 +37,10 @@ export function measured({ points }: Scan): Uint32Array {
 /** The scan's points of these indices alone. */
 export function subset(scan: Scan, kept: Uint32Array): Scan {
   const points = new Float32Array(3 * kept.length);
-  kept.forEach((from, to) => points.set(scan.points.subarray(3 * from, 3 * from + 3), 3 * to));
+  for (let to = 0; to < kept.length; to++) {
+    const from = kept[to] ?? 0;
+    for (let axis = 0; axis < 3; axis++) points[3 * to + axis] = scan.points[3 * from + axis] ?? NaN;
+  }
   const { ring, intensity, times } = scan;
   return {
     points,

@@ -51,21 +51,24 @@ function extent({ azimuth, elevation }: Sphere, points: Uint32Array): Extent {
 }
 
 /** Points to each cell that holds any. */
-function filling(sphere: Sphere, points: Uint32Array, { left, top, width }: Extent, step: number): number {
+function filling(sphere: Sphere, points: Uint32Array, { left, top, width, height }: Extent, step: number): number {
   const columns = Math.floor(width / step) + 1;
-  const cells = new Set<number>();
+  const cells = new Uint8Array(columns * (Math.floor(height / step) + 1));
+  let taken = 0;
   for (const index of points) {
     const column = Math.floor(((sphere.azimuth[index] ?? 0) - left) / step);
-    const row = Math.floor((top - (sphere.elevation[index] ?? 0)) / step);
-    cells.add(row * columns + column);
+    const cell = Math.floor((top - (sphere.elevation[index] ?? 0)) / step) * columns + column;
+    if (cells[cell] === 0) taken++;
+    cells[cell] = 1;
   }
-  return points.length / cells.size;
+  return points.length / Math.max(1, taken);
 }
 
-/** Points that suffice for the density, of those that lie around any of them. */
+/** The cell at which points are as dense as they should be, radians. */
 function stepOf(sphere: Sphere, points: Uint32Array, area: Extent): number {
   const least = Math.max(FINEST, area.width / (MOST_SIDE - 1), area.height / (MOST_SIDE - 1));
-  let [low, high] = [Math.log(least), Math.log(COARSEST)];
+  if (filling(sphere, points, area, least) >= FILLED) return least;
+  let [low, high] = [Math.log(least), Math.log(Math.max(least, COARSEST))];
   for (let round = 0; round < STEPS; round++) {
     const middle = (low + high) / 2;
     if (filling(sphere, points, area, Math.exp(middle)) < FILLED) low = middle;
@@ -91,52 +94,60 @@ class Buffer {
     return this.#sphere.range[index] ?? 0;
   }
 
-  #place(index: number): [column: number, row: number] {
-    const { left, top, step, width, height } = this.#grid;
-    const { azimuth, elevation } = this.#sphere;
-    const inside = (value: number, size: number) => Math.min(size - 1e-6, Math.max(0, value));
-    return [
-      inside(((azimuth[index] ?? 0) - left) / step, width),
-      inside((top - (elevation[index] ?? 0)) / step, height),
-    ];
+  /** Of a point: its column and its row, with fractions. */
+  #column(index: number): number {
+    const { left, step, width } = this.#grid;
+    return Math.min(width - 1e-6, Math.max(0, ((this.#sphere.azimuth[index] ?? 0) - left) / step));
+  }
+
+  #row(index: number): number {
+    const { top, step, height } = this.#grid;
+    return Math.min(height - 1e-6, Math.max(0, (top - (this.#sphere.elevation[index] ?? 0)) / step));
+  }
+
+  #cell(index: number): number {
+    return Math.floor(this.#row(index)) * this.#grid.width + Math.floor(this.#column(index));
   }
 
   fill(points: Uint32Array): void {
-    const { width } = this.#grid;
-    const late: number[] = [];
+    const late = new Uint32Array(points.length);
+    let count = 0;
     for (const index of points) {
-      const [column, row] = this.#place(index);
-      const cell = Math.floor(row) * width + Math.floor(column);
+      const cell = this.#cell(index);
       const there = this.cells[cell] ?? -1;
-      if (there < 0 || this.#range(index) < this.#range(there)) this.cells[cell] = index;
-      else late.push(index);
-      if (there >= 0 && this.cells[cell] === index) late.push(there);
+      const wins = there < 0 || this.#range(index) < this.#range(there);
+      if (wins) this.cells[cell] = index;
+      if (there >= 0) late[count++] = wins ? there : index;
     }
     this.#hide();
-    for (const index of late) this.#beside(index);
+    for (let at = 0; at < count; at++) this.#beside(late[at] ?? 0);
   }
 
-  /** Indices of the eight cells around one, -1 beyond the border. */
-  #around(cell: number): number[] {
+  /** The index in one of the eight cells around one: -1 for none, -2 beyond the border. */
+  #around(cell: number, way: number): number {
     const { width, height } = this.#grid;
-    const [column, row] = [cell % width, Math.floor(cell / width)];
-    return AROUND.map(([right, down]) => {
-      const [x, y] = [column + right, row + down];
-      return x < 0 || y < 0 || x >= width || y >= height ? -1 : y * width + x;
-    });
+    const [right, down] = AROUND[way] ?? [0, 0];
+    const column = (cell % width) + right;
+    const row = Math.floor(cell / width) + down;
+    if (column < 0 || row < 0 || column >= width || row >= height) return -2;
+    return this.cells[row * width + column] ?? -1;
   }
 
   /** Takes away what is seen through the gaps of a nearer surface. */
   #hide(): void {
     const hidden: number[] = [];
-    this.cells.forEach((index, cell) => {
-      if (index < 0) return;
-      const others = this.#around(cell).flatMap((at) =>
-        at >= 0 && (this.cells[at] ?? -1) >= 0 ? [this.cells[at] ?? 0] : [],
-      );
-      const before = others.filter((other) => isBehind(this.#range(index), this.#range(other))).length;
-      if (before >= FEWEST_BEFORE && before >= MOSTLY_BEFORE * others.length) hidden.push(cell);
-    });
+    for (let cell = 0; cell < this.cells.length; cell++) {
+      const index = this.cells[cell] ?? -1;
+      if (index < 0) continue;
+      let [before, others] = [0, 0];
+      for (let way = 0; way < AROUND.length; way++) {
+        const other = this.#around(cell, way);
+        if (other < 0) continue;
+        others++;
+        if (isBehind(this.#range(index), this.#range(other))) before++;
+      }
+      if (before >= FEWEST_BEFORE && before >= MOSTLY_BEFORE * others) hidden.push(cell);
+    }
     this.hidden += hidden.length;
     for (const cell of hidden) this.cells[cell] = -1;
   }
@@ -144,18 +155,24 @@ class Buffer {
   /** A point whose cell is taken: into the nearest free cell beside it, if it belongs to the surface that took it. */
   #beside(index: number): void {
     const { width } = this.#grid;
-    const [column, row] = this.#place(index);
-    const own = Math.floor(row) * width + Math.floor(column);
+    const [column, row] = [this.#column(index), this.#row(index)];
+    const own = this.#cell(index);
     const there = this.cells[own] ?? -1;
-    if (there >= 0 && isBehind(this.#range(index), this.#range(there))) {
+    if (there < 0) {
+      this.cells[own] = index;
+      return;
+    }
+    if (isBehind(this.#range(index), this.#range(there))) {
       this.hidden++;
       return;
     }
-    const far = (cell: number) => Math.hypot((cell % width) + 0.5 - column, Math.floor(cell / width) + 0.5 - row);
-    let best = there < 0 ? own : -1;
-    if (best < 0)
-      for (const cell of this.#around(own))
-        if (cell >= 0 && this.cells[cell] === -1 && (best < 0 || far(cell) < far(best))) best = cell;
+    let [best, least] = [-1, Infinity];
+    for (let way = 0; way < AROUND.length; way++) {
+      if (this.#around(own, way) !== -1) continue;
+      const [right, down] = AROUND[way] ?? [0, 0];
+      const [x, y] = [(own % width) + right + 0.5 - column, Math.floor(own / width) + down + 0.5 - row];
+      if (x * x + y * y < least) [best, least] = [own + down * width + right, x * x + y * y];
+    }
     if (best >= 0) this.cells[best] = index;
   }
 }
@@ -179,7 +196,7 @@ export function buffered(polar: Polar, points: Uint32Array): Image {
   const sphere: Sphere = {
     azimuth,
     elevation: radius.map((each, index) => Math.atan2(height[index] ?? 0, each)),
-    range: radius.map((each, index) => Math.hypot(each, height[index] ?? 0)),
+    range: radius.map((each, index) => Math.sqrt(each * each + (height[index] ?? 0) ** 2)),
   };
   const area = extent(sphere, points);
   const step = stepOf(sphere, points, area);
