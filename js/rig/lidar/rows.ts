@@ -31,6 +31,8 @@ const FEWEST_POINTS = 20;
 const FITTING = 0.15;
 /** .. where a file names its rings, which are rows even where they waver. */
 const FITTING_RINGS = 0.5;
+/** Points that are looked at for it. */
+const LOOKED_AT = 50_000;
 /** Share of points that have to lie in rows. */
 const NEARLY_ALL = 0.95;
 
@@ -119,13 +121,14 @@ function fitted(polar: Polar, group: ArrayLike<number>, how: Rows["how"]): Rows 
 /** Whether points lie much nearer to their own row than rows to each other. */
 function isFit({ how, polar: { radius, height }, rows, row }: Rows): boolean {
   const offs: number[] = [];
-  for (let index = 0; index < row.length; index++) {
+  const stride = Math.max(1, Math.floor(row.length / LOOKED_AT));
+  for (let index = 0; index < row.length; index += stride) {
     const own = rows[row[index] ?? -1];
     if (own) offs.push(Math.abs((height[index] ?? 0) / (radius[index] ?? 1) - slopeOf(own, radius[index])));
   }
   const spacing = median(rows.slice(1).map((below, at) => slopeOf(rows[at] as Row) - slopeOf(below)));
   const most = (how === "elevation" ? FITTING : FITTING_RINGS) * spacing;
-  return offs.length >= NEARLY_ALL * row.length && median(offs) <= most;
+  return offs.length >= (NEARLY_ALL * row.length) / stride && median(offs) <= most;
 }
 
 /** How much more the directions of a ring may scatter along an axis of the frame than along the best one, for that to be the axis. */

@@ -20,7 +20,7 @@ const ONE_SURFACE = 0.02;
 /** .. or by this, metres. */
 const ONE_SURFACE_LEAST = 0.03;
 /** Steps of a bisection in the logarithm. */
-const STEPS = 14;
+const STEPS = 9;
 
 const isBehind = (range: number, other: number): boolean =>
   range - other > Math.max(ONE_SURFACE_LEAST, ONE_SURFACE * other);
