@@ -13,8 +13,17 @@ pub struct Warning {
 }
 
 /// Codes of what was not read, which does not make what was read doubtful.
-const HARMLESS: [&str; 7] =
-    ["file-left-out", "file-alone", "names-ambiguous", "mask-size", "pairs-sampled", "points-sorted", "lidar-axes"];
+const HARMLESS: [&str; 9] = [
+    "file-left-out",
+    "file-alone",
+    "names-ambiguous",
+    "mask-size",
+    "pairs-sampled",
+    "pose-left-out",
+    "camera-to-world",
+    "points-sorted",
+    "lidar-axes",
+];
 
 impl Warning {
     /// Whether it makes what was read doubtful, so that it caps the verdict of a check.

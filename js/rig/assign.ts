@@ -1,204 +1,317 @@
 /**
- * Which of the cameras that were read took which pictures: by their names, by the size of their images, and last by their order.
+ * Which of the cameras that were read took which pictures: by what their file says, by their names, by the size of their images, and last by
+ * their order.
  *
- * Intrinsics for another size of the same shape are scaled, which is said; a depth map whose name says that it was carried into the colour
- * camera's view has that camera's.
+ * A file may hold a camera many times, once for each size of its pictures: the one of this size is taken. Where there is none, one of the
+ * same view is scaled, with a warning.
  */
-import type { Pair } from "./lists.js";
-import { isAligned, isInDepth } from "./roles.js";
-import type { CheckFrame, NamedCamera, RigFolder } from "./types.js";
-import { type ReaderWarning, warning } from "./warnings.js";
+import { isLidar, linked } from "./formats/frames.js";
+import { poseOf } from "./formats/poses.js";
+import { haveLikeAspects, scaledCamera } from "./scale.js";
+import type { CheckFrame, NamedCamera, NamedPose, RigFolder } from "./types.js";
+import { type ReaderWarning, distinct, warning } from "./warnings.js";
 
 const COLOUR = /colou?r|rgb|\bhr\b/i;
 const DEPTH = /depth|dpt|\bir\b|infra|tof|\blr\b/i;
 const words = (name: string): string => name.replace(/[_.-]+/g, " ");
-/** Shapes that differ by less are the same; sizes are rounded. */
-const SAME_SHAPE = 0.015;
-/** Principal points lie nearer to the middle, in shares of a side. */
-const OFF_MIDDLE = 0.15;
-/** .. or in pixels, of small pictures. */
-const FEW_PIXELS = 8;
-const NEAR_MIDDLE = 0.1;
 
+type Side = "colour" | "depth";
 interface Size {
   width: number;
   height: number;
-}
-interface Both {
-  colour: NamedCamera | undefined;
-  range: NamedCamera | undefined;
 }
 
 const fits = (camera: NamedCamera, { width, height }: Size): boolean =>
   camera.width === width && camera.height === height;
 const unsized = (camera: NamedCamera): boolean => camera.width === undefined;
-const isAlike = (one: Size, other: Size): boolean =>
-  Math.abs((one.width * other.height) / (one.height * other.width) - 1) < SAME_SHAPE;
-const isSame = (one: Size, other: Size): boolean => one.width === other.width && one.height === other.height;
-const sizeOf = ({ width, height }: NamedCamera): Size | undefined =>
-  width === undefined || height === undefined ? undefined : { width, height };
 
-/** How far the principal point is off the middle of such a picture, in shares of its sides. */
-const offMiddle = ({ camera: { cx, cy } }: NamedCamera, { width, height }: Size): number =>
-  Math.max(Math.abs((cx + 0.5) / width - 0.5), Math.abs((cy + 0.5) / height - 0.5));
+/** What a name says of a camera, or of an end of a pose. */
+export function sideOf(name = ""): Side | undefined {
+  const [colour, depth] = [COLOUR.test(words(name)), DEPTH.test(words(name))];
+  return colour === depth ? undefined : colour ? "colour" : "depth";
+}
+const takes = (camera: NamedCamera, side: Side): boolean =>
+  camera.takes === undefined ? sideOf(camera.name) === side : camera.takes === side || camera.takes === "both";
+const isOpen = (camera: NamedCamera): boolean => camera.takes === undefined && sideOf(camera.name) === undefined;
 
-/** The camera of the same view in another size; pixel centres are whole numbers. */
-function scaled({ name, camera }: NamedCamera, from: Size, to: Size): NamedCamera {
-  const [across, down] = [to.width / from.width, to.height / from.height];
-  const { fx, fy, cx, cy } = camera;
-  const place = (at: number, by: number) => (at + 0.5) * by - 0.5;
-  const own = { ...camera, fx: fx * across, fy: fy * down, cx: place(cx, across), cy: place(cy, down) };
-  return { ...(name !== undefined && { name }), camera: own, ...to };
+const rank = ({ takes: said, name = "" }: NamedCamera): number =>
+  said !== undefined ? 0 : /depth|dpt|colou?r|rgb/i.test(name) ? 1 : 2;
+
+/** Those that took these pictures: by their file's word before those by their names, and depth before the infrared it is made of. */
+function taking(cameras: NamedCamera[], side: Side): NamedCamera[] {
+  return cameras.filter((each) => takes(each, side)).sort((a, b) => rank(a) - rank(b));
 }
 
-/** Of several cameras that would do, the one of this size. */
-const best = (cameras: NamedCamera[], picture: Size): NamedCamera | undefined =>
-  cameras.find((each) => fits(each, picture)) ?? cameras.find(unsized) ?? cameras[0];
+/** Of cameras of one side: one of this size, one without a size, one of the same view, or else the first. */
+const ofSize = (cameras: NamedCamera[], size: Size): NamedCamera | undefined =>
+  cameras.find((each) => fits(each, size)) ??
+  cameras.find(unsized) ??
+  cameras.find(({ width = 1, height = 1 }) => haveLikeAspects([width, height], [size.width, size.height])) ??
+  cameras[0];
 
-const SHARED = "used for both pictures, as if these were registered to each other";
+/** Poses that lead from a depth to a colour camera first, then those that lead back; those from a frame to itself say nothing. */
+export function inOrder(poses: readonly NamedPose[]): NamedPose[] {
+  const rank = ({ from, to }: NamedPose): number => {
+    const [a, b] = [sideOf(from), sideOf(to)];
+    return a === "depth" && b === "colour" ? 0 : a === "colour" && b === "depth" ? 1 : 2;
+  };
+  return poses.filter(({ from, to }) => from === undefined || from !== to).sort((a, b) => rank(a) - rank(b));
+}
 
-/** A single camera without a name: of both pictures where these show the same view, else of the one whose size is its own. */
-function ofOne(only: NamedCamera, { image, depth }: CheckFrame, warnings: ReaderWarning[]): Both {
-  const size = sizeOf(only);
-  const isImages = size ? isSame(size, image) : offMiddle(only, image) < NEAR_MIDDLE;
-  if (isSame(image, depth)) {
-    warnings.push(warning("camera-shared", `Only one camera's intrinsics were found; they are ${SHARED}.`));
-    return { colour: only, range: only };
-  }
-  if (fits(only, depth)) return { colour: undefined, range: only };
-  if (!isImages || !isAlike(image, depth) || depth.points !== undefined) return { colour: only, range: undefined };
+/** The camera with its numbers for another size of the same view. */
+function scaled(camera: NamedCamera, { width, height }: Size): NamedCamera {
+  const from: [number, number] = [camera.width ?? width, camera.height ?? height];
+  return { ...camera, width, height, camera: scaledCamera(camera.camera, from, [width, height]) };
+}
+
+/** One camera without a name: for both pictures, where they show the same view, or for the one whose size it has. */
+function shared(only: NamedCamera, image: Size, depth: Size, warnings: ReaderWarning[]): (NamedCamera | undefined)[] {
+  const areAlike = haveLikeAspects([image.width, image.height], [depth.width, depth.height]);
+  const isSame = image.width === depth.width && image.height === depth.height;
+  const isOfDepth =
+    fits(only, depth) || (unsized(only) && !isSame && isCentred(only, depth) && !isCentred(only, image));
+  if (!areAlike || (isOfDepth && !isSame)) return isOfDepth ? [undefined, only] : [only, undefined];
+  if (!isSame && !fits(only, image) && !(unsized(only) && isCentred(only, image))) return [only, undefined];
+  const pair = [only, isSame ? only : scaled({ ...only, width: image.width, height: image.height }, depth)];
+  if (only.takes === "both") return pair;
+  const size = isSame
+    ? ""
+    : `, scaled from ${image.width}x${image.height} to ${depth.width}x${depth.height} for the depth maps`;
   warnings.push(
     warning(
       "camera-shared",
-      `Only one camera's intrinsics were found; they are ${SHARED}, scaled from ${image.width}x${image.height} to the depth maps' ${depth.width}x${depth.height}.`,
+      `Only one camera's intrinsics were found; they are used for both pictures${size}, as if these were registered to each other.`,
     ),
   );
-  return { colour: only, range: scaled(only, image, depth) };
+  return pair;
 }
 
-/** By names, sizes and order, of the cameras that go for all frames. */
-function chosen(cameras: NamedCamera[], frame: CheckFrame, warnings: ReaderWarning[]): Both {
-  const { image, depth } = frame;
-  const byName = (pattern: RegExp, other: RegExp, picture: Size) =>
-    best(
-      cameras.filter(({ name = "" }) => pattern.test(words(name)) && !other.test(words(name))),
-      picture,
-    );
-  let colour = byName(COLOUR, DEPTH, image);
-  let range = byName(DEPTH, COLOUR, depth);
-  const free = () => cameras.filter((each) => each !== colour && each !== range);
-  const [only] = cameras;
-  if (colour === undefined && range === undefined && only && cameras.length === 1) return ofOne(only, frame, warnings);
-  colour ??= free().find((each) => fits(each, image) && !fits(each, depth));
-  range ??= free().find((each) => fits(each, depth) && !fits(each, image));
-  if (colour === undefined && range === undefined && cameras.length > 1) {
+/** Whether a principal point is as near to the middle of a picture as lenses are mounted: within a fifth of its sides. */
+const isCentred = ({ camera: { cx, cy } }: NamedCamera, { width, height }: Size): boolean =>
+  Math.abs(cx / width - 0.5) < 0.2 && Math.abs(cy / height - 0.5) < 0.2;
+
+/** Focal lengths of two cameras that differ by less, as a share, are those of one. */
+const ALIKE = 1e-3;
+
+/** Warns where another camera may have taken these pictures as well. */
+function checkOnly(
+  pool: NamedCamera[],
+  camera: NamedCamera | undefined,
+  what: string,
+  warnings: ReaderWarning[],
+): void {
+  if (camera === undefined) return;
+  const other = pool.find(
+    (each) =>
+      rank(each) === rank(camera) &&
+      each.width === camera.width &&
+      each.height === camera.height &&
+      Math.abs(each.camera.fx / camera.camera.fx - 1) > ALIKE,
+  );
+  if (other === undefined) return;
+  const called = [camera, other].map(
+    ({ name, camera: { fx } }) => `${name ?? "one without a name"} (fx ${fx.toFixed(1)})`,
+  );
+  warnings.push(
+    warning(
+      "cameras-by-order",
+      `More than one camera may have taken the ${what}; of ${called.join(" and ")} the first was used.`,
+    ),
+  );
+}
+
+/** Both cameras by what is said of them, then by size, then by order. */
+function chosen(
+  cameras: NamedCamera[],
+  { image, depth }: CheckFrame,
+  warnings: ReaderWarning[],
+): (NamedCamera | undefined)[] {
+  const [colours, ranges] = [taking(cameras, "colour"), taking(cameras, "depth")];
+  let [colour, range] = [ofSize(colours, image), ofSize(ranges, depth)];
+  checkOnly(colours, colour, "colour images", warnings);
+  if (depth.points === undefined) checkOnly(ranges, range, "depth maps", warnings);
+  const open = () => cameras.filter((each) => isOpen(each) && each !== colour && each !== range);
+  const [only, ...more] = open();
+  if (colour === undefined && range === undefined && only !== undefined && more.length === 0 && cameras.length === 1)
+    [colour, range] = shared(only, image, depth, warnings);
+  colour ??= open().find((each) => fits(each, image) && !fits(each, depth));
+  range ??= open().find((each) => fits(each, depth) && !fits(each, image));
+  if (colour === undefined && range === undefined && open().length > 1) {
     warnings.push(
       warning(
         "cameras-by-order",
         "No name says which camera is which; the first was used for colour and the second for depth.",
       ),
     );
-    [colour, range] = cameras;
+    [colour, range] = open();
   }
   if (cameras.length > 1) {
-    colour ??= free().find((each) => unsized(each) || fits(each, image));
-    range ??= free().find((each) => unsized(each) || fits(each, depth));
+    colour ??= open().find((each) => unsized(each) || fits(each, image));
+    range ??= open().find((each) => unsized(each) || fits(each, depth));
   }
-  return { colour, range };
+  return [colour, range];
 }
 
-/** Where names say that one picture was carried into the other's view, both have that one's camera. */
-function registered(
-  { colour, range }: Both,
-  { image, depth }: CheckFrame,
-  pair: Pair,
-  warnings: ReaderWarning[],
-): Both {
-  const [first] = pair.depths;
-  const isDepth = isAligned(first.name) && colour !== undefined && isAlike(image, depth);
-  const isImage = !isDepth && isInDepth(pair.colour.name) && range !== undefined && isAlike(image, depth);
-  if (!isDepth && !isImage) return { colour, range };
+/** Principal points lie nearer to the middle, in shares of a side, or in pixels of small pictures. */
+const [OFF_MIDDLE, FEW_PIXELS] = [0.15, 8];
+
+/** The camera for pictures of this size, with a warning where it is of another. */
+function forSize(camera: NamedCamera | undefined, size: Size, what: string, warnings: ReaderWarning[]) {
+  if (camera === undefined) return undefined;
+  const { width, height } = size;
+  const { cx, cy } = camera.camera;
+  if (unsized(camera)) {
+    const off = Math.max(Math.abs((cx + 0.5) / width - 0.5), Math.abs((cy + 0.5) / height - 0.5));
+    const where = cx > width || cy > height ? "outside these" : "far from the middle of these";
+    if (off > Math.max(OFF_MIDDLE, FEW_PIXELS / Math.min(width, height)))
+      warnings.push(
+        warning(
+          "principal-point",
+          `The intrinsics of the ${what} have their principal point ${where} (${cx}, ${cy} of ${width}x${height}): they may be for another size, ${Math.round(2 * cx + 1)}x${Math.round(2 * cy + 1)} or so.`,
+          { cx, cy },
+        ),
+      );
+    return camera;
+  }
+  if (fits(camera, size)) return camera;
+  const own: [number, number] = [camera.width ?? 0, camera.height ?? 0];
+  const canScale = haveLikeAspects(own, [width, height]);
+  const how = canScale ? "they were scaled to that, as if these showed the same view" : "scale or crop them first";
   warnings.push(
+    warning(
+      "camera-size",
+      `The intrinsics of the ${what} are for ${own.join("x")} pixels, and these have ${width}x${height}: ${how}.`,
+      { camera: own, picture: [width, height] },
+    ),
+  );
+  return canScale ? scaled(camera, size) : camera;
+}
+
+/** Depth maps that were carried into the colour images: both have the colour camera, and nothing lies between them. */
+function align(folder: RigFolder, colour: NamedCamera, why: string): void {
+  folder.warnings.push(
     warning(
       "camera-shared",
-      isDepth
-        ? "The names of the depth maps say that they were aligned to the colour camera: its intrinsics are used for both, and the motion between such pictures is the identity, whatever the files' extrinsics say."
-        : "The names of the colour images say that they were aligned to the depth camera: its intrinsics are used for both, and the motion between such pictures is the identity, whatever the files' extrinsics say.",
+      `${why}: the colour camera's intrinsics are used for both, and the pose between them is the identity.`,
     ),
   );
-  if (isDepth && colour)
-    return { colour, range: isSame(image, depth) ? colour : scaled(colour, sizeOf(colour) ?? image, depth) };
-  return { colour: range && (isSame(image, depth) ? range : scaled(range, sizeOf(range) ?? depth, image)), range };
+  const pose = poseOf([1, 0, 0, 0, 1, 0, 0, 0, 1], [0, 0, 0]);
+  folder.poses.unshift({ name: "aligned (identity)", from: "depth", to: colour.name ?? "color", pose });
 }
 
-/** The camera as it fits these pictures, with a word where it was made for others. */
-function fitted(camera: NamedCamera | undefined, picture: Size, what: string, warnings: ReaderWarning[]) {
-  if (camera === undefined) return undefined;
-  const { width, height } = picture;
-  const size = sizeOf(camera);
-  if (size !== undefined && !isSame(size, picture)) {
-    const isScaled = isAlike(size, picture);
-    const advice = isScaled
-      ? `they were scaled by ${Number((width / size.width).toPrecision(4))}, as if these were not cropped`
-      : "scale or crop them first";
-    warnings.push(
-      warning(
-        "camera-size",
-        `The intrinsics of the ${what} are for ${size.width}x${size.height} pixels, and these have ${width}x${height}: ${advice}.`,
-        { camera: [size.width, size.height], picture: [width, height] },
-      ),
-    );
-    return isScaled ? scaled(camera, size, picture) : camera;
+/** Where no pose leads from the depth camera or the LiDAR to the colour camera, the way by frames that several poses share goes first. */
+function relate({ poses }: RigFolder, colour: string | undefined, depth: string | undefined): void {
+  const isDirect = poses.some(({ from, to }) => {
+    const [a, b] = [from ?? "", to ?? ""];
+    const sides = [sideOf(a), sideOf(b)];
+    const isNamed = [depth, colour].every((name) => name !== undefined && (name === a || name === b));
+    return isNamed || (sides.includes("colour") && sides.includes("depth")) || from === undefined || to === undefined;
+  });
+  if (colour === undefined || isDirect) return;
+  const ends =
+    depth !== undefined && depth !== colour
+      ? [depth]
+      : poses.flatMap(({ from = "", to = "" }) => [from, to].filter(isLidar));
+  for (const from of ends) {
+    const way = linked(poses, from, colour);
+    if (way === undefined) continue;
+    const isThere = poses.findIndex((pose) => pose.from === from && pose.to === colour);
+    if (isThere >= 0) poses.splice(isThere, 1);
+    poses.unshift(way);
+    return;
   }
-  const { cx, cy } = camera.camera;
-  const most = Math.max(OFF_MIDDLE, FEW_PIXELS / Math.min(width, height));
-  if (size !== undefined || offMiddle(camera, picture) < most) return camera;
-  const where = cx > width || cy > height ? "outside these" : "far from the middle of these";
-  warnings.push(
-    warning(
-      "principal-point",
-      `The intrinsics of the ${what} have their principal point ${where} (${cx}, ${cy} of ${width}x${height}): they may be for another size, ${Math.round(2 * cx)}x${Math.round(2 * cy)} or so.`,
-      { cx, cy },
-    ),
-  );
-  return camera;
 }
 
-const MISSING = {
-  colour: "The colour camera's intrinsics are missing; its focal length has to be estimated.",
-  depth: "The depth camera's intrinsics are missing; without them depths cannot be turned into points.",
-};
+/** Names that differ in their number alone: image_2 and image_3. */
+const family = (name: string): string => name.replace(/\d+/g, "#");
 
-interface Known {
-  /** The camera that is called as the frame, of each. */
-  own?: (NamedCamera | undefined)[];
-  /** The files of the first frame. */
-  pair?: Pair | undefined;
+/**
+ * Of cameras that are called as folders of pictures, as KITTI's image_2, those whose pictures these are. Others of their family took none of
+ * these, and poses that lead to them are left out where the same frame has one that leads to ours.
+ */
+export function ofPictures<T extends { cameras: NamedCamera[]; poses: NamedPose[] }>(all: T, paths: string[]): T {
+  const segments = new Set(paths.flatMap((path) => path.split("/").slice(0, -1)));
+  const isOurs = (name = "") => /\d/.test(name) && segments.has(name);
+  const families = new Set(all.cameras.flatMap(({ name = "" }) => (isOurs(name) ? [family(name)] : [])));
+  const isOther = (name = "") => families.has(family(name)) && !segments.has(name);
+  const tookColours = ({ takes: said }: NamedCamera) => said === "colour" || said === "both";
+  const cameras = all.cameras.filter((each) => !(isOther(each.name) && tookColours(each)));
+  const isWhole = all.cameras.some((each) => each.takes === "both" && (isOther(each.name) || isOurs(each.name)));
+  return {
+    ...all,
+    cameras: cameras.map((each) =>
+      isOurs(each.name) ? { ...each, takes: isWhole ? "both" : (each.takes ?? "colour") } : each,
+    ),
+    poses: all.poses.filter(
+      ({ from, to }) => !isOther(to) || !all.poses.some((other) => other.from === from && isOurs(other.to)),
+    ),
+  };
+}
+
+/** What the names of a folder's files say. */
+export interface Hints {
+  /** The depth maps were carried into the colour images. */
+  isAligned?: boolean;
+  /** Cameras that are called as a frame are its own. */
+  cameraOf?: (frame: CheckFrame) => NamedCamera | undefined;
+}
+
+/** Phones give each picture a camera of its own, as their lens focuses; depth maps are registered to it. */
+function addOwn(folder: RigFolder, cameraOf: NonNullable<Hints["cameraOf"]>): boolean {
+  const { frames, warnings } = folder;
+  const own = frames.map(cameraOf);
+  if (frames.length < 1 || own.some((each) => each === undefined)) return false;
+  const said: ReaderWarning[] = [];
+  frames.forEach(({ image, depth }, index) => {
+    const camera = own[index] as NamedCamera;
+    const sized = forSize(camera, image, "colour images", said) ?? camera;
+    const [colour, range] = shared({ ...sized, width: image.width, height: image.height }, image, depth, said);
+    if (colour) image.camera = colour.camera;
+    if (range) depth.camera = range.camera;
+  });
+  warnings.push(...distinct(said));
+  return true;
 }
 
 /** Gives the frames of a folder their cameras, with a warning where that was a guess. */
-export function addCameras({ frames, cameras, warnings }: RigFolder, { own = [], pair }: Known = {}): void {
+export function addCameras(folder: RigFolder, { isAligned = false, cameraOf }: Hints = {}): void {
+  const { frames, cameras, warnings } = folder;
   const [first] = frames;
-  const isOwn = own.some((each) => each !== undefined);
-  if (first === undefined || (cameras.length === 0 && !isOwn)) return;
-  const said: ReaderWarning[] = [];
-  const all = frames.map((frame, index) => {
-    const single = own[index];
-    // What goes for all frames is said once.
-    const words = index === 0 || single !== undefined ? said : [];
-    const found = single ? ofOne(single, frame, words) : chosen(cameras, frame, words);
-    return pair ? registered(found, frame, pair, words) : found;
-  });
-  const [{ colour, range } = { colour: undefined, range: undefined }] = all;
-  if (colour === undefined) said.push(warning("colour-camera-missing", MISSING.colour));
-  if (range === undefined && first.depth.points === undefined)
-    said.push(warning("depth-camera-missing", MISSING.depth));
-  for (const [index, frame] of frames.entries()) {
-    const both = all[index];
-    const image = fitted(both?.colour, frame.image, "colour images", said);
-    const depth = fitted(both?.range, frame.depth, "depth maps", said);
-    if (image) frame.image.camera = image.camera;
-    if (depth) frame.depth.camera = depth.camera;
+  if (first === undefined || cameras.length === 0) return;
+  if (cameraOf !== undefined && addOwn(folder, cameraOf)) return;
+  const { image, depth } = first;
+  const isSame = image.width === depth.width && image.height === depth.height;
+  const [some, other] = chosen(cameras, first, warnings);
+  const colour = forSize(some, image, "colour images", warnings);
+  const isCarried = isAligned && isSame && colour !== undefined && colour !== other;
+  const range = isCarried ? colour : forSize(other, depth, "depth maps", warnings);
+  const isRegistered =
+    colour !== undefined && colour.takes === "both" && colour === range && depth.points === undefined;
+  if (isCarried) align(folder, colour, "The names of the depth maps say that they are aligned with the colour images");
+  else if (isRegistered && folder.poses.length > 0)
+    align(
+      folder,
+      colour,
+      "The depth maps were taken to be registered to the colour images, as is usual for this product",
+    );
+  else relate(folder, colour?.name, range === colour ? undefined : range?.name);
+  if (colour === undefined)
+    warnings.push(
+      warning(
+        "colour-camera-missing",
+        "The colour camera's intrinsics are missing; its focal length has to be estimated.",
+      ),
+    );
+  if (range === undefined && depth.points === undefined)
+    warnings.push(
+      warning(
+        "depth-camera-missing",
+        "The depth camera's intrinsics are missing; without them depths cannot be turned into points.",
+      ),
+    );
+  for (const frame of frames) {
+    if (colour) frame.image.camera = colour.camera;
+    // A cloud's points are no picture of the colour camera.
+    if (range && !(frame.depth.points && range.takes === "both")) frame.depth.camera = range.camera;
   }
-  warnings.push(...new Map(said.map((each) => [each.message, each])).values());
 }

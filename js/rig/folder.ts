@@ -7,15 +7,25 @@
 import { breathe } from "../breathe.js";
 import { type Check, object, signal, wrong } from "../check.js";
 import { BimodalError, badFile, refused } from "../errors.js";
-import { addCameras } from "./assign.js";
+import { addCameras, inOrder, ofPictures } from "./assign.js";
 import { isRawName } from "./formats/raw.js";
-import { areFives, isVaried, sampled } from "./guess.js";
+import { areFives, isVaried, nameOf, sampled } from "./guess.js";
 import { type Pair, type Pairs, tum } from "./lists.js";
-import { base, key, stem } from "./names.js";
+import { key, stem } from "./names.js";
 import { pairsOf } from "./pairs.js";
 import { checkNamed, isRasterFile, isTextFile, metresPerUnit, pixelSize, readRigFile } from "./read.js";
-import { roleOf } from "./roles.js";
-import type { CheckFrame, Mask, NamedCamera, NamedFile, ReadOptions, Reading, RigFolder, RigReading } from "./types.js";
+import { isAligned, roleOf } from "./roles.js";
+import type {
+  CheckFrame,
+  Mask,
+  NamedCamera,
+  NamedFile,
+  NamedPose,
+  ReadOptions,
+  Reading,
+  RigFolder,
+  RigReading,
+} from "./types.js";
 import { sizeBeside, unitBeside } from "./units.js";
 import { type ReaderWarning, grouped, ofFile, warning } from "./warnings.js";
 
@@ -109,6 +119,14 @@ class FolderReader {
       return found;
     }
     return undefined;
+  }
+
+  /** A text of which nothing was read but the unit of depth was not left out. */
+  onlyUnit(file: NamedFile, unit: number): void {
+    const at = this.warnings.findIndex(({ code, file: name }) => code === "file-left-out" && name === file.name);
+    if (at < 0) return;
+    this.warnings.splice(at, 1);
+    this.readings.push({ name: file.name, says: `the unit of depth, ${nameOf(unit)}`, warnings: [] });
   }
 
   async frame(pair: Pair, known: Known): Promise<CheckFrame | undefined> {
@@ -213,29 +231,35 @@ function sortedFiles(files: NamedFile[]): Sorted {
   return found;
 }
 
-/** Cameras and poses of the texts; a camera that is called as a frame is that frame's alone. */
-async function readTexts(
-  { texts, others }: Sorted,
-  frames: Set<string>,
-  reader: FolderReader,
-): Promise<{ cameras: NamedCamera[]; poses: RigFolder["poses"]; own: Map<string, NamedCamera> }> {
-  const found = { cameras: [] as NamedCamera[], poses: [] as RigFolder["poses"], own: new Map<string, NamedCamera>() };
+/** The poses of a file that are not of the world; a camera without a name is called as its file there, too. */
+function ofRig(text: Extract<RigReading, { poses: NamedPose[] }>, file: string): NamedPose[] {
+  const isUnnamed = text.kind === "cameras" && text.cameras.length === 1 && text.cameras[0]?.name === undefined;
+  const called = (end: string | undefined) => (isUnnamed && end === "camera" ? file : end);
+  return text.poses
+    .filter(({ from, to }) => from !== "world" && to !== "world")
+    .map((pose) => {
+      const [from, to] = [called(pose.from), called(pose.to)];
+      return { ...pose, ...(from !== undefined && { from }), ...(to !== undefined && { to }) };
+    });
+}
+
+/** What the texts of a folder hold: cameras, what relates them, and the unit of the depth maps. */
+async function calibrationOf({ texts, others }: Sorted, frames: ReadonlySet<string>, reader: FolderReader) {
+  const cameras: NamedCamera[] = [];
+  const poses: NamedPose[] = [];
+  let depthUnit: number | undefined;
   for (const file of [...texts, ...others]) {
     if (LISTS.test(file.name)) continue;
     // A pose that is called as a frame is where the camera stood then, and relates no two cameras.
     if (/pose/i.test(file.name) && frames.has(key(file.name.replace(/pose/gi, "")))) continue;
     const text = await reader.read(file, {});
-    const name = key(base(file.name));
-    const isOwn = name !== "" && frames.has(name);
     if (text?.kind === "cameras") {
-      const [only, ...more] = text.cameras;
-      if (isOwn && only && more.length === 0) found.own.set(name, { ...only, name: only.name ?? stem(file.name) });
-      else found.cameras.push(...text.cameras.map((each) => ({ ...each, name: each.name ?? stem(file.name) })));
+      cameras.push(...text.cameras.map((each) => ({ ...each, name: each.name ?? stem(file.name) })));
+      depthUnit ??= text.depthUnit;
     }
-    if (!isOwn && (text?.kind === "cameras" || text?.kind === "poses"))
-      found.poses.push(...text.poses.filter(({ from, to }) => from !== "world" && to !== "world"));
+    if (text?.kind === "cameras" || text?.kind === "poses") poses.push(...ofRig(text, stem(file.name)));
   }
-  return found;
+  return { cameras, poses, depthUnit };
 }
 
 /** How many reasons an error gives. */
@@ -285,22 +309,41 @@ export async function readRigFolder(files: NamedFile[], options: FolderOptions =
   const reader = new FolderReader(signal);
   let found = tum([...pictures, ...texts], reader.warnings) ?? pairsOf(pictures, reader.warnings);
   if (found.pairs.length === 0) found = await byContent(pictures, reader);
-  const inText = unit === undefined ? unitBeside(texts, reader.warnings) : undefined;
+  const names = new Set(found.pairs.map(({ name }) => name));
+  const { depthUnit, ...calibration } = await calibrationOf(kept, names, reader);
+  const inText = unit === undefined && depthUnit === undefined ? unitBeside(texts, reader.warnings) : undefined;
+  for (const file of texts) if (inText?.files.has(file.name)) reader.onlyUnit(file, inText.unit);
   const known: Known = {
-    unit: unit ?? inText?.unit,
+    unit: unit ?? depthUnit ?? inText?.unit,
     supposed: found.supposed,
     sizeOf: (file) => size ?? sizeBeside(file, texts),
   };
   const read = await framesOf(found, most, known, reader);
   const frames = read.map(([frame]) => frame);
-  const names = new Set(found.pairs.map(({ name }) => name));
-  const { cameras, poses, own } = await readTexts(kept, names, reader);
-  const folder: RigFolder = { frames, cameras, poses, readings: reader.readings, warnings: reader.warnings };
-  addCameras(folder, { own: read.map(([, { name }]) => own.get(name)), pair: read[0]?.[1] });
-  folder.cameras.push(...own.values());
+  const folder = folderOf(frames, calibration, pictures, reader);
+  const own = folder.cameras.filter(({ takes }) => takes === undefined || takes === "both");
+  addCameras(folder, {
+    isAligned: read.length > 0 && read.every(([, { depths }]) => isAligned(depths[0].name)),
+    cameraOf: ({ name = "" }) =>
+      own.find((each) => each.name !== undefined && key(each.name) === key(name) && key(name) !== ""),
+  });
   checkUnits(frames, folder.warnings);
   if (frames.length + folder.cameras.length + folder.poses.length === 0)
     throw nothingFound(files.length, folder.warnings, pictures);
   folder.warnings = grouped(folder.warnings);
   return folder;
+}
+
+/** What was read of each file stands in the folder's order: pictures first, as they lead to what the rest is for. */
+function folderOf(
+  frames: CheckFrame[],
+  calibration: Pick<RigFolder, "cameras" | "poses">,
+  pictures: NamedFile[],
+  { readings: all, warnings }: FolderReader,
+): RigFolder {
+  const paths = pictures.map(({ name }) => name);
+  const isPicture = new Set(paths);
+  const readings = [true, false].flatMap((first) => all.filter(({ name }) => isPicture.has(name) === first));
+  const { cameras, poses } = ofPictures(calibration, paths);
+  return { frames, cameras, poses: inOrder(poses), readings, warnings };
 }

@@ -98,7 +98,35 @@ function ownOf(depth: NamedFile, others: NamedFile[], colours: NamedFile[]): Nam
   if (others.length === 0) return colours;
   const like = colours.filter(({ name }) => commonPath(name) === commonPath(depth.name));
   if (like.length > 0) return like;
-  return colours.filter(({ name }) => others.every((other) => shared(name, depth.name) > shared(name, other.name)));
+  const near = colours.filter(({ name }) =>
+    others.every((other) => shared(name, depth.name) > shared(name, other.name)),
+  );
+  if (near.length > 0) return near;
+  // cam0, cam1 and depth0, depth1.
+  const own = numberOfFolder(depth.name);
+  const isOwn = own !== undefined && others.every(({ name }) => numberOfFolder(name) !== own);
+  return isOwn ? colours.filter(({ name }) => numberOfFolder(name) === own) : [];
+}
+
+/** Words of depth maps that were made of others, or are poorer than others. */
+const SECONDARY =
+  /(?<![a-z])(?:raw|velodyne|sparse|noisy|aligned|registered|transformed|filtered|filled|inpainted|completed?|pred|predicted|estimated|mono)(?![a-z])/i;
+
+/** Of several depth maps of a frame in folders side by side the plain one, if there is one. */
+function plainOf(groups: NamedFile[][], warnings: ReaderWarning[]): NamedFile[][] {
+  const parents = new Set(groups.map(([file]) => folderOf(folderOf(file?.name ?? "").slice(0, -1))));
+  const plain = groups.filter(([file]) => !SECONDARY.test((file?.name ?? "").replaceAll("_", " ")));
+  const [only, ...more] = plain;
+  if (groups.length === 1 || parents.size > 1 || only === undefined || more.length > 0) return groups;
+  for (const [file] of groups)
+    if (file && file !== only[0])
+      warnings.push(
+        ofFile(
+          file.name,
+          warning("names-ambiguous", `another depth map has its name, ${only[0]?.name}; it was left out.`),
+        ),
+      );
+  return [only];
 }
 
 /** One depth map that was saved in several formats is one; depth maps come before clouds. */
@@ -122,7 +150,8 @@ function byNames({ colours, depths, masks }: Sorted, warnings: ReaderWarning[], 
   const said = new Set<string>();
   const pairs = [...byKey(depths, keyOf)].flatMap(([name, likeDepths]) => {
     const theirs = likeColours.get(name) ?? [];
-    const groups = alternatives(likeDepths);
+    const groups = plainOf(alternatives(likeDepths), warnings);
+    for (const each of likeDepths) if (!groups.flat().includes(each)) said.add(each.name);
     return groups.flatMap(([depth, ...more]): Pair[] => {
       if (depth === undefined) return [];
       const rivals = groups.flatMap(([other]) => (other && other !== depth ? [other] : []));

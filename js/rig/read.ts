@@ -5,9 +5,11 @@
  */
 import { type Check, object, signal, word, wrong } from "../check.js";
 import { BimodalError, badFile, badNamed, refused } from "../errors.js";
+import { inOrder } from "./assign.js";
 import { pictureColour, pictureMask } from "./colour.js";
 import { cloudDepth, pictureDepth } from "./depth.js";
 import { knownContainer, knownText } from "./formats/containers.js";
+import { withEnds } from "./formats/filename.js";
 import { readExr } from "./formats/exr.js";
 import { type RasterKind, rasterKind } from "./formats/headerless.js";
 import { readJpeg, readWebp } from "./formats/jpeg.js";
@@ -71,15 +73,16 @@ async function ofCloud(cloud: Cloud | Points, options: ReadOptions): Promise<Con
   return "scan" in cloud ? pointsDepth(cloud, options) : cloudDepth(cloud, options);
 }
 
-async function ofText(text: string, { as }: ReadOptions): Promise<Content> {
+async function ofText(file: string, text: string, { as }: ReadOptions): Promise<Content> {
   if (as === "colour" || as === "depth" || as === "mask")
     throw badFile(`it is a text where a ${as === "depth" ? "depth map" : `${as} image`} was asked for`);
-  const { cameras, poses, warnings, format } = await readText(text);
+  const { cameras, poses: found, warnings, format, depthUnit } = await readText(text);
+  const poses = inOrder(withEnds(found, file));
   const reading = { says: `${format}: ${inWords(cameras, poses)}`, warnings: distinct(warnings) };
   if (as === "cameras" && cameras.length === 0) throw badFile(`it holds ${inWords(cameras, poses)}, but no camera`);
   if (as === "poses" && poses.length === 0) throw badFile(`it holds ${inWords(cameras, poses)}, but no motion`);
   return cameras.length > 0 && as !== "poses"
-    ? { kind: "cameras", cameras, poses, ...reading }
+    ? { kind: "cameras", cameras, poses, ...(depthUnit !== undefined && { depthUnit }), ...reading }
     : { kind: "poses", poses, ...reading };
 }
 
@@ -97,7 +100,7 @@ async function ofOthers(name: string, bytes: Uint8Array, options: ReadOptions): 
   const text = textOf(bytes);
   const refusal = text === undefined ? (pointList(bytes) ?? rawRefused(bytes)) : (knownText(text) ?? pointList(bytes));
   if (text === undefined || refusal !== undefined) throw refusal ?? rawRefused(bytes);
-  return ofText(text, options);
+  return ofText(name, text, options);
 }
 
 async function content({ name, bytes }: NamedFile, options: ReadOptions): Promise<Content> {

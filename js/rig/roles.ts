@@ -99,13 +99,6 @@ const DEPTH_IN_COLOUR = /depth[^a-z]*(?:to|2|in|into)[^a-z]*(?:colou?r|rgb)/;
 /** Whether a depth map's name, or its folder's, says that it was carried into the colour camera's view. */
 export function isAligned(name: string): boolean {
   const near = name.split("/").slice(-2).map(plain);
-  return roleOf(name) === "depth" && near.some((each) => ALIGNED.test(each) || DEPTH_IN_COLOUR.test(each));
+  const isOther = near.some((each) => /un ?(?:aligned|registered)/.test(each));
+  return roleOf(name) === "depth" && !isOther && near.some((each) => ALIGNED.test(each) || DEPTH_IN_COLOUR.test(each));
 }
-
-/** Whether a colour image's name, or its folder's, says that it was carried into the depth camera's view. */
-export const isInDepth = (name: string): boolean =>
-  name
-    .split("/")
-    .slice(-2)
-    .map(plain)
-    .some((each) => COLOUR_IN_DEPTH.test(each) || /(?<![a-z])transformed colou?r/.test(each));

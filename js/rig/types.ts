@@ -35,6 +35,8 @@ export interface NamedCamera {
   width?: number;
   /** Rows of its pictures, where the file says so. */
   height?: number;
+  /** Which pictures it took, where the file says so; "both" where depth maps are registered to its colour images. */
+  takes?: "colour" | "depth" | "both";
 }
 
 /** What was read of a file, in words. */
@@ -88,8 +90,10 @@ export type RigReading = Reading &
         kind: "cameras";
         /** In the order of the file. */
         cameras: NamedCamera[];
-        /** In the order of the file. */
+        /** In the order of the file; those between a depth and a colour camera first. */
         poses: NamedPose[];
+        /** Metres per stored unit of the depth maps beside it, where the file says it. */
+        depthUnit?: number;
       }
     | {
         /** What the file holds. */

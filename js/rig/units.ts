@@ -57,7 +57,10 @@ function unitsIn(text: string): number[] {
 }
 
 /** What the texts of a folder say of the unit of its depth maps; nothing where they say nothing, or several things. */
-export function unitBeside(texts: NamedFile[], warnings: ReaderWarning[]): { unit: number; file: string } | undefined {
+export function unitBeside(
+  texts: NamedFile[],
+  warnings: ReaderWarning[],
+): { unit: number; files: Set<string> } | undefined {
   const found = texts.flatMap(({ name, bytes }) => {
     const text = bytes.length <= MOST ? textOf(bytes) : undefined;
     return text === undefined ? [] : unitsIn(text).map((unit) => ({ unit, file: name }));
@@ -65,7 +68,7 @@ export function unitBeside(texts: NamedFile[], warnings: ReaderWarning[]): { uni
   const [first, ...others] = found;
   if (first === undefined) return undefined;
   const different = others.find(({ unit }) => Math.abs(unit / first.unit - 1) > 1e-6);
-  if (different === undefined) return first;
+  if (different === undefined) return { unit: first.unit, files: new Set(found.map(({ file }) => file)) };
   const millimetres = (unit: number) => `${Number((1000 * unit).toPrecision(4))} mm`;
   warnings.push(
     warning(

@@ -35,10 +35,22 @@ export type ReaderCode =
   | "pixels-not-square"
   | "skew-ignored"
   | "lens-approximated"
+  | "intrinsics-vary"
+  | "distortion-unused"
+  | "distortion-guessed"
+  | "size-unused"
+  | "camera-computed"
+  | "camera-left-out"
   // Poses
   | "rotation-adjusted"
   | "quaternion-normalised"
   | "translation-unit-guessed"
+  | "pose-assumed"
+  | "quaternion-order"
+  | "rotation-order"
+  | "rotation-guessed"
+  | "camera-to-world"
+  | "pose-left-out"
   // Folders
   | "inverse-checked"
   | "file-left-out"
@@ -74,6 +86,8 @@ const HARMLESS: ReadonlySet<ReaderCode> = new Set([
   "pairs-sampled",
   "points-sorted",
   "lidar-axes",
+  "pose-left-out",
+  "camera-to-world",
 ]);
 
 export const warning = (
@@ -89,10 +103,14 @@ export const ofFile = (file: string, found: ReaderWarning): ReaderWarning => ({
   file,
 });
 
+/** Files that were left out are alike where they were for the same reason, other numbers aside. */
+const likeness = ({ code, message, file = "" }: ReaderWarning): string =>
+  code === "file-left-out" ? message.slice(file.length).replace(/\d+/g, "#") : code;
+
 /** One warning for all files of a folder that have it: a calibration of a hundred frames warns once, not a hundred times. */
 export function grouped(warnings: readonly ReaderWarning[]): ReaderWarning[] {
-  const alike = new Map<ReaderCode, ReaderWarning[]>();
-  for (const each of warnings) alike.set(each.code, [...(alike.get(each.code) ?? []), each]);
+  const alike = new Map<string, ReaderWarning[]>();
+  for (const each of warnings) alike.set(likeness(each), [...(alike.get(likeness(each)) ?? []), each]);
   return [...alike.values()].flatMap((all) => {
     const [first, ...others] = all.filter(({ file }) => file !== undefined);
     const single = all.filter(({ file }) => file === undefined);

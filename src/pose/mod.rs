@@ -30,6 +30,7 @@ mod descent;
 mod distance_transform;
 mod icp;
 mod increment;
+mod jackknife;
 mod neighbours;
 mod outline;
 mod photometric;

@@ -61,3 +61,19 @@ export const rotation = [
 export const translation = [-0.025, 0.001, 0.003];
 export const K = { fx: 518.5, fy: 519.25, cx: 325.5, cy: 253.75 };
 export const distortion = [0.2, -0.5, 0.001, -0.002, 0.3];
+
+/** What the tests of calibrations by rules compare with. */
+export const only = (found) => (assert.equal(found.length, 1, JSON.stringify(found)), found[0]);
+export const codes = ({ warnings }) => warnings.map(({ code }) => code);
+export const sameCamera = ({ camera }, lens = distortion, expected = K) => {
+  const { fx, fy, cx, cy } = camera;
+  close([fx, fy, cx, cy], [expected.fx, expected.fy, expected.cx, expected.cy], 1e-9);
+  assert.deepEqual(camera.distortion === undefined ? null : [...camera.distortion], lens);
+};
+export const samePose = ({ pose }, r = rotation, t = translation, tolerance = 1e-6) => {
+  close(pose.rotation, r, tolerance, "rotation");
+  close(pose.translation, t, tolerance, "translation");
+};
+export const rows = [0, 3, 6].map((at) => rotation.slice(at, at + 3));
+export const matrix = [...rows.map((row, at) => [...row, translation[at]]), [0, 0, 0, 1]];
+export const columns = [0, 3, 6, 1, 4, 7, 2, 5, 8].map((at) => rotation[at]);

@@ -10,7 +10,13 @@ export interface WholeReport extends Omit<CheckReport, "warnings"> {
 }
 
 export type Kind = RigReading["kind"];
-export type NamedCamera = { name?: string; camera: Pinhole; width?: number; height?: number };
+export type NamedCamera = {
+  name?: string;
+  camera: Pinhole;
+  width?: number;
+  height?: number;
+  takes?: "colour" | "depth" | "both";
+};
 
 /** A file as read, without its pixels. */
 export interface Summary extends Omit<Reading, "name"> {

@@ -292,19 +292,25 @@ export class Rig implements RigState {
 
   /** Where names or sizes tell which camera is which, nobody has to choose. */
   #chooseCameras(): void {
-    const { given } = this;
+    const all = this.given;
     for (const side of ["colour", "depth"] as const) {
+      // A file may list a camera at every size that it can have.
+      const size = this.sizeOf(side);
+      const rank = ({ camera: { name, width, height } }: (typeof all)[number]) =>
+        name === undefined && width === undefined ? 0 : width === size?.width && height === size?.height ? 1 : 2;
+      const given = [...all].sort((a, b) => rank(a) - rank(b));
       const mine = this.cameras[side];
       const isThere = ["", "typed", "same"].includes(mine.source) || given.some(({ source }) => source === mine.source);
       if (mine.chosen && isThere) continue;
       const [own, other] = side === "colour" ? [COLOUR, DEPTH] : [DEPTH, COLOUR];
       const named =
         given.find(({ label }) => own.test(label) && !other.test(label)) ??
-        given.find(({ camera }) => own.test(camera.name ?? ""));
+        given.find(({ camera }) => own.test(camera.name ?? "")) ??
+        given.find(({ camera: { takes } }) => takes === side || takes === "both");
       const left = given.filter(
         ({ label, camera }) => !other.test(camera.name ?? "") && (own.test(label) || !other.test(label)),
       );
-      const byOrder = given.length === 2 ? given[side === "colour" ? 0 : 1] : left.length === 1 ? left[0] : undefined;
+      const byOrder = all.length === 2 ? all[side === "colour" ? 0 : 1] : left.length === 1 ? left[0] : undefined;
       mine.source = (named ?? byOrder)?.source ?? "";
       mine.chosen = false;
     }

@@ -19,10 +19,24 @@ export interface RawCamera {
 
 /** Files call the same model by many names. */
 const BROWN =
-  /^(|none|pinhole|plumb[_ ]?bob|radtan|radial-tangential|brown|brown[_ ]?conrady|opencv|rational[_ ]?polynomial|full_opencv|perspective)$/;
-const FISHEYE = /^(fisheye|equidistant|equi|kannala[_ ]?brandt4?|opencv_fisheye)$/;
+  /^(|none|pinhole(camera)?|plumb[_ ]?bob|radtan\d?|radial-?tangential\d?|brown|brown[_ ]?conrady|opencv|rational([_ ]?polynomial)?|full_opencv|perspective|standard|thin_prism|tilted)$/;
+const FISHEYE = /^(fisheye|equidistant(camera)?|equid?4?|kannala[_ ]?brandt[48]?|opencv_fisheye)$/;
 /** librealsense's variants; it projects both as Brown's (its older versions followed the second the other way), but for products of terms. */
 const REALSENSE = /^(modified|inverse)[_ ]?brown[_ ]?conrady$/;
+/** Names of lens models that are not known here, as their makers write them in short. */
+const OTHERS: Record<string, string> = {
+  ds: "double sphere",
+  eucm: "extended unified",
+  ucm: "unified",
+  omni: "omnidirectional",
+  mei: "omnidirectional",
+  fov: "field of view",
+  atan: "field of view",
+  ftheta: "F-theta",
+  scaramuzza: "Scaramuzza's polynomial",
+  fisheyeradtanthinprism: "Aria's Fisheye624: make linear pictures by projectaria_tools",
+};
+
 /** Longer focal lengths, in pixels, are no camera. */
 const LONGEST = 1e6;
 
@@ -37,7 +51,14 @@ function brown(values: Numbers): Numbers | undefined {
   return Array.from({ length }, (_, index) => used[index] ?? 0);
 }
 
-function sizeOf({ width, height }: RawCamera): { width: number; height: number } | undefined {
+/** A size in a camera's name, as in "color 1280x720". */
+function sizeInName(name = ""): { width?: number; height?: number } {
+  const [, width, height] = /(?:^|[ _])(\d{2,5})[xX](\d{2,5})(?![\dxX])/.exec(name) ?? [];
+  return width === undefined ? {} : { width: Number(width), height: Number(height) };
+}
+
+function sizeOf(raw: RawCamera): { width: number; height: number } | undefined {
+  const { width, height } = raw.width === undefined && raw.height === undefined ? sizeInName(raw.name) : raw;
   if (width === undefined && height === undefined) return undefined;
   const isSide = (side: number) => Number.isInteger(side) && side > 0 && side <= 4 * MOST_SIDE;
   if (width === 0 && height === 0) return undefined;
@@ -128,8 +149,18 @@ function lensOf(
       ),
     );
   else if (!BROWN.test(model))
-    throw badFile(`its lens model "${written.slice(0, 40)}" is not known here; Brown's and Kannala-Brandt's are`);
-  return withBrown(brown(values));
+    throw badFile(
+      `its lens model "${written.slice(0, 40)}"${Object.hasOwn(OTHERS, model) ? ` (${OTHERS[model]})` : ""} is not known here; Brown's and Kannala-Brandt's are`,
+    );
+  return withBrown(brown(values.length === 3 ? radial(values, label, warnings) : values));
+}
+
+/** Three coefficients are the radial ones: tangential ones come in pairs. */
+function radial([k1 = 0, k2 = 0, k3 = 0]: Numbers, label: string, warnings: ReaderWarning[]): Numbers {
+  warnings.push(
+    warning("distortion-guessed", `${label} has three coefficients of distortion, which were read as k1 k2 k3.`),
+  );
+  return [k1, k2, 0, 0, k3];
 }
 
 const withBrown = (distortion: Numbers | undefined): Lens => (distortion === undefined ? {} : { distortion });

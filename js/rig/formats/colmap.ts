@@ -1,9 +1,9 @@
 /** COLMAP's cameras.txt: a line for each camera, "ID MODEL WIDTH HEIGHT PARAMS[]". */
-import { badFile } from "../../errors.js";
+import { BimodalError, badFile } from "../../errors.js";
 import { type RawCamera, cameraOf } from "./cameras.js";
 import { type Numbers, numberOf } from "./numbers.js";
 import type { Calibration } from "./tree.js";
-import type { ReaderWarning } from "../warnings.js";
+import { warning } from "../warnings.js";
 
 const LINE = /^\s*(\d+)\s+([A-Z][A-Z_]+)\s+(\d+)\s+(\d+)((?:\s+\S+)*)\s*$/;
 /** COLMAP's principal points count from the corner of the first pixel, ours from its centre. */
@@ -64,7 +64,21 @@ function readLine(line: string): RawCamera {
   };
 }
 
+/** Cameras of models that are not known here cost themselves and not the file, as long as another is left. */
 export function readColmap(text: string): Calibration {
-  const warnings: ReaderWarning[] = [];
-  return { cameras: linesOf(text).map((line) => cameraOf(readLine(line), warnings)), poses: [], warnings };
+  const found: Calibration = { cameras: [], poses: [], warnings: [] };
+  let reason: unknown;
+  for (const line of linesOf(text)) {
+    const name = LINE.exec(line)?.[2];
+    const isKnown = name === undefined || Object.hasOwn(MODELS, name);
+    try {
+      found.cameras.push(cameraOf(readLine(line), found.warnings));
+    } catch (error) {
+      if (isKnown || !(error instanceof BimodalError)) throw error;
+      reason ??= error;
+      found.warnings.push(warning("camera-left-out", `${error.message}; this camera was left out.`, { model: name }));
+    }
+  }
+  if (found.cameras.length === 0 && reason !== undefined) throw reason;
+  return found;
 }

@@ -3,12 +3,8 @@
  *
  * Its baseline is in millimetres. The right camera is the left one moved along its rows.
  */
-import { badFile } from "../../errors.js";
-import type { ReaderWarning } from "../warnings.js";
-import { cameraOf } from "./cameras.js";
-import { type Numbers, numberOf } from "./numbers.js";
-import { motion } from "./poses.js";
-import type { Calibration } from "./tree.js";
+import { Findings } from "./findings.js";
+import { numberOf } from "./numbers.js";
 
 const CAMERA = /^cam(\d)\s*=\s*\[([^\]\n]{5,400})\]/gm;
 export const isMiddlebury = (text: string): boolean =>
@@ -16,18 +12,18 @@ export const isMiddlebury = (text: string): boolean =>
 
 const EYE = [1, 0, 0, 0, 1, 0, 0, 0, 1];
 
-export function readMiddlebury(text: string): Calibration {
+export function readMiddlebury(text: string): Findings {
+  const found = new Findings();
   const number = (name: string) => numberOf(new RegExp(`^${name}\\s*=\\s*(\\S+)`, "m").exec(text)?.[1] ?? "");
-  const warnings: ReaderWarning[] = [];
   const size = { width: number("width"), height: number("height") };
-  const cameras = [...text.matchAll(CAMERA)].map(([, index = "", matrix = ""]) => {
-    const k: Numbers = matrix.split(/[\s;,]+/).flatMap((word) => numberOf(word) ?? []);
-    if (k.length !== 9) throw badFile(`its cam${index} has ${k.length} numbers; 3x3 of intrinsics are needed`);
-    const [fx = NaN, skew = 0, cx = NaN, , fy = NaN, cy = NaN] = k;
-    return cameraOf({ name: `cam${index}`, focal: [fx, fy], centre: [cx, cy], skew, ...size }, warnings);
-  });
+  for (const [, index = "", matrix = ""] of text.matchAll(CAMERA)) {
+    const [fx = NaN, skew = 0, cx = NaN, , fy = NaN, cy = NaN] = matrix
+      .split(/[\s;,]+/)
+      .map((word) => numberOf(word) ?? NaN);
+    found.camera({ name: `cam${index}`, focal: [fx, fy], centre: [cx, cy], skew, ...size });
+  }
   const baseline = number("baseline");
-  if (baseline === undefined || cameras.length < 2) return { cameras, poses: [], warnings };
-  const names = { name: "cam1 from cam0", from: "cam0", to: "cam1" };
-  return { cameras, poses: [motion(EYE, [-baseline / 1000, 0, 0], names, warnings)], warnings };
+  if (baseline !== undefined && found.cameras.length > 1)
+    found.pose(EYE, [-baseline / 1000, 0, 0], { name: "cam1 from cam0", from: "cam0", to: "cam1" });
+  return found.done("Middlebury's calibration of a stereo pair");
 }

@@ -31,10 +31,19 @@ function listOf(value: unknown): Numbers | undefined {
   return numbers.every((number) => number !== undefined) ? numbers : undefined;
 }
 
-/** A list of numbers, of lists of numbers, or OpenCV's and ROS's { rows, cols, data }. */
+/** The columns of a square matrix, as Apple's simd has them. */
+function ofColumns(columns: unknown[]): Matrix | undefined {
+  const side = columns.length;
+  const values = columns.flatMap((column) => listOf(column) ?? []);
+  return values.length === side * side && side > 1 ? { values: transposed(values, side), rows: side } : undefined;
+}
+
+/** A list of numbers, of lists of numbers, or { rows, cols, data } of OpenCV and ROS, or of OpenCalib, whose data are rows. */
 export function matrixOf(value: unknown): Matrix | undefined {
   if (isNode(value)) {
-    const values = listOf(value.data);
+    if (Array.isArray(value.columns)) return ofColumns(value.columns);
+    const nested = Array.isArray(value.data) && value.data.every(Array.isArray);
+    const values = listOf(nested && Array.isArray(value.data) ? value.data.flat() : value.data);
     const [rows, columns] = [numberOf(value.rows), numberOf(value.cols)];
     if (values === undefined || rows === undefined || columns === undefined || rows * columns !== values.length)
       return undefined;

@@ -2,13 +2,16 @@
 import { badFile } from "../../errors.js";
 import { cameraOf } from "./cameras.js";
 import { type Numbers, numberOf } from "./numbers.js";
-import { motion, motionOfMatrix, ofQuaternion } from "./poses.js";
+import { motion, motionOfMatrix } from "./poses.js";
 import type { Calibration } from "./tree.js";
+import { ofFour } from "./turns.js";
 import { type ReaderWarning, distinct } from "../warnings.js";
 
 type Found = Calibration & { format: string };
 
 const MOST_NUMBERS = 200_000;
+/** Where a header of names stands. */
+const HEAD = 1000;
 const near = (value: number | undefined, to: number): boolean => value !== undefined && Math.abs(value - to) < 1e-9;
 
 /** Rows of numbers, without comments and brackets; nothing where there is anything else. */
@@ -52,13 +55,43 @@ function nine(values: Numbers, size: Numbers): Found {
   );
 }
 
+/** ScanNet writes its intrinsics as 4x4: a matrix of 3x3 in one that would be a motion's. */
+function intrinsicsOf4x4(values: Numbers): Numbers | undefined {
+  if (values.length !== 16) return undefined;
+  const zeros = [3, 4, 7, 8, 9, 11, 12, 13, 14].every((index) => near(values[index], 0));
+  const isK = zeros && near(values[10], 1) && near(values[15], 1) && (values[0] ?? 0) > 2 && (values[5] ?? 0) > 2;
+  return isK ? [0, 1, 2, 4, 5, 6, 8, 9, 10].map((index) => values[index] ?? NaN) : undefined;
+}
+
+/** ARKitScenes' .pincam: "width height fx fy cx cy" in one line. */
+const isPincam = (rows: Numbers[]): boolean => {
+  const [w = 0, h = 0, fx = 0, fy = 0, cx = 0, cy = 0] = rows[0] ?? [];
+  const isSide = (side: number) => Number.isInteger(side) && side >= 16;
+  return (
+    rows.length === 1 &&
+    rows[0]?.length === 6 &&
+    isSide(w) &&
+    isSide(h) &&
+    fx > 10 &&
+    fy > 10 &&
+    cx < w &&
+    cy < h &&
+    cx > 0 &&
+    cy > 0
+  );
+};
+
 /** TUM: time stamp, translation, quaternion x y z w, of the camera in the world. */
-function trajectory(rows: Numbers[]): Found {
+function trajectory(rows: Numbers[], text: string): Found {
   const warnings: ReaderWarning[] = [];
+  const isFirst = /\bq\w*?_?w\b[^\n]*\bq\w*?_?x\b|\bw[\s,;]+x[\s,;]+y[\s,;]+z\b/i.test(text.slice(0, HEAD));
+  const isSeries = rows.length > 1 || rows[0]?.length === 8;
   const poses = rows.map((row) => {
-    const [x = NaN, y = NaN, z = NaN, ...quaternion] = row.slice(-7);
-    const names = row.length === 8 ? { name: String(row[0]), from: "camera", to: "world" } : {};
-    return motion(ofQuaternion(quaternion, warnings), [x, y, z], names, warnings, row.length === 7);
+    const [x = NaN, y = NaN, z = NaN, a = NaN, b = NaN, c = NaN, d = NaN] = row.slice(-7);
+    const name = row.length === 8 ? { name: String(row[0]) } : {};
+    const names = isSeries ? { ...name, from: "camera", to: "world" } : {};
+    const said = isFirst ? { order: "wxyz" as const } : isSeries ? { order: "xyzw" as const } : {};
+    return motion(ofFour([a, b, c, d], said, "the last four numbers", warnings), [x, y, z], names, warnings, !isSeries);
   });
   return {
     cameras: [],
@@ -78,6 +111,15 @@ function log(rows: Numbers[]): Found {
   return { cameras: [], poses, warnings: distinct(warnings, 4), format: "a trajectory" };
 }
 
+/** A matrix of 3x4 or 4x4 in each row, of the camera in the world, as KITTI's odometry has them. */
+function matrices(rows: Numbers[]): Found {
+  const warnings: ReaderWarning[] = [];
+  const poses = rows.map((row, index) =>
+    motionOfMatrix(row, { name: String(index), from: "camera", to: "world" }, warnings, false),
+  );
+  return { cameras: [], poses, warnings: distinct(warnings, 4), format: "a trajectory" };
+}
+
 /** What a text of numbers holds; nothing where it has words. */
 export function readNumbers(text: string): Found | undefined {
   const rows = rowsOf(text);
@@ -87,10 +129,17 @@ export function readNumbers(text: string): Found | undefined {
   const widths = new Set(rows.map((row) => row.length));
   const [width] = widths;
   if (rows.length % 5 === 0 && rows.every((row, index) => row.length === (index % 5 === 0 ? 3 : 4))) return log(rows);
-  if (widths.size === 1 && (width === 8 || width === 7) && rows.length >= 1) return trajectory(rows);
+  if (widths.size === 1 && (width === 8 || width === 7) && rows.length >= 1) return trajectory(rows, text);
+  if (widths.size === 1 && (width === 12 || width === 16) && rows.length >= 2) return matrices(rows);
   const size = rows[0]?.length === 2 && values.length === 11 ? values.slice(0, 2) : [];
   const isLine = rows.length === 1 && !near(values[8], 1);
   if (values.length - size.length === 9 && !isLine) return nine(values.slice(size.length), size);
+  const k = intrinsicsOf4x4(values);
+  if (k !== undefined) return camera(k, []);
+  if (isPincam(rows)) {
+    const [, , fx = NaN, fy = NaN, cx = NaN, cy = NaN] = values;
+    return camera([fx, 0, cx, 0, fy, cy, 0, 0, 1], values.slice(0, 2));
+  }
   if (values.length === 12 || values.length === 16) {
     const warnings: ReaderWarning[] = [];
     return { cameras: [], poses: [motionOfMatrix(values, {}, warnings)], warnings, format: "a matrix of a motion" };

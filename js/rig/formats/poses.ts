@@ -13,6 +13,8 @@ const ROTATION_TOLERANCE = 1e-2;
 const ROUNDING = 1e-3;
 /** Cameras of one rig are not so far apart, metres: a longer shift is in millimetres. */
 const LONGEST = 10;
+/** .. and depth and colour cameras of one device not so far, metres; a LiDAR on a vehicle may be called a depth camera, too. */
+const APART = 3;
 
 const at = (values: Numbers, index: number): number => values[index] ?? 0;
 
@@ -179,7 +181,25 @@ export function motion(
   warnings: ReaderWarning[],
   isRig = true,
 ): NamedPose {
-  return { ...names, pose: poseOf(rotationOf(rotation, warnings), shiftOf(translation, isRig, warnings)) };
+  const shift = isRig ? ofOneDevice(translation, names, warnings) : translation;
+  return { ...names, pose: poseOf(rotationOf(rotation, warnings), shiftOf(shift, isRig, warnings)) };
+}
+
+const DEVICE = /depth|colou?r|rgb|\bir\b|infra|tof/i;
+
+/** Depth and colour cameras of one device are centimetres apart: a translation of some units between them is in centimetres. */
+function ofOneDevice(values: Numbers, { from, to }: Omit<NamedPose, "pose">, warnings: ReaderWarning[]): Numbers {
+  const length = Math.hypot(...values);
+  const isDevice = DEVICE.test(from ?? "") && DEVICE.test(to ?? "");
+  if (!isDevice || !(length > APART && length <= LONGEST)) return values;
+  warnings.push(
+    warning(
+      "translation-unit-guessed",
+      `The translation is ${length.toPrecision(4)} units long and was guessed to be in centimetres, as depth and colour cameras are not metres apart.`,
+      { length },
+    ),
+  );
+  return values.map((value) => value / 100);
 }
 
 /** Whether a row is that of a motion's matrix, 0 0 0 1. */

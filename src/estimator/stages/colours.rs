@@ -256,7 +256,8 @@ impl ColourRegistration {
 
     /// What the colours say of a pose as it is, the light fitted to it.
     pub fn judge(&mut self, pair: &ViewPair, pose: &Similarity) -> Option<Box<PhotometricReport>> {
-        let options = PhotometricOptions { most_points: CANDIDATE_POINTS, first_level: 0, ..options(pair) };
+        let options =
+            PhotometricOptions { most_points: CANDIDATE_POINTS, first_level: 0, jackknife: false, ..options(pair) };
         let problem = self.sharp.problem(pair, is_scale_held(pair), self.near);
         self.photometric.begin(&problem, pose, &options).ok()?;
         self.photometric.report(&problem).ok().map(Box::new)
@@ -283,6 +284,7 @@ impl ColourRegistration {
             annealing: false,
             most_rounds,
             points_stay: true,
+            jackknife: false,
             ..PhotometricOptions::default()
         };
         let problem = self.sharp.problem(pair, is_scale_held(pair), self.near);
@@ -291,7 +293,9 @@ impl ColourRegistration {
     }
 
     fn begin(&mut self, pair: &ViewPair, start: &Similarity, first_level: usize) -> Result<()> {
-        let options = PhotometricOptions { most_points: CANDIDATE_POINTS, first_level, ..options(pair) };
+        // Near an initial pose sigmas decide between colours and silhouettes.
+        let jackknife = self.near.is_some();
+        let options = PhotometricOptions { most_points: CANDIDATE_POINTS, first_level, jackknife, ..options(pair) };
         self.photometric.begin(&self.sharp.problem(pair, is_scale_held(pair), self.near), start, &options)
     }
 

@@ -34,6 +34,7 @@
 //! bag) or with a symmetry (a cylinder) has no minimum of its own. It needs a mask.
 
 mod equations;
+mod jackknife;
 mod local_means;
 pub(super) use local_means::LocalMeans;
 mod objective;

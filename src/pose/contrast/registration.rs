@@ -8,7 +8,7 @@ use super::samples::Samples;
 use super::seen::Seen;
 use super::uncertainty::{Linearised, described};
 use crate::pose::descent::{Damping, Lowered};
-use crate::pose::increment::Frame;
+use crate::pose::increment::{Frame, PoseVector};
 use crate::pose::silhouette::Silhouette;
 use crate::pose::similarity::Similarity;
 use crate::pose::spline_image::SplineImage;
@@ -78,7 +78,7 @@ struct Course {
 /// Registers one depth view to one image again and again; owns all memory.
 pub struct ContrastRegistration {
     levels: [Level; LEVELS],
-    objective: Objective,
+    pub(super) objective: Objective,
     course: Option<Course>,
 }
 
@@ -170,7 +170,7 @@ impl ContrastRegistration {
         course: &mut Course,
         (descended, value): (Similarity, f64),
     ) -> bool {
-        let moved = self.step_by_instruments(problem, &mut course.state);
+        let moved = self.step_by_instruments(problem, &mut course.state).map(|step| step.norm());
         course.round += 1;
         if moved.is_some_and(|moved| moved > SETTLED_STEP) && course.round < course.effort.instrument_rounds {
             return false;
@@ -182,13 +182,17 @@ impl ContrastRegistration {
         true
     }
 
-    /// One step by instruments and its length; `None` where there is none.
-    fn step_by_instruments(&mut self, problem: &ContrastProblem<'_>, state: &mut State) -> Option<f64> {
+    /// One step by instruments; `None` where there is none.
+    pub(super) fn step_by_instruments(
+        &mut self,
+        problem: &ContrastProblem<'_>,
+        state: &mut State,
+    ) -> Option<PoseVector> {
         let frame = self.look(problem, state, None)?;
         let (change, _) =
             self.linearise_by_instruments(problem, &frame, state)?.step(INSTRUMENT_DAMPING, &problem.held())?;
         state.pose = frame.change(&change).after(&state.pose).orthonormal();
-        Some(change.norm())
+        Some(change)
     }
 
     fn linearise_by_instruments(
@@ -213,12 +217,13 @@ impl ContrastRegistration {
     pub fn uncertainty(&mut self, problem: &ContrastProblem<'_>, pose: &Similarity) -> Option<Uncertainty> {
         let mut state = State { pose: *pose, light: Lights::default() };
         self.objective.expect_size(problem, pose);
+        let by_sectors = self.jackknife(problem, pose);
         let frame = self.look(problem, &mut state, None)?;
         self.objective.settle(true);
         let reduced = self.objective.linearise(problem, &mut self.levels[0], &frame, &state);
         let (objective, frame, state) = (&self.objective, &frame, &state);
-        let uncertainty =
-            reduced.map(|reduced| described(&Linearised { problem, objective, reduced: &reduced, frame, state }));
+        let uncertainty = reduced
+            .map(|reduced| described(&Linearised { problem, objective, reduced: &reduced, frame, state }, by_sectors));
         self.objective.settle(false);
         uncertainty
     }

@@ -11,10 +11,6 @@ use crate::view::Size;
 /// Side of the tiles of the depth map whose scores count as one observation, depth pixels: three sigmas of the local
 /// means, and as they larger on larger objects. So are the outline's, by tiles of the image.
 const TILE: f64 = 9.0;
-/// Errors that leave no residual, such as shadows that move with the relief, over those that do. With 3, 29 found poses of
-/// four photographed objects and their shading (deer, frog2, panther, paper1, 0 to 60 degrees, 96x96) are 1.33 sigmas off
-/// about their worst axis at the median, Gaussian errors 1.22, and 93 % of them within 3.4: either asks for 3.3 to 3.4.
-const SIGMA_INFLATION: f64 = 3.5;
 /// What a covariance is taken of.
 pub(super) struct Linearised<'a> {
     pub problem: &'a ContrastProblem<'a>,
@@ -60,13 +56,13 @@ fn covariance(linearised: &Linearised<'_>, held: &[bool; UNKNOWNS]) -> PoseMatri
     scores.add(outline.iter());
     let mut matrix = linearised.reduced.matrix;
     fix_unknowns(&mut matrix, held);
-    scores.covariance(inverse(&matrix).as_ref(), SIGMA_INFLATION, held)
+    scores.covariance(inverse(&matrix).as_ref(), 1.0, held)
 }
 
-/// One sigma of the pose's own numbers.
-pub(super) fn described(linearised: &Linearised<'_>) -> Uncertainty {
+/// One sigma of the pose's own numbers, with what leaving out sectors tells.
+pub(super) fn described(linearised: &Linearised<'_>, by_sectors: PoseMatrix) -> Uncertainty {
     let held = linearised.problem.held();
-    let covariance = &covariance(linearised, &held);
+    let covariance = &(covariance(linearised, &held) + by_sectors);
     describe(
         covariance,
         linearised.frame,

@@ -1,7 +1,7 @@
 //! Covariance of the pose: the [sandwich](crate::pose::sandwich) over tiles of the depth map (docs/method.md, section 14).
 //!
-//! M is the matrix of the equations that the pose solves, and a tile's score that once the light has followed. What leaves no
-//! residual is allowed for by a factor that was measured.
+//! M is the matrix of the equations that the pose solves, and a tile's score that once the light has followed. Errors that reach across tiles
+//! are the [jackknife](super::jackknife)'s to tell.
 //!
 //! M itself is in part an effect of noise: gradients of a noisy image are noisy as well, and noise squared looks like
 //! information. A sphere, whose colours tell nothing of its rotation, has as much of it as F = sum w s^2 k D^T D with s
@@ -11,7 +11,6 @@
 
 use super::equations::{ReducedSystem, SquareSums, add_product, folded, no_sums, scaled};
 use super::evaluation::Evaluation;
-use crate::diagnosis::share_of_model;
 use crate::numeric::eigen::{Eigen, symmetric_eigen};
 use crate::numeric::{Doubles, Real, dot};
 use crate::pose::increment::{Frame, PoseMatrix, PoseVector, fix_unknowns, inverse, product};
@@ -21,19 +20,6 @@ use crate::view::Size;
 /// Side of the tiles of the depth map whose scores count as one observation, pixels: twice the reach of normals and
 /// splines.
 const TILE: usize = 8;
-/// Errors that leave no residual, such as normals that lean all one way, over those that do: measured on 116 random
-/// scenes of eight surfaces under natural lights (96x96), where one sigma from the residuals alone holds 44 % and three
-/// hold 85 %; 1.9 was set on them, with which three sigmas held all axes of 94.6 % of the 298 found
-/// random scenes of `npm run tables`; 2.2 is 1.9 raised to what 95 % ask for there and in every kind of worse inputs
-/// (`honesty`), so those scenes are no independent test.
-const SIGMA_INFLATION: f64 = 2.2;
-/// One sigma where all residuals are the model's, over what tiles tell: such errors reach across tiles. Photographs in
-/// one lamp's light that leave more than twice their noise end 4 to 17 such sigmas off, the others 1 to 3.
-const MODEL_SIGMA_INFLATION: f64 = 2.0;
-/// Noise of the depth map, pixel lengths, whose normals bias the pose by as much again as tiles tell: they flatten the
-/// shading, which the light and the pose make up for, and every tile alike. Of 36 random scenes at 96x96 with up to a pixel
-/// of white noise those below 0.35 end 0.3 to 1.6 sigmas off at the worst axis, those above 0.5 0.7 to 7.5, and one 73.
-const BIASING_NOISE: f64 = 0.3;
 /// k: covariance of the gradients of white noise of variance one, once of the image's spline and once of the slightly
 /// blurred one's, mean over the positions in a cell (by quadrature over both splines' responses to one pixel).
 const GRADIENT_COVARIANCE: f64 = 0.144;
@@ -46,17 +32,6 @@ pub(super) struct Noise {
     pub residuals: f64,
     /// Of the image itself, whatever the pose.
     pub image: f64,
-    /// Of the depth map, pixel lengths.
-    pub depth: f64,
-}
-
-impl Noise {
-    /// Factor of one sigma for what the scores of the tiles do not tell.
-    fn sigma_inflation(&self) -> f64 {
-        let of_model = share_of_model(self.residuals, self.image);
-        let of_model = (MODEL_SIGMA_INFLATION * MODEL_SIGMA_INFLATION - 1.0) * of_model;
-        SIGMA_INFLATION * (1.0 + of_model + (self.depth / BIASING_NOISE).powi(2)).sqrt()
-    }
 }
 
 /// Sums over the points of a tile.
@@ -98,7 +73,7 @@ impl Tiles {
             .zip(sigma_growth(&matrix, &noise_information))
             .map(|(inverse, growth)| product(&growth, &inverse));
         let growth = scores.degrees_of_freedom(&held).map_or(1.0, student_growth);
-        scores.covariance(gain.as_ref(), noise.sigma_inflation() * growth, &held)
+        scores.covariance(gain.as_ref(), growth, &held)
     }
 
     /// Root mean covariance of residuals of one tile, log units, by the last sums: what the model leaves out reaches over

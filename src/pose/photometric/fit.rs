@@ -65,6 +65,8 @@ pub struct Photometric {
     pub(super) annealed_points: usize,
     pub(super) annealing: bool,
     pub(super) points_stay: bool,
+    /// Whether the report's covariance is to have the jackknife's.
+    pub(super) with_jackknife: bool,
     pub(super) iterations: usize,
     /// Whether the rounds with instrumental variables are those of the annealing's points, of which there are more.
     pub(super) thinned: bool,
@@ -94,11 +96,7 @@ impl Photometric {
             tiles: Tiles::new(problem.depth_size),
             state,
             annealed: state,
-            noise: Noise {
-                residuals: f64::INFINITY,
-                image: problem.image.log_noise().max(LEAST_NOISE),
-                depth: problem.depth_noise.sigma,
-            },
+            noise: Noise { residuals: f64::INFINITY, image: problem.image.log_noise().max(LEAST_NOISE) },
             weighting: Weighting::FIRST,
             phase: Phase::Done(PhotometricTermination::MostRounds),
             rounds: 0,
@@ -107,6 +105,7 @@ impl Photometric {
             annealed_points: usize::MAX,
             annealing: true,
             points_stay: false,
+            with_jackknife: true,
             iterations: 0,
             thinned: false,
             settled_step: None,

@@ -52,6 +52,7 @@ mod equations;
 mod evaluation;
 mod fit;
 mod instruments;
+mod jackknife;
 mod near;
 mod normal_noise;
 mod phase;

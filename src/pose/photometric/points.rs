@@ -158,6 +158,16 @@ impl VisiblePoints {
         Frame { centre: pose.apply(centre), length: if length > 0.0 { length } else { 1.0 } }
     }
 
+    /// The points' own weights.
+    pub fn weights(&self) -> &[f32] {
+        &self.weights
+    }
+
+    /// Gives the points other weights of their own.
+    pub fn reweigh(&mut self, weights: impl Iterator<Item = f32>) {
+        self.weights.iter_mut().zip(weights).for_each(|(own, other)| *own = other);
+    }
+
     /// Sum of the points' own weights.
     pub fn weight(&self) -> f64 {
         self.weights.iter().map(|&weight| f64::from(weight)).sum()

@@ -134,6 +134,8 @@ pub struct PhotometricOptions {
     /// Whether the points are those of the registration before, in place of those that each round shows: several problems are
     /// compared on the same ones, and only these need points and normals.
     pub points_stay: bool,
+    /// Whether the covariance has what leaving out sectors of the object tells; what is only compared with others does without.
+    pub jackknife: bool,
 }
 
 impl Default for PhotometricOptions {
@@ -145,6 +147,7 @@ impl Default for PhotometricOptions {
             annealed_points: ENOUGH_ANNEALED,
             annealing: true,
             points_stay: false,
+            jackknife: true,
         }
     }
 }
@@ -190,7 +193,7 @@ pub struct PhotometricReport {
     /// Information of rotation (radians), translation (object sizes) and log scale once light is eliminated, over the
     /// noise's variance: what white noise of that size would leave.
     pub information: PoseMatrix,
-    /// Covariance of the same from the spread of the scores; held unknowns have none.
+    /// Covariance of the same from the spread of the scores over tiles and of poses without a sector; held unknowns have none.
     pub covariance: PoseMatrix,
     /// One sigma of the pose's own numbers.
     pub uncertainty: Uncertainty,

@@ -9,7 +9,7 @@ use super::problem::{PhotometricOptions, PhotometricProblem, PhotometricReport, 
 use super::state::State;
 use super::weighting::{Weighting, final_robust_scale};
 use crate::error::Result;
-use crate::pose::increment::{SCALE, TRANSLATION_Z, clear_unknowns};
+use crate::pose::increment::{PoseMatrix, SCALE, TRANSLATION_Z, clear_unknowns};
 use crate::pose::similarity::Similarity;
 use crate::pose::uncertainty::{describe, weakest_of};
 
@@ -56,7 +56,7 @@ impl Photometric {
         (self.phase, self.rounds, self.iterations) = (Phase::AnnealingRound { level, fine_rounds: 0 }, 0, 0);
         self.most_rounds = options.most_rounds.max(1);
         (self.most_points, self.annealing) = (options.most_points, options.annealing);
-        self.points_stay = options.points_stay;
+        (self.points_stay, self.with_jackknife) = (options.points_stay, options.jackknife);
         self.annealed_points = options.annealed_points.min(options.most_points);
         (self.thinned, self.settled_step) = (false, None);
         self.choose_points(problem, Sampling { level, most: self.annealed_points })?;
@@ -98,11 +98,12 @@ impl Photometric {
     /// # Errors
     /// [`ErrorKind::Degenerate`] where the visible points determine nothing.
     pub fn report(&mut self, problem: &PhotometricProblem<'_>) -> Result<PhotometricReport> {
+        let by_sectors = if self.with_jackknife { self.jackknife(problem)? } else { PoseMatrix::zeros() };
         let frame = self.choose_points(problem, Sampling { level: 0, most: self.most_points })?;
         self.measure_noise(problem, 0);
         self.weigh(problem, final_robust_scale(self.noise.residuals));
         let reduced = self.reduce_by_instruments(problem, &frame)?;
-        let covariance = self.covariance(problem, &frame, &reduced);
+        let covariance = self.covariance(problem, &frame, &reduced) + by_sectors;
         let held = problem.held();
         let mut information =
             0.5 * (reduced.matrix + reduced.matrix.transpose()) / (self.noise.residuals * self.noise.residuals);

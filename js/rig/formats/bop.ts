@@ -1,0 +1,61 @@
+/**
+ * Cameras of the BOP benchmark: camera.json of a data set, scene_camera.json of a scene. `depth_scale` times a stored depth is in
+ * millimetres, and depth maps are registered to the colour images.
+ */
+import type { RawCamera } from "./cameras.js";
+import { Findings, flat } from "./findings.js";
+import { isNode, type Node, numberOf } from "./numbers.js";
+
+const MILLIMETRE = 0.001;
+/** What the numbers of two images may differ by, in pixels, to be those of one camera. */
+const ALIKE = 1e-4;
+
+/** Other programs give metres per unit, or units per metre, under the same name: these are much less or much more. */
+const isPerMillimetre = (scale: number): boolean => scale >= 0.01 && scale < 100;
+
+const perImage = (root: Node): [string, Node][] =>
+  Object.entries(root).filter(
+    (entry): entry is [string, Node] => isNode(entry[1]) && flat(entry[1].cam_K, 9) !== undefined,
+  );
+
+export const isBop = (root: Node): boolean =>
+  ("depth_scale" in root && "fx" in root && "cx" in root) ||
+  perImage(root).length > 0 ||
+  flat(root.cam_K, 9) !== undefined;
+
+export function readBop(root: Node): Findings {
+  const found = new Findings();
+  const images = perImage(root);
+  const all: [string | undefined, Node][] = images.length > 0 ? images : [[undefined, root]];
+  const first = all[0]?.[1] ?? root;
+  const scale = numberOf(first.depth_scale);
+  const takes = images.length > 0 || isPerMillimetre(scale ?? 1) ? "both" : undefined;
+  const cameras = all.map(([name, node]) => cameraOf(node, root, name));
+  const isOne = cameras.every(({ focal, centre }) =>
+    [...focal, ...centre].every((value, at) => {
+      const own = [...(cameras[0]?.focal ?? []), ...(cameras[0]?.centre ?? [])][at] ?? NaN;
+      return Math.abs(value - own) < ALIKE;
+    }),
+  );
+  for (const raw of isOne ? cameras.slice(0, 1) : cameras)
+    found.camera(isOne ? { ...raw, name: "camera" } : raw, takes);
+  if (scale !== undefined && scale > 0)
+    found.depthUnit = isPerMillimetre(scale) ? scale * MILLIMETRE : scale < 1 ? scale : 1 / scale;
+  if (images.some(([, { depth_scale }]) => (numberOf(depth_scale) ?? scale) !== scale))
+    found.warn("units-differ", `Its depth_scale differs between images; that of the first, ${scale}, is used for all.`);
+  const posed = images.filter(([, node]) => "cam_R_w2c" in node).length;
+  if (posed > 0)
+    found.warn(
+      "pose-left-out",
+      `Its poses of the world in the camera (${posed}) were left out: they relate no two cameras.`,
+    );
+  return found.done("a camera of the BOP benchmark");
+}
+
+function cameraOf(node: Node, root: Node, name: string | undefined): RawCamera {
+  const n = (key: string) => numberOf(node[key]) ?? NaN;
+  const k = flat(node.cam_K, 9) ?? [n("fx"), 0, n("cx"), 0, n("fy"), n("cy"), 0, 0, 1];
+  const [fx = NaN, skew = 0, cx = NaN, , fy = NaN, cy = NaN] = k;
+  const side = (key: string) => numberOf(node[key]) ?? numberOf(root[key]);
+  return { name, focal: [fx, fy], centre: [cx, cy], skew, width: side("width"), height: side("height") };
+}

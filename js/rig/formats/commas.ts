@@ -1,0 +1,22 @@
+/** Decimal commas, "0,998301", as spreadsheets of half of Europe write them. */
+
+/** A number with a comma and its fraction. */
+const NUMBER = /^[-+]?\d+,\d+(?:[eE][-+]?\d+)?$/;
+const MOST = 4_000_000;
+
+/**
+ * The text with points in place of decimal commas, or nothing where its commas may separate numbers: every number has at most one comma,
+ * none a point, and one at least has a fraction of three digits or begins with "0,", or each stands behind a name on its line.
+ */
+export function withPoints(text: string): string | undefined {
+  if (text.length > MOST || !/\d,\d/.test(text) || /\d\.\d/.test(text) || /[[{]/.test(text)) return undefined;
+  const words = text.split(/[\s;=:]+/).filter((word) => /\d,/.test(word) || /,\d/.test(word));
+  if (!words.every((word) => NUMBER.test(word))) return undefined;
+  const isSure = words.some((word) => /,\d{3}/.test(word) || /^[-+]?0,/.test(word));
+  const isNamed = text
+    .split(/\r?\n/)
+    .every((line) => !/\d,\d/.test(line) || /^\s*[A-Za-z_][\w ]*[:=\s]\s*[-+]?\d+,\d+\s*$/.test(line));
+  if (!isSure && !isNamed) return undefined;
+  // Words stand alone between spaces and semicolons.
+  return text.replace(/(\d),(\d)/g, "$1.$2").replace(/;/g, " ; ");
+}

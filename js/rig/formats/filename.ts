@@ -1,0 +1,35 @@
+/**
+ * Which frames a file's only pose relates, where its name alone says it: "depth_to_color.txt", "calib_cam_to_velo.txt", "T_cam_lidar.json".
+ *
+ * Limit: names count where both ends are words for sensors, so that other names mean nothing.
+ */
+import type { NamedPose } from "../types.js";
+
+const SENSOR =
+  /cam|rgb|colou?r|depth|dpt|infra|(?:^|[_-])ir(?:[_-]|$)|tof|lidar|velo|laser|ouster|livox|radar|imu|base|hand|gripper|left|right/i;
+/** What stands around the ends. */
+const AROUND =
+  /^(?:calib(?:ration)?|extrinsics?|transform|tf|pose|rt)[_-]+|[_-]+(?:calib(?:ration)?|extrinsics?|transform|tf|pose|rt)$/gi;
+const LONGEST = 100;
+
+/** The ends of the poses that a file of this name holds; nothing where it does not say them. */
+export function endsOf(path: string): { from: string; to: string } | undefined {
+  const name = path.replace(/^.*[/\\]/, "").replace(/\.[a-z]{1,5}$/i, "");
+  if (name.length > LONGEST) return undefined;
+  const words = name.replace(AROUND, "").replace(AROUND, "");
+  const towards = /^([a-z][\w-]*?)[_-]*(?:(?:(?<=[_-])to(?=[_-]))|2)[_-]*([a-z][\w-]*)$/i.exec(words);
+  const [a, b] = towards ? [towards[1], towards[2]] : [];
+  const backwards =
+    /^([a-z][\w-]*?)[_-]from[_-]([a-z][\w-]*)$/i.exec(words) ?? /^T_([a-z][a-z0-9]*)_([a-z][a-z0-9]*)$/i.exec(words);
+  const [from, to] = towards ? [a, b] : [backwards?.[2], backwards?.[1]];
+  if (from === undefined || to === undefined || !SENSOR.test(from) || !SENSOR.test(to)) return undefined;
+  return from === to ? undefined : { from, to };
+}
+
+/** A file's only pose, if it names no frames, with those of the file's name. */
+export function withEnds(poses: readonly NamedPose[], path: string): NamedPose[] {
+  const [only, ...others] = poses;
+  const ends = endsOf(path);
+  if (only === undefined || others.length > 0 || ends === undefined) return poses.slice();
+  return only.from === undefined && only.to === undefined ? [{ ...only, ...ends }] : [only];
+}

@@ -1,0 +1,64 @@
+/** Members of one object that belong together by their names: "Camera.fx" and "Camera.fy", "cam_fx" and "cam_d0", "rot0" to "rot8". */
+import { type Node, type Numbers, isNode, matrixOf, numberOf } from "./numbers.js";
+
+/** Groups of one object. */
+const MOST = 300;
+/** So long are lists that cameras and motions consist of. */
+const LENGTHS = new Set([3, 4, 5, 8, 9, 12, 14, 16]);
+
+/** What belongs to a name, by what stands before or behind it. */
+function taken(node: Node, keys: string[], part: (key: string) => string | undefined): Node {
+  const group: Node = {};
+  for (const key of keys) {
+    const name = part(key);
+    if (name !== undefined) group[name] = node[key];
+  }
+  return group;
+}
+
+const behind = (start: string) => (key: string) => (key.startsWith(start) ? key.slice(start.length) : undefined);
+const before = (end: string) => (key: string) => (key.endsWith(end) ? key.slice(0, -end.length) : undefined);
+
+/** ORB-SLAM writes "Camera.fx", vikit "cam_fx", others "fx_rgb": the members of each camera, by its name. */
+export function grouped(node: Node, keys: string[]): Map<string, Node> {
+  const groups = new Map<string, Node>();
+  for (const key of keys) {
+    if (groups.size > MOST) break;
+    const [, group, name] = /^(\w{1,40})\.(\w{1,40})$/.exec(key) ?? [];
+    const isObject = isNode(node[key]) && matrixOf(node[key]) === undefined;
+    if (group !== undefined && name !== undefined && !isObject)
+      groups.set(group, { ...groups.get(group), [name]: node[key] });
+  }
+  for (const key of keys) {
+    if (groups.size > MOST) break;
+    const [, first] = /^(\w{1,30})_fx$/i.exec(key) ?? [];
+    const [, last] = /^fx_(\w{1,30})$/i.exec(key) ?? [];
+    if (first !== undefined) groups.set(first, taken(node, keys, behind(`${first}_`)));
+    else if (last !== undefined) groups.set(last, taken(node, keys, before(`_${last}`)));
+  }
+  return groups;
+}
+
+/** Numbers under "rot0" to "rot8" as one list "rot", beside the members themselves. */
+export function withLists(node: Node): Node {
+  const lists = new Map<string, Map<number, number>>();
+  const keys = Object.keys(node);
+  const starts = keys.flatMap((key) => /^(\w{1,30}_)fx$/i.exec(key)?.[1] ?? []);
+  for (const key of keys) {
+    if (starts.some((start) => key.startsWith(start))) continue;
+    const [, stem = "", digits] = /^([A-Za-z_]{1,30}?)_?(\d{1,2})$/.exec(key) ?? [];
+    const value = digits === undefined ? undefined : numberOf(node[key]);
+    if (value === undefined) continue;
+    const list = lists.get(stem) ?? new Map<number, number>();
+    lists.set(stem, list.set(Number(digits), value));
+  }
+  const whole: Record<string, Numbers> = {};
+  for (const [stem, list] of lists) {
+    const values = Array.from({ length: list.size }, (_, at) => list.get(at));
+    // A lens may have one coefficient alone.
+    const isLength = LENGTHS.has(list.size) || stem === "d";
+    const isWhole = isLength && values.every((value) => value !== undefined);
+    if (isWhole && !Object.hasOwn(node, stem)) whole[stem] = values as Numbers;
+  }
+  return Object.keys(whole).length === 0 ? node : { ...node, ...whole };
+}

@@ -1,0 +1,148 @@
+/**
+ * KITTI's calibrations: raw (calib_cam_to_cam.txt), object, tracking and odometry, and Waymo's and others' in the same form.
+ *
+ * Pictures of all but the raw recordings are rectified: a projection P = K [I | t] takes points of the rectified frame of camera 0, so that
+ * points of the LiDAR come into the frame of picture i by K^-1 P_i R0_rect Tr. Depth maps of its benchmarks are in the frame of camera 2.
+ */
+import { Findings, parted } from "./findings.js";
+import { type Numbers, numberOf } from "./numbers.js";
+import { chained, poseOf, rotationOf } from "./poses.js";
+import type { Pose } from "../types.js";
+
+const MOST = 400;
+/** Rounding of the published digits. */
+const NEAR = 1e-6;
+
+type Lines = Map<string, Numbers>;
+
+/** "P2: 7.2 0 ..", or without the colon. */
+function linesOf(text: string): Lines {
+  const found: Lines = new Map();
+  for (const line of text.split(/\r?\n/)) {
+    const [, key = "", rest = ""] = /^\s*([A-Za-z]\w{0,40}):?[ \t]+(\S.*)$/.exec(line) ?? [];
+    const numbers = rest.trim().split(/\s+/, 20).map(numberOf);
+    if (key === "" || found.size > MOST || !numbers.every((each) => each !== undefined)) continue;
+    found.set(key, numbers);
+  }
+  return found;
+}
+
+const KINDS = /^(?:P(?:_rect_)?\d{1,2}|Tr(?:_\w+)?|R0_rect|R_rect(?:_\d\d)?|K_\d\d)$/;
+
+/** Raw recordings: R and T of the LiDAR in camera 0, or of the inertial unit in the LiDAR. */
+const isSinglePose = (text: string, lines: Lines): boolean =>
+  /^calib_time:/m.test(text) && lines.get("R")?.length === 9 && lines.get("T")?.length === 3;
+
+export const isKitti = (text: string): boolean => {
+  const lines = linesOf(text.slice(0, 20_000));
+  const has = (pattern: RegExp, count: number) =>
+    [...lines].some(([key, { length }]) => pattern.test(key) && length === count);
+  if (isSinglePose(text.slice(0, 20_000), lines)) return true;
+  return has(/^P(_rect_)?\d{1,2}$/, 12) || (has(/^Tr/, 12) && [...lines.keys()].every((key) => KINDS.test(key)));
+};
+
+/** From the rectified frame of camera 0 into that of a picture; nothing where P is no projection of that kind. */
+function baseline(p: Numbers): Pose | undefined {
+  const [fx = NaN, skew = NaN, cx = NaN, a = NaN, zero = NaN, fy = NaN, cy = NaN, b = NaN, ...last] = p;
+  const isPinhole = [skew, zero, last[0] ?? NaN, last[1] ?? NaN].every((value) => Math.abs(value) < NEAR * fx);
+  if (!isPinhole || Math.abs((last[2] ?? NaN) - 1) > NEAR) return undefined;
+  const z = last[3] ?? NaN;
+  return poseOf([1, 0, 0, 0, 1, 0, 0, 0, 1], [(a - cx * z) / fx, (b - cy * z) / fy, z]);
+}
+
+export function readKitti(text: string): Findings {
+  const found = new Findings();
+  const lines = linesOf(text);
+  const projections = [...lines].flatMap(([key, p]) => {
+    const number = /^P(?:_rect_)?(\d{1,2})$/.exec(key)?.[1];
+    return number === undefined || p.length !== 12 ? [] : [{ number, p, way: baseline(p) }];
+  });
+  // Colour pictures are those of camera 2, and where there is none, of the first.
+  projections.sort((a, b) => Number(Number(b.number) === 2) - Number(Number(a.number) === 2));
+  for (const { number, p } of projections) rectified(found, lines, number, p);
+  for (const [key, k] of lines) raw(found, lines, key, k);
+  if (projections.length > 0) lidar(found, lines, projections);
+  else alone(found, lines);
+  return found.done("a calibration of KITTI");
+}
+
+const nameOf = (number: string): string => `image_${number.padStart(/^\d\d$/.test(number) ? 2 : 1, "0")}`;
+const isColour = (number: string): boolean => Number(number) === 2;
+
+function rectified(found: Findings, lines: Lines, number: string, p: Numbers): void {
+  const [width, height] = lines.get(`S_rect_${number}`) ?? [];
+  found.camera(
+    {
+      ...{ name: nameOf(number), focal: [p[0] ?? NaN, p[5] ?? NaN], centre: [p[2] ?? NaN, p[6] ?? NaN], skew: p[1] },
+      ...{ width, height },
+    },
+    // Depth maps of its benchmarks are registered to camera 2.
+    isColour(number) ? "both" : "colour",
+  );
+}
+
+/** Of raw recordings that were not rectified. */
+function raw(found: Findings, lines: Lines, key: string, k: Numbers): void {
+  const number = /^K_(\d\d)$/.exec(key)?.[1];
+  if (number === undefined || k.length !== 9) return;
+  const [width, height] = lines.get(`S_${number}`) ?? [];
+  found.camera(
+    {
+      ...{
+        name: `${nameOf(number)} (unrectified)`,
+        focal: [k[0] ?? NaN, k[4] ?? NaN],
+        centre: [k[2] ?? NaN, k[5] ?? NaN],
+      },
+      ...{ skew: k[1], distortion: lines.get(`D_${number}`) ?? [], width, height },
+    },
+    "colour",
+  );
+  const [r, t] = [lines.get(`R_${number}`), lines.get(`T_${number}`)];
+  if (r?.length !== 9 || t?.length !== 3 || number === "00") return;
+  found.pose(r, t, { name: `cam${number} from cam00`, from: "cam00", to: `cam${number}` });
+}
+
+const poseAt = (lines: Lines, ...keys: string[]): Pose | undefined => {
+  const m = keys.map((key) => lines.get(key)).find((values) => values?.length === 12);
+  if (m === undefined) return undefined;
+  const [r, t] = parted(m);
+  return poseOf(rotationOf(r, []), t);
+};
+
+/** The LiDAR into the frame of each rectified picture. */
+function lidar(found: Findings, lines: Lines, projections: { number: string; way: Pose | undefined }[]): void {
+  const velo = poseAt(lines, "Tr_velo_to_cam", "Tr_velo_cam", "Tr_velo_to_cam_0", "Tr");
+  const r = lines.get("R0_rect") ?? lines.get("R_rect") ?? lines.get("R_rect_00");
+  const rect = poseOf(r?.length === 9 ? rotationOf(r, found.warnings) : [1, 0, 0, 0, 1, 0, 0, 0, 1], [0, 0, 0]);
+  for (const { number, way } of projections) {
+    // Converters of other datasets write one pose for each camera, whose projections have no baseline.
+    const own = poseAt(lines, `Tr_velo_to_cam_${number}`) ?? velo;
+    if (own === undefined || way === undefined) continue;
+    const name = nameOf(number);
+    found.poses.push({
+      name: `${name} from velodyne`,
+      from: "velodyne",
+      to: name,
+      pose: chained(way, chained(rect, own)),
+    });
+  }
+  // Of raw recordings the LiDAR's pose is in a file of its own, and leads into camera 0.
+  if (velo === undefined)
+    for (const { number, way } of projections) {
+      const to = nameOf(number);
+      if (way) found.poses.push({ name: `${to} from cam00`, from: "cam00", to, pose: chained(way, rect) });
+    }
+  const imu = poseAt(lines, "Tr_imu_to_velo", "Tr_imu_velo");
+  if (imu) found.poses.push({ name: "velodyne from imu", from: "imu", to: "velodyne", pose: imu });
+}
+
+/** Poses without projections beside them lead into camera 0 before it is rectified. */
+function alone(found: Findings, lines: Lines): void {
+  const [r, t] = [lines.get("R"), lines.get("T")];
+  // The file of the LiDAR has two members that the one of the inertial unit lacks.
+  const isLidar = lines.has("delta_f") || lines.has("delta_c");
+  const [from, to] = isLidar ? ["velodyne", "cam00"] : ["imu", "velodyne"];
+  if (r?.length === 9 && t?.length === 3) found.pose(r, t, { name: `${to} from ${from}`, from, to });
+  const velo = poseAt(lines, "Tr_velo_to_cam", "Tr_velo_cam", "Tr");
+  if (velo) found.poses.push({ name: "cam00 from velodyne", from: "velodyne", to: "cam00", pose: velo });
+}

@@ -1,0 +1,217 @@
+/**
+ * Lenses and sizes that stand beside their cameras, not in them: "rgbDistortion" beside "rgbIntrinsic", a section [image] beside the
+ * camera's. Each goes to the one camera that it can belong to, by its label or because there is no other; what is left over is warned of.
+ */
+import { type ReaderWarning, warning } from "../warnings.js";
+import type { RawCamera } from "./cameras.js";
+import { isLens, member, wordsOf } from "./names.js";
+import { type Node, type Numbers, isNode, matrixOf, numberOf } from "./numbers.js";
+
+/** Where an object stands in its file. */
+export interface Place {
+  node: Node;
+  parent: Place | undefined;
+  depth: number;
+}
+
+/** A camera before it is checked, with where it stands. */
+export interface FoundCamera {
+  raw: RawCamera;
+  label: string;
+  place: Place;
+}
+interface Lens {
+  key: string;
+  label: string;
+  place: Place;
+  distortion: Numbers;
+  model: string | undefined;
+}
+interface Size {
+  key: string;
+  label: string;
+  place: Place;
+  width: number;
+  height: number;
+}
+
+/** Shorter sides than this are of boards and windows of a search, pixels. */
+const SHORTEST_SIDE = 32;
+const NAMES = ["k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"];
+/** A lens without one of these has no coefficients. */
+const LISTS = ["coefficients", "coeffs", "coefs", "params", "parameters", "values", "data", "d", "k"];
+const NOT_OF_IMAGES = /\b(?:board|pattern|square|window|marker|grid|chessboard|tag|sensor|block|crop|roi)\b/;
+
+/** Coefficients that are members, by OpenCV's names and in its order; a fisheye has k1 to k4 alone. */
+export function coefficientsOf(node: Node, model: string | undefined): Numbers | undefined {
+  const singles = NAMES.map((key) => numberOf(member(node, key)));
+  if (singles.every((value) => value === undefined)) return undefined;
+  const isFisheye = /fisheye|kannala|equi/i.test(model ?? "");
+  const used = isFisheye ? [0, 1, 4, 5].map((index) => singles[index]) : singles;
+  return used.map((value) => value ?? 0);
+}
+
+const textOf = (value: unknown): string | undefined => (typeof value === "string" && value !== "" ? value : undefined);
+
+/** Radial and tangential coefficients in lists of their own. */
+function radialOf(node: Node): Numbers | undefined {
+  const radial = matrixOf(member(node, "radial", "radialdistortion"))?.values;
+  if (radial === undefined || radial.length > 6) return undefined;
+  const [k1 = 0, k2 = 0, ...more] = radial;
+  const [p1 = 0, p2 = 0] = matrixOf(member(node, "tangential", "tangentialdistortion"))?.values ?? [];
+  return [k1, k2, p1, p2, ...more];
+}
+
+/** The coefficients of a lens and its model, where a value is one. */
+function lensOf(value: unknown): Pick<Lens, "distortion" | "model"> | undefined {
+  const listed = matrixOf(value)?.values;
+  if (listed !== undefined) return listed.length > 1 ? { distortion: listed, model: undefined } : undefined;
+  if (!isNode(value)) return undefined;
+  const model = textOf(member(value, "model", "type", "distortionmodel", "name"));
+  const distortion = coefficientsOf(value, model) ?? radialOf(value) ?? matrixOf(member(value, ...LISTS))?.values;
+  return distortion && { distortion, model };
+}
+
+/** Two numbers of a list or of a text, "640x480". */
+function sides(value: unknown): Numbers | undefined {
+  const written = typeof value === "string" ? /^\s*(\d{1,5})\s*[x×*]\s*(\d{1,5})\s*$/.exec(value) : null;
+  const both = written ? [Number(written[1]), Number(written[2])] : matrixOf(value)?.values;
+  return both?.length === 2 && both.every((side) => Number.isInteger(side) && side >= SHORTEST_SIDE) ? both : undefined;
+}
+
+const WIDTH =
+  /^(.*?) ?\b(?:image width|img width|image w|img w|img dist w|img width|width|w|cols|resolution x)\b ?(.*)$/;
+const HEIGHTS: Record<string, string> = { width: "height", w: "h", cols: "rows", x: "y" };
+
+/** The sizes that are members of an object: "width" with its "height", "image_size" and the like. */
+function sizesOf(node: Node, place: Place): Size[] {
+  const keys = Object.keys(node);
+  const byWords = new Map(keys.map((key) => [wordsOf(key).join(" "), key]));
+  const found: Size[] = [];
+  for (const [words, key] of byWords) {
+    const both = /\b(?:resolution|size|dimensions?)\b/.test(words) ? sides(node[key]) : undefined;
+    const label = words.replace(/\b(?:image|img|resolution|size|dimensions?)\b/g, "").trim();
+    if (both !== undefined) found.push({ key, label, place, width: both[0] ?? 0, height: both[1] ?? 0 });
+    const each = /\b(?:resolution|size|dimensions?)s?\b/.test(words) ? node[key] : undefined;
+    if (both === undefined && isNode(each))
+      for (const [name, value] of Object.entries(each)) {
+        const [width, height] = sides(value) ?? [];
+        if (width !== undefined && height !== undefined)
+          found.push({ key: `${key}.${name}`, label: wordsOf(name).join(" "), place, width, height });
+      }
+    const wide = WIDTH.exec(words);
+    if (wide === null) continue;
+    const other = words.replace(/\b(width|w|cols|x)\b(?!.*\b(?:width|w|cols|x)\b)/, (side) => HEIGHTS[side] ?? side);
+    const [width, height] = [numberOf(node[key]), numberOf(node[byWords.get(other) ?? ""])];
+    const size = sides([width, height]);
+    if (size !== undefined)
+      found.push({
+        key,
+        label: `${wide[1] ?? ""}${wide[2] ?? ""}`.trim(),
+        place,
+        width: width ?? 0,
+        height: height ?? 0,
+      });
+  }
+  return found.filter((size) => !NOT_OF_IMAGES.test(size.label));
+}
+
+const isBelow = (place: Place | undefined, top: Place): boolean => {
+  for (let each = place; each !== undefined; each = each.parent) if (each.node === top.node) return true;
+  return false;
+};
+
+/** Words that name no camera of several. */
+const plainLabel = (label: string): string =>
+  label
+    .split(" ")
+    .filter((word) => !/^(?:cam|camera|param|params|image|img)$/.test(word))
+    .join(" ");
+const isSame = (a: string, b: string): boolean => plainLabel(a) === plainLabel(b);
+
+export class Leftovers {
+  readonly #lenses: Lens[] = [];
+  readonly #sizes: Size[] = [];
+
+  /** Notes what of an object looks like a lens or a size; `used` are members that a camera of it has taken. */
+  collect(place: Place, used: ReadonlySet<string>): void {
+    const { node } = place;
+    for (const key of Object.keys(node)) {
+      const label = used.has(key) ? undefined : isLens(key);
+      if (label === undefined) continue;
+      const lens = lensOf(node[key]);
+      if (lens !== undefined) this.#lenses.push({ key, label, place, ...lens });
+      else if (isNode(node[key])) this.#eachOf(node[key], key, place);
+    }
+    if (numberOf(node.rows) === undefined || node.data === undefined) this.#sizes.push(...sizesOf(node, place));
+  }
+
+  /** "distortion": { "color": [..], "depth": [..] } */
+  #eachOf(node: Node, key: string, place: Place): void {
+    for (const each of Object.keys(node)) {
+      const lens = lensOf(node[each]);
+      if (lens !== undefined)
+        this.#lenses.push({ key: `${key}.${each}`, label: wordsOf(each).join(" "), place, ...lens });
+    }
+  }
+
+  /** Gives cameras what they lack, and warns of what none can have. */
+  assign(cameras: FoundCamera[], warnings: ReaderWarning[]): void {
+    const unused = this.#lenses.filter((lens) => !this.#giveLens(lens, cameras));
+    for (const { key, distortion } of unused)
+      if (distortion.some((value) => value !== 0))
+        warnings.push(
+          warning(
+            "distortion-unused",
+            `"${key}" looks like the distortion of a lens and was not used: ${cameras.length === 0 ? "the file has no camera" : "nothing says which camera it belongs to"}. Write it into its camera.`,
+            { name: key },
+          ),
+        );
+    this.#giveSizes(cameras, warnings);
+  }
+
+  #giveLens(lens: Lens, cameras: FoundCamera[]): boolean {
+    const below = cameras.filter(({ place }) => isBelow(place, lens.place));
+    const alike = below.filter(({ label }) => isSame(label, lens.label));
+    const among = [alike, lens.label === "" ? below : [], this.#lenses.length === 1 ? cameras : []];
+    const camera = among.find((some) => some.length === 1)?.[0];
+    if (camera === undefined || camera.raw.distortion !== undefined) return false;
+    camera.raw.distortion = lens.distortion;
+    camera.raw.model = lens.model ?? camera.raw.model;
+    return true;
+  }
+
+  #giveSizes(cameras: FoundCamera[], warnings: ReaderWarning[]): void {
+    const isBare = ({ raw }: FoundCamera) => raw.width === undefined && raw.height === undefined;
+    const give = ({ width, height }: Size, some: FoundCamera[]) => {
+      for (const { raw } of some.filter(isBare)) Object.assign(raw, { width, height });
+    };
+    // The innermost first, so that an outer size is for cameras that have none nearer.
+    const inner = [...this.#sizes].reverse();
+    for (const size of inner)
+      give(
+        size,
+        cameras.filter(({ place, label }) => isBelow(place, size.place) && isSame(label, size.label)),
+      );
+    for (const size of inner)
+      if (plainLabel(size.label) === "")
+        give(
+          size,
+          cameras.filter(({ place }) => isBelow(place, size.place)),
+        );
+    const others = this.#sizes.filter((size) => cameras.every(({ place }) => place.node !== size.place.node));
+    const distinct = [...new Map(others.map((size) => [`${size.width}x${size.height}`, size])).values()];
+    const [only] = distinct;
+    const isOfAll = cameras.length === 1 || others.length === cameras.length;
+    if (isOfAll && distinct.length === 1 && only !== undefined) give(only, cameras);
+    if (!cameras.some(isBare) || distinct.length === 0) return;
+    const sizes = distinct.slice(0, 4).map(({ key, width, height }) => `"${key}" (${width}x${height})`);
+    warnings.push(
+      warning(
+        "size-unused",
+        `The file names the size ${sizes.join(", ")}, and nothing says which camera has it. Write width and height into each camera.`,
+        { sizes: distinct.map(({ width, height }) => [width, height]) },
+      ),
+    );
+  }
+}

@@ -1,0 +1,25 @@
+/**
+ * What Orbbec's SDK and viewer write: the intrinsics of both cameras, and a transform of the depth camera into the colour camera in
+ * millimetres, in JSON ("rgbIntrinsic", "transform") or in sections ("ColorIntrinsic", "D2CTransformParam").
+ */
+import type { Context } from "./motions.js";
+import { type Node, isNode, matrixOf } from "./numbers.js";
+
+const COLOUR = /^(?:rgb|colou?r)_?intrinsics?$/i;
+const DEPTH = /^depth_?intrinsics?$/i;
+const TRANSFORM = /^(?:transform|d2c_?transform(?:_?param)?|d2c_?extrinsics?|extrinsics?)$/i;
+/** Translations of more than this are in millimetres, as the SDK has them; no two cameras of a product are a metre apart. */
+const LONGEST = 1;
+
+/** Of the member of an object by this name: its frames and its unit, if the object is one of Orbbec's. */
+export function orbbecContext(node: Node, key: string): Context | undefined {
+  if (!TRANSFORM.test(key)) return undefined;
+  const keys = Object.keys(node);
+  if (!keys.some((each) => COLOUR.test(each)) || !keys.some((each) => DEPTH.test(each))) return undefined;
+  const value = node[key];
+  if (!isNode(value)) return undefined;
+  const listed = matrixOf(value.trans ?? value.translation)?.values;
+  const shift = listed ?? ["trans0", "trans1", "trans2"].map((each) => Number(value[each]));
+  const isLong = Math.hypot(...shift) > LONGEST;
+  return { from: "depth", to: "color", ...(isLong && { unit: 1e-3 }) };
+}

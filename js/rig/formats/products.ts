@@ -1,0 +1,89 @@
+/**
+ * Files of products whose numbers mean more than their names say: the unit, the order of a quaternion, the frames, the modes. Each has a
+ * reader of its own, which is asked before the walk that knows members by their names.
+ */
+import { isAria, readAria } from "./aria.js";
+import {
+  isArgoverse,
+  isArgoverse2,
+  isArgoverse2Table,
+  readArgoverse,
+  readArgoverse2,
+  readArgoverse2Table,
+} from "./argoverse.js";
+import { isAutoware, readAutoware } from "./autoware.js";
+import { isAzureKinect, isAzurePrint, readAzureKinect, readAzurePrint } from "./azure-kinect.js";
+import { isBasalt, readBasalt } from "./basalt.js";
+import { isBop, readBop } from "./bop.js";
+import { isDepthai, readDepthai } from "./depthai.js";
+import { isHandEye, readHandEye } from "./easy-handeye.js";
+import type { Findings } from "./findings.js";
+import { isKinect2, readKinect2 } from "./kinect-v2.js";
+import { isKitti, readKitti } from "./kitti.js";
+import { isBouguet, isMatlab, readBouguet, readMatlab } from "./matlab.js";
+import { isMiddlebury, readMiddlebury } from "./middlebury.js";
+import { isMrcal, readMrcal } from "./mrcal.js";
+import { isNerf, readNerf } from "./nerf.js";
+import { isNode, type Node } from "./numbers.js";
+import { isNuscenes, readNuscenes } from "./nuscenes.js";
+import { isEnumeration, isPrinted, isSnapshot, readEnumeration, readPrinted, readSnapshot } from "./realsense.js";
+import { isRecord3d, readRecord3d } from "./record3d.js";
+import { isScannet, readScannet } from "./scannet.js";
+import { isVlcal, readVlcal } from "./vlcal.js";
+import { isWaymo, isWaymoText, readWaymo, readWaymoText } from "./waymo.js";
+import { isZed, readZed } from "./zed.js";
+import { isZivid, readZivid } from "./zivid.js";
+
+type Product<Of> = [format: string, is: (whole: Of) => boolean, read: (whole: Of) => Findings];
+
+const TEXTS: Product<string>[] = [
+  ["RealSense's streams", isEnumeration, readEnumeration],
+  ["a print of pyrealsense2", isPrinted, readPrinted],
+  ["a snapshot of RealSense's viewer", isSnapshot, readSnapshot],
+  ["an Azure Kinect's printed calibration", isAzurePrint, readAzurePrint],
+  ["a ZED's calibration", isZed, readZed],
+  ["a scene's text of ScanNet", isScannet, readScannet],
+  ["a result of Bouguet's toolbox", isBouguet, readBouguet],
+  ["a calibration of Waymo's dataset", isWaymoText, readWaymoText],
+  ["a table of Argoverse 2", isArgoverse2Table, readArgoverse2Table],
+  ["a calibration of KITTI", isKitti, readKitti],
+  ["Middlebury's calibration of a stereo pair", isMiddlebury, readMiddlebury],
+];
+
+const TREES: Product<Node>[] = [
+  ["a calibration of direct_visual_lidar_calibration", isVlcal, readVlcal],
+  ["a calibration of depthai", isDepthai, readDepthai],
+  ["an Azure Kinect's calibration", isAzureKinect, readAzureKinect],
+  ["a Kinect v2's intrinsics", isKinect2, readKinect2],
+  ["a calibration of Argoverse", isArgoverse, readArgoverse],
+  ["a calibration of Waymo's dataset", isWaymo, readWaymo],
+  ["a calibration of Project Aria", isAria, readAria],
+  ["a calibration of Basalt", isBasalt, readBasalt],
+  ["mrcal's cameramodel", isMrcal, readMrcal],
+  ["MATLAB's parameters", isMatlab, readMatlab],
+  ["a file of Zivid", isZivid, readZivid],
+  ["a result of easy_handeye", isHandEye, readHandEye],
+  ["cameras in the world (nerfstudio)", isNerf, readNerf],
+  ["the metadata of Record3D", isRecord3d, readRecord3d],
+  ["a camera of BOP", isBop, readBop],
+  ["a sensor kit's calibration of Autoware", isAutoware, readAutoware],
+];
+
+type Found = Findings & { format: string };
+
+const named = (found: Findings, format: string): Found => Object.assign(found, { format });
+
+/** What a text of a product holds; nothing where it is of none. */
+export function productOfText(text: string): Found | undefined {
+  const [format, , read] = TEXTS.find(([, is]) => is(text)) ?? [];
+  return format !== undefined && read ? named(read(text), format) : undefined;
+}
+
+/** What an object of a product holds, or the only document of a YAML file. */
+export function productOfTree(value: unknown): Found | undefined {
+  const whole: unknown = Array.isArray(value) && value.length === 1 ? value[0] : value;
+  const [format, , read] = (isNode(whole) ? TREES.find(([, is]) => is(whole)) : undefined) ?? [];
+  if (format !== undefined && read && isNode(whole)) return named(read(whole), format);
+  if (Array.isArray(value) && isArgoverse2(value)) return named(readArgoverse2(value), "a table of Argoverse 2");
+  return isNuscenes(value) ? named(readNuscenes(value), "a table of nuScenes") : undefined;
+}

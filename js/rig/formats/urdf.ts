@@ -1,0 +1,98 @@
+/**
+ * Robots' descriptions, URDF and xacro: a joint's origin carries points of the child's link into the parent's, by a shift and by roll, pitch
+ * and yaw about fixed axes. Properties and their arithmetic are evaluated; macros are not, and joints that depend on their parameters are
+ * named and left out.
+ */
+import { badFile } from "../../errors.js";
+import { evaluate } from "./expression.js";
+import { Findings } from "./findings.js";
+import { wayBetween } from "./frames.js";
+import { type Numbers, numberOf } from "./numbers.js";
+import { ofYawPitchRoll } from "./poses.js";
+import type { Element } from "./xml.js";
+
+const MOST_JOINTS = 5000;
+const MOST_NESTED = 10;
+
+function* all(element: Element): Generator<Element> {
+  for (const child of element.children) {
+    yield child;
+    yield* all(child);
+  }
+}
+
+export const isUrdf = (root: Element): boolean => root.children.some(({ tag }) => tag === "robot");
+
+/** Values of properties by name; those that depend on others are evaluated when they are asked for. */
+function properties(root: Element): (name: string) => number | undefined {
+  const texts = new Map<string, string>();
+  for (const { tag, attributes } of all(root))
+    if (/^(?:xacro:)?(?:property|arg)$/.test(tag) && attributes.name !== undefined)
+      texts.set(attributes.name, attributes.value ?? attributes.default ?? "");
+  let depth = 0;
+  const valueOf = (name: string): number | undefined => {
+    const text = texts.get(name);
+    if (text === undefined || depth > MOST_NESTED) return undefined;
+    depth++;
+    const value = numberOf(text) ?? evaluate(text.replace(/^\$\{(.*)\}$/s, "$1"), valueOf);
+    depth--;
+    return value;
+  };
+  return valueOf;
+}
+
+/** Three numbers, each a number or an expression; nothing where a name in them has no value. */
+function triple(text: string | undefined, valueOf: (name: string) => number | undefined): Numbers | undefined {
+  if (text === undefined) return [0, 0, 0];
+  const values = (text.match(/\$\{[^}]*\}|\$\([^)]*\)|\S+/g) ?? []).map((part) => {
+    const [, inner, name] = /^\$\{(.*)\}$/s.exec(part) ?? /^\$\((?:arg\s+)?()(.*)\)$/s.exec(part) ?? [];
+    if (inner) return evaluate(inner, valueOf);
+    return name ? valueOf(name.trim()) : numberOf(part);
+  });
+  return values.length === 3 && values.every((value) => value !== undefined) ? values : undefined;
+}
+
+export function readUrdf(root: Element): Findings {
+  const found = new Findings();
+  const valueOf = properties(root);
+  const missing: string[] = [];
+  let count = 0;
+  for (const joint of all(root)) {
+    if (joint.tag !== "joint" || !joint.children.some(({ tag }) => tag === "parent")) continue;
+    if (++count > MOST_JOINTS) throw badFile(`it has more than ${MOST_JOINTS} joints`);
+    const child = (tag: string) => joint.children.find((each) => each.tag === tag);
+    const link = (tag: string) => (child(tag)?.attributes.link ?? "").replace(/\$[{(](?:arg )?([^})]*)[})]/g, "$1");
+    const [from, to] = [link("child"), link("parent")];
+    const origin = child("origin");
+    const hidden = joint.children.some(({ tag }) => tag.includes("insert_block")) && origin === undefined;
+    const [xyz, rpy] = [triple(origin?.attributes.xyz, valueOf), triple(origin?.attributes.rpy, valueOf)];
+    const name = joint.attributes.name ?? `${from} in ${to}`;
+    if (hidden || xyz === undefined || rpy === undefined) missing.push(name);
+    else found.pose(ofYawPitchRoll(rpy.slice().reverse()), xyz, { name, from, to });
+  }
+  if (missing.length > 0)
+    found.warn(
+      "pose-left-out",
+      `The origin of ${missing.length === 1 ? "the joint" : `${missing.length} joints, among them`} "${missing[0]?.slice(0, 60)}" depends on a macro's parameters: expand the file by xacro first.`,
+    );
+  if (found.poses.length === 0)
+    throw badFile(
+      missing.length > 0
+        ? "it is a robot's description (URDF) whose joints have origins that depend on a macro's parameters; expand it by xacro first"
+        : "it is a robot's description (URDF) without a joint that has an origin",
+    );
+  toCameras(found);
+  return found;
+}
+
+/** The way between the cameras goes first. */
+export function toCameras(found: Findings): void {
+  const way = wayBetween(found.poses);
+  if (way === undefined) return;
+  found.poses.unshift(way.pose);
+  if (way.turned.length > 0)
+    found.warn(
+      "pose-assumed",
+      `The frame ${way.turned.join(" and ")} is no optical one and was taken to look along its x axis with z up, as ROS has it.`,
+    );
+}

@@ -1,0 +1,37 @@
+//! The jackknife of a registration by local contrast: [`jackknife`](crate::pose::jackknife).
+
+use super::equations::Lights;
+use super::objective::State;
+use super::problem::ContrastProblem;
+use super::registration::ContrastRegistration;
+use crate::pose::increment::{PoseMatrix, PoseVector};
+use crate::pose::jackknife::{SECTORS, STEPS, covariance, sectors};
+use crate::pose::similarity::Similarity;
+
+/// Weight that a sample keeps where its sector is left out: one of none would have no local mean.
+const LEFT_OUT: f32 = 1e-4;
+
+impl ContrastRegistration {
+    /// What errors that differ between sectors add to the covariance of a pose.
+    pub(super) fn jackknife(&mut self, problem: &ContrastProblem<'_>, pose: &Similarity) -> PoseMatrix {
+        let samples = &self.objective.samples;
+        let points = samples.list.iter().map(|sample| pose.apply(sample.point));
+        let sectors = sectors(points, pose.apply(samples.centre));
+        let weights = samples.weight.clone();
+        let mut moves = [PoseVector::zeros(); SECTORS];
+        for (sector, moved) in moves.iter_mut().enumerate() {
+            let samples = &mut self.objective.samples;
+            samples.weight.copy_from_slice(&weights);
+            for (sample, _) in samples.list.iter().zip(&sectors).filter(|(_, other)| **other == sector) {
+                samples.weight[sample.cell] *= LEFT_OUT;
+            }
+            let mut state = State { pose: *pose, light: Lights::default() };
+            for _ in 0..STEPS {
+                let Some(step) = self.step_by_instruments(problem, &mut state) else { break };
+                *moved += step;
+            }
+        }
+        self.objective.samples.weight.copy_from_slice(&weights);
+        covariance(&moves)
+    }
+}
