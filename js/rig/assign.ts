@@ -284,7 +284,8 @@ export function addCameras(folder: RigFolder, { isAligned = false, cameraOf }: H
   const [some, other] = chosen(cameras, first, warnings);
   const colour = forSize(some, image, "colour images", warnings);
   const isCarried = isAligned && isSame && colour !== undefined && colour !== other;
-  const range = isCarried ? colour : forSize(other, depth, "depth maps", warnings);
+  // A cloud needs no camera, and has the size of none where it was sorted from a scan.
+  const range = isCarried ? colour : depth.points ? other : forSize(other, depth, "depth maps", warnings);
   const isRegistered =
     colour !== undefined && colour.takes === "both" && colour === range && depth.points === undefined;
   if (isCarried) align(folder, colour, "The names of the depth maps say that they are aligned with the colour images");

@@ -16,6 +16,7 @@ export type ReaderCode =
   | "points-sorted"
   | "point-times"
   | "lidar-axes"
+  | "pose-turned"
   // Colour images and masks
   | "files-swapped"
   | "image-turned"

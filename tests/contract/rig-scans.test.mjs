@@ -195,6 +195,30 @@ describe("scans in a folder and a check", () => {
     assert.ok(CODES(folder).includes("points-sorted"));
   });
 
+  test("a pose for a cloud in a camera's axes is turned to those of the scan, and one for the scan's is kept", async () => {
+    const { rotation: r, translation: t } = VIEW;
+    const matrix = (rows) =>
+      [0, 1, 2].map((row) => [...rows.slice(3 * row, 3 * row + 3), t[row]]).concat([[0, 0, 0, 1]]);
+    const scan = [
+      { name: "image_2/000000.ppm", bytes: await picture() },
+      { name: "velodyne/000000.bin", bytes: kitti() },
+    ];
+    for (const [rows, isTurned] of [
+      [[1, 0, 0, 0, 1, 0, 0, 0, 1], true],
+      [r, false],
+    ]) {
+      const pose = { name: "rig.json", bytes: text(JSON.stringify({ depth_to_color: matrix(rows) })) };
+      const { poses, warnings } = await readRigFolder([...scan, pose]);
+      assert.deepEqual([...poses[0].pose.rotation.map((value) => value + 0)], r);
+      assert.deepEqual([...poses[0].pose.translation], t);
+      const said = warnings.filter(({ code }) => code === "pose-turned");
+      assert.deepEqual(
+        said.map(({ isDoubt }) => isDoubt),
+        isTurned ? [true] : [],
+      );
+    }
+  });
+
   test("the true pose of a scan is not off, in its own axes, turned to a camera's and cut to the view alike", async () => {
     const { image } = await readRigFile({ name: "a.ppm", bytes: await picture() }, { as: "colour" });
     image.camera = VIEW.camera;
