@@ -122,54 +122,60 @@ function shapeOf(listed: string): Shape {
   );
 }
 
+interface Header {
+  /** NumPy's name of the type, without the order of bytes. */
+  type: string;
+  kind: Kind;
+  isBigEndian: boolean;
+  byColumns: boolean;
+  shape: Shape;
+  /** Where the data begin. */
+  end: number;
+}
+
+function headerOf(bytes: Uint8Array): Header {
+  if (bytes.length < SHORTEST) throw bad("this .npy file is cut off in its header");
+  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  const short = view.getUint8(6) === 1;
+  const from = short ? SHORTEST : SHORTEST + 2;
+  const end = from + (short ? view.getUint16(8, true) : bytes.length >= from ? view.getUint32(8, true) : Infinity);
+  if (end > bytes.length) throw bad("this .npy file is cut off in its header");
+  const header = new TextDecoder("latin1").decode(bytes.subarray(from, end));
+  const [, plain, fields] = /'descr': (?:'([^']*)'|(\[.*?\]))/s.exec(header) ?? [];
+  const written = plain ?? fields ?? "unknown";
+  const [, order = "", type = ""] = /^([<>|=]?)([fiub]\d)$/.exec(written) ?? [];
+  const kind = Object.hasOwn(KINDS, type) ? KINDS[type] : undefined;
+  if (kind === undefined) throw bad(refusal(written));
+  const columns = /'fortran_order': (True|False)/.exec(header)?.[1];
+  if (!columns) throw bad("this .npy file has no fortran_order");
+  const shape = shapeOf(/'shape': \(([^)]*)\)/.exec(header)?.[1] ?? "");
+  return { type, kind, isBigEndian: order === ">", byColumns: columns === "True", shape, end };
+}
+
+/** Three planes of which none has a value below zero are no cloud, and where some are above 1, no colours. */
+const isStack = (data: Pixels): boolean =>
+  !data.some((value) => value < 0) && data.some((value) => value > 1 && value < Infinity);
+
 /**
  * Reads rows x columns, or rows x columns x channels, in either order; floats of all sizes and whole numbers that may be negative or longer
  * than 16 bits become 32-bit floats.
  */
 export function readNpy(bytes: Uint8Array): Raster<Pixels> & { type: string } {
-  if (bytes.length < SHORTEST) throw bad("this .npy file is cut off in its header");
-  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
-  const short = view.getUint8(6) === 1;
-  const from = short ? SHORTEST : SHORTEST + 2;
-  const until = from + (short ? view.getUint16(8, true) : bytes.length >= from ? view.getUint32(8, true) : Infinity);
-  if (until > bytes.length) throw bad("this .npy file is cut off in its header");
-  const header = new TextDecoder("latin1").decode(bytes.subarray(from, until));
-
-  const type =
-    /'descr': (?:'([^']*)'|(\[.*?\]))/s
-      .exec(header)
-      ?.slice(1)
-      .find((each) => each !== undefined) ?? "unknown";
-  const [, order = "", name = ""] = /^([<>|=]?)([fiub]\d)$/.exec(type) ?? [];
-  const kind = Object.hasOwn(KINDS, name) ? KINDS[name] : undefined;
-  if (kind === undefined) throw bad(refusal(type));
-  const columns = /'fortran_order': (True|False)/.exec(header)?.[1];
-  if (!columns) throw bad("this .npy file has no fortran_order");
-  const { height, width, channels, isChannelFirst } = shapeOf(/'shape': \(([^)]*)\)/.exec(header)?.[1] ?? "");
+  const { type, kind, isBigEndian, byColumns, shape, end } = headerOf(bytes);
+  const { height, width, channels, isChannelFirst } = shape;
   const count = height * width * channels;
   // A copy, because typed arrays want aligned memory; Node's Buffer would not make one by its own slice.
-  const body = new Uint8Array(bytes.subarray(until));
+  const body = new Uint8Array(bytes.subarray(end));
   if (body.byteLength < count * kind.size)
     throw bad(`this .npy file is cut off: ${body.byteLength} of ${count * kind.size} bytes`);
-  if (order === ">" && kind.size > 1) swap(body, kind.size);
-  const data = kind.read(body.buffer, count);
+  if (isBigEndian && kind.size > 1) swap(body, kind.size);
+  const read = kind.read(body.buffer, count);
   if (!isChannelFirst)
-    return {
-      width,
-      height,
-      channels,
-      type: name,
-      data: columns === "True" ? inRows(data, height, width, channels) : data,
-    };
-  if (
-    channels === 3 &&
-    kind.size > 1 &&
-    !data.some((value) => value < 0) &&
-    data.some((value) => value > 1 && value < Infinity)
-  )
+    return { width, height, channels, type, data: byColumns ? inRows(read, height, width, channels) : read };
+  if (channels === 3 && kind.size > 1 && isStack(read))
     throw bad(
       "this .npy file has 3 planes without a value below zero: a stack of 3 pictures? Save each of them as a file",
     );
-  const inOrder = columns === "True" ? inRows(data, channels, height, width) : data;
-  return { width, height, channels, type: name, data: channelsLast(inOrder, channels) };
+  const inOrder = byColumns ? inRows(read, channels, height, width) : read;
+  return { width, height, channels, type, data: channelsLast(inOrder, channels) };
 }

@@ -133,6 +133,17 @@ export const OPTIONS: RowsOf<PlainOptions> = {
     default: 0.01,
     page: { group: "loop", label: "Stop below", link: "stop", hint: "Change of the rotation that counts as settled." },
   },
+  tolerance: {
+    kind: "number",
+    above: 0,
+    unit: "deg",
+    default: 1.5,
+    page: {
+      group: "loop",
+      label: "Tolerance",
+      hint: "A rotation less certain than this (one sigma) is ambiguous.",
+    },
+  },
   /** More are taken for a typing error. */
   maxIterations: {
     kind: "whole",

@@ -384,6 +384,18 @@ function honestyAims(row) {
   ];
 }
 
+/** In 95 % of the cases a pose moves by less than its sigma. */
+const perturbationAims = (rows = []) => [
+  aim(
+    "perturbation",
+    "moves by less than its sigma",
+    share(rows, ({ isWithin }) => isWithin),
+    ">=",
+    0.95,
+    rows.length,
+  ),
+];
+
 const exposureAims = (rows = []) => [
   aim(
     "exposure",
@@ -415,4 +427,5 @@ export const aims = (json) =>
     ...paintedAims("stress", json.stress),
     ...honestyAims(json.honesty),
     ...(json.exposure ? exposureAims(json.exposure) : []),
+    ...perturbationAims(json.perturbation),
   ].filter(({ rows }) => rows > 0);

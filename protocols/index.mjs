@@ -5,6 +5,7 @@ import { conditions } from "./conditions.mjs";
 import { honesty } from "./honesty.mjs";
 import { painted } from "./painted.mjs";
 import { pinhole, rgbd } from "./perspectives.mjs";
+import { perturbation } from "./perturbation.mjs";
 import { figure6, table1, table2A, table2B } from "./poses.mjs";
 import { albedo, figure7, photographs, table3 } from "./reals.mjs";
 import { sensors } from "./sensors.mjs";
@@ -30,6 +31,7 @@ export const TABLES = [
     stress,
     honesty,
     exposure,
+    perturbation,
     ablation,
   ],
 ];

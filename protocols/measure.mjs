@@ -3,6 +3,7 @@ import { sceneOf } from "./anywhere.mjs";
 import { judged, optionsOf, withRun } from "./runs.mjs";
 import { requestOf } from "./scenes.mjs";
 import { measureCamera } from "./cameras.mjs";
+import { measurePerturbed } from "./measure-perturbed.mjs";
 import { measurePainted } from "./painted.mjs";
 import { measureHonesty } from "./honesty.mjs";
 import { measureStress } from "./stress.mjs";
@@ -82,4 +83,5 @@ const KINDS = {
 };
 
 /** The figures of a cell, as plain JSON; whatever goes wrong is thrown. */
-export const measure = (cell, api, library) => KINDS[cell.kind](cell, api, library);
+export const measure = (cell, api, library) =>
+  cell.kind === "perturbed" ? measurePerturbed(cell, api, library, measure) : KINDS[cell.kind](cell, api, library);

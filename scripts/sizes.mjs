@@ -50,8 +50,8 @@ const CHECK_WASM = /bimodal_stereo_check_bg/;
 const RIG_FILES = /T_cn_cnm1/;
 /** The rendered example, which is loaded when it is asked for. */
 const EXAMPLE = /\/(?:rigs-|bimodal_stereo_rigs_bg)/;
-/** Readers that are loaded for a file of their kind: JPEG where there is no browser, YAML, rare compressions of EXR and TIFF. */
-const OTHERS = /\/(?:decoder|exr-others|tiff-codecs|js-yaml)-/;
+/** Readers that are loaded for a file of their kind: JPEG where there is no browser, YAML, TOML, JSON with comments, calibrations of products, rare compressions of EXR and TIFF. */
+const OTHERS = /\/(?:decoder|dist\d*|exr-others|products|tiff-codecs|js-yaml)-/;
 
 /** What runs a check, reads its files and writes them, all of it on demand; and what the example takes besides. */
 function checkFiles() {

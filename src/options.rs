@@ -139,6 +139,8 @@ pub struct Options {
     pub weights: Weights,
     /// The loop converges when the rotation changes by less than this, in degrees.
     pub stop_degrees: f64,
+    /// A rotation whose one sigma about any axis is above this, in degrees, ends "ambiguous" in place of "converged".
+    pub tolerance: f64,
     /// Accepted distance of a correspondence in image pixels; `None` follows the data (never under one pixel, the
     /// paper's value).
     pub correspondence_distance: Option<f64>,
@@ -165,6 +167,7 @@ impl Default for Options {
             shading: Shading::Surface,
             weights: Weights::default(),
             stop_degrees: 0.01,
+            tolerance: 1.5,
             correspondence_distance: None,
             max_iterations: 60,
             seed: 1,
@@ -234,6 +237,7 @@ impl Options {
             }
         }
         positive("options.stopDegrees", self.stop_degrees)?;
+        positive("options.tolerance", self.tolerance)?;
         if let Some(distance) = self.correspondence_distance {
             positive("options.correspondenceDistance", distance)?;
         }
@@ -269,6 +273,7 @@ mod tests {
             shading: Shading::Pixel,
             weights: Weights { prior: 1.0, unit: 2.0, light: 3.0, refinement: 4.0 },
             stop_degrees: 0.5,
+            tolerance: 0.7,
             correspondence_distance: Some(2.0),
             max_iterations: 7,
             seed: 9,

@@ -138,6 +138,9 @@ pub struct StepReport {
     pub uncertainty: Option<Uncertainty>,
 }
 
+/// A pose within so many sigmas of another is the same answer.
+const NEAR_SIGMAS: f64 = 3.0;
+
 impl StepReport {
     /// The report of iteration zero.
     pub(crate) fn at(pose: Similarity) -> Self {
@@ -155,6 +158,39 @@ impl StepReport {
             rivals: Vec::new(),
             uncertainty: None,
         }
+    }
+
+    /// Drops rivals within three sigmas of the pose: these are no other answers.
+    pub(crate) fn drop_near_rivals(&mut self) {
+        if let Some(uncertainty) = &self.uncertainty {
+            let (pose, reach) = (self.pose, NEAR_SIGMAS * uncertainty.largest_rotation());
+            self.rivals.retain(|rival| rival.degrees_to(&pose) > reach);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Rotation3, Vector3};
+
+    use super::*;
+    use crate::pose::Direction;
+
+    #[test]
+    fn a_rival_within_three_sigmas_is_none() {
+        let turned = |degrees: f64| Similarity {
+            rotation: Rotation3::new(Vector3::y() * degrees.to_radians()).into_inner(),
+            ..Similarity::identity()
+        };
+        let mut report = StepReport::at(turned(0.0));
+        report.rivals = vec![turned(20.0), turned(4.0), turned(7.0)];
+        report.drop_near_rivals();
+        assert_eq!(report.rivals.len(), 3, "nothing is known of the sigma");
+        let rotation_degrees = [0.3, 2.0, 0.1];
+        let weakest = Direction::default();
+        report.uncertainty = Some(Uncertainty { rotation_degrees, translation: [None; 3], scale: None, weakest });
+        report.drop_near_rivals();
+        assert_eq!(report.rivals, [turned(20.0), turned(7.0)]);
     }
 }
 

@@ -95,6 +95,10 @@ pub struct Arguments {
     #[arg(long, value_name = "WAY", default_value = "surface", value_parser = shading)]
     shading: Shading,
 
+    /// A rotation less certain than this, in degrees (one sigma), is ambiguous
+    #[arg(long, value_name = "DEGREES", default_value_t = Options::default().tolerance, value_parser = positive)]
+    tolerance: f64,
+
     /// Ends after so many iterations
     #[arg(long, value_name = "N", default_value_t = Options::default().max_iterations)]
     pub max_iterations: u32,
@@ -162,6 +166,7 @@ impl Arguments {
             scale: self.scale,
             registration: self.registration,
             shading: self.shading,
+            tolerance: self.tolerance,
             max_iterations: self.max_iterations,
             seed: self.seed,
             ..Options::default()

@@ -265,6 +265,7 @@ pub fn options(u: &mut Unstructured<'_>, of_scene: &Light) -> Result<Options> {
             refinement: number(u, refinement)?,
         },
         stop_degrees: number(u, usual.stop_degrees)?,
+        tolerance: number(u, usual.tolerance)?,
         correspondence_distance: perhaps(u, 1.0)?,
         max_iterations: if rarely(u, 8)? { u.arbitrary()? } else { usual.max_iterations },
         seed: if u.arbitrary()? { u.arbitrary()? } else { usual.seed },

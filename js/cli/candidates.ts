@@ -18,7 +18,12 @@ export function candidatesOf(readings: RigReading[], isInverted: boolean, warnin
   const candidates: Record<string, Pose> = {};
   for (const reading of readings) {
     const { name } = reading;
-    const poses = "poses" in reading ? (reading.poses ?? []) : [];
+    const all = "poses" in reading ? (reading.poses ?? []) : [];
+    const poses = all.filter(({ to }) => to !== "world");
+    if (poses.length < all.length && poses.length === 0)
+      throw new Mistake(
+        `${name}: it says where a camera stood in the world (camera to world), and holds no extrinsics`,
+      );
     if (poses.length === 0) throw new Mistake(`${name}: it holds no extrinsics`);
     poses.forEach((pose, index) => {
       const own = pose.name ?? (pose.from && pose.to ? `${pose.from} to ${pose.to}` : `pose ${index + 1}`);

@@ -192,7 +192,7 @@ function align(folder: RigFolder, colour: NamedCamera, why: string): void {
   folder.warnings.push(
     warning(
       "camera-shared",
-      `${why}: the colour camera's intrinsics are used for both, and the pose between them is the identity.`,
+      `${why}: one camera's intrinsics are used for both, and the pose between them is the identity.`,
     ),
   );
   const pose = poseOf([1, 0, 0, 0, 1, 0, 0, 0, 1], [0, 0, 0]);
@@ -248,6 +248,43 @@ export function ofPictures<T extends { cameras: NamedCamera[]; poses: NamedPose[
   };
 }
 
+/** The one camera of both pictures, where one of them was carried into the other's view. */
+function carriedInto(
+  { frames, cameras, poses }: RigFolder,
+  [colour, range]: (NamedCamera | undefined)[],
+  isAligned: boolean,
+) {
+  const [{ image, depth } = {}] = frames;
+  if (image === undefined || depth === undefined || depth.points !== undefined) return undefined;
+  if (image.width !== depth.width || image.height !== depth.height) return undefined;
+  /** Whether cameras of this side are known, and none of them has pictures of this size. */
+  const isNoneOf = (side: Side) => {
+    const own = taking(cameras, side);
+    return own.length > 0 && own.every((each) => !unsized(each) && !fits(each, image));
+  };
+  const size = `${image.width}x${image.height}`;
+  if (colour !== undefined && colour !== range) {
+    if (isAligned)
+      return { camera: colour, why: "The names of the depth maps say that they are aligned with the colour images" };
+    if (fits(colour, image) && isNoneOf("depth"))
+      return {
+        camera: colour,
+        why: `The depth maps have ${size} pixels as the colour images, which no depth camera of the files has, so that they were taken to be aligned with these`,
+      };
+  }
+  if (range !== undefined && colour !== undefined && colour !== range && fits(range, depth) && isNoneOf("colour"))
+    return {
+      camera: range,
+      why: `The colour images have ${size} pixels as the depth maps, which no colour camera of the files has, so that they were taken to be carried into the depth camera's view`,
+    };
+  if (colour !== undefined && colour === range && colour.takes === "both" && poses.length > 0)
+    return {
+      camera: colour,
+      why: "The depth maps were taken to be registered to the colour images, as is usual for this product",
+    };
+  return undefined;
+}
+
 /** What the names of a folder's files say. */
 export interface Hints {
   /** The depth maps were carried into the colour images. */
@@ -280,21 +317,13 @@ export function addCameras(folder: RigFolder, { isAligned = false, cameraOf }: H
   if (first === undefined || cameras.length === 0) return;
   if (cameraOf !== undefined && addOwn(folder, cameraOf)) return;
   const { image, depth } = first;
-  const isSame = image.width === depth.width && image.height === depth.height;
   const [some, other] = chosen(cameras, first, warnings);
-  const colour = forSize(some, image, "colour images", warnings);
-  const isCarried = isAligned && isSame && colour !== undefined && colour !== other;
+  const carried = carriedInto(folder, [some, other], isAligned);
+  const colour = forSize(carried?.camera ?? some, image, "colour images", warnings);
   // A cloud needs no camera, and has the size of none where it was sorted from a scan.
-  const range = isCarried ? colour : depth.points ? other : forSize(other, depth, "depth maps", warnings);
-  const isRegistered =
-    colour !== undefined && colour.takes === "both" && colour === range && depth.points === undefined;
-  if (isCarried) align(folder, colour, "The names of the depth maps say that they are aligned with the colour images");
-  else if (isRegistered && folder.poses.length > 0)
-    align(
-      folder,
-      colour,
-      "The depth maps were taken to be registered to the colour images, as is usual for this product",
-    );
+  const own = depth.points ? other : forSize(other, depth, "depth maps", warnings);
+  const range = carried && colour ? colour : own;
+  if (carried && colour) align(folder, colour, carried.why);
   else relate(folder, colour?.name, range === colour ? undefined : range?.name);
   if (colour === undefined)
     warnings.push(

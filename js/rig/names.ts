@@ -26,13 +26,15 @@ export function key(name: string): string {
 
 /** Words that say what a file holds rather than which frame it is, where names are alike but for them. */
 const LOOSE = new Set(
-  "raw frame frames photo picture pic map maps groundtruth gt velodyne lidar cloud points scan sparse dense filtered z16 png cam camera ir infra infrared tof undistorted rectified rect vis".split(
+  "raw frame frames photo picture pic map maps groundtruth gt velodyne lidar cloud points scan sparse dense filtered z16 png distance to plane linear z cam camera ir infra infrared tof undistorted rectified rect vis".split(
     " ",
   ),
 );
 export const looseKey = (name: string): string =>
   key(name)
+    .replace(/([a-z])(?=\d)/g, "$1 ")
     .split(" ")
+    .map((word) => word.replace(/^0+(?=\d)/, ""))
     .filter((word) => !LOOSE.has(word))
     .join(" ");
 

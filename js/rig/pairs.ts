@@ -115,8 +115,11 @@ const SECONDARY =
 /** Of several depth maps of a frame in folders side by side the plain one, if there is one. */
 function plainOf(groups: NamedFile[][], warnings: ReaderWarning[]): NamedFile[][] {
   const parents = new Set(groups.map(([file]) => folderOf(folderOf(file?.name ?? "").slice(0, -1))));
+  const length = ([file]: NamedFile[]) => file?.name.length ?? 0;
   const plain = groups.filter(([file]) => !SECONDARY.test((file?.name ?? "").replaceAll("_", " ")));
-  const [only, ...more] = plain;
+  const shortest = Math.min(...plain.map(length));
+  // "depth" beside "depth_bfx".
+  const [only, ...more] = plain.filter((group) => length(group) === shortest);
   if (groups.length === 1 || parents.size > 1 || only === undefined || more.length > 0) return groups;
   for (const [file] of groups)
     if (file && file !== only[0])

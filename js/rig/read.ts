@@ -8,6 +8,7 @@ import { BimodalError, badFile, badNamed, refused } from "../errors.js";
 import { inOrder } from "./assign.js";
 import { pictureColour, pictureMask } from "./colour.js";
 import { cloudDepth, pictureDepth } from "./depth.js";
+import { colmapText } from "./formats/colmap-others.js";
 import { knownContainer, knownText } from "./formats/containers.js";
 import { withEnds } from "./formats/filename.js";
 import { readExr } from "./formats/exr.js";
@@ -16,6 +17,7 @@ import { readJpeg, readWebp } from "./formats/jpeg.js";
 import { readBin } from "./formats/bin.js";
 import { readLas } from "./formats/las.js";
 import { MOST_BYTES } from "./formats/limits.js";
+import { matrixText } from "./formats/npy-matrix.js";
 import { npyPicture, npzPicture } from "./formats/npy.js";
 import { readPcd } from "./formats/pcd.js";
 import type { Cloud, Picture, Points } from "./formats/picture.js";
@@ -56,7 +58,9 @@ const PICTURES: Record<
 /** Whether it is a file of pixels or points, and no text of cameras and poses. */
 export const isRasterFile = (bytes: Uint8Array): boolean => rasterKind(bytes) !== undefined;
 /** Whether it is a text, of whatever. */
-export const isTextFile = (bytes: Uint8Array): boolean => textOf(bytes) !== undefined;
+export const isTextFile = (bytes: Uint8Array): boolean => (textOf(bytes) ?? writtenOf(bytes)) !== undefined;
+/** Calibrations in binary as the texts that they might be. */
+const writtenOf = (bytes: Uint8Array): string | undefined => colmapText(bytes) ?? matrixText(bytes);
 
 function ofPicture(name: string, picture: Picture, options: ReadOptions): Content {
   const kind = options.as ?? kindOfPicture(name, picture);
@@ -91,6 +95,8 @@ async function ofOthers(name: string, bytes: Uint8Array, options: ReadOptions): 
   const container = knownContainer(name, bytes);
   if (container !== undefined) throw container;
   if (options.size !== undefined && isRawName(name)) return ofPicture(name, readRaw(bytes, options.size), options);
+  const written = writtenOf(bytes);
+  if (written !== undefined) return ofText(name, written, options);
   const isPoints = rasterKind(bytes) === "points";
   const scan = isPoints || (textOf(bytes) === undefined && /\.bin$/i.test(name)) ? readBin(bytes) : undefined;
   if (scan) return ofCloud(scan, options);
@@ -105,13 +111,16 @@ async function ofOthers(name: string, bytes: Uint8Array, options: ReadOptions): 
 
 async function content({ name, bytes }: NamedFile, options: ReadOptions): Promise<Content> {
   if (bytes.length === 0) throw badFile("it is empty");
+  const kind = rasterKind(bytes);
+  // A recording is named before its size is, and a camera's raw photograph is a TIFF of its preview.
+  const container = bytes.length > MOST_BYTES || kind === "tiff" ? knownContainer(name, bytes) : undefined;
+  if (container !== undefined) throw container;
   if (bytes.length > MOST_BYTES)
     throw badFile(
       `it is ${(bytes.length / 2 ** 20).toFixed(0)} MB large; up to ${MOST_BYTES / 2 ** 20} MB are read`,
       undefined,
       { problem: "too-large" },
     );
-  const kind = rasterKind(bytes);
   if (kind === "ply") return ofCloud(readPly(bytes), options);
   if (kind === "pcd") return ofCloud(readPcd(bytes), options);
   if (kind === "las") return ofCloud(readLas(bytes), options);

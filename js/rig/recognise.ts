@@ -4,7 +4,7 @@ import { looksLikeDepth, looksLikeLabels, looksLikeMask } from "./colour.js";
 import { isGrey } from "./depth.js";
 import { decoded } from "./formats/coded.js";
 import type { Picture } from "./formats/picture.js";
-import { CONTENTS, type Role, isKittiDepth, roleOf } from "./roles.js";
+import { CONTENTS, type Role, isAlongRays, isKittiDepth, roleOf } from "./roles.js";
 import type { ReadOptions } from "./types.js";
 import { type ReaderWarning, warning } from "./warnings.js";
 
@@ -43,7 +43,7 @@ function kindOfFloats(picture: Picture, role: Role | undefined): Kind {
 const refusal = (role: Other) =>
   badFile(
     role === "disparity"
-      ? "its name says that it holds disparities, which are no depths: compute z = focal length * baseline / (disparity + doffs) and save that. Give the unit if it holds depths"
+      ? "its name says that it holds disparities or inverse depths, which are no depths: compute z = focal length * baseline / (disparity + doffs) and save that. Give the unit if it holds depths"
       : `its name says that it holds ${CONTENTS[role]}: that is neither a colour image nor a depth map nor a mask. Say what to read it as if it is`,
   );
 
@@ -74,6 +74,13 @@ export function nameWarnings(name: string, picture: Picture, kind: string, { uni
     if (role === "disparity" && unit === undefined) throw refusal(role);
     return [warning("files-swapped", `Its name says that it holds ${CONTENTS[role]}, and it is read as a depth map.`)];
   }
+  if (kind === "depth" && isAlongRays(name))
+    return [
+      warning(
+        "files-swapped",
+        "Its name says that it holds distances along the rays, which are longer than depths (along z) beside the middle of the picture: divide each by the length of its ray at z = 1.",
+      ),
+    ];
   if (kind === "colour" && role === "depth" && isColourful(picture))
     return [
       warning(

@@ -32,7 +32,7 @@ const SPECIAL: [Role, RegExp][] = [
       "vis|viz|visuals?|visuali[sz]ations?|colou?red|colou?ri[sz]ed|colou?r ?maps?|overlays?|previews?|thumbs?|thumbnails?|debug|heat ?maps?",
     ),
   ],
-  ["disparity", whole("disps?|disparity|disparities|disparity ?maps?")],
+  ["disparity", whole("disps?|disparity|disparities|disparity ?maps?|inv(?:erse)? ?depths?|idepths?")],
   [
     "infrared",
     whole(
@@ -57,7 +57,13 @@ const plain = (segment: string): string =>
     .toLowerCase()
     .replace(/[_-]+/g, " ");
 
-const special = (segment: string): Role | undefined => SPECIAL.find(([, pattern]) => pattern.test(segment))?.[0];
+/** "depth_from_disparity" holds depths. */
+const DEPTH_OF_DISPARITY = /depth[^a-z]*(?:from|of|by)|to[^a-z]*depth/;
+
+const special = (segment: string): Role | undefined =>
+  SPECIAL.find(
+    ([role, pattern]) => pattern.test(segment) && !(role === "disparity" && DEPTH_OF_DISPARITY.test(segment)),
+  )?.[0];
 
 function common(segment: string): Role | undefined {
   if (COLOUR_IN_DEPTH.test(segment)) return "colour";
@@ -89,9 +95,15 @@ export const CONTENTS: Record<Exclude<Role, "colour" | "depth" | "cloud" | "mask
   labels: "labels of objects",
   normals: "normals",
   rendering: "a rendering for people",
-  disparity: "disparities",
+  disparity: "disparities (or inverse depths)",
   infrared: "infrared or intensities",
 };
+
+/** Whether a name says that distances were taken along the rays rather than along z. */
+export const isAlongRays = (name: string): boolean =>
+  /euclid|distances? to (?:the )?camera|(?<![a-z])(?:ray|radial) ?(?:depths?|distances?)/.test(
+    name.split("/").slice(-2).map(plain).join(" "),
+  );
 
 const ALIGNED = /(?<![a-z])(?:aligned|registered|transformed)(?![a-z])/;
 const DEPTH_IN_COLOUR = /depth[^a-z]*(?:to|2|in|into)[^a-z]*(?:colou?r|rgb)/;

@@ -27,7 +27,7 @@ export interface Options {
   start?: "search" | "identity" | Partial<PoseMembers> | Matrix4;
   /**
    * How far from a given initial pose the photometric registration may end: the rotation, and, where a translation is given, the object's
-   * middle. Where no pose within fits the image better, the initial pose is kept and the status is "lost".
+   * middle. Where no pose within fits the image better, the initial pose is kept and the status is "ambiguous".
    */
   startTolerance?: {
     /**
@@ -96,6 +96,12 @@ export interface Options {
    * @default 0.01
    */
   stopDegrees?: number;
+  /**
+   * The largest one sigma of the rotation about any axis of a run that ends "converged"; above it the run ends "ambiguous".
+   * Range: a number above zero, in degrees.
+   * @default 1.5
+   */
+  tolerance?: number;
   /**
    * Accepted distance of a correspondence in the image. Default: from the data.
    * Range: a number above zero, in pixels.

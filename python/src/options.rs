@@ -9,7 +9,7 @@ use crate::error::{failure, refused};
 use crate::input::{POSE, pose};
 use crate::members::{Members, unknown};
 
-const NAMES: [&str; 15] = [
+const NAMES: [&str; 16] = [
     "light",
     "prior",
     "start",
@@ -21,6 +21,7 @@ const NAMES: [&str; 15] = [
     "annealing",
     "lambda_",
     "stop_degrees",
+    "tolerance",
     "max_iterations",
     "correspondence_distance",
     "seed",
@@ -41,6 +42,7 @@ pub fn options(keywords: &Bound<'_, PyAny>) -> PyResult<Options> {
         shading: given.word("shading", &SHADINGS)?.unwrap_or(default.shading),
         weights: weights(&given, default.weights)?,
         stop_degrees: given.number("stop_degrees")?.unwrap_or(default.stop_degrees),
+        tolerance: given.number("tolerance")?.unwrap_or(default.tolerance),
         correspondence_distance: given.number("correspondence_distance")?,
         max_iterations: given.whole("max_iterations")?.unwrap_or(default.max_iterations),
         seed: given.whole("seed")?.unwrap_or(default.seed),

@@ -34,6 +34,7 @@ const MEMBERS = [
     "options.",
     "annealing",
     "stopDegrees",
+    "tolerance",
     "correspondenceDistance",
     "maxIterations",
     "seed",

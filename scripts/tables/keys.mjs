@@ -61,6 +61,7 @@ const KEYS = {
     ...["cases", "found", "ambiguousOrLost", "confidentlyWrong", "flaggedThoughFound", "medianDegrees"],
     ...["coverage1", "coverage3", "kinds"],
   ],
+  perturbation: ["kind", "of", "change", "degrees", "isWithin", "status"],
   ablation: ["without", "medianDegrees", "found"],
 };
 /** Nothing replaces these where other people's data is absent. */

@@ -112,11 +112,13 @@ impl Estimator {
     fn conclude(&mut self, is_rejected: bool, before: Option<Objective>) {
         let is_unmoved = self.history.proposed_degrees < self.pair.options.stop_degrees;
         self.history.unmoved = if is_unmoved { self.history.unmoved + 1 } else { 0 };
+        self.report.drop_near_rivals();
         let Self { pair, report, history, .. } = &*self;
         let nearest = report.rivals.iter().map(|rival| rival.degrees_to(&report.pose)).fold(f64::INFINITY, f64::min);
         let ended = verdict::verdict(&Evidence {
             iteration: report.iteration,
             max_iterations: pair.options.max_iterations,
+            tolerance: pair.options.tolerance,
             registration: self.stages.registration.kind(pair),
             shading: pair.options.shading,
             correspondences: self.correspondences.count(),
@@ -136,7 +138,7 @@ impl Estimator {
             contrast: self.stages.registration.found_by_contrast().map(ContrastEvidence::of),
             hollow: history.hollow.clone(),
             missing_mask: checks::missing_mask(pair),
-            has_kept_start: self.stages.registration.has_kept_start(),
+            staying: self.stages.registration.staying(),
             rivals: report.rivals.len() as u32,
             nearest_rival: nearest,
         });

@@ -4,12 +4,16 @@ use crate::options::{Registration, Shading};
 use crate::pose::{ContrastReport, Direction, OutlineReport, PhotometricReport};
 use crate::reason::Reason;
 
+use super::finder::Staying;
+
 /// What is known at the end of an iteration.
 #[derive(Clone, Debug)]
 pub struct Evidence {
     /// Iterations so far, and their cap.
     pub iteration: u32,
     pub max_iterations: u32,
+    /// The largest sigma of a rotation that counts as found, degrees.
+    pub tolerance: f64,
     /// The registration that ran, and the way the shape is found.
     pub registration: Registration,
     pub shading: Shading,
@@ -34,8 +38,8 @@ pub struct Evidence {
     pub outlines: Option<OutlineEvidence>,
     /// What local contrast says, likewise.
     pub contrast: Option<ContrastEvidence>,
-    /// Whether nothing near a told start explains the colours better, so that it was kept.
-    pub has_kept_start: bool,
+    /// What the initial pose is worth where nothing near it explains the image better, so that it was kept.
+    pub staying: Option<Staying>,
     /// What checks of the input have against an answer: a hollow depth map, a mask that is missing.
     pub hollow: Option<Reason>,
     pub missing_mask: Option<Reason>,

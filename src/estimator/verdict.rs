@@ -11,6 +11,7 @@ use crate::reason::Reason;
 use crate::report::Status;
 
 use super::evidence::{ColourEvidence, ContrastEvidence, Evidence, OutlineEvidence};
+use super::finder::Staying;
 
 /// Rejected iterations in a row after which nothing new is to be expected.
 const MOST_REJECTIONS: u32 = 6;
@@ -32,10 +33,6 @@ const UNOBSERVABLE: f64 = 30.0;
 /// A rotation less certain than this about any axis is no answer, degrees (one sigma). Found poses of the random scenes
 /// stay below 3.
 const LARGEST_SIGMA: f64 = 5.0;
-/// A rotation less certain than this is no single answer, degrees (one sigma): two sigmas pass the three degrees within
-/// which a pose counts as found. One in 300 random scenes is so uncertain, and all photographs that end over 4 degrees
-/// off are, by 2.2 or more.
-const DOUBTFUL_SIGMA: f64 = 1.5;
 /// Share of the points within the robust scale that a trusted pose has at least.
 const FEWEST_INLIERS: f64 = 0.4;
 
@@ -90,13 +87,17 @@ fn has_settled(evidence: &Evidence) -> bool {
 
 /// Why the answer is "lost" or "ambiguous" although the loop came to an end, if it is.
 fn reason_for_distrust(evidence: &Evidence) -> Option<Verdict> {
-    if evidence.has_kept_start {
-        return Some((Status::Lost, Some(Reason::InitialPoseKept)));
+    if let Some(staying) = evidence.staying {
+        let status = match staying {
+            Staying::Explains => Status::Ambiguous,
+            Staying::ExplainsNothing => Status::Lost,
+        };
+        return Some((status, Some(Reason::InitialPoseKept)));
     }
     if let Some(OutlineEvidence { sigma, weakest, is_unseen }) = evidence.outlines {
         let reason = if is_unseen {
             Reason::SilhouetteBlind { weakest }
-        } else if sigma.is_nan() || sigma > DOUBTFUL_SIGMA {
+        } else if sigma.is_nan() || sigma > evidence.tolerance {
             Reason::AlbedoVaries { sigma_degrees: sigma, weakest }
         } else {
             return None;
@@ -115,7 +116,7 @@ fn reason_for_distrust(evidence: &Evidence) -> Option<Verdict> {
     let certainty = evidence.colours.map(|colours| (colours.sigma, colours.weakest));
     let certainty = certainty.or(evidence.contrast.map(|contrast| (contrast.sigma, contrast.weakest)));
     let reason = match (evidence.rivals, certainty) {
-        (0, Some((sigma, weakest))) if sigma > DOUBTFUL_SIGMA => {
+        (0, Some((sigma, weakest))) if sigma > evidence.tolerance => {
             Reason::RotationUncertain { sigma_degrees: sigma, weakest }
         }
         (0, _) => return None,
@@ -156,6 +157,7 @@ mod tests {
     const SETTLED: Evidence = Evidence {
         iteration: 5,
         max_iterations: 60,
+        tolerance: 1.5,
         registration: Registration::Joint,
         shading: Shading::Surface,
         correspondences: 1000,
@@ -169,7 +171,7 @@ mod tests {
         colours: Some(SURE),
         outlines: None,
         contrast: None,
-        has_kept_start: false,
+        staying: None,
         hollow: None,
         missing_mask: None,
         rivals: 0,
@@ -334,8 +336,14 @@ mod tests {
         let (lost, ambiguous) = (Some(Status::Lost), Some(Status::Ambiguous));
         vec![
             (
-                "a told start that nothing improves",
-                Evidence { has_kept_start: true, colours: None, ..SETTLED },
+                "an initial pose that nothing improves",
+                Evidence { staying: Some(Staying::Explains), colours: None, ..SETTLED },
+                ambiguous,
+                Some(Reason::InitialPoseKept),
+            ),
+            (
+                "an initial pose that explains nothing, as nothing else does",
+                Evidence { staying: Some(Staying::ExplainsNothing), colours: None, ..SETTLED },
                 lost,
                 Some(Reason::InitialPoseKept),
             ),
@@ -352,7 +360,7 @@ mod tests {
                 ambiguous,
                 Some(Reason::SilhouetteBlind { weakest: ABOUT_Y }),
             ),
-            ("a told start that still settles", Evidence { has_kept_start: true, ..MOVING }, None, None),
+            ("an initial pose that still settles", Evidence { staying: Some(Staying::Explains), ..MOVING }, None, None),
         ]
     }
 

@@ -12,10 +12,6 @@ use super::increment::{PoseMatrix, PoseVector};
 
 /// Sectors of the object, equal in points: as few as tell a spread of six unknowns.
 pub(super) const SECTORS: usize = 6;
-/// Steps without a sector, from the end. On 149 random scenes of three surfaces under natural lights (96x96) three sigmas of tiles and
-/// jackknife together hold all axes of 87, 91, 95, 96 and 95 % after 1, 2, 3, 5 and 8 steps.
-pub(super) const STEPS: usize = 3;
-
 /// The sector of each point by its angle about a middle, seen along the line of sight.
 pub(super) fn sectors(points: impl Iterator<Item = Vector3<f64>>, middle: Vector3<f64>) -> Vec<usize> {
     let angles: Vec<f64> = points.map(|point| (point.y - middle.y).atan2(point.x - middle.x)).collect();
@@ -28,15 +24,17 @@ pub(super) fn sectors(points: impl Iterator<Item = Vector3<f64>>, middle: Vector
     sectors
 }
 
-/// Covariance of a pose that moved so far without each sector: (n - 1) / n times the sum of squares about the mean. Zero where it cannot be
-/// told.
+/// Covariance of a pose that moved so far without each sector: (n - 1) / n times the sum of squares about the mean. A spread of n is itself
+/// uncertain; what it tells of the error follows Student's distribution of n - 1 degrees of freedom, whose variance is larger by
+/// (n - 1) / (n - 3). Zero where it cannot be told.
 pub(super) fn covariance(moves: &[PoseVector; SECTORS]) -> PoseMatrix {
     let count = SECTORS as f64;
+    let growth = (count - 1.0) / (count - 3.0);
     let mean = moves.iter().sum::<PoseVector>() / count;
     let mut spread = PoseMatrix::zeros();
     for moved in moves {
         let off = moved - mean;
-        spread.ger((count - 1.0) / count, &off, &off, 1.0);
+        spread.ger(growth * (count - 1.0) / count, &off, &off, 1.0);
     }
     if spread.norm().is_finite() { spread } else { PoseMatrix::zeros() }
 }
@@ -61,7 +59,8 @@ mod tests {
         }
     }
 
-    /// The mean of what six sectors measure, each with its own error: its variance is theirs over six.
+    /// The mean of what six sectors measure, each with its own error: its variance is theirs over six, and over its own sigma it follows
+    /// Student's distribution of five degrees of freedom, whose variance is 5 / 3.
     #[test]
     fn the_covariance_of_a_mean_is_that_of_the_sectors_over_their_number() {
         let (sigma, runs) = (0.2, 4000);
@@ -74,7 +73,7 @@ mod tests {
             let without = measured.map(|one| (sum - one) / (SECTORS - 1) as f64);
             mean += covariance(&without) / f64::from(runs);
         }
-        let expected = sigma * sigma / SECTORS as f64;
+        let expected = 5.0 / 3.0 * sigma * sigma / SECTORS as f64;
         for axis in 0..mean.nrows() {
             assert!((mean[(axis, axis)] / expected - 1.0).abs() < 0.1, "{axis}: {}", mean[(axis, axis)] / expected);
         }

@@ -168,6 +168,7 @@ const SHOWN = {
   "options.startTolerance.degrees": { given: () => noisy({ start: { angles: {} } }), other: 0.01 },
   "options.scale": { other: 1.1 },
   "options.stopDegrees": { given: slow, other: 0.02 },
+  "options.tolerance": { given: sure, other: 1e-6 },
   "options.maxIterations": { given: () => slow({ stopDegrees: 1e-300 }), other: 61 },
   "options.seed": { given: () => noisy({}, 24), other: 2 },
 };
@@ -198,6 +199,12 @@ describe("defaults", () => {
     assert.notDeepEqual(sample({ ...REQUEST, angles: {} }), sample(REQUEST));
   });
 });
+
+/** A pose that converges. */
+function sure() {
+  const { image, depth } = pair({ size: 40, light: "window", angles: { beta: 8 } });
+  return { image, depth, base: { start: "identity" } };
+}
 
 /** What a loop ends with where the option has a value. */
 const loops =

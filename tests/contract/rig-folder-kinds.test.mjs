@@ -124,6 +124,31 @@ test("plural names", async () => {
     assert.deepEqual(marks(await folder({ [one]: colour(5), [other]: depth() })), [[5, 1000]], other);
 });
 
+test("names that are alike but for the word of what they hold", async () => {
+  for (const [one, other] of [
+    ["results/frame000000.png", "results/depth000000.png"],
+    ["rgb_0000.png", "distance_to_image_plane_0000.png"],
+    ["frame_0000.png", "depth_raw_0000.png"],
+  ]) {
+    const second = [one, other].map((name) => name.replace(/0(?=\.png)/, "1"));
+    const found = await folder({
+      [one]: colour(5),
+      [other]: depth(),
+      [second[0]]: colour(6),
+      [second[1]]: depth(1100),
+    });
+    assert.deepEqual(
+      marks(found),
+      [
+        [5, 1000],
+        [6, 1100],
+      ],
+      other,
+    );
+    saysNot(found, "pairs-by-order");
+  }
+});
+
 describe("time stamps as names", () => {
   const at = (stamps, of) => Object.fromEntries(stamps.map((stamp, index) => [of(stamp), index]));
   const files = (colours, depths) => ({

@@ -4,6 +4,7 @@ import { describe, test } from "node:test";
 import { deflateRawSync } from "node:zlib";
 import { crc32 } from "node:zlib";
 import { readRigFile } from "../../pkg/rig.js";
+import { inTime } from "./malformed.mjs";
 import { H, W, close, metres, millimetres, read, refusedFile } from "./rig-support.mjs";
 import { npy } from "./support.mjs";
 
@@ -150,6 +151,8 @@ describe("what is not read is named, with the way out", () => {
     "0.depth": ["bvx2\x01\x02", /LZFSE.*Record3D/],
     "mesh.glb": ["glTF\x02\x00", /mesh \(glTF\)/],
     "scan.fls": ["\x01\x02\x03\x00", /format of its maker/],
+    "IMG_1.dng": ["II*\x00\x08\x00", /raw photograph.*develop/],
+    "a.hdr": ["#?RADIANCE\n", /Radiance's HDR; save it as EXR/],
     "a.xz": ["\xfd7zXZ\x00", /xz; unpack/],
     "mesh.obj": ["# made\nmtllib a.mtl\no Cube\nv 1 2 3\nv 1 2 4\nf 1 2 3\n", /Wavefront's OBJ.*render a depth map/],
     "mesh.stl": ["solid a\n facet normal 0 0 1\n  outer loop\n", /STL/],
@@ -226,6 +229,12 @@ describe("depth maps without a format", () => {
       .split("\n")
       .map((line, row) => `${row},${line}`);
     isTable(await read("depth.csv", [head, ...body].join("\n")));
+  });
+
+  test("a table of more numbers than are read, in little time", async () => {
+    const line = Buffer.from(`${"1,".repeat(2047)}1\n`);
+    const bytes = new Uint8Array(Buffer.concat(Array(1100).fill(line)));
+    await inTime("large.csv", () => refused("large.csv", bytes, /more numbers than 1920x1080 pixels/));
   });
 
   test("a table with a row too short", () =>

@@ -77,6 +77,8 @@ describe("what a picture holds is told by its name and its values", () => {
     const reading = await read("disp0.png", depth16, { unit: 0.001, as: "depth" });
     assert.equal(reading.kind, "depth");
     assert.equal((await read("display.png", depth16)).kind, "depth");
+    assert.equal((await read("depth_from_disparity.png", depth16)).kind, "depth");
+    await refused("inverse_depth.png", depth16, /disparities or inverse depths/);
     assert.equal((await read("undistorted.png", depth16)).kind, "depth");
   });
 
@@ -87,6 +89,13 @@ describe("what a picture holds is told by its name and its values", () => {
     await refused("depth_conf_1.png", depth16, /confidences/);
     await says("files-swapped", /name says that it holds infrared/, "ir_1.png", depth16, { as: "depth" });
     await refused("semantic/1.png", depth16, /labels of objects/);
+  });
+
+  test("distances along the rays are no depths", async () => {
+    for (const name of ["distance_to_camera_0000.png", "depth_euclidean.png"])
+      await says("files-swapped", /distances along the rays/, name, depth16);
+    const { warnings } = await read("distance_to_image_plane_0000.png", depth16);
+    assert.ok(!warnings.some(({ code }) => code === "files-swapped"));
   });
 
   test("the innermost word counts, and pictures of folders called depth are depths", async () => {

@@ -119,7 +119,8 @@ describe("a camera of many sizes", () => {
     for (const [name, ends] of [
       ["calib/calib_cam_to_velo.txt", ["cam", "velo"]],
       ["lidar2camera.txt", ["lidar", "camera"]],
-      ["rgb_from_depth.txt", ["depth", "rgb"]],
+      ["rgb_to_depth.txt", ["rgb", "depth"]],
+      ["rgb_from_depth.txt", [undefined, undefined]],
       ["T_cam_lidar.txt", ["lidar", "cam"]],
       ["top_center_lidar-to-center_camera-extrinsic.txt", ["top_center_lidar", "center_camera"]],
       ["how_to_mount.txt", [undefined, undefined]],
@@ -214,6 +215,33 @@ describe("one camera for both pictures", () => {
     );
     assert.deepEqual([plain.poses.length, ...codes(plain)], [1]);
   });
+});
+
+test("pictures of a size that their own camera does not have were carried into the other's view", async () => {
+  const rig = {
+    color: camera(60, 64, 48),
+    depth: camera(50, 80, 50),
+    depth_to_color: [
+      [1, 0, 0, 0.1],
+      [0, 1, 0, 0],
+      [0, 0, 1, 0],
+    ],
+  };
+  for (const [size, f] of [
+    [[64, 48], 60],
+    [[80, 50], 50],
+  ]) {
+    const found = await folder({ ...pair(size), "rig.json": rig });
+    assert.deepEqual(
+      cameras(found)[0].map(([fx]) => fx),
+      [f, f],
+    );
+    assert.deepEqual(
+      found.poses.map(({ pose }) => pose.translation[0]),
+      [0, 0.1],
+    );
+    assert.deepEqual(codes(found), ["camera-shared"]);
+  }
 });
 
 describe("what files say of the pictures beside them", () => {

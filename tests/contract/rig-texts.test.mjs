@@ -1,6 +1,7 @@
 // The languages that calibrations are written in: JSON with comments, TOML, Python, numbers with labels, decimal commas.
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
+import { writeNpy } from "../../pkg/write.js";
 import { codes, distortion, matrix, only, read, rows, sameCamera, samePose, translation } from "./rig-support.mjs";
 
 describe("languages", () => {
@@ -87,5 +88,35 @@ describe("languages", () => {
     );
     assert.equal(only(cameras).name, "1");
     assert.match(warnings[0].message, /THIN_PRISM_FISHEYE/);
+  });
+
+  test("matrices in .npy files", async () => {
+    const npy = (values, width) =>
+      writeNpy({ width, height: values.length / width, channels: 1, data: Float32Array.from(values) });
+    sameCamera(only((await read("K.npy", npy([512.5, 0, 320.5, 0, 513, 240.25, 0, 0, 1], 3))).cameras), null, {
+      ...{ fx: 512.5, fy: 513, cx: 320.5, cy: 240.25 },
+    });
+    samePose(only((await read("T.npy", npy(matrix.flat(), 4))).poses));
+    assert.equal((await read("depth.npy", npy([1, 2, 3, 1, 2, 3, 1, 2, 3], 3), { as: "depth" })).kind, "depth");
+  });
+
+  test("COLMAP's cameras.bin and images.txt", async () => {
+    const bytes = new Uint8Array(8 + 24 + 8 * 4);
+    const view = new DataView(bytes.buffer);
+    view.setUint32(0, 1, true);
+    view.setUint32(8, 7, true);
+    view.setInt32(12, 1, true);
+    view.setBigUint64(16, 640n, true);
+    view.setBigUint64(24, 480n, true);
+    [518.5, 519.25, 326, 254.25].forEach((value, at) => view.setFloat64(32 + 8 * at, value, true));
+    const { cameras } = await read("cameras.bin", bytes);
+    sameCamera(only(cameras), null);
+    assert.deepEqual([cameras[0].name, cameras[0].width], ["7", 640]);
+    const images = await read(
+      "images.txt",
+      `# Image list\n1 0.999525037602976 0.009998416741873298 -0.014997625112809946 0.024996041854683248 ${translation.join(" ")} 1 a.png\n10 20 -1\n`,
+    );
+    const pose = only(images.poses);
+    assert.deepEqual([pose.name, pose.from, pose.to, codes(images)], ["a.png", "camera", "world", ["camera-to-world"]]);
   });
 });

@@ -160,6 +160,14 @@ describe("LiDARs and cameras of vehicles", () => {
     samePose(kit.poses[0], [0, -1, 0, 0, 0, -1, 1, 0, 0], [0, -0.5, -1], 1e-9);
     assert.deepEqual(codes(kit), ["pose-assumed"]);
     assert.equal(kit.poses.length, 3);
+    // One whose y points down has optical axes, whatever it is called.
+    const half = Math.PI / 2;
+    const optical = await read(
+      "sensor_kit_calibration.yaml",
+      `sensor_kit_base_link:\n  camera0/camera_link: ${place([1, 0, 0], [-half, 0, -half])}\n  velodyne_top_base_link: ${place([0, 0, 0.5], [0, 0, 0])}\n`,
+    );
+    samePose(optical.poses[0], [0, -1, 0, 0, 0, -1, 1, 0, 0], [0, -0.5, -1], 1e-9);
+    assert.deepEqual(codes(optical), []);
   });
 });
 

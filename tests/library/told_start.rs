@@ -174,7 +174,7 @@ mod long {
                     assert_ne!(report.status, Status::Converged, "{tolerance}");
                 }
                 if turned == 0.0 && moved == 0.0 {
-                    assert_eq!((report.status, &report.uncertainty), (Status::Lost, &None), "{tolerance}");
+                    assert_eq!((report.status, &report.uncertainty), (Status::Ambiguous, &None), "{tolerance}");
                     assert_eq!(report.reason, Some(Reason::InitialPoseKept), "{tolerance}");
                 }
             }

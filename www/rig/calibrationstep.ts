@@ -4,7 +4,7 @@ import { make } from "../dom";
 import { decimals } from "../draw/numbers";
 import { dropTarget } from "./drop";
 import { choose, Keyed, labelled, numberField, press } from "./parts";
-import { fromEuler, fromQuaternion, inWords, inverse, matrixText, poseOf, type EulerOrder } from "./poses";
+import { fromEuler, fromQuaternion, inWords, inverse, isOfWorld, matrixText, poseOf, type EulerOrder } from "./poses";
 import { messageOf, type Candidate, type Rig } from "./rig";
 
 type By = "quaternion" | EulerOrder;
@@ -187,7 +187,12 @@ export class CalibrationStep {
     try {
       const { poses } = await this.#rig.session.call("read", { file: id, name, blob: new Blob([text]), as: "poses" });
       if (poses.length === 0) throw new Error("There is no calibration in it.");
-      for (const pose of poses) this.#rig.addPose({ ...pose, name: pose.name ?? "pasted" }, name);
+      if (poses.every(isOfWorld))
+        throw new Error(
+          "It says where a camera stood in the world (camera to world). A calibration leads from the depth camera into the colour camera.",
+        );
+      for (const pose of poses.filter((each) => !isOfWorld(each)))
+        this.#rig.addPose({ ...pose, name: pose.name ?? "pasted" }, name);
     } catch (error) {
       this.#complain(messageOf(error));
     } finally {

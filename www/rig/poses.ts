@@ -36,6 +36,9 @@ const transposed = (a: readonly number[]): number[] =>
 const turned = (a: readonly number[], v: readonly number[]): number[] =>
   [0, 1, 2].map((row) => [0, 1, 2].reduce((sum, k) => sum + at(a, 3 * row + k) * at(v, k), 0));
 
+/** Whether a pose says where a camera stood in the world: it relates no two cameras. Open3D calls the depth camera's frame a world. */
+export const isOfWorld = ({ to }: { to?: string }): boolean => to === "world";
+
 /** The other direction. */
 export function inverse({ rotation, translation }: Pose): Pose {
   const back = transposed(rotation);

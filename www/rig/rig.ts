@@ -4,7 +4,7 @@ import type { CheckCue, Pinhole } from "../../pkg/index.js";
 import { pairUp } from "./pairing";
 import { doubtsOf } from "./doubts";
 import type { ReaderWarning } from "./files";
-import { identity, inverse } from "./poses";
+import { identity, inverse, isOfWorld } from "./poses";
 import type { Assembly, FramePlan, Kind, NamedCamera, Summary } from "./protocol";
 import { Session } from "./session";
 import type { CameraChoice, Candidate, Frame, Item, RigState, Run, Side, TypedCamera } from "./state";
@@ -146,7 +146,7 @@ export class Rig implements RigState {
   /** Cameras and poses of a file go to where they are used. */
   #take(item: Item, summary: Summary): void {
     this.candidates = this.candidates.filter(({ file }) => file !== item.id);
-    for (const each of summary.poses) this.addPose(each, item.name, item.id);
+    for (const each of summary.poses) if (!isOfWorld(each)) this.addPose(each, item.name, item.id);
     this.#chooseCameras();
   }
 

@@ -2,6 +2,7 @@
  * Autoware's sensor_kit_calibration.yaml and sensors_calibration.yaml: of each child frame its x y z roll pitch yaw in the parent's, in
  * metres and rad, about fixed axes as in URDF.
  */
+import { endsOf } from "./filename.js";
 import { Findings } from "./findings.js";
 import { isNode, type Node, numberOf } from "./numbers.js";
 import { ofYawPitchRoll } from "./poses.js";
@@ -18,9 +19,12 @@ const isPlace = (value: unknown): value is Node =>
 
 /** Parents that name children, or children that stand alone. */
 export const isAutoware = (root: Node): boolean =>
-  Object.values(root).some(
-    (each) => isNode(each) && Object.values(each).length > 0 && Object.values(each).every(isPlace),
-  );
+  Object.values(root).some((each) => {
+    if (!isNode(each)) return false;
+    const names = Object.keys(each);
+    // A name of two frames is that of a pose, and not of a frame.
+    return names.length > 0 && names.every((name) => isPlace(each[name]) && endsOf(name) === undefined);
+  });
 
 export function readAutoware(root: Node): Findings {
   const found = new Findings();

@@ -39,6 +39,13 @@ const FIRST: Row[] = [
   [/^PXR-USDC|^#usda/, "a scene in USD; render a depth map from it"],
   [/^Kaydara FBX/, "a mesh (FBX); render a depth map from it"],
   [/^%PDF/, "a PDF"],
+  [/^#\?(?:RADIANCE|RGBE)/, "Radiance's HDR; save it as EXR"],
+  [/^8BPS/, "a PSD; save it as PNG"],
+  [/^\xff\x0a|^\0{3}\x0cJXL/, "JPEG XL; save it as PNG", true],
+  [/^YUV4MPEG2/, "a video; save its frames as PNG"],
+  [/^BLENDER/, "a scene of Blender; render its depth as EXR"],
+  [/^ARROW1/, "a table in Arrow; export its images first"],
+  [/^RRF2/, `a recording of Rerun (.rrd); ${EXPORT}`],
   [/^\x80[\x02-\x05]/, "a pickle of Python, which may run code; save the array by numpy.save"],
   [/^\xff\x4f\xff\x51|^.{4}jP {2}/s, "JPEG 2000; save it as PNG", true],
   [/^PIEH/, "Sintel's .dpt or .flo; save the depth as .npy"],
@@ -64,6 +71,9 @@ const NAMED: Row[] = [
   [/\.stl$/i, "a mesh (STL); render a depth map from it"],
   [/\.(?:pt|pth|ckpt)$/i, "a file of PyTorch; save the array by numpy.save"],
   [/\.(?:tfrecords?|tfrec)(?:-|$)/i, "records of TensorFlow; export their images first"],
+  [/\.(?:dng|cr[23w]|nef|arw|orf|rw2|raf|pef)$/i, "a raw photograph of a camera; develop it into a 16-bit TIFF or PNG"],
+  [/\.(?:tar|lz4)$/i, "an archive; unpack it first"],
+  [/\.(?:dae|3ds|abc|blend|x3d)$/i, "a mesh or scene; render a depth map from it"],
   [/\.lzf$/i, "compressed by LZF; unpack it first"],
 ];
 

@@ -36,6 +36,8 @@ export function named(name: string, frames: Frames): PoseNames {
     /^(?:T_)?([a-z0-9]+)_from_([a-z0-9]+)$/i.exec(name) ??
     /^T_([a-z0-9]+)_([a-z0-9]+)$/i.exec(name) ??
     /^([a-z][a-z0-9]*)_(?:T|SE3)_([a-z][a-z0-9]*)_?$/.exec(name);
+  // Autoware's calibration toolkit writes where the camera is in the LiDAR's frame.
+  if (name === "CameraExtrinsicMat") return { name, from: "camera", to: "lidar" };
   if (backwards) return { name, from: backwards[2] ?? "", to: backwards[1] ?? "" };
   const letters = letteredFrames(name);
   return letters === undefined ? { name } : { name, ...letters };

@@ -6,7 +6,7 @@
  */
 import { badFile } from "../../errors.js";
 import { inflateExactly } from "../../inflate.js";
-import { type Channel, type Header, SIZES, blocks } from "./exr-header.js";
+import { type Channel, type Header, SIZES, blocks, isKept } from "./exr-header.js";
 import { half } from "../../half.js";
 
 /** Bytes of the numbers at the beginning of a block. */
@@ -40,12 +40,6 @@ function schemeOf({ name, type }: Channel, rules: Rule[]): number {
     rule.anyCase ? rule.suffix.toLowerCase() === suffix.toLowerCase() : rule.suffix === suffix;
   return rules.find((rule) => rule.type === type && same(rule))?.scheme ?? UNKNOWN;
 }
-
-/** The rules that blocks of the first versions go by without saying so. */
-const LOSSY = /^(?:r|red|g|grn|green|b|blu|blue|y|by|ry|a)$/i;
-
-/** Whether DWA keeps this channel without loss. */
-export const isKept = ({ name }: Channel): boolean => !LOSSY.test(name.slice(name.lastIndexOf(".") + 1));
 
 /** The samples of one channel in a block, as bytes line by line. */
 function plane(body: Uint8Array, header: Header, used: number, rows: number): Uint8Array {

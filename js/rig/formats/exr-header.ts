@@ -107,3 +107,9 @@ export function blocks(bytes: Uint8Array, header: Header): { row: number; body: 
     return { row, body: bytes.subarray(at + 8, at + 8 + size), length };
   });
 }
+
+/** Colours and alpha, by the rules that blocks of DWA's first versions go by without saying so. */
+const LOSSY = /^(?:r|red|g|grn|green|b|blu|blue|y|by|ry|a)$/i;
+
+/** Whether DWA keeps this channel without loss. */
+export const isKept = ({ name }: Channel): boolean => !LOSSY.test(name.slice(name.lastIndexOf(".") + 1));

@@ -11,6 +11,9 @@ import { badFile } from "../../errors.js";
 import { inflateUpTo } from "../../inflate.js";
 import { COMPRESSIONS, type Header, blocks } from "./exr-header.js";
 
+export { readB44 } from "./exr-b44.js";
+export { readKept } from "./exr-dwa.js";
+
 /** three's number of a type, which parse-exr takes. */
 const FLOAT = 1015;
 const MOST_CHANNELS = 16;

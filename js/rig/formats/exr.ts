@@ -7,9 +7,18 @@
  */
 import { badFile } from "../../errors.js";
 import { inflateExactly } from "../../inflate.js";
-import { readB44 } from "./exr-b44.js";
-import { isKept, readKept } from "./exr-dwa.js";
-import { B44, B44A, type Channel, DWAA, type Header, SIZES, blocks, readHeader, strideOf } from "./exr-header.js";
+import {
+  B44,
+  B44A,
+  type Channel,
+  DWAA,
+  type Header,
+  SIZES,
+  blocks,
+  isKept,
+  readHeader,
+  strideOf,
+} from "./exr-header.js";
 import { half } from "../../half.js";
 import type { Picture } from "./picture.js";
 import { warning } from "../warnings.js";
@@ -96,17 +105,16 @@ export function readExr(bytes: Uint8Array, isDepth: boolean): Picture | Promise<
     ...{ format: "EXR", bits, notes: [], warnings: [] },
   });
   if (compression <= ZIP) return picture(readKnown(bytes, found, used));
-  if (compression === B44 || compression === B44A) {
-    const isLossy = used.length === 1 && bits === 16;
-    return { ...picture(readB44(bytes, found, used)), warnings: isLossy ? [LOSSY] : [] };
-  }
   const [only = 0, ...more] = used;
-  if (compression >= DWAA && more.length === 0 && channels[only] && isKept(channels[only]))
-    return picture(readKept(bytes, found, only));
-  return import("./exr-others.js").then(({ readOthers }) => ({
-    ...picture(readOthers(bytes, found, used)),
-    warnings: isDepth && compression >= DWAA ? [LOSSY] : [],
-  }));
+  const isKeptWhole =
+    compression >= DWAA && more.length === 0 && channels[only] !== undefined && isKept(channels[only]);
+  return import("./exr-others.js").then(({ readB44, readKept, readOthers }) => {
+    if (isKeptWhole) return picture(readKept(bytes, found, only));
+    const isB44 = compression === B44 || compression === B44A;
+    const isLossy = isB44 ? more.length === 0 && bits === 16 : isDepth && compression >= DWAA;
+    const data = isB44 ? readB44(bytes, found, used) : readOthers(bytes, found, used);
+    return { ...picture(data), warnings: isLossy ? [LOSSY] : [] };
+  });
 }
 
 interface Block {

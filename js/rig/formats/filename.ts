@@ -26,10 +26,14 @@ export function endsOf(path: string): { from: string; to: string } | undefined {
   return from === to ? undefined : { from, to };
 }
 
-/** A file's only pose, if it names no frames, with those of the file's name. */
+/** A pose that names no frames is taken to lead from the depth camera to the colour camera. */
+const isUsual = ({ from, to }: { from: string; to: string }): boolean =>
+  /depth|dpt|infra|tof/i.test(from) && /colou?r|rgb/i.test(to) && !/colou?r|rgb/i.test(from);
+
+/** A file's only pose, if it names no frames, with those of the file's name where they are not the usual ones. */
 export function withEnds(poses: readonly NamedPose[], path: string): NamedPose[] {
   const [only, ...others] = poses;
   const ends = endsOf(path);
-  if (only === undefined || others.length > 0 || ends === undefined) return poses.slice();
+  if (only === undefined || others.length > 0 || ends === undefined || isUsual(ends)) return poses.slice();
   return only.from === undefined && only.to === undefined ? [{ ...only, ...ends }] : [only];
 }

@@ -10,6 +10,14 @@ const OPTICAL = /optical/i;
 
 /** ROS's body axes (x forward, y left, z up) of a camera's optical ones (x right, y down, z forward). */
 const BODY_OF_OPTICAL = poseOf([0, 0, 1, -1, 0, 0, 0, -1, 0], [0, 0, 0]);
+/**
+ * Whether a camera's frame has the axes of a body, by its rotation into one whose z points up: cameras are mounted upright, so that either
+ * its own z points up, or its y down.
+ */
+export const hasBodyAxes = ({ rotation: r }: Pose): boolean => (r[8] ?? 0) > -(r[7] ?? 0);
+/** The same camera with optical axes. */
+export const asOptical = (pose: Pose): Pose => chained(pose, BODY_OF_OPTICAL);
+
 /** Chains are no longer than this, and a file whose frames go round in a circle has no root. */
 const MOST_STEPS = 64;
 
@@ -64,9 +72,9 @@ export function wayBetween(poses: readonly NamedPose[]): { pose: NamedPose; turn
   if (a === undefined || b === undefined || a.root !== b.root) return undefined;
   const turned: string[] = [];
   const optical = (name: string, { pose }: Placed): Pose => {
-    if (OPTICAL.test(name) || LIDAR.test(name)) return pose;
+    if (OPTICAL.test(name) || isLidar(name) || !hasBodyAxes(pose)) return pose;
     turned.push(name);
-    return chained(pose, BODY_OF_OPTICAL);
+    return asOptical(pose);
   };
   // Two frames with the same axes need not be turned to be compared, but a picture's points have the optical ones.
   const pose = chained(inverseOf(optical(colour, b)), optical(from, a));

@@ -11,7 +11,7 @@ function taken(node: Node, keys: string[], part: (key: string) => string | undef
   const group: Node = {};
   for (const key of keys) {
     const name = part(key);
-    if (name !== undefined) group[name] = node[key];
+    if (name !== undefined && name !== "__proto__") group[name] = node[key];
   }
   return group;
 }

@@ -116,6 +116,9 @@ function sizesOf(node: Node, place: Place): Size[] {
   return found.filter((size) => !NOT_OF_IMAGES.test(size.label));
 }
 
+/** Names that speak of a lens. */
+const LENS_LIKE = /distort|dist_?coef|lens_?(?:coef|param)|^kc$|radial|tangential/i;
+
 const isBelow = (place: Place | undefined, top: Place): boolean => {
   for (let each = place; each !== undefined; each = each.parent) if (each.node === top.node) return true;
   return false;
@@ -131,6 +134,10 @@ const isSame = (a: string, b: string): boolean => plainLabel(a) === plainLabel(b
 
 export class Leftovers {
   readonly #lenses: Lens[] = [];
+  /** What may be a lens by its name, and is not called as any program calls it. */
+  readonly #unknown: Pick<Lens, "key" | "distortion">[] = [];
+  /** Objects that are lenses themselves. */
+  readonly #parts = new WeakSet<Node>();
   readonly #sizes: Size[] = [];
 
   /** Notes what of an object looks like a lens or a size; `used` are members that a camera of it has taken. */
@@ -138,8 +145,13 @@ export class Leftovers {
     const { node } = place;
     for (const key of Object.keys(node)) {
       const label = used.has(key) ? undefined : isLens(key);
-      if (label === undefined) continue;
-      const lens = lensOf(node[key]);
+      const lens = label === undefined && !LENS_LIKE.test(key) ? undefined : lensOf(node[key]);
+      if (label === undefined) {
+        if (lens !== undefined && !used.has(key) && !this.#parts.has(node))
+          this.#unknown.push({ key, distortion: lens.distortion });
+        continue;
+      }
+      if (lens !== undefined && isNode(node[key])) this.#parts.add(node[key]);
       if (lens !== undefined) this.#lenses.push({ key, label, place, ...lens });
       else if (isNode(node[key])) this.#eachOf(node[key], key, place);
     }
@@ -158,7 +170,7 @@ export class Leftovers {
   /** Gives cameras what they lack, and warns of what none can have. */
   assign(cameras: FoundCamera[], warnings: ReaderWarning[]): void {
     const unused = this.#lenses.filter((lens) => !this.#giveLens(lens, cameras));
-    for (const { key, distortion } of unused)
+    for (const { key, distortion } of [...unused, ...this.#unknown])
       if (distortion.some((value) => value !== 0))
         warnings.push(
           warning(

@@ -17,7 +17,7 @@ import {
   wordsOf,
 } from "./names.js";
 import { type Matrix, type Node, type Numbers, isNode, matrixOf, numberOf, transposed } from "./numbers.js";
-import { chained, isLastRow, motion, motionOfMatrix, ofQuaternion, poseOf } from "./poses.js";
+import { chained, inverseOf, isLastRow, motion, motionOfMatrix, ofQuaternion, poseOf } from "./poses.js";
 import { degreesOf, numbersAsRotation, ofFour, ofNine, ofThree, orderWarning } from "./turns.js";
 
 /** What the text of a file and the objects around a motion say of it. */
@@ -296,13 +296,22 @@ export class Motions {
   }
 
   /** What only the whole file tells: rotations by their inverses, frames by what else it names, and the warnings. */
-  finish(cameras: readonly NamedCamera[]): void {
+  finish(cameras: readonly NamedCamera[], own: readonly NamedPose[]): void {
     this.#dropReference(cameras);
+    // Where several cameras have a pose each, these relate them to a world and not to each other.
+    const each = own.filter((pose) => this.poses.includes(pose));
+    if (each.length > 1)
+      for (const pose of each)
+        if (pose.from === undefined && pose.to === undefined) Object.assign(pose, { from: "world", to: "camera" });
     for (const pose of this.#open.keys()) this.#checkOrder(pose);
     for (const [pose, order] of this.#open) this.#warnings.push(orderWarning(pose.name ?? "", order === "columns"));
     for (const pose of this.poses) this.#nameExtrinsic(pose);
     // ARKit's transforms are those of the camera in its world.
     if (this.#signs.isARKit) this.placeInWorld(0);
+    // So that nobody takes them for extrinsics, they all lead into the world.
+    for (const pose of this.poses)
+      if (pose.from === "world" && pose.to !== undefined && !this.#defined.has(pose))
+        Object.assign(pose, { from: pose.to, to: "world", pose: inverseOf(pose.pose) });
     const ofWorld = this.poses.filter((pose) => isOfWorld(pose) && !this.#defined.has(pose));
     const [first] = ofWorld;
     if (first !== undefined)
@@ -331,9 +340,10 @@ export class Motions {
       cameras.some((camera) => camera.name === name && name !== undefined) &&
       degreesOf(pose.rotation) === 0 &&
       pose.translation.every((value) => value === 0);
+    if (cameras.length < 2) return;
     const kept = this.poses.filter((pose) => !isReference(pose));
     for (const { name = "" } of this.poses.filter(isReference)) this.#unused.push(name);
-    if (cameras.length > 1) this.poses.splice(0, this.poses.length, ...kept);
+    this.poses.splice(0, this.poses.length, ...kept);
   }
 
   /** Where the way back is in the file, too, the two have to be inverse: rows or columns then follow. */

@@ -22,15 +22,17 @@ import { isKinect2, readKinect2 } from "./kinect-v2.js";
 import { isKitti, readKitti } from "./kitti.js";
 import { isBouguet, isMatlab, readBouguet, readMatlab } from "./matlab.js";
 import { isMiddlebury, readMiddlebury } from "./middlebury.js";
-import { isMrcal, readMrcal } from "./mrcal.js";
+import { isMrcal, looksLikeMrcal, readMrcal } from "./mrcal.js";
 import { isNerf, readNerf } from "./nerf.js";
 import { isNode, type Node } from "./numbers.js";
 import { isNuscenes, readNuscenes } from "./nuscenes.js";
 import { isEnumeration, isPrinted, isSnapshot, readEnumeration, readPrinted, readSnapshot } from "./realsense.js";
 import { isRecord3d, readRecord3d } from "./record3d.js";
 import { isScannet, readScannet } from "./scannet.js";
+import { isUrdf, readUrdf } from "./urdf.js";
 import { isVlcal, readVlcal } from "./vlcal.js";
 import { isWaymo, isWaymoText, readWaymo, readWaymoText } from "./waymo.js";
+import type { Element } from "./xml.js";
 import { isZed, readZed } from "./zed.js";
 import { isZivid, readZivid } from "./zivid.js";
 
@@ -79,11 +81,23 @@ export function productOfText(text: string): Found | undefined {
   return format !== undefined && read ? named(read(text), format) : undefined;
 }
 
+/** Members of one object; the scenes of BOP have some thousand pictures. */
+const MOST_MEMBERS = 20_000;
+
 /** What an object of a product holds, or the only document of a YAML file. */
 export function productOfTree(value: unknown): Found | undefined {
   const whole: unknown = Array.isArray(value) && value.length === 1 ? value[0] : value;
+  // Each reader looks through all members to tell its own; no product writes so many in one object.
+  if (isNode(whole) && Object.keys(whole).length > MOST_MEMBERS) return undefined;
   const [format, , read] = (isNode(whole) ? TREES.find(([, is]) => is(whole)) : undefined) ?? [];
   if (format !== undefined && read && isNode(whole)) return named(read(whole), format);
   if (Array.isArray(value) && isArgoverse2(value)) return named(readArgoverse2(value), "a table of Argoverse 2");
   return isNuscenes(value) ? named(readNuscenes(value), "a table of nuScenes") : undefined;
 }
+
+/** What an XML document of a product holds. */
+export const productOfXml = (root: Element): Found | undefined =>
+  isUrdf(root) ? named(readUrdf(root), "a robot's description") : undefined;
+
+/** Whether a text is a tree in Python's notation, which YAML has as well. */
+export const isPythonTree = looksLikeMrcal;

@@ -133,7 +133,7 @@ const LONG = new RegExp(
 const MOTION = /rotation:\s*\[([^\]]{1,400})\]\s*,?\s*translation:\s*\[([^\]]{1,200})\]/gi;
 
 export const isPrinted = (text: string): boolean =>
-  !/^\s*[{<]/.test(text) && [SHORT, LONG].some((pattern) => new RegExp(pattern.source, "i").test(text));
+  !text.startsWith("{") && [SHORT, LONG].some((pattern) => new RegExp(pattern.source, "i").test(text));
 
 /** Words before a print on its line, or on the line before: "Depth intrinsics: [ 640x480 ..". */
 function labelAt(text: string, at: number): string | undefined {

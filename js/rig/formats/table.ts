@@ -26,37 +26,41 @@ const SLACK = 0.01;
 const isComment = (line: string): boolean => /^\s*(?:[#%]|\/\/|$)/.test(line);
 const isHole = (word: string): boolean => /^[-+]?(?:nan|inf|infinity|none|null|na)?$/i.test(word);
 
-/** How the words of a line are parted; with semicolons a comma is that of a decimal. */
-function splitter(line: string): (line: string) => string[] {
-  if (line.includes(";")) return (each) => each.replace(/,/g, ".").split(";");
-  if (line.includes(",")) return (each) => each.split(",");
-  return (each) => each.trim().split(/\s+/);
+/** What parts the words of a line; with semicolons a comma is that of a decimal. */
+const separatorOf = (line: string): string => [";", ",", "\t"].find((each) => line.includes(each)) ?? " ";
+
+export function wordsOf(line: string, separator: string): string[] {
+  const words = separator === " " ? line.trim().split(/\s+/) : line.split(separator);
+  return words.map((word) =>
+    word
+      .trim()
+      .replace(/^"(.*)"$/, "$1")
+      .replace(separator === ";" ? "," : "\0", "."),
+  );
 }
-
-export const wordsOf = (line: string, split: (line: string) => string[]): string[] =>
-  split(line).map((word) => word.trim().replace(/^"(.*)"$/, "$1"));
-
-/** Some programs end each line by the separator, and some leave holes empty, also at the end of a line. */
-const isTrailing = (rows: string[][]): boolean =>
-  rows.length > 0 && rows.filter((row) => row.at(-1) === "").length >= MOSTLY * rows.length;
 
 export const isNumbers = (words: string[]): boolean =>
   words.every((word) => isHole(word) || numberOf(word) !== undefined);
 
+interface Head {
+  rows: string[][];
+  separator: string;
+  /** Whether lines end in the separator; an empty last word is no hole then. */
+  isTrailing: boolean;
+}
+
 /** The first lines that are no comments, in words. */
-export function headOf(bytes: Uint8Array): { rows: string[][]; split: (line: string) => string[] } {
+export function headOf(bytes: Uint8Array): Head {
   const text = new TextDecoder("latin1").decode(bytes.subarray(0, HEAD_CHARACTERS)).replace(/^ï»¿/, "");
-  const lines = text.split(/\r?\n/).slice(0, HEAD);
+  const lines = text.split(/\r?\n/, HEAD);
   // What may be cut off within a line says nothing.
   if (bytes.length > HEAD_CHARACTERS && lines.length > 1 && lines.length < HEAD) lines.pop();
   const used = lines.filter((line) => !isComment(line));
-  const words = splitter(used[1] ?? used[0] ?? "");
-  const trailing = isTrailing(used.map((line) => wordsOf(line, words)));
-  const split = (line: string) => {
-    const found = wordsOf(line, words);
-    return trailing && found.at(-1) === "" ? found.slice(0, -1) : found;
-  };
-  return { rows: used.map(split), split };
+  const separator = separatorOf(used[1] ?? used[0] ?? "");
+  const rows = used.map((line) => wordsOf(line, separator));
+  const isTrailing = rows.length > 0 && rows.filter((row) => row.at(-1) === "").length >= MOSTLY * rows.length;
+  const ofRow = (row: string[]) => (isTrailing && row.at(-1) === "" ? row.slice(0, -1) : row);
+  return { rows: rows.map(ofRow), separator, isTrailing };
 }
 
 /** Whether a text is a table of the size of a depth map: of its first lines, that those are rows of as many numbers. */
@@ -70,48 +74,151 @@ export function isTable(bytes: Uint8Array): boolean {
   return rows.length >= FEWEST_ROWS && alike.length >= MOSTLY * others.length;
 }
 
-/** Whether numbers count 0, 1, 2 .., as the names that pandas gives rows and columns. */
-const counts = (values: number[]): boolean => values.length > 1 && values.every((value, at) => value === at);
+/** Numbers of a table, at most: 1920x1080 pixels, and the names of rows and columns. */
+const MOST_CELLS = 2 ** 21;
+const [TAB, NEWLINE, RETURN, SPACE, QUOTE, ZERO, NINE] = [9, 10, 13, 32, 34, 48, 57];
+const [PLUS, COMMA, MINUS, POINT, LOWER_E, UPPER_E] = [43, 44, 45, 46, 101, 69];
 
-/** A table as a raster of floats; what is empty, NaN or infinite is a hole. */
-export function readTable(bytes: Uint8Array): Picture {
-  const { split } = headOf(bytes);
-  const rows: number[][] = [];
-  for (const line of new TextDecoder("latin1").decode(bytes).replace(/^ï»¿/, "").split(/\r?\n/)) {
-    if (isComment(line)) continue;
-    const words = split(line);
-    if (rows.length === 0 && !isNumbers(words)) continue;
-    if (rows.length > MOST_SIDE) throw badFile(`its table has more than ${MOST_SIDE} rows`);
-    const width = rows[0]?.length ?? words.length;
-    if (words.length !== width)
-      throw badFile(`its table has ${words.length} columns in row ${rows.length + 1}, and ${width} in those before`);
-    rows.push(words.map((word) => ofWord(word, rows.length)));
-  }
-  if (rows.length > 1 && (counts(rows[0] ?? []) || counts((rows[0] ?? []).slice(1)))) rows.shift();
-  if (counts(rows.map((row) => row[0] ?? NaN))) for (const row of rows) row.shift();
-  const [height, width] = [rows.length, rows[0]?.length ?? 0];
-  checkSize(width, height);
-  return {
-    width,
-    height,
-    channels: 1,
-    ...levels(rows.flat()),
-    format: "table",
-    notes: ["a table as text"],
-    warnings: [],
+/**
+ * A decimal number without a text of it, which takes longest; nothing where the bytes are anything else. It is right to more digits than the
+ * floats have that are made of it.
+ */
+function decimal(bytes: Uint8Array, from: number, to: number, point: number): number | undefined {
+  let at = from;
+  const sign = () => {
+    const isNegative = bytes[at] === MINUS;
+    if (isNegative || bytes[at] === PLUS) at++;
+    return isNegative ? -1 : 1;
   };
+  const isDigit = () => at < to && (bytes[at] ?? 0) >= ZERO && (bytes[at] ?? 0) <= NINE;
+  const first = sign();
+  let [value, digits, power] = [0, 0, 0];
+  for (; isDigit(); at++, digits++) value = 10 * value + (bytes[at] ?? 0) - ZERO;
+  if (bytes[at] === point) for (at++; isDigit(); at++, digits++, power--) value = 10 * value + (bytes[at] ?? 0) - ZERO;
+  if (digits === 0) return undefined;
+  if (at < to && (bytes[at] === LOWER_E || bytes[at] === UPPER_E)) {
+    at++;
+    const direction = sign();
+    let exponent = 0;
+    for (; isDigit(); at++) exponent = 10 * exponent + (bytes[at] ?? 0) - ZERO;
+    power += direction * exponent;
+  }
+  const size = power < 0 ? value / 10 ** -power : value * 10 ** power;
+  return at === to && Number.isFinite(size) ? first * size : undefined;
 }
 
-function ofWord(word: string, row: number): number {
+/** The number in these bytes; NaN where it is a hole. */
+function cell(bytes: Uint8Array, from: number, to: number, hasCommas: boolean): number {
+  const isPadding = (byte: number | undefined) => byte === SPACE || byte === TAB || byte === RETURN || byte === QUOTE;
+  while (from < to && isPadding(bytes[from])) from++;
+  while (to > from && isPadding(bytes[to - 1])) to--;
+  if (from === to) return NaN;
+  const found = decimal(bytes, from, to, hasCommas ? COMMA : POINT);
+  if (found !== undefined) return found;
+  const word = String.fromCharCode(...bytes.subarray(from, Math.min(to, from + 64)));
   if (isHole(word)) return NaN;
-  const value = numberOf(word);
-  if (value === undefined)
-    throw badFile(`its table has ${JSON.stringify(word.slice(0, 20))} in row ${row + 1}, where a number is needed`);
+  const value = numberOf(hasCommas ? word.replace(",", ".") : word);
+  if (value === undefined) throw badFile(`its table has ${JSON.stringify(word.slice(0, 20))} where a number is needed`);
   return value;
 }
 
+/** Gives the places of a line's cells to `put`; how many there are. */
+function eachCell(bytes: Uint8Array, from: number, to: number, separator: number, put: (a: number, b: number) => void) {
+  let count = 0;
+  if (separator !== SPACE) {
+    for (let start = from; start <= to; count++) {
+      const next = bytes.indexOf(separator, start);
+      const end = next < 0 || next > to ? to : next;
+      put(start, end);
+      start = end + 1;
+    }
+    return count;
+  }
+  const isBlank = (byte = 0) => byte <= SPACE;
+  for (let at = from; at < to; ) {
+    while (at < to && isBlank(bytes[at])) at++;
+    const start = at;
+    while (at < to && !isBlank(bytes[at])) at++;
+    if (at > start) {
+      put(start, at);
+      count++;
+    }
+  }
+  return count;
+}
+
+/** Whether numbers count 0, 1, 2 .., as the names that pandas gives rows and columns. */
+function counts(values: ArrayLike<number>, length: number, from = 0, step = 1): boolean {
+  for (let at = 0; at < length; at++) if (values[from + step * at] !== at) return false;
+  return length > 1;
+}
+
+interface Cells {
+  values: Float64Array;
+  width: number;
+  height: number;
+}
+
+const BOM = [0xef, 0xbb, 0xbf];
+
+/** Whether a line is empty or a comment; tabs alone are a row of holes. */
+function isLeftOut(bytes: Uint8Array, from: number, to: number, separator: number): boolean {
+  let at = from;
+  while (at < to && (bytes[at] === SPACE || (bytes[at] === TAB && separator !== TAB))) at++;
+  return at >= to || isComment(String.fromCharCode(...bytes.subarray(at, Math.min(at + 2, to))));
+}
+
+/** All cells, row by row; a first row of words is left out. */
+function cellsOf(bytes: Uint8Array): Cells {
+  const { rows, separator, isTrailing } = headOf(bytes);
+  const [code, hasCommas] = [separator.charCodeAt(0), separator === ";"];
+  let isFirst = rows[0] !== undefined && !isNumbers(rows[0]);
+  const values = new Float64Array(Math.min(MOST_CELLS, bytes.length));
+  let [count, width, height] = [0, 0, 0];
+  for (let at = BOM.every((byte, index) => bytes[index] === byte) ? BOM.length : 0; at < bytes.length; ) {
+    const newline = bytes.indexOf(NEWLINE, at);
+    const end = newline < 0 ? bytes.length : newline;
+    const [from, to] = [at, bytes[end - 1] === RETURN ? end - 1 : end];
+    at = end + 1;
+    if (isLeftOut(bytes, from, to, code)) continue;
+    if (isFirst) {
+      isFirst = false;
+      continue;
+    }
+    const until = isTrailing && bytes[to - 1] === code ? to - 1 : to;
+    const cells = eachCell(bytes, from, until, code, (a, b) => {
+      if (count === values.length)
+        throw badFile("its table has more numbers than 1920x1080 pixels; save it as 16-bit PNG or .npy");
+      values[count++] = cell(bytes, a, b, hasCommas);
+    });
+    if (height++ === 0) width = cells;
+    if (cells !== width) throw badFile(`its table has ${cells} columns in row ${height}, and ${width} in those before`);
+  }
+  return { values: values.subarray(0, count), width, height };
+}
+
+/** Without the numbers of rows and columns. */
+function unnamed({ values, width, height }: Cells): Cells {
+  const top = counts(values, width) || counts(values, width - 1, 1) ? 1 : 0;
+  const left = counts(values, height - top, top * width, width) ? 1 : 0;
+  if (top + left === 0) return { values, width, height };
+  const kept = { width: width - left, height: height - top };
+  const all = Float64Array.from({ length: kept.width * kept.height }, (_, at) => {
+    const [row, column] = [Math.floor(at / kept.width), at % kept.width];
+    return values[(row + top) * width + column + left] ?? NaN;
+  });
+  return { values: all, ...kept };
+}
+
+/** A table as a raster of floats; what is empty, NaN or infinite is a hole. */
+export function readTable(bytes: Uint8Array): Picture {
+  const { values, width, height } = unnamed(cellsOf(bytes));
+  checkSize(width, height);
+  return { width, height, channels: 1, ...levels(values), format: "table", notes: ["a table as text"], warnings: [] };
+}
+
 /** Whole numbers of 16 bits as depth cameras write them, others as floats. */
-function levels(values: number[]): Pick<Picture, "data" | "bits"> {
+function levels(values: Float64Array): Pick<Picture, "data" | "bits"> {
   const isLevel = (value: number) => Number.isNaN(value) || (Number.isInteger(value) && value <= 0xffff);
   if (values.every(isLevel)) return { data: Uint16Array.from(values, (value) => Math.max(0, value || 0)), bits: 16 };
   return { data: new Float32Array(values), bits: 32 };

@@ -1,18 +1,16 @@
 /** Text files: what they are is told from their words, and what they hold comes out as cameras and poses. */
 import { BimodalError, badFile } from "../../errors.js";
 import { readColmap, isColmap } from "./colmap.js";
+import { isColmapImages, readColmapImages } from "./colmap-others.js";
 import { readColumns } from "./columns.js";
 import { withPoints } from "./commas.js";
 import { MOST_TEXT } from "./limits.js";
 import { readNotes } from "./notes.js";
 import type { Node } from "./numbers.js";
 import { readNumbers } from "./plain.js";
-import { looksLikeMrcal } from "./mrcal.js";
-import { productOfText, productOfTree } from "./products.js";
 import { isEcho, isPublisher, readEcho, readPublishers } from "./ros.js";
 import { MOST_SETTINGS, isSectioned, plainPython, readJson, readSections } from "./settings.js";
 import { type Calibration, searchTree } from "./tree.js";
-import { isUrdf, readUrdf } from "./urdf.js";
 import { type Element, plainXml, readXml } from "./xml.js";
 
 /** So that a small file cannot become a large value. */
@@ -62,11 +60,14 @@ const NEITHER =
 
 type Read = Calibration & { format: string };
 
-function searched(value: unknown, format: string, text: string): Read {
+/** Readers of products, which are loaded when the first text comes. */
+const products = () => import("./products.js");
+
+async function searched(value: unknown, format: string, text: string): Promise<Read> {
   const isText = (each: unknown) => typeof each !== "object" || each === null;
   if (isText(value) || (Array.isArray(value) && value.every(isText)))
     throw badFile("it is a text in none of the forms that are read here");
-  const product = productOfTree(value);
+  const product = (await products()).productOfTree(value);
   if (product !== undefined) return product;
   const found = searchTree(value, text);
   if (found.cameras.length === 0 && found.poses.length === 0)
@@ -75,9 +76,9 @@ function searched(value: unknown, format: string, text: string): Read {
 }
 
 /** Each row of a table by its number; rows with times or pictures are where the camera stood. */
-function ofTable({ rows, isSeries }: { rows: Node[]; isSeries: boolean }, text: string): Read {
+async function ofTable({ rows, isSeries }: { rows: Node[]; isSeries: boolean }, text: string): Promise<Read> {
   const named = Object.fromEntries(rows.map((row, at) => [isSeries ? `pose ${at + 1}` : `row ${at + 1}`, row]));
-  const found = searched(named, isSeries ? "a table of poses" : "a table", text);
+  const found = await searched(named, isSeries ? "a table of poses" : "a table", text);
   // What is guessed of one row is guessed of all.
   return { ...found, warnings: [...new Map([...found.warnings].reverse().map((each) => [each.code, each])).values()] };
 }
@@ -94,7 +95,7 @@ function ofNotes(text: string): Read | undefined {
 async function ofYaml(text: string): Promise<Read> {
   try {
     const value = await readYaml(text);
-    const product = productOfTree(value);
+    const product = (await products()).productOfTree(value);
     if (product !== undefined) return product;
     const found = searchTree(value, text);
     if (found.cameras.length + found.poses.length > 0) return { ...found, format: "YAML" };
@@ -108,7 +109,7 @@ async function ofYaml(text: string): Promise<Read> {
 }
 
 /** XML, or what Python prints of an object: it begins with "<", too. */
-function ofXml(text: string): Read {
+async function ofXml(text: string): Promise<Read> {
   let root: Element;
   try {
     root = readXml(text);
@@ -117,9 +118,7 @@ function ofXml(text: string): Read {
     if (found === undefined) throw error;
     return found;
   }
-  return isUrdf(root)
-    ? Object.assign(readUrdf(root), { format: "a robot's description" })
-    : searched(plainXml(root), "XML", text);
+  return (await products()).productOfXml(root) ?? searched(plainXml(root), "XML", text);
 }
 
 /** What a text holds, with a word on what kind of text it is. */
@@ -128,11 +127,13 @@ export async function readText(text: string): Promise<Read> {
   if (trimmed === "") throw badFile("it is empty: there is nothing in it but spaces");
   if (isPublisher(trimmed)) return { ...readPublishers(trimmed), format: "a static transform of ROS" };
   if (isEcho(trimmed)) return { ...readEcho(trimmed), format: "a transform of ROS" };
+  const { isPythonTree, productOfText } = await products();
   const product = productOfText(trimmed);
   if (product !== undefined) return product;
-  if (looksLikeMrcal(trimmed)) return searched(await readYaml(trimmed), "YAML", trimmed);
+  if (isPythonTree(trimmed)) return searched(await readYaml(trimmed), "YAML", trimmed);
   if (trimmed.startsWith("<")) return ofXml(trimmed);
   if (isColmap(trimmed)) return { ...readColmap(trimmed), format: "COLMAP's cameras" };
+  if (isColmapImages(trimmed)) return { ...readColmapImages(trimmed), format: "COLMAP's images" };
   const pointed = withPoints(trimmed);
   if (pointed !== undefined) {
     const found = await ofWords(pointed);

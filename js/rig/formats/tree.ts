@@ -70,6 +70,8 @@ class Search {
   readonly motions: Motions;
   readonly #found: FoundCamera[] = [];
   readonly #leftovers = new Leftovers();
+  /** The one pose that stands in the object of one camera. */
+  readonly #own: NamedPose[] = [];
   /** Models of cameras that the file names. */
   readonly models = new Set<string>();
   #nodes = 0;
@@ -128,7 +130,11 @@ class Search {
     // OpenCV's stereo calibration: R and T carry points of camera 1 into camera 2. Of other names the order says nothing.
     const stereo = first === "1" && second === "2" && more.length === 0 ? { from: "1", to: "2" } : {};
     const inner = contextOf(node, { ...context, ...(framesOf(node) ?? stereo) });
+    const poses = this.motions.poses.length;
     this.motions.read(node, name, inner, this.#found.length > before);
+    const isOne = this.#found.length === before + 1 && this.motions.poses.length === poses + 1;
+    const own = this.motions.poses[poses];
+    if (isOne && own !== undefined) this.#own.push(own);
     return inner;
   }
 
@@ -190,7 +196,7 @@ class Search {
   finish(): void {
     this.#leftovers.assign(this.#found, this.warnings);
     for (const { raw } of this.#found) this.cameras.push(cameraOf(raw, this.warnings));
-    this.motions.finish(this.cameras);
+    this.motions.finish(this.cameras, this.#own);
     chain(this.motions.poses);
   }
 }
@@ -240,7 +246,12 @@ type Intrinsics = Pick<RawCamera, "focal" | "centre" | "model" | "distortion" | 
 
 /** fx, fy, cx and cy by these or other names. */
 function membersOf(node: Node, name: string | undefined): Pick<RawCamera, "focal" | "centre"> | undefined {
+  const single = numberOf(member(node, "f", "focal", "focallength", "focallengthpx", "focalpx"));
   const [fx, cx] = [numberOf(member(node, ...FX)), numberOf(member(node, ...CX))];
+  if (fx === undefined && single !== undefined && single > SHORTEST && cx !== undefined) {
+    const cy = numberOf(member(node, ...CY));
+    return cy === undefined ? undefined : { focal: [single, single], centre: [cx, cy] };
+  }
   if (fx === undefined || cx === undefined) return undefined;
   const [fy, cy] = [numberOf(member(node, ...FY)), numberOf(member(node, ...CY))];
   if (fy === undefined || cy === undefined)
@@ -259,9 +270,11 @@ function kannala(node: Node): Intrinsics | undefined {
 
 /** OKVIS and others: focal_length and principal_point of two numbers each. */
 function listsOf(node: Node): Intrinsics | undefined {
-  const focal = matrixOf(node.focal_length)?.values;
+  const single = numberOf(node.focal_length);
+  const focal = single === undefined ? matrixOf(node.focal_length)?.values : [single, single];
   const centre = matrixOf(node.principal_point)?.values;
-  return focal?.length === 2 && centre?.length === 2 ? { focal, centre } : undefined;
+  const isPixels = focal?.length === 2 && (focal[0] ?? 0) > SHORTEST;
+  return isPixels && centre?.length === 2 ? { focal, centre } : undefined;
 }
 
 /** Blender and phones: focal length and sensor in millimetres, with the size of the pictures. */

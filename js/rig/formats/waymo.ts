@@ -1,15 +1,12 @@
 /**
- * Calibrations of the Waymo Open Dataset, its protocol buffers as JSON. A camera's frame there looks along x with z up, as the vehicle's
+ * Calibrations of the Waymo Open Dataset, its protocol buffers as JSON or text. A camera's frame there looks along x with z up, as the vehicle's
  * does; here it is turned to look along z with y down.
  */
 import { badFile } from "../../errors.js";
 import type { NamedPose } from "../types.js";
 import { Findings, flat, parted } from "./findings.js";
+import { asOptical, hasBodyAxes } from "./frames.js";
 import { isNode, type Node, numberOf } from "./numbers.js";
-import { chained, poseOf } from "./poses.js";
-
-/** From x right, y down, z forward to x forward, y left, z up. */
-const OPTICAL = poseOf([0, 0, 1, -1, 0, 0, 0, -1, 0], [0, 0, 0]);
 
 const listOf = (value: unknown): Node[] => (Array.isArray(value) ? value.filter(isNode) : []);
 const contextOf = (root: Node): Node => {
@@ -74,7 +71,7 @@ export function readWaymo(root: Node): Findings {
     });
     const pose = posed(found, each, name);
     if (pose === undefined) continue;
-    pose.pose = chained(pose.pose, OPTICAL);
+    if (hasBodyAxes(pose.pose)) pose.pose = asOptical(pose.pose);
     eyes.push(pose);
   }
   const lidars = lasers(root).map((each) => posed(found, each, `lidar ${single(each.name) ?? ""}`.trim()));

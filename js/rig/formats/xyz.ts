@@ -19,7 +19,7 @@ function columnsOf(names: string[] | undefined, count: number): { axes: number[]
 
 /** The points of a text that is a list of them by its first lines. */
 export function readXyz(bytes: Uint8Array): Points | undefined {
-  const { rows, split } = headOf(bytes);
+  const { rows, separator } = headOf(bytes);
   const isCounted = rows[0]?.length === 1;
   const names = !isCounted && rows[0] !== undefined && !isNumbers(rows[0]) ? rows[0] : undefined;
   const count = (rows[1] ?? []).length;
@@ -35,7 +35,7 @@ export function readXyz(bytes: Uint8Array): Points | undefined {
   const channels = others.map((name) => (name === undefined ? undefined : channelOf(name)));
   const scan = { points: new Float32Array(3 * lines.length), ...roomFor(lines.length, channels) };
   lines.forEach((line, point) => {
-    const values = wordsOf(line, split).map(Number);
+    const values = wordsOf(line, separator).map(Number);
     axes.forEach((column, axis) => {
       const value = values[column];
       if (value === undefined) throw badFile(`it has no x, y and z in line ${point + 1} of its points`);

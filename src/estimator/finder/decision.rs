@@ -19,9 +19,18 @@ pub enum Method {
     /// .. or silhouettes.
     Silhouettes(Box<OutlineReport>),
     /// Nothing better was found near the initial pose, which stays.
-    Initial,
+    Initial(Staying),
     /// Nothing could be registered.
     Nothing,
+}
+
+/// What an initial pose that stays is worth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Staying {
+    /// Light and normals explain some of the image under it.
+    Explains,
+    /// They explain nothing, or the image shows too little of the object.
+    ExplainsNothing,
 }
 
 impl Method {
@@ -30,7 +39,7 @@ impl Method {
         match self {
             Self::Silhouettes(_) => FoundBy::Silhouettes,
             Self::Contrast(_) => FoundBy::Contrast,
-            Self::Image(_) | Self::Initial | Self::Nothing => FoundBy::Image,
+            Self::Image(_) | Self::Initial(_) | Self::Nothing => FoundBy::Image,
         }
     }
 }

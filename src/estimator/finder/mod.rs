@@ -59,7 +59,7 @@ use nearby::{Nearby, Progress};
 use silhouettes::Anywhere;
 
 pub use candidates::search;
-pub use decision::{Decision, Method};
+pub use decision::{Decision, Method, Staying};
 pub use local_optima::RegisteredCandidate;
 pub use nearby::explains;
 pub use opening::Opening;
@@ -88,8 +88,6 @@ struct Near {
     /// Where the registration from the initial pose left no more than the image's own noise.
     noisy: Option<Similarity>,
     silhouettes: Option<Box<OutlineReport>>,
-    /// Whether the registrations are being repeated, kept near the initial pose.
-    is_second: bool,
 }
 
 /// What is being done.
@@ -150,7 +148,7 @@ impl Finder {
         let plain = plain.map(Box::new).filter(|found| region.holds(pair, &found.pose));
         let noisy = plain.as_deref().filter(|found| pair.residuals(found).is_noise()).map(|found| found.pose);
         let phase = Phase::Nearby(Box::new(Nearby::new(pair, region.clone(), plain)));
-        let near = Near { region, noisy, silhouettes: None, is_second: false };
+        let near = Near { region, noisy, silhouettes: None };
         Self { scope: Scope::Near(Box::new(near)), phase, chosen: Choice::default() }
     }
 
@@ -318,7 +316,7 @@ impl Finder {
         let colours = ColourRegistration::prepared(memory, pair);
         if let Scope::Near(near) = &mut self.scope {
             let choice = std::mem::take(&mut self.chosen);
-            if found.is_none() && near.begins_again(pair, &choice) {
+            if found.is_none() && near.begins_again(pair, colours, &choice) {
                 colours.keep_near(near.region.prior(pair));
                 let nearby = Nearby::again(pair, near.region.clone(), near.silhouettes.take());
                 return Ok(Next::Phase(Phase::Nearby(Box::new(nearby))));
@@ -371,11 +369,9 @@ impl Scope {
 
 impl Near {
     /// Whether to repeat the registrations, kept near the initial pose: once, and where a single albedo does not explain the image.
-    fn begins_again(&mut self, pair: &ViewPair, choice: &Choice) -> bool {
+    fn begins_again(&self, pair: &ViewPair, colours: &ColourRegistration, choice: &Choice) -> bool {
         let is_explained = choice.best.as_ref().is_some_and(|best| !silhouettes::is_painted(pair, best));
-        let begins = !self.is_second && !is_explained && self.region.prior(pair).is_some();
-        self.is_second |= begins;
-        begins
+        !colours.is_kept_near() && !is_explained && self.region.prior(pair).is_some()
     }
 
     /// What lies within the trust region: by local contrast, by the image, by silhouettes; or else the initial pose.
@@ -409,15 +405,24 @@ impl Near {
             None => true,
         };
         let Some(best) = best.filter(|best| is_trusted(best)) else {
-            return Ok(Decision::of(silhouettes.map_or(Method::Initial, Method::Silhouettes)));
+            return Ok(Decision::of(silhouettes.map_or_else(|| stay(pair, colours, region), Method::Silhouettes)));
         };
         // All points follow the sample that candidates are registered by.
         let found = colours.register_all(pair, *best)?;
         Ok(Decision::of(match region.holds(pair, &found.pose) {
             true => Method::Image(Box::new(found)),
-            false => Method::Initial,
+            false => stay(pair, colours, region),
         }))
     }
+}
+
+/// The initial pose stays.
+fn stay(pair: &ViewPair, colours: &mut ColourRegistration, region: &TrustRegion) -> Method {
+    let explains = |found: Box<PhotometricReport>| found.noise < pair.image.log_spread();
+    Method::Initial(match colours.judge(pair, &region.initial).is_some_and(explains) {
+        true => Staying::Explains,
+        false => Staying::ExplainsNothing,
+    })
 }
 
 impl Phase {

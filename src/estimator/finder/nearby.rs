@@ -43,8 +43,6 @@ pub struct Nearby {
     optima: Option<LocalOptima>,
     silhouettes: Option<Box<OutlineReport>>,
     search: Option<Search>,
-    /// Whether registrations are kept near the initial pose.
-    is_near: bool,
 }
 
 impl Nearby {
@@ -58,7 +56,6 @@ impl Nearby {
             optima: Some(optima),
             silhouettes: None,
             search: None,
-            is_near: false,
         }
     }
 
@@ -66,7 +63,7 @@ impl Nearby {
     /// and from the one that silhouettes found.
     pub fn again(pair: &ViewPair, region: TrustRegion, silhouettes: Option<Box<OutlineReport>>) -> Self {
         let step = Step::FromInitial { level: COARSEST_NEAR };
-        Self { step, silhouettes, is_near: true, ..Self::new(pair, region, None) }
+        Self { step, silhouettes, ..Self::new(pair, region, None) }
     }
 
     /// The pose by silhouettes, where they decide anything.
@@ -103,7 +100,7 @@ impl Nearby {
                     return Ok(Progress::Explained(Choice::default()));
                 };
                 let candidates = Candidates::new(search, optima, NEARBY, false);
-                let candidates = if self.is_near { candidates.near() } else { candidates };
+                let candidates = if colours.is_kept_near() { candidates.near() } else { candidates };
                 return Ok(Progress::Unexplained(Box::new(candidates)));
             }
         }

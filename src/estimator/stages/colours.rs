@@ -109,6 +109,11 @@ impl ColourRegistration {
         self.near = prior;
     }
 
+    /// Whether they are kept near one.
+    pub const fn is_kept_near(&self) -> bool {
+        self.near.is_some()
+    }
+
     /// That of a pair, made now where it is not there yet.
     #[inline(never)]
     pub fn prepared<'a>(memory: &'a mut Option<Self>, pair: &ViewPair) -> &'a mut Self {

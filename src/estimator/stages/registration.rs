@@ -1,6 +1,6 @@
 //! The registration stage: which of the two registrations a pair asks for, and what it found.
 
-use crate::estimator::finder::{Decision, Finder, Method, TrustRegion, explains};
+use crate::estimator::finder::{Decision, Finder, Method, Staying, TrustRegion, explains};
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
 use crate::estimator::solution::Solution;
@@ -59,7 +59,7 @@ enum Decided {
     Contrast(Box<Contrasted>),
     Silhouettes(Box<OutlineReport>),
     /// Nothing better was found: the initial pose stays.
-    Initial,
+    Initial(Staying),
 }
 
 /// What a stage has come to.
@@ -125,8 +125,8 @@ impl RegistrationStage {
         let Decision { by, rivals } = decision;
         let registered = match by {
             Method::Nothing => return Err(Reason::NoPose { scale_is_held: gauge::held_scale(pair).is_some() }),
-            Method::Initial => {
-                self.decided = Some(Decided::Initial);
+            Method::Initial(staying) => {
+                self.decided = Some(Decided::Initial(staying));
                 return Ok(None);
             }
             Method::Silhouettes(found) => {
@@ -154,9 +154,12 @@ impl RegistrationStage {
         Ok(Some(Registered { rivals, ..registered }))
     }
 
-    /// Whether nothing near the initial pose fits the image better, so that it is kept.
-    pub const fn has_kept_start(&self) -> bool {
-        matches!(self.decided, Some(Decided::Initial))
+    /// What the initial pose is worth where nothing near it fits the image better, so that it is kept.
+    pub const fn staying(&self) -> Option<Staying> {
+        match self.decided {
+            Some(Decided::Initial(staying)) => Some(staying),
+            _ => None,
+        }
     }
 
     /// What the pose rests on, in words.
@@ -164,7 +167,7 @@ impl RegistrationStage {
         match (self.kind(pair), &self.decided) {
             (Registration::Fixed, _) => "held pose",
             (Registration::Icp, _) => "surfaces",
-            (Registration::Joint, Some(Decided::Initial)) => "initial pose kept",
+            (Registration::Joint, Some(Decided::Initial(_))) => "initial pose kept",
             (Registration::Joint, Some(Decided::Silhouettes(_))) => "silhouettes",
             (Registration::Joint, Some(Decided::Contrast(_))) => "local contrast",
             (Registration::Joint, _) => "photometric registration",
@@ -193,7 +196,7 @@ impl RegistrationStage {
             Registration::Fixed => true,
             Registration::Joint => {
                 let stands = match &self.decided {
-                    Some(Decided::Initial | Decided::Silhouettes(_)) => true,
+                    Some(Decided::Initial(_) | Decided::Silhouettes(_)) => true,
                     Some(Decided::Contrast(found)) => found.stands(),
                     Some(Decided::Image) | None => false,
                 };
@@ -262,7 +265,7 @@ impl RegistrationStage {
     ) -> Result<Option<Registered>, Reason> {
         let Some(colours) = &mut self.colours else { return Ok(None) };
         match &mut self.decided {
-            Some(Decided::Initial | Decided::Silhouettes(_)) => Ok(None),
+            Some(Decided::Initial(_) | Decided::Silhouettes(_)) => Ok(None),
             Some(Decided::Contrast(found)) => {
                 let pose = found.follow(pair, colours, paint, self.region.as_ref());
                 Ok(pose.map(|pose| Registered::of_pose(with_gauge_of(pair, pose, start))))

@@ -5,9 +5,11 @@ use super::objective::State;
 use super::problem::ContrastProblem;
 use super::registration::ContrastRegistration;
 use crate::pose::increment::{PoseMatrix, PoseVector};
-use crate::pose::jackknife::{SECTORS, STEPS, covariance, sectors};
+use crate::pose::jackknife::{SECTORS, covariance, sectors};
 use crate::pose::similarity::Similarity;
 
+/// Steps without a sector, from the end: more than a photometric registration takes, because local means follow slowly.
+const STEPS: usize = 8;
 /// Weight that a sample keeps where its sector is left out: one of none would have no local mean.
 const LEFT_OUT: f32 = 1e-4;
 

@@ -149,14 +149,6 @@ mod tests {
     use crate::view::{ColourImage, ColourSamples, ColourView};
 
     #[test]
-    fn sigmas_grow_with_what_tiles_do_not_tell() {
-        let inflation = |residuals, depth| Noise { residuals, image: 0.01, depth }.sigma_inflation();
-        assert_eq!(inflation(0.01, 0.0), SIGMA_INFLATION);
-        assert!((inflation(0.01, BIASING_NOISE) / SIGMA_INFLATION - 2.0_f64.sqrt()).abs() < 1e-12);
-        assert!((inflation(1e9, 0.0) / (MODEL_SIGMA_INFLATION * SIGMA_INFLATION) - 1.0).abs() < 1e-12);
-    }
-
-    #[test]
     fn the_gradients_of_white_noise_vary_together_by_the_constant() {
         let side = 96;
         let mut dice = noise::white_noise(3);

@@ -8,10 +8,14 @@ use super::problem::PhotometricProblem;
 use super::weighting::final_robust_scale;
 use crate::error::Result;
 use crate::pose::increment::{Frame, PoseMatrix, PoseVector};
-use crate::pose::jackknife::{SECTORS, STEPS, covariance, sectors};
+use crate::pose::jackknife::{SECTORS, covariance, sectors};
 
 /// Points that take part at most, spread evenly: they are enough for errors of the model, which many points do not average.
 const MOST_POINTS: usize = 20_000;
+
+/// Steps without a sector, from the end. On 149 random scenes of three surfaces under natural lights (96x96) three sigmas of tiles and
+/// sectors hold all axes of 87, 91, 95, 96 and 95 % after 1, 2, 3, 5 and 8 steps, of 97 % after 3 with Student's variance.
+const STEPS: usize = 3;
 
 impl Photometric {
     /// What errors that differ between sectors add to the covariance. The points that take part are others afterwards.

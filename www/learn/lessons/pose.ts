@@ -21,13 +21,13 @@ export const pose: Lesson = {
   text: [
     "A photograph and a depth map look nothing alike, so there are no features to match. What links them is the image model: turn the depth map's normals {m} by the pose's rotation {R}, and they must explain the colours. Under a wrong pose they do not, and a residual is left. The curve shows it for wrong turns about the vertical axis.",
     "Joint registration walks down this residual, and light and pose move together where the light is unknown. It needs a start within reach, some 20 to 30 degrees. If nothing is known, a search comes first: it scores rotations from all over the sphere coarsely and hands the best to the registration.",
-    "“Register from there” tells the registration a pose to start from. This told pose is believed up to a tolerance: the answer has to lie within 30° of it, and may move the object's middle by about the object's own width. If no pose within the tolerance explains the colours better, the told pose is kept and the status is lost.",
+    "“Register from there” tells the registration a pose to start from. This told pose is believed up to a tolerance: the answer has to lie within 30° of it, and may move the object's middle by about the object's own width. If no pose within the tolerance explains the colours better, the told pose is kept and the status is ambiguous.",
     "The last map is the cost of one pixel over all its normals, with the prior from the depth map under the present pose: a ring for the prior, dots for the valleys, a line for the steps of the solver from the prior. A small {lambda} leaves several valleys. Make it larger and they merge into one, near the prior. That is help if the pose is right, and harm if it is wrong. The robust prior is a compromise: one that is far off loses its hold.",
   ],
   tasks: [
     "Turn the pose away from 0° and watch the residual rise and the two surfaces part.",
     "Drag λ to the right until the valleys of the pixel have merged. Repeat with the pose 20° wrong.",
-    "Let it register from 20° away, then from 40°: the true pose lies beyond the tolerance, so the told pose is kept and the status is lost.",
+    "Let it register from 20° away, then from 40°: the true pose lies beyond the tolerance, so the told pose is kept and the status is ambiguous.",
     "Let it search from nothing.",
   ],
   controls: [

@@ -1,0 +1,81 @@
+/** COLMAP's other files: cameras.bin, which is cameras.txt in binary, and images.txt, where the pictures were taken. */
+import { badFile } from "../../errors.js";
+import { type ReaderWarning, distinct, warning } from "../warnings.js";
+import { numberOf } from "./numbers.js";
+import { inverseOf, motion, ofQuaternion } from "./poses.js";
+import type { Calibration } from "./tree.js";
+
+/** Models by their number, with how many parameters they have. */
+const MODELS: [name: string, parameters: number][] = [
+  ["SIMPLE_PINHOLE", 3],
+  ["PINHOLE", 4],
+  ["SIMPLE_RADIAL", 4],
+  ["RADIAL", 5],
+  ["OPENCV", 8],
+  ["OPENCV_FISHEYE", 8],
+  ["FULL_OPENCV", 12],
+  ["FOV", 5],
+  ["SIMPLE_RADIAL_FISHEYE", 4],
+  ["RADIAL_FISHEYE", 5],
+  ["THIN_PRISM_FISHEYE", 12],
+];
+/** Bytes before the cameras, and of a camera without its parameters. */
+const HEAD = 8;
+const CAMERA = 24;
+const MOST_CAMERAS = 5000;
+const MOST_IMAGES = 5000;
+
+/** A cameras.bin as the text that cameras.txt would be; nothing where the bytes are not exactly those of one. */
+export function colmapText(bytes: Uint8Array): string | undefined {
+  if (bytes.length < HEAD + CAMERA) return undefined;
+  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  const count = view.getUint32(0, true);
+  if (view.getUint32(4, true) !== 0 || count === 0 || count > MOST_CAMERAS) return undefined;
+  const lines: string[] = [];
+  let at = HEAD;
+  for (let index = 0; index < count; index++) {
+    if (at + CAMERA > bytes.length) return undefined;
+    const [id, model] = [view.getUint32(at, true), view.getInt32(at + 4, true)];
+    const [width, height] = [Number(view.getBigUint64(at + 8, true)), Number(view.getBigUint64(at + 16, true))];
+    const [name, parameters] = MODELS[model] ?? [];
+    if (name === undefined || parameters === undefined) return undefined;
+    at += CAMERA;
+    if (at + 8 * parameters > bytes.length) return undefined;
+    const values = Array.from({ length: parameters }, (_, each) => view.getFloat64(at + 8 * each, true));
+    at += 8 * parameters;
+    if (!values.every(Number.isFinite)) return undefined;
+    lines.push(`${id} ${name} ${width} ${height} ${values.join(" ")}`);
+  }
+  return at === bytes.length ? lines.join("\n") : undefined;
+}
+
+const IMAGE = /^\s*\d+(?:\s+[-+.\deE]+){7}\s+\d+\s+\S.*$/;
+
+const linesOf = (text: string): string[] =>
+  text.split(/\r?\n/).filter((line) => line.trim() !== "" && !line.trim().startsWith("#"));
+
+/** "IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME", with the points that were seen on the next line. */
+export const isColmapImages = (text: string): boolean => IMAGE.test(linesOf(text.slice(0, 4096))[0] ?? "");
+
+export function readColmapImages(text: string): Calibration {
+  const warnings: ReaderWarning[] = [];
+  const lines = linesOf(text).filter((line) => IMAGE.test(line));
+  if (lines.length > MOST_IMAGES) throw badFile(`it lists more than ${MOST_IMAGES} pictures`);
+  const poses = lines.map((line) => {
+    const [, ...words] = line.trim().split(/\s+/);
+    const numbers = words.slice(0, 7).map((word) => numberOf(word) ?? NaN);
+    if (numbers.some(Number.isNaN)) throw badFile(`it has a line that is no picture: ${line.slice(0, 60)}`);
+    const [w = NaN, x = NaN, y = NaN, z = NaN, ...shift] = numbers;
+    const names = { name: words.slice(8).join(" "), from: "camera", to: "world" };
+    const found = motion(ofQuaternion([x, y, z, w], warnings), shift, names, warnings, false);
+    return { ...found, pose: inverseOf(found.pose) };
+  });
+  warnings.push(
+    warning(
+      "camera-to-world",
+      `It says where ${poses.length} pictures were taken, in a world of any scale: no pose between two cameras, and not taken for one.`,
+      { poses: poses.length },
+    ),
+  );
+  return { cameras: [], poses, warnings: distinct(warnings, 4) };
+}
