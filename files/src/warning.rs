@@ -23,6 +23,8 @@ const HARMLESS: [&str; 9] = [
     "transform-missing",
     "pose-left-out",
     "camera-to-world",
+    "points-sorted",
+    "lidar-axes",
 ];
 
 impl Warning {

@@ -1,6 +1,7 @@
 /** The command `check`: the calibration of a rig over a folder of frames, for a shell and for continuous integration. */
 import { writeFileSync } from "node:fs";
 import { basename } from "node:path";
+import { posesForClouds } from "../rig/turned.js";
 import type { NamedFile, RigReading } from "../rig/types.js";
 import type { CheckReport } from "../types/index.js";
 import { type Arguments, Mistake } from "./arguments.js";
@@ -61,7 +62,9 @@ export async function check(args: Arguments): Promise<number> {
     const first = read.warnings[0] ? `: ${read.warnings[0].message}` : "";
     throw new Mistake(`${args.folder}: it holds no pair of a colour image and a depth map that could be read${first}`);
   }
-  const report = await checked(loaded, read.frames, candidates, args.checking);
+  const given = Object.entries(candidates).map(([name, pose]) => ({ name, pose }));
+  const poses = posesForClouds(given, read.frames, read.warnings).map(({ name = "", pose }) => [name, pose]);
+  const report = await checked(loaded, read.frames, Object.fromEntries(poses), args.checking);
   const whole = capped(report, [...report.warnings, ...warnings, ...read.warnings.map(ofReader)]);
   write(
     loaded,

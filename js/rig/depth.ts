@@ -25,6 +25,7 @@ import {
   unitOfFloats,
   unitOfIntegers,
 } from "./guess.js";
+import { isOptical, turnedCloud } from "./scan.js";
 import { isScattered, looksLikeImage } from "./texture.js";
 import type { ReadOptions, RigReading } from "./types.js";
 import { type ReaderWarning, warning } from "./warnings.js";
@@ -221,6 +222,7 @@ function ofFloats(picture: Picture, stored: Float32Array, unit: number | undefin
 /** An organised cloud; its points are brought to metres, NaN where there is none. */
 export function cloudDepth(cloud: Cloud, { unit }: ReadOptions): Found<Depth> {
   const points = cloud.points;
+  if (!isOptical(points)) return turnedCloud(cloud, unit);
   const behind = sampled(
     points.map((value) => -value),
     3,

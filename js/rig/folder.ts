@@ -15,6 +15,7 @@ import { key, stem } from "./names.js";
 import { pairsOf } from "./pairs.js";
 import { checkNamed, isRasterFile, isTextFile, metresPerUnit, pixelSize, readRigFile } from "./read.js";
 import { isAligned, isOther, roleOf } from "./roles.js";
+import { posesForClouds } from "./turned.js";
 import type {
   CheckFrame,
   Mask,
@@ -331,6 +332,7 @@ export async function readRigFolder(files: NamedFile[], options: FolderOptions =
     cameraOf: ({ name = "" }) =>
       own.find((each) => each.name !== undefined && key(each.name) === key(name) && key(name) !== ""),
   });
+  folder.poses = posesForClouds(folder.poses, frames, folder.warnings);
   checkUnits(frames, folder.warnings);
   if (frames.length + folder.cameras.length + folder.poses.length === 0)
     throw nothingFound(files.length, folder.warnings, pictures);

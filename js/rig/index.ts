@@ -7,5 +7,6 @@ export { cameraFromFieldOfView } from "./camera.js";
 export { type FolderOptions, readRigFolder } from "./folder.js";
 export { readRigFile } from "./read.js";
 export { isRecording } from "./recordings/kinds.js";
+export { rangeImage } from "./range.js";
 export type { ReaderCode, ReaderWarning } from "./warnings.js";
 export type { NamedCamera, NamedFile, NamedPose, ReadOptions, Reading, RigFolder, RigReading } from "./types.js";

@@ -14,11 +14,13 @@ import { withEnds } from "./formats/filename.js";
 import { readExr } from "./formats/exr.js";
 import { type RasterKind, rasterKind } from "./formats/headerless.js";
 import { readJpeg, readWebp } from "./formats/jpeg.js";
+import { readBin } from "./formats/bin.js";
+import { readLas } from "./formats/las.js";
 import { MOST_BYTES } from "./formats/limits.js";
 import { matrixText } from "./formats/npy-matrix.js";
 import { npyPicture, npzPicture } from "./formats/npy.js";
 import { readPcd } from "./formats/pcd.js";
-import type { Cloud, Picture } from "./formats/picture.js";
+import type { Cloud, Picture, Points } from "./formats/picture.js";
 import { readPly } from "./formats/ply.js";
 import { pngPicture } from "./formats/png.js";
 import { readPfm, readPnm } from "./formats/pnm.js";
@@ -27,6 +29,8 @@ import { pointList, readTable } from "./formats/table.js";
 import { textOf } from "./formats/decode.js";
 import { readTiff } from "./formats/tiff.js";
 import { kindOfPicture, nameWarnings, unitOfName } from "./recognise.js";
+import { pointsDepth } from "./scan.js";
+import { readXyz } from "./formats/xyz.js";
 import type { NamedFile, ReadOptions, RigReading } from "./types.js";
 import { distinct } from "./warnings.js";
 import { inWords } from "./words.js";
@@ -35,7 +39,7 @@ type Unnamed<T> = T extends unknown ? Omit<T, "name"> : never;
 type Content = Unnamed<RigReading>;
 
 const PICTURES: Record<
-  Exclude<RasterKind, "ply" | "pcd" | "points">,
+  Exclude<RasterKind, "ply" | "pcd" | "las" | "points">,
   (bytes: Uint8Array, options: ReadOptions) => Picture | Promise<Picture>
 > = {
   png: pngPicture,
@@ -67,10 +71,10 @@ function ofPicture(name: string, picture: Picture, options: ReadOptions): Conten
   throw badFile(`it is a picture (${picture.format}) where ${kind} were asked for`);
 }
 
-function ofCloud(cloud: Cloud, options: ReadOptions): Content {
+async function ofCloud(cloud: Cloud | Points, options: ReadOptions): Promise<Content> {
   if (options.as !== undefined && options.as !== "depth")
     throw badFile(`it is a cloud of points (${cloud.format}) where ${options.as} was asked for`);
-  return cloudDepth(cloud, options);
+  return "scan" in cloud ? pointsDepth(cloud, options) : cloudDepth(cloud, options);
 }
 
 async function ofText(file: string, text: string, { as }: ReadOptions): Promise<Content> {
@@ -94,7 +98,12 @@ async function ofOthers(name: string, bytes: Uint8Array, options: ReadOptions): 
   if (options.size !== undefined && isRawName(name)) return ofPicture(name, readRaw(bytes, options.size), options);
   const written = writtenOf(bytes);
   if (written !== undefined) return ofText(name, written, options);
-  if (rasterKind(bytes) === "points") throw pointsRefused(pointSize(bytes) ?? 4);
+  const isPoints = rasterKind(bytes) === "points";
+  const scan = isPoints || (textOf(bytes) === undefined && /\.bin$/i.test(name)) ? readBin(bytes) : undefined;
+  if (scan) return ofCloud(scan, options);
+  if (isPoints) throw pointsRefused(pointSize(bytes) ?? 4);
+  const list = pointList(bytes) && readXyz(bytes);
+  if (list) return ofCloud(list, options);
   const text = textOf(bytes);
   const refusal = text === undefined ? (pointList(bytes) ?? rawRefused(bytes)) : (knownText(text) ?? pointList(bytes));
   if (text === undefined || refusal !== undefined) throw refusal ?? rawRefused(bytes);
@@ -115,8 +124,11 @@ async function content({ name, bytes }: NamedFile, options: ReadOptions): Promis
     );
   if (kind === "ply") return ofCloud(readPly(bytes), options);
   if (kind === "pcd") return ofCloud(readPcd(bytes), options);
+  if (kind === "las") return ofCloud(readLas(bytes), options);
   if (kind === undefined || kind === "points") return ofOthers(name, bytes, options);
   const picture = await PICTURES[kind](bytes, options);
+  const { scan, format, notes, warnings } = picture;
+  if (scan) return ofCloud({ format, scan, isMetric: false, notes, warnings }, options);
   // The array that was taken out of an archive has a name of its own.
   return ofPicture(picture.name ?? name, picture, options);
 }

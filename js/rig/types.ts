@@ -1,8 +1,9 @@
 /** What is read from the files of a rig. */
 import type { CheckFrame, Mask, Pinhole, Pose } from "../types/index.js";
+import type { Scan } from "./lidar/scan.js";
 import type { ReaderWarning } from "./warnings.js";
 
-export type { CheckFrame, Mask, Pinhole, Pose, ReaderWarning };
+export type { CheckFrame, Mask, Pinhole, Pose, ReaderWarning, Scan };
 
 /** A file as it was dropped or read; the name may hold a path, "depth/0001.png". */
 export interface NamedFile {
@@ -75,6 +76,8 @@ export type RigReading = Reading &
         depth: CheckFrame["depth"];
         /** Members that are not in the file and were guessed from its values. */
         guessed: "unit"[];
+        /** The points as the file has them, metres, where they are in no rows and columns and `depth` is made of them. */
+        scan?: Scan;
       }
     | {
         /** What the file holds. */

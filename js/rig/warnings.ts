@@ -12,6 +12,11 @@ export type ReaderCode =
   | "bytes-swapped"
   | "grid-guessed"
   | "mesh-faces-ignored"
+  // LiDARs
+  | "points-sorted"
+  | "point-times"
+  | "lidar-axes"
+  | "pose-turned"
   // Colour images and masks
   | "files-swapped"
   | "image-turned"
@@ -88,6 +93,8 @@ const HARMLESS: ReadonlySet<ReaderCode> = new Set([
   "pairs-sampled",
   "frames-alike",
   "transform-missing",
+  "points-sorted",
+  "lidar-axes",
   "pose-left-out",
   "camera-to-world",
 ]);

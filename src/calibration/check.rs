@@ -5,6 +5,7 @@
 
 use nalgebra::Vector3;
 
+use super::ahead::leave_unseen_out;
 use super::cue::Cue;
 use super::distortion;
 use super::guessed;
@@ -87,11 +88,16 @@ impl CalibrationCheck {
         };
         let candidates = candidates.into_iter().map(rigid).collect::<Result<Vec<_>>>()?;
         let width = views[0].image_size[0] as f64;
+        let states: Vec<State> = candidates.iter().map(|candidate| candidate.1).collect();
         let (mut warnings, mut frames, mut is_guessed) = (vec![], vec![], false);
         for (index, view) in views.into_iter().enumerate() {
-            let (frame, guessed) =
+            let is_cloud = view.is_cloud();
+            let (mut frame, guessed) =
                 view.prepare(index, &mut warnings).map_err(|error| error.below(&format!("frames[{index}]")))?;
             is_guessed |= guessed;
+            if is_cloud {
+                leave_unseen_out(&mut frame, &states);
+            }
             frames.push(frame);
         }
         let cues = if cues.is_empty() { Cue::ALL.to_vec() } else { cues.to_vec() };

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use super::ahead::Ahead;
 use super::planes::Planes;
 use super::unknowns::State;
 use crate::view::{Pinhole, Size, depth_noise};
@@ -35,9 +36,10 @@ pub(super) struct Frame {
     noise: f64,
 }
 
-/// Noise of 1 / z of a raster of points: planes are planes in it, whatever their slope.
+/// Noise of 1 / z of a raster of points, z ahead: planes are planes in it, whatever their slope.
 fn noise(grid: Size, points: &[[f32; 3]]) -> f64 {
-    let inverses: Vec<f32> = points.iter().map(|point| 1.0 / point[2]).collect();
+    let ahead = Ahead::of(points);
+    let inverses: Vec<f32> = points.iter().map(|point| 1.0 / ahead.depth(point)).collect();
     depth_noise::most(grid, &inverses)
 }
 

@@ -1,5 +1,6 @@
 //! What comes in, checked once: frames with their cameras, and what looks wrong about them.
 
+use super::ahead::Ahead;
 use super::frame::Frame;
 use super::planes::Planes;
 use super::reason::{Warning, WarningKind};
@@ -12,6 +13,8 @@ const WIDEST: usize = 1000;
 /// Metres within which depth cameras measure.
 const NEAREST: f32 = 0.1;
 const FARTHEST: f32 = 20.0;
+/// .. and the scanners that clouds come from: half of a street lies beyond 20 m.
+const FARTHEST_OF_CLOUDS: f32 = 200.0;
 /// Metres from which on a depth is missing, as in all depth maps: of its square f32 holds none.
 const BEYOND: f32 = crate::view::FARTHEST as f32;
 /// Above this share of missing depths a map says so.
@@ -56,6 +59,11 @@ pub struct RigView {
 }
 
 impl RigView {
+    /// Whether its depths are an organised cloud, in a frame of any axes.
+    pub(super) const fn is_cloud(&self) -> bool {
+        matches!(self.depth, DepthSamples::Cloud(_))
+    }
+
     /// The frame of this number as the check works on it, and warnings.
     ///
     /// # Errors
@@ -220,7 +228,8 @@ fn points(view: &RigView, grid: Size) -> Result<Vec<[f32; 3]>> {
 /// Plausibility of a depth map; each doubt caps the verdict.
 fn doubts(view: &RigView, grid: Size, points: &[[f32; 3]]) -> Vec<WarningKind> {
     let mut doubts = Vec::new();
-    let mut depths: Vec<f32> = points.iter().map(|point| point[2]).filter(|depth| !depth.is_nan()).collect();
+    let ahead = Ahead::of(points);
+    let mut depths: Vec<f32> = points.iter().map(|point| ahead.depth(point)).filter(|depth| !depth.is_nan()).collect();
     let holes = 1.0 - depths.len() as f64 / points.len() as f64;
     if holes > MANY_HOLES && view.depth_mask.is_none() {
         doubts.push(WarningKind::ManyHoles { percent: 100.0 * holes });
@@ -231,13 +240,14 @@ fn doubts(view: &RigView, grid: Size, points: &[[f32; 3]]) -> Vec<WarningKind> {
         doubts.push(WarningKind::EightBits);
     }
     let median = crate::numeric::quantile(&mut depths, 0.5);
-    if !(NEAREST..=FARTHEST).contains(&median) {
-        let usual = [NEAREST, FARTHEST].map(f64::from);
+    let farthest = if view.is_cloud() { FARTHEST_OF_CLOUDS } else { FARTHEST };
+    if !(NEAREST..=farthest).contains(&median) {
+        let usual = [NEAREST, farthest].map(f64::from);
         doubts.push(WarningKind::UnusualDepths { metres: f64::from(median), usual });
     }
     let pairs = (0..points.len() - 1)
         .filter(|index| index % grid.width != grid.width - 1)
-        .map(|index| (points[index][2], points[index + 1][2]));
+        .map(|index| (ahead.depth(&points[index]), ahead.depth(&points[index + 1])));
     let (mut jumps, mut count) = (0, 0);
     for (a, b) in pairs.filter(|(a, b)| !a.is_nan() && !b.is_nan()) {
         count += 1;

@@ -7,6 +7,7 @@
 //! |---|---|
 //! | `cue` | names of the cues |
 //! | `input`, `frame`, `planes` | what comes in, guards, the colour camera's view of the depth points |
+//! | `ahead` | which way a cloud's scanner looks, and what of it the colour camera may see |
 //! | `rims`, `edges` | depth edges, and their log likelihood on image edges |
 //! | `surface`, `patches` | samples of the depth map with normals, grouped |
 //! | `information`, `shading`, `silhouette`, `differences` | cues over samples, derivatives by differences |
@@ -17,6 +18,7 @@
 //! | `report`, `serialised` | what a check found; its shapes for serde |
 //! | `overlay` | a frame as a pose lays it over its image |
 
+mod ahead;
 mod check;
 mod cue;
 mod differences;

@@ -73,8 +73,8 @@ describe(".npy of every type, order and shape", () => {
   });
 
   test("what is no picture is named", async () => {
-    const list = new Float32Array(3 * 500).fill(1);
-    await refused("points.npy", npy({ descr: "<f4", shape: [500, 3], data: list }), /500 points .*unorganised/);
+    const list = new Float32Array(3 * 150).fill(1);
+    await refused("points.npy", npy({ descr: "<f4", shape: [150, 3], data: list }), /150 points .*unorganised/);
     await refused("a.npy", npy({ descr: "|O", shape: [1], data: list }), /Python objects/);
     await refused(
       "a.npy",
@@ -142,8 +142,7 @@ describe(".npz", () => {
 
 describe("what is not read is named, with the way out", () => {
   const heads = {
-    "scan.las": ["LASF\x00\x00", /LAS or LAZ.*unorganised.*organised PLY or PCD/],
-    "scan.e57": ["ASTM-E57\x01\x00", /E57/],
+    "scan.e57": ["ASTM-E57\x01\x00", /E57.*unorganised.*PCD, PLY or LAS/],
     "rec.oni": ["NI10\x01\x00", /OpenNI.*export/],
     "rec.svo": ["SVO\x00\x01", /ZED.*export/],
     "rec.klg": ["\x0a\x00\x00\x00", /ElasticFusion.*export/],
@@ -183,18 +182,6 @@ describe("what is not read is named, with the way out", () => {
     assert.equal((await read("groundtruth.txt", tum)).poses.length, 40);
     const log = Array.from({ length: 10 }, (_, at) => `0 0 ${at}\n1 0 0 ${at}\n0 1 0 0\n0 0 1 0\n0 0 0 1`).join("\n");
     assert.equal((await read("trajectory.log", log)).poses.length, 10);
-  });
-
-  test("a LiDAR's points without a header", async () => {
-    const scan = (floats) =>
-      bytesOf(
-        Float32Array.from({ length: floats * 400 }, (_, at) => {
-          const [point, axis] = [Math.floor(at / floats), at % floats];
-          return [8 * Math.cos(point), 8 * Math.sin(point), (point % 7) / 7 - 1, 0.25, point % 32][axis];
-        }),
-      );
-    await refused("000000.bin", scan(4), /points of a LiDAR .*KITTI/);
-    await refused("sweep.pcd.bin", scan(5), /points of a LiDAR .*nuScenes/);
   });
 });
 

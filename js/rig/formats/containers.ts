@@ -7,7 +7,7 @@ const EXPORT = "export its frames as colour images, 16-bit depth images and a fi
 const RECORDING =
   "drop it on the page's check of a rig, or read it with openRecording of bimodal-stereo/rig-recordings";
 const CLOUD =
-  "points of a LiDAR or scanner in no rows and columns (unorganised); project them into a depth map, or save them as an organised PLY or PCD";
+  "points of a LiDAR or scanner in no rows and columns (unorganised); save them as PCD, PLY or LAS in the frame of one scan's sensor (CloudCompare, PDAL)";
 
 /** First bytes; advice for pictures that a browser may read. */
 const FIRST: Row[] = [
@@ -37,7 +37,6 @@ const FIRST: Row[] = [
   [/^\x1a\x45\xdf\xa3/, `a Matroska recording (.mkv, such as the Azure Kinect's); ${RECORDING}`],
   [/^NI10/, `a recording of OpenNI (.oni); ${EXPORT}`],
   [/^SVO/, `a recording of the ZED (.svo); ${EXPORT} by the ZED SDK`],
-  [/^LASF/, `LAS or LAZ: ${CLOUD}`],
   [/^ASTM-E57/, `E57: ${CLOUD}`],
   [/^glTF/, "a mesh (glTF); render a depth map from it"],
   [/^PXR-USDC|^#usda/, "a scene in USD; render a depth map from it"],
@@ -53,10 +52,12 @@ const FIRST: Row[] = [
   [/^\x80[\x02-\x05]/, "a pickle of Python, which may run code; save the array by numpy.save"],
   [/^\xff\x4f\xff\x51|^.{4}jP {2}/s, "JPEG 2000; save it as PNG", true],
   [/^PIEH/, "Sintel's .dpt or .flo; save the depth as .npy"],
+  [/^livox_tech/, "a recording of Livox (.lvx); save a scan of it as PCD or LAS by Livox Viewer"],
+  [/^.{4}OSF!/s, "a recording of Ouster (.osf); save a scan of it as PCD or LAS by ouster-cli"],
   [/^PAR1/, "a table in Parquet; export its images first"],
   [
     /^\x0a\x0d\x0d\x0a|^\xd4\xc3\xb2\xa1|^\xa1\xb2\xc3\xd4/,
-    `packets of a LiDAR (.pcap); save a scan of it as an organised PCD`,
+    "packets of a LiDAR (.pcap); save a scan of it as PCD by the maker's viewer or driver",
   ],
 ];
 
@@ -66,7 +67,6 @@ const NAMED: Row[] = [
   [/\.oni$/i, `a recording of OpenNI (.oni); ${EXPORT}`],
   [/\.svo2?$/i, `a recording of the ZED (.svo); ${EXPORT} by the ZED SDK`],
   [/\.sens$/i, `a recording of ScanNet (.sens); ${EXPORT} by its SensReader`],
-  [/\.(?:las|laz)$/i, `LAS or LAZ: ${CLOUD}`],
   [/\.e57$/i, `E57: ${CLOUD}`],
   [/\.(?:fls|fws|zfs|rcp|rcs|ptg|lsproj)$/i, `a scan in the format of its maker: ${CLOUD}`],
   [/\.(?:xef|rssdk|xed)$/i, `a recording of a Kinect or RealSense in a format of its own; ${EXPORT}`],

@@ -33,6 +33,9 @@ export function checkPoints(count: number): void {
   if (count > MOST_POINTS) throw badFile(`it says that it has ${count} points; up to ${MOST_POINTS} are read`);
 }
 
+/** Whether so many points are a whole image of a depth camera. */
+export const isImage = (count: number): boolean => SIZES.some(([width, height]) => width * height === count);
+
 /** The size that so many points without one have, with a warning, or why they cannot be used. */
 export function sizeOfCount(count: number, warnings: ReaderWarning[]): { width: number; height: number } {
   const size = SIZES.find(([width, height]) => width * height === count);

@@ -1,6 +1,6 @@
 /** Files of pixels and points by their first bytes. */
 
-export type Kind = "png" | "jpeg" | "webp" | "tiff" | "exr" | "pfm" | "pnm" | "npy" | "npz" | "ply" | "pcd";
+export type Kind = "png" | "jpeg" | "webp" | "tiff" | "exr" | "pfm" | "pnm" | "npy" | "npz" | "ply" | "pcd" | "las";
 
 const FIRST: [Kind, RegExp][] = [
   ["png", /^\x89PNG\r\n\x1a\n/],
@@ -14,6 +14,7 @@ const FIRST: [Kind, RegExp][] = [
   // NumPy writes the name of its first array where others name theirs.
   ["npz", /^PK\x03\x04.{26}[^\0]{1,100}\.npy/s],
   ["ply", /^ply\s/],
+  ["las", /^LASF/],
   ["pcd", /^(?:#[^\n]*\n|\s)*(?:VERSION|FIELDS)\s/],
 ];
 

@@ -2,7 +2,8 @@
 import { badFile } from "../../errors.js";
 import { isNpy, readNpy } from "../../npy.js";
 import type { Pixels } from "../../raster.js";
-import { sizeOfCount } from "./grid.js";
+import { FEWEST_POINTS } from "./channels.js";
+import { isImage, sizeOfCount } from "./grid.js";
 import { checkSize } from "./limits.js";
 import type { Picture } from "./picture.js";
 import type { ReaderWarning } from "../warnings.js";
@@ -20,11 +21,19 @@ function asLevels(data: Pixels): Pixels {
   return Uint16Array.from(data, (value) => Math.max(0, value));
 }
 
-/** A list of points as a cloud, if its number is that of a camera's pixels. */
+/** A list of points, with their intensities as KITTI and nuScenes have them; as a cloud, if its number is that of a camera's pixels. */
 function ofList(data: Pixels, count: number, columns: number, warnings: ReaderWarning[]): Picture {
-  const { width, height } = sizeOfCount(count, warnings);
   const points = new Float32Array(3 * count);
   for (let at = 0; at < points.length; at++) points[at] = data[Math.floor(at / 3) * columns + (at % 3)] ?? NaN;
+  if (count >= FEWEST_POINTS && !isImage(count)) {
+    const intensity = columns === 4 || columns === 5 ? points.filter((_, at) => at % 3 === 0) : undefined;
+    intensity?.forEach((_, point) => {
+      intensity[point] = data[point * columns + 3] ?? NaN;
+    });
+    const scan = { points, ...(intensity && { intensity }) };
+    return { width: count, height: 1, channels: 3, data: points, format: "npy", bits: 32, notes: [], warnings, scan };
+  }
+  const { width, height } = sizeOfCount(count, warnings);
   return { width, height, channels: 3, data: points, format: "npy", bits: 32, notes: [], warnings };
 }
 

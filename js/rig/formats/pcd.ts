@@ -1,8 +1,10 @@
-/** PCD of the point cloud library, organised: ASCII, binary, and binary_compressed (LZF, field after field). */
+/** PCD of the point cloud library, organised or not: ASCII, binary, and binary_compressed (LZF, field after field). */
 import { badFile } from "../../errors.js";
-import { checkGrid, checkPoints, sizeOfCount } from "./grid.js";
+import type { Scan } from "../lidar/scan.js";
+import { FEWEST_POINTS, channelOf, roomFor } from "./channels.js";
+import { checkGrid, checkPoints, isImage, sizeOfCount } from "./grid.js";
 import { checkBytes } from "./limits.js";
-import type { Cloud } from "./picture.js";
+import type { Cloud, Points } from "./picture.js";
 import { Words } from "./tokens.js";
 import type { ReaderWarning } from "../warnings.js";
 
@@ -104,44 +106,83 @@ function lzf(bytes: Uint8Array, length: number): Uint8Array {
   return out;
 }
 
-function ofBinary(body: Uint8Array, head: Header, isApart: boolean): Float32Array {
+type Read = (view: DataView, at: number) => number;
+const READS: Record<string, Read> = {
+  F4: (view, at) => view.getFloat32(at, true),
+  F8: (view, at) => view.getFloat64(at, true),
+  U1: (view, at) => view.getUint8(at),
+  U2: (view, at) => view.getUint16(at, true),
+  U4: (view, at) => view.getUint32(at, true),
+  U8: (view, at) => Number(view.getBigUint64(at, true)),
+  I1: (view, at) => view.getInt8(at),
+  I2: (view, at) => view.getInt16(at, true),
+  I4: (view, at) => view.getInt32(at, true),
+  I8: (view, at) => Number(view.getBigInt64(at, true)),
+};
+
+/** Where the values of a field go: every so many places from a first one. */
+interface Target {
+  field: Field;
+  into: Float32Array | Float64Array;
+  first: number;
+  step: number;
+}
+
+/** Room for what is read of each point, and the fields that fill it. */
+function targetsOf(head: Header): { scan: Scan; targets: Target[] } {
+  const others = head.fields.filter(({ name, count }) => count === 1 && channelOf(name) !== undefined);
+  const room = roomFor(
+    head.points,
+    others.map(({ name }) => channelOf(name)),
+  );
+  const scan: Scan = { points: new Float32Array(3 * head.points), ...room };
+  const targets: Target[] = axesOf(head).map((field, axis) => ({ field, into: scan.points, first: axis, step: 3 }));
+  for (const field of others) {
+    const channel = channelOf(field.name);
+    const into = channel && scan[channel];
+    if (into && !targets.some((each) => each.into === into)) targets.push({ field, into, first: 0, step: 1 });
+  }
+  return { scan, targets };
+}
+
+function ofBinary(body: Uint8Array, head: Header, isApart: boolean): Scan {
   const { points, stride } = head;
   checkBytes(points * stride, body.length, "this PCD");
   const view = new DataView(body.buffer, body.byteOffset, body.byteLength);
-  const out = new Float32Array(3 * points);
-  axesOf(head).forEach(({ size, offset }, axis) => {
-    const [first, step] = isApart ? [offset * points, size] : [offset, stride];
-    for (let point = 0; point < points; point++) {
-      const at = first + point * step;
-      out[3 * point + axis] = size === 8 ? view.getFloat64(at, true) : view.getFloat32(at, true);
-    }
-  });
-  return out;
+  const { scan, targets } = targetsOf(head);
+  for (const { field, into, first, step } of targets) {
+    const { type, size, offset, name } = field;
+    const read = READS[`${type}${size}`];
+    if (read === undefined) throw badFile(`this PCD has ${name.slice(0, 20)} of the type ${type.slice(0, 5)}${size}`);
+    const [from, by] = isApart ? [offset * points, size] : [offset, stride];
+    for (let point = 0; point < points; point++) into[step * point + first] = read(view, from + point * by);
+  }
+  return scan;
 }
 
-function ofText(body: Uint8Array, head: Header): Float32Array {
+function ofText(body: Uint8Array, head: Header): Scan {
   const words = new Words(body);
-  const axes = axesOf(head);
   const perPoint = head.fields.reduce((sum, { count }) => sum + count, 0);
   checkBytes(2 * head.points * perPoint - 1, body.length, "this PCD");
-  const places: number[] = [];
-  for (const field of head.fields) for (let each = 0; each < field.count; each++) places.push(axes.indexOf(field));
-  const out = new Float32Array(3 * head.points);
+  const { scan, targets } = targetsOf(head);
+  const places: (Target | undefined)[] = [];
+  for (const field of head.fields)
+    for (let each = 0; each < field.count; each++) places.push(targets.find((target) => target.field === field));
   for (let point = 0; point < head.points; point++) {
-    for (const axis of places) {
+    for (const target of places) {
       const word = words.next();
       if (word === "") throw badFile(`this PCD is cut off: ${point} of ${head.points} points`);
-      if (axis < 0) continue;
+      if (target === undefined) continue;
       const value = /^[-+]?(?:nan|inf)/i.test(word) ? NaN : Number(word);
       if (Number.isNaN(value) && !/nan|inf/i.test(word))
         throw badFile(`this PCD has ${JSON.stringify(word.slice(0, 20))} where a number is needed`);
-      out[3 * point + axis] = value;
+      target.into[target.step * point + target.first] = value;
     }
   }
-  return out;
+  return scan;
 }
 
-function pointsOf(body: Uint8Array, head: Header): Float32Array {
+function scanOf(body: Uint8Array, head: Header): Scan {
   if (head.data === "ascii") return ofText(body, head);
   if (head.data === "binary") return ofBinary(body, head, false);
   if (head.data !== "binary_compressed")
@@ -162,13 +203,19 @@ function pointsOf(body: Uint8Array, head: Header): Float32Array {
 /** Bytes of points, which a few bytes of LZF may declare. */
 const MOST_BYTES = 2 ** 28;
 
-export function readPcd(bytes: Uint8Array): Cloud {
+export function readPcd(bytes: Uint8Array): Cloud | Points {
   const head = header(bytes);
   checkPoints(head.points);
   if (head.points * head.stride > MOST_BYTES)
     throw badFile(`this PCD says that its points are ${head.points * head.stride} bytes long, which is too much`);
   const warnings: ReaderWarning[] = [];
+  const isLidar = head.fields.some(({ name }) => channelOf(name) === "ring");
+  const isFlat = head.height === 1 || head.width === 1;
+  if (isFlat && head.points >= FEWEST_POINTS && (isLidar || !isImage(head.points))) {
+    const scan = scanOf(bytes.subarray(head.end), head);
+    return { format: "PCD", scan, isMetric: isLidar || scan.intensity !== undefined, notes: [], warnings };
+  }
   const size = head.height === 1 ? sizeOfCount(head.points, warnings) : { width: head.width, height: head.height };
   checkGrid(size.width, size.height, head.points);
-  return { format: "PCD", ...size, points: pointsOf(bytes.subarray(head.end), head), notes: [], warnings };
+  return { format: "PCD", ...size, points: scanOf(bytes.subarray(head.end), head).points, notes: [], warnings };
 }

@@ -1,10 +1,12 @@
 /**
- * PLY of points in rows and columns, as text or binary: Stanford's range grids, or a size in a comment.
+ * PLY of points, as text or binary: in rows and columns (Stanford's range grids, or a size in a comment), or in no order.
  */
 import { badFile } from "../../errors.js";
-import { checkGrid, checkPoints, sizeOfCount } from "./grid.js";
+import type { Scan } from "../lidar/scan.js";
+import { FEWEST_POINTS, channelOf, roomFor } from "./channels.js";
+import { checkGrid, checkPoints, isImage, sizeOfCount } from "./grid.js";
 import { checkBytes } from "./limits.js";
-import type { Cloud } from "./picture.js";
+import type { Cloud, Points } from "./picture.js";
 import { Words } from "./tokens.js";
 import { type ReaderWarning, warning } from "../warnings.js";
 
@@ -133,22 +135,26 @@ function listOf(source: Source, property: Property): number[] {
   return Array.from({ length: count }, () => source.next(property));
 }
 
-function points(source: Source, { count, properties }: Element): Float32Array {
+function scanOf(source: Source, { count, properties }: Element): Scan {
   const axes = ["x", "y", "z"].map((axis) =>
     properties.findIndex(({ name, count: list }) => name === axis && list === undefined),
   );
   if (axes.includes(-1)) throw badFile("this PLY has no x, y and z");
   if (properties.some((each) => each.count)) throw badFile("this PLY has lists at its points");
-  const out = new Float32Array(3 * count);
+  const channels = properties.map(({ name }) => channelOf(name));
+  const scan: Scan = { points: new Float32Array(3 * count), ...roomFor(count, channels) };
   const places = properties.map((_, index) => axes.indexOf(index));
-  for (let at = 0; at < out.length; at += 3) {
+  const others = channels.map((channel) => channel && scan[channel]);
+  for (let at = 0; at < scan.points.length; at += 3) {
     for (let index = 0; index < properties.length; index++) {
       const value = source.next(properties[index] as Property);
       const axis = places[index] ?? -1;
-      if (axis >= 0) out[at + axis] = value;
+      if (axis >= 0) scan.points[at + axis] = value;
+      const other = others[index];
+      if (other) other[at / 3] = value;
     }
   }
-  return out;
+  return scan;
 }
 
 /** A grid's cells, each with the number of its point or with none. */
@@ -166,7 +172,7 @@ function inCells(source: Source, grid: Element, cloud: Float32Array): Float32Arr
   return out;
 }
 
-export function readPly(bytes: Uint8Array): Cloud {
+export function readPly(bytes: Uint8Array): Cloud | Points {
   const { format, elements, columns, rows, end } = header(bytes);
   if (!["ascii", "binary_little_endian", "binary_big_endian"].includes(format))
     throw badFile(`this PLY is of the format "${format.slice(0, 30)}", which there is not`);
@@ -186,7 +192,8 @@ export function readPly(bytes: Uint8Array): Cloud {
     checkBytes(grid.count, body.length - least, "this PLY's grid");
   }
   const source = format === "ascii" ? new TextSource(body) : new BinarySource(body, format === "binary_little_endian");
-  const cloud = points(source, vertices);
+  const scan = scanOf(source, vertices);
+  const cloud = scan.points;
   if (grid)
     return {
       format: "PLY",
@@ -202,5 +209,7 @@ export function readPly(bytes: Uint8Array): Cloud {
     checkGrid(columns, rows, vertices.count);
     return { format: "PLY", width: columns, height: rows, points: cloud, notes: [], warnings };
   }
+  if (vertices.count >= FEWEST_POINTS && (scan.ring || !isImage(vertices.count)))
+    return { format: "PLY", scan, isMetric: scan.ring !== undefined, notes: [], warnings };
   return { format: "PLY", ...sizeOfCount(vertices.count, warnings), points: cloud, notes: [], warnings };
 }

@@ -29,7 +29,7 @@ const isHole = (word: string): boolean => /^[-+]?(?:nan|inf|infinity|none|null|n
 /** What parts the words of a line; with semicolons a comma is that of a decimal. */
 const separatorOf = (line: string): string => [";", ",", "\t"].find((each) => line.includes(each)) ?? " ";
 
-function wordsOf(line: string, separator: string): string[] {
+export function wordsOf(line: string, separator: string): string[] {
   const words = separator === " " ? line.trim().split(/\s+/) : line.split(separator);
   return words.map((word) =>
     word
@@ -39,7 +39,8 @@ function wordsOf(line: string, separator: string): string[] {
   );
 }
 
-const isNumbers = (words: string[]): boolean => words.every((word) => isHole(word) || numberOf(word) !== undefined);
+export const isNumbers = (words: string[]): boolean =>
+  words.every((word) => isHole(word) || numberOf(word) !== undefined);
 
 interface Head {
   rows: string[][];
@@ -49,7 +50,7 @@ interface Head {
 }
 
 /** The first lines that are no comments, in words. */
-function headOf(bytes: Uint8Array): Head {
+export function headOf(bytes: Uint8Array): Head {
   const text = new TextDecoder("latin1").decode(bytes.subarray(0, HEAD_CHARACTERS)).replace(/^ï»¿/, "");
   const lines = text.split(/\r?\n/, HEAD);
   // What may be cut off within a line says nothing.
