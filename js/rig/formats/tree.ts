@@ -237,6 +237,8 @@ function framesOf(node: Node): Context | undefined {
   const parent = textOf(member(isNode(header) ? header : node, "frameid", "parentframe"));
   if (child !== undefined) return { from: child, ...(parent !== undefined && { to: parent }) };
   for (const [from, to] of ENDS) {
+    // As in ROS's transforms; elsewhere trees of anything have parents.
+    if (from === "child" && member(node, "rotation", "orientation", "quaternion") === undefined) continue;
     const ends = [textOf(member(node, from)), textOf(member(node, to))];
     if (ends[0] !== undefined && ends[1] !== undefined && ends[0] !== ends[1]) return { from: ends[0], to: ends[1] };
   }
