@@ -13,7 +13,7 @@ pub struct Warning {
 }
 
 /// Codes of what was not read, which does not make what was read doubtful.
-const HARMLESS: [&str; 9] = [
+const HARMLESS: [&str; 11] = [
     "file-left-out",
     "file-alone",
     "names-ambiguous",

@@ -2,18 +2,10 @@
 //!
 //! A pose takes points from any frame, and most of the check looks at them in the colour camera's. What it says of the depth map itself,
 //! its noise and its doubts, needs depths. They are those along the axis of the cloud's frame that is nearest to the mean direction, and
-//! distances where a scanner looks all around. Of such a cloud only what the colour camera may see is kept.
-
-use super::frame::Frame;
-use super::unknowns::State;
+//! distances where a scanner looks all around.
 
 /// Mean directions shorter than this are those of a scanner that looks all around; of a cone of 120 degrees it has 0.75.
 const ALL_AROUND: f64 = 0.5;
-/// Share of points behind the colour camera from which on a cloud is a scanner's. A depth camera beside it has none.
-const BEHIND: f64 = 0.01;
-/// How far from the image points may fall to be kept, as a share of the focal length: 8 degrees, twice what a candidate is off by.
-const MARGIN: f64 = 0.14;
-
 /// One of the six directions along the axes of a cloud's frame, or all of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Ahead {
@@ -49,40 +41,9 @@ impl Ahead {
     }
 }
 
-/// Leaves out of a scanner's cloud what none of the states puts near the image.
-pub(super) fn leave_unseen_out(frame: &mut Frame, states: &[State]) {
-    let Some(first) = states.first() else { return };
-    let is_behind = |index: usize| frame.point(index).is_some_and(|point| first.pose.apply(point).z <= 0.0);
-    let known = frame.points.iter().filter(|point| !point[2].is_nan()).count();
-    let behind = (0..frame.points.len()).filter(|&index| is_behind(index)).count();
-    if behind as f64 <= BEHIND * known as f64 {
-        return;
-    }
-    let camera = frame.camera;
-    let size = frame.planes.size;
-    let (wide, high) = (MARGIN * camera.fx, MARGIN * camera.fy);
-    let may_see = |index: usize| {
-        frame.point(index).is_some_and(|point| {
-            states.iter().any(|state| {
-                camera.project(state.pose.apply(point).into()).is_some_and(|[x, y]| {
-                    x > -wide && y > -high && x < size.width as f64 + wide && y < size.height as f64 + high
-                })
-            })
-        })
-    };
-    let unseen: Vec<usize> = (0..frame.points.len()).filter(|&index| !may_see(index)).collect();
-    // Candidates that see nothing are judged on all there is.
-    if unseen.len() < frame.points.len() {
-        unseen.into_iter().for_each(|index| frame.points[index] = [f32::NAN; 3]);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::calibration::planes::Planes;
-    use crate::pose::Similarity;
-    use crate::view::{Lens, Pinhole, Size};
 
     #[test]
     fn depth_cameras_look_along_z_and_lidars_along_x_or_around() {
@@ -99,23 +60,5 @@ mod tests {
         assert_eq!(Ahead::of(&[]), Ahead::Along { axis: 2, sign: 1.0 });
         let ring: Vec<[f32; 3]> = [[2.0, 0.0, 0.0], [-2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, -2.0, 0.0]].into();
         assert_eq!((Ahead::of(&ring), Ahead::of(&ring).depth(&ring[1])), (Ahead::Around, 2.0));
-    }
-
-    #[test]
-    fn of_a_scanner_what_lies_behind_the_camera_is_left_out_and_of_a_depth_camera_nothing() {
-        let camera = Pinhole { fx: 10.0, fy: 10.0, cx: 9.5, cy: 4.5, lens: Lens::None };
-        let size = Size::new("image", 20, 10).unwrap();
-        let kept = |mut points: Vec<[f32; 3]>| {
-            let count = points.len();
-            points.resize(16, [f32::NAN; 3]);
-            let planes = Planes { size, pixels: vec![[0.5; 3]; size.len()] };
-            let grid = Size::new("depth", 4, 4).unwrap();
-            let mut frame = Frame::new(String::new(), planes, camera, grid, points);
-            leave_unseen_out(&mut frame, &[State::at(Similarity::identity())]);
-            frame.points[..count].iter().map(|point| !point[2].is_nan()).collect::<Vec<_>>()
-        };
-        let (before, beside, aside) = ([0.0, 0.0, 2.0], [2.2, 0.0, 2.0], [9.0, 0.0, 2.0]);
-        assert_eq!(kept(vec![before, beside, aside]), [true, true, true]);
-        assert_eq!(kept(vec![before, beside, aside, [0.0, 0.0, -2.0]]), [true, true, false, false]);
     }
 }

@@ -5,7 +5,6 @@
 
 use nalgebra::Vector3;
 
-use super::ahead::leave_unseen_out;
 use super::cue::Cue;
 use super::distortion;
 use super::guessed;
@@ -19,6 +18,7 @@ use super::report::{CheckReport, CueReport, FrameReport};
 use super::search;
 use super::sensitivity::curves;
 use super::unknowns::{Matrix, POSE, State};
+use super::unseen::leave_unseen_out;
 use super::verdict::{CandidateReport, CheckVerdict, Judge};
 use crate::error::{Error, ErrorKind, Result};
 use crate::pose::Similarity;

@@ -7,7 +7,8 @@
 //! |---|---|
 //! | `cue` | names of the cues |
 //! | `input`, `frame`, `planes` | what comes in, guards, the colour camera's view of the depth points |
-//! | `ahead` | which way a cloud's scanner looks, and what of it the colour camera may see |
+//! | `ahead` | which way a cloud's scanner looks |
+//! | `unseen` | what of a scanner's cloud the colour camera may see |
 //! | `rims`, `edges` | depth edges, and their log likelihood on image edges |
 //! | `surface`, `patches` | samples of the depth map with normals, grouped |
 //! | `information`, `shading`, `silhouette`, `differences` | cues over samples, derivatives by differences |
@@ -45,6 +46,7 @@ mod shading;
 mod silhouette;
 mod surface;
 mod unknowns;
+mod unseen;
 mod verdict;
 
 pub use check::CalibrationCheck;

@@ -67,8 +67,7 @@ mod tests {
         let mut dice = noise::white_noise(5);
         let mut mean = PoseMatrix::zeros();
         for _ in 0..runs {
-            let measured: [PoseVector; SECTORS] =
-                std::array::from_fn(|_| PoseVector::from_fn(|_, _| sigma * f64::from(dice())));
+            let measured: [PoseVector; SECTORS] = std::array::from_fn(|_| PoseVector::from_fn(|_, _| sigma * dice()));
             let sum = measured.iter().sum::<PoseVector>();
             let without = measured.map(|one| (sum - one) / (SECTORS - 1) as f64);
             mean += covariance(&without) / f64::from(runs);
