@@ -1,7 +1,7 @@
 //! Whether a single albedo explains an image, or what is left of it is an error of the model or an albedo that varies.
 //!
 //! Nothing else in the crate decides this. [`Residuals::diagnose`] gives the diagnosis for each method that could take over, because each has
-//! its own threshold; [`excess`] grades the residuals where a weight depends on them.
+//! its own threshold; [`excess`] and [`share_of_model`] grade the residuals where a weight depends on them.
 //!
 //! | threshold | value | set on | held out |
 //! |---|---|---|---|
@@ -35,6 +35,8 @@ const NOISE_OF_IMAGE: f64 = 1.5;
 const SHARE_OF_SPREAD: f64 = 0.05;
 /// [`NOISE_OF_IMAGE`] where another unit of depth is in question.
 pub const UNIT_NOISE: f64 = 1.25;
+/// Residuals beyond this multiple of the image's own noise are errors of the model: shadows, print, a lamp too sharp for nine harmonics.
+const MODEL_NOISE: f64 = 2.0;
 /// Share of the spread of the colours that a trusted pose may leave unexplained.
 pub const LARGEST_UNEXPLAINED: f64 = 0.3;
 /// Share of the local contrast that a trusted pose may leave unexplained.
@@ -128,6 +130,13 @@ pub fn excess(noise: f64, [least, most]: [f64; 2]) -> f64 {
     (noise / PURE_NOISE).clamp(least, most)
 }
 
+/// Share of the variance of the residuals that errors of the model explain.
+#[must_use]
+pub fn share_of_model(residuals: f64, image_noise: f64) -> f64 {
+    let of_image = MODEL_NOISE * image_noise / residuals;
+    (1.0 - of_image * of_image).max(0.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -192,5 +201,7 @@ mod tests {
         for (noise, expected) in [(0.01, 1.0), (0.035, 1.0), (0.0525, 1.5), (1.0, 2.0)] {
             assert!((excess(noise, [1.0, 2.0]) - expected).abs() < 1e-12, "{noise}");
         }
+        assert_eq!(share_of_model(0.02, 0.01), 0.0);
+        assert!((share_of_model(0.04, 0.01) - 0.75).abs() < 1e-12);
     }
 }

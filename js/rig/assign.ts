@@ -321,8 +321,8 @@ export function addCameras(folder: RigFolder, { isAligned = false, cameraOf }: H
   const carried = carriedInto(folder, [some, other], isAligned);
   const colour = forSize(carried?.camera ?? some, image, "colour images", warnings);
   // A cloud needs no camera, and has the size of none where it was sorted from a scan.
-  const own = depth.points ? other : forSize(other, depth, "depth maps", warnings);
-  const range = carried && colour ? colour : own;
+  const own = () => (depth.points ? other : forSize(other, depth, "depth maps", warnings));
+  const range = carried && colour ? colour : own();
   if (carried && colour) align(folder, colour, carried.why);
   else relate(folder, colour?.name, range === colour ? undefined : range?.name);
   if (colour === undefined)

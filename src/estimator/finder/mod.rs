@@ -49,6 +49,7 @@ use crate::error::Result;
 use crate::pose::{ContrastSearch, ImageGrid, OutlineReport, PhotometricReport, Similarity};
 use crate::reason::Activity;
 
+use super::gauge;
 use super::pair::ViewPair;
 use super::stages::ColourRegistration;
 use super::workers::task::{Finding, Task};
@@ -418,8 +419,11 @@ impl Near {
 
 /// The initial pose stays.
 fn stay(pair: &ViewPair, colours: &mut ColourRegistration, region: &TrustRegion) -> Method {
+    // A few pixels are easily explained: an object that is as good as a point explains nothing.
+    let of_size = Similarity { scale: gauge::unit_scale(pair), ..region.initial };
     let explains = |found: Box<PhotometricReport>| found.noise < pair.image.log_spread();
-    Method::Initial(match colours.judge(pair, &region.initial).is_some_and(explains) {
+    let has_size = gauge::keeps_size(pair, &region.initial, &of_size);
+    Method::Initial(match has_size && colours.judge(pair, &region.initial).is_some_and(explains) {
         true => Staying::Explains,
         false => Staying::ExplainsNothing,
     })

@@ -20,8 +20,8 @@ impl Photometric {
     /// The pose from `start`: [`begin`](Self::begin), [`step`](Self::step) to the end, [`report`](Self::report).
     ///
     /// # Errors
-    /// [`ErrorKind::Size`] where lengths disagree, [`ErrorKind::Range`] for a start that is no similarity,
-    /// [`ErrorKind::Degenerate`] where fewer than 14 points are visible or they determine nothing.
+    /// [`ErrorKind::Size`](crate::error::ErrorKind::Size) where lengths disagree, [`ErrorKind::Range`](crate::error::ErrorKind::Range) for a start that is no similarity,
+    /// [`ErrorKind::Degenerate`](crate::error::ErrorKind::Degenerate) where fewer than 14 points are visible or they determine nothing.
     pub fn register(
         &mut self,
         problem: &PhotometricProblem<'_>,
@@ -72,7 +72,7 @@ impl Photometric {
     /// A piece of a round, one Gauss-Newton step at most, so that a page stays alive; whether it was the last.
     ///
     /// # Errors
-    /// [`ErrorKind::Degenerate`] where too few points are visible or they determine nothing.
+    /// [`ErrorKind::Degenerate`](crate::error::ErrorKind::Degenerate) where too few points are visible or they determine nothing.
     pub fn step(&mut self, problem: &PhotometricProblem<'_>) -> Result<bool> {
         self.phase = match self.phase {
             Phase::AnnealingStep(descent) => self.descend(problem, descent)?,
@@ -96,14 +96,18 @@ impl Photometric {
     /// What was found so far.
     ///
     /// # Errors
-    /// [`ErrorKind::Degenerate`] where the visible points determine nothing.
+    /// [`ErrorKind::Degenerate`](crate::error::ErrorKind::Degenerate) where the visible points determine nothing.
     pub fn report(&mut self, problem: &PhotometricProblem<'_>) -> Result<PhotometricReport> {
         let by_sectors = if self.with_jackknife { self.jackknife(problem)? } else { PoseMatrix::zeros() };
         let frame = self.choose_points(problem, Sampling { level: 0, most: self.most_points })?;
         self.measure_noise(problem, 0);
         self.weigh(problem, final_robust_scale(self.noise.residuals));
         let reduced = self.reduce_by_instruments(problem, &frame)?;
-        let covariance = self.covariance(problem, &frame, &reduced) + by_sectors;
+        let mut covariance = self.covariance(problem, &frame, &reduced) + by_sectors;
+        // What an initial pose holds the colours back by is as uncertain as it is far.
+        if let Some(step) = problem.near.and_then(|_| reduced.step(0.0, &problem.held())) {
+            covariance.ger(1.0, &step.pose, &step.pose, 1.0);
+        }
         let held = problem.held();
         let mut information =
             0.5 * (reduced.matrix + reduced.matrix.transpose()) / (self.noise.residuals * self.noise.residuals);
