@@ -11,7 +11,7 @@ import {
   infoMessage,
   transform,
 } from "./recordings.mjs";
-import { H, W, close, metres, millimetres, refusedFile, translation } from "./rig-support.mjs";
+import { H, W, close, metres, millimetres, translation } from "./rig-support.mjs";
 
 const bayer = (pattern) => ({ width: W, height: H, encoding: `bayer_${pattern}8`, step: W, is_bigendian: 0 });
 /** Each encoding stores the same grey picture of rows. */
@@ -138,8 +138,30 @@ test("an organised PointCloud2 is taken as depth, in its own frame", async () =>
   } = await (await written([...base, cloud({ width: W, height: H })])).read();
   close([...found.depth.points], [...points], 1e-6);
   close(poses[0].pose.translation, translation, 1e-9);
-  const flat = await written([...base, cloud({ width: W * H, height: 1 })]);
-  await refusedFile(flat.read(), "a.mcap", /without rows and columns.+organised/);
+});
+
+test("a PointCloud2 without rows and columns is sorted into a range image, in its own axes", async () => {
+  const [rows, columns] = [16, 180];
+  const angle = (degrees) => (degrees * Math.PI) / 180;
+  // A LiDAR's axes: x forward, z up; the wall is a cylinder around it.
+  const points = Float32Array.from({ length: 3 * rows * columns }, (_, at) => {
+    const [point, axis] = [Math.floor(at / 3), at % 3];
+    const [up, around] = [angle(Math.floor(point / columns) - 8), angle(2 * (point % columns))];
+    return 5 * [Math.cos(around), Math.sin(around), Math.tan(up)][axis];
+  });
+  const base = recorded({}, 1).filter(({ topic }) => !topic.startsWith("/camera/depth"));
+  const size = { width: rows * columns, height: 1 };
+  const message = cloudMessage({ ...size, points }, START + 0.1, FRAMES.depth);
+  const found = await (await written([...base, image("/lidar/points", message, "sensor_msgs/PointCloud2")])).read();
+  const [{ depth }] = found.frames;
+  assert.ok(depth.height >= rows && depth.width >= columns, `${depth.width}x${depth.height}`);
+  const valid = depth.points.filter((value, at) => at % 3 === 0 && Number.isFinite(value)).length;
+  assert.ok(valid > 0.98 * rows * columns, `${valid} points`);
+  assert.ok(
+    found.warnings.some(({ code }) => code === "points-sorted"),
+    JSON.stringify(found.warnings),
+  );
+  close(found.poses[0].pose.translation, translation, 1e-9);
 });
 
 test("a rectified picture has P's camera and no distortion, a picture in bins the camera of its bins", async () => {

@@ -19,9 +19,12 @@ const OTHER_NAME =
 const COLOUR_NAME = /colou?r|rgb/i;
 const REGISTERED = /aligned|registered|_to_colou?r|_to_rgb|hw_registered|sw_registered/i;
 
+/** Clouds with rows and columns, and scans without. */
+const isCloud = ({ encoding }: Pick<Shot, "encoding">): boolean => encoding === "points" || encoding === "scan";
+
 /** Whether a shot's pixels can be depths. */
 export function isDepth({ track, encoding }: Shot): boolean {
-  if (encoding === "points") return true;
+  if (isCloud({ encoding })) return true;
   if (isCompressedDepth(encoding)) return true;
   if (OTHER_NAME.test(track) || !mayBeDepth(encoding)) return encoding === "png" && DEPTH_NAME.test(track);
   // 16 bits of grey alone may be an infrared picture.
@@ -46,7 +49,7 @@ const colourScore = (shot: Shot): number =>
   (isColoured(shot.encoding) ? 0 : 0.5);
 
 const depthScore = (shot: Shot): number =>
-  (shot.encoding === "points" ? 0 : 4) +
+  (isCloud(shot) ? 0 : 4) +
   (DEPTH_NAME.test(shot.track) ? 2 : 0) -
   (REGISTERED.test(shot.track) ? 3 : 0) -
   (isCompressedDepth(shot.encoding) ? 0.5 : 0);
@@ -64,7 +67,7 @@ export function rolesOf(shots: readonly Shot[], known: (track: string) => boolea
         depthScore(depth) +
         shared(colour.track, depth.track) +
         (known(colour.track) ? 2 : 0) +
-        (depth.encoding === "points" || known(depth.track) ? 2 : 0),
+        (isCloud(depth) || known(depth.track) ? 2 : 0),
     })),
   );
   const [best] = pairs.sort((a, b) => b.score - a.score);

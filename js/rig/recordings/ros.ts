@@ -3,12 +3,13 @@ import { badFile } from "../../errors.js";
 import { pictureColour } from "../colour.js";
 import { cloudDepth, pictureDepth } from "../depth.js";
 import type { Cloud, Picture } from "../formats/picture.js";
+import { pointsDepth } from "../scan.js";
 import type { ReadOptions } from "../types.js";
 import { turned } from "./axes.js";
 import { compressed, compressedDepth, isCompressedDepth } from "./compressed.js";
 import { type Message, bytesIn, frameOf, numberIn, stampOf, textIn } from "./messages.js";
 import { type Stored, isKnown, pixels } from "./pixels.js";
-import { cloudOf } from "./points.js";
+import { cloudOf, isScan, scanOf } from "./points.js";
 import type { Content, Shot, ShotOptions, TrackKind } from "./source.js";
 
 /** What a type's messages are: "sensor_msgs/Image" in ROS 1, "sensor_msgs/msg/Image" in ROS 2. */
@@ -79,6 +80,13 @@ export function shotOf(track: string, type: string, logged: number, message: Mes
   const common = head(track, logged, message);
   const withUnit = (options: ReadOptions) => (unit === undefined ? options : { unit, ...options });
   const size = { width: numberIn(message, "width"), height: numberIn(message, "height") };
+  // A scan keeps its own axes: the check takes them from the extrinsics.
+  if (kindOfType(type) === "cloud" && isScan(message))
+    return {
+      ...common,
+      encoding: "scan",
+      read: async ({ turn: _, ...options }) => pointsDepth(scanOf(message), options),
+    };
   if (kindOfType(type) === "cloud")
     return { ...common, ...size, encoding: "points", read: async (options) => ofCloud(cloudOf(message), options) };
   if (type.endsWith("CompressedImage"))
@@ -94,6 +102,6 @@ export function shotOf(track: string, type: string, logged: number, message: Mes
 
 /** Why pictures of this encoding are not read. */
 export const unreadEncoding = (encoding: string): string | undefined =>
-  isKnown(encoding) || /^(?:jpe?g|png|webp|compressedDepth|points)$/i.test(encoding)
+  isKnown(encoding) || /^(?:jpe?g|png|webp|compressedDepth|points|scan)$/i.test(encoding)
     ? undefined
     : `its pictures are stored as "${encoding.slice(0, 40)}", which is not read here`;
