@@ -1,8 +1,7 @@
 /**
  * LAS 1.0 to 1.4 of the ASPRS: points as scaled whole numbers, metres, with intensity and the time of each pulse.
  *
- * By hand, because it is a header and records of one size. LAZ, its compressed form, is named: the libraries that unpack it (laz-perf,
- * laz-rs) bring a .wasm of 140 to 210 kB, and laz-perf's needs `eval`, which the page forbids.
+ * By hand, because it is a header and records of one size. Limit: LAZ, its compressed form, is not read; its message names the way out.
  */
 import { badFile } from "../../errors.js";
 import { roomFor } from "./channels.js";
