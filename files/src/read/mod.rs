@@ -85,7 +85,12 @@ pub fn light_prior(path: &Path) -> Result<LightGaussian> {
     /// The file of the crate's own prior has ten kilobytes.
     const MOST_TEXT: u64 = 1 << 20;
     let bytes = head(path, MOST_TEXT).map_err(|error| Problem::file(path, error))?;
-    let prior: LightGaussian = serde_json::from_slice(&bytes).map_err(|error| Problem::file(path, error))?;
+    let mut file: serde_json::Value = serde_json::from_slice(&bytes).map_err(|error| Problem::file(path, error))?;
+    // What else a file says, such as where its numbers come from, is no option.
+    if let Some(members) = file.as_object_mut() {
+        members.retain(|name, _| ["mean", "covariance"].contains(&name.as_str()));
+    }
+    let prior: LightGaussian = serde_json::from_value(file).map_err(|error| Problem::file(path, error))?;
     LightPrior::from_slices(&prior.mean, &prior.covariance).map_err(|error| Problem::file(path, error))?;
     Ok(prior)
 }
