@@ -54,6 +54,7 @@
 //!     prior: &prior,
 //!     prior_weight: 1.0,
 //!     scale_is_held: true,
+//!     near: None,
 //! };
 //! // Eight degrees off, about the object's centre.
 //! let centre = depth.points.centroid();
