@@ -23,7 +23,7 @@ export async function readRigFile({ name, bytes }) {
 export async function readRigFolder(files, options) {
   const readings = [];
   for (const file of files) readings.push(await readRigFile(file));
-  const frames = readings.filter(({ kind }) => kind === "frame");
+  const frames = readings.filter(({ kind }) => kind === "frame").map((frame) => ({ depth: {}, ...frame }));
   if (frames[0]?.leaves) return { frames, cameras: [], poses: [], readings, warnings: [{ code: "file-left-out", isDoubt: false, message: "left out" }] };
   return { frames, cameras: [], poses: [], readings, warnings: frames[0]?.sure ? [] : [{ code: "unit-guessed", isDoubt: true, message: "read " + files.map(({ name }) => name.split("/").pop()) + " " + JSON.stringify(options) }] };
 }`;

@@ -18,16 +18,14 @@ const DEGREES = 180 / Math.PI;
 const apart = ({ rotation: a }, { rotation: b }) =>
   DEGREES * Math.acos(Math.min(1, (a.reduce((sum, entry, index) => sum + entry * b[index], 0) - 1) / 2));
 
-// With ripples under window light the sigma of the rotation reaches 1.5 degrees, and the verdict reports that before it compares units. The
-// image of the bust looks like one of varying albedo.
-const [BY_UNIT, BY_SIGMA, BY_CONTRAST] = [
+// The image of the bust looks like one of varying albedo.
+const [BY_UNIT, BY_CONTRAST] = [
   ["ambiguous", "other-unit", 0.1],
-  ["ambiguous", "rotation-uncertain"],
   ["lost", "contrast-unexplained"],
 ];
 for (const [surface, light, beta, [status, code, times]] of [
   ["ripples", "colourful", 10, BY_UNIT],
-  ["ripples", "window", 30, BY_SIGMA],
+  ["ripples", "window", 30, BY_UNIT],
   ["bust", "window", 20, BY_CONTRAST],
 ]) {
   // The bust, and the factors below, stand for the others where time is short.
