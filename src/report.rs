@@ -160,11 +160,11 @@ impl StepReport {
         }
     }
 
-    /// Drops rivals within three sigmas of the pose: these are no other answers.
-    pub(crate) fn drop_near_rivals(&mut self) {
+    /// Drops rivals within three sigmas of a pose that is certain to a tolerance, degrees: these are no other answers.
+    pub(crate) fn drop_near_rivals(&mut self, tolerance: f64) {
         if let Some(uncertainty) = &self.uncertainty {
-            let (pose, reach) = (self.pose, NEAR_SIGMAS * uncertainty.largest_rotation());
-            self.rivals.retain(|rival| rival.degrees_to(&pose) > reach);
+            let (pose, sigma) = (self.pose, uncertainty.largest_rotation());
+            self.rivals.retain(|rival| sigma > tolerance || rival.degrees_to(&pose) > NEAR_SIGMAS * sigma);
         }
     }
 }
@@ -184,12 +184,14 @@ mod tests {
         };
         let mut report = StepReport::at(turned(0.0));
         report.rivals = vec![turned(20.0), turned(4.0), turned(7.0)];
-        report.drop_near_rivals();
+        report.drop_near_rivals(2.5);
         assert_eq!(report.rivals.len(), 3, "nothing is known of the sigma");
         let rotation_degrees = [0.3, 2.0, 0.1];
         let weakest = Direction::default();
         report.uncertainty = Some(Uncertainty { rotation_degrees, translation: [None; 3], scale: None, weakest });
-        report.drop_near_rivals();
+        report.drop_near_rivals(1.5);
+        assert_eq!(report.rivals.len(), 3, "the pose itself is uncertain");
+        report.drop_near_rivals(2.5);
         assert_eq!(report.rivals, [turned(20.0), turned(7.0)]);
     }
 }

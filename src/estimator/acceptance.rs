@@ -112,7 +112,7 @@ impl Estimator {
     fn conclude(&mut self, is_rejected: bool, before: Option<Objective>) {
         let is_unmoved = self.history.proposed_degrees < self.pair.options.stop_degrees;
         self.history.unmoved = if is_unmoved { self.history.unmoved + 1 } else { 0 };
-        self.report.drop_near_rivals();
+        self.report.drop_near_rivals(self.pair.options.tolerance);
         let Self { pair, report, history, .. } = &*self;
         let nearest = report.rivals.iter().map(|rival| rival.degrees_to(&report.pose)).fold(f64::INFINITY, f64::min);
         let ended = verdict::verdict(&Evidence {

@@ -28,8 +28,9 @@ const FEWEST_CORRESPONDENCES: usize = 12;
 const FIRST_VERDICT: u32 = 2;
 const FIRST_VERDICT_OF_SURFACE: u32 = crate::shape::STARTS;
 
-/// A rotation less certain than this about any axis is not observable at all, degrees (one sigma).
-const UNOBSERVABLE: f64 = 30.0;
+/// A rotation less certain than this about any axis is not observable at all, degrees (one sigma): one that may be any of a quarter turn has
+/// 26.
+const UNOBSERVABLE: f64 = 25.0;
 /// A rotation less certain than this about any axis is no answer, degrees (one sigma). Found poses of the random scenes
 /// stay below 3.
 const LARGEST_SIGMA: f64 = 5.0;
