@@ -1,71 +1,61 @@
-// A run and the same with its input changed a little.
+// A run, and the same run on slightly changed input.
 import { chance, seedOf } from "./numbers.mjs";
 import { degreesBetween } from "./rotations.mjs";
 
 /** Share of the depth pixels that is left out. */
 const LEFT_OUT = 0.01;
 
-/** The same camera where the picture lost its first row. */
-const lowered = (camera) => (camera ? { ...camera, cy: camera.cy - 1 } : camera);
-
-/** Without some pixels' depth, by chance. */
+/** Without some depth pixels, chosen at random. */
 function withoutPoints({ image, depth }, dice) {
-  const data = depth.data.slice();
-  for (let index = 0; index < data.length; index++) if (dice.uniform(0, 1) < LEFT_OUT) data[index] = 0;
+  const data = depth.data.map((value) => (dice.uniform() < LEFT_OUT ? 0 : value));
   return { image, depth: { ...depth, data } };
 }
 
-/** With the image's mask, or else the depth map's, a pixel to the right. */
-function withMaskAside({ image, depth }) {
-  const aside = (view) => {
-    const mask = new Uint8Array(view.mask.length);
-    for (let index = 0; index < mask.length; index++) mask[index] = index % view.width > 0 ? view.mask[index - 1] : 0;
-    return { ...view, mask };
-  };
-  if (image.mask) return { image: aside(image), depth };
-  return { image, depth: depth.mask ? aside(depth) : depth };
+/** With the mask of the image, or else that of the depth map, shifted right by a pixel. */
+function withShiftedMask({ image, depth }) {
+  const shifted = (view) => ({
+    ...view,
+    mask: view.mask.map((_, index) => (index % view.width > 0 ? view.mask[index - 1] : 0)),
+  });
+  if (image.mask) return { image: shifted(image), depth };
+  // Without any mask the change would be none, and the pose could not move.
+  if (!depth.mask) throw new Error("neither view has a mask to shift");
+  return { image, depth: shifted(depth) };
 }
 
-/** Without the image's first row. */
+/** Without the first row of the image. */
 function withoutRow({ image, depth }) {
   const { width, height, data, mask, camera } = image;
   const channels = data.length / (width * height);
-  const cut = {
-    ...image,
-    height: height - 1,
-    data: data.slice(channels * width),
-    ...(mask ? { mask: mask.slice(width) } : {}),
-    ...(camera ? { camera: lowered(camera) } : {}),
-  };
+  const cut = { ...image, height: height - 1, data: data.slice(channels * width) };
+  if (mask) cut.mask = mask.slice(width);
+  if (camera) cut.camera = { ...camera, cy: camera.cy - 1 };
   return { image: cut, depth };
 }
 
-const CHANGED = { points: withoutPoints, mask: withMaskAside, row: withoutRow };
+const CHANGES = { points: withoutPoints, mask: withShiftedMask, row: withoutRow };
 
 /** The package with an estimator that changes its input first. */
 function changing(api, change, seed) {
   class Estimator extends api.Estimator {
     constructor(image, depth, options) {
-      const changed = CHANGED[change]({ image, depth }, chance(seed));
+      const changed = CHANGES[change]({ image, depth }, chance(seed));
       super(changed.image, changed.depth, options);
     }
   }
   return { ...api, Estimator };
 }
 
-/** By how much the rotation moves, over its sigma: the root of the sum of squares of the axes' sigmas. `measure` runs any cell. */
-export async function measurePerturbed({ id, of, change }, api, library, measure) {
+/** How far each change moves the rotation, and whether that is less than its sigma: the norm of the axes' sigmas. `measure` runs any cell. */
+export async function measurePerturbed({ id, of }, api, library, measure) {
   const plain = await measure(of, api, library);
-  const other = await measure(of, changing(api, change, seedOf(id)), library);
-  const degrees = degreesBetween(other.rotation, plain.rotation);
   const sigma = plain.sigmas ? Math.hypot(...plain.sigmas) : null;
-  return {
-    degrees,
-    sigma,
-    isWithin: sigma !== null && degrees < sigma,
-    status: plain.status,
-    changedStatus: other.status,
-    off: plain.degrees,
-    changedOff: other.degrees,
-  };
+  const moves = [];
+  for (const change of Object.keys(CHANGES)) {
+    const other = await measure(of, changing(api, change, seedOf(`${id}/${change}`)), library);
+    const degrees = degreesBetween(other.rotation, plain.rotation);
+    const isWithin = sigma !== null && degrees < sigma;
+    moves.push({ change, degrees, sigma, isWithin, status: plain.status, changedStatus: other.status });
+  }
+  return { moves };
 }

@@ -139,7 +139,7 @@ pub struct Options {
     pub weights: Weights,
     /// The loop converges when the rotation changes by less than this, in degrees.
     pub stop_degrees: f64,
-    /// A rotation whose one sigma about any axis is above this, in degrees, ends "ambiguous" in place of "converged".
+    /// The largest one sigma of the rotation about any axis at which a run ends "converged", in degrees; above it the run ends "ambiguous".
     pub tolerance: f64,
     /// Accepted distance of a correspondence in image pixels; `None` follows the data (never under one pixel, the
     /// paper's value).

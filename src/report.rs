@@ -138,7 +138,7 @@ pub struct StepReport {
     pub uncertainty: Option<Uncertainty>,
 }
 
-/// A pose within so many sigmas of another is the same answer.
+/// Poses within so many sigmas of each other are one answer.
 const NEAR_SIGMAS: f64 = 3.0;
 
 impl StepReport {
@@ -160,7 +160,7 @@ impl StepReport {
         }
     }
 
-    /// Drops rivals within three sigmas of a pose that is certain to a tolerance, degrees: these are no other answers.
+    /// Drops the rivals within three sigmas of the pose, unless its own sigma exceeds the tolerance, in degrees.
     pub(crate) fn drop_near_rivals(&mut self, tolerance: f64) {
         if let Some(uncertainty) = &self.uncertainty {
             let (pose, sigma) = (self.pose, uncertainty.largest_rotation());
@@ -177,7 +177,7 @@ mod tests {
     use crate::pose::Direction;
 
     #[test]
-    fn a_rival_within_three_sigmas_is_none() {
+    fn rivals_within_three_sigmas_are_dropped() {
         let turned = |degrees: f64| Similarity {
             rotation: Rotation3::new(Vector3::y() * degrees.to_radians()).into_inner(),
             ..Similarity::identity()
@@ -185,7 +185,7 @@ mod tests {
         let mut report = StepReport::at(turned(0.0));
         report.rivals = vec![turned(20.0), turned(4.0), turned(7.0)];
         report.drop_near_rivals(2.5);
-        assert_eq!(report.rivals.len(), 3, "nothing is known of the sigma");
+        assert_eq!(report.rivals.len(), 3, "the sigma is unknown");
         let rotation_degrees = [0.3, 2.0, 0.1];
         let weakest = Direction::default();
         report.uncertainty = Some(Uncertainty { rotation_degrees, translation: [None; 3], scale: None, weakest });

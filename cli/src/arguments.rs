@@ -95,7 +95,7 @@ pub struct Arguments {
     #[arg(long, value_name = "WAY", default_value = "surface", value_parser = shading)]
     shading: Shading,
 
-    /// A rotation less certain than this, in degrees (one sigma), is ambiguous
+    /// The largest one sigma of the rotation of a run that converges, in degrees; above it the pose is ambiguous
     #[arg(long, value_name = "DEGREES", default_value_t = Options::default().tolerance, value_parser = positive)]
     tolerance: f64,
 

@@ -159,7 +159,7 @@ fn judged(
         warnings.add(
             "unit-guessed",
             format!(
-                "The file does not give its unit. It was read as {} by a guess, so that depths are {range}; give the unit if that is wrong.",
+                "The file does not state its unit. It was guessed to be {}, so depths are {range}; give the unit if that is wrong.",
                 unit.name()
             ),
         );

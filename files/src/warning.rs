@@ -12,7 +12,7 @@ pub struct Warning {
     pub field: Option<String>,
 }
 
-/// Codes of what was not read, which does not make what was read doubtful.
+/// Codes of warnings that do not cap the verdict.
 const HARMLESS: [&str; 11] = [
     "file-left-out",
     "file-alone",

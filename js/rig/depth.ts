@@ -94,7 +94,7 @@ function judged(
     warnings.push(
       warning(
         "unit-guessed",
-        `The file does not give its unit. It was read as ${nameOf(unit.metres)} by a guess, so that depths are ${range}${otherUnits(unit, nearest, farthest)}; give the unit if that is wrong.`,
+        `The file does not state its unit. It was guessed to be ${nameOf(unit.metres)}, so depths are ${range}${otherUnits(unit, nearest, farthest)}; give the unit if that is wrong.`,
         { unit: unit.metres },
       ),
     );

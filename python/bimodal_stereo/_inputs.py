@@ -62,8 +62,9 @@ class Options(TypedDict, total=False):
     start_tolerance: how far from a told start the answer may lie. registration: "joint", "icp" or "fixed". shading: "surface" or "pixel".
     scale: "free", or the number to hold. trim: whether flying pixels and background inside the mask are left out; True. annealing:
     whether the registration starts tolerant; True. lambda\\_: weights. stop_degrees: change of the rotation that counts as
-    settled; 0.01. tolerance: sigma of the rotation, degrees, above which a pose is ambiguous; 1.5. max_iterations: 1 .. 100000; 60. correspondence_distance: accepted distance in image pixels; follows the data.
-    seed: of everything random; 1. workers: threads that share the work, 1 .. 16, with the same result to the bit; 1.
+    settled; 0.01. tolerance: largest sigma of the rotation of a run that converges, degrees; 1.5. max_iterations: 1 .. 100000; 60.
+    correspondence_distance: accepted distance in image pixels; follows the data. seed: of everything random; 1.
+    workers: threads that share the work, 1 .. 16, with the same result to the bit; 1.
     """
 
     light: Union[str, ArrayLike]

@@ -1,7 +1,6 @@
 // The tables as text.
 import { coverage3, isConfidentlyWrong, isFound } from "../../protocols/counts.mjs";
 import { mean, median, share, worst } from "../../protocols/numbers.mjs";
-import { CHANGES } from "../../protocols/perturbation.mjs";
 import { paperDegrees } from "../../protocols/rotations.mjs";
 import { PAPER_TABLE_1, PAPER_TABLE_3 } from "../../protocols/scenes.mjs";
 import { columns, DASH, fixed, mark, percent, unique } from "./columns.mjs";
@@ -285,20 +284,25 @@ function exposure(rows) {
   ];
 }
 
-/** A line for each kind and change, and one for each run that moves by more than its sigma. */
+/** A line for each kind of cell, for each change, and for all. */
 function perturbation(rows) {
-  const kinds = [...new Set(rows.map(({ kind }) => kind))];
   const line = (name, some) => [
     name,
     `${some.filter(({ isWithin }) => isWithin).length} of ${some.length}`,
     fixed(median(some.map(({ degrees }) => degrees))),
     fixed(Math.max(...some.map(({ degrees }) => degrees))),
   ];
-  const of = (key, value) => rows.filter((row) => row[key] === value);
+  const lines = (key) =>
+    unique(rows.map((row) => row[key])).map((value) =>
+      line(
+        value,
+        rows.filter((row) => row[key] === value),
+      ),
+    );
   return columns([
     ["", "moves by less than its sigma", "median degrees", "worst"],
-    ...kinds.map((kind) => line(kind, of("kind", kind))),
-    ...CHANGES.map((change) => line(change, of("change", change))),
+    ...lines("kind"),
+    ...lines("change"),
     line("all", rows),
   ]);
 }

@@ -1,12 +1,13 @@
-//! Which way a cloud's scanner looks: depth cameras along z, lidars along the x or y of their vehicle, or all around.
+//! The viewing direction of a cloud's scanner: depth cameras look along z, LiDARs along x or y of their vehicle, or all around.
 //!
-//! A pose takes points from any frame, and most of the check looks at them in the colour camera's. What it says of the depth map itself,
-//! its noise and its doubts, needs depths. They are those along the axis of the cloud's frame that is nearest to the mean direction, and
-//! distances where a scanner looks all around.
+//! The check works in the colour camera's frame, except where it measures the noise of the depth map and tests the map's plausibility. These
+//! need depths in the scanner's frame: the coordinate along the axis nearest to the mean direction, or the distance where the scanner looks
+//! all around.
 
-/// Mean directions shorter than this are those of a scanner that looks all around; of a cone of 120 degrees it has 0.75.
+/// A scanner looks all around if the mean of its unit directions is shorter than this; for a cone of 120 degrees it is 0.75 long.
 const ALL_AROUND: f64 = 0.5;
-/// One of the six directions along the axes of a cloud's frame, or all of them.
+
+/// A direction along an axis of the cloud's frame, or all around.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Ahead {
     Along { axis: usize, sign: f32 },

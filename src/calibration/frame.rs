@@ -36,7 +36,7 @@ pub(super) struct Frame {
     noise: f64,
 }
 
-/// Noise of 1 / z of a raster of points, z ahead: planes are planes in it, whatever their slope.
+/// Noise of the inverse depth of a raster of points, in which planes stay planes, whatever their slope.
 fn noise(grid: Size, points: &[[f32; 3]]) -> f64 {
     let ahead = Ahead::of(points);
     let inverses: Vec<f32> = points.iter().map(|point| 1.0 / ahead.depth(point)).collect();

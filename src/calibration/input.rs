@@ -13,7 +13,7 @@ const WIDEST: usize = 1000;
 /// Metres within which depth cameras measure.
 const NEAREST: f32 = 0.1;
 const FARTHEST: f32 = 20.0;
-/// .. and the scanners that clouds come from: half of a street lies beyond 20 m.
+/// The same for organised clouds, which LiDARs make as well.
 const FARTHEST_OF_CLOUDS: f32 = 200.0;
 /// Metres from which on a depth is missing, as in all depth maps: of its square f32 holds none.
 const BEYOND: f32 = crate::view::FARTHEST as f32;
@@ -59,7 +59,7 @@ pub struct RigView {
 }
 
 impl RigView {
-    /// Whether its depths are an organised cloud, in a frame of any axes.
+    /// Whether its depths are an organised cloud, whose axes may be those of a LiDAR.
     pub(super) const fn is_cloud(&self) -> bool {
         matches!(self.depth, DepthSamples::Cloud(_))
     }

@@ -7,8 +7,8 @@
 //! |---|---|
 //! | `cue` | names of the cues |
 //! | `input`, `frame`, `planes` | what comes in, guards, the colour camera's view of the depth points |
-//! | `ahead` | which way a cloud's scanner looks |
-//! | `unseen` | what of a scanner's cloud the colour camera may see |
+//! | `ahead` | the viewing direction of a cloud's scanner |
+//! | `unseen` | leaves out the points that the colour camera cannot see |
 //! | `rims`, `edges` | depth edges, and their log likelihood on image edges |
 //! | `surface`, `patches` | samples of the depth map with normals, grouped |
 //! | `information`, `shading`, `silhouette`, `differences` | cues over samples, derivatives by differences |

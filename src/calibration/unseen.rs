@@ -1,14 +1,14 @@
-//! What of a scanner's cloud the colour camera may see: the rest of a cloud that looks all around is left out.
+//! The part of a scanner's cloud that the colour camera may see. The rest of a cloud that looks all around is left out.
 
 use super::frame::Frame;
 use super::unknowns::State;
 
-/// Share of points behind the colour camera from which on a cloud is a scanner's. A depth camera beside it has none.
+/// A cloud with a larger share of its points behind the colour camera looks all around. A depth camera beside it has none.
 const BEHIND: f64 = 0.01;
-/// How far from the image points may fall to be kept, as a share of the focal length: 8 degrees, twice what a candidate is off by.
+/// Margin around the image, in focal lengths: 8 degrees, because candidates may be off by some degrees.
 const MARGIN: f64 = 0.14;
 
-/// Leaves out of a scanner's cloud what none of the states puts near the image.
+/// Leaves out the points that no state projects near the image.
 pub(super) fn leave_unseen_out(frame: &mut Frame, states: &[State]) {
     let Some(first) = states.first() else { return };
     let is_behind = |index: usize| frame.point(index).is_some_and(|point| first.pose.apply(point).z <= 0.0);
@@ -30,7 +30,7 @@ pub(super) fn leave_unseen_out(frame: &mut Frame, states: &[State]) {
         })
     };
     let unseen: Vec<usize> = (0..frame.points.len()).filter(|&index| !may_see(index)).collect();
-    // Candidates that see nothing are judged on all there is.
+    // If no candidate sees any point, all points stay.
     if unseen.len() < frame.points.len() {
         unseen.into_iter().for_each(|index| frame.points[index] = [f32::NAN; 3]);
     }

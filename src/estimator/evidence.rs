@@ -12,7 +12,7 @@ pub struct Evidence {
     /// Iterations so far, and their cap.
     pub iteration: u32,
     pub max_iterations: u32,
-    /// The largest sigma of a rotation that counts as found, degrees.
+    /// The largest sigma of the rotation at which a run converges, degrees.
     pub tolerance: f64,
     /// The registration that ran, and the way the shape is found.
     pub registration: Registration,
@@ -38,7 +38,7 @@ pub struct Evidence {
     pub outlines: Option<OutlineEvidence>,
     /// What local contrast says, likewise.
     pub contrast: Option<ContrastEvidence>,
-    /// What the initial pose is worth where nothing near it explains the image better, so that it was kept.
+    /// Whether the initial pose may be used, where it was kept.
     pub staying: Option<Staying>,
     /// What checks of the input have against an answer: a hollow depth map, a mask that is missing.
     pub hollow: Option<Reason>,

@@ -28,8 +28,8 @@ const FEWEST_CORRESPONDENCES: usize = 12;
 const FIRST_VERDICT: u32 = 2;
 const FIRST_VERDICT_OF_SURFACE: u32 = crate::shape::STARTS;
 
-/// A rotation less certain than this about any axis is not observable at all, degrees (one sigma): one that may be any of a quarter turn has
-/// 26.
+/// A rotation less certain than this about any axis is not observable, degrees (one sigma): an angle that is uniform over a quarter turn has a
+/// sigma of 26.
 const UNOBSERVABLE: f64 = 25.0;
 /// A rotation less certain than this about any axis is no answer, degrees (one sigma). Found poses of the random scenes
 /// stay below 3.

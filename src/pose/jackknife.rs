@@ -1,7 +1,7 @@
-//! The jackknife of a registration: what leaving out each sector of the object in turn moves the pose by (docs/method.md, section 14).
+//! The delete-group jackknife of a registration: the pose without each sector of the object in turn (docs/method.md, section 14).
 //!
-//! Errors that reach across tiles, such as albedo that varies slowly, ambient shadow and normals that lean, fit one part of the object
-//! otherwise than another; neighbouring residuals tell nothing of them.
+//! Slowly varying albedo, ambient shadow and biased normals correlate over more than a tile, so the scores of tiles do not show them. They
+//! bias each part of the object differently, so the pose moves when a part is left out.
 //!
 //! M. Quenouille: "Notes on bias in estimation", Biometrika 43, 1956. J. Tukey: "Bias and confidence in not-quite large samples", Annals of
 //! Mathematical Statistics 29, 1958.
@@ -10,11 +10,12 @@ use nalgebra::Vector3;
 
 use super::increment::{PoseMatrix, PoseVector};
 
-/// Sectors of the object, equal in points: as few as tell a spread of six unknowns.
+/// Sectors of the object, with equally many points. Their covariance has rank five; that of the tiles, to which it is added, has full rank.
 pub(super) const SECTORS: usize = 6;
-/// The sector of each point by its angle about a middle, seen along the line of sight.
-pub(super) fn sectors(points: impl Iterator<Item = Vector3<f64>>, middle: Vector3<f64>) -> Vec<usize> {
-    let angles: Vec<f64> = points.map(|point| (point.y - middle.y).atan2(point.x - middle.x)).collect();
+
+/// The sector of each point, by its angle about the centre as seen along the line of sight.
+pub(super) fn sectors(points: impl Iterator<Item = Vector3<f64>>, centre: Vector3<f64>) -> Vec<usize> {
+    let angles: Vec<f64> = points.map(|point| (point.y - centre.y).atan2(point.x - centre.x)).collect();
     let mut order: Vec<usize> = (0..angles.len()).collect();
     order.sort_by(|&a, &b| angles[a].total_cmp(&angles[b]));
     let mut sectors = vec![0; angles.len()];
@@ -24,9 +25,9 @@ pub(super) fn sectors(points: impl Iterator<Item = Vector3<f64>>, middle: Vector
     sectors
 }
 
-/// Covariance of a pose that moved so far without each sector: (n - 1) / n times the sum of squares about the mean. A spread of n is itself
-/// uncertain; what it tells of the error follows Student's distribution of n - 1 degrees of freedom, whose variance is larger by
-/// (n - 1) / (n - 3). Zero where it cannot be told.
+/// Covariance of a pose from its moves without each of n sectors: (n - 1) / n times their sum of squares about the mean. So few moves estimate
+/// the variance poorly; the error over the estimated sigma follows Student's distribution of n - 1 degrees of freedom, with a variance of
+/// (n - 1) / (n - 3). Zero where a move is not finite.
 pub(super) fn covariance(moves: &[PoseVector; SECTORS]) -> PoseMatrix {
     let count = SECTORS as f64;
     let growth = (count - 1.0) / (count - 3.0);
@@ -59,8 +60,7 @@ mod tests {
         }
     }
 
-    /// The mean of what six sectors measure, each with its own error: its variance is theirs over six, and over its own sigma it follows
-    /// Student's distribution of five degrees of freedom, whose variance is 5 / 3.
+    /// The pose is the mean of six independent measurements: its variance is theirs over six, times Student's 5 / 3.
     #[test]
     fn the_covariance_of_a_mean_is_that_of_the_sectors_over_their_number() {
         let (sigma, runs) = (0.2, 4000);
@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_told_adds_nothing() {
+    fn a_move_that_is_not_finite_adds_nothing() {
         let mut moves = [PoseVector::zeros(); SECTORS];
         moves[2][4] = f64::NAN;
         assert_eq!(covariance(&moves), PoseMatrix::zeros());

@@ -86,7 +86,7 @@ pub fn light_prior(path: &Path) -> Result<LightGaussian> {
     const MOST_TEXT: u64 = 1 << 20;
     let bytes = head(path, MOST_TEXT).map_err(|error| Problem::file(path, error))?;
     let mut file: serde_json::Value = serde_json::from_slice(&bytes).map_err(|error| Problem::file(path, error))?;
-    // What else a file says, such as where its numbers come from, is no option.
+    // Other members, such as the source of the numbers, are ignored.
     if let Some(members) = file.as_object_mut() {
         members.retain(|name, _| ["mean", "covariance"].contains(&name.as_str()));
     }

@@ -18,18 +18,18 @@ pub enum Method {
     Contrast(Box<ContrastReport>),
     /// .. or silhouettes.
     Silhouettes(Box<OutlineReport>),
-    /// Nothing better was found near the initial pose, which stays.
+    /// No pose near the initial one fits the image better, so that one is kept.
     Initial(Staying),
     /// Nothing could be registered.
     Nothing,
 }
 
-/// What an initial pose that stays is worth.
+/// Whether an initial pose that is kept may be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Staying {
-    /// Light and normals explain some of the image under it.
+    /// The shading under it explains part of the image.
     Explains,
-    /// They explain nothing, or the image shows too little of the object.
+    /// The shading explains nothing, or the object is as small as a few pixels.
     ExplainsNothing,
 }
 

@@ -352,7 +352,7 @@ fn everywhere_by(silhouettes: Option<OutlineReport>, Choice { best, rivals }: Ch
 }
 
 impl Scope {
-    /// Keeps what silhouettes found, for the decision.
+    /// Keeps the pose from silhouettes for the decision.
     fn keep_silhouettes(&mut self, nearby: &mut Nearby) {
         if let Self::Near(near) = self {
             near.silhouettes = nearby.silhouettes();
@@ -369,7 +369,7 @@ impl Scope {
 }
 
 impl Near {
-    /// Whether to repeat the registrations, kept near the initial pose: once, and where a single albedo does not explain the image.
+    /// Whether to repeat the registrations near the initial pose: once, and only where a single albedo does not explain the image.
     fn begins_again(&self, pair: &ViewPair, colours: &ColourRegistration, choice: &Choice) -> bool {
         let is_explained = choice.best.as_ref().is_some_and(|best| !silhouettes::is_painted(pair, best));
         !colours.is_kept_near() && !is_explained && self.region.prior(pair).is_some()
@@ -417,9 +417,9 @@ impl Near {
     }
 }
 
-/// The initial pose stays.
+/// Keeps the initial pose.
 fn stay(pair: &ViewPair, colours: &mut ColourRegistration, region: &TrustRegion) -> Method {
-    // A few pixels are easily explained: an object that is as good as a point explains nothing.
+    // An object that shrinks to a few pixels fits any image, so its size has to be plausible as well.
     let of_size = Similarity { scale: gauge::unit_scale(pair), ..region.initial };
     let explains = |found: Box<PhotometricReport>| found.noise < pair.image.log_spread();
     let has_size = gauge::keeps_size(pair, &region.initial, &of_size);

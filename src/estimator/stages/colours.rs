@@ -109,7 +109,7 @@ impl ColourRegistration {
         self.near = prior;
     }
 
-    /// Whether they are kept near one.
+    /// Whether registrations are kept near an initial pose.
     pub const fn is_kept_near(&self) -> bool {
         self.near.is_some()
     }
@@ -298,7 +298,7 @@ impl ColourRegistration {
     }
 
     fn begin(&mut self, pair: &ViewPair, start: &Similarity, first_level: usize) -> Result<()> {
-        // Near an initial pose sigmas decide between colours and silhouettes.
+        // Near an initial pose the sigmas decide between this pose and that from silhouettes.
         let jackknife = self.near.is_some();
         let options = PhotometricOptions { most_points: CANDIDATE_POINTS, first_level, jackknife, ..options(pair) };
         self.photometric.begin(&self.sharp.problem(pair, is_scale_held(pair), self.near), start, &options)

@@ -76,7 +76,7 @@ impl Registering {
 }
 
 impl RegistrationStage {
-    /// Without the registration by colours where `colours_wait` for the search to end: then the finder makes it.
+    /// Without the registration by colours where `colours_wait` for the search to end; the finder makes it then.
     pub fn new(pair: &ViewPair, colours_wait: bool) -> Self {
         let by_colours = pair.options.start == Start::Search || pair.options.registration == Registration::Joint;
         let by_colours = by_colours && !colours_wait;
@@ -154,7 +154,7 @@ impl RegistrationStage {
         Ok(Some(Registered { rivals, ..registered }))
     }
 
-    /// What the initial pose is worth where nothing near it fits the image better, so that it is kept.
+    /// Whether the initial pose may be used, where it was kept because no pose near it fits the image better.
     pub const fn staying(&self) -> Option<Staying> {
         match self.decided {
             Some(Decided::Initial(staying)) => Some(staying),

@@ -1,4 +1,4 @@
-//! The jackknife of a registration by local contrast: [`jackknife`](crate::pose::jackknife).
+//! The [jackknife](crate::pose::jackknife) of a registration by local contrast.
 
 use super::equations::Lights;
 use super::objective::State;
@@ -8,13 +8,13 @@ use crate::pose::increment::{PoseMatrix, PoseVector};
 use crate::pose::jackknife::{SECTORS, covariance, sectors};
 use crate::pose::similarity::Similarity;
 
-/// Steps without a sector, from the end: more than a photometric registration takes, because local means follow slowly.
+/// Steps without a sector, from the end: more than for a photometric registration, because the local means converge slowly.
 const STEPS: usize = 8;
-/// Weight that a sample keeps where its sector is left out: one of none would have no local mean.
+/// Factor on the weight of samples that are left out. With zero weights around it a sample would have no local mean.
 const LEFT_OUT: f32 = 1e-4;
 
 impl ContrastRegistration {
-    /// What errors that differ between sectors add to the covariance of a pose.
+    /// The covariance of the sectors at a pose.
     pub(super) fn jackknife(&mut self, problem: &ContrastProblem<'_>, pose: &Similarity) -> PoseMatrix {
         let samples = &self.objective.samples;
         let points = samples.list.iter().map(|sample| pose.apply(sample.point));

@@ -59,7 +59,7 @@ fn covariance(linearised: &Linearised<'_>, held: &[bool; UNKNOWNS]) -> PoseMatri
     scores.covariance(inverse(&matrix).as_ref(), 1.0, held)
 }
 
-/// One sigma of the pose's own numbers, with what leaving out sectors tells.
+/// One sigma of each number of the pose, from the tiles and the given covariance of the sectors.
 pub(super) fn described(linearised: &Linearised<'_>, by_sectors: PoseMatrix) -> Uncertainty {
     let held = linearised.problem.held();
     let covariance = &(covariance(linearised, &held) + by_sectors);

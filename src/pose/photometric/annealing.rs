@@ -35,11 +35,11 @@ impl Photometric {
         fine_rounds: usize,
     ) -> Result<Phase> {
         self.rounds += 1;
-        let frame = self.choose_points(problem, Sampling { level, most: self.annealed_points })?;
+        let frame = self.choose_points(problem, Sampling { level, most: self.options.annealed_points })?;
         self.fit_light(problem, level)?;
         self.measure_noise(problem, level);
         let target = final_robust_scale(self.noise.residuals);
-        let tolerated = if self.annealing { SCALE_SHRINKING * self.weighting.robust_scale } else { 0.0 };
+        let tolerated = if self.options.annealing { SCALE_SHRINKING * self.weighting.robust_scale } else { 0.0 };
         self.weigh(problem, target.max(tolerated));
         Ok(Phase::AnnealingStep(Descent {
             level,
@@ -84,7 +84,7 @@ impl Photometric {
         match level {
             0 if at_noise && (change < FINE_SETTLED || fine_rounds >= MOST_FINE_ROUNDS) => {
                 self.annealed = self.state;
-                self.thinned = self.points.are_sampled() && self.annealed_points < self.most_points;
+                self.thinned = self.points.are_sampled() && self.options.annealed_points < self.options.most_points;
                 Phase::InstrumentalRound { round: 0 }
             }
             0 => Phase::AnnealingRound { level, fine_rounds: fine_rounds + usize::from(at_noise) },

@@ -1,7 +1,7 @@
 //! Covariance of the pose: the [sandwich](crate::pose::sandwich) over tiles of the depth map (docs/method.md, section 14).
 //!
-//! M is the matrix of the equations that the pose solves, and a tile's score that once the light has followed. Errors that reach across tiles
-//! are the [jackknife](super::jackknife)'s to tell.
+//! M is the matrix of the equations that the pose solves, and a tile's score that once the light has followed. The
+//! [jackknife](super::jackknife) adds the errors that correlate over more than a tile.
 //!
 //! M itself is in part an effect of noise: gradients of a noisy image are noisy as well, and noise squared looks like
 //! information. A sphere, whose colours tell nothing of its rotation, has as much of it as F = sum w s^2 k D^T D with s
@@ -21,8 +21,8 @@ use crate::view::Size;
 /// Side of the tiles of the depth map whose scores count as one observation, pixels: twice the reach of normals and
 /// splines.
 const TILE: usize = 8;
-/// One sigma where all residuals are the model's, over what tiles tell. Photographs in one lamp's light that leave more than twice their noise
-/// end 4 to 17 sigmas of tiles alone off, the others 1 to 3; a wrong pose within a tolerance that the right one lies outside leaves as much.
+/// Factor on the sigma from tiles where model errors, not noise, make the residuals. Set on photographs under one lamp: those with residuals
+/// above twice their noise end 4 to 17 sigmas off, the others 1 to 3.
 const MODEL_SIGMA_INFLATION: f64 = 2.0;
 /// k: covariance of the gradients of white noise of variance one, once of the image's spline and once of the slightly
 /// blurred one's, mean over the positions in a cell (by quadrature over both splines' responses to one pixel).
@@ -39,7 +39,7 @@ pub(super) struct Noise {
 }
 
 impl Noise {
-    /// Factor of one sigma for residuals beyond the image's own noise.
+    /// Factor on one sigma for residuals above the noise of the image.
     fn sigma_inflation(&self) -> f64 {
         let of_model = share_of_model(self.residuals, self.image);
         (1.0 + (MODEL_SIGMA_INFLATION * MODEL_SIGMA_INFLATION - 1.0) * of_model).sqrt()
@@ -161,7 +161,7 @@ mod tests {
     use crate::view::{ColourImage, ColourSamples, ColourView};
 
     #[test]
-    fn sigmas_grow_where_residuals_are_the_model_s() {
+    fn sigmas_grow_with_model_errors() {
         let inflation = |residuals| Noise { residuals, image: 0.01 }.sigma_inflation();
         assert_eq!(inflation(0.02), 1.0);
         assert!((inflation(1e9) / MODEL_SIGMA_INFLATION - 1.0).abs() < 1e-12);

@@ -1,4 +1,4 @@
-//! The state of a photometric registration, and what each of its rounds takes from it.
+//! The state of a photometric registration, and the operations that its rounds share.
 
 use super::covariance::{Noise, Tiles};
 use super::equations::ReducedSystem;
@@ -6,11 +6,11 @@ use super::evaluation::Evaluation;
 use super::near::{NearTerms, NearWeights};
 use super::phase::Phase;
 use super::points::{Sampling, VisiblePoints};
-use super::problem::{COARSEST, COARSEST_NEAR, PhotometricProblem, PhotometricTermination};
+use super::problem::{COARSEST, COARSEST_NEAR, PhotometricOptions, PhotometricProblem, PhotometricTermination};
 use super::relief::Relief;
 use super::residual::{ColourModel, Samples};
 use super::state::State;
-use super::weighting::{Weighting, prior_weight};
+use super::weighting::{Weighting, final_robust_scale, prior_weight};
 use crate::error::{Error, ErrorKind, Result};
 use crate::pose::increment::{Frame, PoseMatrix, PoseVector};
 use crate::pose::similarity::Similarity;
@@ -34,7 +34,7 @@ const LIGHT_ROUNDS: usize = 6;
 const FEWEST_POINTS: usize = 14;
 
 /// What an initial pose brings in.
-pub(super) struct Near {
+struct Near {
     terms: NearTerms,
     relief: Relief,
 }
@@ -45,14 +45,14 @@ pub struct Photometric {
     /// The image sharp and blurred, down to the coarsest level that is used.
     pub(super) levels: Vec<SplineImage>,
     /// The image whose gradients are the instrumental variables.
-    pub(super) instruments: SplineImage,
+    instruments: SplineImage,
     pub(super) points: VisiblePoints,
     /// What an initial pose brings in, once there is one.
-    pub(super) near: Option<Box<Near>>,
+    near: Option<Box<Near>>,
     pub(super) tiles: Tiles,
     /// log S at the points while the pose stays.
-    pub(super) samples: Vec<Samples>,
-    pub(super) magnitudes: Vec<f32>,
+    samples: Vec<Samples>,
+    magnitudes: Vec<f32>,
     pub(super) state: State,
     /// The state at the end of the annealing.
     pub(super) annealed: State,
@@ -60,13 +60,7 @@ pub struct Photometric {
     pub(super) weighting: Weighting,
     pub(super) phase: Phase,
     pub(super) rounds: usize,
-    pub(super) most_rounds: usize,
-    pub(super) most_points: usize,
-    pub(super) annealed_points: usize,
-    pub(super) annealing: bool,
-    pub(super) points_stay: bool,
-    /// Whether the report's covariance is to have the jackknife's.
-    pub(super) with_jackknife: bool,
+    pub(super) options: PhotometricOptions,
     pub(super) iterations: usize,
     /// Whether the rounds with instrumental variables are those of the annealing's points, of which there are more.
     pub(super) thinned: bool,
@@ -100,12 +94,7 @@ impl Photometric {
             weighting: Weighting::FIRST,
             phase: Phase::Done(PhotometricTermination::MostRounds),
             rounds: 0,
-            most_rounds: 0,
-            most_points: usize::MAX,
-            annealed_points: usize::MAX,
-            annealing: true,
-            points_stay: false,
-            with_jackknife: true,
+            options: PhotometricOptions::default(),
             iterations: 0,
             thinned: false,
             settled_step: None,
@@ -125,13 +114,21 @@ impl Photometric {
 
     /// Chooses the visible points of a round.
     pub(super) fn choose_points(&mut self, problem: &PhotometricProblem<'_>, sampling: Sampling) -> Result<Frame> {
-        if !self.points_stay {
+        if !self.options.points_stay {
             self.points.update(problem, &self.state.pose, &self.levels[0], sampling);
         }
         if self.points.len() < FEWEST_POINTS {
             return Err(degenerate("the image shows too few of the depth points").value(self.points.len() as f64));
         }
         Ok(self.points.frame(problem, &self.state.pose))
+    }
+
+    /// The points, noise and weights of the end, for at most so many points.
+    pub(super) fn evaluate_end(&mut self, problem: &PhotometricProblem<'_>, most: usize) -> Result<Frame> {
+        let frame = self.choose_points(problem, Sampling { level: 0, most })?;
+        self.measure_noise(problem, 0);
+        self.weigh(problem, final_robust_scale(self.noise.residuals));
+        Ok(frame)
     }
 
     /// The light alone, reweighted.

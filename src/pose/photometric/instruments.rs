@@ -27,7 +27,7 @@ impl Photometric {
     pub(super) fn begin_instrumental(&mut self, problem: &PhotometricProblem<'_>, round: usize) -> Result<Phase> {
         self.rounds += 1;
         let frame = match round {
-            0 if !self.thinned => self.choose_points(problem, Sampling { level: 0, most: self.most_points })?,
+            0 if !self.thinned => self.choose_points(problem, Sampling { level: 0, most: self.options.most_points })?,
             _ => self.points.frame(problem, &self.state.pose),
         };
         if self.thinned {

@@ -41,7 +41,7 @@
 //! | `evaluation` | sums over the points: objective, equations, noise, inliers |
 //! | `equations` | the linear system, the light eliminated |
 //! | `normal_noise` | what noisy normals add to it |
-//! | `covariance` | one sigma of the pose |
+//! | `covariance`, `jackknife` | one sigma of the pose: from tiles, and from leaving out sectors |
 //!
 //! Limits: Lambertian, one albedo; starts beyond some 20 to 30 degrees may end elsewhere; behind a pinhole image the
 //! scale is held, for it cannot be told from the distance.

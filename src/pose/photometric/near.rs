@@ -21,7 +21,7 @@ use crate::view::extent;
 
 /// Points that are held against the mask at most.
 const MOST_POINTS: usize = 2000;
-/// Weight of a point off the mask over that of one whose colours do not fit; set on pairs of a statue, where 2 ends alike.
+/// Weight of a point off the mask over that of one whose colours do not fit; set on pairs of a statue; 2 gives the same poses.
 const OFF_WEIGHT: f64 = 0.5;
 /// Distance off the mask at which a point's weight has fallen to a quarter on each level of the image, pixels: as far as the level is to
 /// reach, since a sharp one comes after the others.

@@ -158,12 +158,12 @@ impl VisiblePoints {
         Frame { centre: pose.apply(centre), length: if length > 0.0 { length } else { 1.0 } }
     }
 
-    /// The points' own weights.
+    /// The points' weights before robust weighting.
     pub fn weights(&self) -> &[f32] {
         &self.weights
     }
 
-    /// Gives the points other weights of their own.
+    /// Replaces these weights.
     pub fn reweigh(&mut self, weights: impl Iterator<Item = f32>) {
         self.weights.iter_mut().zip(weights).for_each(|(own, other)| *own = other);
     }

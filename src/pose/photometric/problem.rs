@@ -134,7 +134,7 @@ pub struct PhotometricOptions {
     /// Whether the points are those of the registration before, in place of those that each round shows: several problems are
     /// compared on the same ones, and only these need points and normals.
     pub points_stay: bool,
-    /// Whether the covariance has what leaving out sectors of the object tells; what is only compared with others does without.
+    /// Whether the covariance includes the jackknife over sectors, which a registration that is only compared with others does not need.
     pub jackknife: bool,
 }
 
@@ -193,7 +193,7 @@ pub struct PhotometricReport {
     /// Information of rotation (radians), translation (object sizes) and log scale once light is eliminated, over the
     /// noise's variance: what white noise of that size would leave.
     pub information: PoseMatrix,
-    /// Covariance of the same from the spread of the scores over tiles and of poses without a sector; held unknowns have none.
+    /// Covariance of the same, from the scores of tiles and from the jackknife over sectors; held unknowns have none.
     pub covariance: PoseMatrix,
     /// One sigma of the pose's own numbers.
     pub uncertainty: Uncertainty,

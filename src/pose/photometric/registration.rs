@@ -1,4 +1,4 @@
-//! A photometric registration from its start to its report: annealing, then instrumental variables.
+//! A photometric registration from its initial pose to its report: annealing, then instrumental variables.
 
 use super::annealing::SCALE_SHRINKING;
 pub use super::fit::Photometric;
@@ -20,8 +20,8 @@ impl Photometric {
     /// The pose from `start`: [`begin`](Self::begin), [`step`](Self::step) to the end, [`report`](Self::report).
     ///
     /// # Errors
-    /// [`ErrorKind::Size`](crate::error::ErrorKind::Size) where lengths disagree, [`ErrorKind::Range`](crate::error::ErrorKind::Range) for a start that is no similarity,
-    /// [`ErrorKind::Degenerate`](crate::error::ErrorKind::Degenerate) where fewer than 14 points are visible or they determine nothing.
+    /// [`Size`](crate::ErrorKind::Size) where lengths disagree, [`Range`](crate::ErrorKind::Range) for an invalid initial pose,
+    /// [`Degenerate`](crate::ErrorKind::Degenerate) where fewer than 14 points are visible or they do not determine the pose.
     pub fn register(
         &mut self,
         problem: &PhotometricProblem<'_>,
@@ -54,12 +54,13 @@ impl Photometric {
             None => State { pose: *start, light: problem.prior.mean().exposed(brightness), exposure: 0.0 },
         };
         (self.phase, self.rounds, self.iterations) = (Phase::AnnealingRound { level, fine_rounds: 0 }, 0, 0);
-        self.most_rounds = options.most_rounds.max(1);
-        (self.most_points, self.annealing) = (options.most_points, options.annealing);
-        (self.points_stay, self.with_jackknife) = (options.points_stay, options.jackknife);
-        self.annealed_points = options.annealed_points.min(options.most_points);
+        self.options = PhotometricOptions {
+            most_rounds: options.most_rounds.max(1),
+            annealed_points: options.annealed_points.min(options.most_points),
+            ..*options
+        };
         (self.thinned, self.settled_step) = (false, None);
-        self.choose_points(problem, Sampling { level, most: self.annealed_points })?;
+        self.choose_points(problem, Sampling { level, most: self.options.annealed_points })?;
         self.weighting = Weighting::FIRST;
         self.noise.residuals = f64::INFINITY;
         self.fit_light(problem, level)?;
@@ -72,7 +73,7 @@ impl Photometric {
     /// A piece of a round, one Gauss-Newton step at most, so that a page stays alive; whether it was the last.
     ///
     /// # Errors
-    /// [`ErrorKind::Degenerate`](crate::error::ErrorKind::Degenerate) where too few points are visible or they determine nothing.
+    /// [`Degenerate`](crate::ErrorKind::Degenerate) where too few points are visible or they do not determine the pose.
     pub fn step(&mut self, problem: &PhotometricProblem<'_>) -> Result<bool> {
         self.phase = match self.phase {
             Phase::AnnealingStep(descent) => self.descend(problem, descent)?,
@@ -80,7 +81,7 @@ impl Photometric {
                 self.step_by_instruments(problem, round, &frame, steps, last)?
             }
             Phase::Done(_) => self.phase,
-            _ if self.rounds >= self.most_rounds => Phase::Done(PhotometricTermination::MostRounds),
+            _ if self.rounds >= self.options.most_rounds => Phase::Done(PhotometricTermination::MostRounds),
             Phase::AnnealingRound { level, fine_rounds } => self.begin_annealing(problem, level, fine_rounds)?,
             Phase::InstrumentalRound { round } => self.begin_instrumental(problem, round)?,
         };
@@ -96,19 +97,17 @@ impl Photometric {
     /// What was found so far.
     ///
     /// # Errors
-    /// [`ErrorKind::Degenerate`](crate::error::ErrorKind::Degenerate) where the visible points determine nothing.
+    /// [`Degenerate`](crate::ErrorKind::Degenerate) where the visible points do not determine the pose.
     pub fn report(&mut self, problem: &PhotometricProblem<'_>) -> Result<PhotometricReport> {
-        let by_sectors = if self.with_jackknife { self.jackknife(problem)? } else { PoseMatrix::zeros() };
-        let frame = self.choose_points(problem, Sampling { level: 0, most: self.most_points })?;
-        self.measure_noise(problem, 0);
-        self.weigh(problem, final_robust_scale(self.noise.residuals));
+        let frame = self.evaluate_end(problem, self.options.most_points)?;
+        let by_sectors = if self.options.jackknife { self.jackknife(problem, &frame)? } else { PoseMatrix::zeros() };
         let reduced = self.reduce_by_instruments(problem, &frame)?;
+        let held = problem.held();
         let mut covariance = self.covariance(problem, &frame, &reduced) + by_sectors;
-        // What an initial pose holds the colours back by is as uncertain as it is far.
-        if let Some(step) = problem.near.and_then(|_| reduced.step(0.0, &problem.held())) {
+        // The prior may keep the pose away from where the residuals alone would take it. That distance is an error, too.
+        if let Some(step) = problem.near.and_then(|_| reduced.step(0.0, &held)) {
             covariance.ger(1.0, &step.pose, &step.pose, 1.0);
         }
-        let held = problem.held();
         let mut information =
             0.5 * (reduced.matrix + reduced.matrix.transpose()) / (self.noise.residuals * self.noise.residuals);
         clear_unknowns(&mut information, &held);

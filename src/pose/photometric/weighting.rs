@@ -15,8 +15,8 @@ const LARGEST_WIDENING: f64 = 2.0;
 /// degrees.
 const PRIOR_DEGREES_OF_FREEDOM: f64 = 5.0;
 
-/// Number of residuals that count as one independent error where the albedo varies: information from elsewhere is weighed by it against sums
-/// over residuals. Set on pairs of a statue, where of 64, 192, 640 and 1920 this one leaves least.
+/// Number of residuals that count as one independent error where the albedo varies; it weighs other terms against sums over residuals. Set on
+/// pairs of a statue among 64, 192, 640 and 1920.
 pub(super) const CORRELATED: f64 = 640.0;
 
 /// How much residuals and prior count.
