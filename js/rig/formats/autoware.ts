@@ -34,8 +34,7 @@ export function readAutoware(root: Node): Findings {
       if (!isPlace(place)) continue;
       const turn = numbersAt(place, TURN);
       const isDegrees = turn.some((angle) => Math.abs(angle) > 2 * Math.PI);
-      if (isDegrees)
-        found.warn("pose-assumed", `The angles of ${from} are larger than 2 pi and were read as degrees.`);
+      if (isDegrees) found.warn("pose-assumed", `The angles of ${from} are larger than 2 pi and were read as degrees.`);
       const radians = isDegrees ? turn.map((angle) => (angle * Math.PI) / 180) : turn;
       found.pose(ofYawPitchRoll(radians), numbersAt(place, PLACE), {
         name: `${to} from ${from}`,

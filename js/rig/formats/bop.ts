@@ -42,7 +42,10 @@ export function readBop(root: Node): Findings {
   if (scale !== undefined && scale > 0)
     found.depthUnit = isPerMillimetre(scale) ? scale * MILLIMETRE : scale < 1 ? scale : 1 / scale;
   if (images.some(([, { depth_scale }]) => (numberOf(depth_scale) ?? scale) !== scale))
-    found.warn("units-differ", `The depth_scale differs between images. That of the first image, ${scale}, is used for all.`);
+    found.warn(
+      "units-differ",
+      `The depth_scale differs between images. That of the first image, ${scale}, is used for all.`,
+    );
   const posed = images.filter(([, node]) => "cam_R_w2c" in node).length;
   if (posed > 0)
     found.warn(

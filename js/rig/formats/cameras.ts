@@ -55,7 +55,7 @@ const LONGEST = 1e6;
 function brown(values: Numbers): Numbers | undefined {
   const used = values.slice(0, 8);
   if (values.length > 14 || values.slice(8).some((value) => value !== 0))
-    throw badFile("its distortion has thin-prism or tilt terms, which are not known here");
+    throw badFile("its distortion has thin-prism or tilt terms, which are not supported");
   while (used.length > 0 && used.at(-1) === 0) used.pop();
   if (used.length === 0) return undefined;
   const length = used.length <= 4 ? 4 : used.length <= 5 ? 5 : 8;
@@ -161,7 +161,7 @@ function lensOf(
     );
   else if (!BROWN.test(model))
     throw badFile(
-      `its lens model "${written.slice(0, 40)}"${Object.hasOwn(OTHERS, model) ? ` (${OTHERS[model]})` : ""} is not known here; Brown's and Kannala-Brandt's are`,
+      `its lens model "${written.slice(0, 40)}"${Object.hasOwn(OTHERS, model) ? ` (${OTHERS[model]})` : ""} is not supported; Brown's and Kannala-Brandt's are`,
     );
   return withBrown(brown(values.length === 3 ? radial(values, label, warnings) : values));
 }
@@ -169,7 +169,10 @@ function lensOf(
 /** Three coefficients are radial, because tangential ones come in pairs. */
 function radial([k1 = 0, k2 = 0, k3 = 0]: Numbers, label: string, warnings: ReaderWarning[]): Numbers {
   warnings.push(
-    warning("distortion-guessed", `${label} has three distortion coefficients, which were read as k1 k2 k3. Write five (k1 k2 p1 p2 k3) to say which they are.`),
+    warning(
+      "distortion-guessed",
+      `${label} has three distortion coefficients, which were read as k1 k2 k3. Write five (k1 k2 p1 p2 k3) to say which they are.`,
+    ),
   );
   return [k1, k2, 0, 0, k3];
 }

@@ -121,6 +121,9 @@ export function readBouguet(text: string): Findings {
     );
   }
   if ([...entries.keys()].some((key) => /^(?:omc|Tc)_\d+$/.test(key)))
-    found.warn("pose-left-out", "The poses of the calibration board are not extrinsics between two cameras and were left out.");
+    found.warn(
+      "pose-left-out",
+      "The poses of the calibration board are not extrinsics between two cameras and were left out.",
+    );
   return found;
 }

@@ -22,7 +22,8 @@ export function numberOf(value: unknown): number | undefined {
 }
 
 /** The numbers of some members; NaN where one is missing. */
-export const numbersAt = (node: Node, keys: readonly string[]): Numbers => keys.map((key) => numberOf(node[key]) ?? NaN);
+export const numbersAt = (node: Node, keys: readonly string[]): Numbers =>
+  keys.map((key) => numberOf(node[key]) ?? NaN);
 
 /** The objects of a list. */
 export const nodesOf = (value: unknown): Node[] => (Array.isArray(value) ? value.filter(isNode) : []);

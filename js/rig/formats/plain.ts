@@ -31,7 +31,8 @@ function rowsOf(text: string): Numbers[] | undefined {
       numbers.push(number);
     }
     count += numbers.length;
-    if (count > MOST_NUMBERS) throw badFile(`it has more than ${MOST_NUMBERS} numbers, too many for cameras and motions`);
+    if (count > MOST_NUMBERS)
+      throw badFile(`it has more than ${MOST_NUMBERS} numbers, too many for cameras and motions`);
     rows.push(numbers);
   }
   return rows;

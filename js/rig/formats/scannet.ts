@@ -11,7 +11,6 @@ const SCENE = /^[ \t]*fx_(?:color|depth)[ \t]*=/m;
 export const isScannet = (text: string): boolean =>
   SENSOR.test(text) || (SCENE.test(text) && /^[ \t]*mx_(?:color|depth)[ \t]*=/m.test(text));
 
-
 export function readScannet(text: string): Findings {
   const found = new Findings();
   const entries = numbersByName(text, /^\s*(?:m_)?([\w.]{1,60}?)\s*=\s*(\S.*)$/);

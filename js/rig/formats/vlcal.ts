@@ -28,6 +28,9 @@ export function readVlcal(root: Node): Findings {
     found.pose(ofQuaternion(seven.slice(3), found.warnings), seven.slice(0, 3), { name, from: "camera", to: "lidar" });
   }
   if (found.poses.length > 0 && !("T_lidar_camera" in results))
-    found.warn("pose-assumed", "The pose is the initial guess of direct_visual_lidar_calibration, not its result. Run the calibration for T_lidar_camera.");
+    found.warn(
+      "pose-assumed",
+      "The pose is the initial guess of direct_visual_lidar_calibration, not its result. Run the calibration for T_lidar_camera.",
+    );
   return found;
 }
