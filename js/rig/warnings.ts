@@ -1,6 +1,6 @@
-/** What the readers of a rig's files warn of: a stable code for programs, a sentence for people, and the numbers in it. */
+/** Warnings of the readers of a rig's files: a stable code for programs, a sentence for people, and the numbers in it. */
 
-/** What a reader can warn of. `docs/codes.md` has the cause and the remedy of each. */
+/** The codes of a reader's warnings. `docs/codes.md` has the cause and the remedy of each. */
 export type ReaderCode =
   // Depth maps
   | "unit-guessed"
@@ -68,13 +68,13 @@ export type ReaderCode =
   | "transform-missing"
   | "transform-moves";
 
-/** What a reader guessed, changed or found wrong; beside these members the numbers of the code. */
+/** Something that a reader guessed, changed, left out or found wrong. Further members are the numbers of its code. */
 export interface ReaderWarning {
   /** Stable, for programs. */
   code: ReaderCode;
-  /** A sentence; of a folder's file it begins with the file's name. */
+  /** A sentence; for a file of a folder it begins with the file's name. */
   message: string;
-  /** Whether it makes what was read doubtful, so that it caps the verdict of a check; others name what was left out. */
+  /** Whether the values that were read may be wrong, which caps the verdict of a check. Other warnings name what was left out. */
   isDoubt: boolean;
   /** The file of a folder that it is about. */
   file?: string;
@@ -84,7 +84,7 @@ export interface ReaderWarning {
   [detail: string]: unknown;
 }
 
-/** These name what was not read; they do not make what was read doubtful. */
+/** Codes of what was left out or left as it is, which does not make the values doubtful. */
 const HARMLESS: ReadonlySet<ReaderCode> = new Set([
   "file-left-out",
   "file-alone",
@@ -105,18 +105,18 @@ export const warning = (
   details: Readonly<Record<string, unknown>> = {},
 ): ReaderWarning => ({ code, message, isDoubt: !HARMLESS.has(code), ...details });
 
-/** A file's warning among those of its folder. */
+/** The warning of a file, with the file's name, for those of its folder. */
 export const ofFile = (file: string, found: ReaderWarning): ReaderWarning => ({
   ...found,
   message: `${file}: ${found.message}`,
   file,
 });
 
-/** Files that were left out are alike where they were for the same reason, other numbers aside. */
+/** The key by which warnings are grouped: the code, and for files that were left out the reason without its numbers. */
 const likeness = ({ code, message, file = "" }: ReaderWarning): string =>
   code === "file-left-out" ? message.slice(file.length).replace(/\d+/g, "#") : code;
 
-/** One warning for all files of a folder that have it: a calibration of a hundred frames warns once, not a hundred times. */
+/** One warning for all files of a folder that have it, so that a calibration of a hundred frames warns once. */
 export function grouped(warnings: readonly ReaderWarning[]): ReaderWarning[] {
   const alike = new Map<string, ReaderWarning[]>();
   for (const each of warnings) alike.set(likeness(each), [...(alike.get(likeness(each)) ?? []), each]);
@@ -130,6 +130,6 @@ export function grouped(warnings: readonly ReaderWarning[]): ReaderWarning[] {
   });
 }
 
-/** Without repetitions, at most so many. */
+/** The first warnings with different messages, at most so many. */
 export const distinct = (warnings: readonly ReaderWarning[], most = Infinity): ReaderWarning[] =>
   [...new Map(warnings.map((each) => [each.message, each])).values()].slice(0, most);

@@ -1,8 +1,9 @@
 /** Cameras and poses in plain words. */
+import { degreesOf } from "./formats/poses.js";
 import type { NamedCamera, NamedPose } from "./types.js";
 
 const digits = (value: number): string => Number(value.toPrecision(5)).toString();
-/** How many are described one by one. */
+/** Cameras or poses that are described one by one. */
 const FEW = 4;
 
 function lens({ camera: { model, distortion } }: NamedCamera): string {
@@ -16,14 +17,10 @@ function ofCamera(each: NamedCamera): string {
   return `${each.name === undefined ? "" : `${each.name}: `}${size}fx ${digits(fx)} fy ${digits(fy)} cx ${digits(cx)} cy ${digits(cy)}, ${lens(each)}`;
 }
 
-/** The turn of a rotation, degrees. */
-const turn = (r: number[]): number =>
-  (Math.acos(Math.min(1, Math.max(-1, ((r[0] ?? 0) + (r[4] ?? 0) + (r[8] ?? 0) - 1) / 2))) * 180) / Math.PI;
-
 function ofPose({ name, from, to, pose }: NamedPose): string {
   const called =
     from !== undefined && to !== undefined ? `from ${from} to ${to}: ` : name === undefined ? "" : `${name}: `;
-  return `${called}${turn(pose.rotation).toFixed(2)} degrees, ${(1000 * Math.hypot(...pose.translation)).toFixed(1)} mm`;
+  return `${called}${degreesOf(pose.rotation).toFixed(2)} degrees, ${(1000 * Math.hypot(...pose.translation)).toFixed(1)} mm`;
 }
 
 function listed<T>(all: T[], one: string, many: string, say: (each: T) => string): string[] {

@@ -1,24 +1,23 @@
 // Calibrations of data sets and toolboxes: poses of cameras in the world, units of depth, and pixels that count from 1.
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
-import { close, distortion, read, refusedFile, rotation, translation } from "./rig-support.mjs";
-
-const numbers = ({ camera: { fx, fy, cx, cy } }) => [fx, fy, cx, cy];
-const lens = ({ camera }) => [camera.model ?? "brown", ...(camera.distortion ?? [])];
-const codes = ({ warnings }) => warnings.map(({ code }) => code);
-const ends = ({ from, to }) => [from, to];
-const columns = [0, 3, 6, 1, 4, 7, 2, 5, 8].map((at) => rotation[at]);
-const samePose = ({ pose }, r = rotation, t = translation, tolerance = 1e-6) => {
-  close(pose.rotation, r, tolerance, "rotation");
-  close(pose.translation, t, tolerance, "translation");
-};
-const K = [
-  [518.5, 0, 325.5],
-  [0, 519.25, 253.75],
-  [0, 0, 1],
-];
-const four = [0, 1, 2].map((i) => [...rotation.slice(3 * i, 3 * i + 3), translation[i]]).concat([[0, 0, 0, 1]]);
-const json = (value, name = "calib.json") => read(name, JSON.stringify(value));
+import {
+  close,
+  codes,
+  columns,
+  distortion,
+  ends,
+  intrinsicRows,
+  json,
+  lens,
+  matrix,
+  numbers,
+  read,
+  refusedFile,
+  rotation,
+  samePose,
+  translation,
+} from "./rig-support.mjs";
 
 describe("data sets and toolboxes", () => {
   test("nerfstudio: where the camera stood is no extrinsics, and has our axes", async () => {
@@ -36,7 +35,7 @@ describe("data sets and toolboxes", () => {
         p2: 0,
         camera_model: "OPENCV",
       },
-      frames: [{ file_path: "images/1.png", transform_matrix: four }],
+      frames: [{ file_path: "images/1.png", transform_matrix: matrix }],
     });
     assert.deepEqual([...numbers(found.cameras[0]), found.cameras[0].width], [500, 501, 319.5, 239.5, 640]);
     assert.deepEqual(ends(found.poses[0]), ["camera", "world"]);
@@ -52,7 +51,7 @@ describe("data sets and toolboxes", () => {
         cy: 240,
         w: 640,
         h: 480,
-        transform_matrix: four,
+        transform_matrix: matrix,
       })),
     });
     assert.deepEqual(
@@ -62,7 +61,7 @@ describe("data sets and toolboxes", () => {
         ["1", 520],
       ],
     );
-    const blender = await json({ camera_angle_x: 0.7, frames: [{ file_path: "r_0", transform_matrix: four }] });
+    const blender = await json({ camera_angle_x: 0.7, frames: [{ file_path: "r_0", transform_matrix: matrix }] });
     assert.deepEqual([blender.kind, ...codes(blender)], ["poses", "camera-left-out", "camera-to-world"]);
   });
 
@@ -123,7 +122,10 @@ describe("data sets and toolboxes", () => {
     const camera = { fx: 500, fy: 501, cx: 320, cy: 240, width: 640, height: 480 };
     const unit = async (depth_scale) => (await json({ ...camera, depth_scale })).depthUnit;
     close([await unit(0.1), await unit(1), await unit(0.00025), await unit(5000)], [1e-4, 1e-3, 2.5e-4, 2e-4], 1e-12);
-    const scene = { 7: { cam_K: K.flat(), depth_scale: 0.5 }, 8: { cam_K: K.flat(), depth_scale: 0.5 } };
+    const scene = {
+      7: { cam_K: intrinsicRows.flat(), depth_scale: 0.5 },
+      8: { cam_K: intrinsicRows.flat(), depth_scale: 0.5 },
+    };
     const found = await json(scene, "scene_camera.json");
     assert.deepEqual([found.cameras.length, found.cameras[0].takes, found.depthUnit], [1, "both", 5e-4]);
   });

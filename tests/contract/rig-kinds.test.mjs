@@ -239,7 +239,7 @@ describe("depth maps without a format", () => {
   });
 
   test("a table with a row too short", () =>
-    refused("depth.csv", `${table(",")}\n1,2,3`, /3 columns in row 25, and 32 in those before/));
+    refused("depth.csv", `${table(",")}\n1,2,3`, /3 columns in row 25, but 32 in the rows before/));
 
   test("raw pixels of a given size; without it the sizes that would fit are named", async () => {
     const raw = (array) => read("depth.raw", bytesOf(array), { size: [columns, rows] });

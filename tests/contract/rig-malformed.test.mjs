@@ -35,7 +35,7 @@ import { npy, png } from "./support.mjs";
 /** File, bytes, what the error has to say, and options where it needs some. */
 const FILES = [
   ["empty.png", new Uint8Array(0), /it is empty/],
-  ["spaces.txt", text(" \n\t "), /nothing in it but spaces/],
+  ["spaces.txt", text(" \n\t "), /it is empty or has only spaces/],
   ["large.bin", new Uint8Array(65 * MEGABYTE), /65 MB large; up to 64 MB/],
   ["noise.bin", new Uint8Array([0, 1, 2, 3, 255]), /format is not known here/],
   ["a.gif", text("GIF89a\x00\x01"), /a GIF; save it as PNG/],
@@ -46,7 +46,7 @@ const FILES = [
   ["a.bag", text("#ROSBAG V2.0\n\x00\x01"), /recording of ROS/],
   ["a.heic", new Uint8Array([0, 0, 0, 24, ...text("ftypheic"), 0, 1]), /HEIC/],
   ["page.html", text("<!doctype html><html><body>404</body></html>"), /document type/],
-  ["readme.txt", text("Some words: of no: use"), /none of the forms/],
+  ["readme.txt", text("Some words: of no: use"), /none of the formats/],
 
   [
     "signature.png",
@@ -202,20 +202,20 @@ const FILES = [
   ],
   ["many.json", text(`[${'{"a":{}},'.repeat(60_000)}{}]`), /more than 50000/],
   ["focal.json", text('{"fx": -500, "fy": 500, "cx": 320, "cy": 240}'), /focal lengths -500 and 500/],
-  ["half.json", text('{"fx": 500, "cx": 320}'), /without fy and cy/],
+  ["half.json", text('{"fx": 500, "cx": 320}'), /fx and cx, but not fy and cy/],
   [
     "side.yaml",
     text("image_width: 640\ncamera_matrix: {rows: 3, cols: 3, data: [500, 0, 320, 0, 500, 240, 0, 0, 1]}\n"),
     /only one side of its images: a width of 640/,
   ],
-  ["rotation.json", text('{"R": [[1,0,0],[0,1,0],[0,0,2]], "t": [0,0,0]}'), /its rotation is none/],
+  ["rotation.json", text('{"R": [[1,0,0],[0,1,0],[0,0,2]], "t": [0,0,0]}'), /its matrix is not a rotation/],
   ["translation.json", text('{"R": [[1,0,0],[0,1,0],[0,0,1]], "t": [0,0]}'), /its t has 2 numbers/],
   [
     "quaternion.json",
     text('{"rotation": {"x":0,"y":0,"z":0,"w":2}, "translation": {"x":0,"y":0,"z":0}}'),
     /quaternion has the length 2/,
   ],
-  ["laughs.yaml", text(laughs), /none of the forms|neither a camera/],
+  ["laughs.yaml", text(laughs), /none of the formats|neither a camera/],
   ["cut.yaml", cut("opencv.yaml", 150), /as YAML|neither a camera/],
   ["twice.yaml", text("K: 1\nK: 2\n"), /as YAML/],
   ["nested.yaml", text(`K: ${"[".repeat(40)}${"]".repeat(40)}`), /as YAML: nesting/],
@@ -231,7 +231,7 @@ const FILES = [
   [
     "K.yaml",
     text("camera_matrix:\n  rows: 3\n  cols: 3\n  data: [500, 0, 320, 0, 500, 240, 1, 1, 1]\n"),
-    /no matrix of intrinsics/,
+    /not a matrix of intrinsics/,
   ],
   [
     "tilt.yaml",
@@ -248,17 +248,17 @@ const FILES = [
   ["tag.xml", text('<a b="'), /cut off within a tag/],
   ["K.txt", text("500 0 320\n0 500 240\n"), /6 numbers in 2 rows/],
   ["transposed.txt", text("500 0 0\n0 500 0\n320 240 1\n"), /transposed/],
-  ["nan.txt", text("500 0 nan\n0 500 240\n0 0 1\n"), /nan, inf/],
+  ["nan.txt", text("500 0 nan\n0 500 240\n0 0 1\n"), /it has nan or inf/],
   ["mirror.txt", text("1 0 0 0\n0 1 0 0\n0 0 -1 0\n0 0 0 1\n"), /mirrors/],
   ["last.txt", text("1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 2\n"), /not in 0 0 0 1/],
   ["numbers.txt", text("1.5 ".repeat(500_000)), /more than 200000 numbers/],
   // No number, of many digits: where digits match in two ways, that takes the square of their number.
-  ["digits.txt", text(`${"1".repeat(200_000)}${"e".repeat(200_000)}`), /in none of the forms/],
+  ["digits.txt", text(`${"1".repeat(200_000)}${"e".repeat(200_000)}`), /in none of the formats/],
   ["digits.json", text(`{"fx":"${"1".repeat(200_000)}x","fy":1,"cx":1,"cy":1}`), /fx|camera/],
   ["digits.yaml", text(`fx: ${"1".repeat(200_000)}x\nfy: 1\ncx: 1\ncy: 1\n`), /fx|camera|none/],
-  ["cameras.txt", text("1 PINHOLE 640 480 500 320 240\n"), /needs 4 numbers, and has 3/],
+  ["cameras.txt", text("1 PINHOLE 640 480 500 320 240\n"), /needs 4 numbers, but has 3/],
   ["model.txt", text("1 FOV 640 480 500 500 320 240 0.1\n"), /model FOV/],
-  ["line.txt", text("1 PINHOLE 640 480 500 500 320 240\nno camera\n"), /a line that is no camera/],
+  ["line.txt", text("1 PINHOLE 640 480 500 500 320 240\nno camera\n"), /a line that is not a camera/],
   [
     "streams.txt",
     text('Extrinsic from "Depth" To "Color" :\n Rotation Matrix:\n 1 0 0\n'),
@@ -266,8 +266,8 @@ const FILES = [
   ],
   ["publisher.txt", text("static_transform_publisher 1 2 3\n"), /3 numbers/],
   ["publisher2.txt", text("static_transform_publisher without numbers\n"), /no numbers follow/],
-  ["long.txt", text("a: ".padEnd(600_000, "b")), /in none of the forms/],
-  ["quotes.txt", text(`"${"\\".repeat(300_000)}`), /none of the forms/],
+  ["long.txt", text("a: ".padEnd(600_000, "b")), /in none of the formats/],
+  ["quotes.txt", text(`"${"\\".repeat(300_000)}`), /none of the formats/],
 ];
 
 describe("malformed and odd files", () => {

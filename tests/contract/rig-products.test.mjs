@@ -1,33 +1,32 @@
 // Calibrations of products: units, modes, frames and orders that the product has and its file does not say.
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
-import { close, distortion, read, refusedFile, rotation, translation } from "./rig-support.mjs";
+import {
+  close,
+  codes,
+  columns,
+  distortion,
+  ends,
+  intrinsicRows,
+  json,
+  lens,
+  numbers,
+  quaternion,
+  read,
+  refusedFile,
+  rotation,
+  rows,
+  samePose,
+  size,
+  translation,
+} from "./rig-support.mjs";
 
-const numbers = ({ camera: { fx, fy, cx, cy } }) => [fx, fy, cx, cy];
-const lens = ({ camera }) => [camera.model ?? "brown", ...(camera.distortion ?? [])];
-const size = ({ width, height }) => [width, height];
-const codes = ({ warnings }) => warnings.map(({ code }) => code);
-const ends = ({ from, to }) => [from, to];
-const rows = [0, 1, 2].map((i) => rotation.slice(3 * i, 3 * i + 3));
-const columns = [0, 3, 6, 1, 4, 7, 2, 5, 8].map((at) => rotation[at]);
-const samePose = ({ pose }, tolerance = 1e-6, t = translation) => {
-  close(pose.rotation, rotation, tolerance, "rotation");
-  close(pose.translation, t, tolerance, "translation");
-};
-/** Of the fixtures' rotation: x y z w. */
-const quaternion = [0.00999841674, -0.01499762511, 0.02499604185, 0.9995250376];
 const [x, y, z, w] = quaternion;
-const K = [
-  [518.5, 0, 325.5],
-  [0, 519.25, 253.75],
-  [0, 0, 1],
-];
-const json = (value, name = "calib.json") => read(name, JSON.stringify(value));
 
 describe("OAK cameras (depthai)", () => {
   const camera = (extrinsics, more = {}) => ({
     ...{ cameraType: 0, distortionCoeff: [...distortion, 0, 0, 0, 0, 0, 0, 0, 0, 0], extrinsics },
-    ...{ height: 480, width: 640, intrinsicMatrix: K, ...more },
+    ...{ height: 480, width: 640, intrinsicMatrix: intrinsicRows, ...more },
   });
   const none = { rotationMatrix: [], toCameraSocket: -1, translation: { x: 0, y: 0, z: 0 } };
   const to = (socket) => ({
@@ -104,7 +103,7 @@ describe("the Azure Kinect", () => {
     assert.deepEqual(lens(of(3840, 2160)), ["brown", 0.2, -0.5, 0.001, -0.002, 0.3, 0.1, 0.05, 0.02]);
     assert.equal(poses.length, 1);
     assert.deepEqual(ends(poses[0]), ["depth", "color"]);
-    samePose(poses[0], 1e-9);
+    samePose(poses[0], rotation, translation, 1e-9);
   });
 
   test("what the SDK's example prints", async () => {

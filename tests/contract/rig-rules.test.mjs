@@ -3,12 +3,16 @@ import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import {
   K,
+  angles,
   close,
   codes,
   columns,
   distortion,
+  intrinsicRows,
+  json,
   matrix,
   only,
+  quaternion,
   read,
   readFixture,
   refusedFile,
@@ -19,17 +23,9 @@ import {
   translation,
 } from "./rig-support.mjs";
 
-/** Of the rotation of the fixtures: x y z w. */
-const quaternion = [0.009998416741873298, -0.014997625112809946, 0.024996041854683248, 0.999525037602976];
 const wFirst = [quaternion[3], ...quaternion.slice(0, 3)];
 /** Roll, pitch and yaw about fixed axes, degrees. */
-const degrees = [
-  Math.atan2(rotation[7], rotation[8]),
-  Math.asin(-rotation[6]),
-  Math.atan2(rotation[3], rotation[0]),
-].map((angle) => (angle * 180) / Math.PI);
-const json = (name, value, options) => read(name, JSON.stringify(value), options);
-const intrinsics = { fx: K.fx, fy: K.fy, cx: K.cx, cy: K.cy };
+const degrees = angles.map((angle) => (angle * 180) / Math.PI);
 const others = { fx: 400, fy: 401, cx: 320, cy: 240 };
 const members = { k1: 0.2, k2: -0.5, p1: 0.001, p2: -0.002, k3: 0.3 };
 
@@ -54,8 +50,8 @@ describe("lenses and sizes beside their cameras", () => {
   });
 
   test("by the same label, in objects and in sections", async () => {
-    const found = await json("rig.json", {
-      rgbIntrinsic: { ...intrinsics, width: 640, height: 480 },
+    const found = await json({
+      rgbIntrinsic: { ...K, width: 640, height: 480 },
       depthIntrinsic: { ...others, width: 512, height: 424 },
       depthDistortion: { k1: 0, k2: 0, p1: 0, p2: 0 },
       rgbDistortion: members,
@@ -63,8 +59,8 @@ describe("lenses and sizes beside their cameras", () => {
     sameCamera(found.cameras[0]);
     sameCamera(found.cameras[1], null, others);
     assert.deepEqual(codes(found), []);
-    const lists = await json("rig.json", {
-      intrinsics: { color: intrinsics, depth: others },
+    const lists = await json({
+      intrinsics: { color: K, depth: others },
       distortion: { depth: [0.1, 0.2, 0, 0], color: distortion },
       image_size: { color: [1280, 720], depth: [640, 480] },
     });
@@ -77,20 +73,16 @@ describe("lenses and sizes beside their cameras", () => {
   });
 
   test("a lens of its own model, and lists of radial and tangential coefficients", async () => {
-    const fisheye = await json("k.json", {
-      camera: { ...intrinsics, distortion: { model: "equidistant", coefficients: [0.1, 0.2, 0.3, 0.4] } },
+    const fisheye = await json({
+      camera: { ...K, distortion: { model: "equidistant", coefficients: [0.1, 0.2, 0.3, 0.4] } },
     });
     assert.equal(only(fisheye.cameras).camera.model, "fisheye");
-    const parts = await json("k.json", {
-      K: [
-        [518.5, 0, 325.5],
-        [0, 519.25, 253.75],
-        [0, 0, 1],
-      ],
+    const parts = await json({
+      K: intrinsicRows,
       distortion_parameters: { radial: [0.2, -0.5, 0.3], tangential: [0.001, -0.002] },
     });
     sameCamera(only(parts.cameras));
-    const three = await json("k.json", { ...intrinsics, distortion: [0.2, -0.5, 0.3] });
+    const three = await json({ ...K, distortion: [0.2, -0.5, 0.3] });
     sameCamera(only(three.cameras), [0.2, -0.5, 0, 0, 0.3]);
     assert.deepEqual(codes(three), ["distortion-guessed"]);
   });
@@ -112,7 +104,7 @@ describe("lenses and sizes beside their cameras", () => {
       ],
       T: [0, 0, 0],
     };
-    const found = await json("calibration.json", {
+    const found = await json({
       cameras: { color: camera(K), depth: camera(others) },
       camera_poses: { color: still, depth_to_color: { R: rows, T: translation } },
     });
@@ -123,28 +115,28 @@ describe("lenses and sizes beside their cameras", () => {
       ...{ img_dist_w: 640, img_dist_h: 480, cam_dist: { rows: 1, cols: 5, type: 6, data: [distortion] } },
       cam_K: { rows: 3, cols: 3, type: 6, data: camera(K).K },
     };
-    const { cameras } = await json("i.json", { "front-intrinsic": { sensor_name: "front", param } });
+    const { cameras } = await json({ "front-intrinsic": { sensor_name: "front", param } });
     sameCamera(only(cameras));
     assert.deepEqual([cameras[0].name, cameras[0].width], ["front-intrinsic", 640]);
     const sensors = { sensor_name: "top_lidar", target_sensor_name: "front" };
     const pose = only(
-      (await json("e.json", { e: { ...sensors, param: { sensor_calib: { rows: 4, cols: 4, data: matrix } } } })).poses,
+      (await json({ e: { ...sensors, param: { sensor_calib: { rows: 4, cols: 4, data: matrix } } } })).poses,
     );
     samePose(pose);
     assert.deepEqual([pose.from, pose.to], ["top_lidar", "front"]);
   });
 
   test("what nobody can place is not used, and said", async () => {
-    const two = await json("rig.json", { rgb: intrinsics, depth: others, distortion });
+    const two = await json({ rgb: K, depth: others, distortion });
     assert.deepEqual(codes(two), ["distortion-unused"]);
     assert.ok(two.cameras.every(({ camera }) => camera.distortion === undefined));
-    const sizes = await json("rig.json", {
-      rgb: intrinsics,
+    const sizes = await json({
+      rgb: K,
       view_a: { size: [640, 480] },
       view_b: { size: [320, 240] },
     });
     assert.deepEqual(codes(sizes), ["size-unused"]);
-    const boards = await json("k.json", { ...intrinsics, rvecs: [[0.1, 0.2, 0.3]], tvecs: [[1, 2, 3]] });
+    const boards = await json({ ...K, rvecs: [[0.1, 0.2, 0.3]], tvecs: [[1, 2, 3]] });
     assert.deepEqual(
       boards.warnings.map(({ code, name, isDoubt }) => [code, name, isDoubt]),
       [
@@ -183,7 +175,7 @@ describe("lenses and sizes beside their cameras", () => {
     const turn = Object.fromEntries(rotation.map((value, at) => [`rot${at}`, value]));
     const shift = Object.fromEntries([-9, 0.5, 0.25].map((value, at) => [`trans${at}`, value]));
     const text =
-      section("ColorIntrinsic", { ...intrinsics, width: 640, height: 480 }) +
+      section("ColorIntrinsic", { ...K, width: 640, height: 480 }) +
       section("DepthIntrinsic", { ...others, width: 640, height: 576 }) +
       section("ColorDistortion", members) +
       section("D2CTransformParam", { ...turn, ...shift });
@@ -199,17 +191,17 @@ describe("rotations that can be read in two ways", () => {
 
   test("quaternions: the order that is named, or else the one that makes a rig", async () => {
     for (const turn of [{ quaternion_wxyz: wFirst }, { q_xyzw: quaternion }, { rotation: quaternion }]) {
-      const found = await json("x.json", pose(turn));
+      const found = await json(pose(turn));
       samePose(only(found.poses));
       assert.deepEqual(codes(found), []);
     }
-    const guessed = await json("x.json", pose({ rotation: wFirst }));
+    const guessed = await json(pose({ rotation: wFirst }));
     samePose(only(guessed.poses));
     assert.deepEqual(
       guessed.warnings.map(({ code, order, isDoubt }) => [code, order, isDoubt]),
       [["quaternion-order", "wxyz", true]],
     );
-    const aside = await json("x.json", pose({ rotation: [0.5, -0.5, 0.5, -0.5] }));
+    const aside = await json(pose({ rotation: [0.5, -0.5, 0.5, -0.5] }));
     assert.deepEqual(
       aside.warnings.map(({ code, order }) => [code, order]),
       [["quaternion-order", "xyzw"]],
@@ -229,17 +221,17 @@ describe("rotations that can be read in two ways", () => {
 
   test("three numbers: vectors, degrees and radians", async () => {
     const vector = [0.02, -0.03, 0.05];
-    const named = await json("x.json", { depth_to_color: { rvec: vector, tvec: translation } });
+    const named = await json({ depth_to_color: { rvec: vector, tvec: translation } });
     samePose(only(named.poses));
     assert.deepEqual(codes(named), []);
     const cases = [
       [{ rotation: degrees }, "euler-degrees"],
       [{ rotation_deg: degrees }, "euler-degrees"],
-      [{ rpy: degrees.map((angle) => (angle * Math.PI) / 180) }, "euler-radians"],
+      [{ rpy: angles }, "euler-radians"],
       [{ rotation: vector }, "vector"],
     ];
     for (const [turn, as] of cases) {
-      const found = await json("x.json", pose(turn));
+      const found = await json(pose(turn));
       samePose(only(found.poses));
       assert.deepEqual(
         found.warnings.map(({ code, as }) => [code, as]),
@@ -247,9 +239,9 @@ describe("rotations that can be read in two ways", () => {
       );
     }
     // Right angles in radians turn axes; in degrees they would be a rig by chance.
-    const axes = await json("x.json", pose({ rpy: [-1.59, 0.01, -1.55] }));
+    const axes = await json(pose({ rpy: [-1.59, 0.01, -1.55] }));
     assert.equal(axes.warnings[0].as, "euler-radians");
-    const long = await json("x.json", { depth_to_color: { rvec: [1.2, -1.7, 2.9], tvec: translation } });
+    const long = await json({ depth_to_color: { rvec: [1.2, -1.7, 2.9], tvec: translation } });
     assert.match(long.warnings[0].message, /more than pi/);
   });
 
@@ -269,14 +261,14 @@ describe("rotations that can be read in two ways", () => {
   });
 
   test("rows or columns where members are called as librealsense calls them", async () => {
-    const other = await json("x.json", pose({ rotation }));
+    const other = await json(pose({ rotation }));
     samePose(only(other.poses));
     assert.deepEqual(
       other.warnings.map(({ code, order }) => [code, order]),
       [["rotation-order", "rows"]],
     );
-    assert.deepEqual(codes(await json("x.json", pose({ rotation: rows }))), ["rotation-order"]);
-    const realsense = await json("x.json", {
+    assert.deepEqual(codes(await json(pose({ rotation: rows }))), ["rotation-order"]);
+    const realsense = await json({
       ...pose({ rotation: columns }),
       color: { ppx: 1, model: "Brown Conrady" },
     });
@@ -285,7 +277,7 @@ describe("rotations that can be read in two ways", () => {
     const message = await read("e.yaml", `rotation: [${columns}]\ntranslation: [${translation}]\n`);
     samePose(only(message.poses));
     assert.deepEqual(codes(message), ["rotation-order"]);
-    const everybody = await json("x.json", { depth_to_color: { R: rows, t: translation } });
+    const everybody = await json({ depth_to_color: { R: rows, t: translation } });
     samePose(only(everybody.poses));
     assert.deepEqual(codes(everybody), []);
   });
@@ -294,7 +286,7 @@ describe("rotations that can be read in two ways", () => {
     const back = [0, 1, 2].map(
       (i) => -(rotation[i] * translation[0] + rotation[3 + i] * translation[1] + rotation[6 + i] * translation[2]),
     );
-    const found = await json("x.json", {
+    const found = await json({
       depth_to_color: { rotation: columns, translation },
       color_to_depth: { rotation, translation: back },
     });
@@ -304,8 +296,8 @@ describe("rotations that can be read in two ways", () => {
   });
 
   test("twelve numbers in a list", async () => {
-    samePose(only((await json("x.json", { depth2color: matrix.slice(0, 3).flat() })).poses));
-    const behind = await json("x.json", { depth2color: [...columns, ...translation] });
+    samePose(only((await json({ depth2color: matrix.slice(0, 3).flat() })).poses));
+    const behind = await json({ depth2color: [...columns, ...translation] });
     samePose(only(behind.poses));
     assert.deepEqual(codes(behind), ["rotation-order"]);
   });
@@ -316,25 +308,25 @@ describe("rotations that can be read in two ways", () => {
       { depth_to_color: { R: rows, translation_mm: t } },
       { units: "mm", depth_to_color: { R: rows, t } },
     ]) {
-      const found = await json("x.json", value);
+      const found = await json(value);
       samePose(only(found.poses));
       assert.deepEqual(codes(found), []);
     }
     const far = translation.map((value) => value * 200);
-    const centimetres = await json("x.json", { depth_to_color: { R: rows, t: far } });
+    const centimetres = await json({ depth_to_color: { R: rows, t: far } });
     samePose(
       only(centimetres.poses),
       rotation,
       translation.map((value) => value * 2),
     );
     assert.deepEqual(codes(centimetres), ["translation-unit-guessed"]);
-    samePose(only((await json("x.json", { lidar_to_camera: { R: rows, t: far } })).poses), rotation, far);
+    samePose(only((await json({ lidar_to_camera: { R: rows, t: far } })).poses), rotation, far);
   });
 });
 
 describe("poses in the world are no extrinsics", () => {
   const world = async (value) => {
-    const found = await json("x.json", value);
+    const found = await json(value);
     assert.ok(found.poses.length > 0);
     for (const { from, to } of found.poses) assert.deepEqual([from, to], ["camera", "world"]);
     return codes(found);
@@ -351,20 +343,20 @@ describe("poses in the world are no extrinsics", () => {
     ])
       assert.deepEqual(await world(value), ["camera-to-world"], JSON.stringify(value));
     await world({ frames: [{ file_path: "a.png", transform_matrix: matrix }] });
-    const back = await json("x.json", { world_to_camera: matrix });
+    const back = await json({ world_to_camera: matrix });
     assert.deepEqual([back.poses[0].from, back.poses[0].to], ["camera", "world"]);
     close(back.poses[0].pose.rotation, columns, 1e-9);
   });
 
   test("columns of simd are turned into rows", async () => {
-    const { poses } = await json("x.json", {
+    const { poses } = await json({
       transform: { columns: [0, 1, 2, 3].map((i) => matrix.map((row) => row[i])) },
     });
     samePose(only(poses));
   });
 
   test("Blender's camera in millimetres", async () => {
-    const found = await json("cam.json", {
+    const found = await json({
       camera: { focal_length_mm: 35, sensor_width_mm: 36, resolution: [720, 480] },
     });
     const { camera, width } = only(found.cameras);

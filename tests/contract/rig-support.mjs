@@ -77,3 +77,22 @@ export const samePose = ({ pose }, r = rotation, t = translation, tolerance = 1e
 export const rows = [0, 3, 6].map((at) => rotation.slice(at, at + 3));
 export const matrix = [...rows.map((row, at) => [...row, translation[at]]), [0, 0, 0, 1]];
 export const columns = [0, 3, 6, 1, 4, 7, 2, 5, 8].map((at) => rotation[at]);
+/** The rotation of the fixtures as a quaternion x y z w. */
+export const quaternion = [0.009998416741873298, -0.014997625112809946, 0.024996041854683248, 0.999525037602976];
+/** Its roll, pitch and yaw about fixed axes, radians. */
+export const angles = [
+  Math.atan2(rotation[7], rotation[8]),
+  Math.asin(-rotation[6]),
+  Math.atan2(rotation[3], rotation[0]),
+];
+/** The intrinsics of the fixtures as rows. */
+export const intrinsicRows = [
+  [K.fx, 0, K.cx],
+  [0, K.fy, K.cy],
+  [0, 0, 1],
+];
+export const numbers = ({ camera: { fx, fy, cx, cy } }) => [fx, fy, cx, cy];
+export const lens = ({ camera }) => [camera.model ?? "brown", ...(camera.distortion ?? [])];
+export const size = ({ width, height }) => [width, height];
+export const ends = ({ from, to }) => [from, to];
+export const json = (value, name = "calib.json") => read(name, JSON.stringify(value));

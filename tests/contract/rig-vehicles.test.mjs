@@ -1,27 +1,27 @@
 // Calibrations of vehicles and robots: frames, quaternions with w first, and chains of poses.
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
-import { close, distortion, read, refusedFile, rotation, translation } from "./rig-support.mjs";
+import {
+  angles,
+  close,
+  codes,
+  columns,
+  distortion,
+  ends,
+  intrinsicRows,
+  json,
+  lens,
+  numbers,
+  quaternion,
+  read,
+  refusedFile,
+  rotation,
+  samePose,
+  translation,
+} from "./rig-support.mjs";
 
-const numbers = ({ camera: { fx, fy, cx, cy } }) => [fx, fy, cx, cy];
-const lens = ({ camera }) => [camera.model ?? "brown", ...(camera.distortion ?? [])];
-const codes = ({ warnings }) => warnings.map(({ code }) => code);
-const ends = ({ from, to }) => [from, to];
-const columns = [0, 3, 6, 1, 4, 7, 2, 5, 8].map((at) => rotation[at]);
-const samePose = ({ pose }, r = rotation, t = translation, tolerance = 1e-6) => {
-  close(pose.rotation, r, tolerance, "rotation");
-  close(pose.translation, t, tolerance, "translation");
-};
-const [x, y, z, w] = [0.00999841674, -0.01499762511, 0.02499604185, 0.9995250376];
-const K = [
-  [518.5, 0, 325.5],
-  [0, 519.25, 253.75],
-  [0, 0, 1],
-];
-const json = (value, name = "calib.json") => read(name, JSON.stringify(value));
-const roll = Math.atan2(rotation[7], rotation[8]);
-const pitch = Math.asin(-rotation[6]);
-const yaw = Math.atan2(rotation[3], rotation[0]);
+const [x, y, z, w] = quaternion;
+const [roll, pitch, yaw] = angles;
 
 describe("LiDARs and cameras of vehicles", () => {
   test("direct_visual_lidar_calibration: the camera in the LiDAR's frame, the result before the first guess", async () => {
@@ -55,7 +55,10 @@ describe("LiDARs and cameras of vehicles", () => {
     const record = (token, r, t, camera_intrinsic) => ({
       ...{ token, sensor_token: `s${token}`, rotation: r, translation: t, camera_intrinsic },
     });
-    const found = await json([record("aa", [1, 0, 0, 0], [0, 0, 2], []), record("bb", [w, -x, -y, -z], [0, 0, 2], K)]);
+    const found = await json([
+      record("aa", [1, 0, 0, 0], [0, 0, 2], []),
+      record("bb", [w, -x, -y, -z], [0, 0, 2], intrinsicRows),
+    ]);
     close(numbers(found.cameras[0]), [518.5, 519.25, 325.5, 253.75], 1e-9);
     assert.deepEqual(found.poses.map(ends), [
       ["sensor aa", "camera bb"],

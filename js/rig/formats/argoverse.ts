@@ -1,8 +1,9 @@
-/** `vehicle_calibration_info.json` of Argoverse 1: names say which frame a pose leads into, quaternions are w x y z. */
+/** Argoverse's calibrations: `vehicle_calibration_info.json` of version 1 and the tables of version 2. Quaternions are w x y z. */
 import { Findings, flat } from "./findings.js";
-import { isNode, type Node, type Numbers, numberOf } from "./numbers.js";
-import { ofQuaternion } from "./poses.js";
+import { isNode, type Node, type Numbers, numberOf, numbersAt } from "./numbers.js";
+import { ofScalarFirst } from "./poses.js";
 
+/** "vehicle_SE3_camera_": the target frame comes first. */
 const POSE = /^(\w{1,40})_SE3_(\w{1,40}?)_?$/;
 
 export const isArgoverse = (root: Node): boolean =>
@@ -15,20 +16,19 @@ export function readArgoverse(root: Node): Findings {
     if (!isNode(entry) || !isNode(entry.value)) continue;
     const name = String(entry.key ?? "").replace(/^image_raw_/, "") || "camera";
     const { value } = entry;
-    const number = (key: string) => numberOf(value[key]) ?? NaN;
     const [k1 = 0, k2 = 0, k3 = 0] = Array.isArray(value.distortion_coefficients_)
       ? (value.distortion_coefficients_ as Numbers)
       : [];
     found.camera({
-      ...{ name, focal: [number("focal_length_x_px_"), number("focal_length_y_px_")] },
-      ...{ centre: [number("focal_center_x_px_"), number("focal_center_y_px_")] },
+      ...{ name, focal: numbersAt(value, ["focal_length_x_px_", "focal_length_y_px_"]) },
+      ...{ centre: numbersAt(value, ["focal_center_x_px_", "focal_center_y_px_"]) },
       ...{ distortion: [k1, k2, 0, 0, k3], skew: numberOf(value.skew_) },
       ...{ width: numberOf(value.width_), height: numberOf(value.height_) },
     });
     posesOf(found, value, `camera ${name}`);
   }
   posesOf(found, root, undefined);
-  return found.done("a calibration of Argoverse");
+  return found;
 }
 
 function posesOf(found: Findings, node: Node, camera: string | undefined): void {
@@ -38,23 +38,22 @@ function posesOf(found: Findings, node: Node, camera: string | undefined): void 
     const rotation = isNode(value.rotation) ? value.rotation.coefficients : value.rotation;
     const [q, t] = [flat(rotation, 4), flat(value.translation, 3)];
     if (q === undefined || t === undefined) continue;
-    const [w = NaN, x = NaN, y = NaN, z = NaN] = q;
     const from = camera ?? own.replace(/_/g, " ");
-    found.pose(ofQuaternion([x, y, z, w], found.warnings), t, { name: `${to} from ${from}`, from, to });
+    found.pose(ofScalarFirst(q, found.warnings), t, { name: `${to} from ${from}`, from, to });
   }
 }
 
 const isRecord = (value: unknown): value is Node =>
   isNode(value) && "sensor_name" in value && (("qw" in value && "tx_m" in value) || "fx_px" in value);
 
-/** The two tables of Argoverse 2, as records: intrinsics, and where each sensor is in the vehicle. */
+/** The two tables of Argoverse 2 as records: the intrinsics, and the pose of each sensor in the vehicle. */
 export const isArgoverse2 = (root: unknown): boolean => Array.isArray(root) && root.slice(0, 4).some(isRecord);
 
 export function readArgoverse2(root: unknown[]): Findings {
   const found = new Findings();
   for (const record of root.filter(isRecord)) {
     const n = (key: string) => numberOf(record[key]);
-    const all = (...keys: string[]) => keys.map((key) => n(key) ?? NaN);
+    const all = (...keys: string[]) => numbersAt(record, keys);
     const name = String(record.sensor_name).slice(0, 60);
     if (n("fx_px") !== undefined) {
       const [k1 = 0, k2 = 0, k3 = 0] = [n("k1"), n("k2"), n("k3")];
@@ -65,16 +64,16 @@ export function readArgoverse2(root: unknown[]): Findings {
     }
     if (n("qw") === undefined) continue;
     const names = { name: `egovehicle from ${name}`, from: name, to: "egovehicle" };
-    found.pose(ofQuaternion(all("qx", "qy", "qz", "qw"), found.warnings), all("tx_m", "ty_m", "tz_m"), names);
+    found.pose(ofScalarFirst(all("qw", "qx", "qy", "qz"), found.warnings), all("tx_m", "ty_m", "tz_m"), names);
   }
-  return found.done("a table of Argoverse 2");
+  return found;
 }
 
 const isTable = /^[^\n]*\bsensor_name\b[^\n]*\n/;
 export const isArgoverse2Table = (text: string): boolean =>
   isTable.test(text) && /\b(?:fx_px|tx_m)\b/.test(text.slice(0, 400));
 
-/** .. as CSV. */
+/** The same tables as CSV. */
 export function readArgoverse2Table(text: string): Findings {
   const [head = "", ...lines] = text.split(/\r?\n/).filter((line) => line.trim() !== "");
   const names = head.split(",").map((name) => name.trim());

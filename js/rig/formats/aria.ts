@@ -1,15 +1,14 @@
-/** The calibration of Project Aria's glasses, as their recordings hold it: cameras in the frame of the device, quaternions with w apart. */
+/** The calibration in recordings of Project Aria's glasses: cameras in the frame of the device, quaternions as [w, [x, y, z]]. */
 import { Findings, flat } from "./findings.js";
-import { isNode, type Node, type Numbers, numberOf } from "./numbers.js";
-import { ofQuaternion } from "./poses.js";
+import { isNode, type Node, type Numbers, nodesOf, numberOf } from "./numbers.js";
+import { ofScalarFirst } from "./poses.js";
 
-const cameras = (root: Node): Node[] =>
-  Array.isArray(root.CameraCalibrations) ? root.CameraCalibrations.filter(isNode) : [];
+const cameras = (root: Node): Node[] => nodesOf(root.CameraCalibrations);
 const projection = (camera: Node): Node => (isNode(camera.Projection) ? camera.Projection : {});
 
 export const isAria = (root: Node): boolean => cameras(root).some((camera) => "Params" in projection(camera));
 
-/** Of the models: focal lengths first, then the principal point; those that share a focal length have one number less. */
+/** The parameters of a model: focal lengths, then the principal point, then the lens. Unsupported models have one focal length. */
 function lensOf(name: string, p: Numbers) {
   if (name === "Linear") return { focal: p.slice(0, 2), centre: p.slice(2, 4), model: "pinhole", distortion: [] };
   if (name === "KannalaBrandtK3")
@@ -31,12 +30,7 @@ export function readAria(root: Node): Findings {
     const q = flat(place.UnitQuaternion, 4);
     const t = flat(place.Translation, 3);
     if (q === undefined || t === undefined) continue;
-    const [w = NaN, x = NaN, y = NaN, z = NaN] = q;
-    found.pose(ofQuaternion([x, y, z, w], found.warnings), t, {
-      name: `device from ${name}`,
-      from: name,
-      to: "device",
-    });
+    found.pose(ofScalarFirst(q, found.warnings), t, { name: `device from ${name}`, from: name, to: "device" });
   }
-  return found.done("a calibration of Project Aria");
+  return found;
 }

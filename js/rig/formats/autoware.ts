@@ -1,10 +1,10 @@
 /**
- * Autoware's sensor_kit_calibration.yaml and sensors_calibration.yaml: of each child frame its x y z roll pitch yaw in the parent's, in
- * metres and rad, about fixed axes as in URDF.
+ * Autoware's sensor_kit_calibration.yaml and sensors_calibration.yaml: x y z roll pitch yaw of each child frame in its parent, in metres and
+ * radians, about fixed axes as in URDF.
  */
 import { endsOf } from "./filename.js";
 import { Findings } from "./findings.js";
-import { isNode, type Node, numberOf } from "./numbers.js";
+import { isNode, type Node, numberOf, numbersAt } from "./numbers.js";
 import { ofYawPitchRoll } from "./poses.js";
 import { toCameras } from "./urdf.js";
 
@@ -17,12 +17,12 @@ const isPlace = (value: unknown): value is Node =>
   KEYS.every((key) => numberOf(value[key]) !== undefined) &&
   !Object.keys(value).some((key) => /unit|deg/i.test(key));
 
-/** Parents that name children, or children that stand alone. */
+/** Whether a parent frame has such children and nothing else. */
 export const isAutoware = (root: Node): boolean =>
   Object.values(root).some((each) => {
     if (!isNode(each)) return false;
     const names = Object.keys(each);
-    // A name of two frames is that of a pose, and not of a frame.
+    // A name of two frames is the name of a pose, not of a frame.
     return names.length > 0 && names.every((name) => isPlace(each[name]) && endsOf(name) === undefined);
   });
 
@@ -32,12 +32,11 @@ export function readAutoware(root: Node): Findings {
     if (!isNode(children)) continue;
     for (const [from, place] of Object.entries(children)) {
       if (!isPlace(place)) continue;
-      const numbers = (keys: string[]) => keys.map((key) => numberOf(place[key]) ?? NaN);
-      const turn = numbers(TURN);
-      if (turn.some((angle) => Math.abs(angle) > 2 * Math.PI))
-        found.warn("pose-assumed", `The angles of ${from} are larger than a turn; they were read as degrees.`);
+      const turn = numbersAt(place, TURN);
       const isDegrees = turn.some((angle) => Math.abs(angle) > 2 * Math.PI);
-      found.pose(ofYawPitchRoll(isDegrees ? turn.map((angle) => (angle * Math.PI) / 180) : turn), numbers(PLACE), {
+      if (isDegrees) found.warn("pose-assumed", `The angles of ${from} are larger than 2 pi and were read as degrees.`);
+      const radians = isDegrees ? turn.map((angle) => (angle * Math.PI) / 180) : turn;
+      found.pose(ofYawPitchRoll(radians), numbersAt(place, PLACE), {
         name: `${to} from ${from}`,
         from,
         to,
@@ -45,5 +44,5 @@ export function readAutoware(root: Node): Findings {
     }
   }
   toCameras(found);
-  return found.done("a sensor kit's calibration of Autoware");
+  return found;
 }

@@ -1,18 +1,17 @@
 /**
- * The calibration of an Azure Kinect: the JSON that the device keeps (an .mkv recording has it as an attachment), and what the SDK's
- * example prints.
+ * The calibration of an Azure Kinect: the JSON of the device, which an .mkv recording has as an attachment, and the print of the SDK's
+ * example.
  *
- * The JSON's numbers are shares of the whole sensor. The pictures of each mode are a crop of it, binned or not, so that one set of numbers
- * is as many cameras as there are modes; the size of the pictures says which. As in the SDK, pixel centres are whole numbers.
+ * The JSON's numbers are fractions of the whole sensor. The images of a mode are a crop of it, which may be binned, so that one set of
+ * numbers gives a camera for each mode; the size of the images selects one. As in the SDK, pixel centres have integer coordinates.
  */
 import { badFile } from "../../errors.js";
-import type { RawCamera } from "./cameras.js";
+import { BROWN_NAMES, type RawCamera } from "./cameras.js";
 import { Findings, flat } from "./findings.js";
-import { isNode, type Node, type Numbers, numberOf } from "./numbers.js";
-import { poseOf, rotationOf } from "./poses.js";
-import { chained, inverseOf } from "./poses.js";
+import { isNode, type Node, type Numbers, nodesOf, numberOf } from "./numbers.js";
+import { chained, inverseOf, poseOf, rotationOf } from "./poses.js";
 
-/** Of the SDK: the size that the sensor is binned to, where the crop begins in it, and the size of the pictures. */
+/** From the SDK: the size of the binned sensor, the first pixel of the crop, and the size of the images. */
 type Mode = [binned: [number, number], crop: [number, number], size: [number, number]];
 const COLOUR: Mode[] = [
   [
@@ -69,20 +68,19 @@ const DEPTH: Mode[] = [
   ],
 ];
 
-const listOf = (value: unknown): Node[] => (Array.isArray(value) ? value.filter(isNode) : []);
 const information = (root: Node): Node => (isNode(root.CalibrationInformation) ? root.CalibrationInformation : root);
 
 export const isAzureKinect = (root: Node): boolean =>
-  listOf(information(root).Cameras).some(
+  nodesOf(information(root).Cameras).some(
     (camera) => isNode(camera.Intrinsics) && "ModelParameters" in camera.Intrinsics,
   );
 
 const isDepth = (camera: Node): boolean => /depth|D\d$/i.test(`${camera.Purpose ?? camera.Location ?? ""}`);
 
-/** cx cy fx fy k1 .. k6, the centre of distortion, p2 p1. */
+/** The lens of the parameters cx cy fx fy, k1 to k6, the centre of distortion, p2 p1. */
 function lensOf(p: Numbers): Numbers {
   if (p[10] !== 0 || p[11] !== 0)
-    throw badFile("its centre of distortion is not its principal point, which is not known here");
+    throw badFile("its centre of distortion is not its principal point, which is not supported");
   return [4, 5, 13, 12, 6, 7, 8, 9].map((at) => p[at] ?? 0);
 }
 
@@ -96,7 +94,7 @@ function camerasOf(found: Findings, camera: Node): void {
   if (!/^(BrownConrady|Rational6KT|)$/.test(model)) {
     found.warn(
       "camera-left-out",
-      `The camera "${name}" was left out: its lens model ${model.slice(0, 40)} is not known here.`,
+      `The camera "${name}" was left out: its lens model ${model.slice(0, 40)} is not supported.`,
     );
     return;
   }
@@ -117,7 +115,7 @@ function camerasOf(found: Findings, camera: Node): void {
   }
 }
 
-/** From the frame that all are related to, that of the depth camera, into this one; metres. */
+/** The pose from the common frame, that of the depth camera, into this camera. */
 function placeOf(found: Findings, camera: Node) {
   const rt = isNode(camera.Rt) ? camera.Rt : {};
   const [r, t] = [flat(rt.Rotation, 9), flat(rt.Translation, 3)];
@@ -126,14 +124,14 @@ function placeOf(found: Findings, camera: Node) {
 
 export function readAzureKinect(root: Node): Findings {
   const found = new Findings();
-  const cameras = listOf(information(root).Cameras);
+  const cameras = nodesOf(information(root).Cameras);
   for (const camera of cameras) camerasOf(found, camera);
   const [depth, colour] = [cameras.find(isDepth), cameras.find((each) => !isDepth(each))];
   const [a, b] = [depth && placeOf(found, depth), colour && placeOf(found, colour)];
   if (a && b) found.poses.push({ name: "depth to color", from: "depth", to: "color", pose: chained(b, inverseOf(a)) });
-  if (listOf(information(root).InertialSensors).length > 0)
-    found.warn("pose-left-out", "The poses of its gyroscope and accelerometer were left out.");
-  return found.done("an Azure Kinect's calibration");
+  if (nodesOf(information(root).InertialSensors).length > 0)
+    found.warn("pose-left-out", "The poses of the gyroscope and the accelerometer were left out.");
+  return found;
 }
 
 const LINE =
@@ -142,7 +140,13 @@ const LINE =
 export const isAzurePrint = (text: string): boolean =>
   /^[ \t]*principal point x[ \t]*:/im.test(text) && /^[ \t]*focal length x[ \t]*:/im.test(text);
 
-/** The SDK's example `calibration_info`: the depth camera in the mode that it was started in. */
+/** Names of the print that differ from OpenCV's. */
+const PRINTED: Record<string, string> = {
+  p1: "tangential distortion coefficient x",
+  p2: "tangential distortion coefficient y",
+};
+
+/** The print of the SDK's example `calibration_info`, which has the depth camera in the mode of the device. */
 export function readAzurePrint(text: string): Findings {
   const found = new Findings();
   let values = new Map<string, number>();
@@ -152,16 +156,7 @@ export function readAzurePrint(text: string): Findings {
     const raw: RawCamera = {
       ...{ name, focal: [n("focal length x"), n("focal length y")] },
       ...{ centre: [n("principal point x"), n("principal point y")] },
-      distortion: [
-        "k1",
-        "k2",
-        "tangential distortion coefficient x",
-        "tangential distortion coefficient y",
-        "k3",
-        "k4",
-        "k5",
-        "k6",
-      ].map((key) => values.get(key) ?? 0),
+      distortion: BROWN_NAMES.map((key) => values.get(PRINTED[key] ?? key) ?? 0),
       ...{ width: values.get("resolution width"), height: values.get("resolution height") },
     };
     if (values.has("focal length x")) found.camera(raw, name === "depth" ? "depth" : "colour");
@@ -171,7 +166,7 @@ export function readAzurePrint(text: string): Findings {
     const [, key = "", value] = LINE.exec(line) ?? [];
     const number = numberOf(value);
     if (key === "" || number === undefined) {
-      // Programs that print both cameras put a line of words before each.
+      // Programs that print both cameras write a line of words before each.
       const said = /colou?r|rgb/i.test(line) ? "color" : /depth/i.test(line) ? "depth" : undefined;
       if (said === undefined || number !== undefined) continue;
       take();
@@ -182,5 +177,5 @@ export function readAzurePrint(text: string): Findings {
     values.set(key.toLowerCase(), number);
   }
   take();
-  return found.done("an Azure Kinect's printed calibration");
+  return found;
 }

@@ -1,14 +1,15 @@
-/** Basalt's calibration.json: cameras of its models, and their poses in the frame of the inertial unit. */
+/** Basalt's calibration.json: cameras, and their poses in the frame of the inertial unit. */
 import type { NamedPose } from "../types.js";
+import { BROWN_NAMES, FISHEYE_NAMES } from "./cameras.js";
 import { Findings } from "./findings.js";
-import { isNode, type Node, type Numbers, numberOf } from "./numbers.js";
+import { isNode, type Node, numberOf, numbersAt } from "./numbers.js";
 import { ofQuaternion } from "./poses.js";
 
-/** Coefficients of each model in the order of OpenCV. */
+/** The lens model and the names of its coefficients in OpenCV's order. */
 const MODELS: Record<string, { model: string; lens: string[] }> = {
   pinhole: { model: "pinhole", lens: [] },
-  "pinhole-radtan8": { model: "opencv", lens: ["k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"] },
-  kb4: { model: "fisheye", lens: ["k1", "k2", "k3", "k4"] },
+  "pinhole-radtan8": { model: "opencv", lens: BROWN_NAMES },
+  kb4: { model: "fisheye", lens: FISHEYE_NAMES },
 };
 
 const bodyOf = (root: Node): Node => (isNode(root.value0) ? root.value0 : root);
@@ -20,9 +21,8 @@ export const isBasalt = (root: Node): boolean =>
 /** T_imu_cam carries points of a camera into the inertial unit's frame. */
 function placeOf(found: Findings, value: unknown, from: string): NamedPose | undefined {
   if (!isNode(value)) return undefined;
-  const numbers = (keys: string[]): Numbers => keys.map((key) => numberOf(value[key]) ?? NaN);
-  const turn = ofQuaternion(numbers(["qx", "qy", "qz", "qw"]), found.warnings);
-  return found.pose(turn, numbers(["px", "py", "pz"]), { name: `imu from ${from}`, from, to: "imu" });
+  const turn = ofQuaternion(numbersAt(value, ["qx", "qy", "qz", "qw"]), found.warnings);
+  return found.pose(turn, numbersAt(value, ["px", "py", "pz"]), { name: `imu from ${from}`, from, to: "imu" });
 }
 
 export function readBasalt(root: Node): Findings {
@@ -32,13 +32,13 @@ export function readBasalt(root: Node): Findings {
   listOf(body.intrinsics).forEach((each, index) => {
     if (!isNode(each) || !isNode(each.intrinsics)) return;
     const numbers = each.intrinsics;
-    const n = (key: string) => numberOf(numbers[key]) ?? NaN;
     const [width, height] = listOf(sizes[index]).map(numberOf);
     const type = String(each.camera_type);
     const known = Object.hasOwn(MODELS, type) ? MODELS[type] : undefined;
     found.camera({
-      ...{ name: `cam${index}`, focal: [n("fx"), n("fy")], centre: [n("cx"), n("cy")], width, height },
-      // Of a model that is not known here, so that it is named.
+      ...{ name: `cam${index}`, focal: numbersAt(numbers, ["fx", "fy"]), centre: numbersAt(numbers, ["cx", "cy"]) },
+      ...{ width, height },
+      // With a coefficient, a camera of an unsupported model is refused by name.
       ...{
         model: known?.model ?? type,
         distortion: known ? known.lens.map((key) => numberOf(numbers[key]) ?? 0) : [1],
@@ -47,5 +47,5 @@ export function readBasalt(root: Node): Findings {
   });
   const posed = places.map((each, index) => placeOf(found, each, `cam${index}`));
   for (const [index, pose] of posed.entries()) if (index > 0) found.relate(posed[index - 1], pose);
-  return found.done("a calibration of Basalt");
+  return found;
 }

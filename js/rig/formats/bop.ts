@@ -1,16 +1,16 @@
 /**
- * Cameras of the BOP benchmark: camera.json of a data set, scene_camera.json of a scene. `depth_scale` times a stored depth is in
- * millimetres, and depth maps are registered to the colour images.
+ * Cameras of the BOP benchmark: camera.json of a dataset, scene_camera.json of a scene. `depth_scale` is in millimetres per stored unit, and
+ * depth maps are registered to the colour images.
  */
-import type { RawCamera } from "./cameras.js";
+import { type RawCamera, ofMatrix } from "./cameras.js";
 import { Findings, flat } from "./findings.js";
 import { isNode, type Node, numberOf } from "./numbers.js";
 
 const MILLIMETRE = 0.001;
-/** What the numbers of two images may differ by, in pixels, to be those of one camera. */
+/** Largest difference between intrinsics of the same camera in two images, pixels. */
 const ALIKE = 1e-4;
 
-/** Other programs give metres per unit, or units per metre, under the same name: these are much less or much more. */
+/** Other programs use the same name for metres per unit or units per metre, which are much smaller or larger. */
 const isPerMillimetre = (scale: number): boolean => scale >= 0.01 && scale < 100;
 
 const perImage = (root: Node): [string, Node][] =>
@@ -42,20 +42,22 @@ export function readBop(root: Node): Findings {
   if (scale !== undefined && scale > 0)
     found.depthUnit = isPerMillimetre(scale) ? scale * MILLIMETRE : scale < 1 ? scale : 1 / scale;
   if (images.some(([, { depth_scale }]) => (numberOf(depth_scale) ?? scale) !== scale))
-    found.warn("units-differ", `Its depth_scale differs between images; that of the first, ${scale}, is used for all.`);
+    found.warn(
+      "units-differ",
+      `The depth_scale differs between images. That of the first image, ${scale}, is used for all.`,
+    );
   const posed = images.filter(([, node]) => "cam_R_w2c" in node).length;
   if (posed > 0)
     found.warn(
       "pose-left-out",
-      `Its poses of the world in the camera (${posed}) were left out: they relate no two cameras.`,
+      `The file has ${posed} poses of the world in the camera, which are not extrinsics between two cameras and were left out.`,
     );
-  return found.done("a camera of the BOP benchmark");
+  return found;
 }
 
 function cameraOf(node: Node, root: Node, name: string | undefined): RawCamera {
   const n = (key: string) => numberOf(node[key]) ?? NaN;
   const k = flat(node.cam_K, 9) ?? [n("fx"), 0, n("cx"), 0, n("fy"), n("cy"), 0, 0, 1];
-  const [fx = NaN, skew = 0, cx = NaN, , fy = NaN, cy = NaN] = k;
   const side = (key: string) => numberOf(node[key]) ?? numberOf(root[key]);
-  return { name, focal: [fx, fy], centre: [cx, cy], skew, width: side("width"), height: side("height") };
+  return { name, ...ofMatrix(k), width: side("width"), height: side("height") };
 }

@@ -17,13 +17,24 @@ export interface RawCamera {
   height?: number | undefined;
 }
 
+/** Names of a lens's coefficients in OpenCV's order, of Brown's model and of a fisheye. */
+export const BROWN_NAMES = ["k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"];
+export const FISHEYE_NAMES = ["k1", "k2", "k3", "k4"];
+
+/** The members of a matrix of intrinsics, row by row with three columns, or four of a projection. */
+export const ofMatrix = (k: Numbers, columns = 3): Required<Pick<RawCamera, "focal" | "centre" | "skew">> => ({
+  focal: [k[0] ?? NaN, k[columns + 1] ?? NaN],
+  centre: [k[2] ?? NaN, k[columns + 2] ?? NaN],
+  skew: k[1],
+});
+
 /** Files call the same model by many names. */
 const BROWN =
   /^(|none|pinhole(camera)?|plumb[_ ]?bob|radtan\d?|radial-?tangential\d?|brown|brown[_ ]?conrady|opencv|rational([_ ]?polynomial)?|full_opencv|perspective|standard|thin_prism|tilted)$/;
 const FISHEYE = /^(fisheye|equidistant(camera)?|equid?4?|kannala[_ ]?brandt[48]?|opencv_fisheye)$/;
 /** librealsense's variants; it projects both as Brown's (its older versions followed the second the other way), but for products of terms. */
 const REALSENSE = /^(modified|inverse)[_ ]?brown[_ ]?conrady$/;
-/** Names of lens models that are not known here, as their makers write them in short. */
+/** Short names of lens models that are not supported, with what they stand for. */
 const OTHERS: Record<string, string> = {
   ds: "double sphere",
   eucm: "extended unified",
@@ -37,14 +48,14 @@ const OTHERS: Record<string, string> = {
   fisheyeradtanthinprism: "Aria's Fisheye624: make linear pictures by projectaria_tools",
 };
 
-/** Longer focal lengths, in pixels, are no camera. */
+/** Longest focal length of a camera, pixels. */
 const LONGEST = 1e6;
 
 /** Coefficients in OpenCV's numbers: 4, 5 or 8; further ones (thin prism, tilt) have to be zero. */
 function brown(values: Numbers): Numbers | undefined {
   const used = values.slice(0, 8);
   if (values.length > 14 || values.slice(8).some((value) => value !== 0))
-    throw badFile("its distortion has thin-prism or tilt terms, which are not known here");
+    throw badFile("its distortion has thin-prism or tilt terms, which are not supported");
   while (used.length > 0 && used.at(-1) === 0) used.pop();
   if (used.length === 0) return undefined;
   const length = used.length <= 4 ? 4 : used.length <= 5 ? 5 : 8;
@@ -64,14 +75,14 @@ function sizeOf(raw: RawCamera): { width: number; height: number } | undefined {
   if (width === 0 && height === 0) return undefined;
   if (width === undefined || height === undefined)
     throw badFile(
-      `its camera says only one side of its images: a ${width === undefined ? "height" : "width"} of ${width ?? height}`,
+      `its camera has only one side of its images: a ${width === undefined ? "height" : "width"} of ${width ?? height}`,
     );
   if (!isSide(width) || !isSide(height))
-    throw badFile(`its camera says that images are ${width}x${height} pixels large`);
+    throw badFile(`its camera has images of ${width}x${height} pixels, which is not a size`);
   return { width, height };
 }
 
-/** The camera, or why it is none. */
+/** The camera; it throws where the numbers are not those of a camera. */
 export function cameraOf(raw: RawCamera, warnings: ReaderWarning[]): NamedCamera {
   const [fx = NaN, fy = fx] = raw.focal;
   const [cx = NaN, cy = NaN] = raw.centre;
@@ -150,15 +161,18 @@ function lensOf(
     );
   else if (!BROWN.test(model))
     throw badFile(
-      `its lens model "${written.slice(0, 40)}"${Object.hasOwn(OTHERS, model) ? ` (${OTHERS[model]})` : ""} is not known here; Brown's and Kannala-Brandt's are`,
+      `its lens model "${written.slice(0, 40)}"${Object.hasOwn(OTHERS, model) ? ` (${OTHERS[model]})` : ""} is not supported; Brown's and Kannala-Brandt's are`,
     );
   return withBrown(brown(values.length === 3 ? radial(values, label, warnings) : values));
 }
 
-/** Three coefficients are the radial ones: tangential ones come in pairs. */
+/** Three coefficients are radial, because tangential ones come in pairs. */
 function radial([k1 = 0, k2 = 0, k3 = 0]: Numbers, label: string, warnings: ReaderWarning[]): Numbers {
   warnings.push(
-    warning("distortion-guessed", `${label} has three coefficients of distortion, which were read as k1 k2 k3.`),
+    warning(
+      "distortion-guessed",
+      `${label} has three distortion coefficients, which were read as k1 k2 k3. Write five (k1 k2 p1 p2 k3) to say which they are.`,
+    ),
   );
   return [k1, k2, 0, 0, k3];
 }

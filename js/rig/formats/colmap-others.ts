@@ -1,11 +1,12 @@
-/** COLMAP's other files: cameras.bin, which is cameras.txt in binary, and images.txt, where the pictures were taken. */
+/** COLMAP's other files: cameras.bin, the binary form of cameras.txt, and images.txt with the poses of the images. */
 import { badFile } from "../../errors.js";
 import { type ReaderWarning, distinct, warning } from "../warnings.js";
+import { linesOf } from "./colmap.js";
 import { numberOf } from "./numbers.js";
-import { inverseOf, motion, ofQuaternion } from "./poses.js";
+import { inverseOf, motion, ofScalarFirst } from "./poses.js";
 import type { Calibration } from "./tree.js";
 
-/** Models by their number, with how many parameters they have. */
+/** Models by their number, with their counts of parameters. */
 const MODELS: [name: string, parameters: number][] = [
   ["SIMPLE_PINHOLE", 3],
   ["PINHOLE", 4],
@@ -25,7 +26,7 @@ const CAMERA = 24;
 const MOST_CAMERAS = 5000;
 const MOST_IMAGES = 5000;
 
-/** A cameras.bin as the text that cameras.txt would be; nothing where the bytes are not exactly those of one. */
+/** The text of cameras.txt for a cameras.bin; undefined where the bytes are not exactly those of one. */
 export function colmapText(bytes: Uint8Array): string | undefined {
   if (bytes.length < HEAD + CAMERA) return undefined;
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
@@ -51,29 +52,25 @@ export function colmapText(bytes: Uint8Array): string | undefined {
 
 const IMAGE = /^\s*\d+(?:\s+[-+.\deE]+){7}\s+\d+\s+\S.*$/;
 
-const linesOf = (text: string): string[] =>
-  text.split(/\r?\n/).filter((line) => line.trim() !== "" && !line.trim().startsWith("#"));
-
-/** "IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME", with the points that were seen on the next line. */
+/** "IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME", followed by a line of the image's points. */
 export const isColmapImages = (text: string): boolean => IMAGE.test(linesOf(text.slice(0, 4096))[0] ?? "");
 
 export function readColmapImages(text: string): Calibration {
   const warnings: ReaderWarning[] = [];
   const lines = linesOf(text).filter((line) => IMAGE.test(line));
-  if (lines.length > MOST_IMAGES) throw badFile(`it lists more than ${MOST_IMAGES} pictures`);
+  if (lines.length > MOST_IMAGES) throw badFile(`it lists more than ${MOST_IMAGES} images`);
   const poses = lines.map((line) => {
     const [, ...words] = line.trim().split(/\s+/);
     const numbers = words.slice(0, 7).map((word) => numberOf(word) ?? NaN);
-    if (numbers.some(Number.isNaN)) throw badFile(`it has a line that is no picture: ${line.slice(0, 60)}`);
-    const [w = NaN, x = NaN, y = NaN, z = NaN, ...shift] = numbers;
+    if (numbers.some(Number.isNaN)) throw badFile(`it has a line that is not an image: ${line.slice(0, 60)}`);
     const names = { name: words.slice(8).join(" "), from: "camera", to: "world" };
-    const found = motion(ofQuaternion([x, y, z, w], warnings), shift, names, warnings, false);
+    const found = motion(ofScalarFirst(numbers.slice(0, 4), warnings), numbers.slice(4), names, warnings, false);
     return { ...found, pose: inverseOf(found.pose) };
   });
   warnings.push(
     warning(
       "camera-to-world",
-      `It says where ${poses.length} pictures were taken, in a world of any scale: no pose between two cameras, and not taken for one.`,
+      `The file has the poses of ${poses.length} images in a world of unknown scale (camera to world), which were not used as extrinsics between two cameras.`,
       { poses: poses.length },
     ),
   );

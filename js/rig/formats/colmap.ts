@@ -6,8 +6,8 @@ import type { Calibration } from "./tree.js";
 import { warning } from "../warnings.js";
 
 const LINE = /^\s*(\d+)\s+([A-Z][A-Z_]+)\s+(\d+)\s+(\d+)((?:\s+\S+)*)\s*$/;
-/** COLMAP's principal points count from the corner of the first pixel, ours from its centre. */
-const CORNER = 0.5;
+/** COLMAP's principal points are measured from the corner of the first pixel, OpenCV's from its centre; pixels. */
+export const CORNER = 0.5;
 
 interface Model {
   focals: 1 | 2;
@@ -27,7 +27,8 @@ const MODELS: Record<string, Model> = {
   RADIAL_FISHEYE: { focals: 1, lens: [0, 1], fisheye: true },
 };
 
-const linesOf = (text: string): string[] =>
+/** The lines that are neither empty nor comments. */
+export const linesOf = (text: string): string[] =>
   text.split(/\r?\n/).filter((line) => line.trim() !== "" && !line.trim().startsWith("#"));
 
 export const isColmap = (text: string): boolean => LINE.test(linesOf(text.slice(0, 4096))[0] ?? "");
@@ -38,8 +39,8 @@ function readLine(line: string): RawCamera {
   if (model === undefined)
     throw badFile(
       id === ""
-        ? `it has a line that is no camera: ${line.slice(0, 60)}`
-        : `its camera ${id} is of the model ${name}, which is not known here`,
+        ? `it has a line that is not a camera: ${line.slice(0, 60)}`
+        : `its camera ${id} has the model ${name}, which is not supported`,
     );
   const values: (number | undefined)[] = rest
     .trim()
@@ -48,7 +49,7 @@ function readLine(line: string): RawCamera {
     .map(numberOf);
   const needed = model.focals + 2 + model.lens.length;
   if (values.length !== needed || values.includes(undefined))
-    throw badFile(`its camera ${id} (${name}) needs ${needed} numbers, and has ${values.length}`);
+    throw badFile(`its camera ${id} (${name}) needs ${needed} numbers, but has ${values.length}`);
   const numbers = values as Numbers;
   const distortion = new Array<number>(model.lens.length).fill(0);
   model.lens.forEach((place, index) => (distortion[place] = numbers[model.focals + 2 + index] ?? 0));
@@ -64,7 +65,7 @@ function readLine(line: string): RawCamera {
   };
 }
 
-/** Cameras of models that are not known here cost themselves and not the file, as long as another is left. */
+/** Cameras with unsupported models are left out with a warning, unless no other camera is in the file. */
 export function readColmap(text: string): Calibration {
   const found: Calibration = { cameras: [], poses: [], warnings: [] };
   let reason: unknown;

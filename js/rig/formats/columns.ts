@@ -12,7 +12,7 @@ const cells = (line: string): string[] =>
     .split(/[,;\t]/)
     .map((cell) => cell.trim().replace(/^"(.*)"$/, "$1"));
 
-/** The rows by the names above them; nothing where a text is no such table. `isSeries`: each row has its own time or picture. */
+/** The rows by the names of their columns; undefined where a text is not such a table. `isSeries`: each row has a time or an image. */
 export function readColumns(text: string): { rows: Node[]; isSeries: boolean } | undefined {
   const lines = text.split(/\r?\n/).filter((line) => line.trim() !== "");
   const names = cells(lines[0] ?? "").map((name) => name.replace(/\s*[[(].*$/, ""));

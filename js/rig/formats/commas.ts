@@ -1,12 +1,12 @@
-/** Decimal commas, "0,998301", as spreadsheets of half of Europe write them. */
+/** Decimal commas, "0,998301", as spreadsheets in many languages write them. */
 
 /** A number with a comma and its fraction. */
 const NUMBER = /^[-+]?\d+,\d+(?:[eE][-+]?\d+)?$/;
 const MOST = 4_000_000;
 
 /**
- * The text with points in place of decimal commas, or nothing where its commas may separate numbers: every number has at most one comma,
- * none a point, and one at least has a fraction of three digits or begins with "0,", or each stands behind a name on its line.
+ * The text with decimal points for its decimal commas; undefined where its commas may separate numbers. Commas are decimal where every number
+ * has at most one and no point, and either one number has three digits after it or begins with "0,", or each number has a line and a name.
  */
 export function withPoints(text: string): string | undefined {
   if (text.length > MOST || !/\d,\d/.test(text) || /\d\.\d/.test(text) || /[[{]/.test(text)) return undefined;
@@ -17,6 +17,6 @@ export function withPoints(text: string): string | undefined {
     .split(/\r?\n/)
     .every((line) => !/\d,\d/.test(line) || /^\s*[A-Za-z_][\w ]*[:=\s]\s*[-+]?\d+,\d+\s*$/.test(line));
   if (!isSure && !isNamed) return undefined;
-  // Words stand alone between spaces and semicolons.
+  // Spaces around semicolons keep the words apart.
   return text.replace(/(\d),(\d)/g, "$1.$2").replace(/;/g, " ; ");
 }

@@ -1,10 +1,10 @@
-/** The calibration of an OAK camera as depthai's `calib dump` writes it: cameras by socket, each with the way to the next one. */
-import type { NamedPose } from "../types.js";
+/** The calibration of an OAK camera as depthai's `calib dump` writes it: cameras by socket, each with its pose to another one. */
+import { ofMatrix } from "./cameras.js";
 import { Findings, flat, vector } from "./findings.js";
+import { linked } from "./frames.js";
 import { isNode, type Node, numberOf } from "./numbers.js";
-import { chained } from "./poses.js";
 
-/** Depthai's names of its first sockets and what is usually plugged there. */
+/** Depthai's first sockets with the cameras that are usually connected to them. */
 const SOCKETS = ["rgb (CAM_A)", "left (CAM_B)", "right (CAM_C)"];
 const socketName = (socket: unknown): string => {
   const text = String(socket).slice(0, 40);
@@ -15,9 +15,10 @@ const socketName = (socket: unknown): string => {
 };
 const FISHEYE = 1;
 const MODELS: Record<string, string> = { 0: "opencv", 1: "fisheye", 2: "equirectangular", 3: "radial division" };
-const METRES = 0.01;
+/** Metres per unit of its translations. */
+const CENTIMETRE = 0.01;
 
-/** The sockets with their cameras: a map of C++ is a list of pairs in JSON, of Python an object. */
+/** The sockets with their cameras: C++ writes its map as a list of pairs, Python as an object. */
 function entries(data: unknown): [unknown, Node][] {
   const pairs: unknown[] = Array.isArray(data) ? data : isNode(data) ? Object.entries(data) : [];
   return pairs.flatMap((pair) =>
@@ -25,7 +26,6 @@ function entries(data: unknown): [unknown, Node][] {
   );
 }
 
-/** Any camera of it has these two, whatever else the file says. */
 export const isDepthai = (root: Node): boolean =>
   entries(root.cameraData).some(([, camera]) => "distortionCoeff" in camera && isNode(camera.extrinsics));
 
@@ -39,7 +39,7 @@ export function readDepthai(root: Node): Findings {
     if (k !== undefined && k[0] !== 0)
       found.camera(
         {
-          ...{ name, focal: [k[0] ?? NaN, k[4] ?? NaN], centre: [k[2] ?? NaN, k[5] ?? NaN], skew: k[1] },
+          ...{ name, ...ofMatrix(k) },
           ...{ distortion: type === FISHEYE ? lens.slice(0, 4) : lens, model: MODELS[type] ?? `type ${type}` },
           ...{ width: numberOf(camera.width), height: numberOf(camera.height) },
         },
@@ -51,12 +51,12 @@ export function readDepthai(root: Node): Findings {
   if (found.cameras.length > 1)
     found.warn(
       "pose-assumed",
-      "An OAK's depth map is that of its rectified right (or left) camera, or aligned to the colour camera: its intrinsics and pose are those of the raw camera only if it was not rectified.",
+      "The intrinsics and poses are those of the raw cameras. An OAK's depth map belongs to its rectified right (or left) camera, or is aligned to the colour camera: check which one yours is.",
     );
-  return found.done("a calibration of depthai");
+  return found;
 }
 
-/** The rotation and the shift, in centimetres, carry points of this camera into that of `toCameraSocket`. */
+/** The rotation and the translation, in centimetres, carry points of this camera into that of `toCameraSocket`. */
 function motionOf(found: Findings, from: string, extrinsics: unknown): void {
   if (!isNode(extrinsics)) return;
   const [r, t] = [flat(extrinsics.rotationMatrix, 9), vector(extrinsics.translation)];
@@ -65,23 +65,16 @@ function motionOf(found: Findings, from: string, extrinsics: unknown): void {
   const target = socketName(to);
   found.pose(
     r,
-    t.map((value) => METRES * value),
+    t.map((value) => CENTIMETRE * value),
     { name: `${target} from ${from}`, from, to: target },
   );
 }
 
-/** Where a camera leads to the colour camera by another one, the way through it. */
+/** Puts the poses into the colour camera first, those by way of another camera among them. */
 function toColour(found: Findings): void {
   const [colour = ""] = SOCKETS;
   const direct = found.poses.filter(({ to }) => to === colour);
-  const byWay: NamedPose[] = found.poses.flatMap((pose) =>
-    direct
-      .filter(({ from }) => from === pose.to && pose.from !== colour)
-      .map((next) => ({
-        ...{ name: `${colour} from ${pose.from}`, from: pose.from ?? "", to: colour },
-        pose: chained(next.pose, pose.pose),
-      })),
-  );
-  const all = [...direct, ...byWay, ...found.poses.filter((pose) => !direct.includes(pose))];
-  found.poses.splice(0, found.poses.length, ...all);
+  const others = found.poses.filter(({ to }) => to !== colour);
+  const indirect = others.flatMap(({ from = "" }) => linked(found.poses, from, colour) ?? []);
+  found.poses.splice(0, found.poses.length, ...direct, ...indirect, ...others);
 }

@@ -1,21 +1,20 @@
-/** Which frames a motion relates, from the names in a file: P_to = R P_from + t. */
+/** The frames of a motion P_to = R P_from + t, from the names in a file. */
 import type { NamedPose } from "../types.js";
 import { letteredFrames, wordsOf } from "./names.js";
 
-/** What the objects around a motion say of it. */
 export interface Frames {
   from?: string;
   to?: string;
 }
 export type PoseNames = Omit<NamedPose, "pose">;
 
-/** Names of where a camera stood in the world: ARKit, Blender, NeRF, trajectories. */
+/** Names of poses of a camera in the world: ARKit, Blender, NeRF, trajectories. */
 const OF_WORLD =
   /\b(?:(?:camera|cam|c|local|object|view) ?(?:to|2) ?(?:world|w)|poses?|matrix world|location|camera transform)\b/;
-/** Names of the motion back. */
+/** Names of their inverses. */
 const TO_CAMERA = /\b(?:(?:world|w) ?(?:to|2) ?(?:camera|cam|c|view)|view matrix|world view(?: transform)?)\b/;
 
-/** The frames of "camera_to_world", "cameraPose", "matrix_world" and the like. */
+/** The frames of names such as "camera_to_world", "cameraPose" and "matrix_world". */
 export function worldFrames(name: string): Frames | undefined {
   const words = wordsOf(name).join(" ");
   if (TO_CAMERA.test(words)) return { from: "world", to: "camera" };
@@ -36,12 +35,12 @@ export function named(name: string, frames: Frames): PoseNames {
     /^(?:T_)?([a-z0-9]+)_from_([a-z0-9]+)$/i.exec(name) ??
     /^T_([a-z0-9]+)_([a-z0-9]+)$/i.exec(name) ??
     /^([a-z][a-z0-9]*)_(?:T|SE3)_([a-z][a-z0-9]*)_?$/.exec(name);
-  // Autoware's calibration toolkit writes where the camera is in the LiDAR's frame.
+  // Autoware's calibration toolkit writes the pose of the camera in the LiDAR's frame.
   if (name === "CameraExtrinsicMat") return { name, from: "camera", to: "lidar" };
   if (backwards) return { name, from: backwards[2] ?? "", to: backwards[1] ?? "" };
   const letters = letteredFrames(name);
   return letters === undefined ? { name } : { name, ...letters };
 }
 
-/** Whether a motion says where something stood in the world, so that it relates no two cameras. */
+/** Whether a motion leads into the world or out of it, so that it does not relate two cameras. */
 export const isOfWorld = ({ from, to }: Frames): boolean => from === "world" || to === "world";

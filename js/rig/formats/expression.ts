@@ -1,4 +1,4 @@
-/** The arithmetic of xacro's `${..}`: numbers, properties, pi, + - * / and brackets, radians() and degrees(). No name means anything else. */
+/** The arithmetic of xacro's `${..}`: numbers, properties, pi, + - * /, brackets, radians() and degrees(). */
 const TOKEN = /\s*(?:(\d+\.?\d*(?:e[-+]?\d+)?|\.\d+(?:e[-+]?\d+)?)|([A-Za-z_][\w.:]*)|([-+*/()]))/iy;
 const MOST_TOKENS = 200;
 const MOST_NESTED = 20;
@@ -14,7 +14,7 @@ function tokensOf(text: string): string[] | undefined {
   return tokens;
 }
 
-/** The value, or nothing where it has a name without a value or is no expression. */
+/** The value; undefined where a name has no value or the text is not an expression. */
 export function evaluate(text: string, valueOf: (name: string) => number | undefined): number | undefined {
   const tokens = tokensOf(text);
   if (tokens === undefined) return undefined;
@@ -51,8 +51,8 @@ export function evaluate(text: string, valueOf: (name: string) => number | undef
     if (/^[\d.]/.test(token)) return Number(token);
     const name = token.replace(/^math\./, "");
     if (tokens[at] === "(") {
-      const factor = { radians: Math.PI / 180, degrees: 180 / Math.PI }[name];
-      return factor === undefined ? NaN : factor * bracket();
+      const scale = { radians: Math.PI / 180, degrees: 180 / Math.PI }[name];
+      return scale === undefined ? NaN : scale * bracket();
     }
     return /^(?:pi|M_PI)$/.test(name) ? Math.PI : (valueOf(name) ?? NaN);
   };

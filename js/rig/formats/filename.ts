@@ -1,18 +1,18 @@
 /**
- * Which frames a file's only pose relates, where its name alone says it: "depth_to_color.txt", "calib_cam_to_velo.txt", "T_cam_lidar.json".
+ * The frames of a file's only pose from the file's name: "depth_to_color.txt", "calib_cam_to_velo.txt", "T_cam_lidar.json".
  *
- * Limit: names count where both ends are words for sensors, so that other names mean nothing.
+ * Limit: only names of sensors are recognised as frames.
  */
 import type { NamedPose } from "../types.js";
 
 const SENSOR =
   /cam|rgb|colou?r|depth|dpt|infra|(?:^|[_-])ir(?:[_-]|$)|tof|lidar|velo|laser|ouster|livox|radar|imu|base|hand|gripper|left|right/i;
-/** What stands around the ends. */
+/** Words before and after the frames. */
 const AROUND =
   /^(?:calib(?:ration)?|extrinsics?|transform|tf|pose|rt)[_-]+|[_-]+(?:calib(?:ration)?|extrinsics?|transform|tf|pose|rt)$/gi;
 const LONGEST = 100;
 
-/** The ends of the poses that a file of this name holds; nothing where it does not say them. */
+/** The frames in the name of a file; undefined where there are none. */
 export function endsOf(path: string): { from: string; to: string } | undefined {
   const name = path.replace(/^.*[/\\]/, "").replace(/\.[a-z]{1,5}$/i, "");
   if (name.length > LONGEST) return undefined;
@@ -30,7 +30,7 @@ export function endsOf(path: string): { from: string; to: string } | undefined {
 const isUsual = ({ from, to }: { from: string; to: string }): boolean =>
   /depth|dpt|infra|tof/i.test(from) && /colou?r|rgb/i.test(to) && !/colou?r|rgb/i.test(from);
 
-/** A file's only pose, if it names no frames, with those of the file's name where they are not the usual ones. */
+/** The poses of a file. A single pose without frames takes those of the file's name, except the default from depth to colour. */
 export function withEnds(poses: readonly NamedPose[], path: string): NamedPose[] {
   const [only, ...others] = poses;
   const ends = endsOf(path);

@@ -1,19 +1,17 @@
 /**
- * What a reader of a product's calibration has found so far.
+ * The cameras and poses that a reader of a product's calibration has found so far.
  *
- * A file with several cameras often has one whose lens is not known here. It costs that camera and not the file: it is named in a warning,
- * and only a file of which nothing is left is refused, with the reason of the first.
+ * A camera with an unsupported lens is left out with a warning, and the others of the file are kept. Only a file without any camera or pose
+ * is refused, for the reason of the first that was left out.
  */
 import { BimodalError, badFile } from "../../errors.js";
 import type { NamedCamera, NamedPose } from "../types.js";
 import { type ReaderCode, type ReaderWarning, warning } from "../warnings.js";
 import { type RawCamera, cameraOf } from "./cameras.js";
+import { MOST_FOUND } from "./limits.js";
 import { type Numbers, isNode } from "./numbers.js";
 import { chained, inverseOf, poseOf, rotationOf } from "./poses.js";
 import type { Calibration } from "./tree.js";
-
-/** Cameras and poses of a file, as for the walk over its objects. */
-const MOST_FOUND = 5000;
 
 type Names = Omit<NamedPose, "pose">;
 type Takes = NonNullable<NamedCamera["takes"]>;
@@ -29,7 +27,7 @@ export class Findings implements Calibration {
     this.warnings.push(warning(code, message));
   }
 
-  /** What `read` finds; where it fails, a warning that names what was left out. */
+  /** The result of `read`; where it throws, adds a warning that `what` was left out. */
   #attempt<T>(code: ReaderCode, what: string, read: () => T): T | undefined {
     if (this.cameras.length + this.poses.length > MOST_FOUND)
       throw badFile(`it holds more than ${MOST_FOUND} cameras and poses`);
@@ -43,7 +41,7 @@ export class Findings implements Calibration {
     }
   }
 
-  /** Adds a camera, or a warning why it was left out. */
+  /** Adds a camera; one that cannot be read is left out with a warning. */
   camera(raw: RawCamera, takes?: Takes): NamedCamera | undefined {
     const found = this.#attempt("camera-left-out", `The camera "${raw.name ?? ""}"`, () =>
       cameraOf(raw, this.warnings),
@@ -54,7 +52,7 @@ export class Findings implements Calibration {
     return camera;
   }
 
-  /** Adds the motion P_to = R P_from + t, in metres, or a warning why it was left out. */
+  /** Adds the motion P_to = R P_from + t, in metres; one that cannot be read is left out with a warning. */
   pose(rotation: Numbers, translation: Numbers, names: Names): NamedPose | undefined {
     const called = names.name ?? `from ${names.from} to ${names.to}`;
     const found = this.#attempt("pose-left-out", `The pose ${called}`, () => {
@@ -66,7 +64,7 @@ export class Findings implements Calibration {
     return found;
   }
 
-  /** Puts the way from one frame to another before all others, by a frame that both poses lead into. */
+  /** Puts the pose between the frames of two poses first; both poses lead into the same frame. */
   relate(from: NamedPose | undefined, to: NamedPose | undefined): void {
     if (from?.from === undefined || to?.from === undefined) return;
     this.poses.unshift({
@@ -75,7 +73,7 @@ export class Findings implements Calibration {
     });
   }
 
-  /** Itself, if it holds anything. */
+  /** This, if it holds a camera or a pose; `what` names the format in the error. */
   done(what: string): this {
     if (this.cameras.length + this.poses.length > 0) return this;
     if (this.#reason instanceof BimodalError) throw badFile(`it is ${what}, but ${this.#reason.message}`);
@@ -83,7 +81,7 @@ export class Findings implements Calibration {
   }
 }
 
-/** Nine numbers of three rows, flat or in rows; nothing where there are not as many. */
+/** So many numbers, flat or in rows; undefined where the value has another count. */
 export function flat(value: unknown, count: number): Numbers | undefined {
   if (!Array.isArray(value)) return undefined;
   const values = value.flat(2);
@@ -99,11 +97,5 @@ export function vector(value: unknown): Numbers | undefined {
   return flat(value, 3);
 }
 
-/** A rotation's numbers and a shift of a matrix of 3x4 or 4x4, row by row. */
-export const parted = (m: Numbers): [rotation: Numbers, translation: Numbers] => [
-  [0, 1, 2, 4, 5, 6, 8, 9, 10].map((at) => m[at] ?? NaN),
-  [3, 7, 11].map((at) => m[at] ?? NaN),
-];
-
-/** The rotation of a camera with the axes of OpenGL (y up, z backward) as one with ours (y down, z forward). */
+/** A camera's rotation from OpenGL's axes (y up, z backward) to those of OpenCV (y down, z forward). */
 export const ofOpenGL = (r: Numbers): Numbers => r.map((value, at) => (at % 3 === 0 ? value : -value));

@@ -1,6 +1,6 @@
-/** Poses of frames in one another, as robots' descriptions have them: a tree whose branches are asked for the way between two cameras. */
+/** Poses between frames, as in robot descriptions, and the pose between two frames that a chain of them relates. */
 import type { NamedPose, Pose } from "../types.js";
-import { chained, inverseOf, poseOf } from "./poses.js";
+import { chained, identity, inverseOf, poseOf } from "./poses.js";
 
 const COLOUR = /colou?r|rgb/i;
 const DEPTH = /depth|infra|(?:^|[_/ ])ir(?:[_/ \d]|$)|tof/i;
@@ -8,17 +8,19 @@ const LIDAR = /velodyne|lidar|laser|ouster|livox|hesai|pandar|rslidar|robosense/
 const CAMERA = /cam/i;
 const OPTICAL = /optical/i;
 
-/** ROS's body axes (x forward, y left, z up) of a camera's optical ones (x right, y down, z forward). */
+/** From a camera's optical axes (x right, y down, z forward) into ROS's body axes (x forward, y left, z up). */
 const BODY_OF_OPTICAL = poseOf([0, 0, 1, -1, 0, 0, 0, -1, 0], [0, 0, 0]);
 /**
- * Whether a camera's frame has the axes of a body, by its rotation into one whose z points up: cameras are mounted upright, so that either
- * its own z points up, or its y down.
+ * Whether a camera's frame has body axes, from its rotation into a frame whose z points up. Cameras are mounted upright, so either their own
+ * z points up or their y points down.
  */
 export const hasBodyAxes = ({ rotation: r }: Pose): boolean => (r[8] ?? 0) > -(r[7] ?? 0);
-/** The same camera with optical axes. */
+/** The pose of a camera whose frame had body axes, for optical ones. */
 export const asOptical = (pose: Pose): Pose => chained(pose, BODY_OF_OPTICAL);
+/** The pose for points in body axes, from one for points in optical axes. */
+export const ofBody = (pose: Pose): Pose => chained(pose, inverseOf(BODY_OF_OPTICAL));
 
-/** Chains are no longer than this, and a file whose frames go round in a circle has no root. */
+/** Longest chain of frames; it ends the search where frames form a circle. */
 const MOST_STEPS = 64;
 
 interface Placed {
@@ -26,7 +28,7 @@ interface Placed {
   pose: Pose;
 }
 
-/** Of each frame the way to the root of its tree. */
+/** The pose of each frame in the root of its tree. */
 function places(poses: readonly NamedPose[]): Map<string, Placed> {
   const parents = new Map<string, { to: string; pose: Pose }>();
   for (const { from, to, pose } of poses)
@@ -34,7 +36,7 @@ function places(poses: readonly NamedPose[]): Map<string, Placed> {
   const placed = new Map<string, Placed>();
   const frames = new Set(poses.flatMap(({ from, to }) => [from ?? "", to ?? ""]));
   for (const frame of frames) {
-    let [root, pose] = [frame, poseOf([1, 0, 0, 0, 1, 0, 0, 0, 1], [0, 0, 0])];
+    let [root, pose] = [frame, identity()];
     for (let step = 0; step < MOST_STEPS; step++) {
       const next = parents.get(root);
       if (next === undefined) break;
@@ -46,25 +48,24 @@ function places(poses: readonly NamedPose[]): Map<string, Placed> {
   return placed;
 }
 
-/** The frame that pictures are in: an optical one, or the camera's own where there is none. */
+/** The first optical frame that fits, or else the first one. */
 function best(names: string[], is: (name: string) => boolean): string | undefined {
   const fitting = names.filter(is);
   return fitting.find((name) => OPTICAL.test(name)) ?? fitting[0];
 }
 
 /**
- * The way from the depth camera (or else the LiDAR) to the colour camera (or else the first one), where both are in one tree and no pose
- * relates them as it is. A camera's frame that is no optical one has the body's axes, by ROS's convention: it is turned.
+ * The pose from the depth camera (or else the LiDAR) to the colour camera (or else the first camera), where both are in one tree and no pose
+ * of the file relates them directly. A camera frame without "optical" in its name has body axes by ROS's convention and is turned.
  */
 export function wayBetween(poses: readonly NamedPose[]): { pose: NamedPose; turned: string[] } | undefined {
   const placed = places(poses);
   const names = [...placed.keys()];
   const depth = best(names, (name) => DEPTH.test(name) && !COLOUR.test(name));
-  const lidar = best(names, (name) => LIDAR.test(name) && !CAMERA.test(name));
   const colour =
     best(names, (name) => COLOUR.test(name) && !DEPTH.test(name)) ??
     best(names, (name) => CAMERA.test(name) && !DEPTH.test(name) && !LIDAR.test(name));
-  const from = depth ?? lidar;
+  const from = depth ?? best(names, isLidar);
   if (from === undefined || colour === undefined || from === colour) return undefined;
   const isThere = (a: string, b: string) => poses.some((pose) => pose.from === a && pose.to === b);
   if (isThere(from, colour) || isThere(colour, from)) return undefined;
@@ -76,17 +77,16 @@ export function wayBetween(poses: readonly NamedPose[]): { pose: NamedPose; turn
     turned.push(name);
     return asOptical(pose);
   };
-  // Two frames with the same axes need not be turned to be compared, but a picture's points have the optical ones.
   const pose = chained(inverseOf(optical(colour, b)), optical(from, a));
   return { pose: { name: `${colour} from ${from}`, from, to: colour, pose }, turned };
 }
 
-/** Between frames that names relate there are few steps. */
+/** Longest chain of poses between two frames. */
 const MOST_LINKS = 6;
 
-/** The way from one frame to another by poses that share frames, either way round; nothing where there is none. */
+/** The pose between two frames by the shortest chain of poses or their inverses; undefined where no chain joins them. */
 export function linked(poses: readonly NamedPose[], from: string, to: string): NamedPose | undefined {
-  const reached = new Map<string, Pose>([[from, poseOf([1, 0, 0, 0, 1, 0, 0, 0, 1], [0, 0, 0])]]);
+  const reached = new Map<string, Pose>([[from, identity()]]);
   let edge = [from];
   for (let step = 0; step < MOST_LINKS && edge.length > 0 && !reached.has(to); step++) {
     const next: string[] = [];
@@ -105,5 +105,5 @@ export function linked(poses: readonly NamedPose[], from: string, to: string): N
   return pose && from !== to ? { name: `${to} from ${from}`, from, to, pose } : undefined;
 }
 
-/** Frames of LiDARs by their names. */
+/** Whether a frame is a LiDAR's, by its name. */
 export const isLidar = (name: string): boolean => LIDAR.test(name) && !CAMERA.test(name);

@@ -1,12 +1,12 @@
 /** Members of one object that belong together by their names: "Camera.fx" and "Camera.fy", "cam_fx" and "cam_d0", "rot0" to "rot8". */
 import { type Node, type Numbers, isNode, matrixOf, numberOf } from "./numbers.js";
 
-/** Groups of one object. */
+/** Most groups of one object. */
 const MOST = 300;
-/** So long are lists that cameras and motions consist of. */
+/** Lengths of the lists in cameras and motions. */
 const LENGTHS = new Set([3, 4, 5, 8, 9, 12, 14, 16]);
 
-/** What belongs to a name, by what stands before or behind it. */
+/** The members of a group: those whose names `part` accepts, by the rest of these names. */
 function taken(node: Node, keys: string[], part: (key: string) => string | undefined): Node {
   const group: Node = {};
   for (const key of keys) {
@@ -19,7 +19,7 @@ function taken(node: Node, keys: string[], part: (key: string) => string | undef
 const behind = (start: string) => (key: string) => (key.startsWith(start) ? key.slice(start.length) : undefined);
 const before = (end: string) => (key: string) => (key.endsWith(end) ? key.slice(0, -end.length) : undefined);
 
-/** ORB-SLAM writes "Camera.fx", vikit "cam_fx", others "fx_rgb": the members of each camera, by its name. */
+/** The members of each camera by its name, from "Camera.fx" (ORB-SLAM), "cam_fx" (vikit) or "fx_rgb". */
 export function grouped(node: Node, keys: string[]): Map<string, Node> {
   const groups = new Map<string, Node>();
   for (const key of keys) {
@@ -39,7 +39,7 @@ export function grouped(node: Node, keys: string[]): Map<string, Node> {
   return groups;
 }
 
-/** Numbers under "rot0" to "rot8" as one list "rot", beside the members themselves. */
+/** The object with a list "rot" for its numbers "rot0" to "rot8". */
 export function withLists(node: Node): Node {
   const lists = new Map<string, Map<number, number>>();
   const keys = Object.keys(node);
@@ -55,7 +55,7 @@ export function withLists(node: Node): Node {
   const whole: Record<string, Numbers> = {};
   for (const [stem, list] of lists) {
     const values = Array.from({ length: list.size }, (_, at) => list.get(at));
-    // A lens may have one coefficient alone.
+    // A lens may have a single coefficient.
     const isLength = LENGTHS.has(list.size) || stem === "d";
     const isWhole = isLength && values.every((value) => value !== undefined);
     if (isWhole && !Object.hasOwn(node, stem)) whole[stem] = values as Numbers;

@@ -1,35 +1,26 @@
 /**
- * KITTI's calibrations: raw (calib_cam_to_cam.txt), object, tracking and odometry, and Waymo's and others' in the same form.
+ * KITTI's calibrations: raw (calib_cam_to_cam.txt), object, tracking and odometry, and those of other datasets in the same form.
  *
- * Pictures of all but the raw recordings are rectified: a projection P = K [I | t] takes points of the rectified frame of camera 0, so that
- * points of the LiDAR come into the frame of picture i by K^-1 P_i R0_rect Tr. Depth maps of its benchmarks are in the frame of camera 2.
+ * The images are rectified, except those of raw recordings. A projection P = K [I | t] applies to points of the rectified frame of camera 0,
+ * so K^-1 P_i R0_rect Tr carries points of the LiDAR into the frame of image i. Depth maps of the benchmarks are in the frame of camera 2.
  */
-import { Findings, parted } from "./findings.js";
-import { type Numbers, numberOf } from "./numbers.js";
-import { chained, poseOf, rotationOf } from "./poses.js";
+import { ofMatrix } from "./cameras.js";
+import { Findings } from "./findings.js";
+import { type Numbers, numbersByName } from "./numbers.js";
+import { chained, identity, poseOf, poseOfMatrix, rotationOf } from "./poses.js";
 import type { Pose } from "../types.js";
 
-const MOST = 400;
 /** Rounding of the published digits. */
 const NEAR = 1e-6;
 
 type Lines = Map<string, Numbers>;
 
 /** "P2: 7.2 0 ..", or without the colon. */
-function linesOf(text: string): Lines {
-  const found: Lines = new Map();
-  for (const line of text.split(/\r?\n/)) {
-    const [, key = "", rest = ""] = /^\s*([A-Za-z]\w{0,40}):?[ \t]+(\S.*)$/.exec(line) ?? [];
-    const numbers = rest.trim().split(/\s+/, 20).map(numberOf);
-    if (key === "" || found.size > MOST || !numbers.every((each) => each !== undefined)) continue;
-    found.set(key, numbers);
-  }
-  return found;
-}
+const linesOf = (text: string): Lines => numbersByName(text, /^\s*([A-Za-z]\w{0,40}):?[ \t]+(\S.*)$/);
 
 const KINDS = /^(?:P(?:_rect_)?\d{1,2}|Tr(?:_\w+)?|R0_rect|R_rect(?:_\d\d)?|K_\d\d)$/;
 
-/** Raw recordings: R and T of the LiDAR in camera 0, or of the inertial unit in the LiDAR. */
+/** Whether a text of a raw recording has R and T: of the LiDAR in camera 0, or of the inertial unit in the LiDAR. */
 const isSinglePose = (text: string, lines: Lines): boolean =>
   /^calib_time:/m.test(text) && lines.get("R")?.length === 9 && lines.get("T")?.length === 3;
 
@@ -41,13 +32,13 @@ export const isKitti = (text: string): boolean => {
   return has(/^P(_rect_)?\d{1,2}$/, 12) || (has(/^Tr/, 12) && [...lines.keys()].every((key) => KINDS.test(key)));
 };
 
-/** From the rectified frame of camera 0 into that of a picture; nothing where P is no projection of that kind. */
+/** The pose from the rectified frame of camera 0 to that of an image; undefined where P is not K [I | t]. */
 function baseline(p: Numbers): Pose | undefined {
   const [fx = NaN, skew = NaN, cx = NaN, a = NaN, zero = NaN, fy = NaN, cy = NaN, b = NaN, ...last] = p;
   const isPinhole = [skew, zero, last[0] ?? NaN, last[1] ?? NaN].every((value) => Math.abs(value) < NEAR * fx);
   if (!isPinhole || Math.abs((last[2] ?? NaN) - 1) > NEAR) return undefined;
   const z = last[3] ?? NaN;
-  return poseOf([1, 0, 0, 0, 1, 0, 0, 0, 1], [(a - cx * z) / fx, (b - cy * z) / fy, z]);
+  return poseOf(identity().rotation, [(a - cx * z) / fx, (b - cy * z) / fy, z]);
 }
 
 export function readKitti(text: string): Findings {
@@ -57,13 +48,13 @@ export function readKitti(text: string): Findings {
     const number = /^P(?:_rect_)?(\d{1,2})$/.exec(key)?.[1];
     return number === undefined || p.length !== 12 ? [] : [{ number, p, way: baseline(p) }];
   });
-  // Colour pictures are those of camera 2, and where there is none, of the first.
+  // The colour images are those of camera 2.
   projections.sort((a, b) => Number(Number(b.number) === 2) - Number(Number(a.number) === 2));
   for (const { number, p } of projections) rectified(found, lines, number, p);
   for (const [key, k] of lines) raw(found, lines, key, k);
   if (projections.length > 0) lidar(found, lines, projections);
   else alone(found, lines);
-  return found.done("a calibration of KITTI");
+  return found;
 }
 
 const nameOf = (number: string): string => `image_${number.padStart(/^\d\d$/.test(number) ? 2 : 1, "0")}`;
@@ -73,27 +64,22 @@ function rectified(found: Findings, lines: Lines, number: string, p: Numbers): v
   const [width, height] = lines.get(`S_rect_${number}`) ?? [];
   found.camera(
     {
-      ...{ name: nameOf(number), focal: [p[0] ?? NaN, p[5] ?? NaN], centre: [p[2] ?? NaN, p[6] ?? NaN], skew: p[1] },
-      ...{ width, height },
+      ...{ name: nameOf(number), ...ofMatrix(p, 4), width, height },
     },
     // Depth maps of its benchmarks are registered to camera 2.
     isColour(number) ? "both" : "colour",
   );
 }
 
-/** Of raw recordings that were not rectified. */
+/** The camera of images that were not rectified, with its pose. */
 function raw(found: Findings, lines: Lines, key: string, k: Numbers): void {
   const number = /^K_(\d\d)$/.exec(key)?.[1];
   if (number === undefined || k.length !== 9) return;
   const [width, height] = lines.get(`S_${number}`) ?? [];
   found.camera(
     {
-      ...{
-        name: `${nameOf(number)} (unrectified)`,
-        focal: [k[0] ?? NaN, k[4] ?? NaN],
-        centre: [k[2] ?? NaN, k[5] ?? NaN],
-      },
-      ...{ skew: k[1], distortion: lines.get(`D_${number}`) ?? [], width, height },
+      ...{ name: `${nameOf(number)} (unrectified)`, ...ofMatrix(k) },
+      ...{ distortion: lines.get(`D_${number}`) ?? [], width, height },
     },
     "colour",
   );
@@ -104,18 +90,16 @@ function raw(found: Findings, lines: Lines, key: string, k: Numbers): void {
 
 const poseAt = (lines: Lines, ...keys: string[]): Pose | undefined => {
   const m = keys.map((key) => lines.get(key)).find((values) => values?.length === 12);
-  if (m === undefined) return undefined;
-  const [r, t] = parted(m);
-  return poseOf(rotationOf(r, []), t);
+  return m && poseOfMatrix(m);
 };
 
-/** The LiDAR into the frame of each rectified picture. */
+/** The poses from the LiDAR into the frames of the rectified images. */
 function lidar(found: Findings, lines: Lines, projections: { number: string; way: Pose | undefined }[]): void {
   const velo = poseAt(lines, "Tr_velo_to_cam", "Tr_velo_cam", "Tr_velo_to_cam_0", "Tr");
   const r = lines.get("R0_rect") ?? lines.get("R_rect") ?? lines.get("R_rect_00");
-  const rect = poseOf(r?.length === 9 ? rotationOf(r, found.warnings) : [1, 0, 0, 0, 1, 0, 0, 0, 1], [0, 0, 0]);
+  const rect = r?.length === 9 ? poseOf(rotationOf(r, found.warnings), [0, 0, 0]) : identity();
   for (const { number, way } of projections) {
-    // Converters of other datasets write one pose for each camera, whose projections have no baseline.
+    // Converters from other datasets write a pose for each camera, whose projection has no baseline.
     const own = poseAt(lines, `Tr_velo_to_cam_${number}`) ?? velo;
     if (own === undefined || way === undefined) continue;
     const name = nameOf(number);
@@ -126,7 +110,7 @@ function lidar(found: Findings, lines: Lines, projections: { number: string; way
       pose: chained(way, chained(rect, own)),
     });
   }
-  // Of raw recordings the LiDAR's pose is in a file of its own, and leads into camera 0.
+  // Raw recordings have the LiDAR's pose in a separate file; it leads into camera 0.
   if (velo === undefined)
     for (const { number, way } of projections) {
       const to = nameOf(number);
@@ -136,10 +120,10 @@ function lidar(found: Findings, lines: Lines, projections: { number: string; way
   if (imu) found.poses.push({ name: "velodyne from imu", from: "imu", to: "velodyne", pose: imu });
 }
 
-/** Poses without projections beside them lead into camera 0 before it is rectified. */
+/** Poses in a file without projections lead into camera 0 before rectification. */
 function alone(found: Findings, lines: Lines): void {
   const [r, t] = [lines.get("R"), lines.get("T")];
-  // The file of the LiDAR has two members that the one of the inertial unit lacks.
+  // The LiDAR's file has delta_f and delta_c, the inertial unit's has not.
   const isLidar = lines.has("delta_f") || lines.has("delta_c");
   const [from, to] = isLidar ? ["velodyne", "cam00"] : ["imu", "velodyne"];
   if (r?.length === 9 && t?.length === 3) found.pose(r, t, { name: `${to} from ${from}`, from, to });

@@ -1,20 +1,20 @@
 /**
- * Lenses and sizes that stand beside their cameras, not in them: "rgbDistortion" beside "rgbIntrinsic", a section [image] beside the
- * camera's. Each goes to the one camera that it can belong to, by its label or because there is no other; what is left over is warned of.
+ * Lenses and sizes beside their cameras: "rgbDistortion" beside "rgbIntrinsic", a section [image] beside that of the camera. Each is given
+ * to the only camera that it can belong to, by its label or because there is no other; a warning names the rest.
  */
 import { type ReaderWarning, warning } from "../warnings.js";
-import type { RawCamera } from "./cameras.js";
+import { BROWN_NAMES, type RawCamera } from "./cameras.js";
 import { isLens, member, wordsOf } from "./names.js";
-import { type Node, type Numbers, isNode, matrixOf, numberOf } from "./numbers.js";
+import { type Node, type Numbers, isNode, matrixOf, numberOf, textOf } from "./numbers.js";
 
-/** Where an object stands in its file. */
+/** An object with those around it. */
 export interface Place {
   node: Node;
   parent: Place | undefined;
   depth: number;
 }
 
-/** A camera before it is checked, with where it stands. */
+/** A camera before it is checked, with its object. */
 export interface FoundCamera {
   raw: RawCamera;
   label: string;
@@ -35,25 +35,22 @@ interface Size {
   height: number;
 }
 
-/** Shorter sides than this are of boards and windows of a search, pixels. */
+/** Shortest side of an image, pixels; smaller sizes are those of boards and search windows. */
 const SHORTEST_SIDE = 32;
-const NAMES = ["k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"];
-/** A lens without one of these has no coefficients. */
+/** Names of the list of coefficients of a lens. */
 const LISTS = ["coefficients", "coeffs", "coefs", "params", "parameters", "values", "data", "d", "k"];
 const NOT_OF_IMAGES = /\b(?:board|pattern|square|window|marker|grid|chessboard|tag|sensor|block|crop|roi)\b/;
 
-/** Coefficients that are members, by OpenCV's names and in its order; a fisheye has k1 to k4 alone. */
+/** Coefficients that are members, by OpenCV's names and in its order; a fisheye has only k1 to k4. */
 export function coefficientsOf(node: Node, model: string | undefined): Numbers | undefined {
-  const singles = NAMES.map((key) => numberOf(member(node, key)));
+  const singles = BROWN_NAMES.map((key) => numberOf(member(node, key)));
   if (singles.every((value) => value === undefined)) return undefined;
   const isFisheye = /fisheye|kannala|equi/i.test(model ?? "");
   const used = isFisheye ? [0, 1, 4, 5].map((index) => singles[index]) : singles;
   return used.map((value) => value ?? 0);
 }
 
-const textOf = (value: unknown): string | undefined => (typeof value === "string" && value !== "" ? value : undefined);
-
-/** Radial and tangential coefficients in lists of their own. */
+/** Coefficients in two lists, radial and tangential. */
 function radialOf(node: Node): Numbers | undefined {
   const radial = matrixOf(member(node, "radial", "radialdistortion"))?.values;
   if (radial === undefined || radial.length > 6) return undefined;
@@ -62,7 +59,7 @@ function radialOf(node: Node): Numbers | undefined {
   return [k1, k2, p1, p2, ...more];
 }
 
-/** The coefficients of a lens and its model, where a value is one. */
+/** The coefficients and the model of a lens; undefined where the value is not a lens. */
 function lensOf(value: unknown): Pick<Lens, "distortion" | "model"> | undefined {
   const listed = matrixOf(value)?.values;
   if (listed !== undefined) return listed.length > 1 ? { distortion: listed, model: undefined } : undefined;
@@ -116,7 +113,7 @@ function sizesOf(node: Node, place: Place): Size[] {
   return found.filter((size) => !NOT_OF_IMAGES.test(size.label));
 }
 
-/** Names that speak of a lens. */
+/** Names that suggest a lens. */
 const LENS_LIKE = /distort|dist_?coef|lens_?(?:coef|param)|^kc$|radial|tangential/i;
 
 const isBelow = (place: Place | undefined, top: Place): boolean => {
@@ -124,7 +121,7 @@ const isBelow = (place: Place | undefined, top: Place): boolean => {
   return false;
 };
 
-/** Words that name no camera of several. */
+/** A label without the words that do not distinguish cameras. */
 const plainLabel = (label: string): string =>
   label
     .split(" ")
@@ -134,13 +131,13 @@ const isSame = (a: string, b: string): boolean => plainLabel(a) === plainLabel(b
 
 export class Leftovers {
   readonly #lenses: Lens[] = [];
-  /** What may be a lens by its name, and is not called as any program calls it. */
+  /** Values that may be lenses by their names, which no known program uses. */
   readonly #unknown: Pick<Lens, "key" | "distortion">[] = [];
-  /** Objects that are lenses themselves. */
+  /** Objects that are lenses. */
   readonly #parts = new WeakSet<Node>();
   readonly #sizes: Size[] = [];
 
-  /** Notes what of an object looks like a lens or a size; `used` are members that a camera of it has taken. */
+  /** Collects the members of an object that look like lenses or sizes; `used` are those that its cameras have taken. */
   collect(place: Place, used: ReadonlySet<string>): void {
     const { node } = place;
     for (const key of Object.keys(node)) {
@@ -167,7 +164,7 @@ export class Leftovers {
     }
   }
 
-  /** Gives cameras what they lack, and warns of what none can have. */
+  /** Gives cameras their lenses and sizes, and warns of those that belong to no camera. */
   assign(cameras: FoundCamera[], warnings: ReaderWarning[]): void {
     const unused = this.#lenses.filter((lens) => !this.#giveLens(lens, cameras));
     for (const { key, distortion } of [...unused, ...this.#unknown])
@@ -175,7 +172,7 @@ export class Leftovers {
         warnings.push(
           warning(
             "distortion-unused",
-            `"${key}" looks like the distortion of a lens and was not used: ${cameras.length === 0 ? "the file has no camera" : "nothing says which camera it belongs to"}. Write it into its camera.`,
+            `"${key}" looks like the distortion of a lens and was not used, because ${cameras.length === 0 ? "the file has no camera" : "the file does not give its camera"}. Write it into its camera.`,
             { name: key },
           ),
         );
@@ -198,7 +195,7 @@ export class Leftovers {
     const give = ({ width, height }: Size, some: FoundCamera[]) => {
       for (const { raw } of some.filter(isBare)) Object.assign(raw, { width, height });
     };
-    // The innermost first, so that an outer size is for cameras that have none nearer.
+    // The innermost come first, so that cameras take the nearest size.
     const inner = [...this.#sizes].reverse();
     for (const size of inner)
       give(
@@ -221,7 +218,7 @@ export class Leftovers {
     warnings.push(
       warning(
         "size-unused",
-        `The file names the size ${sizes.join(", ")}, and nothing says which camera has it. Write width and height into each camera.`,
+        `The file has the size ${sizes.join(", ")}, but does not give its camera. Write width and height into each camera.`,
         { sizes: distinct.map(({ width, height }) => [width, height]) },
       ),
     );

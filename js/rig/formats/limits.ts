@@ -7,6 +7,8 @@ export const MOST_SIDE = 4096;
 export const MOST_BYTES = 64 * 2 ** 20;
 /** What is compressed may be longer than twice what it was made of by so many bytes, and no more. */
 export const OVERHEAD = 1024;
+/** Cameras and poses of a file. */
+export const MOST_FOUND = 5000;
 /** Characters of a text that holds cameras or poses; a trajectory of ten thousand poses has a million. */
 export const MOST_TEXT = 4 * 2 ** 20;
 

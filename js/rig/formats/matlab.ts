@@ -1,11 +1,13 @@
 /**
  * MATLAB's camera and stereo parameters as JSON (jsonencode(toStruct(params))), and the scripts that Bouguet's toolbox saves.
  *
- * MATLAB's pixels count from 1, its matrices multiply row vectors, so that they are the transposed of ours, and its sizes are rows by
- * columns. Bouguet's pixels count from 0; the poses of boards are no extrinsics.
+ * MATLAB counts pixels from 1, multiplies row vectors by its matrices, so that these are transposed, and gives sizes as rows by columns.
+ * Bouguet counts pixels from 0. Poses of calibration boards are not extrinsics.
  */
 import { badFile } from "../../errors.js";
+import { ofMatrix } from "./cameras.js";
 import { Findings, flat } from "./findings.js";
+import { lengthOf } from "./names.js";
 import { isNode, type Node, type Numbers, numberOf, transposed } from "./numbers.js";
 import { ofVector } from "./poses.js";
 
@@ -13,22 +15,15 @@ const listOf = (value: unknown): Numbers => {
   const values = Array.isArray(value) ? value.flat(2) : [value];
   return values.every((each) => typeof each === "number") ? values : [];
 };
-const UNITS: Record<string, number> = {
-  m: 1,
-  mm: 1e-3,
-  cm: 1e-2,
-  millimeters: 1e-3,
-  centimeters: 1e-2,
-  meters: 1,
-  inches: 0.0254,
-};
+/** MATLAB's default unit, metres. */
+const MILLIMETRE = 1e-3;
 
 const isCamera = (value: unknown): value is Node =>
   isNode(value) &&
   "RadialDistortion" in value &&
   ("IntrinsicMatrix" in value || "FocalLength" in value || "K" in value);
 const isStereo = (root: Node): boolean => isCamera(root.CameraParameters1) && isCamera(root.CameraParameters2);
-/** Of jsonencode, with or without a variable's name around it. */
+/** The parameters, with or without an object around them that has the variable's name. */
 const inner = (root: Node): Node => {
   const values = Object.values(root);
   const [only] = values;
@@ -41,14 +36,13 @@ export const isMatlab = (root: Node): boolean =>
 function camera(found: Findings, node: Node, name: string): void {
   const matrix = flat(node.IntrinsicMatrix, 9);
   const k = flat(node.K, 9) ?? (matrix && transposed(matrix, 3));
-  const focal = k ? [k[0] ?? NaN, k[4] ?? NaN] : listOf(node.FocalLength);
-  const centre = k ? [k[2] ?? NaN, k[5] ?? NaN] : listOf(node.PrincipalPoint);
+  const own = k ? ofMatrix(k) : { focal: listOf(node.FocalLength), centre: listOf(node.PrincipalPoint) };
   const [k1 = 0, k2 = 0, k3 = 0] = listOf(node.RadialDistortion);
   const [p1 = 0, p2 = 0] = listOf(node.TangentialDistortion);
   const [height, width] = listOf(node.ImageSize);
   found.camera({
-    ...{ name, focal, centre: centre.map((value) => value - 1), skew: k?.[1], distortion: [k1, k2, p1, p2, k3] },
-    ...{ width, height },
+    ...{ ...own, name, centre: own.centre.map((value) => value - 1) },
+    ...{ distortion: [k1, k2, p1, p2, k3], width, height },
   });
 }
 
@@ -57,16 +51,16 @@ export function readMatlab(whole: Node): Findings {
   const root = inner(whole);
   if ("MappingCoefficients" in root)
     throw badFile(
-      "it is a fisheye of MATLAB (MappingCoefficients, Scaramuzza's model), which is not known here; undistort the pictures by undistortFisheyeImage and give their intrinsics",
+      "it is a fisheye of MATLAB (MappingCoefficients, Scaramuzza's model), which is not supported; undistort the images by undistortFisheyeImage and give their intrinsics",
     );
   if (!isStereo(root)) {
     camera(found, root, "camera");
-    return found.done("MATLAB's camera parameters");
+    return found;
   }
   const first = root.CameraParameters1 as Node;
   camera(found, first, "1");
   camera(found, root.CameraParameters2 as Node, "2");
-  const unit = UNITS[String(first.WorldUnits ?? root.WorldUnits ?? "mm").toLowerCase()] ?? 1e-3;
+  const unit = lengthOf(String(first.WorldUnits ?? root.WorldUnits ?? "mm")) ?? MILLIMETRE;
   const names = { name: "2 from 1", from: "1", to: "2" };
   const newer = isNode(root.PoseCamera2) ? root.PoseCamera2 : {};
   const rows = flat(root.RotationOfCamera2, 9);
@@ -79,7 +73,7 @@ export function readMatlab(whole: Node): Findings {
       t.map((value) => value * unit),
       names,
     );
-  return found.done("MATLAB's stereo parameters");
+  return found;
 }
 
 const ENTRY = /^[ \t]*([A-Za-z]\w{0,40})[ \t]*=[ \t]*(?:\[([^\]%]{0,600})\]|([^;[\n%]{1,60}))[ \t]*;/gm;
@@ -114,7 +108,7 @@ export function readBouguet(text: string): Findings {
   }
   const [om, t] = [entries.get("om"), entries.get("T")];
   if (om?.length === 3 && t?.length === 3) {
-    // The unit is that of the board's squares: millimetres in the toolbox's words, metres where nobody would have so few.
+    // The toolbox asks for the board's squares in millimetres; a baseline of less than two millimetres is one in metres.
     const unit = Math.hypot(...t) > 2 ? 1e-3 : 1;
     found.pose(
       ofVector(om),
@@ -123,10 +117,13 @@ export function readBouguet(text: string): Findings {
     );
     found.warn(
       "translation-unit-guessed",
-      `The translation was guessed to be in ${unit === 1 ? "metres" : "millimetres"}, the unit of the board's squares.`,
+      `The translation has the unit of the board's squares, which was guessed to be ${unit === 1 ? "metres" : "millimetres"}.`,
     );
   }
   if ([...entries.keys()].some((key) => /^(?:omc|Tc)_\d+$/.test(key)))
-    found.warn("pose-left-out", "The poses of the board in its pictures were left out: they relate no two cameras.");
-  return found.done("a result of Bouguet's calibration toolbox");
+    found.warn(
+      "pose-left-out",
+      "The poses of the calibration board are not extrinsics between two cameras and were left out.",
+    );
+  return found;
 }

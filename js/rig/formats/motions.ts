@@ -1,4 +1,4 @@
-/** The motions that are members of one object: rotations beside translations, matrices, and what looks like one and is not read. */
+/** The motions among the members of an object: rotations with their translations, and matrices. A warning names those that were not read. */
 import { badFile } from "../../errors.js";
 import type { NamedCamera, NamedPose } from "../types.js";
 import { type ReaderWarning, warning } from "../warnings.js";
@@ -17,17 +17,28 @@ import {
   wordsOf,
 } from "./names.js";
 import { type Matrix, type Node, type Numbers, isNode, matrixOf, numberOf, transposed } from "./numbers.js";
-import { chained, inverseOf, isLastRow, motion, motionOfMatrix, ofQuaternion, poseOf } from "./poses.js";
-import { degreesOf, numbersAsRotation, ofFour, ofNine, ofThree, orderWarning } from "./turns.js";
+import {
+  chained,
+  degreesOf,
+  inverseOf,
+  isLastRow,
+  isRotation,
+  motion,
+  motionOfMatrix,
+  ofQuaternion,
+  parted,
+  poseOf,
+} from "./poses.js";
+import { type Turn, numbersAsRotation, ofFour, ofNine, ofThree, orderWarning } from "./turns.js";
 
-/** What the text of a file and the objects around a motion say of it. */
+/** The frames and the units that the objects around a motion specify. */
 export interface Context extends Frames {
   /** Metres per unit. */
   unit?: number;
   angle?: "degrees" | "radians";
 }
 
-/** Signs in the text of a whole file. */
+/** Signs in the whole text of a file. */
 export interface Signs {
   isRealSense: boolean;
   order: "wxyz" | "xyzw" | undefined;
@@ -49,41 +60,28 @@ export function signsOf(text: string): Signs {
   };
 }
 
-/** Unused poses that are named one by one. */
+/** Most unused poses that warnings name. */
 const FEW = 4;
-/** Inverse motions of one file agree within this: degrees and metres. */
+/** Tolerances within which two motions of a file are inverse, degrees and metres. */
 const AGREES = { degrees: 0.02, metres: 1e-3 };
-/** A rotation block off by more than this is none. */
-const ROTATION_TOLERANCE = 1e-2;
-/** Names of transformations; a matrix of another name that is no motion is something else. */
+/** How far the length of a quaternion in a list of seven numbers may be from 1. */
+const QUATERNION_TOLERANCE = 1e-2;
+/** Names of transforms. A matrix by another name has to be a motion by its numbers. */
 const TRANSFORM = /^T_|(?:_to_|_from_|2)[a-z]|transform|extrinsic|pose/i;
-/** Lists of what was seen of boards and the like. */
+/** Names of lists of poses, such as those of a calibration board. */
 const SERIES =
   /^(?:rvecs|tvecs|rotations|translations|poses|extrinsics|transforms|rotation vectors|translation vectors)$/;
 
 const at = (values: Numbers, index: number): number => values[index] ?? NaN;
 
-/** Whether nine numbers are a rotation, to the digits of a file. */
-function isRotation(r: Numbers): boolean {
-  if (r.length !== 9) return false;
-  let off = 0;
-  for (let i = 0; i < 3; i++)
-    for (let j = i; j < 3; j++) {
-      const dot = [0, 1, 2].reduce((sum, k) => sum + at(r, 3 * i + k) * at(r, 3 * j + k), 0);
-      off = Math.max(off, Math.abs(dot - (i === j ? 1 : 0)));
-    }
-  return off <= ROTATION_TOLERANCE;
-}
-const block = (m: Numbers): Numbers => [0, 1, 2, 4, 5, 6, 8, 9, 10].map((index) => at(m, index));
-
-/** A list or matrix, or an object of members by these names. */
+/** The numbers of a list, a matrix, or an object with these members. */
 function parts(value: unknown, names: string[]): Matrix | undefined {
   if (!isNode(value) || value.data !== undefined) return matrixOf(value);
   const values = names.map((name) => numberOf(member(value, name)));
   return values.every((each) => each !== undefined) ? { values } : undefined;
 }
 
-/** Units that members of an object say for all beside them. */
+/** The context with the units that members of an object specify for the others. */
 export function contextOf(node: Node, frames: Context): Context {
   const said = member(node, "unit", "units", "lengthunit", "lengthunits", "translationunit", "translationunits");
   const turned = member(node, "angleunit", "angleunits", "rotationunit", "rotationunits", "unit", "units");
@@ -98,10 +96,10 @@ export function contextOf(node: Node, frames: Context): Context {
 
 export class Motions {
   readonly poses: NamedPose[] = [];
-  /** Whose rotations may stand column by column: nothing says which. */
-  readonly #open = new Map<NamedPose, string>();
+  /** Poses with rotations whose order of rows and columns was assumed. */
+  readonly #open = new Map<NamedPose, "rows" | "columns">();
   readonly #unused: string[] = [];
-  /** Poses that a format defines as those in a world. */
+  /** Poses that lead into the world by the definition of a format. */
   readonly #defined = new Set<NamedPose>();
   readonly #signs: Signs;
   readonly #warnings: ReaderWarning[];
@@ -111,7 +109,7 @@ export class Motions {
     this.#warnings = warnings;
   }
 
-  /** Adds the motions of an object; `isCamera`: cameras of it have rotations and projections that rectify. */
+  /** Adds the motions of an object; with `isCamera` it has a camera, whose rotation and projection are those of rectification. */
   read(node: Node, parent: string, context: Context, isCamera: boolean): void {
     const used = new Set<string>();
     for (const key of Object.keys(node)) {
@@ -134,7 +132,7 @@ export class Motions {
     return found;
   }
 
-  /** A quaternion or angles whose numbers are members, beside x, y and z or a translation. */
+  /** Adds the motion of an object whose members are x, y, z or a translation, and the numbers of a quaternion or angles. */
   #members(node: Node, parent: string, context: Context): void {
     const numbers = (...names: string[][]) => names.map((each) => numberOf(member(node, ...each)));
     const isWhole = (values: (number | undefined)[]): values is Numbers => values.every((value) => value !== undefined);
@@ -171,14 +169,14 @@ export class Motions {
     return motion(rotation, metres, names, this.#warnings, unit === undefined && !isOfWorld(names));
   }
 
-  /** Whether the rotation under this key and its translation are a motion. */
+  /** Adds the motion of a rotation and its translation; false where they are not one. */
   #pair(node: Node, key: string, name: MotionName, parent: string, context: Context): boolean {
     const other = translationOf(node, name.label);
     if (other === undefined) return false;
     const r = this.#rotationParts(node[key]);
     const t = parts(other.value, ["x", "y", "z"]);
     if (r === undefined || t === undefined) return false;
-    // Single letters are also those of projections and of disparity.
+    // Projections and disparity matrices have names of a single letter, too.
     if (/^[qp]$/i.test(key) && r.values.length !== 4) return false;
     if (/^p/i.test(other.key) && t.values.length !== 3) return false;
     if (t.values.length !== 3) throw badFile(`its ${other.key} has ${t.values.length} numbers, not three`);
@@ -188,18 +186,18 @@ export class Motions {
     const isNamedAsRealSense = key === "rotation" && other.key === "translation";
     const angle = name.angle ?? context.angle;
     const said: Attributes = { ...name, ...r.said, ...(angle !== undefined && { angle }) };
-    const { rotation, isOrderOpen, isByColumns } = this.#turn(r, said, key, {
+    const { rotation, assumed } = this.#turn(r, said, key, {
       isNamedAsRealSense,
-      parent,
+      isAtRoot: parent === "",
       isOfWorld: isOfWorld(names),
     });
     const unit = other.unit ?? name.unit ?? context.unit;
     const found = this.#add(this.#motion(rotation, t.values, names, unit));
-    if (isOrderOpen) this.#open.set(found, isByColumns ? "columns" : "rows");
+    if (assumed !== undefined) this.#open.set(found, assumed);
     return true;
   }
 
-  /** The numbers of a rotation, and what the names of its members say of them. */
+  /** The numbers of a rotation, with what the names of its members specify. */
   #rotationParts(value: unknown): (Matrix & { said: Attributes; isMatrix: boolean }) | undefined {
     const isMatrix = isNode(value) && value.data !== undefined;
     const four = parts(value, ["x", "y", "z", "w"]) ?? parts(value, ["qx", "qy", "qz", "qw"]);
@@ -214,32 +212,25 @@ export class Motions {
     { values, rows, isMatrix }: Matrix & { isMatrix: boolean },
     said: Attributes,
     key: string,
-    around: { isNamedAsRealSense: boolean; parent: string; isOfWorld: boolean },
-  ): { rotation: Numbers; isOrderOpen?: boolean; isByColumns: boolean } {
-    const { isNamedAsRealSense, parent } = around;
-    // Nobody checks where a camera stood.
+    around: { isNamedAsRealSense: boolean; isAtRoot: boolean; isOfWorld: boolean },
+  ): Turn {
+    // Poses of a camera in the world are not used, so that their readings need no warnings.
     const warnings = around.isOfWorld ? [] : this.#warnings;
     const kind = numbersAsRotation(values, key);
     if (kind === "quaternion") {
       const order = said.order ?? this.#signs.order;
-      const rotation = ofFour(values, { ...said, ...(order !== undefined && { order }) }, key, warnings);
-      return { rotation, isByColumns: false };
+      return { rotation: ofFour(values, { ...said, ...(order !== undefined && { order }) }, key, warnings) };
     }
     if (kind === "three") {
-      // OpenCV's matrices of three numbers are those of Rodrigues.
+      // A matrix of three numbers is a rotation vector of OpenCV.
       const as: Attributes = isMatrix ? { ...said, kind: said.kind ?? "vector" } : said;
-      return { rotation: ofThree(values, as, key, warnings), isByColumns: false };
+      return { rotation: ofThree(values, as, key, warnings) };
     }
-    // A message of realsense-ros has these two members and no name around them.
-    const isMessage = parent === "" && rows === undefined;
-    const layout = { rows, isMatrix, isNamedAsRealSense, isRealSense: this.#signs.isRealSense };
-    const turn = ofNine(values, layout);
-    if (isMessage && isNamedAsRealSense && !this.#signs.isRealSense)
-      return { rotation: transposed(values, 3), isOrderOpen: turn.isOrderOpen === true, isByColumns: true };
-    return { ...turn, isByColumns: false };
+    const { isNamedAsRealSense, isAtRoot } = around;
+    return ofNine(values, { rows, isMatrix, isNamedAsRealSense, isAtRoot, isRealSense: this.#signs.isRealSense });
   }
 
-  /** Whether the matrix under this key is a motion. */
+  /** Adds the motion of a matrix; false where it is not one. */
   #matrix(node: Node, key: string, parent: string, context: Context): boolean {
     if (isNoMotion(key) !== undefined) return false;
     const matrix = matrixOf(node[key]);
@@ -258,7 +249,7 @@ export class Motions {
       (isOpen3D ||
         (!isLastRow(matrix.values.slice(12)) && isLastRow([3, 7, 11, 15].map((index) => at(matrix.values, index)))));
     const values = byColumns ? transposed(matrix.values, 4) : matrix.values;
-    if (!TRANSFORM.test(key) && kalibr(key, parent) === undefined && !isRotation(block(values))) return false;
+    if (!TRANSFORM.test(key) && kalibr(key, parent) === undefined && !isRotation(parted(values)[0])) return false;
     const metres =
       context.unit === undefined
         ? values
@@ -270,10 +261,10 @@ export class Motions {
     return true;
   }
 
-  /** A translation and a quaternion in one list. */
+  /** Adds the motion of a list with a translation and a quaternion. */
   #seven(values: Numbers, key: string, context: Context): boolean {
     const quaternion = values.slice(3);
-    if (!TRANSFORM.test(key) || Math.abs(Math.hypot(...quaternion) - 1) > ROTATION_TOLERANCE) return false;
+    if (!TRANSFORM.test(key) || Math.abs(Math.hypot(...quaternion) - 1) > QUATERNION_TOLERANCE) return false;
     const names = named(key, worldFrames(key) ?? context);
     const order = this.#signs.order;
     const rotation = ofFour(quaternion, order === undefined ? {} : { order }, key, this.#warnings);
@@ -281,34 +272,33 @@ export class Motions {
     return true;
   }
 
-  /** Twelve numbers in a row: three rows of four, or a rotation before its translation. */
+  /** Adds the motion of a list of twelve numbers: three rows of four, or a rotation and a translation. */
   #twelve(values: Numbers, key: string, context: Context): boolean {
     const names = named(key, worldFrames(key) ?? context);
-    if (isRotation(block(values))) {
-      const shift = [3, 7, 11].map((index) => at(values, index));
-      this.#add(this.#motion(block(values), shift, names, context.unit));
-    } else if (isRotation(values.slice(0, 9))) {
-      // As librealsense keeps its extrinsics.
+    const [block, shift] = parted(values);
+    if (isRotation(block)) this.#add(this.#motion(block, shift, names, context.unit));
+    else if (isRotation(values.slice(0, 9))) {
+      // This is the layout of librealsense's extrinsics.
       const rotation = transposed(values.slice(0, 9), 3);
       this.#open.set(this.#add(this.#motion(rotation, values.slice(9), names, context.unit)), "columns");
     } else return false;
     return true;
   }
 
-  /** What only the whole file tells: rotations by their inverses, frames by what else it names, and the warnings. */
+  /** Resolves what depends on the whole file: the order of rotations, the frames, and the warnings. */
   finish(cameras: readonly NamedCamera[], own: readonly NamedPose[]): void {
     this.#dropReference(cameras);
-    // Where several cameras have a pose each, these relate them to a world and not to each other.
+    // Where several cameras have one pose each, the poses relate them to the world.
     const each = own.filter((pose) => this.poses.includes(pose));
     if (each.length > 1)
       for (const pose of each)
         if (pose.from === undefined && pose.to === undefined) Object.assign(pose, { from: "world", to: "camera" });
     for (const pose of this.#open.keys()) this.#checkOrder(pose);
-    for (const [pose, order] of this.#open) this.#warnings.push(orderWarning(pose.name ?? "", order === "columns"));
+    for (const [pose, order] of this.#open) this.#warnings.push(orderWarning(pose.name ?? "", order));
     for (const pose of this.poses) this.#nameExtrinsic(pose);
-    // ARKit's transforms are those of the camera in its world.
+    // ARKit's transforms are poses of the camera in the world.
     if (this.#signs.isARKit) this.placeInWorld(0);
-    // So that nobody takes them for extrinsics, they all lead into the world.
+    // All poses of the world lead into it, so that they are not mistaken for extrinsics.
     for (const pose of this.poses)
       if (pose.from === "world" && pose.to !== undefined && !this.#defined.has(pose))
         Object.assign(pose, { from: pose.to, to: "world", pose: inverseOf(pose.pose) });
@@ -318,7 +308,7 @@ export class Motions {
       this.#warnings.push(
         warning(
           "camera-to-world",
-          `"${first.name ?? "its pose"}"${ofWorld.length > 1 ? ` and ${ofWorld.length - 1} more say` : " says"} where the camera stood in the world (camera to world): no pose between two cameras, and not taken for one.`,
+          `"${first.name ?? "its pose"}"${ofWorld.length > 1 ? ` and ${ofWorld.length - 1} more are poses` : " is a pose"} of the camera in the world (camera to world), which ${ofWorld.length > 1 ? "were" : "was"} not used as extrinsics between two cameras.`,
           { poses: ofWorld.length },
         ),
       );
@@ -326,13 +316,13 @@ export class Motions {
       this.#warnings.push(warning("pose-left-out", `"${key}" looks like a pose and was not used.`, { name: key }));
   }
 
-  /** Poses from this one on that say no frames are where a camera stood. */
+  /** Makes poses of the camera in the world of those without frames, from this index on. */
   placeInWorld(first: number): void {
     for (const pose of this.poses.slice(first))
       if (pose.from === undefined && pose.to === undefined) Object.assign(pose, { from: "camera", to: "world" });
   }
 
-  /** The identity under a camera's name says that all others are related to this one: it relates no two cameras. */
+  /** Drops the identity under a camera's name, which only marks that camera as the reference of the others. */
   #dropReference(cameras: readonly NamedCamera[]): void {
     const isReference = ({ name, from, to, pose }: NamedPose) =>
       from === undefined &&
@@ -346,7 +336,7 @@ export class Motions {
     this.poses.splice(0, this.poses.length, ...kept);
   }
 
-  /** Where the way back is in the file, too, the two have to be inverse: rows or columns then follow. */
+  /** Determines rows or columns where the file has the inverse motion, too. */
   #checkOrder(pose: NamedPose): void {
     const other = this.poses.find(({ from, to }) => from !== undefined && from === pose.to && to === pose.from);
     if (other === undefined || !this.#open.has(other)) return;
@@ -358,7 +348,7 @@ export class Motions {
     this.#open.delete(other);
   }
 
-  /** FAST-LIO's "extrinsic_R" leads from the LiDAR, VINS's "extrinsicRotation" from the camera, both into the inertial unit. */
+  /** Names the frames of FAST-LIO's "extrinsic_R", from the LiDAR, and VINS's "extrinsicRotation", from the camera, into the inertial unit. */
   #nameExtrinsic(pose: NamedPose): void {
     if (pose.from !== undefined || pose.to !== undefined || !this.#signs.hasImu) return;
     if (!/^extrinsic|^extrin/i.test(pose.name ?? "")) return;
@@ -369,7 +359,7 @@ export class Motions {
 const agrees = ({ rotation, translation }: NamedPose["pose"]): boolean =>
   degreesOf(rotation) < AGREES.degrees && Math.hypot(...translation) < AGREES.metres;
 
-/** Kalibr's names, where cn is the camera that the matrix stands in, cnm1 the one before. */
+/** The frames of Kalibr's names, in which cn is the camera of the matrix and cnm1 the one before. */
 function kalibr(key: string, parent: string): PoseNames | undefined {
   const number = /^cam(\d+)$/.exec(parent)?.[1];
   if (number === undefined) return undefined;
@@ -388,9 +378,9 @@ function isPoseLike(key: string, value: unknown, rectifies: boolean): boolean {
   if (/rect|essential|fundamental|homography/.test(words) || isNoMotion(key) !== undefined) return false;
   const values = matrixOf(value)?.values;
   if (values === undefined) return false;
-  if (values.length === 16 || values.length === 12) return isRotation(block(values));
+  if (values.length === 16 || values.length === 12) return isRotation(parted(values)[0]);
   if ((values.length === 6 || values.length === 7) && TRANSFORM.test(key)) return true;
-  // A camera's R rectifies, and so does the identity under any name.
+  // An identity in a camera is that of rectification, whatever its name.
   const isIdentity = values.length === 9 && values.every((each, index) => each === (index % 4 === 0 ? 1 : 0));
   if (rectifies && isIdentity) return false;
   if (rotationName(key) !== undefined && !/^[qr]\d*$/i.test(key))

@@ -1,13 +1,13 @@
 /**
- * What members of a file are called: names taken apart into words, and the phrases that say what a member is.
+ * Names of members: their words, and the phrases that identify intrinsics, lenses, rotations and translations.
  *
- * Names are compared word by word, "cameraMatrix1", "camera_matrix_1" and "CAMERA-MATRIX 1" being the same; what is left of a name beside
- * the words of a phrase is the label of the camera or of the motion.
+ * Names are compared word by word, so that "cameraMatrix1", "camera_matrix_1" and "CAMERA-MATRIX 1" are the same. The words of a name that
+ * are not those of its phrase are the label of the camera or of the motion.
  */
 
-/** Letters of a name that means anything here. */
+/** Most letters of a name that is considered. */
 const LONGEST_NAME = 80;
-/** Names that are kept with their words. */
+/** Most names whose results are cached. */
 const MOST_KEPT = 5000;
 
 const INTRINSICS = [
@@ -82,7 +82,7 @@ const TRANSLATION = [
   ["location"],
   ["p"],
 ];
-/** Matrices of 3x4 and 4x4 that are no motions: projections, and disparity to depth. */
+/** Matrices of 3x4 and 4x4 that are not motions: projections, and disparity to depth. */
 const NO_MOTION = [
   ["p"],
   ["q"],
@@ -104,7 +104,7 @@ export function wordsOf(name: string): string[] {
     .filter((word) => word !== "");
 }
 
-/** Names come again and again: what `of` says of one is kept, for as many names as a file may have. */
+/** The function `of` with a cache, because the same names are looked up many times. */
 function remembered<T>(of: (name: string) => T): (name: string) => T {
   const known = new Map<string, T>();
   return (name) => {
@@ -117,7 +117,7 @@ function remembered<T>(of: (name: string) => T): (name: string) => T {
   };
 }
 
-/** What is left of some words without one of some phrases at their beginning or end; nothing where they have none. */
+/** The words without the first phrase that they begin or end with; undefined where there is no such phrase. */
 function without(words: string[], phrases: string[][]): string | undefined {
   for (const phrase of phrases) {
     const is = (some: string[]) => some.length === phrase.length && some.every((word, at) => word === phrase[at]);
@@ -135,11 +135,11 @@ export const isNoMotion = leftover(NO_MOTION);
 export const isLens = leftover(LENS);
 export const lensNames = LENS.map((phrase) => leftover([phrase]));
 
-/** What the words of a name say of the numbers under it. */
+/** What the words of a name specify about its numbers. */
 export interface Attributes {
-  /** Where a quaternion's w stands. */
+  /** The order of a quaternion. */
   order?: "wxyz" | "xyzw";
-  /** Three numbers of a rotation are angles about axes, or a vector. */
+  /** Whether the three numbers of a rotation are Euler angles or a rotation vector. */
   kind?: "euler" | "vector";
   angle?: "degrees" | "radians";
   /** Metres per unit. */
@@ -149,7 +149,7 @@ export interface Attributes {
 const LENGTHS: Record<string, number> = {
   ...{ mm: 1e-3, millimeter: 1e-3, millimeters: 1e-3, millimetre: 1e-3, millimetres: 1e-3 },
   ...{ cm: 1e-2, centimeter: 1e-2, centimeters: 1e-2, centimetre: 1e-2, centimetres: 1e-2 },
-  ...{ meter: 1, meters: 1, metre: 1, metres: 1 },
+  ...{ meter: 1, meters: 1, metre: 1, metres: 1, inch: 0.0254, inches: 0.0254 },
 };
 const ATTRIBUTES: Record<string, Attributes> = {
   ...{ wxyz: { order: "wxyz" }, xyzw: { order: "xyzw" } },
@@ -167,27 +167,27 @@ const ATTRIBUTES: Record<string, Attributes> = {
   },
   ...{ euler: { kind: "euler" }, rpy: { kind: "euler" }, angles: {} },
 };
-/** Names of rotations that say what their three numbers are. */
+/** Words for rotation vectors. */
 const VECTORS = /^(?:rvec|rotvec|rodrigues|axis)$/;
 
-/** Metres per unit that a word like "mm" says. */
+/** Metres per unit of a word like "mm". */
 export const lengthOf = (word: string): number | undefined => {
   const name = word.trim().toLowerCase();
   if (name === "m") return 1;
   return Object.hasOwn(LENGTHS, name) ? LENGTHS[name] : undefined;
 };
-/** Degrees or radians, where a word says one of them. */
+/** The unit of angles that a word begins with. */
 export const angleOf = (word: string): "degrees" | "radians" | undefined =>
   /^deg/i.test(word.trim()) ? "degrees" : /^rad/i.test(word.trim()) ? "radians" : undefined;
 
-/** A name of a rotation or of a translation: its label, and what else its words say. */
+/** The name of a rotation or of a translation: its label, and what its other words specify. */
 export interface MotionName extends Attributes {
   label: string;
 }
 
-/** Frames by one letter each, as robotics papers name them: "Rcl" turns points of the LiDAR into the camera. */
+/** Frames of one letter each, as in robotics papers: "Rcl" is the rotation from the LiDAR to the camera. */
 const LETTERED = /^([RrTtPp])_?(?:([a-z])_?([a-z])|([A-Z])_?([A-Z]))$/;
-/** .. and by capitals, as OKVIS and EuRoC write them. */
+/** Frames in capitals, as in OKVIS and EuRoC. */
 const CAPITALS: Record<string, string> = {
   ...{ B: "body", S: "sensor", C: "camera" },
   ...{ W: "world", G: "world", L: "lidar", I: "imu" },
@@ -207,7 +207,7 @@ function motionName(name: string, phrases: string[][], letters: string): MotionN
   const frames = letters.includes(name[0] ?? "") ? letteredFrames(name) : undefined;
   if (frames !== undefined) return { label: `${frames.from} to ${frames.to}` };
   const words = wordsOf(name);
-  const isSaid = (word: string) => Object.hasOwn(ATTRIBUTES, word) || Object.hasOwn(LENGTHS, word);
+  const isAttribute = (word: string) => Object.hasOwn(ATTRIBUTES, word) || Object.hasOwn(LENGTHS, word);
   const said: Attributes = {};
   for (const word of words) {
     if (Object.hasOwn(ATTRIBUTES, word)) Object.assign(said, ATTRIBUTES[word]);
@@ -216,7 +216,7 @@ function motionName(name: string, phrases: string[][], letters: string): MotionN
   }
   if (words.join(" ").includes("rotation vector")) said.kind ??= "vector";
   if (words.includes("qvec")) said.order ??= "wxyz";
-  const rest = words.filter((word) => !isSaid(word));
+  const rest = words.filter((word) => !isAttribute(word));
   if (phrases !== ROTATION && rest.length > 1 && rest.at(-1) === "m") {
     rest.pop();
     said.unit ??= 1;
@@ -230,7 +230,7 @@ function motionName(name: string, phrases: string[][], letters: string): MotionN
 export const rotationName = remembered((name) => motionName(name, ROTATION, "Rr"));
 const translationNames = TRANSLATION.map((phrase) => remembered((name) => motionName(name, [phrase], "TtPp")));
 
-/** The member that translates where the rotation with this label turns. */
+/** The translation that belongs to the rotation with this label. */
 export function translationOf(
   node: Readonly<Record<string, unknown>>,
   label: string,
@@ -242,7 +242,7 @@ export function translationOf(
     }
   return undefined;
 }
-/** Whether a name is one of translations. */
+/** Whether a name is that of a translation. */
 export const isTranslation = (name: string): boolean => translationNames.some((named) => named(name) !== undefined);
 
 export const bare = remembered((name) =>
@@ -255,7 +255,7 @@ export function member(node: Readonly<Record<string, unknown>>, ...names: string
   return undefined;
 }
 
-/** The member whose name is one of some phrases and this label. */
+/** The member whose name consists of one of these phrases and this label. */
 export function labelled(
   node: Readonly<Record<string, unknown>>,
   names: ((name: string) => string | undefined)[],

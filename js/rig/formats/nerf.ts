@@ -1,18 +1,17 @@
 /**
- * `transforms.json` of nerfstudio, instant-ngp and Blender's synthetic scenes: one camera, or one of each frame, and where it stood. Those
- * poses lead from the camera into the world and are no extrinsics; they have OpenGL's axes (y up, z backward) and are turned into ours.
+ * `transforms.json` of nerfstudio, instant-ngp and Blender's synthetic scenes: one camera, or one for each frame, and its poses. These lead
+ * from the camera into the world and are not extrinsics. They are turned from OpenGL's axes (y up, z backward) to OpenCV's.
  */
-import type { RawCamera } from "./cameras.js";
-import { Findings, flat, ofOpenGL, parted } from "./findings.js";
-import { isNode, type Node, type Numbers, numberOf } from "./numbers.js";
+import { BROWN_NAMES, FISHEYE_NAMES, type RawCamera } from "./cameras.js";
+import { CORNER } from "./colmap.js";
+import { Findings, flat, ofOpenGL } from "./findings.js";
+import { type Node, type Numbers, nodesOf, numberOf } from "./numbers.js";
+import { parted } from "./poses.js";
 
-/** Principal points count from the corner of the first pixel, as COLMAP's, where these files mostly come from. */
-const CORNER = 0.5;
-const LENS = ["k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"];
-/** Frames whose focal lengths differ by more than this share do not share one camera. */
+/** Frames with focal lengths that differ by more than this share have different cameras. */
 const ALIKE = 2e-3;
 
-const framesOf = (root: Node): Node[] => (Array.isArray(root.frames) ? root.frames.filter(isNode) : []);
+const framesOf = (root: Node): Node[] => nodesOf(root.frames);
 
 export const isNerf = (root: Node): boolean =>
   framesOf(root).some(({ transform_matrix }) => flat(transform_matrix, 16) !== undefined) ||
@@ -29,8 +28,9 @@ function cameraOf(node: Node, fallback: Node, name: string): RawCamera | undefin
   if (fx === undefined || fy === undefined || !Number.isFinite(cx) || !Number.isFinite(cy)) return undefined;
   const model = String(node.camera_model ?? fallback.camera_model ?? "OPENCV");
   const isFisheye = /fisheye/i.test(model) || fallback.is_fisheye === true;
-  const keys = isFisheye ? ["k1", "k2", "k3", "k4"] : LENS;
+  const keys = isFisheye ? FISHEYE_NAMES : BROWN_NAMES;
   return {
+    // The files mostly come from COLMAP.
     ...{ name, focal: [fx, fy], centre: [cx - CORNER, cy - CORNER], width, height },
     ...{ model: isFisheye ? "fisheye" : "opencv", distortion: keys.map((key) => n(key) ?? 0) },
   };
@@ -49,13 +49,14 @@ export function readNerf(root: Node): Findings {
     const raw = "fl_x" in frame || "camera_angle_x" in frame ? cameraOf(frame, root, nameOf(frame, index)) : undefined;
     return raw ? [raw] : [];
   });
+  const single = whole ?? own[0];
   const focals: Numbers = own.map(({ focal }) => focal[0] ?? NaN);
   if (own.length > 0 && Math.max(...focals) / Math.min(...focals) - 1 > ALIKE) for (const raw of own) found.camera(raw);
-  else if (whole ?? own[0]) found.camera({ ...(whole ?? (own[0] as RawCamera)), name: "camera" });
+  else if (single !== undefined) found.camera({ ...single, name: "camera" });
   else if ("camera_angle_x" in root)
     found.warn(
       "camera-left-out",
-      `The camera was left out: it has a field of view (camera_angle_x ${root.camera_angle_x}) and no size of its pictures (w, h).`,
+      `The camera was left out, because it has a field of view (camera_angle_x ${root.camera_angle_x}) but no image size. Add w and h.`,
     );
   frames.forEach((frame, index) => {
     const m = flat(frame.transform_matrix, 16);
@@ -66,7 +67,7 @@ export function readNerf(root: Node): Findings {
   if (found.poses.length > 0)
     found.warn(
       "camera-to-world",
-      `Its ${found.poses.length} poses say where the camera stood in the world; they relate no two cameras, and have been turned from OpenGL's axes.`,
+      `The file has ${found.poses.length} poses of the camera in the world, which are not extrinsics between two cameras. They were turned from OpenGL's axes to OpenCV's.`,
     );
-  return found.done("a transforms.json of cameras in the world (nerfstudio)");
+  return found;
 }

@@ -1,28 +1,28 @@
 /**
  * Numbers with labels, as people and programs print them: "fx 611.3", "T_cam_lidar:" above four rows, ost.txt of ROS, print() of Python,
- * assignments of arrays. What comes before numbers is their name; a line of words alone names what stands below it.
+ * assignments of arrays. The words before numbers are their name, and a line of only words is the name of the lines below it.
  */
 import type { Node, Numbers } from "./numbers.js";
 import { numberOf } from "./numbers.js";
 import { plainPython } from "./settings.js";
 
-/** Lines and numbers of such a text; calibrations have some hundred. */
+/** Most lines and numbers of such a text; calibrations have some hundred. */
 const MOST_LINES = 5000;
 const MOST_NUMBERS = 20_000;
 const LONGEST_NAME = 80;
-/** Lines of a script that assign nothing. */
+/** Lines of a script that are not assignments. */
 const CODE = /^\s*(?:import|from|def|class|print|return|if|for|while|with|using|#include|clear|close all|clc)\b/;
 const TOKEN = /[^\s,;[\](){}=:"']+|[,;=:]/g;
 
-/** Tokens of a line, without comments; Python and MATLAB end theirs differently. */
+/** The tokens of a line without the comments of Python, C and MATLAB. */
 const tokensOf = (line: string): string[] => line.replace(/(?:^|\s)(?:#|\/\/|%).*$/, "").match(TOKEN) ?? [];
 
 class Notes {
   readonly root: Node = {};
   #group = this.root;
-  /** A line of words that nothing has followed yet. */
+  /** The last line of only words, until numbers follow. */
   #heading: string | undefined;
-  /** The list that numbers go to. */
+  /** The list that takes the next numbers. */
   #open: { name: string; rows: Numbers[] } | undefined;
   #isNewRow = true;
   #count = 0;
@@ -44,7 +44,7 @@ class Notes {
         this.#add(number);
         [key, value] = [[], undefined];
       } else if (token === ":" || token === "=") {
-        // "depth intrinsics: width: 640": the first of two names is that of a group.
+        // Of two names, as in "depth intrinsics: width: 640", the first one is the group's.
         if (value !== undefined && value.length > 0) {
           this.#close();
           this.#begin(key.join(" "));
@@ -110,7 +110,7 @@ class Notes {
     this.#set(name, isMatrix ? rows : values.length === 1 ? values[0] : values);
   }
 
-  /** A name that comes again begins another group, as cameras one after the other do. */
+  /** A repeated name begins another group, as in a list of cameras. */
   #set(name: string, value: unknown): void {
     if (Object.hasOwn(this.#group, name)) this.#begin(`${name} ${Object.keys(this.root).length}`);
     this.#put(this.#group, name, value);
@@ -126,7 +126,7 @@ class Notes {
   }
 }
 
-/** The numbers of a text by their names; nothing where it has too many. */
+/** The numbers of a text by their names; undefined where there are too many. */
 export function readNotes(text: string): Node | undefined {
   const lines = plainPython(text).split(/\r?\n/);
   if (lines.length > MOST_LINES) return undefined;

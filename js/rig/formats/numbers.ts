@@ -6,21 +6,47 @@ export type Node = Record<string, unknown>;
 export const isNode = (value: unknown): value is Node =>
   typeof value === "object" && value !== null && !Array.isArray(value);
 
-// One way to match any digits: two would be tried against each other, for minutes where there are many.
+// There is one way to match any digits; with two ways, a long run of digits would take minutes.
 const NUMBER = /^[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eEdD][-+]?\d+)?$/;
-/** Calibrations have matrices of 16 numbers, distortions of 14; more than this is something else. */
+/** Most numbers of a list; calibrations have matrices of 16 and distortions of 14. */
 const MOST = 64;
+/** Names of a text of numbers. */
+const MOST_NAMES = 400;
+const LONGEST_TEXT = 200;
 
-/** A number, also one that is written as text; nothing where it is none or not finite. */
+/** A finite number, also one that is written as text. */
 export function numberOf(value: unknown): number | undefined {
   if (typeof value === "number") return Number.isFinite(value) ? value : undefined;
   if (typeof value !== "string" || !NUMBER.test(value.trim())) return undefined;
   return Number(value.trim().replace(/[dD]/, "e"));
 }
 
+/** The numbers of some members; NaN where one is missing. */
+export const numbersAt = (node: Node, keys: readonly string[]): Numbers =>
+  keys.map((key) => numberOf(node[key]) ?? NaN);
+
+/** The objects of a list. */
+export const nodesOf = (value: unknown): Node[] => (Array.isArray(value) ? value.filter(isNode) : []);
+
+/** A text that is not empty, cut to the length of a name. */
+export const textOf = (value: unknown): string | undefined =>
+  typeof value === "string" && value !== "" ? value.slice(0, LONGEST_TEXT) : undefined;
+
+/** Lines of a name and numbers, by their names; `line` matches the name and the rest. */
+export function numbersByName(text: string, line: RegExp): Map<string, Numbers> {
+  const found = new Map<string, Numbers>();
+  for (const each of text.split(/\r?\n/)) {
+    const [, key, rest = ""] = line.exec(each) ?? [];
+    const numbers = rest.trim().split(/\s+/, 20).map(numberOf);
+    if (found.size >= MOST_NAMES) break;
+    if (key !== undefined && numbers.every((number) => number !== undefined)) found.set(key, numbers);
+  }
+  return found;
+}
+
 export interface Matrix {
   values: Numbers;
-  /** Rows where the file says them: lists of lists, `rows`. */
+  /** The number of rows, where the file has a list of rows or the member `rows`. */
   rows?: number;
 }
 
@@ -38,12 +64,12 @@ function ofColumns(columns: unknown[]): Matrix | undefined {
   return values.length === side * side && side > 1 ? { values: transposed(values, side), rows: side } : undefined;
 }
 
-/** A list of numbers, of lists of numbers, or { rows, cols, data } of OpenCV and ROS, or of OpenCalib, whose data are rows. */
+/** A list of numbers, a list of rows, or { rows, cols, data } of OpenCV, ROS and OpenCalib, whose data may be rows. */
 export function matrixOf(value: unknown): Matrix | undefined {
   if (isNode(value)) {
     if (Array.isArray(value.columns)) return ofColumns(value.columns);
-    const nested = Array.isArray(value.data) && value.data.every(Array.isArray);
-    const values = listOf(nested && Array.isArray(value.data) ? value.data.flat() : value.data);
+    const { data } = value;
+    const values = listOf(Array.isArray(data) && data.every(Array.isArray) ? data.flat() : data);
     const [rows, columns] = [numberOf(value.rows), numberOf(value.cols)];
     if (values === undefined || rows === undefined || columns === undefined || rows * columns !== values.length)
       return undefined;

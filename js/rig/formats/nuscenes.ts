@@ -3,16 +3,17 @@
  * carry points of a sensor into the vehicle's frame, or of the vehicle into the world.
  */
 import type { NamedPose } from "../types.js";
+import { ofMatrix } from "./cameras.js";
 import { Findings, flat } from "./findings.js";
 import { isNode, type Node, numberOf } from "./numbers.js";
-import { ofQuaternion } from "./poses.js";
+import { ofScalarFirst } from "./poses.js";
 
 const isPosed = (value: unknown): value is Node =>
   isNode(value) && flat(value.rotation, 4) !== undefined && flat(value.translation, 3) !== undefined;
 const isRecord = (value: unknown): boolean =>
   isPosed(value) && ["camera_intrinsic", "sensor_token", "token", "ego_pose_token"].some((key) => key in value);
 
-/** Records by the names that they have: of a table none, of an object its members'. */
+/** The records of a table, which have no names, or of an object, with the names of its members. */
 function records(root: unknown): [name: string, record: unknown][] {
   if (Array.isArray(root)) return root.map((each) => ["", each]);
   return isNode(root) ? [["", root], ...Object.entries(root)] : [];
@@ -23,7 +24,7 @@ export const isNuscenes = (root: unknown): boolean =>
     .slice(0, 20)
     .some(([, each]) => isRecord(each));
 
-/** Of a record: its channel where somebody has joined the tables, or else what it is and the beginning of its token. */
+/** The name of a record: its channel, where the tables were joined, or else its kind and the beginning of its token. */
 function called(name: string, record: Node): string {
   const channel = record.channel ?? record.sensor_name ?? (name === "" ? undefined : name);
   if (typeof channel === "string") return channel.slice(0, 60);
@@ -41,17 +42,17 @@ export function readNuscenes(root: unknown): Findings {
     const name = isEgo ? "ego" : called(own, record);
     if (k !== undefined)
       found.camera({
-        ...{ name, focal: [k[0] ?? NaN, k[4] ?? NaN], centre: [k[2] ?? NaN, k[5] ?? NaN], skew: k[1] },
+        ...{ name, ...ofMatrix(k) },
         ...{ width: numberOf(record.width), height: numberOf(record.height) },
       });
-    const [w = NaN, x = NaN, y = NaN, z = NaN] = flat(record.rotation, 4) ?? [];
     const to = isEgo ? "world" : "ego";
-    const pose = found.pose(ofQuaternion([x, y, z, w], found.warnings), flat(record.translation, 3) ?? [], {
+    const turn = ofScalarFirst(flat(record.rotation, 4) ?? [], found.warnings);
+    const pose = found.pose(turn, flat(record.translation, 3) ?? [], {
       ...{ name: `${to} from ${name}`, from: name, to },
     });
     if (pose && !isEgo) (k ? cameras : others).push(pose);
   }
-  // With one camera and one other sensor there is no doubt which pair it is.
+  // One camera and one other sensor are the pair.
   if (cameras.length === 1 && others.length === 1) found.relate(others[0], cameras[0]);
-  return found.done("a table of nuScenes");
+  return found;
 }

@@ -1,5 +1,5 @@
 /**
- * What Orbbec's SDK and viewer write: the intrinsics of both cameras, and a transform of the depth camera into the colour camera in
+ * Files of Orbbec's SDK and viewer: the intrinsics of both cameras, and a transform from the depth camera to the colour camera in
  * millimetres, in JSON ("rgbIntrinsic", "transform") or in sections ("ColorIntrinsic", "D2CTransformParam").
  */
 import type { Context } from "./motions.js";
@@ -8,10 +8,10 @@ import { type Node, isNode, matrixOf } from "./numbers.js";
 const COLOUR = /^(?:rgb|colou?r)_?intrinsics?$/i;
 const DEPTH = /^depth_?intrinsics?$/i;
 const TRANSFORM = /^(?:transform|d2c_?transform(?:_?param)?|d2c_?extrinsics?|extrinsics?)$/i;
-/** Translations of more than this are in millimetres, as the SDK has them; no two cameras of a product are a metre apart. */
+/** Longest translation in metres; a longer one is in the SDK's millimetres, because the cameras of a product are not a metre apart. */
 const LONGEST = 1;
 
-/** Of the member of an object by this name: its frames and its unit, if the object is one of Orbbec's. */
+/** The frames and the unit of a member that is Orbbec's transform. */
 export function orbbecContext(node: Node, key: string): Context | undefined {
   if (!TRANSFORM.test(key)) return undefined;
   const keys = Object.keys(node);

@@ -1,8 +1,8 @@
-/** Files of nothing but numbers: K.txt, matrices of motions, and trajectories of the TUM and Redwood kind. */
+/** Files of only numbers: K.txt, matrices of motions, and trajectories as those of TUM and Redwood. */
 import { badFile } from "../../errors.js";
-import { cameraOf } from "./cameras.js";
+import { cameraOf, ofMatrix } from "./cameras.js";
 import { type Numbers, numberOf } from "./numbers.js";
-import { motion, motionOfMatrix } from "./poses.js";
+import { motion, motionOfMatrix, parted } from "./poses.js";
 import type { Calibration } from "./tree.js";
 import { ofFour } from "./turns.js";
 import { type ReaderWarning, distinct } from "../warnings.js";
@@ -10,11 +10,11 @@ import { type ReaderWarning, distinct } from "../warnings.js";
 type Found = Calibration & { format: string };
 
 const MOST_NUMBERS = 200_000;
-/** Where a header of names stands. */
+/** Characters in which a header of names is looked for. */
 const HEAD = 1000;
 const near = (value: number | undefined, to: number): boolean => value !== undefined && Math.abs(value - to) < 1e-9;
 
-/** Rows of numbers, without comments and brackets; nothing where there is anything else. */
+/** Rows of numbers, without comments and brackets; undefined where the text has anything else. */
 function rowsOf(text: string): Numbers[] | undefined {
   const rows: Numbers[] = [];
   let count = 0;
@@ -31,7 +31,8 @@ function rowsOf(text: string): Numbers[] | undefined {
       numbers.push(number);
     }
     count += numbers.length;
-    if (count > MOST_NUMBERS) throw badFile(`it holds more than ${MOST_NUMBERS} numbers: no camera and no motion`);
+    if (count > MOST_NUMBERS)
+      throw badFile(`it has more than ${MOST_NUMBERS} numbers, too many for cameras and motions`);
     rows.push(numbers);
   }
   return rows;
@@ -39,8 +40,7 @@ function rowsOf(text: string): Numbers[] | undefined {
 
 const camera = (k: Numbers, size: Numbers, distortion: Numbers = []): Found => {
   const warnings: ReaderWarning[] = [];
-  const [fx = NaN, skew = 0, cx = NaN, , fy = NaN, cy = NaN] = k;
-  const raw = { focal: [fx, fy], centre: [cx, cy], skew, distortion, width: size[0], height: size[1] };
+  const raw = { ...ofMatrix(k), distortion, width: size[0], height: size[1] };
   return { cameras: [cameraOf(raw, warnings)], poses: [], warnings, format: "a matrix of intrinsics" };
 };
 
@@ -51,37 +51,27 @@ function nine(values: Numbers, size: Numbers): Found {
     throw badFile("its matrix of intrinsics is transposed: fx 0 cx / 0 fy cy / 0 0 1 are needed");
   }
   throw badFile(
-    "its nine numbers are no matrix of intrinsics, fx 0 cx / 0 fy cy / 0 0 1; a rotation needs its translation beside it",
+    "its nine numbers are not a matrix of intrinsics (fx 0 cx / 0 fy cy / 0 0 1), and a rotation needs its translation",
   );
 }
 
-/** ScanNet writes its intrinsics as 4x4: a matrix of 3x3 in one that would be a motion's. */
+/** The matrix of intrinsics in the upper left of a 4x4 matrix, as in ScanNet. */
 function intrinsicsOf4x4(values: Numbers): Numbers | undefined {
   if (values.length !== 16) return undefined;
   const zeros = [3, 4, 7, 8, 9, 11, 12, 13, 14].every((index) => near(values[index], 0));
   const isK = zeros && near(values[10], 1) && near(values[15], 1) && (values[0] ?? 0) > 2 && (values[5] ?? 0) > 2;
-  return isK ? [0, 1, 2, 4, 5, 6, 8, 9, 10].map((index) => values[index] ?? NaN) : undefined;
+  return isK ? parted(values)[0] : undefined;
 }
 
 /** ARKitScenes' .pincam: "width height fx fy cx cy" in one line. */
-const isPincam = (rows: Numbers[]): boolean => {
+function isPincam(rows: Numbers[]): boolean {
   const [w = 0, h = 0, fx = 0, fy = 0, cx = 0, cy = 0] = rows[0] ?? [];
-  const isSide = (side: number) => Number.isInteger(side) && side >= 16;
-  return (
-    rows.length === 1 &&
-    rows[0]?.length === 6 &&
-    isSide(w) &&
-    isSide(h) &&
-    fx > 10 &&
-    fy > 10 &&
-    cx < w &&
-    cy < h &&
-    cx > 0 &&
-    cy > 0
-  );
-};
+  if (rows.length !== 1 || rows[0]?.length !== 6) return false;
+  const areSides = [w, h].every((side) => Number.isInteger(side) && side >= 16);
+  return areSides && Math.min(fx, fy) > 10 && Math.min(cx, cy) > 0 && cx < w && cy < h;
+}
 
-/** TUM: time stamp, translation, quaternion x y z w, of the camera in the world. */
+/** TUM's trajectory: time stamp, translation and quaternion x y z w of the camera in the world. */
 function trajectory(rows: Numbers[], text: string): Found {
   const warnings: ReaderWarning[] = [];
   const isFirst = /\bq\w*?_?w\b[^\n]*\bq\w*?_?x\b|\bw[\s,;]+x[\s,;]+y[\s,;]+z\b/i.test(text.slice(0, HEAD));
@@ -97,11 +87,11 @@ function trajectory(rows: Numbers[], text: string): Found {
     cameras: [],
     poses,
     warnings: distinct(warnings, 4),
-    format: rows.length === 1 ? "a shift and a quaternion" : "a trajectory",
+    format: rows.length === 1 ? "a translation and a quaternion" : "a trajectory",
   };
 }
 
-/** Redwood: three whole numbers, then 4x4 of the camera in the world. */
+/** Redwood's trajectory: three integers, then the 4x4 pose of the camera in the world. */
 function log(rows: Numbers[]): Found {
   const warnings: ReaderWarning[] = [];
   const poses = Array.from({ length: rows.length / 5 }, (_, index) => {
@@ -111,7 +101,7 @@ function log(rows: Numbers[]): Found {
   return { cameras: [], poses, warnings: distinct(warnings, 4), format: "a trajectory" };
 }
 
-/** A matrix of 3x4 or 4x4 in each row, of the camera in the world, as KITTI's odometry has them. */
+/** KITTI's trajectory: the 3x4 or 4x4 pose of the camera in the world in each row. */
 function matrices(rows: Numbers[]): Found {
   const warnings: ReaderWarning[] = [];
   const poses = rows.map((row, index) =>
@@ -120,12 +110,12 @@ function matrices(rows: Numbers[]): Found {
   return { cameras: [], poses, warnings: distinct(warnings, 4), format: "a trajectory" };
 }
 
-/** What a text of numbers holds; nothing where it has words. */
+/** The camera or the poses of a text of numbers; undefined where it has words. */
 export function readNumbers(text: string): Found | undefined {
   const rows = rowsOf(text);
   if (rows === undefined || rows.length === 0) return undefined;
   const values = rows.flat();
-  if (values.some(Number.isNaN)) throw badFile("it holds numbers that are none (nan, inf)");
+  if (values.some(Number.isNaN)) throw badFile("it has nan or inf where numbers are needed");
   const widths = new Set(rows.map((row) => row.length));
   const [width] = widths;
   if (rows.length % 5 === 0 && rows.every((row, index) => row.length === (index % 5 === 0 ? 3 : 4))) return log(rows);
@@ -148,6 +138,6 @@ export function readNumbers(text: string): Found | undefined {
   if (rows.length === 1 && [4, 9, 12].includes(values.length) && fx > 10 && fy > 10)
     return camera([fx, 0, cx, 0, fy, cy, 0, 0, 1], [], lens);
   throw badFile(
-    `it holds ${values.length} numbers in ${rows.length} rows: 3x3 of intrinsics, 3x4 or 4x4 of a motion, or rows of a trajectory are read`,
+    `it has ${values.length} numbers in ${rows.length} rows; 3x3 of intrinsics, 3x4 or 4x4 of a motion, or rows of a trajectory are needed`,
   );
 }

@@ -7,13 +7,13 @@ import type { NamedPose, Pose } from "../types.js";
 import type { Numbers } from "./numbers.js";
 import { type ReaderWarning, warning } from "../warnings.js";
 
-/** What may be wrong with R^T R - 1 before the matrix is no rotation: digits that were cut off, or a calibration that drifted. */
+/** Largest error of R R^T - 1 of a rotation matrix: digits that were cut off, or a calibration that drifted. */
 const ROTATION_TOLERANCE = 1e-2;
-/** .. and what goes unmentioned: 0.06 degrees and less, as of four digits. */
+/** Errors below this need no warning: 0.06 degrees, as of four digits. */
 const ROUNDING = 1e-3;
-/** Cameras of one rig are not so far apart, metres: a longer shift is in millimetres. */
+/** Longest translation between the cameras of a rig, metres; a longer one is in millimetres. */
 const LONGEST = 10;
-/** .. and depth and colour cameras of one device not so far, metres; a LiDAR on a vehicle may be called a depth camera, too. */
+/** Longest translation between the cameras of one device, metres. It is generous, as a vehicle's LiDAR may be called a depth camera. */
 const APART = 3;
 
 const at = (values: Numbers, index: number): number => values[index] ?? 0;
@@ -47,12 +47,19 @@ function nearestRotation(matrix: Numbers): Numbers {
   return r;
 }
 
+/** Whether nine numbers are a rotation, to the digits of a file. */
+export const isRotation = (values: Numbers): boolean => values.length === 9 && skewness(values) <= ROTATION_TOLERANCE;
+
+/** The angle of a rotation, degrees. */
+export const degreesOf = (r: Numbers): number =>
+  (180 / Math.PI) * Math.acos(Math.min(1, Math.max(-1, (at(r, 0) + at(r, 4) + at(r, 8) - 1) / 2)));
+
 /** Nine numbers as a rotation, with a warning where they had to be adjusted. */
 export function rotationOf(values: Numbers, warnings: ReaderWarning[]): Numbers {
   if (values.length !== 9 || !values.every(Number.isFinite)) throw badFile("a rotation has nine numbers");
   const off = skewness(values);
   if (!(off <= ROTATION_TOLERANCE))
-    throw badFile(`its rotation is none: R R^T differs from 1 by ${off.toPrecision(2)}`);
+    throw badFile(`its matrix is not a rotation: R R^T differs from 1 by ${off.toPrecision(2)}`);
   if (determinant(values) < 0)
     throw badFile("its rotation mirrors (the determinant is -1): an axis or the handedness is swapped");
   if (off > ROUNDING)
@@ -84,6 +91,10 @@ export function ofQuaternion([x = 0, y = 0, z = 0, w = 0]: Numbers, warnings: Re
     ...[2 * (a * c - b * d), 2 * (b * c + a * d), 1 - 2 * (a * a + b * b)],
   ];
 }
+
+/** From w, x, y, z. */
+export const ofScalarFirst = ([w = NaN, x = NaN, y = NaN, z = NaN]: Numbers, warnings: ReaderWarning[]): Numbers =>
+  ofQuaternion([x, y, z, w], warnings);
 
 /** From a rotation vector in rad. */
 export function ofVector([x = 0, y = 0, z = 0]: Numbers): Numbers {
@@ -124,6 +135,20 @@ export const poseOf = (rotation: Numbers, translation: Numbers): Pose => ({
   matrix: matrixOf({ scale: 1, rotation, translation }),
 });
 
+export const identity = (): Pose => poseOf([1, 0, 0, 0, 1, 0, 0, 0, 1], [0, 0, 0]);
+
+/** The rotation and the translation of a 3x4 or 4x4 matrix, row by row. */
+export const parted = (m: Numbers): [rotation: Numbers, translation: Numbers] => [
+  [0, 1, 2, 4, 5, 6, 8, 9, 10].map((index) => m[index] ?? NaN),
+  [3, 7, 11].map((index) => m[index] ?? NaN),
+];
+
+/** The pose of a 3x4 or 4x4 matrix in metres; it throws where the matrix has no rotation. */
+export function poseOfMatrix(m: Numbers): Pose {
+  const [rotation, translation] = parted(m);
+  return poseOf(rotationOf(rotation, []), translation);
+}
+
 /** The motion back. */
 export function inverseOf({ rotation: r, translation: t }: Pose): Pose {
   const back = [0, 3, 6, 1, 4, 7, 2, 5, 8].map((index) => at(r, index));
@@ -157,8 +182,8 @@ export function chained(a: Pose, b: Pose): Pose {
   );
 }
 
-/** A shift in metres: longer than a rig is in millimetres, where `isRig` says that two cameras are related and not a world. */
-export function shiftOf(values: Numbers, isRig: boolean, warnings: ReaderWarning[]): Numbers {
+/** A translation in metres. With `isRig` it relates two cameras, and one that is longer than a rig is in millimetres. */
+function shiftOf(values: Numbers, isRig: boolean, warnings: ReaderWarning[]): Numbers {
   if (values.length !== 3 || !values.every((value) => Number.isFinite(value) && Math.abs(value) < 1e9))
     throw badFile("a translation has three numbers");
   const length = Math.hypot(...values);
@@ -187,7 +212,7 @@ export function motion(
 
 const DEVICE = /depth|colou?r|rgb|\bir\b|infra|tof/i;
 
-/** Depth and colour cameras of one device are centimetres apart: a translation of some units between them is in centimetres. */
+/** The depth camera and the colour camera of one device are centimetres apart, so a translation of several units is in centimetres. */
 function ofOneDevice(values: Numbers, { from, to }: Omit<NamedPose, "pose">, warnings: ReaderWarning[]): Numbers {
   const length = Math.hypot(...values);
   const isDevice = DEVICE.test(from ?? "") && DEVICE.test(to ?? "");
@@ -195,14 +220,14 @@ function ofOneDevice(values: Numbers, { from, to }: Omit<NamedPose, "pose">, war
   warnings.push(
     warning(
       "translation-unit-guessed",
-      `The translation is ${length.toPrecision(4)} units long and was guessed to be in centimetres, as depth and colour cameras are not metres apart.`,
+      `The translation is ${length.toPrecision(4)} units long and was guessed to be in centimetres, because the cameras of one device are not metres apart.`,
       { length },
     ),
   );
   return values.map((value) => value / 100);
 }
 
-/** Whether a row is that of a motion's matrix, 0 0 0 1. */
+/** Whether a row is the last one of a motion's matrix, 0 0 0 1. */
 export const isLastRow = (row: Numbers): boolean =>
   row.length === 4 && row.every((value, index) => Math.abs(value - (index === 3 ? 1 : 0)) < 1e-6);
 
@@ -217,9 +242,8 @@ export function motionOfMatrix(
     throw badFile(`a motion has 3x4 or 4x4 numbers, not ${values.length}`);
   if (values.length === 16 && !isLastRow(values.slice(12))) {
     const last = [3, 7, 11, 15].map((index) => at(values, index));
-    if (isLastRow(last)) throw badFile("its matrix is transposed: the translation stands in the last row");
+    if (isLastRow(last)) throw badFile("its matrix is transposed: the translation is in the last row");
     throw badFile(`its matrix ends in the row ${values.slice(12).join(" ")}, not in 0 0 0 1`);
   }
-  const rotation = [0, 1, 2, 4, 5, 6, 8, 9, 10].map((index) => at(values, index));
-  return motion(rotation, [at(values, 3), at(values, 7), at(values, 11)], names, warnings, isRig);
+  return motion(...parted(values), names, warnings, isRig);
 }

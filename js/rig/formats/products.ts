@@ -1,6 +1,6 @@
 /**
- * Files of products whose numbers mean more than their names say: the unit, the order of a quaternion, the frames, the modes. Each has a
- * reader of its own, which is asked before the walk that knows members by their names.
+ * Files of products whose units, quaternion order, frames or modes are not in the file but in the product's documentation. Each product has a
+ * reader, and these come before the search by names of members (tree.ts).
  */
 import { isAria, readAria } from "./aria.js";
 import {
@@ -39,12 +39,12 @@ import { isZivid, readZivid } from "./zivid.js";
 type Product<Of> = [format: string, is: (whole: Of) => boolean, read: (whole: Of) => Findings];
 
 const TEXTS: Product<string>[] = [
-  ["RealSense's streams", isEnumeration, readEnumeration],
+  ["RealSense's list of streams", isEnumeration, readEnumeration],
   ["a print of pyrealsense2", isPrinted, readPrinted],
   ["a snapshot of RealSense's viewer", isSnapshot, readSnapshot],
   ["an Azure Kinect's printed calibration", isAzurePrint, readAzurePrint],
   ["a ZED's calibration", isZed, readZed],
-  ["a scene's text of ScanNet", isScannet, readScannet],
+  ["ScanNet's description of a scene", isScannet, readScannet],
   ["a result of Bouguet's toolbox", isBouguet, readBouguet],
   ["a calibration of Waymo's dataset", isWaymoText, readWaymoText],
   ["a table of Argoverse 2", isArgoverse2Table, readArgoverse2Table],
@@ -65,29 +65,30 @@ const TREES: Product<Node>[] = [
   ["MATLAB's parameters", isMatlab, readMatlab],
   ["a file of Zivid", isZivid, readZivid],
   ["a result of easy_handeye", isHandEye, readHandEye],
-  ["cameras in the world (nerfstudio)", isNerf, readNerf],
+  ["a transforms.json of nerfstudio", isNerf, readNerf],
   ["the metadata of Record3D", isRecord3d, readRecord3d],
-  ["a camera of BOP", isBop, readBop],
+  ["a camera of the BOP benchmark", isBop, readBop],
   ["a sensor kit's calibration of Autoware", isAutoware, readAutoware],
 ];
 
 type Found = Findings & { format: string };
 
-const named = (found: Findings, format: string): Found => Object.assign(found, { format });
+/** The findings of a reader, which must not be empty, with the name of the format. */
+const named = (found: Findings, format: string): Found => Object.assign(found.done(format), { format });
 
-/** What a text of a product holds; nothing where it is of none. */
+/** The cameras and poses of a product's text; undefined where no product is recognised. */
 export function productOfText(text: string): Found | undefined {
   const [format, , read] = TEXTS.find(([, is]) => is(text)) ?? [];
   return format !== undefined && read ? named(read(text), format) : undefined;
 }
 
-/** Members of one object; the scenes of BOP have some thousand pictures. */
+/** Most members of one object; a scene of BOP has some thousand images. */
 const MOST_MEMBERS = 20_000;
 
-/** What an object of a product holds, or the only document of a YAML file. */
+/** The cameras and poses of a product's object, which may be the only document of a YAML file. */
 export function productOfTree(value: unknown): Found | undefined {
   const whole: unknown = Array.isArray(value) && value.length === 1 ? value[0] : value;
-  // Each reader looks through all members to tell its own; no product writes so many in one object.
+  // Each reader looks through all members to recognise its product.
   if (isNode(whole) && Object.keys(whole).length > MOST_MEMBERS) return undefined;
   const [format, , read] = (isNode(whole) ? TREES.find(([, is]) => is(whole)) : undefined) ?? [];
   if (format !== undefined && read && isNode(whole)) return named(read(whole), format);
@@ -95,9 +96,9 @@ export function productOfTree(value: unknown): Found | undefined {
   return isNuscenes(value) ? named(readNuscenes(value), "a table of nuScenes") : undefined;
 }
 
-/** What an XML document of a product holds. */
+/** The poses of a product's XML document. */
 export const productOfXml = (root: Element): Found | undefined =>
-  isUrdf(root) ? named(readUrdf(root), "a robot's description") : undefined;
+  isUrdf(root) ? named(readUrdf(root), "a robot description (URDF)") : undefined;
 
-/** Whether a text is a tree in Python's notation, which YAML has as well. */
+/** Whether a text is a dictionary of Python that YAML reads as well. */
 export const isPythonTree = looksLikeMrcal;

@@ -1,9 +1,8 @@
 /**
- * What RealSense's programs print: `rs-enumerate-devices -c` with the intrinsics of all streams and sizes and what relates the streams, and
- * pyrealsense2's intrinsics and extrinsics.
+ * Prints of RealSense's programs: `rs-enumerate-devices -c` with the intrinsics of all streams and sizes and the extrinsics between them,
+ * and pyrealsense2's intrinsics and extrinsics.
  *
- * A stream comes in every size that it can have, and the size of the pictures says which is theirs. Blocks that the device has no values
- * for (N/A, or zeros) are left out.
+ * A stream has intrinsics for each of its sizes; the size of the images selects one. Blocks without values (N/A, or zeros) are left out.
  */
 import { badFile } from "../../errors.js";
 import { Findings } from "./findings.js";
@@ -11,9 +10,9 @@ import { type Numbers, numberOf, transposed } from "./numbers.js";
 
 const INTRINSIC = /^\s*Intrinsic of "([^"]{1,60})"(?:\s*\/?\s*(\d{2,5})\s*x\s*(\d{2,5}))?/;
 const EXTRINSIC = /^\s*Extrinsic from "([^"]{1,60})"\s+To\s+"([^"]{1,60})"/i;
-/** Streams times sizes of a camera: some sixty. */
+/** Most blocks of a print; a camera has some sixty streams and sizes. */
 const MOST = 2000;
-/** Lines of a block. */
+/** Most lines of a block. */
 const LONGEST = 16;
 
 export const isEnumeration = (text: string): boolean => /^[ \t]*(?:Intrinsic of|Extrinsic from) "/m.test(text);
@@ -24,7 +23,7 @@ const numbersOf = (text: string): Numbers =>
     .map(numberOf)
     .filter((value) => value !== undefined);
 
-/** Whether pictures of this stream are colours or depths; the first infrared camera is the depth camera. */
+/** Whether images of this stream are colours or depths. */
 const takesOf = (name: string): "colour" | "depth" | undefined =>
   /^colou?r|^rgb/i.test(name) ? "colour" : /^depth/i.test(name) ? "depth" : undefined;
 
@@ -41,9 +40,9 @@ class Enumeration {
     if (/n\/a|nan|inf/i.test(entries.get("coeffs") ?? ""))
       this.found.warn(
         "lens-approximated",
-        `The lens of "${name}" has no coefficients (N/A); it is read without distortion.`,
+        `The lens of "${name}" has no coefficients (N/A) and was read without distortion.`,
       );
-    // Streams that have no intrinsics, motion sensors among them.
+    // Motion sensors, for example, have no intrinsics.
     if (focal.some((value) => value === undefined || value === 0)) this.#missing.add(`intrinsics of "${name}"`);
     else
       this.found.camera(
@@ -56,7 +55,7 @@ class Enumeration {
       );
   }
 
-  /** The rotation is printed row by row, though librealsense keeps it by columns. */
+  /** The rotation is printed row by row, although librealsense stores it by columns. */
   extrinsics([, from = "", to = ""]: RegExpExecArray, lines: string[]): void {
     if (from === to) return;
     const block = lines.slice(0, 1 + lines.findIndex((line) => /translation/i.test(line)) || lines.length);
@@ -77,7 +76,7 @@ class Enumeration {
     if (devices > 1)
       this.found.warn(
         "pose-assumed",
-        `It lists ${devices} devices; only what it prints of the first one was read. Print one device by rs-enumerate-devices -c -s SERIAL.`,
+        `The file lists ${devices} devices, and only the first one was read. Print one device by rs-enumerate-devices -c -s SERIAL.`,
       );
     if (this.#missing.size > 0) {
       const [first] = this.#missing;
@@ -87,7 +86,7 @@ class Enumeration {
         `The ${first}${more} are not available on this device (N/A or zeros) and were left out.`,
       );
     }
-    return this.found.done("RealSense's list of streams");
+    return this.found;
   }
 }
 
@@ -97,7 +96,7 @@ export function readEnumeration(text: string): Findings {
   const [lines, devices] = firstDevice(all);
   const starts = lines.flatMap((line, at) => (INTRINSIC.test(line) || EXTRINSIC.test(line) ? [at] : []));
   if (starts.length > MOST) throw badFile(`it holds more than ${MOST} intrinsics and extrinsics`);
-  if (starts.length === 0) throw badFile("it names intrinsics or extrinsics of RealSense, but of no stream");
+  if (starts.length === 0) throw badFile("it has intrinsics or extrinsics of RealSense, but no stream");
   starts.forEach((start, index) => {
     const block = lines.slice(start + 1, Math.min(starts[index + 1] ?? lines.length, start + LONGEST));
     const head = lines[start] ?? "";
@@ -109,7 +108,7 @@ export function readEnumeration(text: string): Findings {
   return read.done(devices);
 }
 
-/** The lines up to the second device that has intrinsics, and how many devices have some. */
+/** The lines up to the second device with intrinsics, and the number of such devices. */
 function firstDevice(lines: string[]): [lines: string[], devices: number] {
   const heads = lines.flatMap((line, at) => (/^\s*Device info/i.test(line) ? [at] : []));
   const having = heads.filter((at, index) =>
@@ -125,7 +124,7 @@ const SHORT = new RegExp(
   String.raw`\[\s*(\d+)x(\d+)\s+p\[${N}\s+${N}\]\s+f\[${N}\s+${N}\]\s+([A-Za-z][A-Za-z0-9 ]{0,40}?)\s*\[([^\]]{0,200})\]\s*\]`,
   "gi",
 );
-/** `width: 640, height: 480, ppx: ..`, of earlier ones. */
+/** `width: 640, height: 480, ppx: ..`, of earlier versions. */
 const LONG = new RegExp(
   String.raw`width:\s*(\d+),\s*height:\s*(\d+),\s*ppx:\s*${N},\s*ppy:\s*${N},\s*fx:\s*${N},\s*fy:\s*${N},\s*model:\s*([A-Za-z][A-Za-z0-9_. ]{0,40}?),\s*coeffs:\s*\[([^\]]{0,200})\]`,
   "gi",
@@ -135,7 +134,7 @@ const MOTION = /rotation:\s*\[([^\]]{1,400})\]\s*,?\s*translation:\s*\[([^\]]{1,
 export const isPrinted = (text: string): boolean =>
   !text.startsWith("{") && [SHORT, LONG].some((pattern) => new RegExp(pattern.source, "i").test(text));
 
-/** Words before a print on its line, or on the line before: "Depth intrinsics: [ 640x480 ..". */
+/** The words before a print on its line or the line above, as in "Depth intrinsics: [ 640x480 ..". */
 function labelAt(text: string, at: number): string | undefined {
   const [line = "", before = ""] = text
     .slice(Math.max(0, at - 200), at)
@@ -147,7 +146,7 @@ function labelAt(text: string, at: number): string | undefined {
   return /[a-z]/i.test(name) && !/\d{3}/.test(name) ? name : undefined;
 }
 
-/** What pyrealsense2 prints of its intrinsics and extrinsics; rotations column by column. */
+/** pyrealsense2's prints of intrinsics and extrinsics, with rotations column by column. */
 export function readPrinted(text: string): Findings {
   const found = new Findings();
   for (const each of [...text.matchAll(SHORT), ...text.matchAll(LONG)]) {
@@ -166,10 +165,10 @@ export function readPrinted(text: string): Findings {
     const [r, t] = [each[1] ?? "", each[2] ?? ""].map((part) => numbersOf(part.replace(/,/g, " ")));
     if (r?.length === 9 && t) found.pose(transposed(r, 3), t, directed(labelAt(text, each.index)));
   }
-  return found.done("a print of pyrealsense2");
+  return found;
 }
 
-/** "Depth to Color" as the ends of a pose. */
+/** The names of a pose from a label such as "Depth to Color". */
 function directed(label: string | undefined) {
   const [, from, to] = /(\w+)[ _]to[ _](\w+)/i.exec(label ?? "") ?? [];
   return from !== undefined && to !== undefined ? { name: label ?? "", from, to } : { name: label ?? "pose" };
@@ -177,7 +176,7 @@ function directed(label: string | undefined) {
 
 export const isSnapshot = (text: string): boolean => /^fx\s*,/im.test(text) && /^ppx\s*,/im.test(text);
 
-/** The .csv that RealSense's viewer saves beside a snapshot: one camera, its lens by name alone. */
+/** The .csv that RealSense's viewer saves with a snapshot: one camera, with the name of its lens model but no coefficients. */
 export function readSnapshot(text: string): Findings {
   const found = new Findings();
   const entries = new Map(
@@ -203,7 +202,7 @@ export function readSnapshot(text: string): Findings {
   if (takesOf(name) === "colour" && !/^none$/i.test(lens))
     found.warn(
       "lens-approximated",
-      `RealSense's viewer names the lens of "${name}" (${lens.slice(0, 40)}) without its coefficients; it is read without distortion.`,
+      `The file of RealSense's viewer has no coefficients for the lens of "${name}" (${lens.slice(0, 40)}), which was read without distortion.`,
     );
-  return found.done("a snapshot of RealSense's viewer");
+  return found;
 }

@@ -1,13 +1,12 @@
 /**
- * The metadata of a Record3D capture: K of the colour pictures column by column, and the size of the depth maps, which are registered to
- * them and smaller. Its poses are where the camera stood, and no extrinsics.
+ * The metadata of a Record3D capture: K of the colour images column by column, and the size of the depth maps, which are smaller and
+ * registered to them. The poses are those of the camera in the world, not extrinsics.
  */
 import { scaledCamera } from "../scale.js";
-import { cameraOf } from "./cameras.js";
 import { Findings, flat } from "./findings.js";
 import { isNode, type Node, numberOf } from "./numbers.js";
 
-/** Focal lengths that differ by more than this share between frames are of a lens that focused. */
+/** Focal lengths that differ by more than this share between frames are those of a lens that focused. */
 const ALIKE = 2e-3;
 
 export const isRecord3d = (root: Node): boolean =>
@@ -24,8 +23,7 @@ export function readRecord3d(root: Node): Findings {
   const [width, height] = [n("dw"), n("dh")];
   const colour = found.camera(raw, width === undefined ? "both" : "colour");
   if (colour !== undefined && width !== undefined && height !== undefined) {
-    const { camera } = cameraOf(raw, []);
-    const scaled = scaledCamera(camera, [colour.width ?? width, colour.height ?? height], [width, height]);
+    const scaled = scaledCamera(colour.camera, [colour.width ?? width, colour.height ?? height], [width, height]);
     found.cameras.push({ name: "depth", camera: scaled, width, height, takes: "depth" });
   }
   const each = Array.isArray(root.perFrameIntrinsicCoeffs) ? root.perFrameIntrinsicCoeffs : [];
@@ -33,12 +31,12 @@ export function readRecord3d(root: Node): Findings {
   if (focals.length > 0 && Math.max(...focals) / Math.min(...focals) - 1 > ALIKE)
     found.warn(
       "intrinsics-vary",
-      `Its focal length changes from frame to frame, from ${Math.min(...focals).toFixed(1)} to ${Math.max(...focals).toFixed(1)}; that of the first, ${fx.toFixed(1)}, is used for all.`,
+      `The focal length changes between frames, from ${Math.min(...focals).toFixed(1)} to ${Math.max(...focals).toFixed(1)}. That of the first frame, ${fx.toFixed(1)}, is used for all.`,
     );
   if (Array.isArray(root.poses) && root.poses.some((pose) => isNode(pose) || Array.isArray(pose)))
     found.warn(
       "pose-left-out",
-      `Its poses of the camera in the world (${root.poses.length}) were left out: they relate no two cameras.`,
+      `The file has ${root.poses.length} poses of the camera in the world, which are not extrinsics between two cameras and were left out.`,
     );
-  return found.done("the metadata of Record3D");
+  return found;
 }

@@ -1,4 +1,4 @@
-/** ROS's static transforms as they stand on a command line, in a launch file or in a script. */
+/** ROS's static transforms on a command line, in a launch file or in a script. */
 import { badFile } from "../../errors.js";
 import type { NamedPose } from "../types.js";
 import { type Numbers, numberOf } from "./numbers.js";
@@ -7,7 +7,7 @@ import type { Calibration } from "./tree.js";
 import type { ReaderWarning } from "../warnings.js";
 
 const NAME = "static_transform_publisher";
-/** What follows the name and belongs to it, in characters: numbers, names, quotes and brackets. */
+/** Characters after the name in which its arguments are. */
 const REACH = 2000;
 const MOST = 1000;
 
@@ -39,7 +39,7 @@ function ofFlags(words: string[], warnings: ReaderWarning[]): NamedPose {
   const number = (name: string, missing: number): number => {
     const text = values.get(name);
     const value = text === undefined ? missing : numberOf(text);
-    if (value === undefined) throw badFile(`its static transform has --${name} ${text}, which is no number`);
+    if (value === undefined) throw badFile(`its static transform has --${name} ${text}, which is not a number`);
     return value;
   };
   const isQuaternion = ["qx", "qy", "qz", "qw"].some((name) => values.has(name));
@@ -78,7 +78,7 @@ function ofPlaces(words: string[], warnings: ReaderWarning[]): NamedPose {
   );
 }
 
-/** The transform carries points of the child frame into the parent, so that the child is where they come from. */
+/** The transforms, which carry points of the child frame into the parent. */
 export function readPublishers(text: string): Calibration {
   const warnings: ReaderWarning[] = [];
   const found = mentions(text).filter((words) => words.some((word) => numberOf(word) !== undefined));
@@ -96,13 +96,13 @@ const QUATERNION = /Quaternion\s*(?:\(xyzw\)\s*)?\[([^\]\n]{1,200})\]/;
 export const isEcho = (text: string): boolean =>
   TRIPLE.test(text.slice(0, REACH)) && QUATERNION.test(text.slice(0, REACH));
 
-/** What tf_echo prints, the first of it; which frames it asked for is not in there. */
+/** The first transform of tf_echo's print, which does not name the frames. */
 export function readEcho(text: string): Calibration {
   const warnings: ReaderWarning[] = [];
   const numbers = (pattern: RegExp, count: number): Numbers => {
     const found = (pattern.exec(text.slice(0, REACH))?.[1] ?? "").split(",").map((part) => numberOf(part) ?? NaN);
     if (found.length !== count || found.some(Number.isNaN))
-      throw badFile(`its transform has not ${count} numbers where they are needed`);
+      throw badFile(`its transform does not have ${count} numbers where they are needed`);
     return found;
   };
   return {

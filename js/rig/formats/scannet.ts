@@ -1,7 +1,8 @@
-/** A scene's text of ScanNet: "m_calibrationColorIntrinsic = .." of its sensor files, or "fx_color = .." of its released scenes. */
-import { Findings, parted } from "./findings.js";
-import { type Numbers, numberOf } from "./numbers.js";
-import { chained, inverseOf, poseOf, rotationOf } from "./poses.js";
+/** ScanNet's description of a scene: "m_calibrationColorIntrinsic = .." in sensor files, "fx_color = .." in released scenes. */
+import { ofMatrix } from "./cameras.js";
+import { Findings } from "./findings.js";
+import { type Numbers, numbersByName } from "./numbers.js";
+import { chained, inverseOf, poseOfMatrix } from "./poses.js";
 import type { Pose } from "../types.js";
 
 const SENSOR = /^[ \t]*m_calibration(?:Color|Depth)Intrinsic[ \t]*=/m;
@@ -10,52 +11,32 @@ const SCENE = /^[ \t]*fx_(?:color|depth)[ \t]*=/m;
 export const isScannet = (text: string): boolean =>
   SENSOR.test(text) || (SCENE.test(text) && /^[ \t]*mx_(?:color|depth)[ \t]*=/m.test(text));
 
-function entriesOf(text: string): Map<string, Numbers> {
-  const found = new Map<string, Numbers>();
-  for (const line of text.split(/\r?\n/)) {
-    const [, key = "", rest = ""] = /^\s*([\w.]{1,60})\s*=\s*(\S.*)$/.exec(line) ?? [];
-    const numbers = rest.trim().split(/\s+/, 20).map(numberOf);
-    if (key !== "" && numbers.every((each) => each !== undefined)) found.set(key.replace(/^m_/, ""), numbers);
-  }
-  return found;
-}
-
 export function readScannet(text: string): Findings {
   const found = new Findings();
-  const entries = entriesOf(text);
+  const entries = numbersByName(text, /^\s*(?:m_)?([\w.]{1,60}?)\s*=\s*(\S.*)$/);
   const one = (key: string) => entries.get(key)?.[0];
   for (const [side, name, takes] of [
     ["Color", "color", "colour"],
     ["Depth", "depth", "depth"],
   ] as const) {
     const k = entries.get(`calibration${side}Intrinsic`);
-    const n = (key: string) => one(`${key}_${name}`) ?? NaN;
-    const [focal, centre] = k
-      ? [
-          [k[0] ?? NaN, k[5] ?? NaN],
-          [k[2] ?? NaN, k[6] ?? NaN],
-        ]
-      : [
-          [n("fx"), n("fy")],
-          [n("mx"), n("my")],
-        ];
+    const all = (...keys: string[]) => keys.map((key) => one(`${key}_${name}`) ?? NaN);
     if (k === undefined && !entries.has(`fx_${name}`)) continue;
-    found.camera({ name, focal, centre, width: one(`${name}Width`), height: one(`${name}Height`) }, takes);
+    const intrinsics = k ? ofMatrix(k, 4) : { focal: all("fx", "fy"), centre: all("mx", "my") };
+    found.camera({ name, ...intrinsics, width: one(`${name}Width`), height: one(`${name}Height`) }, takes);
   }
   posesOf(found, entries);
   const shift = one("depthShift");
   if (shift !== undefined && shift > 0) found.depthUnit = 1 / shift;
-  return found.done("a scene's text of ScanNet");
+  return found;
 }
 
 const poseAt = (entries: Map<string, Numbers>, key: string): Pose | undefined => {
   const m = entries.get(key);
-  if (m?.length !== 16) return undefined;
-  const [r, t] = parted(m);
-  return poseOf(rotationOf(r, []), t);
+  return m?.length === 16 ? poseOfMatrix(m) : undefined;
 };
 
-/** Released scenes say how colour lies to depth; sensor files say of each how it lies to a frame of both, always the same. */
+/** Released scenes have the pose from colour to depth, sensor files one of each camera into a common frame. */
 function posesOf(found: Findings, entries: Map<string, Numbers>): void {
   const names = { name: "depth to color", from: "depth", to: "color" };
   const back = poseAt(entries, "colorToDepthExtrinsics");
@@ -68,6 +49,6 @@ function posesOf(found: Findings, entries: Map<string, Numbers>): void {
   if (isMoved(colour) || isMoved(depth))
     found.warn(
       "pose-assumed",
-      "Its extrinsics were taken to lead from each camera into a common frame; nothing in the file says so.",
+      "The extrinsics were read as poses from each camera into a common frame, which is a guess: the file does not give their direction.",
     );
 }

@@ -1,16 +1,16 @@
 /**
- * Texts of settings: JSON with comments, TOML, and sections of "name = value" as Windows and many SDKs have them.
+ * Texts of settings: JSON with comments, TOML, and sections of "name = value" as in .ini files.
  *
- * Libraries, each loaded when such a text comes: json5 (11 kB gzipped), which reads comments, trailing commas, single quotes and numbers
- * like "1." as Python prints them, where jsonc-parser reads comments alone; smol-toml (6 kB), which is smaller and stricter than @iarna/toml.
+ * Each library is loaded with the first such text. json5 (11 kB gzipped) reads comments, trailing commas, single quotes and numbers such as
+ * "1." that Python prints, while jsonc-parser reads only comments; smol-toml (6 kB) is smaller and stricter than @iarna/toml.
  */
 import { badFile } from "../../errors.js";
 import type { Node } from "./numbers.js";
 
-/** Characters of a text that is not plain JSON: calibrations have a few thousand. */
+/** Most characters of a text that is not plain JSON; calibrations have a few thousand. */
 export const MOST_SETTINGS = 2 ** 18;
 
-/** How Python prints its values: numpy's and PyTorch's arrays, True, False and None. */
+/** A text without the names that Python prints around the arrays of numpy and PyTorch. */
 export const plainPython = (text: string): string =>
   text
     .replace(/\b(?:np|numpy|torch|jnp|cv2|cv)\.(?=\w)/g, "")
@@ -24,7 +24,7 @@ const pythonWords = (text: string): string =>
     .replace(/\bFalse\b/g, "false")
     .replace(/\b(?:None|nan)\b/g, "null");
 
-/** An object on each line. */
+/** The objects of a text with one on each line. */
 function objectsOf(text: string): unknown[] | undefined {
   const lines = text.split(/\r?\n/).filter((line) => line.trim() !== "");
   if (!lines.every((line) => /^\s*\{.*\}\s*$/.test(line))) return undefined;
@@ -40,7 +40,7 @@ const isJson = (text: string): boolean => /^[{[]/.test(text);
 /** JSON, also with comments and as Python prints it. */
 export async function readJson(text: string): Promise<unknown> {
   try {
-    // Python writes these three, which JSON does not have; nothing of a calibration may be one of them.
+    // Python writes these three, which JSON does not have; values of a calibration are finite.
     return JSON.parse(text.replace(/\b(?:NaN|-?Infinity)\b/g, "null"));
   } catch (error) {
     const damaged = badFile(
@@ -62,12 +62,12 @@ export async function readJson(text: string): Promise<unknown> {
 const SECTION = /^[ \t]*\[{1,2}[ \t]*["']?[A-Za-z_][^\]\n]{0,80}\]{1,2}[ \t]*(?:[#;].*)?$/m;
 const SETTING = /^[ \t]*["']?[A-Za-z_][\w.\- ]{0,80}["']?[ \t]*[=:][ \t]*\S/m;
 
-/** Whether a text has sections and settings, as TOML and .ini files. */
+/** Whether a text has sections with settings, as TOML and .ini files have. */
 export const isSectioned = (text: string): boolean =>
   SECTION.test(text) && SETTING.test(text) && !isJson(text.replace(SECTION, ""));
 
-/** Sections by hand, for what is no TOML: names and texts without quotes. */
-function sections(text: string): Node {
+/** The sections of an .ini file, which has names and texts without quotes, so that TOML's parser refuses it. */
+export function readIni(text: string): Node {
   const root: Node = {};
   let section = root;
   for (const line of text.split(/\r?\n/)) {
@@ -82,13 +82,13 @@ function sections(text: string): Node {
   return root;
 }
 
-/** TOML, or sections that are none. */
+/** TOML, or else an .ini file. */
 export async function readSections(text: string): Promise<{ value: unknown; format: string }> {
   if (text.length > MOST_SETTINGS) throw badFile(`it is text of ${text.length} characters, too long for settings`);
   const { parse } = await import("smol-toml");
   try {
     return { value: parse(text, { maxDepth: 32 }), format: "TOML" };
   } catch {
-    return { value: sections(text), format: "settings in sections" };
+    return { value: readIni(text), format: "settings in sections" };
   }
 }

@@ -1,32 +1,33 @@
 /**
  * Texts that are tables of numbers: a depth map row by row (CSV, TXT of numpy.savetxt or MATLAB), or a list of points (XYZ, PTS, PTX, ASC).
  *
- * A depth map is told from matrices and trajectories by its size. Limits: a table needs the same number of columns in each row.
+ * The size distinguishes a depth map from matrices and trajectories. Limits: all rows of a table need the same number of columns.
  */
 import { type BimodalError, badFile } from "../../errors.js";
 import { numberOf } from "./numbers.js";
+import { FEWEST_POINTS } from "./channels.js";
 import { MOST_SIDE, checkSize } from "./limits.js";
 import type { Picture } from "./picture.js";
 
-/** Matrices and rows of trajectories are smaller than the smallest depth map. */
+/** The smallest depth map; matrices and trajectories have fewer columns or rows. */
 const [FEWEST_COLUMNS, FEWEST_ROWS] = [24, 18];
-/** Share of its first rows that have to have as many numbers as the first one. */
+/** Share of the first rows that must have as many numbers as the first one. */
 const MOSTLY = 0.9;
-/** Lines by which a text is told. */
+/** Lines by which a text is recognised. */
 const HEAD = 40;
-/** Characters of them. */
+/** Most characters of these lines. */
 const HEAD_CHARACTERS = 2 ** 19;
-/** Points of a list, at least: fewer are a matrix or a short trajectory. */
-const FEWEST_POINTS = 20;
-/** x y z, intensity, colours, normals. */
+/** Fewest lines of a list of points; a shorter text is a matrix or a short trajectory. */
+const FEWEST_LINES = 20;
+/** Most columns of a point: x y z, intensity, colours, normals. */
 const MOST_OF_POINT = 10;
-/** How far from 1 the length of a quaternion may be. */
+/** Largest difference of a quaternion's length from 1. */
 const SLACK = 0.01;
 
 const isComment = (line: string): boolean => /^\s*(?:[#%]|\/\/|$)/.test(line);
 const isHole = (word: string): boolean => /^[-+]?(?:nan|inf|infinity|none|null|na)?$/i.test(word);
 
-/** What parts the words of a line; with semicolons a comma is that of a decimal. */
+/** The separator of the words of a line; between semicolons a comma is a decimal one. */
 const separatorOf = (line: string): string => [";", ",", "\t"].find((each) => line.includes(each)) ?? " ";
 
 export function wordsOf(line: string, separator: string): string[] {
@@ -45,15 +46,15 @@ export const isNumbers = (words: string[]): boolean =>
 interface Head {
   rows: string[][];
   separator: string;
-  /** Whether lines end in the separator; an empty last word is no hole then. */
+  /** Whether lines end in the separator, so that an empty last word is not a hole. */
   isTrailing: boolean;
 }
 
-/** The first lines that are no comments, in words. */
+/** The words of the first lines that are not comments. */
 export function headOf(bytes: Uint8Array): Head {
   const text = new TextDecoder("latin1").decode(bytes.subarray(0, HEAD_CHARACTERS)).replace(/^ï»¿/, "");
   const lines = text.split(/\r?\n/, HEAD);
-  // What may be cut off within a line says nothing.
+  // The last line may be cut off.
   if (bytes.length > HEAD_CHARACTERS && lines.length > 1 && lines.length < HEAD) lines.pop();
   const used = lines.filter((line) => !isComment(line));
   const separator = separatorOf(used[1] ?? used[0] ?? "");
@@ -63,25 +64,25 @@ export function headOf(bytes: Uint8Array): Head {
   return { rows: rows.map(ofRow), separator, isTrailing };
 }
 
-/** Whether a text is a table of the size of a depth map: of its first lines, that those are rows of as many numbers. */
+/** Whether the first lines of a text are rows of equally many numbers, in the size of a depth map. */
 export function isTable(bytes: Uint8Array): boolean {
   const { rows } = headOf(bytes);
   // The first row may name the columns.
   const [first, ...others] = rows[0] !== undefined && isNumbers(rows[0]) ? rows : rows.slice(1);
   if (first === undefined || first.length < FEWEST_COLUMNS || first.length > MOST_SIDE + 1) return false;
-  // A damaged row is named when the table is read.
+  // A damaged row is reported when the table is read.
   const alike = others.filter((row) => row.length === first.length && isNumbers(row));
   return rows.length >= FEWEST_ROWS && alike.length >= MOSTLY * others.length;
 }
 
-/** Numbers of a table, at most: 1920x1080 pixels, and the names of rows and columns. */
+/** Most numbers of a table: 1920x1080 pixels, and the names of rows and columns. */
 const MOST_CELLS = 2 ** 21;
 const [TAB, NEWLINE, RETURN, SPACE, QUOTE, ZERO, NINE] = [9, 10, 13, 32, 34, 48, 57];
 const [PLUS, COMMA, MINUS, POINT, LOWER_E, UPPER_E] = [43, 44, 45, 46, 101, 69];
 
 /**
- * A decimal number without a text of it, which takes longest; nothing where the bytes are anything else. It is right to more digits than the
- * floats have that are made of it.
+ * A decimal number straight from its bytes, because making texts takes most of the time; undefined where the bytes are anything else. It is
+ * more precise than the floats that are made of it.
  */
 function decimal(bytes: Uint8Array, from: number, to: number, point: number): number | undefined {
   let at = from;
@@ -122,7 +123,7 @@ function cell(bytes: Uint8Array, from: number, to: number, hasCommas: boolean): 
   return value;
 }
 
-/** Gives the places of a line's cells to `put`; how many there are. */
+/** Calls `put` with the bounds of each cell of a line; returns the number of cells. */
 function eachCell(bytes: Uint8Array, from: number, to: number, separator: number, put: (a: number, b: number) => void) {
   let count = 0;
   if (separator !== SPACE) {
@@ -147,7 +148,7 @@ function eachCell(bytes: Uint8Array, from: number, to: number, separator: number
   return count;
 }
 
-/** Whether numbers count 0, 1, 2 .., as the names that pandas gives rows and columns. */
+/** Whether numbers are 0, 1, 2 and so on, as pandas names rows and columns. */
 function counts(values: ArrayLike<number>, length: number, from = 0, step = 1): boolean {
   for (let at = 0; at < length; at++) if (values[from + step * at] !== at) return false;
   return length > 1;
@@ -161,14 +162,14 @@ interface Cells {
 
 const BOM = [0xef, 0xbb, 0xbf];
 
-/** Whether a line is empty or a comment; tabs alone are a row of holes. */
+/** Whether a line is empty or a comment; a line of only tabs is a row of holes. */
 function isLeftOut(bytes: Uint8Array, from: number, to: number, separator: number): boolean {
   let at = from;
   while (at < to && (bytes[at] === SPACE || (bytes[at] === TAB && separator !== TAB))) at++;
   return at >= to || isComment(String.fromCharCode(...bytes.subarray(at, Math.min(at + 2, to))));
 }
 
-/** All cells, row by row; a first row of words is left out. */
+/** All cells, row by row, without a first row of words. */
 function cellsOf(bytes: Uint8Array): Cells {
   const { rows, separator, isTrailing } = headOf(bytes);
   const [code, hasCommas] = [separator.charCodeAt(0), separator === ";"];
@@ -192,12 +193,13 @@ function cellsOf(bytes: Uint8Array): Cells {
       values[count++] = cell(bytes, a, b, hasCommas);
     });
     if (height++ === 0) width = cells;
-    if (cells !== width) throw badFile(`its table has ${cells} columns in row ${height}, and ${width} in those before`);
+    if (cells !== width)
+      throw badFile(`its table has ${cells} columns in row ${height}, but ${width} in the rows before`);
   }
   return { values: values.subarray(0, count), width, height };
 }
 
-/** Without the numbers of rows and columns. */
+/** The cells without the names of rows and columns. */
 function unnamed({ values, width, height }: Cells): Cells {
   const top = counts(values, width) || counts(values, width - 1, 1) ? 1 : 0;
   const left = counts(values, height - top, top * width, width) ? 1 : 0;
@@ -210,14 +212,14 @@ function unnamed({ values, width, height }: Cells): Cells {
   return { values: all, ...kept };
 }
 
-/** A table as a raster of floats; what is empty, NaN or infinite is a hole. */
+/** A table as a raster; cells that are empty, NaN or infinite are holes. */
 export function readTable(bytes: Uint8Array): Picture {
   const { values, width, height } = unnamed(cellsOf(bytes));
   checkSize(width, height);
   return { width, height, channels: 1, ...levels(values), format: "table", notes: ["a table as text"], warnings: [] };
 }
 
-/** Whole numbers of 16 bits as depth cameras write them, others as floats. */
+/** The values in 16 bits where all are integers of this range, as depth cameras write them, or else as floats. */
 function levels(values: Float64Array): Pick<Picture, "data" | "bits"> {
   const isLevel = (value: number) => Number.isNaN(value) || (Number.isInteger(value) && value <= 0xffff);
   if (values.every(isLevel)) return { data: Uint16Array.from(values, (value) => Math.max(0, value || 0)), bits: 16 };
@@ -226,23 +228,21 @@ function levels(values: Float64Array): Pick<Picture, "data" | "bits"> {
 
 const isUnit = (quaternion: number[]): boolean => Math.abs(Math.hypot(...quaternion) - 1) < SLACK;
 
-/** Rows of a trajectory end in a quaternion, of either order. */
+/** Whether all rows end in a quaternion, in either order. */
 const isTrajectory = (rows: number[][]): boolean =>
   rows.every((row) => (row.length === 7 || row.length === 8) && isUnit(row.slice(-4)));
 
-/** The error about a list of points as text; nothing where it is none. */
+/** The error about a list of points as text that cannot be read; undefined where the text is not such a list. */
 export function pointList(bytes: Uint8Array): BimodalError | undefined {
   const { rows } = headOf(bytes);
   const single = (row: string[] | undefined) => row?.length === 1 && /^\d+$/.test(row[0] ?? "");
-  const points =
-    "in no rows and columns (unorganised), so that no neighbours are known; save them as an organised cloud (PLY, PCD) or as a depth map";
   if (single(rows[0]) && single(rows[1]) && rows.slice(2, 6).every((row) => row.length === 3))
     return badFile(
-      "it is a scan in PTX: points in rows and columns, but in the scanner's axes; save it as an organised PLY or PCD with z forward, or as a depth map",
+      "it is a scan in PTX, whose points have the scanner's axes; save it as an organised PLY or PCD with z forward, or as a depth map",
     );
   const body = single(rows[0]) || (rows[0] !== undefined && !isNumbers(rows[0])) ? rows.slice(1) : rows;
   const columns = body[0]?.length ?? 0;
-  if (body.length < FEWEST_POINTS || columns < 3 || columns > MOST_OF_POINT) return undefined;
+  if (body.length < FEWEST_LINES || columns < 3 || columns > MOST_OF_POINT) return undefined;
   if (!body.every((row) => row.length === columns && isNumbers(row))) return undefined;
   const isNamed = body !== rows && !single(rows[0]);
   const names = (rows[0] ?? []).map((name) => name.replace(/^\/+/, "").toLowerCase());
@@ -253,12 +253,14 @@ export function pointList(bytes: Uint8Array): BimodalError | undefined {
     return undefined;
   const numbers = body.map((row) => row.map((word) => numberOf(word) ?? NaN));
   if (isTrajectory(numbers) || isLog(numbers)) return undefined;
-  return badFile(`it is a list of points as text (${columns} numbers each), ${points}`);
+  return badFile(
+    `it is a list of points as text (${columns} numbers each) without rows and columns (unorganised); such a list needs x, y, z and at least ${FEWEST_POINTS} points`,
+  );
 }
 
-/** Redwood's trajectories: three whole numbers, then a matrix of 4x4. */
+/** Redwood's trajectories: three integers, then a matrix of 4x4. */
 const isLog = (rows: number[][]): boolean => rows.some((row) => row.length !== rows[0]?.length) || isMatrices(rows);
-/** Matrices of 4x4 or 3x3 below each other end in 0 0 0 1. */
+/** Whether the rows are matrices of 4x4 or 3x3, which end in 0 0 0 1 or 0 0 1. */
 function isMatrices(rows: number[][]): boolean {
   const side = rows[0]?.length ?? 0;
   if (side !== 3 && side !== 4) return false;

@@ -1,4 +1,4 @@
-/** Text files: what they are is told from their words, and what they hold comes out as cameras and poses. */
+/** Text files: the format is recognised from the text, and the result is cameras and poses. */
 import { BimodalError, badFile } from "../../errors.js";
 import { readColmap, isColmap } from "./colmap.js";
 import { isColmapImages, readColmapImages } from "./colmap-others.js";
@@ -15,27 +15,27 @@ import { type Element, plainXml, readXml } from "./xml.js";
 /** So that a small file cannot become a large value. */
 const YAML_LIMITS = { maxDepth: 32, maxAliases: 64 };
 
-/** OpenCV's YAML says "%YAML:1.0", which YAML does not have, and marks its matrices by a tag of its own, as Python does its tuples. */
+/** YAML without the directive "%YAML:1.0" and the tags of OpenCV and Python, which are not standard, and with spaces for tabs. */
 const plainYaml = (text: string): string =>
   text
     .replace(/^%YAML.*$/m, "")
     .replace(/!!(?:opencv-[\w-]+|python\/[\w:./]+)/g, "")
     .replace(/^\t+/gm, (tabs) => "  ".repeat(tabs.length));
 
-/** Settings as "fx = 500", line by line, are YAML but for the sign. */
+/** Settings such as "fx = 500" on each line, with the colons of YAML. */
 const withColons = (text: string): string =>
   /^[ \t]*[\w.]{1,80}[ \t]*:/m.test(text) ? text : text.replace(/^([ \t]*[\w.]{1,80})[ \t]*=[ \t]*/gm, "$1: ");
 
-/** By js-yaml, which is loaded when such a text comes. */
+/** The documents of a YAML text. js-yaml is loaded with the first such text. */
 async function readYaml(text: string): Promise<unknown> {
   if (text.length > MOST_SETTINGS)
-    throw badFile(`it is text of ${text.length} characters, in none of the forms that are read here`);
+    throw badFile(`it is a text of ${text.length} characters in none of the formats that are read`);
   const { CORE_SCHEMA, loadAll, mergeTag } = await import("js-yaml");
   try {
     return loadAll(withColons(plainYaml(text)), { ...YAML_LIMITS, schema: CORE_SCHEMA.withTags(mergeTag) });
   } catch (error) {
     const reason = error instanceof Error ? (error.message.split("\n")[0] ?? "") : String(error);
-    throw badFile(`it is a text in none of the forms that are read here, or damaged (as YAML: ${reason})`, error);
+    throw badFile(`it is a text in none of the formats that are read, or damaged (as YAML: ${reason})`, error);
   }
 }
 
@@ -44,30 +44,39 @@ const NEITHER =
 
 type Read = Calibration & { format: string };
 
-/** Readers of products, which are loaded when the first text comes. */
+/** The readers of products, which are loaded with the first text. */
 const products = () => import("./products.js");
 
-async function searched(value: unknown, format: string, text: string): Promise<Read> {
-  const isText = (each: unknown) => typeof each !== "object" || each === null;
-  if (isText(value) || (Array.isArray(value) && value.every(isText)))
-    throw badFile("it is a text in none of the forms that are read here");
+/** The findings of a product's reader or of the search by names; undefined where there is neither a camera nor a pose. */
+async function search(value: unknown, format: string, text: string): Promise<Read | undefined> {
   const product = (await products()).productOfTree(value);
   if (product !== undefined) return product;
   const found = searchTree(value, text);
-  if (found.cameras.length === 0 && found.poses.length === 0)
-    throw badFile(`it is ${format}, but holds ${NEITHER} that is known here`);
-  return { ...found, format };
+  return found.cameras.length + found.poses.length > 0 ? { ...found, format } : undefined;
 }
 
-/** Each row of a table by its number; rows with times or pictures are where the camera stood. */
+function nothingIn(value: unknown, format: string): BimodalError {
+  const isText = (each: unknown) => typeof each !== "object" || each === null;
+  if (isText(value) || (Array.isArray(value) && value.every(isText)))
+    return badFile("it is a text in none of the formats that are read");
+  return badFile(`it is ${format}, but has ${NEITHER} by a known name`);
+}
+
+async function searched(value: unknown, format: string, text: string): Promise<Read> {
+  const found = await search(value, format, text);
+  if (found === undefined) throw nothingIn(value, format);
+  return found;
+}
+
+/** The rows of a table by their numbers. Rows with times or images are poses of the camera in the world. */
 async function ofTable({ rows, isSeries }: { rows: Node[]; isSeries: boolean }, text: string): Promise<Read> {
   const named = Object.fromEntries(rows.map((row, at) => [isSeries ? `pose ${at + 1}` : `row ${at + 1}`, row]));
   const found = await searched(named, isSeries ? "a table of poses" : "a table", text);
-  // What is guessed of one row is guessed of all.
+  // All rows have the same columns, so one warning of a code is enough.
   return { ...found, warnings: [...new Map([...found.warnings].reverse().map((each) => [each.code, each])).values()] };
 }
 
-/** Numbers with labels, where there are any. */
+/** Numbers with labels; undefined where there is neither a camera nor a pose among them. */
 function ofNotes(text: string): Read | undefined {
   const notes = text.length > MOST_SETTINGS ? undefined : readNotes(text);
   const found = notes === undefined ? undefined : searchTree(notes, text);
@@ -75,7 +84,7 @@ function ofNotes(text: string): Read | undefined {
   return { ...found, format: "numbers with labels" };
 }
 
-/** YAML, or where that is none or holds nothing, numbers with labels. */
+/** YAML, or else numbers with labels. */
 async function ofYaml(text: string): Promise<Read> {
   let value: unknown;
   try {
@@ -85,14 +94,12 @@ async function ofYaml(text: string): Promise<Read> {
     if (found === undefined) throw error;
     return found;
   }
-  const product = (await products()).productOfTree(value);
-  if (product !== undefined) return product;
-  const found = searchTree(value, text);
-  if (found.cameras.length + found.poses.length > 0) return { ...found, format: "YAML" };
-  return ofNotes(text) ?? searched(value, "YAML", text);
+  const found = (await search(value, "YAML", text)) ?? ofNotes(text);
+  if (found === undefined) throw nothingIn(value, "YAML");
+  return found;
 }
 
-/** XML, or what Python prints of an object: it begins with "<", too. */
+/** XML, or Python's print of an object, which begins with "<", too. */
 async function ofXml(text: string): Promise<Read> {
   let root: Element;
   try {
@@ -105,10 +112,10 @@ async function ofXml(text: string): Promise<Read> {
   return (await products()).productOfXml(root) ?? searched(plainXml(root), "XML", text);
 }
 
-/** What a text holds, with a word on what kind of text it is. */
+/** The cameras and poses of a text, with the name of its format. */
 export async function readText(text: string): Promise<Read> {
   const trimmed = text.replace(/^\ufeff/, "").trim();
-  if (trimmed === "") throw badFile("it is empty: there is nothing in it but spaces");
+  if (trimmed === "") throw badFile("it is empty or has only spaces");
   if (isPublisher(trimmed)) return { ...readPublishers(trimmed), format: "a static transform of ROS" };
   if (isEcho(trimmed)) return { ...readEcho(trimmed), format: "a transform of ROS" };
   const { isPythonTree, productOfText } = await products();
@@ -126,7 +133,7 @@ export async function readText(text: string): Promise<Read> {
   return ofWords(trimmed);
 }
 
-/** Numbers alone, tables, and the languages of settings. */
+/** Plain numbers, tables, and the languages of settings. */
 async function ofWords(text: string): Promise<Read> {
   const numbers = readNumbers(text) ?? (text.length < MOST_SETTINGS ? readNumbers(plainPython(text)) : undefined);
   if (numbers !== undefined) return numbers;

@@ -1,18 +1,19 @@
 /**
  * Cameras and motions in JSON, YAML, TOML and XML, whatever program wrote them: ROS, OpenCV, Open3D, Kalibr, RealSense, or by hand.
  *
- * A walk over all objects that knows them by the names and shapes of their members (names.ts). Walks are bounded in depth and in number of
- * objects, which also bounds what aliases of YAML unfold to. What looks like a lens, a size or a pose and was not used is warned of.
+ * A walk over all objects recognises them by the names and shapes of their members (names.ts). Its depth and its number of objects are
+ * bounded, which also bounds the aliases of YAML. A warning names each lens, size or pose that was not used.
  */
 import { badFile } from "../../errors.js";
 import type { NamedCamera, NamedPose } from "../types.js";
 import { type ReaderWarning, warning } from "../warnings.js";
-import { type RawCamera, cameraOf } from "./cameras.js";
+import { type RawCamera, cameraOf, ofMatrix } from "./cameras.js";
 import { grouped, withLists } from "./groups.js";
 import { type FoundCamera, Leftovers, type Place, coefficientsOf } from "./leftovers.js";
+import { MOST_FOUND } from "./limits.js";
 import { type Context, Motions, contextOf, signsOf } from "./motions.js";
 import { isIntrinsics, labelled, lensNames, member, wordsOf } from "./names.js";
-import { type Matrix, type Node, type Numbers, isNode, matrixOf, numberOf, transposed } from "./numbers.js";
+import { type Matrix, type Node, type Numbers, isNode, matrixOf, numberOf, textOf, transposed } from "./numbers.js";
 import { orbbecContext } from "./orbbec.js";
 import { chained, inverseOf } from "./poses.js";
 
@@ -20,23 +21,19 @@ export interface Calibration {
   cameras: NamedCamera[];
   poses: NamedPose[];
   warnings: ReaderWarning[];
-  /** Metres per stored unit of the depth maps beside it, where the file says it. */
+  /** Metres per stored unit of the depth maps that belong to the file. */
   depthUnit?: number;
 }
 
 const MOST_NODES = 50_000;
 const MOST_MEMBERS = 200_000;
-/** Members of one object that is a camera or a motion; larger ones may hold some. */
+/** Most members of an object that is a camera or a motion; larger objects may contain some. */
 const MOST_OWN = 300;
 const MOST_DEPTH = 24;
-/** Cameras and poses of a file. */
-const MOST_FOUND = 5000;
 
-const textOf = (value: unknown): string | undefined =>
-  typeof value === "string" && value !== "" ? value.slice(0, 200) : undefined;
 const isLike = (value: number | undefined, to: number): boolean => value !== undefined && Math.abs(value - to) < 1e-6;
 
-/** Nine numbers as a matrix of intrinsics, row by row, however they stood. */
+/** Nine numbers as a matrix of intrinsics, row by row; they may be stored by rows or by columns. */
 function intrinsics(matrix: Matrix | undefined): Numbers | undefined {
   const values = matrix?.values;
   if (values?.length !== 9 || !isLike(values[8], 1)) return undefined;
@@ -47,21 +44,21 @@ function intrinsics(matrix: Matrix | undefined): Numbers | undefined {
   return isTriangle(turned) ? turned : undefined;
 }
 
-/** A "lens" is a model by one of these names, and else what its maker calls it. */
+/** Names of lens models in a member "lens", which otherwise holds the product's name. */
 const MODEL =
   /brown|rad|fish|equi|kannala|pinhole|opencv|plumb|division|fov|omni|thin|tilt|standard|ftheta|perspective/i;
-/** So many poses in a list are a trajectory, and no rig. */
+/** A list of at least so many poses is a trajectory. */
 const SERIES = 3;
-/** Names of a focal length and of a principal point along the rows and along the columns, by who writes them. */
+/** Names of focal lengths and of principal points in the files of different programs. */
 const FX = ["fx", "flx", "focalx", "focallengthx"];
 const FY = ["fy", "fly", "focaly", "focallengthy"];
 const CX = ["cx", "ppx", "u0", "centerx", "principalpointx"];
 const CY = ["cy", "ppy", "v0", "centery", "principalpointy"];
-/** Four intrinsics in a list are fx fy cx cy where the first two are this alike. */
+/** Four intrinsics in a list are fx fy cx cy where fx and fy differ by less than this share. */
 const SQUARE = 0.2;
-/** .. and longer than this, pixels: shorter ones are normalised, or none. */
+/** Shortest focal length in pixels; shorter ones are normalised by the image's size, or are not focal lengths. */
 const SHORTEST = 10;
-/** Cameras that are rendered or undistorted from another. */
+/** Labels of cameras that are derived from another one, for rectified or undistorted images. */
 const DERIVED = /^(?:new|optimal|rectified|undistorted|original)$/;
 
 class Search {
@@ -70,7 +67,7 @@ class Search {
   readonly motions: Motions;
   readonly #found: FoundCamera[] = [];
   readonly #leftovers = new Leftovers();
-  /** The one pose that stands in the object of one camera. */
+  /** Poses that are the only one in the object of a single camera. */
   readonly #own: NamedPose[] = [];
   /** Models of cameras that the file names. */
   readonly models = new Set<string>();
@@ -81,7 +78,7 @@ class Search {
     this.motions = new Motions(signsOf(text), this.warnings);
   }
 
-  /** `key` is the value's own name, `name` what its cameras and motions are called. */
+  /** `key` is the value's member name, `name` the name for its cameras and motions. */
   walk(value: unknown, key: string, name: string, context: Context, parent: Place | undefined): void {
     if (typeof value !== "object" || value === null) return;
     if (++this.#nodes > MOST_NODES) throw badFile(`it holds more than ${MOST_NODES} lists and objects`);
@@ -106,7 +103,7 @@ class Search {
     }
   }
 
-  /** A list of cameras or of poses. Many poses without names of their own, and without cameras, are a trajectory. */
+  /** A list of cameras or of poses. Several poses without frames and without cameras are a trajectory. */
   #list(values: unknown[], key: string, name: string, context: Context, place: Place): void {
     if (typeof values[0] !== "object") return;
     const [cameras, poses] = [this.#found.length, this.motions.poses.length];
@@ -120,14 +117,14 @@ class Search {
     if (isSeries) this.motions.placeInWorld(poses);
   }
 
-  /** The cameras and motions that are members of this object, and what it says of those below it. */
+  /** Reads the cameras and motions that are members of this object; returns the context for the objects below it. */
   #read(place: Place, key: string, name: string, context: Context): Context {
     const { node } = place;
     const before = this.#found.length;
     const used = this.#cameraOf(place, key, name);
     this.#leftovers.collect(place, used);
     const [first, second, ...more] = this.#found.slice(before).map(({ raw }) => raw.name);
-    // OpenCV's stereo calibration: R and T carry points of camera 1 into camera 2. Of other names the order says nothing.
+    // OpenCV's stereo calibration: R and T carry points of camera 1 into camera 2. Other names have no such order.
     const stereo = first === "1" && second === "2" && more.length === 0 ? { from: "1", to: "2" } : {};
     const inner = contextOf(node, { ...context, ...(framesOf(node) ?? stereo) });
     const poses = this.motions.poses.length;
@@ -138,7 +135,7 @@ class Search {
     return inner;
   }
 
-  /** Adds the cameras of an object, and gives the members that were used for their lenses. */
+  /** Adds the cameras of an object; returns the members that were used for their lenses. */
   #cameraOf(place: Place, key: string, parent: string): Set<string> {
     const { node } = place;
     const used = new Set<string>();
@@ -196,7 +193,7 @@ class Search {
     return { distortion: coefficientsOf(node, model) ?? (isNone ? [] : undefined), model, ...size };
   }
 
-  /** Checks what was found, when the whole file is known. */
+  /** Checks cameras and poses once the whole file has been read. */
   finish(): void {
     this.#leftovers.assign(this.#found, this.warnings);
     for (const { raw } of this.#found) this.cameras.push(cameraOf(raw, this.warnings));
@@ -205,7 +202,7 @@ class Search {
   }
 }
 
-/** Of cameras that are each related to the same inertial unit, the motion from one to the next. */
+/** Adds the pose from each camera to the next one, where both are related to the same inertial unit. */
 function chain(poses: NamedPose[]): void {
   for (const { from, to, pose } of [...poses]) {
     const next = /^cam(\d+)$/.exec(to ?? "")?.[1];
@@ -220,7 +217,7 @@ function chain(poses: NamedPose[]): void {
   }
 }
 
-/** Names of where points of a motion come from and where they go to. */
+/** Names of the source and the target frame of a motion. */
 const ENDS = [
   ["from", "to"],
   ["fromframe", "toframe"],
@@ -230,19 +227,19 @@ const ENDS = [
   ["sensorname", "targetsensorname"],
 ] as const;
 
-/** ROS: the transform carries points of the child frame into the parent. OpenCalib's extrinsics lead from one sensor into its target. */
+/** The frames of a motion. ROS's transform carries points of the child frame into the parent, OpenCalib's from a sensor to its target. */
 function framesOf(node: Node): Context | undefined {
   const child = textOf(member(node, "childframeid", "childframe"));
   const header = member(node, "header");
   const parent = textOf(member(isNode(header) ? header : node, "frameid", "parentframe"));
   if (child !== undefined) return { from: child, ...(parent !== undefined && { to: parent }) };
   for (const [from, to] of ENDS) {
-    // As in ROS's transforms; elsewhere trees of anything have parents.
+    // Objects other than transforms have parents, too.
     if (from === "child" && member(node, "rotation", "orientation", "quaternion") === undefined) continue;
     const ends = [textOf(member(node, from)), textOf(member(node, to))];
     if (ends[0] !== undefined && ends[1] !== undefined && ends[0] !== ends[1]) return { from: ends[0], to: ends[1] };
   }
-  // A pose beside the name of a picture is where that was taken, as in the files of NeRF.
+  // A pose beside an image's file name says where that image was taken.
   const picture = textOf(member(node, "filepath", "imagepath", "imgpath", "imagefile", "imgname", "imagename"));
   if (picture !== undefined) return { from: "camera", to: "world" };
   return undefined;
@@ -250,7 +247,7 @@ function framesOf(node: Node): Context | undefined {
 
 type Intrinsics = Pick<RawCamera, "focal" | "centre" | "model" | "distortion" | "skew">;
 
-/** fx, fy, cx and cy by these or other names. */
+/** The members fx, fy, cx and cy, by any of their names. */
 function membersOf(node: Node, name: string | undefined): Pick<RawCamera, "focal" | "centre"> | undefined {
   const single = numberOf(member(node, "f", "focal", "focallength", "focallengthpx", "focalpx"));
   const [fx, cx] = [numberOf(member(node, ...FX)), numberOf(member(node, ...CX))];
@@ -261,11 +258,11 @@ function membersOf(node: Node, name: string | undefined): Pick<RawCamera, "focal
   if (fx === undefined || cx === undefined) return undefined;
   const [fy, cy] = [numberOf(member(node, ...FY)), numberOf(member(node, ...CY))];
   if (fy === undefined || cy === undefined)
-    throw badFile(`it has a camera${name === undefined ? "" : ` "${name}"`} of fx and cx without fy and cy`);
+    throw badFile(`its camera${name === undefined ? "" : ` "${name}"`} has fx and cx, but not fy and cy`);
   return { focal: [fx, fy], centre: [cx, cy] };
 }
 
-/** camodocal's Kannala-Brandt cameras: mu, mv, u0, v0, and k2 to k5 for OpenCV's k1 to k4. */
+/** camodocal's Kannala-Brandt cameras: mu, mv, u0, v0, and k2 to k5, which are OpenCV's k1 to k4. */
 function kannala(node: Node): Intrinsics | undefined {
   const numbers = (names: string[]) => names.map((each) => numberOf(member(node, each)) ?? NaN);
   const [mu = NaN, mv = NaN, u0 = NaN, v0 = NaN] = numbers(["mu", "mv", "u0", "v0"]);
@@ -274,7 +271,7 @@ function kannala(node: Node): Intrinsics | undefined {
   return { focal: [mu, mv], centre: [u0, v0], model: "fisheye", distortion: lens };
 }
 
-/** OKVIS and others: focal_length and principal_point of two numbers each. */
+/** The members focal_length and principal_point of two numbers each, as in OKVIS. */
 function listsOf(node: Node): Intrinsics | undefined {
   const single = numberOf(node.focal_length);
   const focal = single === undefined ? matrixOf(node.focal_length)?.values : [single, single];
@@ -283,7 +280,7 @@ function listsOf(node: Node): Intrinsics | undefined {
   return isPixels && centre?.length === 2 ? { focal, centre } : undefined;
 }
 
-/** Blender and phones: focal length and sensor in millimetres, with the size of the pictures. */
+/** Focal length and sensor width in millimetres with the size of the images, as in Blender. */
 function bySensor(node: Node, warnings: ReaderWarning[]): Intrinsics | undefined {
   const focal = numberOf(member(node, "focallengthmm", "focalmm", "focallength", "lens", "f"));
   const sensor = numberOf(member(node, "sensorwidthmm", "sensorwidth"));
@@ -293,14 +290,14 @@ function bySensor(node: Node, warnings: ReaderWarning[]): Intrinsics | undefined
   warnings.push(
     warning(
       "camera-computed",
-      `The focal length was computed from ${focal} mm on a sensor of ${sensor} mm, and the principal point is taken for the centre of the picture.`,
+      `The focal length was computed from ${focal} mm on a sensor of ${sensor} mm, and the principal point was set to the centre of the image. Give fx, fy, cx and cy in pixels if they are known.`,
       { focal, sensor },
     ),
   );
   return { focal: [f, f], centre: [(width - 1) / 2, (height - 1) / 2] };
 }
 
-/** Four intrinsics in a list: Kalibr's, or those of a file that names no model. */
+/** Four intrinsics in a list, of Kalibr or of a file without a camera model. */
 function fourOf(node: Node, name: string | undefined): Intrinsics | undefined {
   const kalibr = textOf(member(node, "cameramodel"));
   const four = matrixOf(member(node, "intrinsics"))?.values;
@@ -308,7 +305,7 @@ function fourOf(node: Node, name: string | undefined): Intrinsics | undefined {
   if (kalibr !== undefined && four.length !== 9) {
     if (kalibr !== "pinhole")
       throw badFile(
-        `its camera "${name ?? ""}" is of Kalibr's model "${kalibr.slice(0, 40)}"; only pinhole is known here`,
+        `its camera "${name ?? ""}" has Kalibr's model "${kalibr.slice(0, 40)}"; only pinhole is supported`,
       );
     if (four.length !== 4)
       throw badFile(`its camera "${name ?? ""}" has ${four.length} intrinsics; fu fv pu pv are needed`);
@@ -325,33 +322,32 @@ function cameraOfMatrix(node: Node, key: string, label: string): Intrinsics | un
   const k = intrinsics(matrix);
   if (k === undefined) {
     if (matrix?.values.length === 9 && label === "" && !/^(?:m|matrix)$/i.test(key))
-      throw badFile(`its ${key} is no matrix of intrinsics, fx 0 cx / 0 fy cy / 0 0 1`);
+      throw badFile(`its ${key} is not a matrix of intrinsics (fx 0 cx / 0 fy cy / 0 0 1)`);
     return undefined;
   }
-  const [fx = NaN, skew = 0, cx = NaN, , fy = NaN, cy = NaN] = k;
-  return { focal: [fx, fy], centre: [cx, cy], skew };
+  return ofMatrix(k);
 }
 
 const SIDE = /^(?:colou?r|rgb|depth|ir|infra(?:red)?[_ ]?\d?)$/i;
 
-/** What an object says that it is of: a stream, a sensor, or a type that is one of these. */
+/** The name of the stream or the sensor that an object belongs to. */
 function nameIn(node: Node): string | undefined {
   const type = textOf(member(node, "type", "streamtype", "kind"));
   return textOf(member(node, "stream", "streamname", "sensor")) ?? (SIDE.test(type ?? "") ? type : undefined);
 }
 
-/** What a member's cameras and poses are called: members that only say what they are take their parent's name. */
+/** The name for a member's cameras and poses: the parent's where the member's own name is generic. */
 const nameOf = (key: string, parent: string): string => {
   if (/^(transforms?|intrinsics?|pose|param|opencv_storage|launch|parameters|ros__parameters|nodes)$/.test(key))
     return parent;
-  // One camera at many sizes.
+  // A camera may have intrinsics for several sizes.
   return parent !== "" && /^\d{2,5}[xX_]\d{2,5}(?:[@_]\d+)?$/.test(key) ? `${parent} ${key}` : key;
 };
 
 const isEmpty = (value: unknown): boolean =>
   value === null || value === "" || (Array.isArray(value) && value.length === 0);
 
-/** The size that is a member of the camera itself; what stands around it is for leftovers.ts. */
+/** The size among the members of the camera itself; leftovers.ts finds those around it. */
 function sizeOf(node: Node, label: string): { width?: number; height?: number } {
   const both = matrixOf(member(node, "resolution", "imagesize", "size"))?.values;
   if (both?.length === 2) return { width: both[0] ?? 0, height: both[1] ?? 0 };
@@ -364,7 +360,7 @@ function sizeOf(node: Node, label: string): { width?: number; height?: number } 
   return { ...(width !== undefined && { width }), ...(height !== undefined && { height }) };
 }
 
-/** `text` is the file's own, for signs that are no members: comments, names of products. */
+/** `text` is that of the file; its comments and product names are used as well. */
 export function searchTree(value: unknown, text = ""): Calibration {
   const search = new Search(text);
   search.walk(value, "", "", {}, undefined);
@@ -373,7 +369,7 @@ export function searchTree(value: unknown, text = ""): Calibration {
   const [model] = models;
   if (cameras.length + motions.poses.length === 0 && model !== undefined)
     throw badFile(
-      `its camera is of the model "${model.slice(0, 40)}", which is not known here or has no intrinsics by the names that are; Brown's and Kannala-Brandt's lenses on a pinhole are`,
+      `its camera has the model "${model.slice(0, 40)}" and no intrinsics that can be read; pinhole cameras with Brown's or Kannala-Brandt's lenses are supported`,
     );
   return { cameras, poses: motions.poses, warnings };
 }

@@ -1,44 +1,39 @@
 /**
- * Rotations whose numbers can be read in more than one way: quaternions with w first or last, three angles or a vector, degrees or radians,
- * rows or columns.
+ * Rotations whose numbers can be read in more than one way: quaternions with w first or last, Euler angles or a rotation vector, degrees or
+ * radians, rows or columns.
  *
- * Words of the file decide where they say it. Elsewhere the reading that makes a rig is taken, that of cameras which look nearly the same
- * way, and a warning says so. Limit: where both readings make a rig, or neither does, the common one is taken, with the warning.
+ * Words in the file decide where there are any. Otherwise the reading is taken by which the cameras look nearly the same way (a rig), with a
+ * warning. Limit: where both readings make a rig, or neither does, the common one is taken, with the warning.
  */
 import { badFile } from "../../errors.js";
 import { type ReaderWarning, warning } from "../warnings.js";
 import type { Attributes } from "./names.js";
 import { type Numbers, transposed } from "./numbers.js";
-import { ofQuaternion, ofVector, ofYawPitchRoll } from "./poses.js";
+import { degreesOf, ofQuaternion, ofScalarFirst, ofVector, ofYawPitchRoll } from "./poses.js";
 
-/** Cameras of one rig look the same way within this, degrees: more than any depth camera's own two, less than a side view. */
+/** Largest angle between the cameras of a rig, degrees: more than within any depth camera, less than to a side view. */
 const PARALLEL = 45;
-/** Angles this near to multiples of 90 degrees turn from one convention of axes into another, radians. */
+/** Angles this close to multiples of 90 degrees change between conventions of axes, radians. */
 const AXES = 0.15;
-/** Readings that differ by less than this need no warning, degrees: the digits of a file differ by more. */
+/** Readings that differ by less than this need no warning, degrees; the digits of a file differ by more. */
 const ALIKE = 0.05;
 const RADIAN = 180 / Math.PI;
 
-/** What was read, and how. */
 export interface Turn {
   rotation: Numbers;
-  /** Rows may be columns: nothing in the file says which. */
-  isOrderOpen?: boolean;
+  /** How nine numbers were read where the file does not say whether they are rows or columns. */
+  assumed?: "rows" | "columns";
 }
 
-/** The angle of a rotation, degrees. */
-export const degreesOf = (r: Numbers): number =>
-  RADIAN * Math.acos(Math.min(1, Math.max(-1, ((r[0] ?? 0) + (r[4] ?? 0) + (r[8] ?? 0) - 1) / 2)));
 const isRig = (r: Numbers): boolean => degreesOf(r) <= PARALLEL;
 const between = (a: Numbers, b: Numbers): number => Math.hypot(...a.map((value, at) => value - (b[at] ?? 0))) * RADIAN;
 
 /** A quaternion as a list of four. */
 export function ofFour(values: Numbers, { order }: Attributes, name: string, warnings: ReaderWarning[]): Numbers {
-  const [a = 0, b = 0, c = 0, d = 0] = values;
-  if (order === "wxyz") return ofQuaternion([b, c, d, a], warnings);
+  if (order === "wxyz") return ofScalarFirst(values, warnings);
   const last = ofQuaternion(values, warnings);
   if (order === "xyzw" || isRig(last)) return last;
-  const first = ofQuaternion([b, c, d, a], []);
+  const first = ofScalarFirst(values, []);
   if (isRig(first)) {
     warnings.push(
       warning(
@@ -52,25 +47,25 @@ export function ofFour(values: Numbers, { order }: Attributes, name: string, war
   warnings.push(
     warning(
       "quaternion-order",
-      `The quaternion "${name}" was read as x y z w; nothing says its order. Name it quaternion_wxyz or quaternion_xyzw.`,
+      `The quaternion "${name}" was read as x y z w, because the file does not give its order. Name it quaternion_wxyz or quaternion_xyzw.`,
       { order: "xyzw" },
     ),
   );
   return last;
 }
 
-/** Angles about fixed axes, x first, as ROS's roll, pitch and yaw. */
+/** Roll, pitch and yaw as ROS has them: angles about the fixed axes x, y and z, in this order. */
 const ofAngles = ([x = 0, y = 0, z = 0]: Numbers, isDegrees: boolean): Numbers =>
   ofYawPitchRoll([z, y, x].map((angle) => (isDegrees ? angle / RADIAN : angle)));
 
-/** Whether angles in radians only turn the axes of a body or of a LiDAR into those of a camera. */
+/** Whether angles in radians only change from the axes of a body or a LiDAR to those of a camera. */
 const turnsAxes = (values: Numbers): boolean => {
   const quarters = values.map((value) => Math.round(value / (Math.PI / 2)));
   const isNear = values.every((value, at) => Math.abs(value - ((quarters[at] ?? 0) * Math.PI) / 2) < AXES);
   return isNear && quarters.some((quarter) => quarter !== 0);
 };
 
-/** Degrees where the file says so, where radians would be too many, or where degrees alone make a rig. */
+/** Whether angles are degrees: the file says so, they are too large for radians, or only degrees make a rig. */
 function areDegrees(values: Numbers, { angle }: Attributes): boolean {
   if (angle !== undefined) return angle === "degrees";
   if (values.some((value) => Math.abs(value) > 2 * Math.PI + 1e-6)) return true;
@@ -86,7 +81,7 @@ export function ofThree(values: Numbers, said: Attributes, name: string, warning
     if (said.angle === "degrees") return ofVector(values.map((value) => value / RADIAN));
     if (isLong && said.angle === undefined)
       guess(
-        `The rotation vector "${name}" is ${length.toPrecision(4)} long, which is more than pi; it was read in radians. If it holds degrees, name it rotation_degrees.`,
+        `The rotation vector "${name}" was read in radians, but its length of ${length.toPrecision(4)} is more than pi. If it is in degrees, name it rotation_degrees.`,
         "vector",
       );
     return ofVector(values);
@@ -98,52 +93,56 @@ export function ofThree(values: Numbers, said: Attributes, name: string, warning
     const rotation = ofVector(values);
     const apart = between(rotation, turned);
     guess(
-      `The three numbers of "${name}" were read as a rotation vector in radians, ${(length * RADIAN).toFixed(1)} degrees in all; Euler angles in radians would be ${apart.toFixed(2)} degrees from it. Name them rvec or rpy_degrees to say what they are.`,
+      `The three numbers of "${name}" were read as a rotation vector in radians, of ${(length * RADIAN).toFixed(1)} degrees; as Euler angles in radians they would differ from that by ${apart.toFixed(2)} degrees. Name them rvec or rpy_degrees.`,
       "vector",
     );
     return rotation;
   }
   guess(
-    `The three numbers of "${name}" were read as Euler angles in ${isDegrees ? "degrees" : "radians"}, about the fixed axes x, y and z in this order (roll, pitch, yaw of ROS), ${degreesOf(turned).toFixed(1)} degrees in all. Give the rotation as a matrix if they are others.`,
+    `The three numbers of "${name}" were read as Euler angles in ${isDegrees ? "degrees" : "radians"}, about the fixed axes x, y and z in this order (ROS's roll, pitch, yaw), a rotation of ${degreesOf(turned).toFixed(1)} degrees. Give the rotation as a matrix if they are different angles.`,
     isDegrees ? "euler-degrees" : "euler-radians",
   );
   return turned;
 }
 
-/** What is known of nine numbers beside themselves. */
+/** How nine numbers stand in their file. */
 export interface Layout {
-  /** The file says its rows, as lists of lists or as rows and columns of a matrix. */
+  /** The number of rows, where the numbers are a list of rows or a matrix with this member. */
   rows?: number | undefined;
-  /** .. as OpenCV's and ROS's matrices, which are written row by row. */
+  /** They are the data of a matrix of OpenCV or ROS, which is written row by row. */
   isMatrix: boolean;
-  /** The members are called rotation and translation, as librealsense calls its own. */
+  /** The members are called rotation and translation, as in librealsense. */
   isNamedAsRealSense: boolean;
   /** The file has other signs of librealsense. */
   isRealSense: boolean;
+  /** The members are at the root of the file, as in a message of realsense-ros. */
+  isAtRoot: boolean;
 }
 
-/** Nine numbers. librealsense keeps its rotations column by column, everybody else writes rows. */
-export function ofNine(values: Numbers, { rows, isMatrix, isNamedAsRealSense, isRealSense }: Layout): Turn {
+/** Nine numbers. librealsense and its ROS messages have rotations column by column, all others row by row. */
+export function ofNine(values: Numbers, { rows, isMatrix, isNamedAsRealSense, isRealSense, isAtRoot }: Layout): Turn {
   if (!isNamedAsRealSense || isMatrix) return { rotation: values };
   const isFlat = rows === undefined;
-  const rotation = isFlat && isRealSense ? transposed(values, 3) : values;
-  const isOpen = between(values, transposed(values, 3)) > ALIKE && !(isFlat && isRealSense);
-  return { rotation, ...(isOpen && { isOrderOpen: true }) };
+  const byColumns = transposed(values, 3);
+  if (isFlat && isRealSense) return { rotation: byColumns };
+  const order = isFlat && isAtRoot ? "columns" : "rows";
+  const rotation = order === "columns" ? byColumns : values;
+  return between(values, byColumns) > ALIKE ? { rotation, assumed: order } : { rotation };
 }
 
-export const orderWarning = (name: string, isByColumns: boolean): ReaderWarning =>
+export const orderWarning = (name: string, order: "rows" | "columns"): ReaderWarning =>
   warning(
     "rotation-order",
-    `The rotation${name === "" ? "" : ` of "${name}"`} was read ${isByColumns ? "column by column, as librealsense writes it" : "row by row; librealsense writes it column by column, the transposed"}, and nothing in the file says which. Write a 4x4 matrix, or R and t with three rows.`,
-    { order: isByColumns ? "columns" : "rows" },
+    `The rotation${name === "" ? "" : ` of "${name}"`} was read ${order === "columns" ? "column by column, as librealsense writes it" : "row by row, but librealsense writes it column by column"}; the file does not give the order. Write a 4x4 matrix, or R and t with three rows.`,
+    { order },
   );
 
-/** Three or four numbers, or nine. */
+/** What a rotation of so many numbers is. */
 export function numbersAsRotation(values: Numbers, key: string): "quaternion" | "three" | "nine" {
   if (values.length === 9) return "nine";
   if (values.length === 4) return "quaternion";
   if (values.length === 3) return "three";
   throw badFile(
-    `its ${key} has ${values.length} numbers: 9 of a matrix, 4 of a quaternion or 3 of a vector are needed`,
+    `its ${key} has ${values.length} numbers; a rotation needs 9 (matrix), 4 (quaternion) or 3 (vector or angles)`,
   );
 }

@@ -1,7 +1,7 @@
 /**
- * Robots' descriptions, URDF and xacro: a joint's origin carries points of the child's link into the parent's, by a shift and by roll, pitch
- * and yaw about fixed axes. Properties and their arithmetic are evaluated; macros are not, and joints that depend on their parameters are
- * named and left out.
+ * Robot descriptions, URDF and xacro: a joint's origin carries points of the child link into the parent link, by a translation and by roll,
+ * pitch and yaw about fixed axes. Properties and their arithmetic are evaluated. Macros are not, and joints that depend on their parameters
+ * are left out with a warning.
  */
 import { badFile } from "../../errors.js";
 import { evaluate } from "./expression.js";
@@ -23,7 +23,7 @@ function* all(element: Element): Generator<Element> {
 
 export const isUrdf = (root: Element): boolean => root.children.some(({ tag }) => tag === "robot");
 
-/** Values of properties by name; those that depend on others are evaluated when they are asked for. */
+/** The value of a property by its name, which may be an expression of other properties. */
 function properties(root: Element): (name: string) => number | undefined {
   const texts = new Map<string, string>();
   for (const { tag, attributes } of all(root))
@@ -41,7 +41,7 @@ function properties(root: Element): (name: string) => number | undefined {
   return valueOf;
 }
 
-/** Three numbers, each a number or an expression; nothing where a name in them has no value. */
+/** Three numbers or expressions; undefined where a name in them has no value. */
 function triple(text: string | undefined, valueOf: (name: string) => number | undefined): Numbers | undefined {
   if (text === undefined) return [0, 0, 0];
   const values = (text.match(/\$\{[^}]*\}|\$\([^)]*\)|\S+/g) ?? []).map((part) => {
@@ -73,19 +73,19 @@ export function readUrdf(root: Element): Findings {
   if (missing.length > 0)
     found.warn(
       "pose-left-out",
-      `The origin of ${missing.length === 1 ? "the joint" : `${missing.length} joints, among them`} "${missing[0]?.slice(0, 60)}" depends on a macro's parameters: expand the file by xacro first.`,
+      `The origin of ${missing.length === 1 ? "the joint" : `${missing.length} joints, among them`} "${missing[0]?.slice(0, 60)}" depends on a macro's parameters and was left out. Expand the file by xacro first.`,
     );
   if (found.poses.length === 0)
     throw badFile(
       missing.length > 0
-        ? "it is a robot's description (URDF) whose joints have origins that depend on a macro's parameters; expand it by xacro first"
-        : "it is a robot's description (URDF) without a joint that has an origin",
+        ? "it is a robot description (URDF), and the origins of its joints depend on a macro's parameters; expand it by xacro first"
+        : "it is a robot description (URDF) without a joint",
     );
   toCameras(found);
   return found;
 }
 
-/** The way between the cameras goes first. */
+/** Puts the pose between the cameras first. */
 export function toCameras(found: Findings): void {
   const way = wayBetween(found.poses);
   if (way === undefined) return;
@@ -93,6 +93,6 @@ export function toCameras(found: Findings): void {
   if (way.turned.length > 0)
     found.warn(
       "pose-assumed",
-      `The frame ${way.turned.join(" and ")} is no optical one and was taken to look along its x axis with z up, as ROS has it.`,
+      `The frame ${way.turned.join(" and ")} is not an optical frame by its name and was read as looking along x with z up, as in ROS.`,
     );
 }

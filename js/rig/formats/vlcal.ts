@@ -1,4 +1,4 @@
-/** `calib.json` of direct_visual_lidar_calibration (Koide et al.): a camera, and the LiDAR that it was calibrated with. */
+/** `calib.json` of direct_visual_lidar_calibration (Koide et al.): a camera and its pose in the frame of a LiDAR. */
 import { Findings, flat } from "./findings.js";
 import { isNode, type Node } from "./numbers.js";
 import { ofQuaternion } from "./poses.js";
@@ -8,7 +8,7 @@ const RESULTS = ["T_lidar_camera", "init_T_lidar_camera", "init_T_lidar_camera_a
 export const isVlcal = (root: Node): boolean =>
   isNode(root.camera) && "camera_model" in root.camera && (isNode(root.results) || isNode(root.meta));
 
-/** Its poses are x y z qx qy qz qw and carry points of the camera into the LiDAR's frame. */
+/** The poses are x y z qx qy qz qw and carry points of the camera into the LiDAR's frame. */
 export function readVlcal(root: Node): Findings {
   const found = new Findings();
   const camera = isNode(root.camera) ? root.camera : {};
@@ -28,6 +28,9 @@ export function readVlcal(root: Node): Findings {
     found.pose(ofQuaternion(seven.slice(3), found.warnings), seven.slice(0, 3), { name, from: "camera", to: "lidar" });
   }
   if (found.poses.length > 0 && !("T_lidar_camera" in results))
-    found.warn("pose-assumed", "Its pose is the initial guess of direct_visual_lidar_calibration, not yet the result.");
-  return found.done("a calibration of direct_visual_lidar_calibration");
+    found.warn(
+      "pose-assumed",
+      "The pose is the initial guess of direct_visual_lidar_calibration, not its result. Run the calibration for T_lidar_camera.",
+    );
+  return found;
 }

@@ -1,22 +1,22 @@
 /**
- * Calibrations of the Waymo Open Dataset, its protocol buffers as JSON or text. A camera's frame there looks along x with z up, as the vehicle's
- * does; here it is turned to look along z with y down.
+ * Calibrations of the Waymo Open Dataset, whose protocol buffers come as JSON or text. Its cameras look along x with z up, as the vehicle
+ * does, and are turned to look along z with y down.
  */
 import { badFile } from "../../errors.js";
 import type { NamedPose } from "../types.js";
-import { Findings, flat, parted } from "./findings.js";
+import { Findings, flat } from "./findings.js";
 import { asOptical, hasBodyAxes } from "./frames.js";
-import { isNode, type Node, numberOf } from "./numbers.js";
+import { isNode, type Node, nodesOf, numberOf } from "./numbers.js";
+import { parted } from "./poses.js";
 
-const listOf = (value: unknown): Node[] => (Array.isArray(value) ? value.filter(isNode) : []);
 const contextOf = (root: Node): Node => {
   const context = Array.isArray(root.context) ? root.context[0] : root.context;
   return isNode(context) ? context : root;
 };
 const cameras = (root: Node): Node[] =>
-  listOf(contextOf(root).cameraCalibrations ?? contextOf(root).camera_calibrations);
-const lasers = (root: Node): Node[] => listOf(contextOf(root).laserCalibrations ?? contextOf(root).laser_calibrations);
-/** Protobuf's text has no lists: members that may come again are lists of all, also of one. */
+  nodesOf(contextOf(root).cameraCalibrations ?? contextOf(root).camera_calibrations);
+const lasers = (root: Node): Node[] => nodesOf(contextOf(root).laserCalibrations ?? contextOf(root).laser_calibrations);
+/** A member of protobuf's text, in which every member is a list, because any may be repeated. */
 const single = (value: unknown): unknown => (Array.isArray(value) && value.length === 1 ? value[0] : value);
 const transform = (each: Node) => {
   const extrinsic = single(each.extrinsic);
@@ -26,10 +26,10 @@ const transform = (each: Node) => {
 const HEAD = /(?:^|\n)[ \t]*(?:camera_calibrations|laser_calibrations)[ \t]*\{/;
 export const isWaymoText = (text: string): boolean => HEAD.test(text);
 
-/** Deeper than any calibration. */
+/** Most nested blocks; a calibration has four. */
 const MOST_OPEN = 16;
 
-/** What protobuf prints: "name: value" lines and "name { .. }" blocks, each as often as it has values. */
+/** Protobuf's text format: "name: value" lines and "name { .. }" blocks, which may be repeated. */
 export function readWaymoText(text: string): Findings {
   const root: Node = {};
   const open: Node[] = [root];
@@ -76,7 +76,7 @@ export function readWaymo(root: Node): Findings {
   }
   const lidars = lasers(root).map((each) => posed(found, each, `lidar ${single(each.name) ?? ""}`.trim()));
   if (lidars.length === 1 && eyes.length === 1) found.relate(lidars[0], eyes[0]);
-  return found.done("a calibration of Waymo's dataset");
+  return found;
 }
 
 function posed(found: Findings, each: Node, from: string) {

@@ -1,10 +1,12 @@
 /**
- * The factory's calibration of a ZED, SN12345.conf: both cameras at every size, in sections of an INI file.
+ * The factory calibration of a ZED, SN12345.conf: both cameras at every size, in sections of an .ini file.
  *
- * Depth maps of the ZED belong to its rectified left image. Which rectification the SDK has chosen is not in the file.
+ * Depth maps of the ZED belong to its rectified left image. The SDK's rectification is not in the file.
  */
+import { BROWN_NAMES, FISHEYE_NAMES } from "./cameras.js";
 import { Findings } from "./findings.js";
-import { numberOf } from "./numbers.js";
+import { isNode, numberOf } from "./numbers.js";
+import { readIni } from "./settings.js";
 
 /** Columns and rows by the name of the mode. */
 const SIZES: Record<string, [number, number]> = {
@@ -22,28 +24,30 @@ const SECTION = /^[ \t]*\[(LEFT|RIGHT)_CAM_([A-Z0-9]{1,10})\][ \t]*$/im;
 
 export const isZed = (text: string): boolean => SECTION.test(text);
 
-/** The entries of each section, names in small letters. */
-function sections(text: string): Map<string, Map<string, number>> {
-  const all = new Map<string, Map<string, number>>();
-  let current = new Map<string, number>();
-  for (const line of text.split(/\r?\n/)) {
-    const name = /^\s*\[([^\]]{1,60})\]/.exec(line)?.[1];
-    if (name !== undefined) all.set(name.toUpperCase(), (current = new Map()));
-    const [, key = "", value = ""] = /^\s*(\w{1,30})\s*=\s*([^;#]{1,60})/.exec(line) ?? [];
-    const number = numberOf(value.trim());
-    if (key !== "" && number !== undefined) current.set(key.toLowerCase(), number);
+type Section = Map<string, number>;
+
+/** The numbers of each section; sections by their names in capitals, numbers in small letters. */
+function sections(text: string): Map<string, Section> {
+  const all = new Map<string, Section>();
+  for (const [name, section] of Object.entries(readIni(text))) {
+    if (!isNode(section)) continue;
+    const numbers: Section = new Map();
+    for (const [key, value] of Object.entries(section)) {
+      const number = numberOf(value);
+      if (number !== undefined) numbers.set(key.toLowerCase(), number);
+    }
+    all.set(name.toUpperCase(), numbers);
   }
   return all;
 }
 
-/** Of a section; newer files have one for the lens alone. */
-function lensOf(own: Map<string, number>, shared: Map<string, number> | undefined) {
+/** The lens of a camera; newer files have it in a section that all sizes share. */
+function lensOf(own: Section, shared: Section | undefined) {
   const from = own.has("k1") ? own : (shared ?? own);
-  const values = ["k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"].map((key) => from.get(key) ?? 0);
   const isFisheye = from.has("k4") && !from.has("k5") && !from.has("p1");
   return isFisheye
-    ? { model: "fisheye", distortion: ["k1", "k2", "k3", "k4"].map((key) => from.get(key) ?? 0) }
-    : { distortion: values };
+    ? { model: "fisheye", distortion: FISHEYE_NAMES.map((key) => from.get(key) ?? 0) }
+    : { distortion: BROWN_NAMES.map((key) => from.get(key) ?? 0) };
 }
 
 export function readZed(text: string): Findings {
@@ -67,7 +71,7 @@ export function readZed(text: string): Findings {
   if (all.has("STEREO"))
     found.warn(
       "pose-assumed",
-      "A ZED's depth maps belong to its left camera, so that no pose lies between them; the intrinsics are those of images that are not rectified.",
+      "A ZED's depth maps belong to its left camera, so no pose is between them. The intrinsics are those of images that are not rectified.",
     );
-  return found.done("a ZED's calibration");
+  return found;
 }

@@ -1,9 +1,11 @@
-/** Intrinsics of a Zivid camera: CameraMatrix and Distortion side by side, and the transform that its hand-eye calibration saves. */
-import { Findings, flat, parted } from "./findings.js";
+/** Intrinsics of a Zivid camera, with CameraMatrix beside Distortion, and the transform that its hand-eye calibration saves. */
+import { Findings, flat } from "./findings.js";
 import { isNode, type Node, numberOf } from "./numbers.js";
+import { parted } from "./poses.js";
 
+/** Metres per unit of its translations. */
 const MILLIMETRE = 0.001;
-/** A member by its name in any case, with or without an underscore: YAML and Python write it differently. */
+/** A member by its name in any case, with or without underscores, which YAML and Python write differently. */
 const part = (node: unknown, name: string): unknown =>
   isNode(node) ? Object.entries(node).find(([key]) => key.toLowerCase().replace(/_/g, "") === name)?.[1] : undefined;
 const bodyOf = (root: Node): unknown => part(root, "cameraintrinsics") ?? root;
@@ -22,7 +24,7 @@ export function readZivid(root: Node): Findings {
   const [matrix, lens] = [part(body, "cameramatrix"), part(body, "distortion")];
   const [fx = NaN, fy = NaN, cx = NaN, cy = NaN] = ["fx", "fy", "cx", "cy"].map((key) => numberOf(part(matrix, key)));
   const distortion = ["k1", "k2", "p1", "p2", "k3"].map((key) => numberOf(part(lens, key)) ?? 0);
-  // A Zivid's colours and points come from the same pixels.
+  // The same pixels of a Zivid measure colours and points.
   if (Number.isFinite(fx)) found.camera({ name: "camera", focal: [fx, fy], centre: [cx, cy], distortion }, "both");
   const m = matrixOf(root);
   if (m) {
@@ -34,8 +36,8 @@ export function readZivid(root: Node): Findings {
     );
     found.warn(
       "pose-assumed",
-      "A Zivid's transform is in millimetres and relates its camera to a robot or a board, not two cameras.",
+      "The transform of a Zivid relates its camera to a robot or a board, not two cameras. It was converted from millimetres.",
     );
   }
-  return found.done("a file of Zivid");
+  return found;
 }
