@@ -1,12 +1,12 @@
-/** Matrices that numpy.save wrote: intrinsics of 3x3, motions of 3x4 and 4x4. They are too small for pictures. */
+/** Matrices that numpy.save wrote: intrinsics of 3x3, motions of 3x4 and 4x4. */
 import { BimodalError } from "../../errors.js";
 import { isNpy, readNpy } from "../../npy.js";
 import { isLastRow } from "./poses.js";
 
-/** Bytes of the largest of them with any header. */
+/** Bytes of a file that holds the largest of them, at most. */
 const MOST_BYTES = 1024;
 
-/** The rows as text, as numpy.savetxt writes them; nothing where the array is no such matrix. */
+/** The rows as numpy.savetxt writes them; undefined where the array is not such a matrix. */
 export function matrixText(bytes: Uint8Array): string | undefined {
   if (bytes.length > MOST_BYTES || !isNpy(bytes)) return undefined;
   try {

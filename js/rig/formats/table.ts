@@ -1,32 +1,32 @@
 /**
  * Texts that are tables of numbers: a depth map row by row (CSV, TXT of numpy.savetxt or MATLAB), or a list of points (XYZ, PTS, PTX, ASC).
  *
- * A depth map is told from matrices and trajectories by its size. Limits: a table needs the same number of columns in each row.
+ * Its size distinguishes a depth map from matrices and trajectories. Limits: all rows of a table need the same number of columns.
  */
 import { type BimodalError, badFile } from "../../errors.js";
 import { numberOf } from "./numbers.js";
 import { MOST_SIDE, checkSize } from "./limits.js";
 import type { Picture } from "./picture.js";
 
-/** Matrices and rows of trajectories are smaller than the smallest depth map. */
+/** The smallest depth map, larger than matrices and the rows of trajectories. */
 const [FEWEST_COLUMNS, FEWEST_ROWS] = [24, 18];
-/** Share of its first rows that have to have as many numbers as the first one. */
+/** Share of the first rows that need as many numbers as the first one. */
 const MOSTLY = 0.9;
-/** Lines by which a text is told. */
+/** Lines at the beginning of a text by which it is recognised, at most .. */
 const HEAD = 40;
-/** Characters of them. */
+/** .. and their characters. */
 const HEAD_CHARACTERS = 2 ** 19;
-/** Points of a list, at least: fewer are a matrix or a short trajectory. */
+/** Rows of a list of points, at least; fewer are a matrix or a short trajectory. */
 const FEWEST_POINTS = 20;
-/** x y z, intensity, colours, normals. */
+/** Numbers of a point, at most: x, y, z, intensity, colours, normals. */
 const MOST_OF_POINT = 10;
-/** How far from 1 the length of a quaternion may be. */
+/** Difference of a unit quaternion's length from 1, at most. */
 const SLACK = 0.01;
 
 const isComment = (line: string): boolean => /^\s*(?:[#%]|\/\/|$)/.test(line);
 const isHole = (word: string): boolean => /^[-+]?(?:nan|inf|infinity|none|null|na)?$/i.test(word);
 
-/** What parts the words of a line; with semicolons a comma is that of a decimal. */
+/** The separator of a line's words; between semicolons, a comma is a decimal comma. */
 const separatorOf = (line: string): string => [";", ",", "\t"].find((each) => line.includes(each)) ?? " ";
 
 export function wordsOf(line: string, separator: string): string[] {
@@ -45,15 +45,15 @@ export const isNumbers = (words: string[]): boolean =>
 interface Head {
   rows: string[][];
   separator: string;
-  /** Whether lines end in the separator; an empty last word is no hole then. */
+  /** Whether lines end in the separator, so that an empty last word is not a hole. */
   isTrailing: boolean;
 }
 
-/** The first lines that are no comments, in words. */
+/** The words of the first lines, without comments. */
 export function headOf(bytes: Uint8Array): Head {
   const text = new TextDecoder("latin1").decode(bytes.subarray(0, HEAD_CHARACTERS)).replace(/^ï»¿/, "");
   const lines = text.split(/\r?\n/, HEAD);
-  // What may be cut off within a line says nothing.
+  // The last line may be cut off in the middle.
   if (bytes.length > HEAD_CHARACTERS && lines.length > 1 && lines.length < HEAD) lines.pop();
   const used = lines.filter((line) => !isComment(line));
   const separator = separatorOf(used[1] ?? used[0] ?? "");
@@ -63,25 +63,25 @@ export function headOf(bytes: Uint8Array): Head {
   return { rows: rows.map(ofRow), separator, isTrailing };
 }
 
-/** Whether a text is a table of the size of a depth map: of its first lines, that those are rows of as many numbers. */
+/** Whether a text is a table of the size of a depth map: its first lines are rows with the same number of numbers. */
 export function isTable(bytes: Uint8Array): boolean {
   const { rows } = headOf(bytes);
   // The first row may name the columns.
   const [first, ...others] = rows[0] !== undefined && isNumbers(rows[0]) ? rows : rows.slice(1);
   if (first === undefined || first.length < FEWEST_COLUMNS || first.length > MOST_SIDE + 1) return false;
-  // A damaged row is named when the table is read.
+  // The reader reports a damaged row.
   const alike = others.filter((row) => row.length === first.length && isNumbers(row));
   return rows.length >= FEWEST_ROWS && alike.length >= MOSTLY * others.length;
 }
 
-/** Numbers of a table, at most: 1920x1080 pixels, and the names of rows and columns. */
+/** Numbers of a table, at most: 1920x1080 pixels and the labels of rows and columns. */
 const MOST_CELLS = 2 ** 21;
 const [TAB, NEWLINE, RETURN, SPACE, QUOTE, ZERO, NINE] = [9, 10, 13, 32, 34, 48, 57];
 const [PLUS, COMMA, MINUS, POINT, LOWER_E, UPPER_E] = [43, 44, 45, 46, 101, 69];
 
 /**
- * A decimal number without a text of it, which takes longest; nothing where the bytes are anything else. It is right to more digits than the
- * floats have that are made of it.
+ * A decimal number parsed from its bytes, which is much faster than from a string; undefined where the bytes are anything else. Its rounding
+ * error is below the resolution of the 32-bit floats that it becomes.
  */
 function decimal(bytes: Uint8Array, from: number, to: number, point: number): number | undefined {
   let at = from;
@@ -122,7 +122,7 @@ function cell(bytes: Uint8Array, from: number, to: number, hasCommas: boolean): 
   return value;
 }
 
-/** Gives the places of a line's cells to `put`; how many there are. */
+/** Calls `put` with the start and the end of each cell of a line, and returns the number of cells. */
 function eachCell(bytes: Uint8Array, from: number, to: number, separator: number, put: (a: number, b: number) => void) {
   let count = 0;
   if (separator !== SPACE) {
@@ -147,7 +147,7 @@ function eachCell(bytes: Uint8Array, from: number, to: number, separator: number
   return count;
 }
 
-/** Whether numbers count 0, 1, 2 .., as the names that pandas gives rows and columns. */
+/** Whether numbers count 0, 1, 2 .., as pandas labels rows and columns. */
 function counts(values: ArrayLike<number>, length: number, from = 0, step = 1): boolean {
   for (let at = 0; at < length; at++) if (values[from + step * at] !== at) return false;
   return length > 1;
@@ -161,14 +161,14 @@ interface Cells {
 
 const BOM = [0xef, 0xbb, 0xbf];
 
-/** Whether a line is empty or a comment; tabs alone are a row of holes. */
+/** Whether a line is empty or a comment; a line of tabs in a table separated by tabs is a row of holes. */
 function isLeftOut(bytes: Uint8Array, from: number, to: number, separator: number): boolean {
   let at = from;
   while (at < to && (bytes[at] === SPACE || (bytes[at] === TAB && separator !== TAB))) at++;
   return at >= to || isComment(String.fromCharCode(...bytes.subarray(at, Math.min(at + 2, to))));
 }
 
-/** All cells, row by row; a first row of words is left out. */
+/** All cells, row by row, without a first row of words. */
 function cellsOf(bytes: Uint8Array): Cells {
   const { rows, separator, isTrailing } = headOf(bytes);
   const [code, hasCommas] = [separator.charCodeAt(0), separator === ";"];
@@ -197,7 +197,7 @@ function cellsOf(bytes: Uint8Array): Cells {
   return { values: values.subarray(0, count), width, height };
 }
 
-/** Without the numbers of rows and columns. */
+/** The cells without the labels of rows and columns. */
 function unnamed({ values, width, height }: Cells): Cells {
   const top = counts(values, width) || counts(values, width - 1, 1) ? 1 : 0;
   const left = counts(values, height - top, top * width, width) ? 1 : 0;
@@ -210,14 +210,14 @@ function unnamed({ values, width, height }: Cells): Cells {
   return { values: all, ...kept };
 }
 
-/** A table as a raster of floats; what is empty, NaN or infinite is a hole. */
+/** A table as a raster; empty, NaN and infinite cells are holes. */
 export function readTable(bytes: Uint8Array): Picture {
   const { values, width, height } = unnamed(cellsOf(bytes));
   checkSize(width, height);
   return { width, height, channels: 1, ...levels(values), format: "table", notes: ["a table as text"], warnings: [] };
 }
 
-/** Whole numbers of 16 bits as depth cameras write them, others as floats. */
+/** Integers of 16 bits stay integers, as depth cameras write them; other numbers become floats. */
 function levels(values: Float64Array): Pick<Picture, "data" | "bits"> {
   const isLevel = (value: number) => Number.isNaN(value) || (Number.isInteger(value) && value <= 0xffff);
   if (values.every(isLevel)) return { data: Uint16Array.from(values, (value) => Math.max(0, value || 0)), bits: 16 };
@@ -226,16 +226,14 @@ function levels(values: Float64Array): Pick<Picture, "data" | "bits"> {
 
 const isUnit = (quaternion: number[]): boolean => Math.abs(Math.hypot(...quaternion) - 1) < SLACK;
 
-/** Rows of a trajectory end in a quaternion, of either order. */
+/** Whether each row ends in a unit quaternion, as those of a trajectory do. */
 const isTrajectory = (rows: number[][]): boolean =>
   rows.every((row) => (row.length === 7 || row.length === 8) && isUnit(row.slice(-4)));
 
-/** The error about a list of points as text; nothing where it is none. */
+/** The error about a list of points as text that cannot be read; undefined where a text is not such a list. */
 export function pointList(bytes: Uint8Array): BimodalError | undefined {
   const { rows } = headOf(bytes);
   const single = (row: string[] | undefined) => row?.length === 1 && /^\d+$/.test(row[0] ?? "");
-  const points =
-    "in no rows and columns (unorganised), so that no neighbours are known; save them as an organised cloud (PLY, PCD) or as a depth map";
   if (single(rows[0]) && single(rows[1]) && rows.slice(2, 6).every((row) => row.length === 3))
     return badFile(
       "it is a scan in PTX: points in rows and columns, but in the scanner's axes; save it as an organised PLY or PCD with z forward, or as a depth map",
@@ -253,12 +251,14 @@ export function pointList(bytes: Uint8Array): BimodalError | undefined {
     return undefined;
   const numbers = body.map((row) => row.map((word) => numberOf(word) ?? NaN));
   if (isTrajectory(numbers) || isLog(numbers)) return undefined;
-  return badFile(`it is a list of points as text (${columns} numbers each), ${points}`);
+  return badFile(
+    `it is a list of points as text (${columns} numbers each) in no rows and columns (unorganised), and too short for a range image; save it as an organised cloud (PLY, PCD) or as a depth map`,
+  );
 }
 
-/** Redwood's trajectories: three whole numbers, then a matrix of 4x4. */
+/** Whether rows are those of Redwood's trajectories, three integers and then a 4x4 matrix, or of matrices below each other. */
 const isLog = (rows: number[][]): boolean => rows.some((row) => row.length !== rows[0]?.length) || isMatrices(rows);
-/** Matrices of 4x4 or 3x3 below each other end in 0 0 0 1. */
+/** Whether rows are 4x4 or 3x3 matrices below each other, each ending in 0 .. 0 1. */
 function isMatrices(rows: number[][]): boolean {
   const side = rows[0]?.length ?? 0;
   if (side !== 3 && side !== 4) return false;
