@@ -1,18 +1,18 @@
 /**
- * Which frames a file's only pose relates, where its name alone says it: "depth_to_color.txt", "calib_cam_to_velo.txt", "T_cam_lidar.json".
+ * The frames that a file's only pose relates, by the name of the file: "depth_to_color.txt", "calib_cam_to_velo.txt", "T_cam_lidar.json".
  *
- * Limit: names count where both ends are words for sensors, so that other names mean nothing.
+ * Limit: both ends have to contain a word for a sensor.
  */
 import type { NamedPose } from "../types.js";
 
 const SENSOR =
   /cam|rgb|colou?r|depth|dpt|infra|(?:^|[_-])ir(?:[_-]|$)|tof|lidar|velo|laser|ouster|livox|radar|imu|base|hand|gripper|left|right/i;
-/** What stands around the ends. */
+/** Words before or after the two ends. */
 const AROUND =
   /^(?:calib(?:ration)?|extrinsics?|transform|tf|pose|rt)[_-]+|[_-]+(?:calib(?:ration)?|extrinsics?|transform|tf|pose|rt)$/gi;
 const LONGEST = 100;
 
-/** The ends of the poses that a file of this name holds; nothing where it does not say them. */
+/** The ends of the pose in a file of this name; undefined where the name does not give them. */
 export function endsOf(path: string): { from: string; to: string } | undefined {
   const name = path.replace(/^.*[/\\]/, "").replace(/\.[a-z]{1,5}$/i, "");
   if (name.length > LONGEST) return undefined;
@@ -26,11 +26,11 @@ export function endsOf(path: string): { from: string; to: string } | undefined {
   return from === to ? undefined : { from, to };
 }
 
-/** A pose that names no frames is taken to lead from the depth camera to the colour camera. */
+/** Whether a pose leads from the depth camera to the colour camera, as one without named frames is taken to. */
 const isUsual = ({ from, to }: { from: string; to: string }): boolean =>
   /depth|dpt|infra|tof/i.test(from) && /colou?r|rgb/i.test(to) && !/colou?r|rgb/i.test(from);
 
-/** A file's only pose, if it names no frames, with those of the file's name where they are not the usual ones. */
+/** The poses of a file; a single pose without named frames gets those of the file's name, unless they are the usual ones. */
 export function withEnds(poses: readonly NamedPose[], path: string): NamedPose[] {
   const [only, ...others] = poses;
   const ends = endsOf(path);
