@@ -1,19 +1,19 @@
-/** A raster as a colour image or a mask, and what of it looks like something else. */
+/** A raster as a colour image or a mask, with warnings where it looks like something else. */
 import { hasColour, toColour, toMask } from "../raster.js";
-import { isGrey, type Found } from "./depth.js";
+import { isGrey } from "./depth.js";
 import type { Picture } from "./formats/picture.js";
-import type { RigReading } from "./types.js";
+import type { RigReading, Unnamed } from "./types.js";
 import { warning } from "./warnings.js";
 
 const CHANNELS = ["", "grey", "grey with alpha", "RGB", "RGB with alpha"];
 const stored = ({ width, height, bits, channels, data }: Picture): string =>
   `${width}x${height}, ${bits}-bit${data instanceof Float32Array ? " float" : ""} ${CHANNELS[channels] ?? ""}`;
 
-/** Whether it is what depth cameras write: one channel of more than 8 bits. */
+/** Whether a picture is like those of depth cameras: one channel of more than 8 bits. */
 export const looksLikeDepth = (picture: Picture): boolean =>
   picture.bits > 8 && picture.channels !== 4 && isGrey(picture);
 
-export function pictureColour(picture: Picture): Found<Extract<RigReading, { kind: "colour" }>> {
+export function pictureColour(picture: Picture): Unnamed<Extract<RigReading, { kind: "colour" }>> {
   const image = { ...toColour(picture), ...(picture.transfer && { transfer: picture.transfer }) };
   const warnings = [...picture.warnings];
   if (looksLikeDepth(picture))
@@ -32,7 +32,7 @@ export function pictureColour(picture: Picture): Found<Extract<RigReading, { kin
   };
 }
 
-export function pictureMask(picture: Picture): Found<Extract<RigReading, { kind: "mask" }>> {
+export function pictureMask(picture: Picture): Unnamed<Extract<RigReading, { kind: "mask" }>> {
   const mask = toMask(picture);
   const share = mask.data.reduce((sum, value) => sum + (value > 0 ? 1 : 0), 0) / mask.data.length;
   const warnings = [...picture.warnings];
@@ -47,7 +47,7 @@ export function pictureMask(picture: Picture): Found<Extract<RigReading, { kind:
   };
 }
 
-/** Different levels of a grey picture of whole numbers, the lowest first; nothing where there are more than so many. */
+/** The different levels of a grey picture of integers, the lowest first; undefined for more than `most`. */
 function levelsOf({ data, channels }: Picture, most: number): number[] | undefined {
   const levels = new Set<number>();
   for (let at = 0; at < data.length; at += channels) {
@@ -57,21 +57,21 @@ function levelsOf({ data, channels }: Picture, most: number): number[] | undefin
   return [...levels].sort((a, b) => a - b);
 }
 
-/** Whether a grey picture has two levels only, one of them zero. */
+/** Whether a grey picture has only two levels, one of them zero, and is not a depth map of one distance. */
 export function looksLikeMask(picture: Picture): boolean {
   if (picture.data instanceof Float32Array || !isGrey(picture)) return false;
   const levels = levelsOf(picture, 2);
   const isMask = levels?.length === 2 && levels[0] === 0;
-  // Of 16 bits a wall before nothing may be one, too; masks are as bright as can be, or ones.
+  // A 16-bit depth map of a flat wall has two levels as well; the level of a mask is the largest value, or 1.
   return isMask && (picture.bits <= 8 || levels[1] === 0xffff || levels[1] === 1 || levels[1] === 255);
 }
 
-/** Objects that labels tell apart. */
+/** The largest number of an object's label. */
 const MOST_LABELS = 64;
-/** Pixels of a picture whose few levels say something. */
+/** In a picture of fewer pixels, few different levels do not suggest labels. */
 const FEWEST_PIXELS = 1000;
 
-/** Whether 16 bits hold a few small numbers, as no depth camera's millimetres are. */
+/** Whether a 16-bit picture holds only a few small numbers, which are labels rather than a depth camera's millimetres. */
 export function looksLikeLabels(picture: Picture): boolean {
   if (!(picture.data instanceof Uint16Array) || picture.data.length < FEWEST_PIXELS || !isGrey(picture)) return false;
   const levels = levelsOf(picture, MOST_LABELS);

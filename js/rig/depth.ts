@@ -1,8 +1,8 @@
 /**
- * A raster or a cloud as a depth map in metres: its unit, told, in the file or guessed from the values; what of it is valid, and whether
- * that looks like what a depth camera sees.
+ * A raster or a cloud as a depth map in metres: its unit, given, in the file or guessed from the values; the valid part of it, and whether the
+ * values look like those of a depth camera.
  *
- * Limits: millimetres and fifths of them (TUM) cannot always be told apart by values alone, so that every guess is said.
+ * Limits: values alone do not always tell millimetres from fifths of them (TUM), so that every guess is a warning.
  */
 import { badFile } from "../errors.js";
 import { hasColour, single } from "../raster.js";
@@ -10,85 +10,55 @@ import { checkAxes } from "./axes.js";
 import { decoded } from "./formats/coded.js";
 import type { Cloud, Picture } from "./formats/picture.js";
 import {
+  type Extent,
   FARTHEST,
   NEAREST,
   type Unit,
+  extentOf,
   isThere,
   isVaried,
+  knownUnit,
   metresText,
   nameOf,
   otherUnits,
-  quantile,
   sampled,
   shareOf,
-  told,
   unitOfFloats,
   unitOfIntegers,
 } from "./guess.js";
 import { isOptical, turnedCloud } from "./scan.js";
+import { quantile } from "./statistics.js";
 import { isScattered, looksLikeImage } from "./texture.js";
-import type { ReadOptions, RigReading } from "./types.js";
+import type { DepthReading, ReadOptions, Unnamed } from "./types.js";
 import { type ReaderWarning, warning } from "./warnings.js";
 
-type Depth = Extract<RigReading, { kind: "depth" }>;
-export type Found<T> = Omit<T, "name">;
+type Depth = Unnamed<DepthReading>;
 
-/** More holes than this are worth a word. */
+/** Share of missing pixels from which on there is a warning. */
 const MANY_HOLES = 0.4;
-/** A few stray depths say nothing of the unit: of those beyond the range so many may be. */
+/** Share of the depths that may be out of range without a warning: a few stray depths do not make the unit doubtful. */
 const STRAY = 0.01;
-/** Share of SUN RGB-D's values that are multiples of 8: depths beyond 8.19 m wrap into the low bits. */
+/** Share of SUN RGB-D's values that are multiples of 8; depths beyond 8.19 m wrap into the low bits. */
 const MOSTLY = 0.9;
-/** What a 16-bit sensor says where it is blind. */
+/** A 16-bit sensor's value for a pixel without a measurement. */
 const SATURATED = 0xffff;
-/** Renderers write 1e10 where they saw nothing, and half floats their largest number. */
+/** Renderers write 1e10 where no surface is hit, and half floats their largest number. */
 const BEYOND = 1e9;
 const LARGEST_HALF = 65_504;
-/** Depths nearer than this share of the median are none. */
+/** Depths below this share of the median are holes. */
 const TINY = 1e-4;
-/** The Kinect's 11-bit disparity where it is blind. */
+/** The 11-bit disparity of a Kinect for a pixel without a measurement. */
 const BLIND_DISPARITY = 2047;
 
 const percent = (share: number): string => `${(100 * share).toFixed(1)} %`;
 
-interface Seen {
-  count: number;
-  nearest: number;
-  farthest: number;
+interface Values extends Extent {
+  /** A sample of them, in order. */
+  sample: Float64Array;
 }
 
-/** Of `values[offset + i * step]`. */
-function seen(values: ArrayLike<number>, step = 1, offset = 0): Seen {
-  const found: Seen = { count: 0, nearest: Infinity, farthest: 0 };
-  for (let at = offset; at < values.length; at += step) {
-    const value = values[at] ?? 0;
-    if (!isThere(value)) continue;
-    found.count++;
-    if (value < found.nearest) found.nearest = value;
-    if (value > found.farthest) found.farthest = value;
-  }
-  return found;
-}
-
-interface Judged {
-  says: string;
-  measured: NonNullable<Depth["measured"]>;
-  warnings: ReaderWarning[];
-}
-
-/** What is said of any depth map, and what looks wrong about it. */
-function judged(
-  size: { width: number; height: number },
-  stored: string,
-  values: ArrayLike<number>,
-  unit: Unit,
-  step = 1,
-  offset = 0,
-): Judged {
-  const { count, nearest, farthest } = seen(values, step, offset);
-  const valid = count / (size.width * size.height);
-  const sample = sampled(values, step, offset);
-  const range = `${metresText(nearest * unit.metres)} to ${metresText(farthest * unit.metres)} m`;
+/** What looks wrong about the values of a depth map, whatever it was stored as. */
+function doubts({ sample, ...extent }: Values, unit: Unit, valid: number, range: string): ReaderWarning[] {
   const warnings: ReaderWarning[] = [];
   if (unit.isGuessed)
     warnings.push(
@@ -109,21 +79,44 @@ function judged(
     );
   if (1 - valid > MANY_HOLES)
     warnings.push(warning("many-holes", `${percent(1 - valid)} of the depth map is missing.`, { share: 1 - valid }));
+  return warnings;
+}
+
+/** The reading of a depth map or a cloud; `stored` names how its numbers are stored. */
+function reading(
+  { width, height, notes, warnings }: Pick<Picture, "width" | "height" | "notes" | "warnings">,
+  depth: Depth["depth"],
+  stored: string,
+  values: Values,
+  unit: Unit,
+): Depth {
+  const range: [number, number] = [values.nearest * unit.metres, values.farthest * unit.metres];
+  const valid = values.count / (width * height);
+  const between = `${range.map(metresText).join(" to ")} m`;
+  const says = [`${width}x${height}`, stored, `read as ${unit.says}`, `${percent(valid)} valid`, between, ...notes];
   return {
-    measured: { stored, valid, range: [nearest * unit.metres, farthest * unit.metres] },
-    says: `${size.width}x${size.height}, ${stored}, read as ${unit.says}, ${percent(valid)} valid, ${range}`,
-    warnings,
+    kind: "depth",
+    depth,
+    guessed: unit.isGuessed ? ["unit"] : [],
+    measured: { stored, valid, range },
+    says: says.join(", "),
+    warnings: [...warnings, ...doubts(values, unit, valid, between)],
   };
 }
 
 const nothing = () => badFile("no pixel of it holds a depth: all are zero, negative or not a number");
 
-/** SUN RGB-D turns the bits of its millimetres by three, so that most values are multiples of 8. */
+/** SUN RGB-D rotates the bits of its millimetres by three, so that most values are multiples of 8. */
 const isTurned = (values: Float64Array): boolean =>
   isVaried(values) && shareOf(values, (value) => value % 8 === 0) >= MOSTLY && quantile(values, 0.5) > 1000;
 const turnedBack = (data: Uint16Array): Uint16Array => data.map((value) => (value >> 3) | (value << 13));
+const TURNED: Unit = {
+  metres: 0.001,
+  says: "millimetres with their bits turned by three (SUN RGB-D; guessed)",
+  isGuessed: true,
+};
 
-/** Mean change between neighbours in a row where both are valid; bytes in the wrong order make it a hundredfold. */
+/** Mean change between valid neighbours in a row; bytes in the wrong order make it a hundred times as large. */
 function roughness(data: Uint16Array, width: number, swap: boolean): number {
   let [sum, count] = [0, 0];
   for (let at = 1; at < data.length; at++) {
@@ -136,10 +129,10 @@ function roughness(data: Uint16Array, width: number, swap: boolean): number {
   return count === 0 ? 0 : sum / count;
 }
 
-/** How much smoother the other order of bytes has to be before it is believed. */
+/** The other order of bytes is taken where it is smoother by this factor. */
 const CLEARLY = 8;
 
-/** 16-bit PGM are high byte first; some programs write them the other way round. */
+/** The samples in the right order of bytes: the format stores the high byte first, and some programs write it last. */
 function inOrder(picture: Picture, data: Uint16Array, warnings: ReaderWarning[]): Uint16Array {
   if (picture.format !== "PGM" || picture.bits !== 16) return data;
   if (roughness(data, picture.width, false) <= CLEARLY * roughness(data, picture.width, true)) return data;
@@ -149,119 +142,95 @@ function inOrder(picture: Picture, data: Uint16Array, warnings: ReaderWarning[])
   return data.map((value) => (value >> 8) | ((value & 255) << 8));
 }
 
-function ofIntegers(picture: Picture, integers: Uint8Array | Uint16Array, unit: number | undefined): Found<Depth> {
-  const warnings = [...picture.warnings];
+/** Warnings about integers that are too coarse for depths, or are no depths at all. */
+function lookalikes({ bits, width }: Picture, data: Uint16Array, sample: Float64Array): ReaderWarning[] {
+  const isDisparity =
+    quantile(sample, 1) === BLIND_DISPARITY && shareOf(sample, (value) => value === BLIND_DISPARITY) > STRAY;
+  return [
+    ...(bits <= 8 ? [warning("eight-bits", COARSE)] : []),
+    ...(bits === 16 && looksLikeImage(data, width) ? [warning("files-swapped", IMAGE)] : []),
+    ...(isDisparity ? [warning("raw-disparity", DISPARITY)] : []),
+  ];
+}
+const COARSE =
+  "Depths of 8 bits are too coarse for a calibration, and often a picture of the depth rather than the depth itself.";
+const IMAGE =
+  "Its values change from pixel to pixel as those of an image do (infrared or intensities?), not as depths: is it the depth map?";
+const DISPARITY =
+  "The largest value is 2047, and common: this looks like a Kinect's raw disparity, which is not depth (z = 351.3 / (1092.5 - d) m or so).";
+
+function ofIntegers(picture: Picture, integers: Uint8Array | Uint16Array, given: number | undefined): Depth {
+  const [warnings, notes] = [[...picture.warnings], [...picture.notes]];
   let data = inOrder(picture, integers instanceof Uint16Array ? integers : new Uint16Array(integers), warnings);
-  const notes = [...picture.notes];
   if (data.includes(SATURATED)) {
     data = data.map((value) => (value === SATURATED ? 0 : value));
     notes.push("65535 taken for holes");
   }
   let sample = sampled(data);
   if (sample.length === 0) throw nothing();
-  let found = unit === undefined ? undefined : told(unit);
-  if (found === undefined && picture.unit === undefined && picture.bits > 8 && isTurned(sample)) {
+  const { width, height, bits } = picture;
+  const known = given ?? picture.unit;
+  const isSunRgbd = known === undefined && bits > 8 && isTurned(sample);
+  if (isSunRgbd) {
     data = turnedBack(data);
     sample = sampled(data);
-    found = {
-      metres: 0.001,
-      says: "millimetres with their bits turned by three (SUN RGB-D; guessed)",
-      isGuessed: true,
-    };
   }
-  const isSparse = isScattered(data, picture.width);
-  found ??= picture.unit === undefined ? unitOfIntegers(sample, isSparse) : told(picture.unit);
-  const depth = { width: picture.width, height: picture.height, data, unit: found.metres };
-  const { says, measured, warnings: more } = judged(picture, `${picture.bits}-bit`, data, found);
-  if (picture.bits <= 8)
-    warnings.push(
-      warning(
-        "eight-bits",
-        "Depths of 8 bits are too coarse for a calibration, and often a picture of the depth rather than the depth itself.",
-      ),
-    );
-  if (picture.bits === 16 && looksLikeImage(data, picture.width)) warnings.push(warning("files-swapped", IMAGE));
-  if (quantile(sample, 1) === BLIND_DISPARITY && shareOf(sample, (value) => value === BLIND_DISPARITY) > STRAY)
-    warnings.push(warning("raw-disparity", DISPARITY));
-  return {
-    kind: "depth",
-    depth,
-    guessed: found.isGuessed ? ["unit"] : [],
-    measured,
-    says: [says, ...notes].join(", "),
-    warnings: [...warnings, ...more],
-  };
+  const guessed = () => (isSunRgbd ? TURNED : unitOfIntegers(sample, isScattered(data, width)));
+  const unit = known === undefined ? guessed() : knownUnit(known);
+  warnings.push(...lookalikes(picture, data, sample));
+  const depth = { width, height, data, unit: unit.metres };
+  return reading({ ...picture, notes, warnings }, depth, `${bits}-bit`, { ...extentOf(data), sample }, unit);
 }
-const IMAGE =
-  "Its values change from pixel to pixel as those of an image do (infrared or intensities?), not as depths: is it the depth map?";
-const DISPARITY =
-  "The largest value is 2047, and common: this looks like a Kinect's raw disparity, which is not depth (z = 351.3 / (1092.5 - d) m or so).";
 
-function ofFloats(picture: Picture, stored: Float32Array, unit: number | undefined): Found<Depth> {
+function ofFloats(picture: Picture, stored: Float32Array, given: number | undefined): Depth {
   const beyond = picture.bits === 16 ? LARGEST_HALF : BEYOND;
-  // What a lossy compression leaves of holes.
-  const nothingThere = TINY * quantile(sampled(stored), 0.5);
-  const isHole = (value: number) => value >= beyond || (value > 0 && value < nothingThere);
-  const data = stored.some(isHole) ? stored.map((value) => (isHole(value) ? 0 : value)) : stored;
-  const sample = sampled(data);
+  const before = sampled(stored);
+  // A lossy compression leaves values next to zero in holes.
+  const tiny = TINY * quantile(before, 0.5);
+  const isHole = (value: number) => value >= beyond || (value > 0 && value < tiny);
+  const hasHoles = stored.some(isHole);
+  const data = hasHoles ? stored.map((value) => (isHole(value) ? 0 : value)) : stored;
+  const sample = hasHoles ? sampled(data) : before;
   if (sample.length === 0) throw nothing();
-  const known = unit ?? picture.unit;
-  const found = known === undefined ? unitOfFloats(sample) : told(known);
-  const depth = { width: picture.width, height: picture.height, data, unit: found.metres };
-  const { says, measured, warnings } = judged(picture, `${picture.bits}-bit float`, data, found);
-  return {
-    kind: "depth",
-    depth,
-    guessed: found.isGuessed ? ["unit"] : [],
-    measured,
-    says: [says, ...picture.notes].join(", "),
-    warnings: [...picture.warnings, ...warnings],
-  };
+  const { width, height, bits } = picture;
+  const known = given ?? picture.unit;
+  const unit = known === undefined ? unitOfFloats(sample) : knownUnit(known);
+  const depth = { width, height, data, unit: unit.metres };
+  return reading(picture, depth, `${bits}-bit float`, { ...extentOf(data), sample }, unit);
 }
 
-/** An organised cloud; its points are brought to metres, NaN where there is none. */
-export function cloudDepth(cloud: Cloud, { unit }: ReadOptions): Found<Depth> {
-  const points = cloud.points;
-  if (!isOptical(points)) return turnedCloud(cloud, unit);
-  const behind = sampled(
-    points.map((value) => -value),
-    3,
-    2,
-  ).length;
-  const sample = sampled(points, 3, 2);
-  if (sample.length === 0 && behind === 0) throw nothing();
-  if (behind > sample.length)
+/** An organised cloud; its points are converted to metres in place, NaN where there is none. */
+export function cloudDepth(cloud: Cloud, { unit: given }: ReadOptions): Depth {
+  const { points, width, height } = cloud;
+  if (!isOptical(points)) return turnedCloud(cloud, given);
+  const extent = extentOf(points, 3, 2);
+  let behind = 0;
+  for (let at = 2; at < points.length; at += 3) if (isThere(-(points[at] ?? NaN))) behind++;
+  if (extent.count === 0 && behind === 0) throw nothing();
+  if (behind > extent.count)
     throw badFile("its points lie behind the camera (z is negative): turn them so that z looks forward, y down");
-  const found = unit === undefined ? unitOfFloats(sample) : told(unit);
+  const sample = sampled(points, 3, 2);
+  const unit = given === undefined ? unitOfFloats(sample) : knownUnit(given);
   checkAxes(points, cloud);
-  const { says, measured, warnings } = judged(cloud, "an organised cloud", points, found, 3, 2);
   for (let at = 0; at < points.length; at += 3) {
     const there = isThere(points[at + 2] ?? NaN) && Number.isFinite(points[at]) && Number.isFinite(points[at + 1]);
-    for (let axis = 0; axis < 3; axis++) points[at + axis] = there ? (points[at + axis] ?? NaN) * found.metres : NaN;
+    for (let axis = 0; axis < 3; axis++) points[at + axis] = there ? (points[at + axis] ?? NaN) * unit.metres : NaN;
   }
-  const depth = { width: cloud.width, height: cloud.height, points };
-  return {
-    kind: "depth",
-    depth,
-    guessed: found.isGuessed ? ["unit"] : [],
-    measured,
-    says: [says, ...cloud.notes].join(", "),
-    warnings: [...cloud.warnings, ...warnings],
-  };
+  return reading(cloud, { width, height, points }, "an organised cloud", { ...extent, sample }, unit);
 }
 
-/** The first `kept` of every so many values. */
+/** The first channels of all pixels. */
 const every = (data: Float32Array, channels: number, kept: number): Float32Array =>
   data.filter((_, at) => at % channels < kept);
 
-/** A picture as a depth map; a float one of three channels is a cloud, as .npy has it. */
-export function pictureDepth(picture: Picture, options: ReadOptions): Found<Depth> {
+/** A picture as a depth map; floats of three channels are a cloud, which .npy files hold. */
+export function pictureDepth(picture: Picture, options: ReadOptions): Depth {
   const { data, channels } = picture;
   if (data instanceof Float32Array) {
     const isRepeated = channels === 3 && isGrey(picture);
     if (isRepeated) return ofFloats(picture, every(data, 3, 1), options.unit);
     if (channels === 3) return cloudDepth({ ...picture, points: data }, options);
-    // x, y, z and intensity.
+    // The channels are x, y, z and intensity.
     if (channels === 4) return cloudDepth({ ...picture, points: every(data, 4, 3) }, options);
     if (channels !== 1) throw badFile(`a depth map has 1 channel and a cloud 3, not ${channels}`);
     return ofFloats(picture, data, options.unit);
@@ -270,7 +239,7 @@ export function pictureDepth(picture: Picture, options: ReadOptions): Found<Dept
   if (inside !== undefined) return pictureDepth(inside, options);
   if (hasColour(channels) && !isGrey(picture))
     throw badFile(
-      "it is a colour picture where a depth map was asked for: were the files swapped, or is it a rendering of the depth?",
+      "it is a colour picture where a depth map was expected: were the files swapped, or is it a rendering of the depth?",
     );
   const one = single(picture);
   if (one instanceof Float32Array) throw badFile("a depth map has 1 channel");

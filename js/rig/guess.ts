@@ -1,15 +1,16 @@
-/** The unit of a depth map by its values, where neither the file nor anybody says it; and the statistics that this rests on. */
+/** The unit of a depth map, guessed from its values where neither the file nor the caller gives it, and the statistics of these values. */
+import { quantile } from "./statistics.js";
 
-/** Depths of which a rig's camera is expected to see, metres. */
+/** The depths that the camera of a rig is expected to see, metres. */
 export const NEAREST = 0.1;
 export const FARTHEST = 20;
-/** Half of what indoor sensors with integer depths see lies nearer, metres; beyond it the unit is not the millimetre. */
+/** The median depth that an indoor sensor of integer depths measures, metres, at most; beyond it, the unit is not the millimetre. */
 const USUAL = 8;
-/** .. but a LiDAR's millimetres reach farther. */
+/** .. and a LiDAR outdoors. */
 const USUAL_OUTDOORS = 40;
-/** Share of values that a rule about their last digits has to hold for. */
+/** Share of the values for which a rule about their last digits has to hold. */
 const NEARLY_ALL = 0.99;
-/** Fewer different depths are a scene made by hand, whose round numbers say nothing of the unit. */
+/** A depth map with fewer different values was made by hand, and its round numbers do not show the unit. */
 const MANY_VALUES = 16;
 
 export interface Unit {
@@ -17,7 +18,7 @@ export interface Unit {
   metres: number;
   says: string;
   isGuessed: boolean;
-  /** Whether other units would do nearly as well. */
+  /** Whether the values also fit other units. */
   isOpen?: boolean;
 }
 
@@ -38,8 +39,9 @@ export const isThere = (value: number): boolean => value > 0 && value < 1e12;
 export const metresText = (value: number): string =>
   value < 0.01 || value >= 1000 ? value.toPrecision(3) : value.toFixed(2);
 
-/** The valid values in order, at most so many of them: quantiles need no more. */
+/** Values of a sample, at most: quantiles need no more. */
 const SAMPLE = 65_536;
+/** An evenly spread sample of the valid values among `values[offset + i * step]`, in order. */
 export function sampled(values: ArrayLike<number>, step = 1, offset = 0): Float64Array {
   const count = Math.floor((values.length - offset + step - 1) / step);
   const stride = step * Math.max(1, Math.ceil(count / SAMPLE));
@@ -51,17 +53,35 @@ export function sampled(values: ArrayLike<number>, step = 1, offset = 0): Float6
   return Float64Array.from(found).sort();
 }
 
-export const quantile = (sorted: Float64Array, share: number): number =>
-  sorted[Math.floor(share * (sorted.length - 1))] ?? NaN;
+/** The number and the range of the valid values of a depth map or a cloud. */
+export interface Extent {
+  count: number;
+  nearest: number;
+  farthest: number;
+}
+
+/** The extent of `values[offset + i * step]`. */
+export function extentOf(values: ArrayLike<number>, step = 1, offset = 0): Extent {
+  const found: Extent = { count: 0, nearest: Infinity, farthest: 0 };
+  for (let at = offset; at < values.length; at += step) {
+    const value = values[at] ?? 0;
+    if (!isThere(value)) continue;
+    found.count++;
+    if (value < found.nearest) found.nearest = value;
+    if (value > found.farthest) found.farthest = value;
+  }
+  return found;
+}
+
 export const shareOf = (values: Float64Array, rule: (value: number) => boolean): number =>
   values.reduce((sum, value) => sum + (rule(value) ? 1 : 0), 0) / values.length;
 
 export const isVaried = (values: Float64Array): boolean => new Set(values).size >= MANY_VALUES;
 
-/** Of TUM's files all values are multiples of 5, since they are fives of a Kinect's millimetres. */
+/** Whether all values are multiples of 5, as in TUM's files, whose fifths of a millimetre come from a Kinect's whole millimetres. */
 export const areFives = (values: Float64Array): boolean => shareOf(values, (value) => value % 5 === 0) >= NEARLY_ALL;
 
-/** The unit of whole numbers; scattered ones are those of a LiDAR. */
+/** The unit of integers; valid values that are scattered come from a LiDAR. */
 export function unitOfIntegers(values: Float64Array, isScattered = false): Unit {
   const guessed = (metres: number, why: string, isOpen: boolean): Unit => ({
     metres,
@@ -69,25 +89,25 @@ export function unitOfIntegers(values: Float64Array, isScattered = false): Unit 
     isGuessed: true,
     isOpen,
   });
-  const median = quantile(values, 0.5);
-  if (isVaried(values) && areFives(values) && median > 1000 * NEAREST * 5)
+  const middle = quantile(values, 0.5);
+  if (isVaried(values) && areFives(values) && middle > 1000 * NEAREST * 5)
     return guessed(FIFTHS, ": all values are multiples of 5", false);
-  // KITTI's 256 to the metre or millimetres: nothing in the values tells.
-  if (isScattered && median <= 1000 * USUAL_OUTDOORS) return guessed(0.001, ": scattered, as a LiDAR's", true);
-  if (median > 1000 * USUAL) return guessed(FIFTHS, ": too far for millimetres", true);
+  // Nothing in the values tells KITTI's 256 to the metre from millimetres.
+  if (isScattered && middle <= 1000 * USUAL_OUTDOORS) return guessed(0.001, ": scattered, as a LiDAR's", true);
+  if (middle > 1000 * USUAL) return guessed(FIFTHS, ": too far for millimetres", true);
   return guessed(0.001, "", false);
 }
 
-/** The unit of floats: millimetres if half of them lay beyond what metres would reach. */
+/** The unit of floats: metres, or millimetres where the median depth would be out of range in metres. */
 export function unitOfFloats(values: Float64Array): Unit {
   const metres = quantile(values, 0.5) > FARTHEST ? 0.001 : 1;
   return { metres, says: `${nameOf(metres)} (guessed)`, isGuessed: true };
 }
 
-export const told = (metres: number): Unit => ({ metres, says: nameOf(metres), isGuessed: false });
+export const knownUnit = (metres: number): Unit => ({ metres, says: nameOf(metres), isGuessed: false });
 
-/** What depths from and to would be in other common units, where these would do nearly as well. */
-export function otherUnits({ metres, isOpen }: Unit, nearest: number, farthest: number): string {
+/** The range of depths in the other common units, where the values also fit these. */
+export function otherUnits({ metres, isOpen }: Unit, { nearest, farthest }: Extent): string {
   if (!isOpen) return "";
   const others = [0.001, 0.0001, FIFTHS, 1 / 256].filter((unit) => unit !== metres);
   const texts = others.map(

@@ -1,7 +1,7 @@
 /**
- * Any file of a rig, recognised by its content, as what the check takes.
+ * Reads any file of a rig, recognised by its content, into what the check takes.
  *
- * Whatever is wrong with a file comes out as one BimodalError of code "file" that names the file and the reason.
+ * Every failure is a BimodalError of the code "file" that names the file and the reason.
  */
 import { type Check, object, signal, word, wrong } from "../check.js";
 import { BimodalError, badFile, badNamed, refused } from "../errors.js";
@@ -24,18 +24,17 @@ import type { Cloud, Picture, Points } from "./formats/picture.js";
 import { readPly } from "./formats/ply.js";
 import { pngPicture } from "./formats/png.js";
 import { readPfm, readPnm } from "./formats/pnm.js";
-import { isRawName, pointSize, pointsRefused, rawRefused, readColmapMap, readRaw } from "./formats/raw.js";
+import { isRawName, pointsRefused, rawRefused, readColmapMap, readRaw } from "./formats/raw.js";
 import { pointList, readTable } from "./formats/table.js";
 import { textOf } from "./formats/decode.js";
 import { readTiff } from "./formats/tiff.js";
 import { kindOfPicture, nameWarnings, unitOfName } from "./recognise.js";
 import { pointsDepth } from "./scan.js";
 import { readXyz } from "./formats/xyz.js";
-import type { NamedFile, ReadOptions, RigReading } from "./types.js";
+import type { NamedFile, ReadOptions, RigReading, Unnamed } from "./types.js";
 import { distinct } from "./warnings.js";
 import { inWords } from "./words.js";
 
-type Unnamed<T> = T extends unknown ? Omit<T, "name"> : never;
 type Content = Unnamed<RigReading>;
 
 const PICTURES: Record<
@@ -55,11 +54,11 @@ const PICTURES: Record<
   table: readTable,
 };
 
-/** Whether it is a file of pixels or points, and no text of cameras and poses. */
+/** Whether a file holds pixels or points rather than a text of cameras and poses. */
 export const isRasterFile = (bytes: Uint8Array): boolean => rasterKind(bytes) !== undefined;
-/** Whether it is a text, of whatever. */
+/** Whether a file is a text, or a binary calibration that is read as one. */
 export const isTextFile = (bytes: Uint8Array): boolean => (textOf(bytes) ?? writtenOf(bytes)) !== undefined;
-/** Calibrations in binary as the texts that they might be. */
+/** A binary calibration as the text with the same content. */
 const writtenOf = (bytes: Uint8Array): string | undefined => colmapText(bytes) ?? matrixText(bytes);
 
 function ofPicture(name: string, picture: Picture, options: ReadOptions): Content {
@@ -68,18 +67,18 @@ function ofPicture(name: string, picture: Picture, options: ReadOptions): Conten
   if (kind === "colour") return pictureColour({ ...picture, warnings });
   if (kind === "depth") return pictureDepth({ ...picture, ...unitOfName(name, picture), warnings }, options);
   if (kind === "mask") return pictureMask({ ...picture, warnings });
-  throw badFile(`it is a picture (${picture.format}) where ${kind} were asked for`);
+  throw badFile(`it is a picture (${picture.format}) where ${kind} were expected`);
 }
 
 async function ofCloud(cloud: Cloud | Points, options: ReadOptions): Promise<Content> {
   if (options.as !== undefined && options.as !== "depth")
-    throw badFile(`it is a cloud of points (${cloud.format}) where ${options.as} was asked for`);
+    throw badFile(`it is a cloud of points (${cloud.format}) where ${options.as} was expected`);
   return "scan" in cloud ? pointsDepth(cloud, options) : cloudDepth(cloud, options);
 }
 
 async function ofText(file: string, text: string, { as }: ReadOptions): Promise<Content> {
   if (as === "colour" || as === "depth" || as === "mask")
-    throw badFile(`it is a text where a ${as === "depth" ? "depth map" : `${as} image`} was asked for`);
+    throw badFile(`it is a text where a ${as === "depth" ? "depth map" : `${as} image`} was expected`);
   const { readText } = await import("./formats/text.js");
   const { cameras, poses: found, warnings, format, depthUnit } = await readText(text);
   const poses = inOrder(withEnds(found, file));
@@ -91,29 +90,30 @@ async function ofText(file: string, text: string, { as }: ReadOptions): Promise<
     : { kind: "poses", poses, ...reading };
 }
 
-/** What is neither pixels nor points by its first bytes: raw pixels of a given size, or a text. */
-async function ofOthers(name: string, bytes: Uint8Array, options: ReadOptions): Promise<Content> {
+/** A file without known first bytes: raw pixels of a given size, headerless points, or a text. */
+async function ofOthers({ name, bytes }: NamedFile, isPoints: boolean, options: ReadOptions): Promise<Content> {
   const container = knownContainer(name, bytes);
   if (container !== undefined) throw container;
   if (options.size !== undefined && isRawName(name)) return ofPicture(name, readRaw(bytes, options.size), options);
   const written = writtenOf(bytes);
   if (written !== undefined) return ofText(name, written, options);
-  const isPoints = rasterKind(bytes) === "points";
-  const scan = isPoints || (textOf(bytes) === undefined && /\.bin$/i.test(name)) ? readBin(bytes) : undefined;
-  if (scan) return ofCloud(scan, options);
-  if (isPoints) throw pointsRefused(pointSize(bytes) ?? 4);
-  const list = pointList(bytes) && readXyz(bytes);
-  if (list) return ofCloud(list, options);
   const text = textOf(bytes);
-  const refusal = text === undefined ? (pointList(bytes) ?? rawRefused(bytes)) : (knownText(text) ?? pointList(bytes));
-  if (text === undefined || refusal !== undefined) throw refusal ?? rawRefused(bytes);
+  const scan = isPoints || (text === undefined && /\.bin$/i.test(name)) ? readBin(bytes) : undefined;
+  if (scan !== undefined) return ofCloud(scan, options);
+  if (isPoints) throw pointsRefused();
+  const listRefused = pointList(bytes);
+  const list = listRefused && readXyz(bytes);
+  if (list !== undefined) return ofCloud(list, options);
+  if (text === undefined) throw listRefused ?? rawRefused(bytes);
+  const refusal = knownText(text) ?? listRefused;
+  if (refusal !== undefined) throw refusal;
   return ofText(name, text, options);
 }
 
 async function content({ name, bytes }: NamedFile, options: ReadOptions): Promise<Content> {
   if (bytes.length === 0) throw badFile("it is empty");
   const kind = rasterKind(bytes);
-  // A recording is named before its size is, and a camera's raw photograph is a TIFF of its preview.
+  // Recordings are refused by name, whatever their size; a camera's raw photograph begins as a TIFF.
   const container = bytes.length > MOST_BYTES || kind === "tiff" ? knownContainer(name, bytes) : undefined;
   if (container !== undefined) throw container;
   if (bytes.length > MOST_BYTES)
@@ -125,22 +125,22 @@ async function content({ name, bytes }: NamedFile, options: ReadOptions): Promis
   if (kind === "ply") return ofCloud(readPly(bytes), options);
   if (kind === "pcd") return ofCloud(readPcd(bytes), options);
   if (kind === "las") return ofCloud(readLas(bytes), options);
-  if (kind === undefined || kind === "points") return ofOthers(name, bytes, options);
+  if (kind === undefined || kind === "points") return ofOthers({ name, bytes }, kind === "points", options);
   const picture = await PICTURES[kind](bytes, options);
   const { scan, format, notes, warnings } = picture;
   if (scan) return ofCloud({ format, scan, isMetric: false, notes, warnings }, options);
-  // The array that was taken out of an archive has a name of its own.
+  // An array from an archive goes by its own name.
   return ofPicture(picture.name ?? name, picture, options);
 }
 
 function reasonOf(error: unknown): string {
   if (error instanceof BimodalError) return error.message;
-  // Readers look at bytes through views that refuse what lies beyond their end.
+  // A DataView throws a RangeError for an offset beyond its end.
   if (error instanceof RangeError) return "it is cut off or damaged: it points beyond its own end";
   return `it is damaged or cut off (${error instanceof Error ? error.message : String(error)})`;
 }
 
-/** The error with the file's name in it. */
+/** The error with the file's name added. */
 function named(name: string, error: unknown): BimodalError {
   if (error instanceof BimodalError && error.code !== "file") return error;
   const reason = reasonOf(error);
@@ -169,14 +169,10 @@ const checkOptions = object({
   signal,
 });
 
-function checked(file: NamedFile, options: ReadOptions): void {
+/** Reads one file. Guesses and doubts are in `warnings`. */
+export async function readRigFile(file: NamedFile, options: ReadOptions = {}): Promise<RigReading> {
   checkNamed(file, "file");
   checkOptions(options, "options");
-}
-
-/** Reads one file. What was guessed, or looks wrong, is in `warnings`. */
-export async function readRigFile(file: NamedFile, options: ReadOptions = {}): Promise<RigReading> {
-  checked(file, options);
   options.signal?.throwIfAborted();
   try {
     return { name: file.name, ...(await content(file, options)) };

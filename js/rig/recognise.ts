@@ -1,8 +1,8 @@
-/** What a picture is where nobody said: by its content, and where that would do for several, by its name. */
+/** Recognises what a picture holds, by its content, and by its name where the content is ambiguous. */
 import { badFile } from "../errors.js";
 import { looksLikeDepth, looksLikeLabels, looksLikeMask } from "./colour.js";
 import { isGrey } from "./depth.js";
-import { decoded } from "./formats/coded.js";
+import { isCoded } from "./formats/coded.js";
 import type { Picture } from "./formats/picture.js";
 import { CONTENTS, type Other, type Role, isAlongRays, isKittiDepth, isOther, roleOf } from "./roles.js";
 import type { ReadOptions } from "./types.js";
@@ -13,10 +13,10 @@ type Kind = "colour" | "depth" | "mask";
 const isColourful = (picture: Picture): boolean => picture.channels >= 3 && !isGrey(picture);
 const isDepthRole = (role: Role | undefined): boolean => role === "depth" || role === "cloud";
 
-/** Shares of the pixels of a cloud: half of a view lies left of its middle and half above it, and nothing behind. */
+/** Shares of a cloud's points to the left and above the optical axis, at least, and behind the camera, at most. */
 const [ASIDE, BEHIND] = [0.1, 0.02];
 
-/** Whether three channels of floats, or four with an intensity, are the points of a cloud rather than colours, which are not below zero. */
+/** Whether channels of floats are the points of a cloud, with an intensity or without, rather than colours, which are never negative. */
 function arePoints({ data, channels }: Picture): boolean {
   const below = [0, 0, 0];
   let count = 0;
@@ -29,7 +29,7 @@ function arePoints({ data, channels }: Picture): boolean {
   return x > ASIDE * count && y > ASIDE * count && z < BEHIND * count;
 }
 
-/** Three or four channels of floats: a cloud, a depth map that a renderer repeated as grey, or colours. */
+/** Three or four channels of floats are a cloud, a depth map that a renderer repeated in all channels, or colours. */
 function kindOfFloats(picture: Picture, role: Role | undefined): Kind {
   const { data, format } = picture;
   if (role === "cloud" || arePoints(picture)) return "depth";
@@ -41,56 +41,56 @@ function kindOfFloats(picture: Picture, role: Role | undefined): Kind {
 const refusal = (role: Other) =>
   badFile(
     role === "disparity"
-      ? "its name says that it holds disparities or inverse depths, which are no depths: compute z = focal length * baseline / (disparity + doffs) and save that. Give the unit if it holds depths"
-      : `its name says that it holds ${CONTENTS[role]}: that is neither a colour image nor a depth map nor a mask. Say what to read it as if it is`,
+      ? "its name says that it holds disparities or inverse depths rather than depths: compute z = focal length * baseline / (disparity + doffs) and save that. Give the unit if it holds depths"
+      : `its name says that it holds ${CONTENTS[role]}: that is neither a colour image nor a depth map nor a mask. If it is one, give the kind to read it as`,
   );
 
-/** By the content where that is clear, else by the name. */
+/** The kind of a picture, by its content where that is clear, else by its name. */
 export function kindOfPicture(name: string, picture: Picture): Kind {
   const role = roleOf(name);
-  // A drawn mask may have soft edges.
+  // A mask that was drawn by hand may have soft edges.
   if (role !== "confidence" && looksLikeMask(picture)) return "mask";
   if (role === "mask" && picture.bits === 8 && isGrey(picture)) return "mask";
   const isSeveral = picture.data instanceof Float32Array && picture.channels >= 3;
   if (isSeveral && role !== "normals") return kindOfFloats(picture, role);
-  if (isColourful(picture)) return isDepthRole(role) && decoded(picture) !== undefined ? "depth" : "colour";
+  if (isColourful(picture)) return isDepthRole(role) && isCoded(picture) ? "depth" : "colour";
   if (isDepthRole(role)) return "depth";
   if (role === "colour" || role === "infrared" || role === "rendering") return "colour";
   if (isOther(role)) throw refusal(role);
   if (picture.format === "COLMAP" || picture.format === "table" || picture.format === "raw") return "depth";
   if (looksLikeLabels(picture))
     throw badFile(
-      "its few, small whole numbers are labels of objects rather than depths. Say what to read it as if it is a depth map",
+      "its few small integers are labels of objects rather than depths. If it is a depth map, give that as the kind to read it as",
     );
   return looksLikeDepth(picture) ? "depth" : "colour";
 }
 
-/** What a name says against what the file is read as; a disparity map is never taken for depths unless the unit is given. */
+/** Warnings where a file's name contradicts the kind it is read as; a disparity map is refused as a depth map unless the unit is given. */
 export function nameWarnings(name: string, picture: Picture, kind: string, { unit }: ReadOptions): ReaderWarning[] {
   const role = roleOf(name);
   if (kind === "depth" && isOther(role)) {
     if (role === "disparity" && unit === undefined) throw refusal(role);
-    return [warning("files-swapped", `Its name says that it holds ${CONTENTS[role]}, and it is read as a depth map.`)];
+    return [warning("files-swapped", `Its name says that it holds ${CONTENTS[role]}, but it was read as a depth map.`)];
   }
   if (kind === "depth" && isAlongRays(name))
     return [
       warning(
         "files-swapped",
-        "Its name says that it holds distances along the rays, which are longer than depths (along z) beside the middle of the picture: divide each by the length of its ray at z = 1.",
+        "Its name says that it holds distances along the rays, which exceed depths (along z) away from the middle of the picture: divide each by the length of its ray at z = 1.",
       ),
     ];
   if (kind === "colour" && role === "depth" && isColourful(picture))
     return [
       warning(
         "files-swapped",
-        "Its name says depth, but it is a coloured picture: a rendering of the depth (a colour map), or depths coded in a way that is not known here? It is read as a colour image.",
+        "Its name says depth, but it is a coloured picture: a rendering of the depth (a colour map), or depths in an unknown code? It was read as a colour image.",
       ),
     ];
   return [];
 }
 
-/** The unit that a file's name gives away. */
+/** The unit of KITTI's depth maps, which are recognised by their names. */
 export const unitOfName = (name: string, picture: Picture): { unit?: number; notes?: string[] } =>
   isKittiDepth(name) && picture.data instanceof Uint16Array && picture.unit === undefined
-    ? { unit: 1 / 256, notes: [...picture.notes, "by its name KITTI's"] }
+    ? { unit: 1 / 256, notes: [...picture.notes, "KITTI's by its name"] }
     : {};

@@ -1,23 +1,22 @@
 /**
- * Points in no rows and columns, and clouds whose z is not forward, as depth maps in metres: LiDARs, and clouds of mapping tools.
+ * Unorganised points and clouds whose z is not forward as depth maps in metres: those of LiDARs and of mapping tools.
  *
- * Points keep their frame: extrinsics have to be those of that very frame, x forward and z up for most LiDARs.
+ * Points keep their frame, in which x is forward and z up for most LiDARs; extrinsics have to be those of this frame.
  */
 import { badFile } from "../errors.js";
-import { meanDirection } from "./lidar/frame.js";
-import type { RangeImage, Scan, View } from "./lidar/index.js";
-import { rangeOf } from "./lidar/scan.js";
 import type { Cloud, Points } from "./formats/picture.js";
-import type { ReadOptions, RigReading } from "./types.js";
+import { extentOf, isThere, sampled } from "./guess.js";
+import { facesOneWay, meanDirection } from "./lidar/frame.js";
+import type { RangeImage, Scan } from "./lidar/index.js";
+import { rangeOf } from "./lidar/scan.js";
+import { quantile } from "./statistics.js";
+import type { DepthReading, ReadOptions, Unnamed } from "./types.js";
 import { type ReaderWarning, warning } from "./warnings.js";
 
-type Depth = Extract<RigReading, { kind: "depth" }>;
-type Found<T> = Omit<T, "name">;
+type Depth = Unnamed<DepthReading>;
 
-/** Half of the points lying farther away than this, metres, the unit is the millimetre: no LiDAR sees so far. */
+/** The median distance of a LiDAR's points, metres, at most; beyond it, the unit is the millimetre. */
 const FARTHEST = 200;
-/** Directions whose mean is shorter look all around. */
-const ALL_AROUND = 0.5;
 const HOW: Record<RangeImage["how"], string> = {
   ring: "by the file's rings",
   order: "by the turns in the order of its points",
@@ -25,36 +24,30 @@ const HOW: Record<RangeImage["how"], string> = {
   sphere: "by a z-buffer over the sphere",
 };
 
-const isThere = (range: number): boolean => range > 0 && range < 1e12;
-
-/** Distances of the points that are there, in order. */
+/** The distance of each point from the origin. */
 function ranges(points: Float32Array): Float64Array {
   const found = new Float64Array(points.length / 3);
-  let count = 0;
-  for (let at = 0; at < points.length; at += 3) {
-    const range = rangeOf(points, at);
-    if (isThere(range)) found[count++] = range;
-  }
-  return found.slice(0, count).sort();
+  for (let point = 0; point < found.length; point++) found[point] = rangeOf(points, 3 * point);
+  return found;
 }
 
-/** Whether z looks forward, as a depth camera's does: what is not seen all around, and mostly along z, or against it. */
+/** Whether z is forward, as in a depth camera's frame: the points lie to one side, and along z more than along x and y. */
 export function isOptical(points: Float32Array): boolean {
-  const [x, y, z] = meanDirection(points);
-  const length = Math.hypot(x, y, z);
-  if (length === 0) return true;
-  return length > ALL_AROUND && Math.abs(z) > Math.max(Math.abs(x), Math.abs(y));
+  const mean = meanDirection(points);
+  const [x, y, z] = mean;
+  if (x === 0 && y === 0 && z === 0) return true;
+  return facesOneWay(mean) && Math.abs(z) > Math.max(Math.abs(x), Math.abs(y));
 }
 
-/** Units of the file from the origin, and the spread of distances as a share of them, from which on points are those of a map. */
+/** The median distance, units of the file, beyond which points have the coordinates of a map if their distances spread by less than this share. */
 const [FAR_OFF, NARROWLY] = [10_000, 0.05];
 
-/** Eastings and northings, or a mesh far off: a cloud that no sensor at its origin has measured. */
+/** Throws for eastings and northings, or a mesh far from the origin: no sensor at the origin has measured such a cloud. */
 function checkSensor(sorted: Float64Array): void {
-  const at = (share: number) => sorted[Math.floor(share * (sorted.length - 1))] ?? 0;
+  const at = (share: number) => quantile(sorted, share);
   if (at(0.5) > FAR_OFF && at(0.99) - at(0.01) < NARROWLY * at(0.5))
     throw badFile(
-      `its points lie ${at(0.5).toPrecision(3)} from the origin and close together, as in the coordinates of a map, in which no sensor is; move them into the frame of the sensor that extrinsics are given for`,
+      `its points lie ${at(0.5).toPrecision(3)} from the origin and close together, as in the coordinates of a map rather than of a sensor; move them into the frame of the sensor that the extrinsics are for`,
     );
 }
 
@@ -63,27 +56,33 @@ interface Unit {
   warnings: ReaderWarning[];
 }
 
-function unitOf(sorted: Float64Array, isMetric: boolean, told: number | undefined): Unit {
-  if (told !== undefined) return { metres: told, warnings: [] };
-  const metres = (sorted[sorted.length >> 1] ?? 0) > FARTHEST ? 0.001 : 1;
+function unitOf(sorted: Float64Array, isMetric: boolean, given: number | undefined): Unit {
+  if (given !== undefined) return { metres: given, warnings: [] };
+  const metres = quantile(sorted, 0.5) > FARTHEST ? 0.001 : 1;
   if (isMetric && metres === 1) return { metres, warnings: [] };
   const words = `The file does not give its unit. Its points were read as ${metres === 1 ? "metres" : "millimetres"}; give the unit if that is wrong.`;
   return { metres, warnings: [warning("unit-guessed", words, { unit: metres })] };
+}
+
+interface Size {
+  width: number;
+  height: number;
 }
 
 interface Seen {
   format: string;
   says: string;
   unit: Unit;
-  sorted: Float64Array;
   notes: string[];
   warnings: ReaderWarning[];
 }
 
-/** The reading of points in metres. */
-function reading(depth: Depth["depth"], { format, says, unit, sorted, notes, warnings }: Seen): Found<Depth> {
-  const valid = sorted.length / (depth.width * depth.height);
-  const range: [number, number] = [(sorted[0] ?? 0) * unit.metres, (sorted.at(-1) ?? 0) * unit.metres];
+/** The reading of a depth map of points in metres. */
+function reading(size: Size, points: Float32Array, { format, says, unit, notes, warnings }: Seen): Depth {
+  const depth = { width: size.width, height: size.height, points };
+  const { count, nearest, farthest } = extentOf(ranges(points));
+  const valid = count / (size.width * size.height);
+  const range: [number, number] = [nearest, farthest];
   return {
     kind: "depth",
     depth,
@@ -100,55 +99,45 @@ function reading(depth: Depth["depth"], { format, says, unit, sorted, notes, war
 }
 
 /** An organised cloud whose z is not forward. */
-export function turnedCloud(cloud: Cloud, told: number | undefined): Found<Depth> {
+export function turnedCloud(cloud: Cloud, given: number | undefined): Depth {
   const { points, width, height, notes } = cloud;
-  const sorted = ranges(points);
-  const unit = unitOf(sorted, false, told);
+  const unit = unitOf(sampled(ranges(points)), false, given);
   for (let at = 0; at < points.length; at += 3) {
     const there = isThere(rangeOf(points, at));
     for (let axis = 0; axis < 3; axis++) points[at + axis] = there ? (points[at + axis] ?? NaN) * unit.metres : NaN;
   }
   const warnings = [...cloud.warnings, warning("lidar-axes", AXES)];
   const says = `${width}x${height}, an organised cloud with the axes of a LiDAR`;
-  return reading({ width, height, points }, { format: "an organised cloud", says, unit, sorted, notes, warnings });
+  return reading(cloud, points, { format: "an organised cloud", says, unit, notes, warnings });
 }
 const AXES =
-  "The cloud's axes are not those of a camera: z is not forward, as with a LiDAR (x forward, z up). Its points were kept as they are, so that extrinsics have to be those of this frame.";
+  "The cloud's axes are not those of a camera: z is not forward, as with a LiDAR (x forward, z up). The points keep these axes, so that extrinsics have to be those of this frame.";
 
-/** Time stamps that differ: all points count as measured at one moment. */
+/** A warning where the points were measured at different times. */
 function timed({ times }: Scan): ReaderWarning[] {
   if (times === undefined) return [];
-  const [least, most] = times.reduce(
-    ([low, high], time) => [Math.min(low, time), Math.max(high, time)],
-    [Infinity, -Infinity],
-  );
+  let [least, most] = [Infinity, -Infinity];
+  for (const time of times) [least, most] = [Math.min(least, time), Math.max(most, time)];
   if (!(most > least)) return [];
   const words =
-    "Each of its points has a time of its own, and all are taken for one moment: what moved meanwhile, the rig included, is bent. Take frames that stand still, or undo the motion first.";
+    "Its points were measured at different times, and are taken for one moment: where the rig or the scene moves, the cloud is distorted. Take frames in which both stand still, or correct the cloud for the motion first.";
   return [warning("point-times", words, { span: most - least })];
 }
 
-/** The range image of a scan in metres as a depth map; of what a camera may see, where one is given. */
-export async function scanDepth(scan: Scan, view?: View): Promise<{ depth: Depth["depth"]; image: RangeImage }> {
+/** Unorganised points, sorted into a range image. */
+export async function pointsDepth(cloud: Points, { unit: given }: ReadOptions): Promise<Depth> {
+  const { scan, format } = cloud;
+  const sorted = sampled(ranges(scan.points));
+  checkSensor(sorted);
+  const unit = unitOf(sorted, cloud.isMetric, given);
+  if (unit.metres !== 1) scan.points = scan.points.map((value) => value * unit.metres);
   const { rangeImage } = await import("./lidar/index.js");
-  const image = rangeImage(scan, view);
+  const image = rangeImage(scan);
   if (image === undefined)
     throw badFile("it holds no point that a sensor may have measured: all are at the origin, or none is a number");
-  const { width, height, points } = image;
-  return { depth: { width, height, points }, image };
-}
-
-/** Points in no rows and columns, sorted into a range image. */
-export async function pointsDepth(cloud: Points, { unit: told }: ReadOptions): Promise<Found<Depth>> {
-  const { scan, format } = cloud;
-  const sorted = ranges(scan.points);
-  checkSensor(sorted);
-  const unit = unitOf(sorted, cloud.isMetric, told);
-  if (unit.metres !== 1) scan.points = scan.points.map((value) => value * unit.metres);
-  const { depth, image } = await scanDepth(scan);
   const size = `${image.width}x${image.height}`;
   const count = scan.points.length / 3;
-  const words = `Its ${count} points are in no rows and columns (unorganised), as those of a LiDAR are; they were sorted into a range image of ${size} ${HOW[image.how]}, in the cloud's own axes.`;
+  const words = `Its ${count} points are not in rows and columns (unorganised), as with a LiDAR; they were sorted into a range image of ${size} ${HOW[image.how]}, in the cloud's own axes.`;
   const warnings = [
     ...cloud.warnings,
     warning("points-sorted", words, { points: count, rows: image.height }),
@@ -156,9 +145,5 @@ export async function pointsDepth(cloud: Points, { unit: told }: ReadOptions): P
   ];
   const notes = [...(image.hidden > 0 ? [`${image.hidden} hidden by others left out`] : []), ...cloud.notes];
   const says = `${count} points (${format}), sorted into ${size} ${HOW[image.how]}`;
-  const kept = ranges(depth.points ?? new Float32Array());
-  return {
-    ...reading(depth, { format: "points", says, unit: { ...unit, metres: 1 }, sorted: kept, notes, warnings }),
-    scan,
-  };
+  return { ...reading(image, image.points, { format: "points", says, unit, notes, warnings }), scan };
 }

@@ -7,7 +7,7 @@ export type { CheckFrame, Mask, Pinhole, Pose, ReaderWarning, Scan };
 
 /** A file as it was dropped or read; the name may hold a path, "depth/0001.png". */
 export interface NamedFile {
-  /** Name or path; readers tell depth from colour by it where the content does not. */
+  /** Name or path; it tells depth from colour where the content does not. */
   name: string;
   /** The whole content. */
   bytes: Uint8Array;
@@ -27,31 +27,31 @@ export interface NamedPose {
 
 /** A camera as a file names it. */
 export interface NamedCamera {
-  /** The camera's name in its file, or the file's. */
+  /** The camera's name in its file, or the name of the file. */
   name?: string;
   /** Its intrinsics, pixels. */
   camera: Pinhole;
-  /** Columns of its pictures, where the file says so. */
+  /** Columns of its pictures, where the file gives them. */
   width?: number;
-  /** Rows of its pictures, where the file says so. */
+  /** Rows of its pictures, where the file gives them. */
   height?: number;
-  /** Which pictures it took, where the file says so; "both" where depth maps are registered to its colour images. */
+  /** The pictures that it took, where the file says so; "both" where depth maps are registered to its colour images. */
   takes?: "colour" | "depth" | "both";
 }
 
-/** What was read of a file, in words. */
+/** A description of what was read from a file. */
 export interface Reading {
-  /** Of the file. */
+  /** The name of the file. */
   name: string;
   /** What was read, in plain words: "640x480, 16-bit, read as millimetres, 92.8 % valid, 1.39 to 6.69 m". */
   says: string;
   /** What was guessed or looks wrong. */
   warnings: ReaderWarning[];
-  /** Whether a picture is stored without colours. */
+  /** Whether a picture is stored without colour channels. */
   isGrey?: boolean;
-  /** Of a depth map or cloud. */
+  /** Figures of a depth map or cloud. */
   measured?: {
-    /** How its numbers are stored: "16-bit". */
+    /** The storage of its numbers: "16-bit". */
     stored: string;
     /** Share of valid pixels, 0 to 1. */
     valid: number;
@@ -60,23 +60,23 @@ export interface Reading {
   };
 }
 
-/** What a file may hold. `guessed` names what of a depth map is not in its file and was inferred from its values. */
+/** What a file holds. */
 export type RigReading = Reading &
   (
     | {
         /** What the file holds. */
         kind: "colour";
-        /** Without a camera. */
+        /** The image, without a camera. */
         image: CheckFrame["image"];
       }
     | {
         /** What the file holds. */
         kind: "depth";
-        /** With its unit. */
+        /** The depth map, with its unit. */
         depth: CheckFrame["depth"];
-        /** Members that are not in the file and were guessed from its values. */
+        /** Members of the depth map that the file does not give and that were guessed from its values. */
         guessed: "unit"[];
-        /** The points as the file has them, metres, where they are in no rows and columns and `depth` is made of them. */
+        /** The unorganised points of the file, metres, where `depth` was made from them. */
         scan?: Scan;
       }
     | {
@@ -92,7 +92,7 @@ export type RigReading = Reading &
         cameras: NamedCamera[];
         /** In the order of the file; those between a depth and a colour camera first. */
         poses: NamedPose[];
-        /** Metres per stored unit of the depth maps beside it, where the file says it. */
+        /** Metres per stored unit of the depth maps beside the file, where the file gives it. */
         depthUnit?: number;
       }
     | {
@@ -103,27 +103,32 @@ export type RigReading = Reading &
       }
   );
 
+export type DepthReading = Extract<RigReading, { kind: "depth" }>;
+
+/** A reading before the name of its file is added. */
+export type Unnamed<T> = T extends unknown ? Omit<T, "name"> : never;
+
 /** How `readRigFile` reads. */
 export interface ReadOptions {
-  /** What the file is wanted for; without it the content decides. */
+  /** The kind of reading that the caller wants; by default the content decides. */
   as?: RigReading["kind"];
-  /** Metres per stored unit of a depth map or cloud; without it the values decide. */
+  /** Metres per stored unit of a depth map or cloud; by default the values decide. */
   unit?: number;
-  /** Width and height of raw pixels, of which no header says them (.raw, .bin). */
+  /** Width and height of raw pixels (.raw, .bin), which have no header. */
   size?: readonly [width: number, height: number];
-  /** Breaks the reading off; the promise is rejected with its reason. */
+  /** Stops the reading; the promise is rejected with the signal's reason. */
   signal?: AbortSignal;
 }
 
-/** A folder of frames. The cameras are those of the files, shared by all frames. */
+/** What was read from a folder of frames. */
 export interface RigFolder {
-  /** Pairs with the cameras that were found for them. */
+  /** Pairs of an image and a depth map, with the cameras that were found for them. */
   frames: CheckFrame[];
   /** All cameras of the folder's files. */
   cameras: NamedCamera[];
   /** Poses that relate two cameras. */
   poses: NamedPose[];
-  /** What was read of each file, in the folder's order. */
+  /** What was read from each file, pictures first. */
   readings: Reading[];
   /** What was guessed, looks wrong or was left out. */
   warnings: ReaderWarning[];

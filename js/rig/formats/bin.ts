@@ -1,32 +1,33 @@
 /**
- * Scans without a header, as KITTI (x y z reflectance) and nuScenes (x y z intensity ring) have them: floats, point after point.
+ * Scans without a header, as KITTI (x y z reflectance) and nuScenes (x y z intensity ring) store them: floats, point after point.
  *
- * How many floats a point has is not in the file. Of the lengths that divide the file the one whose points are places, each near the one
- * before it, is taken; at another length coordinates change places from point to point.
+ * The file does not give the number of floats per point. Each number that divides the length of the file is tried, and the one at which
+ * consecutive points lie nearest to each other is taken; at a wrong number, coordinates are mixed up.
  */
-import { channelOf, FEWEST_POINTS } from "./channels.js";
+import { median } from "../statistics.js";
+import { FEWEST_POINTS, channelOf, columnOf, pointsOf } from "./channels.js";
 import { MOST_POINTS } from "./grid.js";
 import type { Points } from "./picture.js";
 
-/** Floats of a point, and what the fourth and further ones are. */
+/** Floats per point, the channels from the fourth on, and a name. */
 const LAYOUTS: [floats: number, others: string[], of: string][] = [
   [4, ["reflectance"], "KITTI"],
   [5, ["intensity", "ring"], "nuScenes"],
   [3, [], "x y z"],
   [6, [], "x y z and three more"],
 ];
-/** Metres beyond which no LiDAR sees. */
+/** Coordinates of a LiDAR's points, metres, at most. */
 const FARTHEST = 500;
-/** Nearer to zero a float is no coordinate, but bits of something else. */
+/** A smaller float other than zero is no coordinate but the bits of another type. */
 const LEAST = 1e-6;
-/** Share of points that have to be places. */
+/** Share of points whose coordinates have to be plausible. */
 const NEARLY_ALL = 0.99;
-/** .. and that lie to the right, behind or below, so that a coordinate is negative: depths never are. */
+/** Share of points with a negative coordinate, at least; depths are never negative. */
 const LEAST_NEGATIVE = 0.1;
-/** Points that are looked at. */
+/** Points that are examined, at most. */
 const LOOKED_AT = 20_000;
 
-/** Usual distance from point to point over the usual range; nothing where the numbers are no places. */
+/** Median distance from point to point over the median range; undefined where the numbers are not coordinates. */
 function unevenness(values: Float32Array, floats: number): number | undefined {
   const count = Math.min(LOOKED_AT, values.length / floats);
   const isPlace = (value = NaN) => value === 0 || (Math.abs(value) > LEAST && Math.abs(value) < FARTHEST);
@@ -42,17 +43,16 @@ function unevenness(values: Float32Array, floats: number): number | undefined {
     if (point > 0) steps.push(Math.hypot(x - a, y - b, z - c));
   }
   if (places < NEARLY_ALL * count || negative < LEAST_NEGATIVE * count) return undefined;
-  const usual = (all: number[]) => all.sort((a, b) => a - b)[all.length >> 1] ?? 0;
-  const range = usual(ranges);
-  return range > 0.1 ? usual(steps) / range : undefined;
+  const range = median(ranges);
+  return range > 0.1 ? median(steps) / range : undefined;
 }
 
-/** Whole numbers of few different values: the lasers of a scanner. */
+/** Whether values are the numbers of a scanner's lasers: small integers, more than one. */
 function isRing(values: Float32Array): boolean {
   return values.every((value) => Number.isInteger(value) && value >= 0 && value < 512) && new Set(values).size > 1;
 }
 
-/** The scan in a file of nothing but floats; nothing where its numbers are no points. */
+/** The scan in a file of nothing but floats; undefined where these are no points. */
 export function readBin(bytes: Uint8Array): Points | undefined {
   if (bytes.length % 4 !== 0 || bytes.length > 24 * MOST_POINTS) return undefined;
   const values = new Float32Array(bytes.slice().buffer);
@@ -64,16 +64,14 @@ export function readBin(bytes: Uint8Array): Points | undefined {
   const best = fitting.sort((a, b) => a.rough - b.rough)[0];
   if (best === undefined) return undefined;
   const { floats, others, of } = best;
-  const column = (index: number) =>
-    Float32Array.from({ length: values.length / floats }, (_, point) => values[floats * point + index] ?? NaN);
-  const points = new Float32Array((3 * values.length) / floats);
-  for (let point = 0; point < points.length / 3; point++)
-    points.set(values.subarray(floats * point, floats * point + 3), 3 * point);
-  const at = (channel: string) => others.findIndex((other) => channelOf(other) === channel);
-  const ring = at("ring") < 0 ? undefined : column(3 + at("ring"));
+  const channel = (wanted: string) => {
+    const at = others.findIndex((other) => channelOf(other) === wanted);
+    return at < 0 ? undefined : columnOf(values, floats, 3 + at);
+  };
+  const [intensity, ring] = [channel("intensity"), channel("ring")];
   const scan = {
-    points,
-    ...(at("intensity") >= 0 && { intensity: column(3 + at("intensity")) }),
+    points: pointsOf(values, floats),
+    ...(intensity && { intensity }),
     ...(ring && isRing(ring) && { ring }),
   };
   const notes = [`${floats} floats to a point (guessed: ${of})`];

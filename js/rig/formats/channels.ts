@@ -1,4 +1,4 @@
-/** What clouds hold beside places: which laser, how strong, when. By the names that drivers and tools give them. */
+/** What clouds hold besides coordinates: laser, intensity and time, by the names that drivers and tools give these. */
 import type { Scan } from "../lidar/scan.js";
 
 export type Channel = "ring" | "intensity" | "times";
@@ -8,13 +8,13 @@ const NAMES: [Channel, RegExp][] = [
   ["intensity", /^(?:intensity|reflectivity|reflectance|remission|i)$/i],
   ["times", /^(?:time|timestamp|time_stamp|t|offset_?time|gps_?time|point_time_offset)$/i],
 ];
-/** Of CloudCompare, before the names of all that is no place and no colour. */
+/** CloudCompare's prefix for everything but coordinates and colours. */
 const PREFIX = /^scalar_/i;
 
 export const channelOf = (field: string): Channel | undefined =>
   NAMES.find(([, pattern]) => pattern.test(field.replace(PREFIX, "")))?.[0];
 
-/** Room for the channels of so many points. */
+/** Empty channels for this number of points. */
 export function roomFor(count: number, channels: readonly (Channel | undefined)[]): Omit<Scan, "points"> {
   return {
     ...(channels.includes("ring") && { ring: new Float32Array(count) }),
@@ -23,5 +23,16 @@ export function roomFor(count: number, channels: readonly (Channel | undefined)[
   };
 }
 
-/** Fewer points say nothing of how they were scanned, nor of a calibration. */
+/** Points of a scan, at least; fewer show neither how they were scanned nor whether a calibration is right. */
 export const FEWEST_POINTS = 200;
+
+/** One column of a table with so many numbers per row. */
+export const columnOf = (values: ArrayLike<number>, columns: number, column: number): Float32Array =>
+  Float32Array.from({ length: Math.floor(values.length / columns) }, (_, row) => values[row * columns + column] ?? NaN);
+
+/** The first three columns of such a table, x y z, point after point. */
+export function pointsOf(values: ArrayLike<number>, columns: number): Float32Array {
+  const points = new Float32Array(3 * Math.floor(values.length / columns));
+  for (let at = 0; at < points.length; at++) points[at] = values[Math.floor(at / 3) * columns + (at % 3)] ?? NaN;
+  return points;
+}

@@ -1,15 +1,16 @@
-/** Files that are not read: what they are, by their first bytes or their names, and what to do about them. */
+/** Files that are not read: their formats, by first bytes or names, and what to do with them. */
 import { type BimodalError, badFile } from "../../errors.js";
 
+/** `isPicture`: a browser may be able to read it. */
 type Row = [pattern: RegExp, advice: string, isPicture?: true];
 
 const EXPORT = "export its frames as colour images, 16-bit depth images and a file of the cameras";
 const RECORDING =
   "drop it on the page's check of a rig, or read it with openRecording of bimodal-stereo/rig-recordings";
 const CLOUD =
-  "points of a LiDAR or scanner in no rows and columns (unorganised); save them as PCD, PLY or LAS in the frame of one scan's sensor (CloudCompare, PDAL)";
+  "points of a LiDAR or scanner without rows and columns (unorganised); save them as PCD, PLY or LAS in the frame of one scan's sensor (CloudCompare, PDAL)";
 
-/** First bytes; advice for pictures that a browser may read. */
+/** Formats by their first bytes. */
 const FIRST: Row[] = [
   [/^GIF8/, "a GIF; save it as PNG", true],
   [/^BM/, "a BMP; save it as PNG", true],
@@ -61,7 +62,7 @@ const FIRST: Row[] = [
   ],
 ];
 
-/** Endings of formats that have no first bytes of their own. */
+/** Formats without known first bytes, by the ending of the name. */
 const NAMED: Row[] = [
   [/\.klg$/i, `a log of Kintinuous and ElasticFusion (.klg); ${EXPORT}`],
   [/\.oni$/i, `a recording of OpenNI (.oni); ${EXPORT}`],
@@ -69,7 +70,7 @@ const NAMED: Row[] = [
   [/\.sens$/i, `a recording of ScanNet (.sens); ${EXPORT} by its SensReader`],
   [/\.e57$/i, `E57: ${CLOUD}`],
   [/\.(?:fls|fws|zfs|rcp|rcs|ptg|lsproj)$/i, `a scan in the format of its maker: ${CLOUD}`],
-  [/\.(?:xef|rssdk|xed)$/i, `a recording of a Kinect or RealSense in a format of its own; ${EXPORT}`],
+  [/\.(?:xef|rssdk|xed)$/i, `a recording of a Kinect or RealSense in its maker's format; ${EXPORT}`],
   [/\.r3d$/i, `a recording of Record3D (.r3d), which is a ZIP archive; ${EXPORT}`],
   [/\.stl$/i, "a mesh (STL); render a depth map from it"],
   [/\.(?:pt|pth|ckpt)$/i, "a file of PyTorch; save the array by numpy.save"],
@@ -80,7 +81,7 @@ const NAMED: Row[] = [
   [/\.lzf$/i, "compressed by LZF; unpack it first"],
 ];
 
-/** What a text begins with that is no calibration. */
+/** Texts that are no calibrations, by their beginning. */
 const TEXTS: Row[] = [
   [
     /^(?:\s*#[^\n]*\n)*\s*(?:mtllib|usemtl|o\s|g\s|s\s|v\s|vn\s|vt\s)[^\n]*\n[\s\S]{0,4000}?^(?:v|vn|f)\s+[-\d.]/m,
@@ -97,14 +98,14 @@ const TEXTS: Row[] = [
 const refused = ([, advice, isPicture]: Row): BimodalError =>
   badFile(`it is ${advice}`, undefined, isPicture && { problem: "picture" });
 
-/** The error about bytes of a format that is not read, with what it seems to be; nothing where that is not known. */
+/** The error about a file of a known format that is not read; undefined for other files. */
 export function knownContainer(name: string, bytes: Uint8Array): BimodalError | undefined {
   const head = String.fromCharCode(...bytes.subarray(0, 16));
   const row = FIRST.find(([pattern]) => pattern.test(head)) ?? NAMED.find(([pattern]) => pattern.test(name));
   return row && refused(row);
 }
 
-/** .. about a text. */
+/** .. and about such a text. */
 export function knownText(text: string): BimodalError | undefined {
   const head = text.slice(0, 8192);
   const row = TEXTS.find(([pattern]) => pattern.test(head));

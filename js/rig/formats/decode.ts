@@ -1,7 +1,7 @@
-/** Texts of files by their encodings. What they hold is read by text.ts, which is loaded when the first one comes. */
+/** Decodes the text of a file. text.ts, which is loaded with the first text, reads its content. */
 import { MOST_TEXT } from "./limits.js";
 
-/** The text of a file, or nothing where its bytes are none. */
+/** The text of a file; undefined where its bytes are no text. */
 export function textOf(bytes: Uint8Array): string | undefined {
   if (bytes.length > MOST_TEXT) return undefined;
   const [first, second] = bytes;
@@ -9,7 +9,7 @@ export function textOf(bytes: Uint8Array): string | undefined {
     first === 0xff && second === 0xfe ? "utf-16le" : first === 0xfe && second === 0xff ? "utf-16be" : "utf-8";
   try {
     const text = new TextDecoder(encoding, { fatal: true }).decode(bytes);
-    // Control characters tell bytes from text.
+    // Binary files contain control characters.
     return /[\0-\x08\x0e-\x1f]/.test(text) ? undefined : text;
   } catch {
     return undefined;

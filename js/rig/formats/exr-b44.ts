@@ -1,26 +1,26 @@
 /**
- * OpenEXR by B44 and B44A: halves in blocks of 4x4 pixels, of 14 bytes each or of 3 where they are all alike; other types are stored as
- * they are. A block of lines has one channel after the other. parse-exr does not know it.
+ * OpenEXR by B44 and B44A, which parse-exr does not support. Halves are packed in tiles of 4x4 pixels: 14 bytes each, or 3 where all pixels are
+ * equal. Other types are not compressed. A block of lines has one channel after the other.
  */
 import { badFile } from "../../errors.js";
 import { half } from "../../half.js";
 import { type Channel, type Header, SIZES, blocks } from "./exr-header.js";
+import { HALF, channelOfLines, interleave, samplesOf } from "./exr-samples.js";
 
-const HALF = 1;
-/** Pixels on a side of a block, and bytes of one. */
+/** Pixels on a side of a tile, and its bytes in the long and in the short form. */
 const [SIDE, LONG, FLAT] = [4, 14, 3];
-/** The shift of a block that is all alike. */
+/** The shift that marks a tile of equal pixels. */
 const ALIKE = 13;
 
-/** The six bits that begin at this bit. */
+/** The six bits from a bit on. */
 const six = (body: Uint8Array, at: number, bit: number): number => {
   const from = at + (bit >> 3);
   return ((((body[from] ?? 0) << 8) | (body[from + 1] ?? 0)) >> (10 - (bit & 7))) & 63;
 };
-/** Halves are stored in an order in which larger ones are larger. */
+/** The bits of a half from the stored integer, whose order is that of the numbers. */
 const restored = (value: number): number => (value & 0x8000 ? value & 0x7fff : ~value & 0xffff);
 
-/** The sixteen halves of a block, as bits, row by row; how many bytes it has. */
+/** Unpacks the bits of a tile's sixteen halves, row by row, and returns its number of bytes. */
 function unpack(body: Uint8Array, at: number, out: Uint16Array): number {
   const first = ((body[at] ?? 0) << 8) | (body[at + 1] ?? 0);
   const shift = (body[at + 2] ?? 0) >> 2;
@@ -32,7 +32,7 @@ function unpack(body: Uint8Array, at: number, out: Uint16Array): number {
   const step = (bit: number) => (six(body, at, bit) << shift) - bias;
   const raw = new Array<number>(SIDE * SIDE).fill(0);
   raw[0] = first;
-  // Down the first column, then along each row, column by column.
+  // The first column is stored downwards, then each further column as differences from the one before.
   let bit = 22;
   for (let row = 1; row < SIDE; row++, bit += 6) raw[SIDE * row] = (raw[SIDE * (row - 1)] ?? 0) + step(bit);
   for (let column = 1; column < SIDE; column++)
@@ -42,7 +42,7 @@ function unpack(body: Uint8Array, at: number, out: Uint16Array): number {
   return LONG;
 }
 
-/** One channel of a block of lines; where the next one begins. */
+/** One channel of a block of lines, and where the next one begins. */
 function channelOf(
   body: Uint8Array,
   from: number,
@@ -50,15 +50,12 @@ function channelOf(
   width: number,
   rows: number,
 ): [Float32Array, number] {
-  const out = new Float32Array(width * rows);
   if (type !== HALF) {
     const end = from + width * rows * (SIZES[type] ?? 0);
     if (end > body.length) throw badFile("this EXR by B44 is cut off or damaged");
-    const view = new DataView(body.buffer, body.byteOffset + from);
-    for (let at = 0; at < out.length; at++)
-      out[at] = type === 0 ? view.getUint32(4 * at, true) : view.getFloat32(4 * at, true);
-    return [out, end];
+    return [samplesOf(body.subarray(from, end), type), end];
   }
+  const out = new Float32Array(width * rows);
   const block = new Uint16Array(SIDE * SIDE);
   let at = from;
   for (let top = 0; top < rows; top += SIDE) {
@@ -73,23 +70,6 @@ function channelOf(
   return [out, at];
 }
 
-/** What did not become shorter is stored as it is, line by line. */
-function storedOf(body: Uint8Array, channels: Channel[], used: number, width: number, rows: number): Float32Array {
-  const sizes = channels.map(({ type }) => width * (SIZES[type] ?? 0));
-  const stride = sizes.reduce((sum, size) => sum + size, 0);
-  const before = sizes.slice(0, used).reduce((sum, size) => sum + size, 0);
-  const type = channels[used]?.type ?? 0;
-  const view = new DataView(body.buffer, body.byteOffset, body.byteLength);
-  return Float32Array.from({ length: width * rows }, (_, index) => {
-    const at = Math.floor(index / width) * stride + before + (index % width) * (SIZES[type] ?? 0);
-    return type === HALF
-      ? half(view.getUint16(at, true))
-      : type === 0
-        ? view.getUint32(at, true)
-        : view.getFloat32(at, true);
-  });
-}
-
 export function readB44(bytes: Uint8Array, header: Header, used: number[]): Float32Array {
   const { width, height, lines, channels } = header;
   const data = new Float32Array(width * height * used.length).fill(NaN);
@@ -98,13 +78,14 @@ export function readB44(bytes: Uint8Array, header: Header, used: number[]): Floa
     let from = 0;
     channels.forEach((channel, index) => {
       const to = used.indexOf(index);
+      // A block that compression would not shorten is stored as it is.
       const isStored = body.length >= length;
       if (isStored && to < 0) return;
       const [values, next] = isStored
-        ? [storedOf(body, channels, index, width, rows), 0]
+        ? [channelOfLines(body, header, index, rows), 0]
         : channelOf(body, from, channel, width, rows);
       from = next;
-      if (to >= 0) values.forEach((value, at) => (data[(row * width + at) * used.length + to] = value));
+      if (to >= 0) interleave(values, data, row * width, used.length, to);
     });
   }
   return data;

@@ -1,17 +1,17 @@
 /**
- * Channels of an OpenEXR by DWA that it keeps without loss: all but colours and alpha, such as Z, V and Depth.
+ * The channels of an OpenEXR that DWA compresses without loss: all but colours and alpha, such as Z, V and Depth.
  *
- * A block begins with eleven numbers of 64 bits and the rules by which channels are told apart; what is kept without loss follows,
- * deflated, one channel after the other.
+ * A block begins with eleven integers of 64 bits and the rules that assign a scheme to each channel. The lossless channels follow, deflated,
+ * one after the other.
  */
 import { badFile } from "../../errors.js";
 import { inflateExactly } from "../../inflate.js";
 import { type Channel, type Header, SIZES, blocks, isKept } from "./exr-header.js";
-import { half } from "../../half.js";
+import { channelOfLines, samplesOf } from "./exr-samples.js";
 
-/** Bytes of the numbers at the beginning of a block. */
+/** Bytes of the integers at the beginning of a block. */
 const NUMBERS = 88;
-/** Of a rule: how the channel is compressed. */
+/** The scheme of channels that are compressed without loss. */
 const UNKNOWN = 0;
 
 interface Rule {
@@ -41,7 +41,7 @@ function schemeOf({ name, type }: Channel, rules: Rule[]): number {
   return rules.find((rule) => rule.type === type && same(rule))?.scheme ?? UNKNOWN;
 }
 
-/** The samples of one channel in a block, as bytes line by line. */
+/** The samples of one channel in a block as bytes, line by line. */
 function plane(body: Uint8Array, header: Header, used: number, rows: number): Uint8Array {
   const { width, channels } = header;
   const view = new DataView(body.buffer, body.byteOffset, body.byteLength);
@@ -59,21 +59,9 @@ function plane(body: Uint8Array, header: Header, used: number, rows: number): Ui
   const all = channels.filter(isUnknown).reduce((sum, each) => sum + size(each), 0);
   if (!isUnknown(own) || length !== all || start + packed > body.length)
     throw badFile(
-      "this EXR by DWA (DWAA or DWAB) keeps its depths in a way that is not read here, or is damaged; save it by ZIP",
+      "this EXR by DWA (DWAA or DWAB) stores its depths in a way that is not read here, or it is damaged; save it by ZIP",
     );
   return inflateExactly(body.subarray(start, start + packed), length, "this EXR").subarray(before, before + size(own));
-}
-
-/** A block that did not become shorter is stored as it is: each line has all of its channels. */
-function storedPlane(body: Uint8Array, { width, channels }: Header, used: number, rows: number): Uint8Array {
-  const sizes = channels.map(({ type }) => width * (SIZES[type] ?? 0));
-  const stride = sizes.reduce((sum, size) => sum + size, 0);
-  const before = sizes.slice(0, used).reduce((sum, size) => sum + size, 0);
-  const own = sizes[used] ?? 0;
-  const out = new Uint8Array(own * rows);
-  for (let row = 0; row < rows; row++)
-    out.set(body.subarray(row * stride + before, row * stride + before + own), row * own);
-  return out;
 }
 
 export function readKept(bytes: Uint8Array, header: Header, used: number): Float32Array {
@@ -82,15 +70,12 @@ export function readKept(bytes: Uint8Array, header: Header, used: number): Float
   const data = new Float32Array(width * height).fill(NaN);
   for (const { row, body, length } of blocks(bytes, header)) {
     const rows = Math.min(lines, height - row);
-    const found = body.length >= length ? storedPlane(body, header, used, rows) : plane(body, header, used, rows);
-    const view = new DataView(found.buffer, found.byteOffset, found.byteLength);
-    for (let at = 0; at < width * rows; at++)
-      data[row * width + at] =
-        type === 1
-          ? half(view.getUint16(2 * at, true))
-          : type === 2
-            ? view.getFloat32(4 * at, true)
-            : view.getUint32(4 * at, true);
+    // A block that compression would not shorten is stored as it is.
+    const isStored = body.length >= length;
+    const found = isStored
+      ? channelOfLines(body, header, used, rows)
+      : samplesOf(plane(body, header, used, rows), type);
+    data.set(found, row * width);
   }
   return data;
 }

@@ -3,7 +3,7 @@ import { badFile } from "../../errors.js";
 import { checkSize } from "./limits.js";
 
 export const COMPRESSIONS = ["none", "RLE", "ZIPS", "ZIP", "PIZ", "PXR24", "B44", "B44A", "DWAA", "DWAB"];
-/** Lines of a block, of those that are read. */
+/** Lines of a block by each compression. */
 const LINES: Record<number, number> = { 0: 1, 1: 1, 2: 1, 3: 16, 4: 32, 5: 16, 6: 32, 7: 32, 8: 32, 9: 256 };
 /** The two compressions by B44, and the first of the two by DWA. */
 export const [B44, B44A, DWAA] = [6, 7, 8];
@@ -28,7 +28,7 @@ export interface Header {
   end: number;
 }
 
-/** Text up to a zero; where the next thing begins. */
+/** Text up to a zero byte, and where the next item begins. */
 function word(bytes: Uint8Array, at: number): [string, number] {
   const end = bytes.subarray(at, at + 256).indexOf(0);
   if (end < 0) throw badFile("this EXR is damaged: a name in its header has no end");
@@ -40,7 +40,7 @@ function channelList(view: DataView, bytes: Uint8Array, from: number, until: num
   for (let at = from; at < until && bytes[at] !== 0; ) {
     const [name, next] = word(bytes, at);
     const type = view.getInt32(next, true);
-    if (SIZES[type] === undefined) throw badFile(`this EXR has a channel of type ${type}, which there is not`);
+    if (SIZES[type] === undefined) throw badFile(`this EXR has a channel of the unknown type ${type}`);
     if (view.getInt32(next + 8, true) !== 1 || view.getInt32(next + 12, true) !== 1)
       throw badFile("this EXR has channels of fewer pixels than the picture");
     found.push({ name, type });
@@ -89,10 +89,10 @@ export function readHeader(bytes: Uint8Array): Header {
 }
 
 /** Bytes of a line of all channels. */
-export const strideOf = ({ width, channels }: Header): number =>
+export const strideOf = ({ width, channels }: Pick<Header, "width" | "channels">): number =>
   width * channels.reduce((sum, { type }) => sum + (SIZES[type] ?? 0), 0);
 
-/** Where the blocks are: their first lines, what the file has of them, and the bytes that this becomes. */
+/** The blocks: the first line of each, its bytes in the file, and their number once uncompressed. */
 export function blocks(bytes: Uint8Array, header: Header): { row: number; body: Uint8Array; length: number }[] {
   const { height, top, lines, end } = header;
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
@@ -108,7 +108,7 @@ export function blocks(bytes: Uint8Array, header: Header): { row: number; body: 
   });
 }
 
-/** Colours and alpha, by the rules that blocks of DWA's first versions go by without saying so. */
+/** Names of colours and alpha, by the default rules of DWA. */
 const LOSSY = /^(?:r|red|g|grn|green|b|blu|blue|y|by|ry|a)$/i;
 
 /** Whether DWA keeps this channel without loss. */

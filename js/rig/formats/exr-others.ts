@@ -1,24 +1,23 @@
 /**
- * OpenEXR by PIZ, PXR24 or DWA, by parse-exr. Loaded when such a file comes.
+ * OpenEXR by PIZ, PXR24 or DWA, read by parse-exr. This module is loaded with the first such file.
  *
- * parse-exr trusts what a file declares and knows but the channels R, G, B, A and Y. So it is given a file that is made here: the
- * attributes that it needs, blocks in their order and checked, and the wanted channels under these names. Not read: PIZ and DWA of channels
- * of different types, which it mistakes; DWA of channels but R, G, B and Y, which the blocks themselves name (exr-dwa.ts has those that
- * are kept without loss).
+ * parse-exr trusts what a file declares and supports only the channels R, G, B, A and Y. It therefore gets a file that is made here, with the
+ * attributes that it needs, checked blocks in order, and the wanted channels under these names. Limits: PIZ and DWA with channels of different
+ * types, which parse-exr misreads, and DWA of other channels than R, G, B and Y, whose blocks contain the names; exr-dwa.ts reads the lossless
+ * ones.
  */
 import parseExr from "parse-exr";
 import { badFile } from "../../errors.js";
 import { inflateUpTo } from "../../inflate.js";
 import { COMPRESSIONS, type Header, blocks } from "./exr-header.js";
+import { WHOLE } from "./exr-samples.js";
 
 export { readB44 } from "./exr-b44.js";
 export { readKept } from "./exr-dwa.js";
 
-/** three's number of a type, which parse-exr takes. */
+/** The number of the float type in three.js, which parse-exr expects. */
 const FLOAT = 1015;
 const MOST_CHANNELS = 16;
-/** The type of whole numbers. */
-const WHOLE = 0;
 const [PXR24, DWAA, DWAB] = [5, 8, 9];
 /** Little-endian numbers of four bytes. */
 const words = (...values: number[]): Uint8Array => new Uint8Array(new Int32Array(values).buffer);
@@ -40,7 +39,7 @@ const attribute = (name: string, type: string, body: Uint8Array): Uint8Array[] =
   body,
 ];
 
-/** The names that parse-exr takes for the chosen channels, and none of them for the others. */
+/** The channels' names for parse-exr: those that it supports for the chosen channels, other names for the rest. */
 function names({ channels, compression }: Header, used: number[]): string[] {
   const known = used.length === 1 ? ["Y"] : ["R", "G", "B"];
   const given = channels.map(({ name }, index) => known[used.indexOf(index)] ?? `other ${name}`);
@@ -52,7 +51,7 @@ function names({ channels, compression }: Header, used: number[]): string[] {
   return isDwa ? channels.map(({ name }) => name) : given;
 }
 
-/** The parts of a block by DWA inflate to no more than they may: parse-exr inflates whatever there is. */
+/** Checks that the parts of a DWA block do not inflate to more than they declare; parse-exr would inflate any amount. */
 function checkDwa(body: Uint8Array, length: number): void {
   const view = new DataView(body.buffer, body.byteOffset, body.byteLength);
   const at = (index: number) => Number(view.getBigUint64(8 * index, true));
@@ -70,14 +69,14 @@ function checkDwa(body: Uint8Array, length: number): void {
 }
 
 function checkBlock(body: Uint8Array, length: number, { compression }: Header): void {
-  // What did not become shorter is stored as it is.
+  // A block that compression would not shorten is stored as it is.
   if (body.length >= length) {
     if (body.length > length) throw badFile("this EXR is damaged: a block of it is longer compressed than not");
   } else if (compression === PXR24) inflateUpTo(body, length, "this EXR");
   else if (compression === DWAA || compression === DWAB) checkDwa(body, length);
 }
 
-/** A file of nothing but what parse-exr needs. */
+/** A file with only what parse-exr needs. */
 function plainFile(bytes: Uint8Array, header: Header, given: string[]): ArrayBuffer {
   const { width, height, top, channels, compression } = header;
   const list = channels.flatMap(({ type }, index) => [text(`${given[index]}\0`), words(type, 0, 1, 1)]);
@@ -95,11 +94,11 @@ function plainFile(bytes: Uint8Array, header: Header, given: string[]): ArrayBuf
     checkBlock(body, length, header);
   });
   const body = found.flatMap(({ row, body }) => [words(top + row, body.length), body]);
-  // parse-exr counts the table and reads the blocks one after the other.
+  // parse-exr skips the table of offsets and reads the blocks one after the other.
   return joined([head, new Uint8Array(8 * found.length), ...body]).buffer;
 }
 
-/** parse-exr fails on blocks by DWA whose luminance it takes for colours. */
+/** The pixels by parse-exr, which throws a TypeError for DWA blocks whose luminance it takes for colours. */
 function parsed(file: ArrayBuffer, compression: number) {
   try {
     return parseExr(file, FLOAT);
@@ -122,12 +121,12 @@ export function readOthers(bytes: Uint8Array, header: Header, used: number[]): F
     throw badFile(`this EXR has ${channels.length} channels; up to ${MOST_CHANNELS} are read`);
   if (types.size > 1 || channels.some(({ type }) => type === WHOLE))
     throw badFile(
-      `this EXR is compressed by ${COMPRESSIONS[compression] ?? "PIZ"} with channels of different types or of whole numbers, which are read by ZIP alone; save it by ZIP`,
+      `this EXR is compressed by ${COMPRESSIONS[compression] ?? "PIZ"} with channels of different types or of integers, which are read only by ZIP; save it by ZIP`,
     );
   const { data } = parsed(plainFile(bytes, header, names(header, used)), compression);
   const step = used.length === 1 ? 1 : 4;
   const out = new Float32Array(width * height * used.length);
-  // Its first line is the lowest.
+  // parse-exr puts the lowest line first.
   for (let row = 0, to = 0; row < height; row++)
     for (let column = 0; column < width; column++)
       for (let channel = 0; channel < used.length; channel++)

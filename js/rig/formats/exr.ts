@@ -1,25 +1,14 @@
 /**
- * OpenEXR of one part in scan lines, plain or by RLE, ZIPS or ZIP: half, float and whole numbers.
+ * OpenEXR of one part in scan lines, uncompressed or by RLE, ZIPS or ZIP: halves, floats and integers.
  *
- * PIZ, PXR24 and the colours of DWA are parse-exr's (exr-others.ts). It does not replace this: it knows neither a channel Z nor whole
- * numbers, mistakes channels of different types, and checks nothing of what a file declares. B44 is in exr-b44.ts, what DWA keeps without
- * loss in exr-dwa.ts. Not read: tiles, deep pixels, several parts; each is named.
+ * PIZ, PXR24 and the colours of DWA are read by parse-exr (exr-others.ts). It does not replace this reader: it supports neither a channel Z
+ * nor integers, misreads channels of different types, and does not check what a file declares. B44 is in exr-b44.ts, and the lossless channels
+ * of DWA are in exr-dwa.ts. Limits: tiles, deep pixels and files of several parts are refused, each by name.
  */
 import { badFile } from "../../errors.js";
 import { inflateExactly } from "../../inflate.js";
-import {
-  B44,
-  B44A,
-  type Channel,
-  DWAA,
-  type Header,
-  SIZES,
-  blocks,
-  isKept,
-  readHeader,
-  strideOf,
-} from "./exr-header.js";
-import { half } from "../../half.js";
+import { B44, B44A, type Channel, DWAA, type Header, blocks, isKept, readHeader, strideOf } from "./exr-header.js";
+import { HALF, channelOfLines, interleave } from "./exr-samples.js";
 import type { Picture } from "./picture.js";
 import { warning } from "../warnings.js";
 
@@ -42,7 +31,7 @@ function runs(bytes: Uint8Array, length: number): Uint8Array {
   return out;
 }
 
-/** Bytes are differences, those of even places first and those of odd ones behind. */
+/** Undoes the predictor: bytes are differences, those at even places first and those at odd places second. */
 function restored(data: Uint8Array): Uint8Array {
   for (let at = 1; at < data.length; at++) data[at] = (data[at - 1] ?? 0) + (data[at] ?? 0) - 128;
   const out = new Uint8Array(data.length);
@@ -51,7 +40,7 @@ function restored(data: Uint8Array): Uint8Array {
   return out;
 }
 
-/** Which channels make the picture: red, green and blue, or the one that holds depth. */
+/** The channels of the picture: red, green and blue, or the one with the depth. */
 function chosen(channels: Channel[], isDepth: boolean): number[] {
   const find = (...names: string[]) =>
     channels.findIndex(({ name }) => names.includes((name.split(".").at(-1) ?? "").toUpperCase()));
@@ -73,7 +62,7 @@ function chosen(channels: Channel[], isDepth: boolean): number[] {
 
 /** The samples of the chosen channels. */
 function readKnown(bytes: Uint8Array, header: Header, used: number[]): Float32Array {
-  const { width, height, channels, compression } = header;
+  const { width, height, compression } = header;
   const stride = strideOf(header);
   const data = new Float32Array(width * height * used.length).fill(NaN);
   blocks(bytes, header).forEach(({ row, body, length }, block) => {
@@ -83,14 +72,16 @@ function readKnown(bytes: Uint8Array, header: Header, used: number[]): Float32Ar
         : restored(compression === 1 ? runs(body, length) : inflateExactly(body, length, "this EXR"));
     if (plain.length < length)
       throw badFile(`this EXR is cut off: its block ${block} has ${plain.length} of ${length} bytes`);
-    spread(plain, { width, rows: length / stride, row, channels, used, stride }, data);
+    used.forEach((channel, to) => {
+      interleave(channelOfLines(plain, header, channel, length / stride), data, row * width, used.length, to);
+    });
   });
   return data;
 }
 
 const LOSSY = warning(
   "eight-bits",
-  "Halves by B44 and colours by DWA are compressed with loss: beside holes and edges depths are up to a tenth off. Save the depth map by ZIP.",
+  "The depth map is compressed with loss (halves by B44, or colours by DWA): beside holes and edges, depths may be off by a tenth. Save it by ZIP.",
 );
 
 export function readExr(bytes: Uint8Array, isDepth: boolean): Picture | Promise<Picture> {
@@ -99,7 +90,7 @@ export function readExr(bytes: Uint8Array, isDepth: boolean): Picture | Promise<
   const used = chosen(channels, isDepth);
   if (strideOf(found) * height > MOST_PIXELS)
     throw badFile(`this EXR has ${width}x${height} pixels of ${channels.length} channels, which is too much`);
-  const bits = channels[used[0] ?? 0]?.type === 1 ? 16 : 32;
+  const bits = channels[used[0] ?? 0]?.type === HALF ? 16 : 32;
   const picture = (data: Float32Array): Picture => ({
     ...{ width, height, channels: used.length, data },
     ...{ format: "EXR", bits, notes: [], warnings: [] },
@@ -115,36 +106,4 @@ export function readExr(bytes: Uint8Array, isDepth: boolean): Picture | Promise<
     const data = isB44 ? readB44(bytes, found, used) : readOthers(bytes, found, used);
     return { ...picture(data), warnings: isLossy ? [LOSSY] : [] };
   });
-}
-
-interface Block {
-  width: number;
-  rows: number;
-  row: number;
-  channels: Channel[];
-  used: number[];
-  stride: number;
-}
-
-/** A line has all values of its first channel, then all of its second. */
-function spread(plain: Uint8Array, { width, rows, row, channels, used, stride }: Block, data: Float32Array): void {
-  const view = new DataView(plain.buffer, plain.byteOffset, plain.byteLength);
-  for (let line = 0; line < rows; line++) {
-    let from = line * stride;
-    channels.forEach(({ type }, index) => {
-      const size = SIZES[type] ?? 0;
-      const channel = used.indexOf(index);
-      for (let column = 0; channel >= 0 && column < width; column++) {
-        const at = from + column * size;
-        const value =
-          type === 1
-            ? half(view.getUint16(at, true))
-            : type === 2
-              ? view.getFloat32(at, true)
-              : view.getUint32(at, true);
-        data[((row + line) * width + column) * used.length + channel] = value;
-      }
-      from += width * size;
-    });
-  }
 }

@@ -26,7 +26,7 @@ export function endsOf(path: string): { from: string; to: string } | undefined {
   return from === to ? undefined : { from, to };
 }
 
-/** A pose that names no frames is taken to lead from the depth camera to the colour camera. */
+/** Whether a pose leads from the depth camera to the colour camera, as one without named frames is taken to. */
 const isUsual = ({ from, to }: { from: string; to: string }): boolean =>
   /depth|dpt|infra|tof/i.test(from) && /colou?r|rgb/i.test(to) && !/colou?r|rgb/i.test(from);
 

@@ -1,9 +1,9 @@
-/** Points in rows and columns: the cloud of a depth camera before anything was left out. */
+/** Points in rows and columns: the cloud of a depth camera with all of its pixels. */
 import { badFile } from "../../errors.js";
 import { checkSize } from "./limits.js";
 import { type ReaderWarning, warning } from "../warnings.js";
 
-/** Images of depth cameras, by which points without rows and columns may still be told to have them. */
+/** Image sizes of depth cameras, by which the rows and columns of a cloud are guessed where its file does not give them. */
 export const SIZES = [
   [640, 480],
   [320, 240],
@@ -25,7 +25,7 @@ export const SIZES = [
   [160, 120],
 ] as const;
 
-/** Most points, of which three floats are kept each. */
+/** Points of a cloud, at most. */
 export const MOST_POINTS = 2 ** 22;
 
 export function checkPoints(count: number): void {
@@ -36,12 +36,12 @@ export function checkPoints(count: number): void {
 /** Whether so many points are a whole image of a depth camera. */
 export const isImage = (count: number): boolean => SIZES.some(([width, height]) => width * height === count);
 
-/** The size that so many points without one have, with a warning, or why they cannot be used. */
+/** The image size that has this number of points, with a warning; throws where there is none. */
 export function sizeOfCount(count: number, warnings: ReaderWarning[]): { width: number; height: number } {
   const size = SIZES.find(([width, height]) => width * height === count);
   if (size === undefined)
     throw badFile(
-      `its ${count} points are not in rows and columns (unorganised), so that no neighbours are known; save it as an organised cloud or as a depth map`,
+      `its ${count} points are not in rows and columns (unorganised), and too few for a range image; save it as an organised cloud or as a depth map`,
     );
   const [width, height] = size;
   warnings.push(

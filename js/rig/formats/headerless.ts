@@ -1,7 +1,7 @@
-/** Files of pixels and points that have no first bytes of their own, by what they hold. */
+/** Files of pixels and points without known first bytes, recognised by their content. */
 import { type Kind, kindOf } from "./kinds.js";
 import { matrixText } from "./npy-matrix.js";
-import { isColmapMap, pointSize } from "./raw.js";
+import { arePoints, isColmapMap } from "./raw.js";
 import { isTable } from "./table.js";
 
 /** "colmap": a depth map of COLMAP; "table": a depth map as text; "points": a LiDAR's list of points. */
@@ -9,7 +9,7 @@ export type RasterKind = Kind | "colmap" | "table" | "points";
 
 const HEAD = 512;
 
-/** What kind of pixels or points a file holds; nothing where it is a text of something else, or unknown. */
+/** The kind of pixels or points that a file holds; undefined for other texts and unknown files. */
 export function rasterKind(bytes: Uint8Array): RasterKind | undefined {
   const known = kindOf(bytes);
   if (known === "npy" && matrixText(bytes) !== undefined) return undefined;
@@ -17,5 +17,5 @@ export function rasterKind(bytes: Uint8Array): RasterKind | undefined {
   if (isColmapMap(bytes)) return "colmap";
   const isText = bytes.subarray(0, HEAD).every((byte) => byte > 13 || (byte > 8 && byte < 11) || byte === 13);
   if (isText) return isTable(bytes) ? "table" : undefined;
-  return pointSize(bytes) === undefined ? undefined : "points";
+  return arePoints(bytes) ? "points" : undefined;
 }

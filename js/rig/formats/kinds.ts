@@ -11,14 +11,14 @@ const FIRST: [Kind, RegExp][] = [
   ["pfm", /^P[Ff]\s/],
   ["pnm", /^P[1-7]\s/],
   ["npy", /^\x93NUMPY/],
-  // NumPy writes the name of its first array where others name theirs.
+  // The first entry of the archive is an array.
   ["npz", /^PK\x03\x04.{26}[^\0]{1,100}\.npy/s],
   ["ply", /^ply\s/],
   ["las", /^LASF/],
   ["pcd", /^(?:#[^\n]*\n|\s)*(?:VERSION|FIELDS)\s/],
 ];
 
-/** Enough for PCD's comments. */
+/** Bytes that are examined; a PCD may begin with comments. */
 const HEAD = 512;
 
 export function kindOf(bytes: Uint8Array): Kind | undefined {

@@ -1,7 +1,7 @@
 /**
- * LAS 1.0 to 1.4 of the ASPRS: points as scaled whole numbers, metres, with intensity and the time of each pulse.
+ * LAS 1.0 to 1.4 of the ASPRS: points as scaled integers, metres, with the intensity and the time of each pulse.
  *
- * By hand, because it is a header and records of one size. Limit: LAZ, its compressed form, is not read; its message names the way out.
+ * It is parsed here, because it is only a header and records of one size. Limit: LAZ, its compressed form, is refused with advice.
  */
 import { badFile } from "../../errors.js";
 import { roomFor } from "./channels.js";
@@ -9,10 +9,10 @@ import { checkPoints } from "./grid.js";
 import { checkBytes } from "./limits.js";
 import type { Points } from "./picture.js";
 
-/** Bytes of the shortest header, and of LAS 1.4's. */
+/** Bytes of the shortest header, and of the header of LAS 1.4. */
 const HEADER = 227;
 const HEADER_14 = 375;
-/** Bytes of a point of each format, at least, and where its GPS time is. */
+/** Bytes of a point of each format, at least, and the offset of its GPS time. */
 const FORMATS: [bytes: number, time: number | undefined][] = [
   [20, undefined],
   [28, 20],
@@ -26,7 +26,7 @@ const FORMATS: [bytes: number, time: number | undefined][] = [
   [59, 22],
   [67, 22],
 ];
-/** Set where the points are compressed. */
+/** Bit of the format that marks compressed points. */
 const COMPRESSED = 0x80;
 const INTENSITY = 12;
 

@@ -120,7 +120,7 @@ const READS: Record<string, Read> = {
   I8: (view, at) => Number(view.getBigInt64(at, true)),
 };
 
-/** Where the values of a field go: every so many places from a first one. */
+/** Where the values of a field are written: at `first` and every `step` places from there. */
 interface Target {
   field: Field;
   into: Float32Array | Float64Array;
@@ -128,7 +128,7 @@ interface Target {
   step: number;
 }
 
-/** Room for what is read of each point, and the fields that fill it. */
+/** An empty scan, and the fields that fill it. */
 function targetsOf(head: Header): { scan: Scan; targets: Target[] } {
   const others = head.fields.filter(({ name, count }) => count === 1 && channelOf(name) !== undefined);
   const room = roomFor(
@@ -200,7 +200,7 @@ function scanOf(body: Uint8Array, head: Header): Scan {
   return ofBinary(lzf(body.subarray(8, 8 + packed), length), head, true);
 }
 
-/** Bytes of points, which a few bytes of LZF may declare. */
+/** Bytes of uncompressed points, at most; a short file may declare any number. */
 const MOST_BYTES = 2 ** 28;
 
 export function readPcd(bytes: Uint8Array): Cloud | Points {

@@ -1,28 +1,28 @@
-/** A raster and what its file says about it; the readers of pictures end here. */
+/** The results of the readers of pictures and clouds. */
 import type { Raster } from "../../npy.js";
 import type { Pixels } from "../../raster.js";
 import type { Scan } from "../lidar/scan.js";
 import type { ReaderWarning } from "../warnings.js";
 
 export interface Picture extends Raster<Pixels> {
-  /** Of the array of an archive. */
+  /** The name of the array in an archive. */
   name?: string;
   /** "PNG", "PFM" and so on. */
   format: string;
-  /** Of a channel, as in the file. */
+  /** Bits of a channel in the file. */
   bits: number;
-  /** Metres per stored unit, where the file says it. */
+  /** Metres per stored unit, where the file gives it. */
   unit?: number;
-  /** How integers encode intensity, where the file says it. */
+  /** How integers encode intensity, where the file gives it. */
   transfer?: "srgb" | "linear";
-  /** Additions to what is said, such as how it was turned. */
+  /** Additions to the description, for instance how the picture was turned. */
   notes: string[];
   warnings: ReaderWarning[];
-  /** In place of pixels: points in no rows and columns. */
+  /** Unorganised points in place of pixels. */
   scan?: Scan;
 }
 
-/** An organised cloud, NaN where there is no point. */
+/** An organised cloud; NaN where there is no point. */
 export interface Cloud {
   format: string;
   width: number;
@@ -32,11 +32,11 @@ export interface Cloud {
   warnings: ReaderWarning[];
 }
 
-/** Points in no rows and columns. */
+/** Unorganised points. */
 export interface Points {
   format: string;
   scan: Scan;
-  /** Whether the format is in metres. */
+  /** Whether the format is known to be in metres. */
   isMetric: boolean;
   notes: string[];
   warnings: ReaderWarning[];

@@ -1,6 +1,4 @@
-/**
- * PLY of points, as text or binary: in rows and columns (Stanford's range grids, or a size in a comment), or in no order.
- */
+/** PLY of points, as text or binary: organised (Stanford's range grids, or a size in a comment) or unorganised. */
 import { badFile } from "../../errors.js";
 import type { Scan } from "../lidar/scan.js";
 import { FEWEST_POINTS, channelOf, roomFor } from "./channels.js";

@@ -1,6 +1,6 @@
 /**
- * Files without a header that describes them: raw pixels of a given size, COLMAP's depth maps, and the points of LiDARs in KITTI's and
- * nuScenes' .bin.
+ * Files without a full header: raw pixels of a given size, COLMAP's depth maps, and how to recognise the points of LiDARs in KITTI's and
+ * nuScenes' .bin (bin.ts reads them).
  */
 import { badFile } from "../../errors.js";
 import { type ReaderWarning, warning } from "../warnings.js";
@@ -15,7 +15,7 @@ const headOf = (bytes: Uint8Array): string => String.fromCharCode(...bytes.subar
 
 export const isColmapMap = (bytes: Uint8Array): boolean => COLMAP.test(headOf(bytes));
 
-/** "width&height&channels&" and floats, the columns of a row one after the other. */
+/** "width&height&channels&", then floats row by row. */
 export function readColmapMap(bytes: Uint8Array): Picture {
   const [head = "", width, height, channels] = COLMAP.exec(headOf(bytes)) ?? [];
   const size = { width: Number(width), height: Number(height) };
@@ -27,7 +27,7 @@ export function readColmapMap(bytes: Uint8Array): Picture {
   const warnings: ReaderWarning[] = [
     warning(
       "unit-guessed",
-      "COLMAP's depths have the scale of its reconstruction, which was guessed to be metres; give the unit if it is another.",
+      "COLMAP's depths have the scale of its reconstruction, which was guessed to be metres; give the unit if that is wrong.",
       { unit: 1 },
     ),
   ];
@@ -35,13 +35,13 @@ export function readColmapMap(bytes: Uint8Array): Picture {
   return { ...size, channels: 1, data, format: "COLMAP", bits: 32, unit: 1, notes: ["COLMAP's depth map"], warnings };
 }
 
-/** Points whose numbers are looked at. */
+/** Points that are examined, at most. */
 const LOOKED_AT = 256;
-/** LiDARs see no farther, metres. */
+/** The range of a LiDAR, metres. */
 const REACH = 400;
 const [MOST_INTENSITY, MOST_RINGS] = [255, 256];
 
-/** Whether the first of so many floats a point look like x y z of a LiDAR, intensity, and ring or time. */
+/** Whether the values at this number of floats per point look like a LiDAR's x, y, z, intensity, and ring or time. */
 function isCloudOf(view: DataView, floats: number): boolean {
   const size = 4 * floats;
   if (view.byteLength < 20 * size || view.byteLength % size !== 0) return false;
@@ -56,29 +56,28 @@ function isCloudOf(view: DataView, floats: number): boolean {
     if (floats > 4 && !(at(4) >= -1 && at(4) < MOST_RINGS)) return false;
     seen++;
     if (x < 0 || y < 0) negative++;
-    // Numbers of another kind are, as floats, next to zero.
+    // Integers are next to zero when they are read as floats.
     if (Math.hypot(x, y, z) > 0.1) there++;
   }
   return there > 0.5 * seen && negative > 0.1 * seen;
 }
 
-/** How many floats a point of this headerless file has: 4 as KITTI's, 5 as nuScenes'; nothing where it is no list of points. */
-export function pointSize(bytes: Uint8Array): 4 | 5 | undefined {
+/** Whether a headerless file looks like a LiDAR's points of 4 floats (KITTI) or of 5 (nuScenes). */
+export function arePoints(bytes: Uint8Array): boolean {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
-  if (isCloudOf(view, 4)) return 4;
-  return isCloudOf(view, 5) ? 5 : undefined;
+  return isCloudOf(view, 4) || isCloudOf(view, 5);
 }
 
-/** The error about a LiDAR's list of points. */
-export const pointsRefused = (floats: 4 | 5) =>
+/** The error about such points where they are no scan. */
+export const pointsRefused = () =>
   badFile(
-    `it is a list of points of a LiDAR (velodyne, ${floats} floats each, as ${floats === 4 ? "KITTI" : "nuScenes"} has them), in no rows and columns (unorganised), so that no neighbours are known; project it into a depth map, or save it as an organised cloud`,
+    "it looks like the points of a LiDAR (a velodyne .bin of KITTI or nuScenes) in no rows and columns (unorganised), and they are too few or too scattered for a range image; save them as an organised cloud or as a depth map",
   );
 
 const EXTENSION = /\.(?:raw|bin|dat|depth|z16|data|yuv)$/i;
 export const isRawName = (name: string): boolean => EXTENSION.test(name);
 
-/** Whether four bytes each are floats of depths rather than whole numbers, which as floats are next to nothing. */
+/** Whether values of four bytes are floats rather than integers, which are next to zero when they are read as floats. */
 function areFloats(values: Float32Array): boolean {
   let [plausible, tiny] = [0, 0];
   for (const value of values) {
@@ -88,7 +87,7 @@ function areFloats(values: Float32Array): boolean {
   return tiny < 0.01 * (plausible + tiny);
 }
 
-/** Pixels without a header, of a size that is known from elsewhere. */
+/** Pixels without a header, of a given size. */
 export function readRaw(bytes: Uint8Array, [width, height]: Size): Picture {
   checkSize(width, height);
   const each = bytes.length / (width * height);
@@ -102,11 +101,11 @@ export function readRaw(bytes: Uint8Array, [width, height]: Size): Picture {
     return { ...size, data: areFloats(floats) ? floats : new Float32Array(new Uint32Array(own())), bits: 32 };
   }
   throw badFile(
-    `its ${bytes.length} bytes are not ${width}x${height} pixels of 1, 2, 4 or 8 bytes: is the size another, or has it a header?`,
+    `its ${bytes.length} bytes are not ${width}x${height} pixels of 1, 2, 4 or 8 bytes: is the size wrong, or does it have a header?`,
   );
 }
 
-/** The error about raw pixels whose size nobody gave, with those that would fit. */
+/** The error about a file of an unknown format, with the sizes that would fit if it holds raw pixels. */
 export function rawRefused(bytes: Uint8Array) {
   const fitting = ([2, 4] as const).flatMap((each) =>
     SIZES.filter(([width, height]) => width * height * each === bytes.length).map(

@@ -240,7 +240,7 @@ function swap(part: Uint8Array, size: number, little: boolean): void {
   for (let at = 0; at + size <= part.length; at += size) part.subarray(at, at + size).reverse();
 }
 
-const MORE = warning("file-left-out", "The file holds more pictures than one; the first was read.");
+const MORE = warning("file-left-out", "The file holds several pictures; only the first was read.");
 
 export function readTiff(bytes: Uint8Array): Picture | Promise<Picture> {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);

@@ -1,23 +1,26 @@
-/** Points as text, one a line: XYZ, ASC, PTS and CSV, with or without a line that names the columns. */
+/** Points as text, one per line: XYZ, ASC, PTS and CSV, with or without a line of column names. */
 import { badFile } from "../../errors.js";
 import { FEWEST_POINTS, channelOf, roomFor } from "./channels.js";
 import { checkPoints } from "./grid.js";
 import type { Points } from "./picture.js";
 import { headOf, isNumbers, wordsOf } from "./table.js";
 
-const NAME = /^\/*(.*)$/;
-
-/** Where x, y, z and the channels stand in a line. */
+/** The columns of x, y, z, and the names of all columns. */
 function columnsOf(names: string[] | undefined, count: number): { axes: number[]; others: (string | undefined)[] } {
   if (names === undefined) return { axes: [0, 1, 2], others: count === 4 ? ["x", "y", "z", "intensity"] : [] };
-  const plain = names.map((name) => (NAME.exec(name)?.[1] ?? name).replace(/\s*\[.*\]$|^scalar_/gi, "").toLowerCase());
+  const plain = names.map((name) =>
+    name
+      .replace(/^\/+/, "")
+      .replace(/\s*\[.*\]$|^scalar_/gi, "")
+      .toLowerCase(),
+  );
   const axes = ["x", "y", "z"].map((axis) =>
     plain.findIndex((name) => name === axis || name === `${axis}(m)` || name === `${axis}_m`),
   );
   return { axes, others: plain };
 }
 
-/** The points of a text that is a list of them by its first lines. */
+/** The points of a text whose first lines are a list of points; undefined where it is too short or lacks x, y or z. */
 export function readXyz(bytes: Uint8Array): Points | undefined {
   const { rows, separator } = headOf(bytes);
   const isCounted = rows[0]?.length === 1;

@@ -1,7 +1,7 @@
 /**
- * ZIP archives by their central directory, for .npz: stored and deflated entries, none longer than a file may be.
+ * ZIP archives for .npz: the central directory, and stored or deflated entries up to the largest size of a file.
  *
- * Not by fflate's unzip, which allocates what an entry declares.
+ * fflate's unzipSync is not used, because it neither checks the checksum of an entry nor notices a wrong length.
  */
 import { crc32 } from "../../crc.js";
 import { badFile } from "../../errors.js";
@@ -21,7 +21,7 @@ export interface Entry {
 const END = 0x06054b50;
 const CENTRAL = 0x02014b50;
 const LOCAL = 0x04034b50;
-/** Bytes of the end record, and the longest comment behind it. */
+/** Bytes of the end record and of the longest comment after it. */
 const [END_BYTES, COMMENT] = [22, 65_535];
 const MOST_ENTRIES = 1000;
 const [STORED, DEFLATED] = [0, 8];
@@ -63,7 +63,7 @@ function content(body: Uint8Array, { method, length }: Entry): Uint8Array {
   throw badFile(`this ZIP archive is compressed by method ${method}, which is not read here; unpack it first`);
 }
 
-/** An entry's content. */
+/** The content of an entry. */
 export function unpacked(bytes: Uint8Array, entry: Entry): Uint8Array {
   const { packed, length, checksum, at } = entry;
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);

@@ -1,29 +1,32 @@
 /**
- * Columns of a spinning scanner's range image: azimuths in steps of its own pace, and each point in the cell of its row and azimuth.
+ * The columns of a spinning scanner's range image: azimuths in steps of the scanner's pulses, with each point in the cell of its row and azimuth.
  *
- * A scanner's clock is coarse: of two points that are due in one cell one moves to a free neighbour, in their order, so that neither is lost.
+ * A scanner's clock is coarse. Of two points that fall into one cell, one moves to a free neighbour that keeps the order, so that neither is
+ * lost.
  */
+import { MOST_SIDE } from "../formats/limits.js";
+import { median } from "../statistics.js";
+import { DEGREE, TURN } from "./frame.js";
 import type { Image } from "./image.js";
-import { type Rows, median } from "./rows.js";
+import type { Rows } from "./rows.js";
 
-const TURN = 2 * Math.PI;
-const degrees = Math.PI / 180;
-/** Columns of a full turn, at most: the widest image of the package. */
-const MOST_COLUMNS = 4096;
+/** Columns of a full turn, at least. */
 const FEWEST_COLUMNS = 90;
-/** Azimuths nearer to each other than this are those of one pulse. */
-const ONE_PULSE = 0.008 * degrees;
-/** Steps in a row of which the mean is the pace: a clock's ticks average out. */
+/** Azimuths that differ by less, radians, belong to one pulse. */
+const ONE_PULSE = 0.008 * DEGREE;
+/** Consecutive steps whose mean is the pace: the ticks of the clock average out. */
 const WINDOW = 16;
-/** A step longer than this many usual ones is a gap. */
+/** A step longer than so many usual ones is a gap. */
 const GAP = 2.5;
-/** Rows finer than the usual one have a say: the pace is that of the finest fifth of the rows. */
+/** The pace is that of the row at this share of all rows, ordered from the finest. */
 const FINEST = 0.2;
+/** The pace of a scan whose rows are too short to measure it, radians. */
+const USUAL_PACE = 0.2 * DEGREE;
 
-/** Columns are finer than the pace by a fiftieth, so that pulses that come early find room. Set on one KITTI frame: 0.95 to 0.98 keep all. */
+/** Columns over the pace: finer ones leave room for pulses that come early. Set on one frame of KITTI, where 0.95 to 0.98 keep all points. */
 const SLACK = 0.98;
 
-/** Members of each row in order of azimuth. */
+/** The points of each row in order of azimuth. */
 function sorted({ row, rows, polar: { azimuth } }: Rows): number[][] {
   const members: number[][] = rows.map(() => []);
   row.forEach((number, index) => members[number]?.push(index));
@@ -31,7 +34,7 @@ function sorted({ row, rows, polar: { azimuth } }: Rows): number[][] {
   return members;
 }
 
-/** Radians from one pulse of a row to the next; nothing for a row of too few. */
+/** Radians from one pulse of a row to the next; undefined for a row with too few points. */
 function paceOf(azimuths: number[]): number | undefined {
   const steps = azimuths
     .slice(1)
@@ -43,21 +46,21 @@ function paceOf(azimuths: number[]): number | undefined {
   for (let from = 0; from + WINDOW <= steps.length; from += WINDOW / 2) {
     const window = steps.slice(from, from + WINDOW);
     if (!window.every((step) => step < GAP * usual)) continue;
-    // A step of two usual ones has a pulse between them that did not come back.
+    // A step of twice the usual length spans a pulse without a return.
     const pulses = window.reduce((sum, step) => sum + Math.max(1, Math.round(step / usual)), 0);
     means.push(window.reduce((sum, step) => sum + step, 0) / pulses);
   }
   return means.length > 0 ? median(means) : usual;
 }
 
-/** Radians of a column: a whole number of them makes a turn. */
+/** The width of a column, radians, which divides a turn into whole columns. */
 function stepOf(members: number[][], azimuth: Float64Array): number {
   const paces = members.flatMap((list) => paceOf(list.map((index) => azimuth[index] ?? 0)) ?? []).sort((a, b) => a - b);
-  const pace = paces[Math.floor(FINEST * paces.length)] ?? 0.2 * degrees;
-  return TURN / Math.min(MOST_COLUMNS, Math.max(FEWEST_COLUMNS, Math.round(TURN / (SLACK * pace))));
+  const pace = paces[Math.floor(FINEST * paces.length)] ?? USUAL_PACE;
+  return TURN / Math.min(MOST_SIDE, Math.max(FEWEST_COLUMNS, Math.round(TURN / (SLACK * pace))));
 }
 
-/** A row's points in its cells, each at most a cell from where it belongs, in the order of their azimuths. */
+/** The points of one row in its cells, in the order of their azimuths, each about a cell from its azimuth at most. */
 class Line {
   readonly cells: Int32Array;
   /** The cell that was filled last. */
@@ -80,11 +83,11 @@ class Line {
     return cell < this.cells.length && Math.abs(cell + 0.5 - this.#due(index)) <= FARTHEST_SHIFT;
   }
 
-  /** Points come in the order of their azimuths. */
+  /** Puts a point into its cell; points have to come in the order of their azimuths. */
   put(index: number): void {
     const cell = Math.min(this.cells.length - 1, Math.max(0, Math.floor(this.#due(index))));
     const before = this.cells[this.#last] ?? -1;
-    // A pulse with two returns has one place, and the nearer of them.
+    // A pulse with two returns keeps the nearer one.
     const isOnePulse = before >= 0 && this.#due(index) - this.#due(before) < ONE_PULSE_SHARE;
     if (!isOnePulse && cell > this.#last) this.#set(cell, index);
     else if (!isOnePulse && this.#fits(this.#last, index) && this.#shiftBack()) this.#set(this.#last, index);
@@ -92,7 +95,7 @@ class Line {
     else if (this.#range(index) < this.#range(before)) this.#set(this.#last, index);
   }
 
-  /** Makes room in the cell that was filled last by moving what is there back by one, and what is there in turn. */
+  /** Frees the cell that was filled last by shifting the points before it back by one, down to the first free cell. */
   #shiftBack(): boolean {
     let free = this.#last;
     while (free >= 0 && this.cells[free] !== -1 && this.#last - free < MOST_SHIFTED) free--;
@@ -102,11 +105,11 @@ class Line {
     return true;
   }
 }
-/** Share of a cell within which two azimuths are one pulse's. */
+/** Azimuths that differ by less, as a share of a cell, belong to one pulse. */
 const ONE_PULSE_SHARE = 0.04;
-/** Cells that may move to make room. */
+/** Cells that may shift to make room. */
 const MOST_SHIFTED = 64;
-/** Cells from a point's azimuth to the middle of its cell, at most: farther off it would misplace its neighbours. */
+/** Cells from a point's azimuth to the middle of its cell, at most; a larger shift would misplace its neighbours. */
 const FARTHEST_SHIFT = 1.1;
 
 /** The range image of a full turn, with the seam behind `forward`. */

@@ -1,10 +1,13 @@
 /**
- * Axes of a range image in the frame of its cloud: rightwards, forwards and up, as one who sits at the cloud's origin sees them.
+ * The axes of a range image in the frame of its cloud: right, forward and up, as an observer at the cloud's origin sees them.
  *
- * A spinning scanner turns about `up`. Columns count azimuths from `forward` to the right, rows elevations downwards, so that a range image
- * winds as a picture does.
+ * A spinning scanner turns about `up`. Columns count azimuths from `forward` to the right, and rows count elevations downwards, so that a range
+ * image has the handedness of a picture.
  */
 import { rangeOf } from "./scan.js";
+
+export const DEGREE = Math.PI / 180;
+export const TURN = 2 * Math.PI;
 
 export type Vector = [number, number, number];
 
@@ -29,21 +32,21 @@ const X: Vector = [1, 0, 0];
 const Y_UP: Vector = [0, -1, 0];
 const Z: Vector = [0, 0, 1];
 
-/** Axes with this up and as nearly this way forward as they can. */
+/** Axes with this up, and with forward as near to the given direction as up allows. */
 export function frameOf(up: Vector, forward: Vector): Frame {
   const right = cross(forward, up);
-  // Forward along up says nothing of azimuths.
+  // A forward direction along up leaves the azimuth open.
   const side = unit(Math.hypot(...right) > 1e-3 ? right : cross(Math.abs(up[0]) < 0.9 ? X : Z, up));
   return { right: side, forward: cross(up, side), up };
 }
 
-/** Axes that a scanner may turn about: z of a vehicle's frame, y of an optical one, and x. Signs turn the range image alone. */
+/** Axes that a scanner may turn about: z of a vehicle's frame, y of an optical frame, and x. Their signs only turn the range image. */
 export const AXES: readonly Vector[] = [Z, Y_UP, X];
 
-/** What is up for one who looks this way: z, unless that is where he looks. */
+/** The up direction for an observer who looks along `forward`: z, or y of an optical frame where z itself is forward. */
 export const upright = (forward: Vector): Vector => (Math.abs(forward[2]) > Math.SQRT1_2 ? Y_UP : Z);
 
-/** Mean of the directions of all points that are there; its length says how narrow the field of view is: 1 a single ray, 0 all around. */
+/** The mean direction of all valid points. Its length measures how narrow the field of view is: 1 for a single ray, 0 for all around. */
 export function meanDirection(points: Float32Array): Vector {
   let [count, x, y, z] = [0, 0, 0, 0];
   for (let at = 0; at < points.length; at += 3) {
@@ -57,10 +60,16 @@ export function meanDirection(points: Float32Array): Vector {
   return count === 0 ? [0, 0, 0] : [x / count, y / count, z / count];
 }
 
-/** Where the points lie in such axes. */
+/** Shorter mean directions are those of a scanner that looks all around; the check has the same rule, in src/calibration/ahead.rs. */
+const ALL_AROUND = 0.5;
+
+/** Whether points with this mean direction have a field of view that faces one way. */
+export const facesOneWay = (mean: Vector): boolean => Math.hypot(...mean) > ALL_AROUND;
+
+/** Cylindrical coordinates of the points about the up axis. */
 export interface Polar {
   frame: Frame;
-  /** From forward to the right, -pi to pi. */
+  /** From forward to the right, -pi to pi, radians. */
   azimuth: Float64Array;
   /** Distance from the axis, metres. */
   radius: Float64Array;
@@ -88,7 +97,7 @@ export function polarOf(points: Float32Array, frame: Frame): Polar {
   return polar;
 }
 
-/** Pooled scatter of unit directions within groups, 3x3, and the direction along which it is least. */
+/** The axis along which unit directions scatter least within their groups, pooled over all groups, and the scatter along any axis. */
 export function leastScatter(
   points: Float32Array,
   group: ArrayLike<number>,
@@ -122,10 +131,10 @@ const times = (m: ArrayLike<number>, v: Vector): Vector => [
   (m[6] ?? 0) * v[0] + (m[7] ?? 0) * v[1] + (m[8] ?? 0) * v[2],
 ];
 
-/** Rounds of inverse iteration, each of which gains the ratio of two eigenvalues. */
+/** Rounds of inverse iteration; the error of each shrinks by the ratio of the two smallest eigenvalues. */
 const ROUNDS = 30;
 
-/** Eigenvector of the smallest eigenvalue of a symmetric positive matrix: inverse iteration with its adjugate, which scales alike. */
+/** Eigenvector of the smallest eigenvalue of a symmetric positive matrix, by inverse iteration with its adjugate, the inverse up to scale. */
 function smallest(m: ArrayLike<number>): Vector {
   const [a, b, c] = [0, 3, 6].map((row): Vector => [m[row] ?? 0, m[row + 1] ?? 0, m[row + 2] ?? 0]) as [
     Vector,

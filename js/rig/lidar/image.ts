@@ -1,44 +1,29 @@
-/** A range image: which point of a scan each of its cells holds, and the ray of each cell. */
+/** A range image: the point of the scan that each of its cells holds, and the geometry of its rows and columns. */
 import type { Frame } from "./frame.js";
 import type { Row } from "./rows.js";
 
 export interface Image {
-  /** What made its rows. */
+  /** The method by which its rows were found. */
   how: "ring" | "order" | "elevation" | "sphere";
   width: number;
   height: number;
-  /** Index of the point in each cell; -1 none. */
+  /** Index of the point in each cell; -1 for an empty cell. */
   cells: Int32Array;
   frame: Frame;
   /** The cone of each row. */
   rows: Row[];
   /** Azimuth where the first column begins, radians. */
   first: number;
-  /** Radians from column to column. */
+  /** Width of a column, radians. */
   step: number;
-  /** Points that others hide. */
+  /** Number of points that were left out because others hide them. */
   hidden: number;
 }
 
-/** A ray in the frame's axes (right, forward, up): where it begins, and a unit vector along it. */
-export function rayOf(
-  { rows, first, step }: Image,
-  column: number,
-  row: number,
-): { origin: number[]; along: number[] } {
-  const { tangent = 0, origin = 0 } = rows[row] ?? {};
-  const azimuth = first + (column + 0.5) * step;
-  const length = Math.hypot(1, tangent);
-  return {
-    origin: [0, 0, origin],
-    along: [Math.sin(azimuth) / length, Math.cos(azimuth) / length, tangent / length],
-  };
-}
+/** Rows and columns of the smallest image that the package takes. */
+export const LEAST_SIDE = 4;
 
-/** Rows and columns of the smallest image of the package. */
-const LEAST_SIDE = 4;
-
-/** A first and a last line that are at least so many apart, where there are so many. */
+/** A first and a last line, widened to the smallest side where the image has as many lines. */
 function widened(first: number, last: number, count: number): [number, number] {
   const missing = Math.max(0, LEAST_SIDE - (last - first + 1));
   const end = Math.min(count - 1, last + Math.ceil(missing / 2));
@@ -46,7 +31,7 @@ function widened(first: number, last: number, count: number): [number, number] {
   return [start, Math.min(count - 1, Math.max(end, start + LEAST_SIDE - 1))];
 }
 
-/** The points of interest alone, in the part of a range image that holds them. */
+/** The part of a range image that holds the points of interest, without any others. */
 export function cropped(image: Image, isOfInterest: (index: number) => boolean): Image {
   const { width, height, cells } = image;
   let [left, right, top, bottom] = [width, -1, height, -1];

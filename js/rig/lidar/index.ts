@@ -1,36 +1,30 @@
 /**
  * Unorganised clouds as range images: the points of a LiDAR in rows and columns, so that the check of a calibration finds neighbours.
  *
- * Points keep their coordinates, in the cloud's own frame, so that extrinsics that are given for it hold; only their order is made. Rows come
- * of rings (`rows.ts`), or of a z-buffer where there are none (`sphere.ts`), columns of azimuths.
+ * Points keep their coordinates in the cloud's own frame, so that extrinsics for that frame hold; only their order changes. Rows come from the
+ * scanner's rings (`rows.ts`), or from a z-buffer for clouds without rings (`sphere.ts`); columns come from azimuths.
  *
- * Limits. All points of a sweep count as measured at one moment and from one place: what moved meanwhile, and a picture taken at another
- * time, bend the range image against it. A cloud of many sweeps is looked at from its origin alone.
+ * Limits. All points count as measured at one moment and from one place. Where the rig or the scene moves during a sweep, or between the sweep
+ * and the picture, the range image and the picture disagree. A cloud of many sweeps is seen from its origin alone.
  */
 import { buffered } from "./sphere.js";
 import { spun } from "./columns.js";
-import { type Vector, AXES, frameOf, meanDirection, polarOf, unit, upright } from "./frame.js";
+import { type Vector, AXES, facesOneWay, frameOf, meanDirection, polarOf, unit, upright } from "./frame.js";
 import { type Image, cropped } from "./image.js";
 import { type Rows, byElevation, byOrder, byRing } from "./rows.js";
 import { type Scan, measured, subset } from "./scan.js";
 import { type View, forwardOf, seesOf, upOf } from "./view.js";
 
-export type { Image } from "./image.js";
-export { rayOf } from "./image.js";
 export type { Scan } from "./scan.js";
 export type { View } from "./view.js";
-export { seesOf } from "./view.js";
 
 /** A scan in rows and columns. */
 export interface RangeImage extends Image {
-  /** x, y, z of each cell in the cloud's frame, NaN where it holds no point. */
+  /** x, y, z of each cell in the cloud's frame, metres; NaN where the cell is empty. */
   points: Float32Array;
-  /** Of each cell, where the scan has it, NaN where there is no point. */
+  /** The intensity of each cell where the scan has intensities, NaN where the cell is empty. */
   intensity?: Float32Array;
 }
-
-/** Mean directions shorter than this are those of a scanner that looks all around. */
-const NARROW = 0.5;
 
 function rowsOf(scan: Scan, forward: Vector): Rows | undefined {
   const own = scan.ring && byRing(scan.points, scan.ring, forward);
@@ -45,14 +39,13 @@ function rowsOf(scan: Scan, forward: Vector): Rows | undefined {
   return undefined;
 }
 
-/** The range image of a scan; of what the camera may see, where one is given. Nothing for a scan without measurements. */
+/** The range image of a scan, or of the part that a camera may see. Undefined for a scan without measurements. */
 export function rangeImage(all: Scan, view?: View): RangeImage | undefined {
   const kept = measured(all);
   if (kept.length === 0) return undefined;
   const scan = subset(all, kept);
   const mean = meanDirection(scan.points);
-  const isNarrow = Math.hypot(...mean) > NARROW;
-  const forward: Vector = view ? forwardOf(view) : isNarrow ? unit(mean) : [1, 0, 0];
+  const forward: Vector = view ? forwardOf(view) : facesOneWay(mean) ? unit(mean) : [1, 0, 0];
   const rows = rowsOf(scan, forward);
   const sees = view && seesOf(view);
   const isSeen = (index: number) =>

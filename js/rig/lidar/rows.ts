@@ -1,16 +1,17 @@
 /**
- * Which laser of a spinning scanner measured each point: the rows of its range image.
+ * The rows of a spinning scanner's range image: the laser that measured each point.
  *
- * By the file's ring, or by the order of its points where each laser's whole turn follows the last one's (KITTI), or by elevations that
- * cluster. A row is a cone, height = tangent * radius + origin: lasers of one scanner sit up to 0.2 m above each other, so that a laser's
- * elevation as the origin sees it changes with the distance. What fits no such cones is no spinning scanner's, or no longer: no rows.
+ * Rows come from the file's rings, from the order of the points where the file stores one turn of a laser after the other (KITTI), or from
+ * clusters of elevations. A row is a cone, height = tangent * radius + origin: the lasers of one scanner sit up to 0.2 m above each other, so
+ * that the elevation of a laser's points, seen from the origin, changes with the distance. Points that fit no such cones have no rows.
  */
-import { type Polar, type Vector, AXES, frameOf, leastScatter, polarOf } from "./frame.js";
+import { median } from "../statistics.js";
+import { AXES, DEGREE, type Polar, TURN, type Vector, dot, frameOf, leastScatter, polarOf } from "./frame.js";
 
 export interface Row {
   /** Tangent of the elevation. */
   tangent: number;
-  /** Where the laser sits on the axis, metres. */
+  /** Height of the laser on the axis, metres. */
   origin: number;
 }
 
@@ -19,31 +20,28 @@ export interface Rows {
   polar: Polar;
   /** From the top down. */
   rows: Row[];
-  /** Each point's row; -1 none. */
+  /** The row of each point; -1 for a point without one. */
   row: Int16Array;
 }
 
 const FEWEST_ROWS = 4;
 const MOST_ROWS = 512;
-/** Of a row's points, for its cone to be known. */
+/** Points of a row that its cone is fitted to, at least. */
 const FEWEST_POINTS = 20;
-/** Mean distance of points from their cones over that of neighbouring cones: points without any rows have 0.25. */
+/** Median distance of points from their cones over the distance of neighbouring cones, at most: points without rows have 0.25. */
 const FITTING = 0.15;
-/** .. where a file names its rings, which are rows even where they waver. */
+/** .. where the rows come from rings or from turns, which are rows even where their cones fit poorly. */
 const FITTING_RINGS = 0.5;
-/** Points that are looked at for it. */
+/** Points that this ratio is measured on, at most. */
 const LOOKED_AT = 50_000;
 /** Share of points that have to lie in rows. */
 const NEARLY_ALL = 0.95;
 
-export const median = (values: ArrayLike<number>): number =>
-  Float64Array.from(values).sort()[values.length >> 1] ?? NaN;
-
-/** Radians from the cone within which a point counts fully for its fit, at first and at last. */
+/** Scale of the Cauchy weights in the first and in the last round of a fit, radians. */
 const SCALES = [0.05, 0.001] as const;
 const FIT_ROUNDS = 12;
 
-/** The cone of a row: slope + origin / radius by weighted least squares, in angles, with Cauchy's weights. */
+/** The cone of a row: height / radius = tangent + origin / radius by least squares with Cauchy weights, which narrow from round to round. */
 function cone({ radius, height }: Polar, members: readonly number[]): Row {
   let row: Row = { tangent: median(members.map((index) => (height[index] ?? 0) / (radius[index] ?? 1))), origin: 0 };
   for (let round = 0; round < FIT_ROUNDS; round++) {
@@ -60,7 +58,7 @@ function cone({ radius, height }: Polar, members: readonly number[]): Row {
       y += weight * slope;
       uy += weight * slope * inverse;
     }
-    // Of a row at one distance alone the origin is unknown, and zero is the likeliest.
+    // A row whose points are all equally far away does not determine its origin; the prior draws it to zero.
     uu += n * UNKNOWN_ORIGIN;
     const determinant = n * uu - u * u;
     row = { tangent: (y * uu - uy * u) / determinant, origin: (n * uy - u * y) / determinant };
@@ -68,19 +66,20 @@ function cone({ radius, height }: Polar, members: readonly number[]): Row {
   }
   return row;
 }
-/** Variance of an elevation that is no noise (0.6 mrad: a tilted axis) over that of an origin (0.15 m). */
+/** Variance of the systematic errors of elevations (0.6 mrad, of a tilted axis) over the prior variance of an origin (0.15 m). */
 const UNKNOWN_ORIGIN = (0.0006 / 0.15) ** 2;
-/** Metres between the lasers of one scanner and its origin, at most. */
+/** Height of a laser over the scanner's origin, metres, at most. */
 const MOST_ORIGIN = 0.5;
 
-/** Tangent of the elevation, seen from the cloud's origin, of what a row measures so far from the axis; metres, 10 are usual. */
-export const slopeOf = ({ tangent, origin }: Row, radius = 10): number => tangent + origin / radius;
+/** Tangent of the elevation of a row's points at this radius, metres, seen from the cloud's origin. */
+const slopeOf = ({ tangent, origin }: Row, radius = 10): number => tangent + origin / radius;
 
-/** Rows around one that say where its laser sits, and how far from theirs it may seem to, metres. */
+/** Rows on either side of a row whose median origin its own is compared with .. */
 const AROUND = 2;
+/** .. and the difference from that median, metres, from which on a row's own origin counts as unreliable. */
 const UNSTEADY = 0.1;
 
-/** Cones whose origin is that of the lasers beside them, where the own points say another: those of a row that sees the ground alone may. */
+/** Rows with unreliable origins replaced by the median of their neighbours'; a row that sees only the ground does not determine its origin. */
 function steadied<T extends { row: Row; radius: number }>(found: T[]): T[] {
   return found.map((each, index) => {
     const { row, radius } = each;
@@ -91,7 +90,7 @@ function steadied<T extends { row: Row; radius: number }>(found: T[]): T[] {
   });
 }
 
-/** Rows of groups of points, from the top down; nothing where they are no cones. */
+/** The rows of groups of points, from the top down; undefined where the groups do not form cones. */
 function fitted(polar: Polar, group: ArrayLike<number>, how: Rows["how"]): Rows | undefined {
   const members = new Map<number, number[]>();
   for (let index = 0; index < group.length; index++) {
@@ -118,7 +117,7 @@ function fitted(polar: Polar, group: ArrayLike<number>, how: Rows["how"]): Rows 
   return isFit({ how, polar, rows, row }) ? { how, polar, rows, row } : undefined;
 }
 
-/** Whether points lie much nearer to their own row than rows to each other. */
+/** Whether points lie much nearer to their own row than the rows lie to each other. */
 function isFit({ how, polar: { radius, height }, rows, row }: Rows): boolean {
   const offs: number[] = [];
   const stride = Math.max(1, Math.floor(row.length / LOOKED_AT));
@@ -131,42 +130,34 @@ function isFit({ how, polar: { radius, height }, rows, row }: Rows): boolean {
   return offs.length >= (NEARLY_ALL * row.length) / stride && median(offs) <= most;
 }
 
-/** How much more the directions of a ring may scatter along an axis of the frame than along the best one, for that to be the axis. */
+/** An axis of the frame is the scanner's where directions scatter at most so many times as much along it as along the best axis. */
 const AS_GOOD = 1.5;
 /** Cosine of 1.5 degrees. */
 const NEAR = 0.99966;
 
-/** Rows by the file's own rings, about the axis along which the directions of a ring scatter least. */
+/** Rows from the file's rings, about the axis along which the directions of each ring scatter least. */
 export function byRing(points: Float32Array, ring: ArrayLike<number>, forward: Vector): Rows | undefined {
   const { axis, along } = leastScatter(points, ring);
-  const own = AXES.find(
-    (each) =>
-      Math.abs(each[0] * axis[0] + each[1] * axis[1] + each[2] * axis[2]) > NEAR &&
-      along(each) < AS_GOOD * along(axis) + 1e-8,
-  );
+  const own = AXES.find((each) => Math.abs(dot(each, axis)) > NEAR && along(each) < AS_GOOD * along(axis) + 1e-8);
   return fitted(polarOf(points, frameOf(own ?? upwards(axis), forward)), ring, "ring");
 }
 
-/** The axis's end that lies towards that of the frame's axes. */
+/** The axis with the sign of the frame's axis that is nearest to it. */
 function upwards(axis: Vector): Vector {
-  const nearest = AXES.reduce((best, each) =>
-    Math.abs(inner(each, axis)) > Math.abs(inner(best, axis)) ? each : best,
-  );
-  return inner(nearest, axis) < 0 ? [-axis[0], -axis[1], -axis[2]] : axis;
+  const nearest = AXES.reduce((best, each) => (Math.abs(dot(each, axis)) > Math.abs(dot(best, axis)) ? each : best));
+  return dot(nearest, axis) < 0 ? [-axis[0], -axis[1], -axis[2]] : axis;
 }
-const inner = (a: Vector, b: Vector): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
-const TURN = 2 * Math.PI;
-const degrees = Math.PI / 180;
-/** Radians that azimuths may go back within a turn. */
-const BACKWARDS = 20 * degrees;
-/** Share of steps from point to point that go the scanner's way and are short. */
+/** Radians by which azimuths may step back within a turn. */
+const BACKWARDS = 20 * DEGREE;
+/** Share of steps from point to point that have to be short and in the scanner's direction of rotation .. */
 const MOSTLY = 0.8;
-const SHORT = 3 * degrees;
-/** Radians around the seam in which a new turn may begin. */
-const SEAM = 4 * degrees;
+/** .. and the longest short step, radians. */
+const SHORT = 3 * DEGREE;
+/** Radians on either side of the seam within which a new turn may begin. */
+const SEAM = 4 * DEGREE;
 
-/** Rows by turns: the points of one laser after those of the other, each in order of azimuth. */
+/** Rows from turns: the file stores all points of one laser in order of azimuth, then those of the next laser. */
 export function byOrder(polar: Polar): Rows | undefined {
   const count = polar.azimuth.length;
   const steps = new Float64Array(count);
@@ -179,7 +170,7 @@ export function byOrder(polar: Polar): Rows | undefined {
   const way = Math.sign(rightwards) || 1;
   const short = steps.reduce((sum, step) => sum + (way * step > -SHORT / 10 && way * step < SHORT ? 1 : 0), 0);
   if (short < MOSTLY * count) return undefined;
-  // Ahead all the way: a jump back by much is a gap up to the next turn.
+  // The azimuth unwrapped: a long step back is a gap up to the next turn.
   const travelled = new Float64Array(count);
   for (let index = 1; index < count; index++) {
     const step = way * (steps[index] ?? 0);
@@ -192,10 +183,10 @@ export function byOrder(polar: Polar): Rows | undefined {
   return coarse && refined(coarse, isSeam);
 }
 
-/** Ranges of two pulses that differ by less, as a share, are of one surface, where elevations jump from laser to laser alone. */
+/** Two points whose distances differ by less, as a share, lie on one surface, on which elevations only jump from laser to laser. */
 const LEVEL = 0.05;
 
-/** How much the slope changes from each point's predecessor of the same surface. */
+/** The change of the slope from each point's predecessor on the same surface; 0 where the two lie on different surfaces. */
 function jumpsOf({ radius, height }: Polar): Float64Array {
   const slopes = radius.map((each, index) => (height[index] ?? 0) / each);
   return slopes.map((slope, index) => {
@@ -204,7 +195,7 @@ function jumpsOf({ radius, height }: Polar): Float64Array {
   });
 }
 
-/** Number of the turn of each point. The seam lies where elevations jump most from point to point, in most turns. */
+/** The turn of each point. The seam is at the azimuth where the median over all turns of the jump in elevation is largest. */
 function turnsOf(polar: Polar, travelled: Float64Array): { turn: Int32Array; isSeam: (index: number) => boolean } {
   const jumps = jumpsOf(polar);
   const breaks = (phase: number): { at: number[]; usual: number; phase: number } => {
@@ -213,7 +204,7 @@ function turnsOf(polar: Polar, travelled: Float64Array): { turn: Int32Array; isS
       const place = ((travelled[index] ?? 0) - phase) / TURN;
       const turn = Math.round(place);
       const isAcross = Math.floor(place) > Math.floor(((travelled[index - 1] ?? 0) - phase) / TURN);
-      // A gap that is longer than the seam begins the turn by itself.
+      // A gap that spans the seam begins the turn by itself.
       const key = isAcross ? Math.floor(place) : turn;
       if (!isAcross && Math.abs(place - turn) * TURN > SEAM) continue;
       const rival = best.get(key);
@@ -239,16 +230,18 @@ function turnsOf(polar: Polar, travelled: Float64Array): { turn: Int32Array; isS
   return { turn, isSeam };
 }
 
-/** Of the histogram of elevations, radians. */
-const BIN = 0.02 * degrees;
-/** Points nearer than this from the axis, metres, blur the clusters. */
+/** Width of a bin of the histogram of elevations, radians. */
+const BIN = 0.02 * DEGREE;
+/** Points nearer to the axis than this, metres, are left out of the histogram, because they blur the clusters. */
 const BLURRED = 2;
-/** Of a cluster that may be one, over the higher ones: rays into the sky do not come back. */
+/** Height of a cluster over that of the highest ones, at least; a low share, because rays into the sky do not return. */
 const LEAST_CLUSTER = 0.05;
-/** A valley between two clusters has at most this share of the lower one. */
+/** Bins that count as the highest ones. */
+const HIGHEST_BINS = 5 * FEWEST_ROWS;
+/** Height of a valley between two clusters as a share of the lower one, at most. */
 const VALLEY = 0.5;
 
-/** Rows by clusters of elevation. */
+/** Rows from clusters of elevations. */
 export function byElevation(polar: Polar): Rows | undefined {
   const count = polar.azimuth.length;
   const elevation = (index: number) => Math.atan2(polar.height[index] ?? 0, polar.radius[index] ?? 1);
@@ -259,7 +252,7 @@ export function byElevation(polar: Polar): Rows | undefined {
   const smooth = bins.map(
     (_, at) => [-2, -1, 0, 1, 2].reduce((sum, by) => sum + (bins[at + by] ?? 0) * (3 - Math.abs(by)), 0) / 9,
   );
-  const highest = [...smooth].sort((a, b) => b - a)[FEWEST_ROWS * 5] ?? 0;
+  const highest = [...smooth].sort((a, b) => b - a)[HIGHEST_BINS] ?? 0;
   const valleys = valleysOf(smooth, Math.max(FEWEST_POINTS / 4, LEAST_CLUSTER * highest));
   if (valleys.length < FEWEST_ROWS - 1 || valleys.length > MOST_ROWS) return undefined;
   const group = new Int16Array(bins.length);
@@ -273,11 +266,11 @@ export function byElevation(polar: Polar): Rows | undefined {
     Int16Array.from({ length: count }, (_, index) => group[binOf(index)] ?? 0),
     "elevation",
   );
-  // Elevations of near points blur.
+  // Near points were left out of the histogram, and others lie in the tails of two clusters.
   return coarse && refined(coarse, () => true);
 }
 
-/** Bins between clusters, in order. */
+/** The lowest bin between each two neighbouring clusters, in order. */
 function valleysOf(smooth: Float64Array, least: number): number[] {
   const valleys: number[] = [];
   let [isRising, top, bottom, place] = [true, 0, 0, 0];
@@ -295,7 +288,7 @@ function valleysOf(smooth: Float64Array, least: number): number[] {
   return valleys;
 }
 
-/** Points in doubt in the row whose cone is nearest to them, of those about their own. */
+/** The rows with each doubtful point moved to the nearest of its own row and the two on either side. */
 function refined(rows: Rows, isDoubtful: (index: number) => boolean): Rows | undefined {
   const { radius, height } = rows.polar;
   const group = rows.row.map((own, index) => {

@@ -1,4 +1,4 @@
-/** Points as a LiDAR or a mapping tool leaves them: in no rows and columns, in a frame of their own. */
+/** Points as a LiDAR or a mapping tool writes them: without rows and columns, in the frame of the sensor. */
 
 /** A cloud without rows and columns. */
 export interface Scan {
@@ -12,12 +12,12 @@ export interface Scan {
   times?: Float64Array;
 }
 
-/** Returns nearer than this, metres, are the sensor's own housing, or stand for no return. */
+/** Returns nearer than this, metres, come from the sensor's own housing or mark a missing return. */
 const NEAREST = 0.1;
-/** From here on, metres, a coordinate is a marker for a missing point. */
+/** Distances from here on, metres, mark a missing point. */
 const FARTHEST = 1e4;
 
-/** Distance from the origin of the point that begins at a place; by the root, which is many times faster than hypot. */
+/** Distance from the origin of the point whose x is at this index; by the square root, because Math.hypot is several times slower. */
 export function rangeOf(points: Float32Array, at: number): number {
   const [x, y, z] = [points[at] ?? NaN, points[at + 1] ?? NaN, points[at + 2] ?? NaN];
   return Math.sqrt(x * x + y * y + z * z);
@@ -34,7 +34,7 @@ export function measured({ points }: Scan): Uint32Array {
   return kept.slice(0, count);
 }
 
-/** The scan's points of these indices alone. */
+/** The part of a scan that has these indices. */
 export function subset(scan: Scan, kept: Uint32Array): Scan {
   const points = new Float32Array(3 * kept.length);
   for (let to = 0; to < kept.length; to++) {

@@ -1,25 +1,23 @@
 /**
- * A range image of points in no rows: a z-buffer over azimuths and elevations at the cloud's own density.
+ * The range image of points without rows: a z-buffer over azimuths and elevations at the density of the cloud.
  *
- * For scanners without rows (Livox, MEMS) and for clouds of many sweeps. The nearest point of a cell wins; others of its surface move to a
- * free cell beside it, and what lies behind the surfaces around it, seen through the gaps between their points, is hidden.
+ * It serves scanners without rows (Livox, MEMS) and clouds of many sweeps. The nearest point of a cell stays; other points of the same surface
+ * move to a free cell beside it. Points seen through the gaps of a nearer surface are hidden and left out.
  */
-import type { Image } from "./image.js";
-import type { Polar } from "./frame.js";
+import { MOST_SIDE } from "../formats/limits.js";
+import { DEGREE, type Polar } from "./frame.js";
+import { type Image, LEAST_SIDE } from "./image.js";
 
-const degrees = Math.PI / 180;
-/** Finest and coarsest cell that is tried. */
-const FINEST = 0.02 * degrees;
-const COARSEST = 4 * degrees;
-/** Points to each cell that holds any, of points at random that are two thirds as many as the cells they fall on. */
+/** The finest and the coarsest cell, radians. */
+const FINEST = 0.02 * DEGREE;
+const COARSEST = 4 * DEGREE;
+/** Points per occupied cell at the wanted density, two random points to three cells: x / (1 - exp(-x)) at x = 2/3. */
 const FILLED = 1.37;
-const MOST_SIDE = 4096;
-const LEAST_SIDE = 4;
-/** Points are of one surface where their ranges differ by less than this share of them .. */
+/** Two points lie on one surface where their ranges differ by less than this share .. */
 const ONE_SURFACE = 0.02;
-/** .. or by this, metres. */
+/** .. or by less than this, metres. */
 const ONE_SURFACE_LEAST = 0.03;
-/** Steps of a bisection in the logarithm. */
+/** Bisection steps for the logarithm of the cell. */
 const STEPS = 9;
 
 const isBehind = (range: number, other: number): boolean =>
@@ -38,7 +36,7 @@ interface Extent {
   height: number;
 }
 
-/** Azimuths and elevations of these points, and how far they reach. */
+/** The range of azimuths and elevations of these points, radians. */
 function extent({ azimuth, elevation }: Sphere, points: Uint32Array): Extent {
   let [left, right, bottom, top] = [Infinity, -Infinity, Infinity, -Infinity];
   for (const index of points) {
@@ -50,7 +48,7 @@ function extent({ azimuth, elevation }: Sphere, points: Uint32Array): Extent {
   return { left, top, width: right - left, height: top - bottom };
 }
 
-/** Points to each cell that holds any. */
+/** Points per occupied cell. */
 function filling(sphere: Sphere, points: Uint32Array, { left, top, width, height }: Extent, step: number): number {
   const columns = Math.floor(width / step) + 1;
   const cells = new Uint8Array(columns * (Math.floor(height / step) + 1));
@@ -64,7 +62,7 @@ function filling(sphere: Sphere, points: Uint32Array, { left, top, width, height
   return points.length / Math.max(1, taken);
 }
 
-/** The cell at which points are as dense as they should be, radians. */
+/** The cell at which the points have the wanted density, radians. */
 function stepOf(sphere: Sphere, points: Uint32Array, area: Extent): number {
   const least = Math.max(FINEST, area.width / (MOST_SIDE - 1), area.height / (MOST_SIDE - 1));
   if (filling(sphere, points, area, least) >= FILLED) return least;
@@ -77,14 +75,23 @@ function stepOf(sphere: Sphere, points: Uint32Array, area: Extent): number {
   return Math.exp(high);
 }
 
-/** A z-buffer that is being filled. */
+/** Where the cells begin and how wide they are, radians; how many there are. */
+interface Grid {
+  left: number;
+  top: number;
+  step: number;
+  width: number;
+  height: number;
+}
+
+/** A z-buffer in the making. */
 class Buffer {
   readonly cells: Int32Array;
   hidden = 0;
   readonly #sphere: Sphere;
-  readonly #grid: { left: number; top: number; step: number; width: number; height: number };
+  readonly #grid: Grid;
 
-  constructor(sphere: Sphere, grid: { left: number; top: number; step: number; width: number; height: number }) {
+  constructor(sphere: Sphere, grid: Grid) {
     this.#sphere = sphere;
     this.#grid = grid;
     this.cells = new Int32Array(grid.width * grid.height).fill(-1);
@@ -94,12 +101,13 @@ class Buffer {
     return this.#sphere.range[index] ?? 0;
   }
 
-  /** Of a point: its column and its row, with fractions. */
+  /** The fractional column of a point. */
   #column(index: number): number {
     const { left, step, width } = this.#grid;
     return Math.min(width - 1e-6, Math.max(0, ((this.#sphere.azimuth[index] ?? 0) - left) / step));
   }
 
+  /** The fractional row of a point. */
   #row(index: number): number {
     const { top, step, height } = this.#grid;
     return Math.min(height - 1e-6, Math.max(0, (top - (this.#sphere.elevation[index] ?? 0)) / step));
@@ -123,7 +131,7 @@ class Buffer {
     for (let at = 0; at < count; at++) this.#beside(late[at] ?? 0);
   }
 
-  /** The index in one of the eight cells around one: -1 for none, -2 beyond the border. */
+  /** The point in one of the eight cells around a cell: -1 for an empty cell, -2 beyond the border. */
   #around(cell: number, way: number): number {
     const { width, height } = this.#grid;
     const [right, down] = AROUND[way] ?? [0, 0];
@@ -133,7 +141,7 @@ class Buffer {
     return this.cells[row * width + column] ?? -1;
   }
 
-  /** Takes away what is seen through the gaps of a nearer surface. */
+  /** Removes points that are seen through the gaps of a nearer surface. */
   #hide(): void {
     const hidden: number[] = [];
     for (let cell = 0; cell < this.cells.length; cell++) {
@@ -152,7 +160,7 @@ class Buffer {
     for (const cell of hidden) this.cells[cell] = -1;
   }
 
-  /** A point whose cell is taken: into the nearest free cell beside it, if it belongs to the surface that took it. */
+  /** Puts a point whose cell is taken into the nearest free cell beside it, if it lies on the surface of the point that took it. */
   #beside(index: number): void {
     const { width } = this.#grid;
     const [column, row] = [this.#column(index), this.#row(index)];
@@ -186,8 +194,9 @@ const AROUND = [
   [0, 1],
   [1, 1],
 ] as const;
-/** Neighbours that are nearer, for a point to be behind their surface: at a straight edge three of eight are. */
+/** Nearer neighbours that hide a point, at least; at a straight edge, three of eight are nearer. */
 const FEWEST_BEFORE = 4;
+/** .. and the share of all neighbours that they have to be. */
 const MOSTLY_BEFORE = 0.75;
 
 /** The range image of these points. */
@@ -200,7 +209,7 @@ export function buffered(polar: Polar, points: Uint32Array): Image {
   };
   const area = extent(sphere, points);
   const step = stepOf(sphere, points, area);
-  const grid = {
+  const grid: Grid = {
     left: area.left,
     top: area.top,
     step,

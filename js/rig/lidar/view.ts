@@ -1,8 +1,8 @@
-/** Which points of a cloud a camera may see, with a margin for a calibration that is wrong. */
+/** The points of a cloud that a camera may see, with a margin for errors of the calibration. */
 import type { Pinhole } from "../types.js";
-import { type Vector, dot } from "./frame.js";
+import { DEGREE, type Vector, dot } from "./frame.js";
 
-/** A camera, and where points of the cloud lie for it: P_camera = R P_cloud + t. */
+/** A camera and its pose: P_camera = R P_cloud + t. */
 export interface View {
   /** Row by row. */
   rotation: ArrayLike<number>;
@@ -12,11 +12,11 @@ export interface View {
   height: number;
 }
 
-/** Radians beyond the picture's border: candidates may be off by some degrees. */
-const MARGIN = (8 * Math.PI) / 180;
-/** Widest angle from the axis, radians; a pinhole's picture has no wider. */
-const WIDEST = (85 * Math.PI) / 180;
-/** Nearer to the camera's plane than this, metres, nothing is in focus, and directions mean little. */
+/** Radians beyond the picture's border: a candidate calibration may be off by some degrees. */
+const MARGIN = 8 * DEGREE;
+/** Widest angle from the optical axis, radians; a pinhole's picture has no wider. */
+const WIDEST = 85 * DEGREE;
+/** Points whose depth is less, metres, are out of focus, and their directions are unreliable. */
 const NEAREST = 0.05;
 
 const rowOf = ({ rotation }: View, row: number): Vector => [
@@ -31,7 +31,7 @@ export const upOf = (view: View): Vector => {
   return [-x, -y, -z];
 };
 
-/** Angles from the axis to the picture's borders: left, right, up, down. A lens bends them by less than the margin. */
+/** Angles from the optical axis to the picture's borders: left, right, up, down. The margin covers the lens distortion, which is ignored. */
 function borders({ camera, width, height }: View): [number, number, number, number] {
   const { fx, fy, cx, cy, model } = camera;
   const angle = (pixels: number, focal: number) => (model === "fisheye" ? pixels / focal : Math.atan(pixels / focal));
@@ -39,8 +39,8 @@ function borders({ camera, width, height }: View): [number, number, number, numb
 }
 
 /** Whether the camera may see a point of the cloud. */
-export function seesOf(view: View, margin = MARGIN): (point: Vector) => boolean {
-  const [left, right, up, down] = borders(view).map((angle) => Math.min(WIDEST, angle + margin)) as [
+export function seesOf(view: View): (point: Vector) => boolean {
+  const [left, right, up, down] = borders(view).map((angle) => Math.min(WIDEST, angle + MARGIN)) as [
     number,
     number,
     number,
