@@ -71,6 +71,9 @@ export const refused = (value: unknown, index?: number): { value: number | undef
   index,
 });
 
+/** What an error of whatever kind says. */
+export const reasonOf = (error: unknown): string => (error instanceof Error ? error.message : String(error));
+
 /** What is wrong with a file. */
 export const badFile = (message: string, cause?: unknown, details?: ErrorDetails) =>
   new BimodalError("file", message, "file", {

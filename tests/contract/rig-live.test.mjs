@@ -1,32 +1,21 @@
-// A robot's cameras over a bridge of @foxglove/ws-protocol: topics, views that differ, and a connection that is lost.
+// The cameras of a robot behind a server of @foxglove/ws-protocol: topics, views that differ, and a lost connection.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { WebSocket } from "ws";
 import { connectRobot } from "../../pkg/rig-recordings.js";
 import { bridge } from "./bridge.mjs";
+import { CAMERA, K, POSE, frame } from "./recorded.mjs";
 import { FRAMES, driver } from "./recordings.mjs";
-import { H, W, close, millimetres, rgb, rotation, translation } from "./rig-support.mjs";
+import { close, translation } from "./rig-support.mjs";
 
-// Node has one of its own from version 22 on.
+// Node.js has a WebSocket since version 22.
 globalThis.WebSocket = WebSocket;
 
-const K = { fx: 14, fy: 14.5, cx: 8.25, cy: 5.75 };
-function frame(index) {
-  const data = new Uint8Array(4 * W * H).fill(255);
-  rgb.forEach((colour, pixel) =>
-    data.set(
-      colour.map((value) => value / (1 + ((pixel + index) % 3))),
-      4 * pixel,
-    ),
-  );
-  const depth = Uint16Array.from(millimetres, (value) => value && value + 300 * index);
-  return { image: { width: W, height: H, data, camera: K }, depth: { width: W, height: H, data: depth, camera: K } };
-}
-/** What the robot sends while it looks at one scene after the other. */
-const views = (count) => Array.from({ length: count }, (_, index) => driver([frame(index)], { rotation, translation }));
+/** The messages of the robot at each scene. */
+const views = (count) => Array.from({ length: count }, (_, index) => driver([frame(index)], POSE));
 
 for (const generation of ["ros1", "ros2"])
-  test(`a robot of ${generation} gives one view after the other, and is subscribed to only meanwhile`, async () => {
+  test(`a robot of ${generation} gives one view after the other, and its images are subscribed to only meanwhile`, async () => {
     const robot = await bridge(views(2), { generation });
     try {
       const found = await connectRobot(robot.address.replace("ws://", ""));
@@ -36,7 +25,7 @@ for (const generation of ["ros1", "ros2"])
       const first = await found.next(choice);
       assert.deepEqual(
         first.cameras.map(({ camera }) => camera),
-        [K, K],
+        [CAMERA, K],
       );
       assert.equal(first.poses[0].from, FRAMES.depth);
       close(first.poses[0].pose.translation, translation, 1e-9);
@@ -60,7 +49,7 @@ for (const generation of ["ros1", "ros2"])
     }
   });
 
-test("a connection that is lost, and one that cannot be made, are said", async () => {
+test("a lost connection and one that cannot be made are errors that name the address", async () => {
   const robot = await bridge(views(1));
   const found = await connectRobot(robot.address);
   await found.next({ colour: "/camera/color/image_raw", depth: "/camera/depth/image_raw" });
@@ -73,7 +62,7 @@ test("a connection that is lost, and one that cannot be made, are said", async (
   await assert.rejects(connectRobot("ftp://robot"), /no address of a bridge/);
 });
 
-test("what observes can be ended, and an unknown topic is named", async () => {
+test("waiting for a view can be cancelled, and an unknown topic is named", async () => {
   const robot = await bridge(views(1));
   try {
     const found = await connectRobot(robot.address);

@@ -1,29 +1,19 @@
-// Recordings with random bytes changed, cut off or doubled: an answer or a BimodalError that names the file, soon, and nothing else.
+// Recordings with random bytes changed, cut off or copied: each is read or ends in a BimodalError that names the file, in bounded time.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { fileURLToPath } from "node:url";
 import { BimodalError, openRecording } from "../../pkg/rig-recordings.js";
+import { generator } from "../../scripts/fuzz/random.mjs";
 import { frames, recorded } from "./recorded.mjs";
 import { lz4Frame, matroska, mcap } from "./recordings.mjs";
 
-/** A sequence that is the same each time (mulberry32). */
-function random(seed) {
-  let state = seed;
-  return (below) => {
-    state = (state + 0x6d2b79f5) | 0;
-    let t = Math.imul(state ^ (state >>> 15), 1 | state);
-    t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
-    return ((t ^ (t >>> 14)) >>> 0) % below;
-  };
-}
-
-function mutated(bytes, next) {
+function mutated(bytes, { below }) {
   const copy = new Uint8Array(bytes);
-  for (let i = 1 + next(6); i > 0; i--) copy[next(copy.length)] = next(4) === 0 ? 255 : next(256);
-  const kind = next(4);
-  if (kind === 0) return copy.subarray(0, next(copy.length));
-  if (kind === 1) copy.copyWithin(next(copy.length), next(copy.length), next(copy.length));
+  for (let i = 1 + below(6); i > 0; i--) copy[below(copy.length)] = below(4) === 0 ? 255 : below(256);
+  const kind = below(4);
+  if (kind === 0) return copy.subarray(0, below(copy.length));
+  if (kind === 1) copy.copyWithin(below(copy.length), below(copy.length), below(copy.length));
   return copy;
 }
 
@@ -38,15 +28,15 @@ const SOURCES = {
   "f.mkv": async () => matroska(frames(2), "{}"),
 };
 const COUNT = process.env.LONG_TESTS ? 400 : 40;
-/** Far more than any of these takes, on a busy machine. */
+/** Milliseconds, far more than any of these takes on a busy machine. */
 const SLOW = 20_000;
 
 for (const [name, make] of Object.entries(SOURCES))
   test(`${name} with random changes is read or refused`, async () => {
     const bytes = await make();
-    const next = random(bytes.length);
+    const random = generator(bytes.length);
     for (let i = 0; i < COUNT; i++) {
-      const content = mutated(bytes, next);
+      const content = mutated(bytes, random);
       const start = performance.now();
       try {
         await (await openRecording({ name, content })).read();

@@ -1,7 +1,7 @@
-// How recordings store pictures, depths and clouds, and which camera took them.
+// The encodings of images, depths and clouds in recordings, and the cameras of each.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { K, CAMERA, START, recorded, written, image } from "./recorded.mjs";
+import { K, CAMERA, START, recorded, replacing, written, image } from "./recorded.mjs";
 import {
   FRAMES,
   cloudMessage,
@@ -34,13 +34,10 @@ for (const [encoding, [step, bytes]] of Object.entries(ENCODINGS))
       step: step * W,
       data: Uint8Array.from(values.flatMap(bytes)),
     };
-    const messages = [
-      ...recorded({}, 1).filter(({ topic }) => topic !== "/camera/color/image_raw"),
-      image("/camera/color/image_raw", message),
-    ];
+    const recording = await replacing("/camera/color/image_raw", image("/camera/color/image_raw", message));
     const {
       frames: [{ image: found }],
-    } = await (await written(messages)).read();
+    } = await recording.read();
     const scale = found.data instanceof Uint16Array ? 256 : 1;
     assert.deepEqual(
       [...found.data].filter((_, at) => at % 4 === 1),
@@ -48,24 +45,21 @@ for (const [encoding, [step, bytes]] of Object.entries(ENCODINGS))
     );
   });
 
-test("a Bayer pattern keeps its own colour at each pixel, and fills in the others", async () => {
+test("a Bayer pattern keeps the measured colour of each pixel and interpolates the others", async () => {
   const data = Uint8Array.from({ length: W * H }, (_, pixel) => {
     const [x, y] = [pixel % W, Math.floor(pixel / W)];
     return y % 2 === 0 ? (x % 2 === 0 ? 200 : 100) : x % 2 === 0 ? 100 : 50;
   });
   const message = { header: headerOf(START + 0.1, FRAMES.colour), ...bayer("rggb"), data };
-  const messages = [
-    ...recorded({}, 1).filter(({ topic }) => topic !== "/camera/color/image_raw"),
-    image("/camera/color/image_raw", message),
-  ];
+  const recording = await replacing("/camera/color/image_raw", image("/camera/color/image_raw", message));
   const {
     frames: [{ image: found }],
-  } = await (await written(messages)).read();
+  } = await recording.read();
   for (let pixel = 0; pixel < W * H; pixel++)
     assert.deepEqual([...found.data.slice(4 * pixel, 4 * pixel + 3)], [200, 100, 50]);
 });
 
-test("depth of 32 bits is in metres, compressed as inverse depths, too", async () => {
+test("32-bit depth is in metres, and so is depth compressed as inverse depths", async () => {
   const floats = Float32Array.from(millimetres, (value) => (value ? value / 1000 : NaN));
   const [a, b] = [3000, -20];
   const inverse = Uint16Array.from(floats, (value) => (Number.isNaN(value) ? 0 : Math.round(a / value + b)));
@@ -78,14 +72,10 @@ test("depth of 32 bits is in metres, compressed as inverse depths, too", async (
       2e-3,
     ],
   ]) {
-    const topic = "/camera/depth/image_rect";
-    const messages = [
-      ...recorded({}, 1).filter(({ topic }) => topic !== "/camera/depth/image_raw"),
-      image(topic, message, type),
-    ];
+    const recording = await replacing("/camera/depth/image_raw", image("/camera/depth/image_rect", message, type));
     const {
       frames: [found],
-    } = await (await written(messages)).read();
+    } = await recording.read();
     close(
       metres(found),
       millimetres.map((value) => value / 1000),
@@ -94,7 +84,7 @@ test("depth of 32 bits is in metres, compressed as inverse depths, too", async (
   }
 });
 
-test("runs of RVL are read as depth", async () => {
+test("RVL data is read as depth", async () => {
   // Two pixels without depth, then 1000, 1003 and 998 millimetres: counts and differences by zigzag, three bits a nibble.
   const words = [2, 3, 2000, 6, 9];
   const nibbles = words.flatMap((value) => {
@@ -114,17 +104,14 @@ test("runs of RVL are read as depth", async () => {
     format: "16UC1; compressedDepth rvl",
     data: new Uint8Array(data.buffer),
   };
-  const messages = [
-    ...recorded({}, 1).filter(({ topic }) => topic !== "/camera/depth/image_raw"),
-    image("/camera/depth/image_raw/compressedDepth", message, "sensor_msgs/CompressedImage"),
-  ];
+  const compressed = image("/camera/depth/image_raw/compressedDepth", message, "sensor_msgs/CompressedImage");
   const {
     frames: [found],
-  } = await (await written(messages)).read();
+  } = await (await replacing("/camera/depth/image_raw", compressed)).read();
   assert.deepEqual([...found.depth.data], [0, 0, 1000, 1003, 998]);
 });
 
-test("an organised PointCloud2 is taken as depth, in its own frame", async () => {
+test("an organised PointCloud2 is read as depth, in its frame", async () => {
   const points = Float32Array.from({ length: 3 * W * H }, (_, at) =>
     at % 3 === 2 ? 1 + 0.01 * (at % 7) : 0.01 * (at % 50),
   );
@@ -140,7 +127,7 @@ test("an organised PointCloud2 is taken as depth, in its own frame", async () =>
   close(poses[0].pose.translation, translation, 1e-9);
 });
 
-test("a PointCloud2 without rows and columns is sorted into a range image, in its own axes", async () => {
+test("a PointCloud2 without rows and columns is sorted into a range image, in its axes", async () => {
   const [rows, columns] = [16, 180];
   const angle = (degrees) => (degrees * Math.PI) / 180;
   // A LiDAR's axes: x forward, z up; the wall is a cylinder around it.
@@ -164,7 +151,7 @@ test("a PointCloud2 without rows and columns is sorted into a range image, in it
   close(found.poses[0].pose.translation, translation, 1e-9);
 });
 
-test("a rectified picture has P's camera and no distortion, a picture in bins the camera of its bins", async () => {
+test("a rectified image has the camera of P without distortion, a binned image the camera of its bins", async () => {
   const p = [700, 0, 8, 0, 0, 710, 6, 0, 0, 0, 1, 0];
   const base = recorded({}, 1).filter(({ topic }) => topic !== "/camera/color/camera_info");
   const time = START + 0.1;

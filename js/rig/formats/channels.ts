@@ -4,7 +4,7 @@ import type { Scan } from "../lidar/scan.js";
 export type Channel = "ring" | "intensity" | "times";
 
 const NAMES: [Channel, RegExp][] = [
-  ["ring", /^(?:ring|channel|laser_?id|beam_?id)$/i],
+  ["ring", /^(?:ring|channel|laser_?id|beam_?id|line)$/i],
   ["intensity", /^(?:intensity|reflectivity|reflectance|remission|i)$/i],
   ["times", /^(?:time|timestamp|time_stamp|t|offset_?time|gps_?time|point_time_offset)$/i],
 ];

@@ -1,17 +1,17 @@
 /**
- * Clouds in a robot's axes (x forward, z up): a camera's are x right, y down, z forward, and depth is along z. The transform to the colour
- * camera says which axis is which, as far as the two look the same way; the points are turned by it, and the transform back.
+ * Clouds in a robot's axes (x forward, z up). A camera's axes are x right, y down, z forward, and depth is along z. The transform to the
+ * colour camera tells which axis is which where both look the same way: the points are turned by it, and the transform is turned back.
  */
 import { determinant } from "../../matrices.js";
 import { chained, inverseOf, poseOf } from "../formats/poses.js";
 import type { NamedPose } from "../types.js";
 
-/** A quarter turn or several: nine numbers of which three are 1 or -1. */
+/** A rotation by right angles: nine numbers, of which three are 1 or -1. */
 export type Turn = readonly number[];
 
 const IDENTITY = [1, 0, 0, 0, 1, 0, 0, 0, 1];
 
-/** The turn by right angles that is nearest to a rotation; nothing where it is none at all, or the rotation lies between two. */
+/** The rotation by right angles nearest to a rotation; undefined if that is the identity, or if the rotation lies between two. */
 export function turnOf(rotation: readonly number[]): Turn | undefined {
   const turn = new Array<number>(9).fill(0);
   for (let row = 0; row < 3; row++) {
@@ -23,19 +23,19 @@ export function turnOf(rotation: readonly number[]): Turn | undefined {
   return isWhole && turn.some((value, at) => value !== IDENTITY[at]) ? turn : undefined;
 }
 
-/** The points in other axes. */
+/** The points in the turned axes. */
 export function turned(points: Float32Array, turn: Turn): Float32Array {
   const found = new Float32Array(points.length);
-  for (let at = 0; at < points.length; at += 3)
-    for (let row = 0; row < 3; row++) {
-      // A missing coordinate must not spread where its factor is zero.
-      const column = [0, 1, 2].findIndex((each) => turn[3 * row + each] !== 0);
-      found[at + row] = (turn[3 * row + column] ?? 0) * (points[at + column] ?? NaN);
-    }
+  for (let row = 0; row < 3; row++) {
+    // Each coordinate comes from one column alone: a missing one must not spread where its factor is zero.
+    const column = [0, 1, 2].findIndex((each) => turn[3 * row + each] !== 0);
+    const sign = turn[3 * row + column] ?? 0;
+    for (let at = 0; at < points.length; at += 3) found[at + row] = sign * (points[at + column] ?? NaN);
+  }
   return found;
 }
 
-/** The motion of the points that were turned. */
+/** The motion for points that were turned. */
 export const ofTurned = ({ pose, ...names }: NamedPose, turn: Turn): NamedPose => ({
   ...names,
   pose: chained(pose, inverseOf(poseOf([...turn], [0, 0, 0]))),

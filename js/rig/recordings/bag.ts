@@ -1,22 +1,15 @@
-/** ROS 1's recordings, by @foxglove/rosbag: chunks by their index, compressed by LZ4 or bzip2. */
+/** ROS 1 bags, read by @foxglove/rosbag: chunks are found by the index and may be compressed by LZ4 or bzip2. */
 import { Bag } from "@foxglove/rosbag";
 import { decode as bunzip2 } from "@openpgp/seek-bzip";
 import { badFile } from "../../errors.js";
 import { lz4 } from "./lz4.js";
 import { decoderOf } from "./messages.js";
-import { type RosFile, RosSource, type RosTopic } from "./ros-source.js";
+import { type RosFile, RosSource, type RosTopic, byName, chunkSize } from "./ros-source.js";
 import type { Bytes, Source } from "./source.js";
 
-/** Bytes of a chunk, unpacked: rosbag's own are of 768 kB, or one message. */
-const MOST_CHUNK = 2 ** 30;
-
-const limited = (size: number): number => {
-  if (size > MOST_CHUNK) throw badFile(`a chunk of it says that it is ${size} bytes large`);
-  return size;
-};
 const DECOMPRESS = {
-  lz4: (bytes: Uint8Array, size: number) => lz4(bytes, limited(size)),
-  bz2: (bytes: Uint8Array, size: number) => bunzip2(bytes, new Uint8Array(limited(size))),
+  lz4: (bytes: Uint8Array, size: number) => lz4(bytes, chunkSize(size)),
+  bz2: (bytes: Uint8Array, size: number) => bunzip2(bytes, new Uint8Array(chunkSize(size))),
 };
 
 interface Time {
@@ -28,27 +21,21 @@ const timeOf = (time: number): Time => {
   const sec = Math.floor(Math.max(0, time));
   return { sec, nsec: Math.min(999_999_999, Math.max(0, Math.floor((time - sec) * 1e9))) };
 };
-/** Of a double of today's seconds, in seconds. */
+/** Seconds by which a double may round a Unix time. */
 const ROUNDING = 1e-6;
 
 function topicsOf(bag: Bag): RosTopic[] {
   const counts = new Map<number, number>();
   for (const { connections } of bag.chunkInfos)
     for (const { conn, count } of connections) counts.set(conn, (counts.get(conn) ?? 0) + count);
-  const found = new Map<string, RosTopic>();
-  for (const { conn, topic, type = "", messageDefinition } of bag.connections.values()) {
-    const count = counts.get(conn) ?? 0;
-    const known = found.get(topic);
-    if (known) known.count += count;
-    else
-      found.set(topic, {
-        name: topic,
-        type,
-        count,
-        by: decoderOf("ros1", { encoding: "ros1msg", definition: messageDefinition }),
-      });
-  }
-  return [...found.values()];
+  return byName(
+    [...bag.connections.values()].map(({ conn, topic, type = "", messageDefinition }) => ({
+      name: topic,
+      type,
+      count: counts.get(conn) ?? 0,
+      by: () => decoderOf("ros1", { encoding: "ros1msg", definition: messageDefinition }),
+    })),
+  );
 }
 
 async function opened(bytes: Bytes): Promise<Bag> {
@@ -60,12 +47,14 @@ async function opened(bytes: Bytes): Promise<Bag> {
     await bag.open();
   } catch (error) {
     throw badFile(
-      "this bag has no index, as when its recording was broken off or its file is cut off; `rosbag reindex FILE` mends it",
+      "this bag has no index: its recording was interrupted, or the file is cut off; `rosbag reindex FILE` repairs it",
       error,
     );
   }
   if (bag.chunkInfos.length === 0)
-    throw badFile("this bag holds no messages, or was not closed; `rosbag reindex FILE` mends the latter");
+    throw badFile(
+      "this bag holds no messages or was not closed; if it was not closed, `rosbag reindex FILE` repairs it",
+    );
   return bag;
 }
 

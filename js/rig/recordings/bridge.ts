@@ -1,19 +1,20 @@
 /**
- * A connection to a foxglove_bridge, by its protocol over a WebSocket: the server advertises topics with the definitions of their messages,
- * the client subscribes, and messages follow as bytes. https://github.com/foxglove/ws-protocol
+ * A connection to a foxglove_bridge over a WebSocket: the server advertises topics with the definitions of their messages, the client
+ * subscribes, and messages follow as bytes. https://github.com/foxglove/ws-protocol
  *
- * Its client in JavaScript, @foxglove/ws-protocol, comes without a licence; what is needed of it is this much.
+ * The client on npm, @foxglove/ws-protocol, has no licence; only this much of the protocol is needed.
  */
 import { BimodalError } from "../../errors.js";
 import { decoderOf, type Message } from "./messages.js";
 import type { RosTopic } from "./ros-source.js";
 
-/** The bridge's since version 3, and the one before. */
+/** Subprotocols of the bridge: since its version 3, and before. */
 const PROTOCOLS = ["foxglove.sdk.v1", "foxglove.websocket.v1"];
-/** Before a message: what it is, its subscription, and when it was recorded. */
+/** Opcode of a binary frame that carries a message. */
 const MESSAGE_DATA = 1;
+/** Bytes before the message: opcode, subscription (4), time in nanoseconds (8). */
 const HEAD = 13;
-/** Milliseconds that a server has to answer. */
+/** Milliseconds in which a server has to answer. */
 const PATIENCE = 15_000;
 
 export const noConnection = (address: string, reason: string, cause?: unknown): BimodalError =>
@@ -30,7 +31,7 @@ const textOf = (value: unknown): string => (typeof value === "string" ? value : 
 
 export class Bridge {
   readonly address: string;
-  /** What the server calls itself. */
+  /** The name that the server gives. */
   name = "";
   readonly #socket: WebSocket;
   readonly #channels = new Map<number, Channel>();
@@ -38,7 +39,11 @@ export class Bridge {
     number,
     { channel: Channel; listener: Listener; onError: (error: unknown) => void }
   >();
+  /** Fulfilled with the reason once the connection has ended. */
   readonly closed: Promise<string>;
+  /** Fulfilled once the server has advertised its topics. */
+  readonly advertised: Promise<void>;
+  #onAdvertised = () => {};
   #next = 1;
   #isOpen = true;
 
@@ -46,14 +51,18 @@ export class Bridge {
     this.address = address;
     this.#socket = socket;
     socket.addEventListener("message", ({ data }) => this.#receive(data));
-    // It says nothing, and the end that follows says what there is to say.
-    socket.addEventListener("error", () => {});
-    this.closed = new Promise((end) =>
-      socket.addEventListener("close", ({ code, reason }) => {
+    this.advertised = new Promise((found) => (this.#onAdvertised = found));
+    this.closed = new Promise((end) => {
+      const close = (reason: string) => {
         this.#isOpen = false;
-        end(reason || `the connection was closed (${code})`);
-      }),
-    );
+        end(reason);
+      };
+      socket.addEventListener("close", ({ code, reason }) => close(reason || `the connection was closed (${code})`));
+      // A browser whose policy forbids the address reports an error that no end follows.
+      socket.addEventListener("error", () =>
+        setTimeout(() => socket.readyState === socket.CLOSED && close("the connection was refused")),
+      );
+    });
   }
 
   get isOpen(): boolean {
@@ -70,21 +79,24 @@ export class Bridge {
 
   #receive(data: unknown): void {
     if (typeof data !== "string") return this.#message(data);
-    let said: unknown;
+    let received: unknown;
     try {
-      said = JSON.parse(data);
+      received = JSON.parse(data);
     } catch {
       return;
     }
-    if (!isObject(said)) return;
-    if (said.op === "serverInfo") this.name = textOf(said.name);
-    if (said.op === "advertise" && Array.isArray(said.channels))
-      for (const each of said.channels) this.#advertised(each);
-    if (said.op === "unadvertise" && Array.isArray(said.channelIds))
-      for (const id of said.channelIds) this.#channels.delete(Number(id));
+    if (!isObject(received)) return;
+    const { op, name, channels, channelIds } = received;
+    if (op === "serverInfo") this.name = textOf(name);
+    if (op === "advertise" && Array.isArray(channels)) {
+      for (const each of channels) this.#add(each);
+      this.#onAdvertised();
+    }
+    if (op === "unadvertise" && Array.isArray(channelIds))
+      for (const id of channelIds) this.#channels.delete(Number(id));
   }
 
-  #advertised(channel: unknown): void {
+  #add(channel: unknown): void {
     if (!isObject(channel)) return;
     const encoding = textOf(channel.encoding);
     const schema = { encoding: textOf(channel.schemaEncoding), definition: textOf(channel.schema) };
@@ -100,7 +112,6 @@ export class Bridge {
     const subscription = this.#subscriptions.get(view.getUint32(1, true));
     if (!subscription) return;
     const { channel, listener, onError } = subscription;
-    channel.count++;
     if (!("decoder" in channel.by)) return;
     try {
       const message = channel.by.decoder(new Uint8Array(data, HEAD));
@@ -114,7 +125,7 @@ export class Bridge {
     if (this.#isOpen) this.#socket.send(JSON.stringify(message));
   }
 
-  /** Has the messages of topics until what it gives back is called. */
+  /** Subscribes to topics; the function that it returns ends the subscription. */
   listen(topics: readonly string[], listener: Listener, onError: (error: unknown) => void = () => {}): () => void {
     const ids: number[] = [];
     for (const channel of this.#channels.values()) {
@@ -131,56 +142,56 @@ export class Bridge {
   }
 }
 
-/** The address as a browser opens it: "robot:8765" is ws://robot:8765. */
-export function addressOf(written: string): string {
+/** The URL of an address: "robot:8765" is ws://robot:8765. */
+function addressOf(written: string): string {
   const text = written.trim();
   const whole = /^\w+:\/\//.test(text) ? text.replace(/^http/i, "ws") : `ws://${text}`;
   let url: URL | undefined;
   try {
     url = new URL(whole);
   } catch {
-    // Said below.
+    // Reported below, as any other address that is no WebSocket's.
   }
   if (!url || !/^wss?:$/.test(url.protocol) || url.hostname === "")
-    throw noConnection(text.slice(0, 100), "it is no address of a bridge; ws://localhost:8765 is one");
+    throw noConnection(text.slice(0, 100), "it is no address of a bridge; write it like ws://localhost:8765");
   return url.href;
 }
 
+const REFUSED =
+  "the browser refused the address. A page that was loaded by https may only open wss://, or ws:// on localhost: load the page by http, or serve the bridge with TLS. The content security policy of the page may forbid WebSockets as well";
+
 function socketOf(address: string): WebSocket {
   if (typeof WebSocket === "undefined")
-    throw noConnection(address, "there is no WebSocket here; browsers have one, and Node from version 22 on");
+    throw noConnection(address, "this environment has no WebSocket; browsers have one, and Node.js since version 22");
   try {
     const socket = new WebSocket(address, PROTOCOLS);
     socket.binaryType = "arraybuffer";
     return socket;
   } catch (error) {
-    throw noConnection(
-      address,
-      "the browser refuses this address. A page that came by https may open wss:// alone, and ws:// on localhost; serve the page by http, or the bridge with TLS. A server's own policy may forbid it as well",
-      error,
-    );
+    throw noConnection(address, REFUSED, error);
   }
 }
 
-/** Connects, and waits for the topics: the server sends them at once. */
+/** Connects and waits for the topics, which the server sends at once. A server without topics sends its name alone. */
 export async function connect(written: string): Promise<Bridge> {
   const address = addressOf(written);
   const socket = socketOf(address);
   const bridge = new Bridge(address, socket);
-  const advertised = new Promise<void>((found) =>
-    socket.addEventListener("message", ({ data }) => {
-      if (typeof data === "string" && data.includes('"advertise"')) found();
-    }),
-  );
-  const late = new Promise<"late">((end) => setTimeout(() => end("late"), PATIENCE));
-  const ended = await Promise.race([advertised, late, bridge.closed]);
-  if (ended === undefined) return bridge;
-  if (ended === "late" && bridge.isOpen && bridge.name !== "") return bridge;
+  let timer: ReturnType<typeof setTimeout> | undefined;
+  const late = new Promise<void>((end) => (timer = setTimeout(end, PATIENCE)));
+  const isBridge = await Promise.race([
+    bridge.advertised.then(() => true),
+    bridge.closed.then(() => false),
+    late.then(() => bridge.name !== ""),
+  ]);
+  clearTimeout(timer);
+  if (isBridge) return bridge;
+  const isOpen = bridge.isOpen;
   bridge.close();
   throw noConnection(
     address,
-    ended === "late"
-      ? "nothing there answers as a foxglove_bridge does"
+    isOpen
+      ? `the server does not answer as a foxglove_bridge within ${PATIENCE / 1000} s; check the address`
       : "no foxglove_bridge can be reached there. Is it running (ros2 launch foxglove_bridge foxglove_bridge_launch.xml), and is its port open?",
   );
 }

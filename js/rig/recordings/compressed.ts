@@ -1,6 +1,6 @@
 /**
- * What image_transport compresses: JPEG and PNG, and depth as compressed_depth_image_transport has it, a head of twelve bytes before a PNG or
- * a run of RVL (Wilson, "Fast lossless depth image compression", 2017). 32-bit depths are stored as a / (value - b).
+ * Images compressed by image_transport: JPEG, PNG and WebP, and the depth maps of compressed_depth_image_transport, a head of twelve bytes
+ * before a PNG or RVL data (Wilson, "Fast lossless depth image compression", 2017). 32-bit depths are a / (stored - b).
  */
 import { badFile } from "../../errors.js";
 import { readJpeg, readWebp } from "../formats/jpeg.js";
@@ -13,7 +13,7 @@ const HEAD = 12;
 
 export const isCompressedDepth = (format: string): boolean => /compressedDepth/i.test(format);
 
-/** Nibbles with three bits of a number each, the lowest first, in 32-bit words whose highest nibble is the first. */
+/** Numbers in nibbles: three bits and a bit for "more follows", lowest bits first, in 32-bit words read from the highest nibble. */
 class Nibbles {
   readonly #view: DataView;
   #at = 0;
@@ -42,7 +42,7 @@ class Nibbles {
   }
 }
 
-/** Runs of zeros and of differences to the depth before, zigzag. */
+/** RVL: runs of zeros, and runs of zigzag-coded differences from the previous depth. */
 function rvl(bytes: Uint8Array): Picture {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   const [width, height] = [view.getUint32(0, true), view.getUint32(4, true)];
@@ -63,7 +63,7 @@ function rvl(bytes: Uint8Array): Picture {
   return { width, height, channels: 1, data, bits: 16, format: "RVL", notes: [], warnings: [] };
 }
 
-/** Of integers that stand for inverse depths. */
+/** Depths in metres from quantised inverse depths. */
 function inverted(found: Picture, a: number, b: number): Picture {
   const data = new Float32Array(found.width * found.height);
   for (let at = 0; at < data.length; at++) {
@@ -79,17 +79,19 @@ export function compressedDepth(format: string, bytes: Uint8Array): Picture {
   const body = bytes.subarray(HEAD);
   const found = kindOf(body) === "png" ? pngPicture(body) : rvl(body);
   if (found.channels !== 1 || found.bits !== 16)
-    throw badFile(`its compressed depth has ${found.channels} channels of ${found.bits} bits; one of 16 is needed`);
+    throw badFile(
+      `its compressed depth has ${found.channels} channels of ${found.bits} bits; one channel of 16 bits is needed`,
+    );
   return /32FC1/i.test(format) ? inverted(found, view.getFloat32(4, true), view.getFloat32(8, true)) : found;
 }
 
-/** By its content: what is written beside it has changed from version to version. */
+/** The picture, told by its content: the format string differs between versions of image_transport. */
 export async function compressed(bytes: Uint8Array, format: string): Promise<Picture> {
   const kind = kindOf(bytes);
   if (kind === "jpeg") return readJpeg(bytes);
   if (kind === "png") return pngPicture(bytes);
   if (kind === "webp") return readWebp(bytes);
   throw badFile(
-    `its pictures are compressed as "${format.slice(0, 40)}", which is not read here; JPEG, PNG and WebP are`,
+    `its images are compressed as "${format.slice(0, 40)}", which is not read here; JPEG, PNG and WebP are`,
   );
 }

@@ -1,8 +1,8 @@
 /**
- * EBML, the elements that Matroska is made of: an id, a size, and bytes or more elements. They are read where they lie, since a recording may
+ * EBML, the elements of Matroska: an id, a size, and bytes or further elements. Only the parts that are needed are read, since a recording may
  * be larger than memory.
  *
- * The packages that do this read a whole file as a stream of Node.
+ * The packages on npm read a whole file, as a stream of Node.
  */
 import { badFile } from "../../errors.js";
 import type { Bytes } from "./source.js";
@@ -14,14 +14,14 @@ export interface Element {
   until: number;
 }
 
-/** Longest head: four bytes of an id, eight of a size. */
+/** Bytes of the longest head: four of an id, eight of a size. */
 const HEAD = 12;
-/** Bytes that are read at once, as long as elements are small. */
+/** Bytes that are read at once while elements are small. */
 const WINDOW = 2048;
-/** Content that is read as a whole: a calibration has some thousand bytes, a list of tracks fewer. */
+/** Bytes of the largest content that is read whole: a calibration has some thousand, a list of tracks fewer. */
 const MOST_CONTENT = 2 ** 24;
 
-/** Parts of a file, the last of them kept. */
+/** The elements of a file. The part that was read last is kept. */
 export class Elements {
   readonly bytes: Bytes;
   #window = new Uint8Array();
@@ -31,7 +31,7 @@ export class Elements {
     this.bytes = bytes;
   }
 
-  /** Some bytes, fewer at the end of the file. */
+  /** So many bytes from a place, fewer at the end of the file. */
   async peek(from: number, length: number): Promise<Uint8Array> {
     if (from < this.#at || from + length > this.#at + this.#window.length) {
       this.#window = (await this.bytes.read(from, Math.max(WINDOW, length))) as Uint8Array<ArrayBuffer>;
@@ -41,11 +41,11 @@ export class Elements {
   }
 
   async content({ from, until }: Element): Promise<Uint8Array> {
-    if (until - from > MOST_CONTENT) throw badFile(`an element of it says that it is ${until - from} bytes large`);
+    if (until - from > MOST_CONTENT) throw badFile(`one of its elements declares ${until - from} bytes`);
     return this.bytes.read(from, until - from);
   }
 
-  /** The element at a place, cut off where its parent ends; nothing behind the last one. */
+  /** The element at a place, cut off at the end of its parent; undefined after the last one. */
   async at(from: number, end: number): Promise<Element | undefined> {
     const head = await this.peek(from, Math.min(HEAD, end - from));
     const found = headOf(head);
@@ -65,7 +65,7 @@ export class Elements {
   }
 }
 
-/** An id and a size, which is not known where all of its bits are set. */
+/** An id and a size; a size whose bits are all set is unknown. */
 function headOf(bytes: Uint8Array): { id: number; size: number | undefined; length: number } | undefined {
   const width = Math.clz32(bytes[0] ?? 0) - 23;
   if (width > 4 || bytes.length < width + 1) return undefined;
@@ -84,7 +84,7 @@ function headOf(bytes: Uint8Array): { id: number; size: number | undefined; leng
   return { id, size: isOpen ? undefined : size, length: width + count };
 }
 
-/** The elements within bytes that have been read. */
+/** The elements in bytes that have been read. */
 export function* elementsIn(bytes: Uint8Array): Generator<{ id: number; bytes: Uint8Array }> {
   for (let at = 0; at < bytes.length; ) {
     const head = headOf(bytes.subarray(at, at + HEAD));

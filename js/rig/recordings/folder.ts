@@ -1,4 +1,4 @@
-/** What comes out of recordings and of robots: their topics, and frames with the cameras and the transform that go with them. */
+/** The topics of recordings and robots, and frames with their cameras and the transform between these. */
 import { addCameras } from "../assign.js";
 import type { CheckFrame, NamedCamera, RigFolder } from "../types.js";
 import { type ReaderWarning, distinct, grouped, ofFile, warning } from "../warnings.js";
@@ -13,15 +13,15 @@ export interface Topic {
   name: string;
   /** The type of its messages, or its codec. */
   type: string;
-  /** What it is read as. */
+  /** What it holds. */
   kind: TrackKind;
-  /** Messages. */
+  /** Number of its messages. */
   messages: number;
-  /** Messages in a second. */
+  /** Messages per second. */
   rate: number;
-  /** Of pictures and clouds: how they are stored, "640x480 rgb8". */
+  /** How its images or clouds are stored, such as "640x480 rgb8". */
   stored?: string;
-  /** Bytes of its first message's pixels or points. */
+  /** Bytes of the pixels or points of its first message. */
   bytes?: number;
   /** Which of the two cameras may have taken it. */
   role?: "colour" | "depth";
@@ -55,17 +55,17 @@ export function topicsOf(
   });
 }
 
-/** What knows the cameras and the transforms. */
+/** Gives the cameras and the transforms of shots. */
 type Answers = Pick<Source, "camera" | "poses">;
 
-/** Frames as a folder's, with what was said of them. */
+/** Frames as those of a folder, with their cameras, the transform and all warnings. */
 export async function folderOf(
   source: Answers,
   moments: readonly Moment[],
   frames: CheckFrame[],
-  said: readonly ReaderWarning[],
+  given: readonly ReaderWarning[],
 ): Promise<RigFolder> {
-  const folder: RigFolder = { frames, cameras: [], poses: [], readings: [], warnings: [...said] };
+  const folder: RigFolder = { frames, cameras: [], poses: [], readings: [], warnings: [...given] };
   const [first] = moments;
   if (first === undefined) return folder;
   const { colour, depth } = first.pair;
@@ -87,7 +87,7 @@ export async function folderOf(
   return folder;
 }
 
-/** Each picture's camera is the one beside it, and needs no guess by name or size. */
+/** Each image has the camera that its source names, without a guess by name or size. */
 async function addOwnCameras(source: Answers, folder: RigFolder, colour: Shot, depth: Shot): Promise<void> {
   const cameras: NamedCamera[] = [];
   const named = async (shot: Shot, name: string, size: { width: number; height: number }) => {
@@ -103,7 +103,7 @@ async function addOwnCameras(source: Answers, folder: RigFolder, colour: Shot, d
   attach(folder);
 }
 
-/** By their names; what is missing is said, and nothing stands in for it. */
+/** Gives the frames their cameras. A single camera is not used for both sides: the missing one has a warning instead. */
 function attach(folder: RigFolder): void {
   const [first] = folder.frames;
   const isAlone = folder.cameras.length === 1 && first?.depth.points === undefined;
@@ -114,14 +114,14 @@ function attach(folder: RigFolder): void {
     folder.warnings.push(
       warning(
         "colour-camera-missing",
-        "No intrinsics go with the colour images (a camera_info beside them or of their frame; an attached calibration); their focal length has to be estimated.",
+        "There are no intrinsics for the colour images: no camera_info beside them or of their frame, and no attached calibration. Their focal length has to be estimated.",
       ),
     );
   if (depth)
     folder.warnings.push(
       warning(
         "depth-camera-missing",
-        "No intrinsics go with the depth maps (a camera_info beside them or of their frame; an attached calibration); without them depths cannot be turned into points.",
+        "There are no intrinsics for the depth maps: no camera_info beside them or of their frame, and no attached calibration. Without them depths cannot be turned into points.",
       ),
     );
   for (const { name, camera } of folder.cameras)
@@ -131,5 +131,5 @@ function attach(folder: RigFolder): void {
 const noTransform = (from: Shot, to: Shot): ReaderWarning =>
   warning(
     "transform-missing",
-    `There is no transform from ${from.frame || "the depth camera's frame, which has no name,"} to ${to.frame || "the colour camera's, which has no name"} (tf_static, tf, an attached calibration): without a calibration there is an estimate only.`,
+    `There is no transform from ${from.frame || "the depth camera's frame, which has no name,"} to ${to.frame || "the colour camera's frame, which has no name"}, neither in tf_static or tf nor in an attached calibration. Give a calibration; without one there is only an estimate.`,
   );

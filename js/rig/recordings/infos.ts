@@ -1,6 +1,6 @@
 /**
- * sensor_msgs/CameraInfo: the intrinsics of the pictures beside it, of which K and D are those of the raw picture and P those of the
- * rectified one; with the bins and the region of interest that were set when it was taken.
+ * sensor_msgs/CameraInfo: the intrinsics of the images beside it, with binning and region of interest. K and D belong to the raw image, P to
+ * the rectified one.
  */
 import { cameraOf } from "../formats/cameras.js";
 import type { NamedCamera } from "../types.js";
@@ -13,13 +13,13 @@ export const baseOf = (topic: string): string =>
 const parentOf = (topic: string): string => topic.slice(0, Math.max(0, topic.lastIndexOf("/")));
 const lastOf = (topic: string): string => topic.slice(topic.lastIndexOf("/") + 1);
 
-/** Whether a picture's topic says that its lens is undone. */
+/** Whether the name of a topic says that its images are rectified. */
 export const isRectified = (topic: string): boolean => /rect/i.test(lastOf(baseOf(topic)));
 
-/** How well a topic of intrinsics goes with one of pictures by their names: 2 beside it, 1 of the same sensor's, 0 not at all. */
+/** How near a topic of intrinsics is to one of images by name: 2 beside it, 1 of the same sensor, 0 neither. */
 export function belongs(info: string, pictures: string): number {
   const parent = parentOf(baseOf(pictures));
-  // image_transport's rule; recordings of librealsense have image/data and info/camera_info.
+  // The rule of image_transport; librealsense records image/data and info/camera_info.
   if (parentOf(info) === parent) return 2;
   return parentOf(parentOf(info)) === parentOf(parent) && lastOf(parent) === "image"
     ? 2
@@ -33,7 +33,7 @@ interface Size {
   height: number;
 }
 
-/** Numbers of a camera for the pixels that a picture has, out of those of its sensor. */
+/** The intrinsics of an image with binning or a region of interest, from those of the full sensor. */
 function binned(message: Message, numbers: number[], size: Size | undefined): { numbers: number[]; size?: Size } {
   const [fx = NaN, fy = NaN, cx = NaN, cy = NaN] = numbers;
   const full = { width: numberIn(message, "width"), height: numberIn(message, "height") };
@@ -43,7 +43,7 @@ function binned(message: Message, numbers: number[], size: Size | undefined): { 
   const [bx, by] = [Math.max(1, numberIn(message, "binning_x") || 1), Math.max(1, numberIn(message, "binning_y") || 1)];
   const cut = { width: Math.floor(region.width / bx), height: Math.floor(region.height / by) };
   const isCut = bx > 1 || by > 1 || x > 0 || y > 0 || region.width !== full.width || region.height !== full.height;
-  // Some drivers give the region though the numbers are for it already: the picture's size decides.
+  // Some drivers state the region although the intrinsics are for it already: the size of the image decides.
   if (!isCut || size === undefined || size.width !== cut.width || size.height !== cut.height)
     return { numbers, ...(full.width > 0 && full.height > 0 && { size: full }) };
   return {
@@ -52,7 +52,7 @@ function binned(message: Message, numbers: number[], size: Size | undefined): { 
   };
 }
 
-/** The camera of a topic's pictures, whose size decides whether bins and regions count. */
+/** The camera of a topic's images, whose size decides whether binning and region apply. */
 export function cameraOfInfo(
   message: Message,
   topic: string,
@@ -62,7 +62,7 @@ export function cameraOfInfo(
   const k = numbersIn(message, "k", "K");
   const p = numbersIn(message, "p", "P");
   const isSet = (values: number[], count: number) => values.length === count && (values[0] ?? 0) > 0;
-  // Drivers without a calibration send zeros.
+  // Drivers without a calibration publish zeros.
   if (!isSet(k, 9) && !isSet(p, 12)) return undefined;
   const rectified = (isRectified(topic) && isSet(p, 12)) || !isSet(k, 9);
   const at = (values: number[], index: number) => values[index] ?? 0;
@@ -72,8 +72,7 @@ export function cameraOfInfo(
     warnings.push(
       warning(
         "lens-approximated",
-        `${topic} is rectified, but its camera_info has no P; K was used without distortion.`,
-        {},
+        `${topic} is rectified, but its camera_info has no P: K was used, without distortion.`,
       ),
     );
   const bent = rectified || isRectified(topic) ? [] : numbersIn(message, "d", "D");

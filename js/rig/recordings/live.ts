@@ -1,74 +1,71 @@
 /**
- * A robot's own cameras, over a bridge: the topics of the two are found as in a recording, and frames are taken one by one, each of another
- * view than those before.
+ * The cameras of a robot, over a bridge: their topics are chosen as in a recording, and frames are taken one by one, each of a new view.
  *
- * Topics are subscribed to while a frame is looked for and no longer: a browser keeps whatever comes in.
+ * Topics are subscribed to only while a frame is awaited, since a browser keeps all messages that come in.
  */
 import { breathe } from "../../breathe.js";
 import { wrong } from "../../check.js";
-import { BimodalError, badFile, badNamed } from "../../errors.js";
+import { BimodalError, badFile, badNamed, reasonOf } from "../../errors.js";
 import type { NamedPose, RigFolder } from "../types.js";
-import type { ReaderWarning } from "../warnings.js";
 import { type Bridge, connect, noConnection } from "./bridge.js";
 import type { Message } from "./messages.js";
-import { type Pair, decoded, frameOf as frameOfMoment, judge, nearest, turnBetween } from "./pairs.js";
-import { rolesOf } from "./roles.js";
-import { kindOfType, shotOf, unreadEncoding } from "./ros.js";
-import { cameraFor } from "./ros-source.js";
+import { type Pair, decoded, frameOf as frameOfMoment, judged, nearest, turnBetween } from "./pairs.js";
+import { type Choice, rolesOf } from "./roles.js";
+import { kindOfType, shotOf, unreadEncoding, unreadFirst } from "./ros.js";
+import { cameraFor, trackOf } from "./ros-source.js";
 import { ALIKE, type Signature, differenceOf, signatureOf } from "./signature.js";
 import type { Found, Shot, Source, Track } from "./source.js";
 import { type Topic, folderOf, topicsOf } from "./folder.js";
-import type { Choice } from "./open.js";
-import { Transforms } from "./transforms.js";
+import { Transforms, isStatic } from "./transforms.js";
 
-/** Milliseconds that each topic has for its first message. */
+/** Milliseconds in which the first message of each topic has to come. */
 const FIRST = 4000;
-/** Topics of pictures that are looked into. */
+/** Topics whose first message is awaited, at most. */
 const MOST_TOPICS = 40;
-/** Shots of each topic that are held against each other. */
+/** Shots of each topic among which the nearest pair is sought. */
 const KEPT = 8;
-/** Milliseconds between two looks at what comes in. */
+/** Milliseconds between two comparisons of the view. */
 const PAUSE = 250;
-/** Two views differ by more than this to count as two: more than noise, since a robot's move is asked for. */
+/** Difference of two views that count as two: well above noise, since the robot is meant to move. */
 const APART = 2.5 * ALIKE;
-/** Milliseconds after which a frame is taken though the view moves. */
+/** Milliseconds after which a frame is taken although the view moves. */
 const RESTLESS = 5000;
-/** Stamps this near, in seconds, are of one moment. */
+/** Seconds between the stamps of a pair, at most, for it to be taken before that. */
 const NEAR = 0.02;
 
 const wait = (milliseconds: number) => new Promise<void>((go) => setTimeout(go, milliseconds));
 
-/** What a view is taken of. */
+/** The topics of a view. */
 export interface ViewChoice {
   /** The topic of the colour images. */
   colour: string;
-  /** The topic of the depth maps or organised clouds. */
+  /** The topic of the depth maps or clouds. */
   depth: string;
-  /** Ends the looking; the promise is rejected with its reason. */
+  /** Cancels the wait; the promise is rejected with its reason. */
   signal?: AbortSignal;
 }
 
-/** A connection whose topics have been looked into. */
+/** A connection to a robot whose topics are known. */
 export interface Robot {
-  /** As it was opened. */
+  /** The address of its bridge. */
   address: string;
-  /** What the server calls itself. */
+  /** The name that the bridge gives. */
   name: string;
   /** All of its topics. */
   topics: Topic[];
-  /** Those that look like the two cameras'. */
+  /** The topics that fit the two cameras best. */
   chosen: Choice;
-  /** Is fulfilled with the reason once the connection has ended. */
+  /** Fulfilled with the reason once the connection has ended. */
   closed: Promise<string>;
-  /** The next frame of another view than those before, with cameras and the transform between them. */
+  /** Waits for a new view and takes its frame, with the cameras and the transform between these. */
   next(choice: ViewChoice): Promise<RigFolder>;
-  /** Forgets which views were taken. */
+  /** Forgets the views that were taken. */
   restart(): void;
   /** Ends the connection. */
   close(): void;
 }
 
-/** What has come in besides pictures; the same answers as a recording's. */
+/** The intrinsics and transforms that have come in. */
 class Heard implements Pick<Source, "camera" | "poses"> {
   readonly infos = new Map<string, Message>();
   readonly fixed = new Transforms();
@@ -78,7 +75,7 @@ class Heard implements Pick<Source, "camera" | "poses"> {
     if (kindOfType(type) === "camera") this.infos.set(topic, message);
     else {
       this.all.add(message);
-      if (/static/i.test(topic)) this.fixed.add(message);
+      if (isStatic(topic)) this.fixed.add(message);
     }
   }
 
@@ -92,16 +89,7 @@ class Heard implements Pick<Source, "camera" | "poses"> {
   }
 }
 
-const tracksOf = (bridge: Bridge): Track[] =>
-  bridge.topics.map(({ name, type, count, by }) => ({
-    name,
-    type,
-    count,
-    kind: "unread" in by ? "other" : kindOfType(type),
-    ...("unread" in by && kindOfType(type) !== "other" && { unread: by.unread }),
-  }));
-
-/** The first message of each topic of pictures or clouds; of what comes late nothing. */
+/** The first message of each topic of images or clouds, or why it cannot be read; nothing for a topic that is late. */
 async function firstShots(bridge: Bridge, tracks: readonly Track[]): Promise<Map<string, Shot | string>> {
   const found = new Map<string, Shot | string>();
   const wanted = tracks.filter(({ kind }) => kind === "picture" || kind === "cloud").slice(0, MOST_TOPICS);
@@ -116,7 +104,7 @@ async function firstShots(bridge: Bridge, tracks: readonly Track[]): Promise<Map
           end();
         },
         (error) => {
-          found.set(name, `its first message cannot be read (${String(error)})`);
+          found.set(name, unreadFirst(error));
           end();
         },
       );
@@ -132,7 +120,7 @@ class OpenRobot implements Robot {
   readonly name: string;
   readonly closed: Promise<string>;
   readonly topics: Topic[];
-  readonly chosen: Robot["chosen"];
+  readonly chosen: Choice;
   readonly #bridge: Bridge;
   readonly #heard: Heard;
   #taken: Signature[] = [];
@@ -174,7 +162,7 @@ class OpenRobot implements Robot {
     );
     try {
       return await this.#look(() => {
-        if (failure !== undefined) throw badFile(`a message cannot be read (${String(failure)})`);
+        if (failure !== undefined) throw badFile(`a message cannot be read (${reasonOf(failure)})`);
         return nearest(shots[colour] ?? [], shots[depth] ?? []);
       }, signal);
     } catch (error) {
@@ -186,7 +174,7 @@ class OpenRobot implements Robot {
     }
   }
 
-  /** Looks at what comes in until the view rests and is another one. */
+  /** Compares what comes in until the view is new and rests. */
   async #look(pairNow: () => Pair | undefined, signal: AbortSignal | undefined): Promise<RigFolder> {
     let before: { signature: Signature; pair: Pair } | undefined;
     const start = performance.now();
@@ -205,22 +193,20 @@ class OpenRobot implements Robot {
       const isLate = performance.now() - start > RESTLESS;
       if (!isNew || !(isLate || (isStill && pair.apart < NEAR))) continue;
       this.#taken.push(signature);
-      const warnings: ReaderWarning[] = [];
-      judge([moment], 1, 1, warnings);
       const frame = { ...frameOfMoment(moment, 0), name: `view ${this.#taken.length}` };
-      return folderOf(this.#heard, [moment], [frame], warnings);
+      return folderOf(this.#heard, [moment], [frame], judged([moment]));
     }
   }
 }
 
-/** Opens a connection to a foxglove_bridge and looks into its topics. */
+/** Connects to a foxglove_bridge and reads the first message of each topic of images or clouds. */
 export async function connectRobot(address: string): Promise<Robot> {
   if (typeof address !== "string") throw wrong("address", "an address", address);
   const bridge = await connect(address);
-  const tracks = tracksOf(bridge);
+  const tracks = bridge.topics.map(trackOf);
   const heard = new Heard();
   const besides = tracks.filter(({ kind }) => kind === "camera" || kind === "transforms").map(({ name }) => name);
-  // Intrinsics and transforms are small; they may come at any time, and change.
+  // Intrinsics and transforms are small, may come at any time, and may change.
   bridge.listen(besides, (topic, type, _, message) => heard.take(topic, type, message));
   const shots = await firstShots(bridge, tracks);
   if (!bridge.isOpen) throw noConnection(bridge.address, "the connection was lost");

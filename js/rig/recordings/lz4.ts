@@ -1,7 +1,7 @@
 /**
- * Frames of LZ4, as MCAP and ROS bags compress their chunks: literals and copies of what was written before. Checksums are not looked at.
+ * LZ4 frames, which compress the chunks of MCAP files and ROS bags: literals and copies of earlier bytes. Checksums are skipped.
  *
- * The packages that do this come without a licence, or with a .wasm that one bundler alone finds.
+ * The packages on npm have no licence, or a .wasm that only one bundler finds.
  */
 import { badFile } from "../../errors.js";
 
@@ -10,9 +10,9 @@ const MAGIC = 0x184d2204;
 const [DICTIONARY, CONTENT_CHECKSUM, CONTENT_SIZE, BLOCK_CHECKSUM] = [1, 4, 8, 16];
 const STORED = 0x80000000;
 
-const damaged = () => badFile("a chunk of it is damaged (LZ4)");
+const damaged = () => badFile("one of its chunks is damaged (LZ4)");
 
-/** A length that goes on while its bytes are 255. */
+/** A length that continues while its bytes are 255. */
 function longer(bytes: Uint8Array, at: number, length: number): [length: number, at: number] {
   if (length !== 15) return [length, at];
   let byte = 255;
@@ -25,7 +25,7 @@ function longer(bytes: Uint8Array, at: number, length: number): [length: number,
   return [total, at];
 }
 
-/** Writes one block behind what there is already, and says where it ends. */
+/** Appends one block to the output and returns where it ends. */
 function block(from: Uint8Array, out: Uint8Array, start: number): number {
   let [at, to] = [0, start];
   while (at < from.length) {
@@ -42,19 +42,20 @@ function block(from: Uint8Array, out: Uint8Array, start: number): number {
     copied += 4;
     if (offset === 0 || offset > to || to + copied > out.length) throw damaged();
     if (offset >= copied) out.copyWithin(to, to - offset, to - offset + copied);
-    // It copies what it is about to write.
+    // The copy overlaps itself: it repeats the bytes that it writes.
     else for (let i = 0; i < copied; i++) out[to + i] = out[to + i - offset] ?? 0;
     to += copied;
   }
   return to;
 }
 
-/** So many bytes out of a frame. */
+/** Decompresses a frame of known size. */
 export function lz4(bytes: Uint8Array, size: number): Uint8Array {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   if (bytes.length < 7 || view.getUint32(0, true) !== MAGIC) throw damaged();
   const flags = bytes[4] ?? 0;
-  if (flags & DICTIONARY) throw badFile("a chunk of it is compressed with a dictionary (LZ4), which is not read here");
+  if (flags & DICTIONARY)
+    throw badFile("one of its chunks is compressed with an LZ4 dictionary, which is not supported");
   const out = new Uint8Array(size);
   let at = 7 + (flags & CONTENT_SIZE ? 8 : 0);
   let to = 0;

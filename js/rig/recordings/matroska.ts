@@ -1,6 +1,6 @@
 /**
- * Matroska as an Azure Kinect is recorded (k4arecorder, and what has its wrapper): colour as JPEG or plain pixels, depth as 16 bits of grey
- * with the high byte first, and the device's calibration attached.
+ * Matroska files of an Azure Kinect (k4arecorder and its wrappers): colour as JPEG or raw pixels, depth as 16-bit big-endian grey, and the
+ * calibration of the device as an attachment.
  */
 import { BimodalError, badFile } from "../../errors.js";
 import { readJpeg } from "../formats/jpeg.js";
@@ -35,7 +35,7 @@ const ID = {
   block: 0xa1,
   simple: 0xa3,
 } as const;
-/** Elements of a segment: one of these ends a cluster whose size nobody knew. */
+/** Elements of a segment: each of them ends a cluster of unknown size. */
 const TOP: ReadonlySet<number> = new Set([
   ID.info,
   ID.tracks,
@@ -45,15 +45,15 @@ const TOP: ReadonlySet<number> = new Set([
   0x1c53bb6b,
   0x114d9b74,
 ]);
-/** Track number, time and flags before a block's content. */
+/** Bytes before the content of a block, at most: track number, time and flags. */
 const BLOCK_HEAD = 12;
-/** Blocks of a recording: an hour of three cameras has a third of that. */
+/** Most blocks of a recording; an hour of three cameras has a third as many. */
 const MOST_BLOCKS = 1_000_000;
 
 interface Video {
   number: number;
   name: string;
-  /** "MJPG", "b16g" and so on, or the codec's own name. */
+  /** "MJPG", "b16g" and so on, or the codec id. */
   codec: string;
   width: number;
   height: number;
@@ -67,13 +67,15 @@ interface Block {
   length: number;
 }
 
+const NONE = new Uint8Array();
+
 const childrenOf = (bytes: Uint8Array): Map<number, Uint8Array> =>
   new Map([...elementsIn(bytes)].map((each) => [each.id, each.bytes]));
 
-/** A track of pictures; those of Windows' codecs have a BITMAPINFOHEADER that names them. */
+/** A video track; tracks of Windows codecs name the codec in a BITMAPINFOHEADER. */
 function videoOf(bytes: Uint8Array): Video {
   const found = childrenOf(bytes);
-  const of = (id: number) => found.get(id) ?? new Uint8Array();
+  const of = (id: number) => found.get(id) ?? NONE;
   const size = childrenOf(of(ID.video));
   const codec = text(of(ID.codec));
   const extra = of(ID.codecPrivate);
@@ -82,15 +84,15 @@ function videoOf(bytes: Uint8Array): Video {
     number,
     name: text(of(ID.name)) || `track ${number}`,
     codec: codec === "V_MS/VFW/FOURCC" && extra.length >= 20 ? text(extra.subarray(16, 20)) : codec,
-    width: unsigned(size.get(ID.width) ?? new Uint8Array()),
-    height: unsigned(size.get(ID.height) ?? new Uint8Array()),
+    width: unsigned(size.get(ID.width) ?? NONE),
+    height: unsigned(size.get(ID.height) ?? NONE),
   };
 }
 
 const isJpeg = ({ codec }: Video): boolean => /^(?:MJPG|V_MJPEG)$/.test(codec);
 const isRead = (video: Video): boolean => video.width > 0 && (isJpeg(video) || isKnown(video.codec));
 
-/** What stands before, between and behind the clusters, and where the blocks of these lie. */
+/** Reads the elements outside of the clusters, and the places of the blocks in the clusters. */
 class Reader {
   readonly videos = new Map<number, Video>();
   readonly blocks: Block[] = [];
@@ -137,12 +139,12 @@ class Reader {
     for (const each of elementsIn(await this.#elements.content(attachments))) {
       const file = childrenOf(each.bytes);
       const data = file.get(ID.fileData);
-      if (each.id === ID.attached && data && /calibration.*\.json$/i.test(text(file.get(ID.fileName) ?? data)))
+      if (each.id === ID.attached && data && /calibration.*\.json$/i.test(text(file.get(ID.fileName) ?? NONE)))
         this.calibration = text(data);
     }
   }
 
-  /** Where the next element of the segment begins. */
+  /** Reads a cluster and returns where the next element of the segment begins. */
   async #cluster(cluster: Element): Promise<number> {
     let start = 0;
     for (let at = cluster.from; at < cluster.until; ) {
@@ -166,9 +168,10 @@ class Reader {
     let track = (head[0] ?? 0) & (0xff >> width);
     for (let i = 1; i < width; i++) track = track * 256 + (head[i] ?? 0);
     const view = new DataView(head.buffer, head.byteOffset, head.byteLength);
-    // Pictures lie in blocks of their own: what is laced is small.
+    // A laced block holds several small frames; each picture has a block to itself.
     if ((view.getUint8(width + 2) & 6) !== 0 || !this.videos.has(track)) return;
-    if (this.blocks.length >= MOST_BLOCKS) throw badFile(`it holds more than ${MOST_BLOCKS} pictures`);
+    if (this.blocks.length >= MOST_BLOCKS)
+      throw badFile(`it holds more than ${MOST_BLOCKS} pictures; cut it into shorter recordings`);
     const time = ((start + view.getInt16(width, false)) * this.#scale) / 1e9;
     this.blocks.push({ track, time, from: from + width + 3, length: until - from - width - 3 });
   }
@@ -179,9 +182,6 @@ interface Calibration {
   poses: NamedPose[];
   warnings: ReaderWarning[];
 }
-
-/** A second: zero would mean that nobody said when a picture was taken. */
-const OFFSET = 1;
 
 class MatroskaSource implements Source {
   readonly format = "Matroska";
@@ -231,7 +231,7 @@ class MatroskaSource implements Source {
     return {
       track: name,
       logged: time,
-      taken: time + OFFSET,
+      taken: time,
       frame: name,
       encoding,
       width,
@@ -241,7 +241,7 @@ class MatroskaSource implements Source {
     };
   }
 
-  /** The calibration has each camera in all of its modes, which the size of the pictures tells apart. */
+  /** The calibration has each camera in all of its modes; the size of the pictures tells which one was used. */
   async camera({ track, width, height }: Shot): Promise<Found<NamedCamera | undefined>> {
     const isDepth = /depth|^ir$/i.test(track);
     const found = this.#calibration.cameras.find(
@@ -260,9 +260,9 @@ class MatroskaSource implements Source {
 }
 
 const unread = ({ codec }: Video): string =>
-  `its pictures are stored as "${codec.slice(0, 40)}", which is not read here; an Azure Kinect's MJPG, NV12, YUY2 and b16g are`;
+  `its pictures are stored as "${codec.slice(0, 40)}", which is not read here; MJPG, NV12, YUY2 and b16g of an Azure Kinect are`;
 
-/** What is attached; where it cannot be read the pictures still can. */
+/** The attached calibration. One that cannot be read is left out with a warning. */
 async function calibrationOf(attached: string): Promise<Calibration> {
   const nothing: Calibration = { cameras: [], poses: [], warnings: [] };
   if (attached === "") return nothing;
@@ -281,6 +281,6 @@ export async function openMatroska(bytes: Bytes): Promise<Source> {
   const reader = new Reader(bytes);
   await reader.read();
   if (reader.blocks.length === 0)
-    throw badFile("this Matroska file holds no pictures, or is cut off before the first of them");
+    throw badFile("this Matroska file holds no pictures, or is cut off before the first one");
   return new MatroskaSource(bytes, reader, await calibrationOf(reader.calibration));
 }

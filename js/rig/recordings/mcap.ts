@@ -1,25 +1,19 @@
-/** MCAP, the container of ROS 2's recordings and of many others, by @mcap/core: chunks by their index, or all of a file that has none. */
+/** MCAP files, the container of ROS 2, read by @mcap/core: chunks are found by the index; a file without one is read whole. */
 import { type DecompressHandlers, McapIndexedReader, McapStreamReader, type McapTypes } from "@mcap/core";
 import { decompress as zstd } from "fzstd";
 import { badFile } from "../../errors.js";
 import { lz4 } from "./lz4.js";
 import { decoderOf } from "./messages.js";
-import { RosSource, type RosFile, type RosTopic } from "./ros-source.js";
+import { RosSource, type RosFile, type RosTopic, byName, chunkSize } from "./ros-source.js";
 import type { Bytes, Source } from "./source.js";
 
-/** A file without an index has to be read into memory as a whole. */
+/** Bytes of the largest file without an index, which has to fit into memory. */
 const MOST_WITHOUT_INDEX = 512 * 2 ** 20;
+/** Bytes of such a file that are read at once. */
 const PART = 4 * 2 ** 20;
-/** A chunk of this size, unpacked, is no recording's. */
-const MOST_CHUNK = 2 ** 30;
-
-const limited = (size: bigint): number => {
-  if (size > MOST_CHUNK) throw badFile(`a chunk of it says that it is ${size} bytes large`);
-  return Number(size);
-};
 const HANDLERS: DecompressHandlers = {
-  lz4: (bytes, size) => lz4(bytes, limited(size)),
-  zstd: (bytes, size) => zstd(bytes, new Uint8Array(limited(size))),
+  lz4: (bytes, size) => lz4(bytes, chunkSize(size)),
+  zstd: (bytes, size) => zstd(bytes, new Uint8Array(chunkSize(size))),
 };
 
 const seconds = (nanoseconds: bigint): number => Number(nanoseconds) / 1e9;
@@ -29,25 +23,18 @@ const text = new TextDecoder();
 type Channels = ReadonlyMap<number, McapTypes.TypedMcapRecords["Channel"]>;
 type Schemas = ReadonlyMap<number, McapTypes.TypedMcapRecords["Schema"]>;
 
-/** Topics of one name on several channels are one, as when a publisher was started anew. */
 function topicsOf(channels: Channels, schemas: Schemas, countOf: (channel: number) => number): RosTopic[] {
-  const found = new Map<string, RosTopic>();
-  for (const { id, topic, schemaId, messageEncoding } of channels.values()) {
-    const schema = schemas.get(schemaId);
-    const known = found.get(topic);
-    if (known) known.count += countOf(id);
-    else
-      found.set(topic, {
-        name: topic,
-        type: schema?.name ?? "",
-        count: countOf(id),
-        by: decoderOf(messageEncoding, {
+  return byName(
+    [...channels.values()].map(({ id, topic, schemaId, messageEncoding }) => {
+      const schema = schemas.get(schemaId);
+      const by = () =>
+        decoderOf(messageEncoding, {
           encoding: schema?.encoding ?? "",
           definition: schema ? text.decode(schema.data) : "",
-        }),
-      });
-  }
-  return [...found.values()];
+        });
+      return { name: topic, type: schema?.name ?? "", count: countOf(id), by };
+    }),
+  );
 }
 
 async function indexed(bytes: Bytes): Promise<RosFile | undefined> {
@@ -57,7 +44,7 @@ async function indexed(bytes: Bytes): Promise<RosFile | undefined> {
   };
   const reader = await McapIndexedReader.Initialize({ readable, decompressHandlers: HANDLERS });
   const { chunkIndexes, statistics, channelsById, schemasById } = reader;
-  // Messages outside of chunks are in no index, and a writer may leave out that of the chunks.
+  // The index lists no messages outside of chunks, and a writer may leave the index of the chunks out.
   const isEmpty = statistics?.messageCount === 0n;
   if (!isEmpty && chunkIndexes.every(({ messageIndexLength }) => messageIndexLength === 0n)) return undefined;
   const starts = chunkIndexes.map(({ messageStartTime }) => messageStartTime);
@@ -69,7 +56,7 @@ async function indexed(bytes: Bytes): Promise<RosFile | undefined> {
   );
   async function* messages(names: readonly string[], from: number, until: number) {
     const range = { startTime: nanoseconds(from), endTime: nanoseconds(until) };
-    // A double holds less than a nanosecond: the ends are to be within.
+    // A double cannot hold a Unix time to the nanosecond: rounding must not exclude the first and the last message.
     if (range.startTime < least || from <= seconds(least)) range.startTime = least;
     if (range.endTime > last || until >= seconds(last)) range.endTime = last;
     for await (const { channelId, logTime, data } of reader.readMessages({ topics: names, ...range }))
@@ -84,7 +71,7 @@ interface Logged {
   bytes: Uint8Array;
 }
 
-/** Takes the records that are there; false where what follows is damaged. */
+/** Takes the records that are complete; false if damaged data follows. */
 function take(
   reader: McapStreamReader,
   channels: Map<number, McapTypes.TypedMcapRecords["Channel"]>,
@@ -105,11 +92,11 @@ function take(
   }
 }
 
-/** All that a file without an index holds: what was being recorded when the power went. */
+/** Reads all of a file without an index, such as a recording that was interrupted. */
 async function streamed(bytes: Bytes): Promise<RosFile> {
   if (bytes.size > MOST_WITHOUT_INDEX)
     throw badFile(
-      "this MCAP has no index, as when its recording was broken off, and is too large to be read without one; `mcap recover FILE -o OUT` of the MCAP command line mends it",
+      `this MCAP has no index, as its recording was interrupted, and its ${bytes.size} bytes are too many to read without one; \`mcap recover FILE -o OUT\` of the MCAP command line repairs it`,
     );
   const reader = new McapStreamReader({ decompressHandlers: HANDLERS });
   const channels = new Map<number, McapTypes.TypedMcapRecords["Channel"]>();
@@ -142,10 +129,10 @@ export async function openMcap(bytes: Bytes): Promise<Source> {
   try {
     file = await indexed(bytes);
   } catch {
-    // Whatever is wrong with its end, what was recorded before may be sound.
+    // The end of the file is damaged; the records before it may be sound.
   }
   file ??= await streamed(bytes);
   if (file.topics.length === 0)
-    throw badFile("this MCAP holds no messages, or is damaged or cut off before the first of them");
+    throw badFile("this MCAP holds no messages, or is damaged or cut off before the first one");
   return new RosSource(file);
 }

@@ -1,17 +1,17 @@
 /**
- * Messages of ROS 1 and ROS 2 as plain objects, by the definitions that stand beside them in a recording.
+ * Messages of ROS 1 and ROS 2 as plain objects, decoded by the definitions in the recording.
  *
- * ROS 1's are read here: @foxglove/rosmsg-serialization compiles a reader by `new Function`, which the page's policy forbids.
+ * Messages of ROS 1 are decoded here: @foxglove/rosmsg-serialization compiles a reader by `new Function`, which the page's policy forbids.
  */
 import { parse } from "@foxglove/rosmsg";
 import { MessageReader } from "@foxglove/rosmsg2-serialization";
-import { badFile } from "../../errors.js";
+import { badFile, reasonOf } from "../../errors.js";
 
-/** A message: its members by their names. */
+/** The members of a message by their names. */
 export type Message = Record<string, unknown>;
 export type Decoder = (bytes: Uint8Array) => Message;
 
-/** A type's definition, as @foxglove/message-definition has it. */
+/** The definition of a type, as @foxglove/message-definition declares it. */
 type Definition = ReturnType<typeof parse>[number];
 type Field = Definition["definitions"][number];
 
@@ -31,7 +31,7 @@ const SIZES: Record<string, number> = {
   float64: 8,
 };
 
-/** Walks over the bytes of one message of ROS 1: little-endian, without padding, a count before lists and texts. */
+/** Walks over the bytes of one ROS 1 message: little-endian, no padding, a count before lists and strings. */
 class Ros1Reader {
   readonly #bytes: Uint8Array;
   readonly #view: DataView;
@@ -67,7 +67,7 @@ class Ros1Reader {
   }
 
   #take(length: number): Uint8Array {
-    if (length > this.#bytes.length - this.#at) throw new RangeError("a text or a picture is longer than its message");
+    if (length > this.#bytes.length - this.#at) throw new RangeError("a string or an image is longer than its message");
     this.#at += length;
     return this.#bytes.subarray(this.#at - length, this.#at);
   }
@@ -98,7 +98,7 @@ class Ros1Reader {
       case "uint64":
         return Number(view.getBigUint64(at, true));
       default:
-        throw badFile(`its messages have members of the type ${type}, which is not known here`);
+        throw badFile(`its messages have members of the unknown type ${type}`);
     }
   }
 }
@@ -115,7 +115,7 @@ function ros2(definition: string): Decoder {
   return (bytes) => reader.readMessage(bytes);
 }
 
-/** The reader of messages of an encoding ("ros1", "cdr"), or why there is none. */
+/** The decoder of messages of an encoding ("ros1", "cdr"), or why there is none. */
 export function decoderOf(
   encoding: string,
   schema: { encoding: string; definition: string },
@@ -125,14 +125,14 @@ export function decoderOf(
   const isRos2 = by === "cdr" && (language === "ros2msg" || language === "");
   if (!isRos1 && !isRos2)
     return {
-      unread: `its messages are in ${encoding || "no named encoding"} (${schema.encoding || "no schema"}); ROS 1 and ROS 2 (CDR) are read`,
+      unread: `its messages are encoded as ${encoding || "an unnamed encoding"} (${schema.encoding || "no schema"}); ROS 1 and ROS 2 (CDR) are read`,
     };
   if (schema.definition.trim() === "") return { unread: "the recording has no definition of its messages" };
   try {
     return { decoder: isRos1 ? ros1(schema.definition) : ros2(schema.definition) };
   } catch (error) {
     return {
-      unread: `the definition of its messages is damaged (${error instanceof Error ? error.message : String(error)})`,
+      unread: `the definition of its messages is damaged (${reasonOf(error)})`,
     };
   }
 }
@@ -156,7 +156,7 @@ export const textIn = (message: Message, name: string): string => {
   const value = message[name];
   return typeof value === "string" ? value : "";
 };
-/** A list of numbers under one of its names: ROS 1 has D, K, P where ROS 2 has d, k, p. */
+/** A list of numbers under one of several names: ROS 1 has D, K, P where ROS 2 has d, k, p. */
 export const numbersIn = (message: Message, ...names: string[]): number[] => {
   for (const name of names) {
     const value = message[name];
@@ -171,10 +171,10 @@ export const bytesIn = (message: Message, name: string): Uint8Array => {
   if (ArrayBuffer.isView(value)) return new Uint8Array(value.buffer, value.byteOffset, value.byteLength);
   return Uint8Array.from(Array.isArray(value) ? value : []);
 };
-/** Seconds of a header's stamp. */
-export const stampOf = (message: Message): number => {
+/** Seconds of a header's stamp; undefined without one, and where the driver left it at zero. */
+export const stampOf = (message: Message): number | undefined => {
   const stamp = inner(inner(message, "header"), "stamp");
-  return (numberIn(stamp, "sec") || 0) + (numberIn(stamp, "nanosec", "nsec") || 0) * 1e-9;
+  return (numberIn(stamp, "sec") || 0) + (numberIn(stamp, "nanosec", "nsec") || 0) * 1e-9 || undefined;
 };
-/** ROS 1 wrote names of frames with a slash before them; tf2 does without. */
+/** The frame of a header. ROS 1 wrote a slash before the names of frames; tf2 does not. */
 export const frameOf = (message: Message): string => textIn(inner(message, "header"), "frame_id").replace(/^\/+/, "");

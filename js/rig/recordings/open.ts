@@ -1,78 +1,66 @@
-/** Opens a recording: lists its topics, says which are the two cameras', and takes frames of them. */
+/** Opens a recording: lists its topics, chooses those of the two cameras, and takes frames from them. */
 import { callback, object, ranged, signal, wrong } from "../../check.js";
-import { BimodalError, badFile, badNamed } from "../../errors.js";
+import { BimodalError, badFile, badNamed, reasonOf } from "../../errors.js";
 import { metresPerUnit } from "../read.js";
 import type { RigFolder } from "../types.js";
 import { type Topic, folderOf, topicsOf } from "./folder.js";
 import { HEAD, containerOf } from "./kinds.js";
 import { frameOf, moments } from "./pairs.js";
-import { type Roles, rolesOf } from "./roles.js";
-import { unreadEncoding } from "./ros.js";
+import { type Choice, rolesOf } from "./roles.js";
+import { unreadEncoding, unreadFirst } from "./ros.js";
 import { type Bytes, type Shot, type Source, bytesOf } from "./source.js";
 
 export type { Topic } from "./folder.js";
 
-/** The topics of the two cameras. */
-export interface Choice {
-  /** Of the colour images. */
-  colour?: string;
-  /** Of the depth maps or organised clouds. */
-  depth?: string;
-}
-
-/** A recording as it was dropped or opened. */
+/** The file of a recording. */
 export interface RecordingFile {
-  /** Its name, for messages. */
+  /** Its name, which begins the messages of errors. */
   name: string;
-  /** All of it; a blob is read in parts. */
+  /** Its bytes; a blob is read in parts. */
   content: Blob | Uint8Array;
 }
 
-/** How frames are taken of a recording. */
-export interface RecordingOptions {
-  /** The topic of the colour images; without it the one that looks most like it. */
-  colour?: string;
-  /** The topic of the depth maps or organised clouds. */
-  depth?: string;
-  /** At most so many frames, which differ; default 10. */
+/** How frames are taken from a recording. */
+/** Topics that are left out are those of `chosen`. */
+export interface RecordingOptions extends Choice {
+  /** The largest number of frames; default 10. */
   frames?: number;
-  /** Metres per stored unit of depth; without it millimetres for integers and metres for floats, as ROS has it. */
+  /** Metres per stored unit of depth; without it, the unit in the recording, or millimetres for integers and metres for floats (REP 118). */
   unit?: number;
-  /** Breaks the reading off; the promise is rejected with its reason. */
+  /** Cancels the reading; the promise is rejected with its reason. */
   signal?: AbortSignal;
-  /** Is told how far it is, 0 to 1. */
+  /** Called with the progress, 0 to 1. */
   onProgress?: (share: number) => void;
 }
 
 /** A recording that has been opened. */
 export interface Recording {
-  /** Of its file. */
+  /** The name of its file. */
   name: string;
-  /** "MCAP", "ROS 1 bag" or "Matroska". */
+  /** "MCAP", "MCAP without an index", "ROS 1 bag" or "Matroska". */
   format: string;
-  /** What was read, in words. */
+  /** Its format, duration and number of topics, in words. */
   says: string;
   /** Seconds from its first message to its last. */
   seconds: number;
   /** All of its topics or tracks. */
   topics: Topic[];
-  /** Those that look like the two cameras'. */
+  /** The topics that fit the two cameras best. */
   chosen: Choice;
-  /** Frames that differ, with cameras and the transform between them. */
+  /** Takes frames that differ, with their cameras and the transform between these. */
   read(options?: RecordingOptions): Promise<RigFolder>;
 }
 
 const FRAMES = 10;
-/** Topics of pictures that are looked into. */
+/** Topics whose first message is read, at most. */
 const MOST_TOPICS = 100;
 
+const topicName = (value: unknown, field: string): void => {
+  if (typeof value !== "string") throw wrong(field, "a topic's name", value);
+};
 const checkOptions = object({
-  colour: (value, field) => {
-    if (typeof value !== "string") throw wrong(field, "a topic's name", value);
-  },
-  depth: (value, field) => {
-    if (typeof value !== "string") throw wrong(field, "a topic's name", value);
-  },
+  colour: topicName,
+  depth: topicName,
   frames: ranged({ kind: "whole", min: 1, max: 100 }),
   unit: metresPerUnit,
   signal,
@@ -84,10 +72,10 @@ async function sourceOf(bytes: Bytes): Promise<Source> {
   if (container === "mcap") return (await import("./mcap.js")).openMcap(bytes);
   if (container === "bag") return (await import("./bag.js")).openBag(bytes);
   if (container === "matroska") return (await import("./matroska.js")).openMatroska(bytes);
-  throw badFile("it is no recording that is read here; MCAP files, bags of ROS 1 and an Azure Kinect's .mkv are");
+  throw badFile("it is no recording that is read here; MCAP files, ROS 1 bags and the .mkv of an Azure Kinect are");
 }
 
-/** The first picture or cloud of each topic, as far as it can be read. */
+/** The first image or cloud of each topic, or why it cannot be read. */
 async function firstShots(source: Source): Promise<Map<string, Shot | string>> {
   const found = new Map<string, Shot | string>();
   const wanted = source.tracks.filter(({ kind, count }) => (kind === "picture" || kind === "cloud") && count > 0);
@@ -98,12 +86,13 @@ async function firstShots(source: Source): Promise<Map<string, Shot | string>> {
         break;
       }
     } catch (error) {
-      found.set(name, `its first message cannot be read (${error instanceof Error ? error.message : String(error)})`);
+      found.set(name, unreadFirst(error));
     }
   }
   return found;
 }
 
+/** The topics that have intrinsics. */
 async function knownCameras(source: Source, shots: Iterable<Shot | string>): Promise<Set<string>> {
   const known = new Set<string>();
   for (const shot of shots)
@@ -117,10 +106,10 @@ class OpenRecording implements Recording {
   readonly says: string;
   readonly seconds: number;
   readonly topics: Topic[];
-  readonly chosen: Roles;
+  readonly chosen: Choice;
   readonly #source: Source;
 
-  constructor(name: string, source: Source, topics: Topic[], chosen: Roles) {
+  constructor(name: string, source: Source, topics: Topic[], chosen: Choice) {
     this.name = name;
     this.format = source.format;
     this.seconds = source.span[1] - source.span[0];
@@ -145,7 +134,9 @@ class OpenRecording implements Recording {
     const name = wanted ?? this.chosen[role];
     const what = role === "colour" ? "colour images" : "depth maps or organised clouds";
     if (name === undefined)
-      throw badFile(`none of its ${this.topics.length} topics holds ${what} that are read here${listed(this.topics)}`);
+      throw badFile(
+        `none of its ${this.topics.length} topics holds ${what} that are read here${unreadOf(this.topics)}`,
+      );
     const topic = this.topics.find((each) => each.name === name);
     if (topic === undefined) throw badFile(`it has no topic ${name}`);
     if (topic.unread !== undefined) throw badFile(`${name}: ${topic.unread}`);
@@ -170,15 +161,16 @@ class OpenRecording implements Recording {
     };
     const found = await moments(this.#source, wanted);
     const [first] = found.moments;
-    if (first === undefined) throw badFile(`${wanted.colour} and ${wanted.depth} have no pictures of one time`);
+    if (first === undefined)
+      throw badFile(`${wanted.colour} and ${wanted.depth} have no images of the same time; choose other topics`);
     const start = this.#source.span[0];
     const frames = found.moments.map((moment) => frameOf(moment, start));
     return folderOf(this.#source, found.moments, frames, found.warnings);
   }
 }
 
-/** The topics of pictures and why they are not read. */
-function listed(topics: readonly Topic[]): string {
+/** Topics that are not read, and why. */
+function unreadOf(topics: readonly Topic[]): string {
   const unread = topics.filter((topic) => topic.unread !== undefined);
   const words = unread.slice(0, 4).map(({ name, unread: why }) => `${name}: ${why}`);
   return words.length === 0 ? "" : ` (${words.join("; ")}${unread.length > words.length ? "; .." : ""})`;
@@ -188,11 +180,10 @@ function named(name: string, error: unknown): unknown {
   if (error instanceof BimodalError)
     return error.code === "file" ? badNamed(name, error.message, error.cause, { ...error.details }) : error;
   if (error instanceof DOMException && error.name === "AbortError") return error;
-  const reason = error instanceof Error ? error.message : String(error);
-  return badNamed(name, `it is damaged or cut off (${reason})`, error);
+  return badNamed(name, `it is damaged or cut off (${reasonOf(error)})`, error);
 }
 
-/** Opens a recording by its content; a blob is read in parts, so that it may be larger than memory. */
+/** Opens a recording; its content tells its format. A blob is read in parts, so that it may be larger than memory. */
 export async function openRecording(file: RecordingFile): Promise<Recording> {
   if (typeof file?.name !== "string" || !(file.content instanceof Uint8Array || file.content instanceof Blob))
     throw wrong("file", "{ name: string, content: Blob or Uint8Array }", file);

@@ -1,22 +1,23 @@
 /**
- * Pairs of a colour image and a depth map of one moment out of a recording: moments evenly spread over it, at each the pair whose stamps are
- * nearest; of those the ones at which the rig moves least, since two cameras are seldom exposed at once; and of these the ones that differ.
+ * Takes pairs of a colour image and a depth map from a recording, in three steps. Moments are spread evenly over the recording, each with the
+ * pair whose stamps are nearest. Of these the moments at which the rig moves least are kept, since two cameras are seldom exposed at the same
+ * time. Of the rest, those that differ most are taken.
  */
 import { breathe } from "../../breathe.js";
 import { BimodalError } from "../../errors.js";
 import type { CheckFrame } from "../types.js";
 import { type ReaderWarning, warning } from "../warnings.js";
 import { type Turn, turnOf } from "./axes.js";
-import { type Signature, changeOf, different, signatureOf } from "./signature.js";
+import { type Signature, changeOf, different, lightOf, signatureOf } from "./signature.js";
 import type { Content, Shot, Source } from "./source.js";
 
-/** Moments that are looked at for each frame that is wanted. */
+/** Moments that are examined for each frame that is wanted. */
 const PER_FRAME = 4;
-/** Messages of the slower topic that a moment reaches over. */
+/** Length of a moment, in periods of the slower topic. */
 const REACH = 2.5;
-/** Stamps farther apart than this, in seconds, are no moment; TUM's own tool has the same. */
+/** Seconds between the stamps of a pair, at most, without a warning; the limit of TUM's tool. */
 const APART = 0.02;
-/** Stamps of one machine; farther apart, in seconds, two clocks have set them. */
+/** Seconds by which the delays of two topics differ, at most, if one clock has set their stamps. */
 const CLOCKS = 10;
 
 export interface Pair {
@@ -24,16 +25,13 @@ export interface Pair {
   depth: Shot;
   /** Seconds between them. */
   apart: number;
-  /** The colour image after this one. */
+  /** The next colour image. */
   after?: Shot;
 }
 
-/** When a shot was taken, as far as its own clock can be compared with the other's. */
-export const timeOf = (shot: Shot, byLog: boolean): number => (byLog || shot.taken === 0 ? shot.logged : shot.taken);
-
-/** Whether two topics' stamps are of clocks that have nothing to do with each other, or missing. */
-export const areApart = (a: Shot, b: Shot): boolean =>
-  a.taken === 0 || b.taken === 0 || Math.abs(a.taken - b.taken - (a.logged - b.logged)) > CLOCKS;
+/** Whether the stamps of two topics are missing, or come from two clocks. */
+const areOfTwoClocks = (a: Shot, b: Shot): boolean =>
+  a.taken === undefined || b.taken === undefined || Math.abs(a.taken - b.taken - (a.logged - b.logged)) > CLOCKS;
 
 function withNext(pair: Pair, colours: readonly Shot[]): Pair {
   const after = colours.find(({ logged }) => logged > pair.colour.logged);
@@ -44,11 +42,12 @@ function withNext(pair: Pair, colours: readonly Shot[]): Pair {
 export function nearest(colours: readonly Shot[], depths: readonly Shot[]): Pair | undefined {
   const [colour, depth] = [colours[0], depths[0]];
   if (!colour || !depth) return undefined;
-  const byLog = areApart(colour, depth);
+  const byLog = areOfTwoClocks(colour, depth);
+  const timeOf = ({ taken, logged }: Shot) => (byLog ? logged : (taken ?? logged));
   let best: Pair | undefined;
   for (const a of colours)
     for (const b of depths) {
-      const apart = Math.abs(timeOf(a, byLog) - timeOf(b, byLog));
+      const apart = Math.abs(timeOf(a) - timeOf(b));
       if (best === undefined || apart < best.apart) best = { colour: a, depth: b, apart };
     }
   return best && withNext(best, colours);
@@ -73,16 +72,16 @@ export interface Wanted {
   onProgress?: (share: number) => void;
 }
 
-/** Both decoded. */
+/** A pair, decoded. */
 export interface Moment {
   pair: Pair;
-  /** By which the cloud's points were turned. */
+  /** The rotation by which the points of the cloud were turned. */
   turn?: Turn;
   image: Extract<Content, { kind: "colour" }>;
   map: Extract<Content, { kind: "depth" }>;
 }
 
-/** How a pair's cloud has to be turned, so that z is depth. */
+/** The rotation that turns a cloud so that z is depth; undefined if it need not be turned. */
 export async function turnBetween(source: Pick<Source, "poses">, { colour, depth }: Pair): Promise<Turn | undefined> {
   if (depth.encoding !== "points") return undefined;
   const [found] = (await source.poses(depth, colour)).found;
@@ -93,16 +92,16 @@ export async function decoded(pair: Pair, unit?: number, turn?: Turn): Promise<M
   const image = await pair.colour.read({ as: "colour" });
   const map = await pair.depth.read({ as: "depth", ...(unit !== undefined && { unit }), ...(turn && { turn }) });
   if (image.kind !== "colour" || map.kind !== "depth")
-    throw new Error("A reading is of another kind than was asked for.");
+    throw new Error("A shot was decoded as another kind than requested.");
   return { pair, image, map, ...(turn && { turn }) };
 }
 
-/** A moment that was looked at, and how to have it again: what was read is not kept. */
+/** A moment that can be read again: its pixels are not kept. */
 interface Candidate {
   again(): Promise<Pair | undefined>;
 }
 
-/** Each shot of the slower topic with the nearest of the other one: of short recordings, which are read at once. */
+/** Each shot of the slower topic with the nearest of the other, for short recordings, which are read at once. */
 async function allPairs(source: Source, { colour, depth }: Wanted): Promise<Pair[]> {
   const shots: Shot[] = [];
   for await (const shot of source.shots([colour, depth], ...source.span)) shots.push(shot);
@@ -130,33 +129,32 @@ async function candidates(source: Source, wanted: Wanted): Promise<Candidate[]> 
   });
 }
 
-/** How much the picture changes in a second. */
-async function unrest({ pair: { colour, after }, image }: Moment): Promise<number> {
+/** How much the image changes per second. */
+async function unrest({ colour, after }: Pair, { light }: Signature): Promise<number> {
   const next = await after?.read({ as: "colour" });
   if (after === undefined || next?.kind !== "colour") return 0;
-  return changeOf(image.image, next.image) / Math.max(1e-3, after.logged - colour.logged);
+  return changeOf(light, lightOf(next.image)) / Math.max(1e-3, after.logged - colour.logged);
 }
 
 interface Seen {
   candidate: Candidate;
   signature: Signature;
-  /** Change in a second, where there are moments to choose from. */
+  /** Change per second; zero if there are no more moments than frames wanted. */
   unrest: number;
 }
 
-/** The half at which the rig moves least, but as many as may be wanted. */
+/** The half at which the rig moves least, but no fewer than are wanted. */
 function restful(seen: readonly Seen[], wanted: number): Seen[] {
   const kept = Math.max(wanted, Math.ceil(seen.length / 2));
   const limit = seen.map(({ unrest }) => unrest).sort((a, b) => a - b)[kept - 1] ?? Infinity;
   return seen.filter(({ unrest }) => unrest <= limit);
 }
 
-/** Moments that differ, decoded, and what is doubtful about them. */
+/** Moments that differ, decoded, with warnings. */
 export async function moments(
   source: Source,
   wanted: Wanted,
 ): Promise<{ moments: Moment[]; warnings: ReaderWarning[] }> {
-  const warnings: ReaderWarning[] = [];
   const seen: Seen[] = [];
   let failure: unknown;
   let turn: Turn | undefined;
@@ -171,7 +169,7 @@ export async function moments(
       turn ??= await turnBetween(source, pair);
       const moment = await decoded(pair, wanted.unit, turn);
       const signature = signatureOf(moment.image.image, moment.map.depth);
-      seen.push({ candidate, signature, unrest: all.length > wanted.frames ? await unrest(moment) : 0 });
+      seen.push({ candidate, signature, unrest: all.length > wanted.frames ? await unrest(pair, signature) : 0 });
     } catch (error) {
       if (!(error instanceof BimodalError)) throw error;
       failure ??= error;
@@ -185,36 +183,38 @@ export async function moments(
     const pair = await still[index]?.candidate.again();
     if (pair) found.push(await decoded(pair, wanted.unit, turn));
   }
-  judge(found, seen.length, wanted.frames, warnings);
-  return { moments: found, warnings };
+  return { moments: found, warnings: judged(found, seen.length, wanted.frames) };
 }
 
-export function judge(found: readonly Moment[], seen: number, wanted: number, warnings: ReaderWarning[]): void {
+/** The warnings for moments that were taken: their times, their clocks, and how few of those that were examined differ. */
+export function judged(found: readonly Moment[], seen = found.length, wanted = found.length): ReaderWarning[] {
+  const warnings: ReaderWarning[] = [];
   const apart = Math.max(0, ...found.map(({ pair }) => pair.apart));
   if (apart > APART)
     warnings.push(
       warning(
         "times-apart",
-        `Colour images and depth maps are up to ${(1000 * apart).toFixed(0)} ms apart: if the rig or the scene moved, they show different moments.`,
+        `Colour images and depth maps are up to ${(1000 * apart).toFixed(0)} ms apart: if the rig or the scene moved, they show different scenes. Record while both rest.`,
         { seconds: apart },
       ),
     );
   const [first] = found;
-  if (first && areApart(first.pair.colour, first.pair.depth))
+  if (first && areOfTwoClocks(first.pair.colour, first.pair.depth))
     warnings.push(
       warning(
         "clocks-differ",
-        "The pictures have no stamps of one clock; they were paired by the time at which they were recorded, which may be later than they were taken.",
+        "The stamps of colour and depth are missing or come from two clocks: images were paired by the time of recording, which may be later than the exposure.",
       ),
     );
   if (found.length > 0 && found.length < Math.min(wanted, seen))
     warnings.push(
       warning(
         "frames-alike",
-        `Only ${found.length} of the ${seen} moments that were looked at differ: the view hardly changes, and pictures of one view tell no more than one.`,
+        `Only ${found.length} of ${seen} moments differ: the view hardly changes, and several images of one view tell no more than one. Move the rig or the scene.`,
         { frames: found.length, seen },
       ),
     );
+  return warnings;
 }
 
 /** A moment as a frame of the check. */

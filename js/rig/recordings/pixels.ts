@@ -1,14 +1,13 @@
 /**
- * Pixels as ROS's image encodings and cameras' raw formats store them, as rasters of grey, RGB or RGBA.
+ * Decodes the image encodings of ROS and the raw formats of cameras into rasters of grey or RGB.
  *
- * Bayer patterns are filled in linearly from the nearest pixels of each colour; chroma is repeated. Neither moves an edge by more than half a
- * pixel.
+ * Bayer patterns are interpolated bilinearly; chroma samples are repeated.
  */
 import { badFile } from "../../errors.js";
 import { checkBytes, checkSize } from "../formats/limits.js";
 import type { Picture } from "../formats/picture.js";
 
-/** A picture as it lies in a message. */
+/** An image as a message stores it. */
 export interface Stored {
   width: number;
   height: number;
@@ -19,7 +18,7 @@ export interface Stored {
   data: Uint8Array;
 }
 
-/** Where red, green, blue and alpha stand among a pixel's samples, and how many there are. */
+/** The number of samples of a pixel, and the places of red, green and blue among them. */
 interface Layout {
   bits: 8 | 16 | 32;
   samples: number;
@@ -43,14 +42,14 @@ const LAYOUTS: Record<string, Layout> = {
   "16uc1": { bits: 16, samples: 1, order: [0] },
   "32fc1": { bits: 32, samples: 1, order: [0] },
 };
-/** Where a Bayer pattern has its colours in a block of 2x2: 0 red, 1 green, 2 blue. */
+/** The colours of a Bayer pattern in a block of 2x2: 0 red, 1 green, 2 blue. */
 const BAYER: Record<string, readonly number[]> = {
   bayer_rggb: [0, 1, 1, 2],
   bayer_bggr: [2, 1, 1, 0],
   bayer_gbrg: [1, 2, 0, 1],
   bayer_grbg: [1, 0, 2, 1],
 };
-/** Places of the luma of two pixels and of their chroma in four bytes. */
+/** Places of the luma of two pixels and of their common chroma in four bytes. */
 const PACKED: Record<string, readonly [y0: number, y1: number, u: number, v: number]> = {
   yuv422: [1, 3, 0, 2],
   uyvy: [1, 3, 0, 2],
@@ -58,7 +57,7 @@ const PACKED: Record<string, readonly [y0: number, y1: number, u: number, v: num
   yuyv: [0, 2, 1, 3],
   yuy2: [0, 2, 1, 3],
 };
-/** Luma, then rows of chroma at half the width: how many rows of pixels share one, and whether v comes first. */
+/** A plane of luma, then rows of chroma at half the width: the rows of pixels that share one, and whether v comes first. */
 const PLANAR: Record<string, readonly [rows: number, vFirst: boolean]> = {
   nv12: [2, false],
   nv21: [2, true],
@@ -66,10 +65,10 @@ const PLANAR: Record<string, readonly [rows: number, vFirst: boolean]> = {
 };
 
 const keyOf = (encoding: string): string => encoding.trim().toLowerCase();
-/** Of a Bayer pattern of 8 or 16 bits. */
+/** The pattern of a Bayer encoding of 8 or 16 bits. */
 const bayerOf = (key: string): readonly number[] | undefined => BAYER[key.replace(/(8|16)$/, "")];
 
-/** Whether pictures of this encoding hold one number for each pixel that may be a depth. */
+/** Whether images of this encoding have one number for each pixel that may be a depth. */
 export const mayBeDepth = (encoding: string): boolean => /^(16uc1|32fc1|mono16|b16g)$/.test(keyOf(encoding));
 export const isColoured = (encoding: string): boolean => {
   const key = keyOf(encoding);
@@ -78,15 +77,14 @@ export const isColoured = (encoding: string): boolean => {
 export const isKnown = (encoding: string): boolean =>
   keyOf(encoding) in LAYOUTS || isColoured(encoding) || keyOf(encoding) === "b16g";
 
-/** Samples of a row in the machine's order of bytes. */
+/** The samples of all rows, without padding, in the byte order of this machine. */
 function samples(stored: Stored, bits: 8 | 16 | 32, perRow: number): Uint8Array | Uint16Array | Float32Array {
   const { height, step, data, isBigEndian } = stored;
   const size = bits / 8;
   const row = perRow * size;
   const stride = step === 0 ? row : step;
-  if (stride < row)
-    throw badFile(`its picture says that a row has ${stride} bytes, and ${row} are needed for ${stored.encoding}`);
-  checkBytes((height - 1) * stride + row, data.length, "its picture");
+  if (stride < row) throw badFile(`its image declares rows of ${stride} bytes; ${stored.encoding} needs ${row}`);
+  checkBytes((height - 1) * stride + row, data.length, "its image");
   const found =
     bits === 8
       ? new Uint8Array(perRow * height)
@@ -118,7 +116,7 @@ const picture = (
   bits: number,
 ): Picture => ({ width, height, channels, data, bits, format: encoding, notes: [], warnings: [] });
 
-/** Each colour of a pixel is the mean of those of its kind among the nine around it. */
+/** Bilinear: each missing colour of a pixel is the mean of the samples of that colour among its neighbours. */
 function ofBayer(stored: Stored, pattern: readonly number[]): Picture {
   const { width, height } = stored;
   const bits = /16$/.test(stored.encoding) ? 16 : 8;
@@ -146,7 +144,7 @@ function ofBayer(stored: Stored, pattern: readonly number[]): Picture {
 
 const limited = (value: number): number => (value < 0 ? 0 : value > 255 ? 255 : value);
 
-/** BT.601 with the full range, as webcams and JPEG have it. */
+/** BT.601 at full range, as of webcams and JPEG. */
 function setYuv(data: Uint8Array, at: number, y: number, u: number, v: number): void {
   data[at] = limited(y + 1.402 * (v - 128));
   data[at + 1] = limited(y - 0.344136 * (u - 128) - 0.714136 * (v - 128));
@@ -155,7 +153,7 @@ function setYuv(data: Uint8Array, at: number, y: number, u: number, v: number): 
 
 function ofPacked(stored: Stored, [y0, y1, u, v]: readonly [number, number, number, number]): Picture {
   const { width, height } = stored;
-  if (width % 2 !== 0) throw badFile(`its picture is ${width} pixels wide, which ${stored.encoding} cannot be`);
+  if (width % 2 !== 0) throw badFile(`its image is ${width} pixels wide; ${stored.encoding} needs an even width`);
   const raw = samples(stored, 8, 2 * width);
   const data = new Uint8Array(3 * width * height);
   for (let at = 0; at < raw.length; at += 4) {
@@ -170,7 +168,7 @@ function ofPacked(stored: Stored, [y0, y1, u, v]: readonly [number, number, numb
 function ofPlanar(stored: Stored, [rows, vFirst]: readonly [number, boolean]): Picture {
   const { width, height, data: raw } = stored;
   const step = stored.step >= width && stored.step < 2 * width ? stored.step : width;
-  checkBytes(step * height + step * Math.floor(height / rows), raw.length, "its picture");
+  checkBytes(step * height + step * Math.floor(height / rows), raw.length, "its image");
   const data = new Uint8Array(3 * width * height);
   for (let y = 0; y < height; y++)
     for (let x = 0; x < width; x++) {
@@ -181,7 +179,6 @@ function ofPlanar(stored: Stored, [rows, vFirst]: readonly [number, boolean]): P
   return picture(stored, data, 3, 8);
 }
 
-/** The picture, or why it is none. */
 export function pixels(stored: Stored): Picture {
   checkSize(stored.width, stored.height);
   const key = keyOf(stored.encoding);
@@ -192,5 +189,5 @@ export function pixels(stored: Stored): Picture {
   if (bayer) return ofBayer(stored, bayer);
   if (packed) return ofPacked(stored, packed);
   if (planar) return ofPlanar(stored, planar);
-  throw badFile(`its pictures are stored as "${stored.encoding.slice(0, 40)}", which is not read here`);
+  throw badFile(`its images are stored as "${stored.encoding.slice(0, 40)}", which is not read here`);
 }

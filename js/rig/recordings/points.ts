@@ -1,11 +1,12 @@
-/** sensor_msgs/PointCloud2: organised clouds, whose rows and columns are those of their camera, and the scans of LiDARs, which have none. */
+/** sensor_msgs/PointCloud2: organised clouds, which have the rows and columns of their camera, and scans of LiDARs, which lack them. */
 import { badFile } from "../../errors.js";
+import { type Channel, channelOf, roomFor } from "../formats/channels.js";
 import { checkBytes, checkSize } from "../formats/limits.js";
 import type { Cloud, Points } from "../formats/picture.js";
 import type { Scan } from "../lidar/scan.js";
 import { type Message, bytesIn, isMessage, numberIn, textIn } from "./messages.js";
 
-/** How each of PointField's types is read, and its bytes, by its number. */
+/** Bytes and reader of each of PointField's types, by its number. */
 const TYPES: Readonly<
   Record<number, readonly [bytes: number, read: (view: DataView, at: number, isLittle: boolean) => number]>
 > = {
@@ -19,19 +20,18 @@ const TYPES: Readonly<
   8: [8, (view, at, isLittle) => view.getFloat64(at, isLittle)],
 };
 const FLOATS: readonly number[] = [7, 8];
-/** Names of what a scan's points have besides their places. */
-const RING = /^(?:ring|channel|laser_id|line)$/;
-const INTENSITY = /^(?:intensity|i|reflectivity)$/;
-const TIME = /^(?:t|time|timestamp|offset_time|time_stamp)$/;
+const CHANNELS: readonly Channel[] = ["ring", "intensity", "times"];
 
-/** A number of each point, in their order. */
+/** Reads one number of a point, given the point's index. */
 type Column = (point: number) => number;
 
-/** Whether a message holds the points of a scan, in one row. */
+/** Whether a message holds a scan, whose points form a single row. */
 export const isScan = (message: Message): boolean => numberIn(message, "height") === 1;
 
-/** Reads members of the points of a message; nothing for one that it lacks. */
-function columnsOf(message: Message): (name: RegExp, types?: readonly number[]) => Column | undefined {
+/** The readers of a message's fields, found by their names; undefined for a field that it lacks. */
+function columnsOf(
+  message: Message,
+): (isNamed: (name: string) => boolean, types?: readonly number[]) => Column | undefined {
   const [width, height] = [numberIn(message, "width"), numberIn(message, "height")];
   const fields = Array.isArray(message.fields) ? message.fields.filter(isMessage) : [];
   const [step, row, data] = [numberIn(message, "point_step"), numberIn(message, "row_step"), bytesIn(message, "data")];
@@ -39,14 +39,14 @@ function columnsOf(message: Message): (name: RegExp, types?: readonly number[]) 
   const stride = row >= step * width ? row : step * width;
   checkBytes((height - 1) * stride + width * step, data.length, "its cloud");
   const view = new DataView(data.buffer, data.byteOffset, data.byteLength);
-  return (name, types) => {
-    const field = fields.find((each) => name.test(textIn(each, "name")));
+  return (isNamed, types) => {
+    const field = fields.find((each) => isNamed(textIn(each, "name")));
     const number = field ? numberIn(field, "datatype") : NaN;
     const type = TYPES[number];
     if (!field || !type || types?.includes(number) === false) return undefined;
     const [offset, [bytes, read]] = [numberIn(field, "offset"), type];
     if (!(offset >= 0 && offset + bytes <= step))
-      throw badFile("its clouds are damaged: their members lie beyond a point's bytes");
+      throw badFile("its clouds are damaged: a field lies beyond the bytes of its point");
     return (point) => read(view, Math.floor(point / width) * stride + (point % width) * step + offset, isLittle);
   };
 }
@@ -54,8 +54,8 @@ function columnsOf(message: Message): (name: RegExp, types?: readonly number[]) 
 /** x, y and z of every point. */
 function placesOf(columns: ReturnType<typeof columnsOf>, count: number): Float32Array {
   const axes = ["x", "y", "z"].map((name) => {
-    const column = columns(new RegExp(`^${name}$`), FLOATS);
-    if (!column) throw badFile(`its clouds have no member ${name} of floats; x, y and z are needed`);
+    const column = columns((field) => field === name, FLOATS);
+    if (!column) throw badFile(`its clouds have no floating-point field ${name}; x, y and z are needed`);
     return column;
   });
   const points = new Float32Array(3 * count);
@@ -75,17 +75,18 @@ export function cloudOf(message: Message): Cloud {
 export function scanOf(message: Message): Points {
   const count = numberIn(message, "width");
   const columns = columnsOf(message);
-  const points = placesOf(columns, count);
-  const listed = (name: RegExp) => {
-    const column = columns(name);
-    return column && Array.from({ length: count }, (_, point) => column(point));
-  };
-  const [ring, intensity, times] = [RING, INTENSITY, TIME].map(listed);
-  const scan: Scan = {
-    points,
-    ...(ring && { ring: Float32Array.from(ring) }),
-    ...(intensity && { intensity: Float32Array.from(intensity) }),
-    ...(times && { times: Float64Array.from(times) }),
-  };
+  const found = CHANNELS.flatMap((channel) => {
+    const column = columns((field) => channelOf(field) === channel);
+    return column ? [{ channel, column }] : [];
+  });
+  const room = roomFor(
+    count,
+    found.map(({ channel }) => channel),
+  );
+  const scan: Scan = { points: placesOf(columns, count), ...room };
+  for (const { channel, column } of found) {
+    const into = room[channel];
+    if (into) for (let point = 0; point < count; point++) into[point] = column(point);
+  }
   return { format: "PointCloud2", scan, isMetric: true, notes: [], warnings: [] };
 }

@@ -1,6 +1,6 @@
 /**
- * What librealsense records besides the messages of ROS: below each stream's name the motion from the device's reference into the stream,
- * `tf/0`, and below each sensor's the unit of its depths, `option/Depth Units/value`.
+ * What librealsense records besides standard messages: `tf/0` below the name of each stream, the motion from the reference of the device into
+ * the stream, and `option/Depth Units/value` below the name of each sensor, the unit of its depths.
  */
 import { chained, inverseOf } from "../formats/poses.js";
 import type { NamedPose, Pose } from "../types.js";
@@ -13,7 +13,7 @@ const UNITS = /^(.*)\/option\/depth[ _]?units\/value$/i;
 export const isStreamMotion = (topic: string): boolean => MOTION.test(topic);
 export const isDepthUnit = (topic: string): boolean => UNITS.test(topic);
 
-/** Metres per unit of the sensor that took a topic's pictures. */
+/** Metres per stored unit of the sensor whose images a topic holds. */
 export function unitOf(track: string, units: ReadonlyMap<string, number>): number | undefined {
   for (const [topic, unit] of units) {
     const sensor = UNITS.exec(topic)?.[1];
@@ -22,7 +22,7 @@ export function unitOf(track: string, units: ReadonlyMap<string, number>): numbe
   return undefined;
 }
 
-/** The motion between two streams, each of which has its own from one reference: P_stream = R P_reference + t. */
+/** The motion between two streams, from the motions of both out of one reference: P_stream = R P_reference + t. */
 export function betweenStreams(from: Shot, to: Shot, motions: ReadonlyMap<string, Pose>): NamedPose | undefined {
   const [a, b] = [from, to].map(({ track }) => STREAM.exec(track)?.[1]);
   if (a === undefined || b === undefined) return undefined;

@@ -1,15 +1,18 @@
 /**
- * Which topics are the colour camera's and the depth camera's: by their encodings, their names, and by whether intrinsics are beside them.
+ * Which topics hold the images of the colour camera and of the depth camera, judged by encoding, name, and whether there are intrinsics.
  *
- * A depth image in its own pixels is taken before one that was registered to the colour image: registering used the calibration in question.
+ * A depth image in its own pixels is preferred to one that was registered to the colour image: registration used the calibration to be checked.
  */
 import { isCompressedDepth } from "./compressed.js";
 import { baseOf } from "./infos.js";
 import { isColoured, mayBeDepth } from "./pixels.js";
 import type { Shot } from "./source.js";
 
-export interface Roles {
+/** The topics of the two cameras. */
+export interface Choice {
+  /** The topic of the colour images. */
   colour?: string;
+  /** The topic of the depth maps or clouds. */
   depth?: string;
 }
 
@@ -19,7 +22,7 @@ const OTHER_NAME =
 const COLOUR_NAME = /colou?r|rgb/i;
 const REGISTERED = /aligned|registered|_to_colou?r|_to_rgb|hw_registered|sw_registered/i;
 
-/** Clouds with rows and columns, and scans without. */
+/** Organised clouds and scans. */
 const isCloud = ({ encoding }: Pick<Shot, "encoding">): boolean => encoding === "points" || encoding === "scan";
 
 /** Whether a shot's pixels can be depths. */
@@ -27,13 +30,13 @@ export function isDepth({ track, encoding }: Shot): boolean {
   if (isCloud({ encoding })) return true;
   if (isCompressedDepth(encoding)) return true;
   if (OTHER_NAME.test(track) || !mayBeDepth(encoding)) return encoding === "png" && DEPTH_NAME.test(track);
-  // 16 bits of grey alone may be an infrared picture.
+  // 16-bit grey may also be an infrared picture.
   return encoding.toLowerCase() !== "mono16" || DEPTH_NAME.test(track);
 }
 
 export const isColour = (shot: Shot): boolean => !isDepth(shot) && !mayBeDepth(shot.encoding);
 
-/** How much two names have in common from their beginning, in steps. */
+/** The number of leading path segments that two topics share. */
 function shared(a: string, b: string): number {
   const [x, y] = [baseOf(a).split("/"), baseOf(b).split("/")];
   let count = 0;
@@ -45,7 +48,7 @@ const colourScore = (shot: Shot): number =>
   (isColoured(shot.encoding) || /^(?:jpe?g|png|webp)$/.test(shot.encoding) ? 4 : 0) +
   (COLOUR_NAME.test(shot.track) ? 4 : 0) -
   (OTHER_NAME.test(shot.track) || DEPTH_NAME.test(shot.track) ? 8 : 0) -
-  // What was compressed has lost edges.
+  // Lossy compression softens edges.
   (isColoured(shot.encoding) ? 0 : 0.5);
 
 const depthScore = (shot: Shot): number =>
@@ -54,8 +57,8 @@ const depthScore = (shot: Shot): number =>
   (REGISTERED.test(shot.track) ? 3 : 0) -
   (isCompressedDepth(shot.encoding) ? 0.5 : 0);
 
-/** The best pair among one shot of each topic; `known` says whether intrinsics are there for a topic. */
-export function rolesOf(shots: readonly Shot[], known: (track: string) => boolean): Roles {
+/** The best pair, given one shot of each topic; `known` tells whether there are intrinsics for a topic. */
+export function rolesOf(shots: readonly Shot[], known: (track: string) => boolean): Choice {
   const colours = shots.filter(isColour);
   const depths = shots.filter(isDepth);
   const pairs = colours.flatMap((colour) =>

@@ -1,18 +1,39 @@
-/** A recording of ROS, whatever its container: which topics hold what, and what goes with a picture. */
+/** A recording of ROS in any container: the kinds of its topics, and the cameras and transforms that belong to a picture. */
 import type { NamedCamera, NamedPose, Pose } from "../types.js";
+import { badFile } from "../../errors.js";
 import { belongs, cameraOfInfo } from "./infos.js";
 import { type Decoder, type Message, frameOf, numberIn } from "./messages.js";
 import { betweenStreams, isDepthUnit, isStreamMotion, unitOf } from "./realsense.js";
 import { kindOfType, shotOf } from "./ros.js";
 import type { Found, Shot, Source, Track } from "./source.js";
-import { Transforms, poseOfTransform } from "./transforms.js";
+import { Transforms, isStatic, poseOfTransform } from "./transforms.js";
 
 export interface RosTopic {
   name: string;
   type: string;
   count: number;
-  /** The reader of its messages, or why there is none. */
+  /** The decoder of its messages, or why there is none. */
   by: { decoder: Decoder } | { unread: string };
+}
+
+/** The topics of several channels; channels of one name, as of a publisher that was restarted, are one topic. */
+export function byName(channels: Iterable<Omit<RosTopic, "by"> & { by: () => RosTopic["by"] }>): RosTopic[] {
+  const found = new Map<string, RosTopic>();
+  for (const { by, ...channel } of channels) {
+    const known = found.get(channel.name);
+    if (known) known.count += channel.count;
+    else found.set(channel.name, { ...channel, by: by() });
+  }
+  return [...found.values()];
+}
+
+/** Bytes of an uncompressed chunk: writers use about a megabyte, or one message. */
+const MOST_CHUNK = 2 ** 30;
+
+/** The declared size of an uncompressed chunk, checked before memory is allocated for it. */
+export function chunkSize(size: number | bigint): number {
+  if (size > MOST_CHUNK) throw badFile(`one of its chunks declares ${size} bytes`);
+  return Number(size);
 }
 
 /** A container's messages as bytes. */
@@ -27,20 +48,20 @@ export interface RosFile {
   ): AsyncIterable<{ topic: string; time: number; bytes: Uint8Array }>;
 }
 
-/** Messages of /tf that are looked at: a minute of a robot's joints. */
+/** Messages of /tf that are read: a minute of a robot's joints. */
 const MOST_TRANSFORMS = 6000;
 
 const isMotion = (name: string, { type }: { type: string }): boolean =>
   isStreamMotion(name) && /^geometry_msgs\/(?:msg\/)?Transform$/.test(type);
 
-/** How well the intrinsics of a topic go with a shot: by the names of the topics and of the frames. */
-export function fitOf(info: string, frame: string, shot: Shot): number {
-  const isSame = frame !== "" && frame === shot.frame;
-  return 2 * belongs(info, shot.track) + (isSame ? 1 : 0);
-}
-
-/** At least the same frame, or a name beside it. */
-export const isFit = (fit: number, hasFrames: boolean): boolean => fit >= 4 || (hasFrames ? fit % 2 === 1 : fit >= 2);
+/** A topic as a track. */
+export const trackOf = ({ name, type, count, by }: RosTopic): Track => ({
+  name,
+  type,
+  count,
+  kind: "unread" in by ? "other" : kindOfType(type),
+  ...("unread" in by && kindOfType(type) !== "other" && { unread: by.unread }),
+});
 
 export class RosSource implements Source {
   readonly format: string;
@@ -58,13 +79,10 @@ export class RosSource implements Source {
     this.format = file.format;
     this.span = file.span;
     this.#topics = new Map(file.topics.map((topic) => [topic.name, topic]));
-    this.tracks = file.topics.map(({ name, type, count, by }) => ({
-      name,
-      type,
-      count,
-      kind: "unread" in by ? "other" : isMotion(name, { type }) ? "transforms" : kindOfType(type),
-      ...("unread" in by && kindOfType(type) !== "other" && { unread: by.unread }),
-    }));
+    this.tracks = file.topics.map((topic) => {
+      const isRead = "decoder" in topic.by && isMotion(topic.name, topic);
+      return { ...trackOf(topic), ...(isRead && { kind: "transforms" as const }) };
+    });
   }
 
   async *#decoded(topics: readonly string[], from: number, until: number) {
@@ -81,7 +99,7 @@ export class RosSource implements Source {
       yield shotOf(topic, type, time, message, unitOf(topic, units));
   }
 
-  /** What the first message of each of some topics says. */
+  /** A value from the first message of each topic that is wanted. */
   async #firsts<T>(
     isWanted: (name: string, track: Track) => boolean,
     of: (message: Message) => T,
@@ -123,8 +141,7 @@ export class RosSource implements Source {
     const trees = this.tracks
       .filter(({ type, kind, count }) => kind === "transforms" && kindOfType(type) === kind && count > 0)
       .map(({ name }) => name);
-    const isFixed = (name: string) => /static/i.test(name);
-    this.#fixed ??= this.#transforms(trees.filter(isFixed), new Transforms());
+    this.#fixed ??= this.#transforms(trees.filter(isStatic), new Transforms());
     const fixed = (await this.#fixed).between(from.frame, to.frame);
     if (fixed) return { found: [fixed.pose], warnings: fixed.warnings };
     this.#all ??= this.#transforms(trees, new Transforms());
@@ -133,13 +150,17 @@ export class RosSource implements Source {
   }
 }
 
-/** The camera of a shot among those that topics of intrinsics describe. */
+/** The camera of a shot, from the topics of intrinsics: the one beside the shot's topic, or else one of the same frame. */
 export function cameraFor(shot: Shot, infos: ReadonlyMap<string, Message>): Found<NamedCamera | undefined> {
-  const hasFrames = shot.frame !== "";
+  const hasFrame = shot.frame !== "";
   const [best] = [...infos]
-    .map(([name, message]) => ({ message, fit: fitOf(name, frameOf(message), shot) }))
-    .filter(({ fit }) => isFit(fit, hasFrames))
-    .sort((a, b) => b.fit - a.fit);
+    .map(([name, message]) => ({
+      message,
+      nearness: belongs(name, shot.track),
+      isOfFrame: hasFrame && frameOf(message) === shot.frame,
+    }))
+    .filter(({ nearness, isOfFrame }) => nearness === 2 || (hasFrame ? isOfFrame : nearness === 1))
+    .sort((a, b) => b.nearness - a.nearness || Number(b.isOfFrame) - Number(a.isOfFrame));
   if (best === undefined) return { found: undefined, warnings: [] };
   const warnings: Found<unknown>["warnings"] = [];
   const size = shot.width && shot.height ? { width: shot.width, height: shot.height } : undefined;

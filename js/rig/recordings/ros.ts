@@ -1,5 +1,5 @@
-/** Messages of ROS as shots, cameras and transforms, the same for every container and for a live connection. */
-import { badFile } from "../../errors.js";
+/** ROS messages as shots, for every container and for a live connection. */
+import { badFile, reasonOf } from "../../errors.js";
 import { pictureColour } from "../colour.js";
 import { cloudDepth, pictureDepth } from "../depth.js";
 import type { Cloud, Picture } from "../formats/picture.js";
@@ -12,7 +12,7 @@ import { type Stored, isKnown, pixels } from "./pixels.js";
 import { cloudOf, isScan, scanOf } from "./points.js";
 import type { Content, Shot, ShotOptions, TrackKind } from "./source.js";
 
-/** What a type's messages are: "sensor_msgs/Image" in ROS 1, "sensor_msgs/msg/Image" in ROS 2. */
+/** What messages of a type hold. ROS 1 writes "sensor_msgs/Image", ROS 2 "sensor_msgs/msg/Image". */
 export function kindOfType(type: string): TrackKind {
   switch (type.replace("/msg/", "/")) {
     case "sensor_msgs/Image":
@@ -30,14 +30,14 @@ export function kindOfType(type: string): TrackKind {
   }
 }
 
-/** ROS's own rule (REP 118): integers are millimetres, floats are metres. */
+/** Metres per stored unit by the rule of ROS (REP 118): integers are millimetres, floats are metres. */
 const unitOf = (picture: Picture): number => (picture.data instanceof Float32Array ? 1 : 0.001);
 
-/** A picture as what it is wanted for. */
+/** A picture as a colour image or a depth map. */
 export function ofPicture(picture: Picture, { as, unit }: ReadOptions): Content {
   if (as !== "depth") return pictureColour(picture);
   if (picture.data instanceof Uint8Array)
-    throw badFile(`its pictures are of 8 bits (${picture.format}), which is no depth`);
+    throw badFile(`its images have 8 bits (${picture.format}), too few for depth; choose another topic`);
   return pictureDepth(picture, { unit: unit ?? picture.unit ?? unitOf(picture) });
 }
 
@@ -50,7 +50,7 @@ const storedOf = (message: Message): Stored => ({
   data: bytesIn(message, "data"),
 });
 
-/** The format in a compressed picture's message, in few words: "16UC1; compressedDepth png" is "compressedDepth". */
+/** The format of a compressed image in one word: "compressedDepth" of "16UC1; compressedDepth png". */
 function formatOf(message: Message): string {
   const format = textIn(message, "format");
   if (isCompressedDepth(format)) return "compressedDepth";
@@ -75,19 +75,20 @@ const head = (track: string, logged: number, message: Message) => ({
   bytes: bytesIn(message, "data").length,
 });
 
-/** A message of pictures or clouds; `unit` is that of its depths where the recording says so. */
+/** A message of an image or a cloud as a shot; `unit` is the unit of its depths, where the recording states it. */
 export function shotOf(track: string, type: string, logged: number, message: Message, unit?: number): Shot {
   const common = head(track, logged, message);
   const withUnit = (options: ReadOptions) => (unit === undefined ? options : { unit, ...options });
   const size = { width: numberIn(message, "width"), height: numberIn(message, "height") };
-  // A scan keeps its own axes: the check takes them from the extrinsics.
-  if (kindOfType(type) === "cloud" && isScan(message))
+  // A scan keeps its axes: its extrinsics are those of that frame.
+  const isCloud = kindOfType(type) === "cloud";
+  if (isCloud && isScan(message))
     return {
       ...common,
       encoding: "scan",
       read: async ({ turn: _, ...options }) => pointsDepth(scanOf(message), options),
     };
-  if (kindOfType(type) === "cloud")
+  if (isCloud)
     return { ...common, ...size, encoding: "points", read: async (options) => ofCloud(cloudOf(message), options) };
   if (type.endsWith("CompressedImage"))
     return { ...common, encoding: formatOf(message), read: async (options) => ofCompressed(message, options) };
@@ -100,8 +101,11 @@ export function shotOf(track: string, type: string, logged: number, message: Mes
   };
 }
 
-/** Why pictures of this encoding are not read. */
+/** Why a topic is not read whose first message failed. */
+export const unreadFirst = (error: unknown): string => `its first message cannot be read (${reasonOf(error)})`;
+
+/** Why images of this encoding are not read; undefined if they are. */
 export const unreadEncoding = (encoding: string): string | undefined =>
   isKnown(encoding) || /^(?:jpe?g|png|webp|compressedDepth|points|scan)$/i.test(encoding)
     ? undefined
-    : `its pictures are stored as "${encoding.slice(0, 40)}", which is not read here`;
+    : `its images are stored as "${encoding.slice(0, 40)}", which is not read here`;

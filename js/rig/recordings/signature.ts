@@ -1,21 +1,21 @@
-/** What two moments of a recording look like, coarsely: enough to tell whether the rig or the scene has moved between them. */
+/** A coarse description of a moment, enough to tell whether the rig or the scene has moved between two moments. */
 import type { CheckFrame } from "../types.js";
 
-/** Cells of the grid that pictures are averaged on. */
+/** Cells of the grid on which images are averaged. */
 const [COLUMNS, ROWS] = [16, 12];
-/** Pixels that are looked at along a side of a cell. */
+/** Pixels sampled along each side of a cell. */
 const SAMPLES = 6;
 
 export interface Signature {
-  /** Brightness of each cell, 0 to 1 of the brightest. */
+  /** Brightness of each cell relative to the brightest, 0 to 1. */
   light: Float32Array;
   /** Mean depth of each cell, metres; NaN where there is none. */
   depth: Float32Array;
-  /** Share of sampled pixels with a depth. */
+  /** Share of cells with a depth. */
   valid: number;
 }
 
-/** Means over a grid of what `at` says of sampled pixels; NaN counts for nothing. */
+/** Means over a grid of the values of `at` at sampled pixels, without those that are NaN. */
 function gridOf(width: number, height: number, at: (pixel: number) => number): Float32Array {
   const found = new Float32Array(COLUMNS * ROWS);
   for (let row = 0; row < ROWS; row++)
@@ -35,7 +35,8 @@ function gridOf(width: number, height: number, at: (pixel: number) => number): F
   return found;
 }
 
-function lightOf({ width, height, data }: CheckFrame["image"]): Float32Array {
+/** The brightness of each cell relative to the brightest. */
+export function lightOf({ width, height, data }: CheckFrame["image"]): Float32Array {
   const channels = data instanceof Float32Array ? 3 : 4;
   const grid = gridOf(width, height, (pixel) => {
     const at = pixel * channels;
@@ -58,31 +59,28 @@ export function signatureOf(image: CheckFrame["image"], depth: CheckFrame["depth
   return { light: lightOf(image), depth: grid, valid };
 }
 
-/** The mean change of a cell: of brightness, and of depth relative to itself. */
+/** The mean change of a cell: of brightness, plus of depth relative to the larger depth. */
 export function differenceOf(a: Signature, b: Signature): number {
-  let [light, depth, both] = [0, 0, 0];
-  for (let cell = 0; cell < a.light.length; cell++) {
-    light += Math.abs((a.light[cell] ?? 0) - (b.light[cell] ?? 0));
+  let [depth, both] = [0, 0];
+  for (let cell = 0; cell < a.depth.length; cell++) {
     const [near, far] = [a.depth[cell] ?? NaN, b.depth[cell] ?? NaN];
     if (Number.isNaN(near) || Number.isNaN(far)) continue;
     depth += Math.abs(near - far) / Math.max(near, far);
     both++;
   }
-  return light / a.light.length + (both === 0 ? 0 : depth / both);
+  return changeOf(a.light, b.light) + (both === 0 ? 0 : depth / both);
 }
 
-/** How much brighter or darker a cell of one picture is than of the other, in the mean. */
-export function changeOf(a: CheckFrame["image"], b: CheckFrame["image"]): number {
-  const [one, other] = [lightOf(a), lightOf(b)];
-  return one.reduce((sum, value, cell) => sum + Math.abs(value - (other[cell] ?? 0)), 0) / one.length;
-}
+/** The mean change of a cell's brightness. */
+export const changeOf = (a: Float32Array, b: Float32Array): number =>
+  a.reduce((sum, value, cell) => sum + Math.abs(value - (b[cell] ?? 0)), 0) / a.length;
 
-/** Less is noise: a camera on a table has some thousandths. */
+/** A smaller difference is noise: that of a camera on a table is some thousandths. */
 export const ALIKE = 0.02;
 
 /**
- * So many that differ most from each other, the fullest depth map first; none that is like one that was taken, since two pictures of one
- * view count as one. Their indices, in order.
+ * Indices of at most so many signatures that differ most from each other, beginning with the fullest depth map. Signatures that are alike are
+ * taken once, since two images of one view tell as much as one.
  */
 export function different(all: readonly Signature[], most: number): number[] {
   const [first] = all.map((_, index) => index).sort((a, b) => (all[b]?.valid ?? 0) - (all[a]?.valid ?? 0));

@@ -1,18 +1,18 @@
 /**
- * A recording as its container gives it: tracks, and what was recorded on them within a span of time. Containers are read where something is
- * asked for, so that a recording may be larger than memory.
+ * The interface of containers: tracks, and what was recorded on them within a span of time. Only the parts that are needed are read, since a
+ * recording may be larger than memory.
  */
 import type { NamedCamera, NamedPose, ReadOptions, RigReading } from "../types.js";
 import type { ReaderWarning } from "../warnings.js";
 import type { Turn } from "./axes.js";
 
-/** Bytes of a recording, read in parts. */
+/** The bytes of a recording, read in parts. */
 export interface Bytes {
   size: number;
   read(from: number, length: number): Promise<Uint8Array>;
 }
 
-/** What a track holds, as far as the check of a rig takes it. */
+/** What a track holds for the check of a rig. */
 export type TrackKind = "picture" | "cloud" | "camera" | "transforms" | "other";
 
 export interface Track {
@@ -23,27 +23,27 @@ export interface Track {
   kind: TrackKind;
   /** Messages or blocks. */
   count: number;
-  /** Why nothing can be read of it. */
+  /** Why it cannot be read. */
   unread?: string;
 }
 
-/** How a shot is read; the points of a cloud in other axes. */
+/** How a shot is read; `turn` turns the axes of a cloud. */
 export interface ShotOptions extends ReadOptions {
   turn?: Turn;
 }
 
-/** One picture or cloud of a recording, decoded when it is asked for. */
+/** One image or cloud of a recording, decoded on demand. */
 export interface Shot {
   track: string;
   /** When it was recorded, seconds. */
   logged: number;
-  /** When it was taken, seconds, by the clock of its camera; zero where nobody said. */
-  taken: number;
-  /** The coordinate frame that it was taken in. */
+  /** When it was taken, seconds on the clock of its camera, where the recording states it. */
+  taken: number | undefined;
+  /** The coordinate frame of its camera. */
   frame: string;
   /** How its pixels are stored: "rgb8", "16UC1", "JPEG". */
   encoding: string;
-  /** Of pictures whose size is known before they are decoded. */
+  /** Its size, where it is known before decoding. */
   width?: number;
   height?: number;
   bytes: number;
@@ -64,15 +64,15 @@ export interface Source {
   tracks: Track[];
   /** Seconds of the first and the last message. */
   span: [number, number];
-  /** What was recorded on these tracks between two times of recording, both included, in order. */
+  /** What was recorded on these tracks from one time of recording to another, both included, in order. */
   shots(tracks: readonly string[], from: number, until: number): AsyncIterable<Shot>;
   /** The intrinsics of the camera that took a shot. */
   camera(shot: Shot): Promise<Found<NamedCamera | undefined>>;
-  /** Motions that carry points of one shot's frame into another's. */
+  /** Motions that carry points from the frame of one shot into that of another. */
   poses(from: Shot, to: Shot): Promise<Found<NamedPose[]>>;
 }
 
-/** A blob or bytes, by parts. */
+/** A blob or bytes as parts. */
 export function bytesOf(content: Blob | Uint8Array): Bytes {
   if (content instanceof Uint8Array)
     return { size: content.length, read: async (from, length) => content.slice(from, from + length) };

@@ -1,8 +1,8 @@
 /**
- * The tree of coordinate frames that /tf_static and /tf give: each transform carries points of a child frame into its parent,
- * P_parent = R P_child + t, and a motion between two frames goes over their common ancestor.
+ * The tree of coordinate frames in /tf_static and /tf: each transform carries points of a child frame into its parent,
+ * P_parent = R P_child + t, and the motion between two frames leads through their common ancestor.
  *
- * Joints move: a transform of /tf that changes between the two cameras is said, and the latest one is used.
+ * Joints move: where a transform between the two cameras changes, the latest one is used, with a warning.
  */
 import { chained, inverseOf, motion, ofQuaternion, poseOf } from "../formats/poses.js";
 import type { NamedPose, Pose } from "../types.js";
@@ -11,16 +11,21 @@ import { type Message, frameOf, inner, isMessage, numberIn, textIn } from "./mes
 
 interface Edge {
   parent: string;
+  /** As it was first recorded, and as it was last. */
+  first: Pose;
   pose: Pose;
-  /** How far it has been from what it was first: radians and metres. */
+  /** The largest change from the first, radians and metres. */
   turned: number;
   shifted: number;
 }
 
-/** A longer chain is a circle. */
+/** Frames in a chain; a longer one is circular. */
 const LONGEST = 100;
-/** What a fixed transform may change by: digits of its numbers, radians and metres. */
+/** Largest change of a fixed transform, from the rounding of its numbers: radians and metres. */
 const STILL = { turn: 2e-3, shift: 5e-4 };
+
+/** Whether a topic holds transforms that do not change. */
+export const isStatic = (topic: string): boolean => /static/i.test(topic);
 
 const clean = (frame: string): string => frame.replace(/^\/+/, "");
 
@@ -43,10 +48,6 @@ export class Transforms {
   readonly #edges = new Map<string, Edge>();
   readonly #warnings: ReaderWarning[] = [];
 
-  get count(): number {
-    return this.#edges.size;
-  }
-
   /** The transforms of one message of tf2_msgs/TFMessage or tf/tfMessage. */
   add(message: Message): void {
     for (const each of Array.isArray(message.transforms) ? message.transforms.filter(isMessage) : []) {
@@ -58,16 +59,18 @@ export class Transforms {
 
   #set(child: string, parent: string, pose: Pose): void {
     const known = this.#edges.get(child);
-    const { turn, shift } = known?.parent === parent ? apart(known.pose, pose) : { turn: 0, shift: 0 };
+    const first = known?.parent === parent ? known.first : pose;
+    const { turn, shift } = apart(first, pose);
     this.#edges.set(child, {
       parent,
+      first,
       pose,
       turned: Math.max(known?.turned ?? 0, turn),
       shifted: Math.max(known?.shifted ?? 0, shift),
     });
   }
 
-  /** A frame and its ancestors, each with the motion into it. */
+  /** A frame and its ancestors, each with the motion into it and the transforms on the way that move. */
   #upward(frame: string): Map<string, { pose: Pose; moving: string[] }> {
     const found = new Map<string, { pose: Pose; moving: string[] }>();
     let pose = poseOf([1, 0, 0, 0, 1, 0, 0, 0, 1], [0, 0, 0]);
@@ -83,7 +86,7 @@ export class Transforms {
     return found;
   }
 
-  /** The motion that carries points of one frame into another; nothing where they have no common ancestor. */
+  /** The motion that carries points of one frame into another; undefined without a common ancestor. */
   between(from: string, to: string): { pose: NamedPose; warnings: ReaderWarning[] } | undefined {
     const [a, b] = [this.#upward(clean(from)), this.#upward(clean(to))];
     const common = [...a.keys()].find((frame) => b.has(frame));
@@ -95,7 +98,7 @@ export class Transforms {
       warnings.push(
         warning(
           "transform-moves",
-          `The transform between the cameras changes during the recording (${moving.join(", ")}); the latest one is used.`,
+          `The transform between the cameras changes during the recording (${moving.join(", ")}); the latest one is used. Record while the joints rest.`,
           { transforms: moving },
         ),
       );
