@@ -64,7 +64,7 @@ function doubts({ sample, ...extent }: Values, unit: Unit, valid: number, range:
     warnings.push(
       warning(
         "unit-guessed",
-        `The file does not state its unit. It was guessed to be ${nameOf(unit.metres)}, so depths are ${range}${otherUnits(unit, nearest, farthest)}; give the unit if that is wrong.`,
+        `The file does not state its unit. It was guessed to be ${nameOf(unit.metres)}, so depths are ${range}${otherUnits(unit, extent)}; give the unit if that is wrong.`,
         { unit: unit.metres },
       ),
     );
