@@ -14,14 +14,10 @@ import { withEnds } from "./formats/filename.js";
 import { readExr } from "./formats/exr.js";
 import { type RasterKind, rasterKind } from "./formats/headerless.js";
 import { readJpeg, readWebp } from "./formats/jpeg.js";
-import { readBin } from "./formats/bin.js";
-import { readLas } from "./formats/las.js";
 import { MOST_BYTES } from "./formats/limits.js";
 import { matrixText } from "./formats/npy-matrix.js";
 import { npyPicture, npzPicture } from "./formats/npy.js";
-import { readPcd } from "./formats/pcd.js";
 import type { Cloud, Picture, Points } from "./formats/picture.js";
-import { readPly } from "./formats/ply.js";
 import { pngPicture } from "./formats/png.js";
 import { readPfm, readPnm } from "./formats/pnm.js";
 import { isRawName, pointsRefused, rawRefused, readColmapMap, readRaw } from "./formats/raw.js";
@@ -29,16 +25,22 @@ import { pointList, readTable } from "./formats/table.js";
 import { textOf } from "./formats/decode.js";
 import { readTiff } from "./formats/tiff.js";
 import { kindOfPicture, nameWarnings, unitOfName } from "./recognise.js";
-import { pointsDepth } from "./scan.js";
-import { readXyz } from "./formats/xyz.js";
 import type { NamedFile, ReadOptions, RigReading, Unnamed } from "./types.js";
 import { distinct } from "./warnings.js";
 import { inWords } from "./words.js";
 
 type Content = Unnamed<RigReading>;
 
+const clouds = () => import("./formats/pointclouds.js");
+const CLOUDS: Record<"ply" | "pcd" | "las", (bytes: Uint8Array) => Promise<Cloud | Points>> = {
+  ply: async (bytes) => (await clouds()).readPly(bytes),
+  pcd: async (bytes) => (await clouds()).readPcd(bytes),
+  las: async (bytes) => (await clouds()).readLas(bytes),
+};
+const isCloud = (kind: RasterKind): kind is keyof typeof CLOUDS => Object.hasOwn(CLOUDS, kind);
+
 const PICTURES: Record<
-  Exclude<RasterKind, "ply" | "pcd" | "las" | "points">,
+  Exclude<RasterKind, keyof typeof CLOUDS | "points">,
   (bytes: Uint8Array, options: ReadOptions) => Picture | Promise<Picture>
 > = {
   png: pngPicture,
@@ -73,7 +75,7 @@ function ofPicture(name: string, picture: Picture, options: ReadOptions): Conten
 async function ofCloud(cloud: Cloud | Points, options: ReadOptions): Promise<Content> {
   if (options.as !== undefined && options.as !== "depth")
     throw badFile(`it is a cloud of points (${cloud.format}) where ${options.as} was expected`);
-  return "scan" in cloud ? pointsDepth(cloud, options) : cloudDepth(cloud, options);
+  return "scan" in cloud ? (await clouds()).pointsDepth(cloud, options) : cloudDepth(cloud, options);
 }
 
 async function ofText(file: string, text: string, { as }: ReadOptions): Promise<Content> {
@@ -98,11 +100,11 @@ async function ofOthers({ name, bytes }: NamedFile, isPoints: boolean, options: 
   const written = writtenOf(bytes);
   if (written !== undefined) return ofText(name, written, options);
   const text = textOf(bytes);
-  const scan = isPoints || (text === undefined && /\.bin$/i.test(name)) ? readBin(bytes) : undefined;
+  const scan = isPoints || (text === undefined && /\.bin$/i.test(name)) ? (await clouds()).readBin(bytes) : undefined;
   if (scan !== undefined) return ofCloud(scan, options);
   if (isPoints) throw pointsRefused();
   const listRefused = pointList(bytes);
-  const list = listRefused && readXyz(bytes);
+  const list = listRefused && (await clouds()).readXyz(bytes);
   if (list !== undefined) return ofCloud(list, options);
   if (text === undefined) throw listRefused ?? rawRefused(bytes);
   const refusal = knownText(text) ?? listRefused;
@@ -122,10 +124,8 @@ async function content({ name, bytes }: NamedFile, options: ReadOptions): Promis
       undefined,
       { problem: "too-large" },
     );
-  if (kind === "ply") return ofCloud(readPly(bytes), options);
-  if (kind === "pcd") return ofCloud(readPcd(bytes), options);
-  if (kind === "las") return ofCloud(readLas(bytes), options);
   if (kind === undefined || kind === "points") return ofOthers({ name, bytes }, kind === "points", options);
+  if (isCloud(kind)) return ofCloud(await CLOUDS[kind](bytes), options);
   const picture = await PICTURES[kind](bytes, options);
   const { scan, format, notes, warnings } = picture;
   if (scan) return ofCloud({ format, scan, isMetric: false, notes, warnings }, options);

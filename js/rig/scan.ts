@@ -1,31 +1,22 @@
 /**
- * Unorganised points and clouds whose z is not forward as depth maps in metres: those of LiDARs and of mapping tools.
+ * Depth maps of points in metres whose z is not forward: those of LiDARs and of mapping tools.
  *
  * Points keep their frame, in which x is forward and z up for most LiDARs; extrinsics have to be those of this frame.
  */
-import { badFile } from "../errors.js";
-import type { Cloud, Points } from "./formats/picture.js";
+import type { Cloud } from "./formats/picture.js";
 import { extentOf, isThere, sampled } from "./guess.js";
 import { facesOneWay, meanDirection } from "./lidar/frame.js";
-import type { RangeImage, Scan } from "./lidar/index.js";
 import { rangeOf } from "./lidar/scan.js";
 import { quantile } from "./statistics.js";
-import type { DepthReading, ReadOptions, Unnamed } from "./types.js";
+import type { DepthReading, Unnamed } from "./types.js";
 import { type ReaderWarning, warning } from "./warnings.js";
 
 type Depth = Unnamed<DepthReading>;
 
 /** The median distance of a LiDAR's points, metres, at most; beyond it, the unit is the millimetre. */
 const FARTHEST = 200;
-const HOW: Record<RangeImage["how"], string> = {
-  ring: "by the file's rings",
-  order: "by the turns in the order of its points",
-  elevation: "by clusters of elevations",
-  sphere: "by a z-buffer over the sphere",
-};
-
 /** The distance of each point from the origin. */
-function ranges(points: Float32Array): Float64Array {
+export function ranges(points: Float32Array): Float64Array {
   const found = new Float64Array(points.length / 3);
   for (let point = 0; point < found.length; point++) found[point] = rangeOf(points, 3 * point);
   return found;
@@ -39,28 +30,16 @@ export function isOptical(points: Float32Array): boolean {
   return facesOneWay(mean) && Math.abs(z) > Math.max(Math.abs(x), Math.abs(y));
 }
 
-/** The median distance, units of the file, beyond which points have the coordinates of a map if their distances spread by less than this share. */
-const [FAR_OFF, NARROWLY] = [10_000, 0.05];
-
-/** Throws for eastings and northings, or a mesh far from the origin: no sensor at the origin has measured such a cloud. */
-function checkSensor(sorted: Float64Array): void {
-  const at = (share: number) => quantile(sorted, share);
-  if (at(0.5) > FAR_OFF && at(0.99) - at(0.01) < NARROWLY * at(0.5))
-    throw badFile(
-      `its points lie ${at(0.5).toPrecision(3)} from the origin and close together, as in the coordinates of a map rather than of a sensor; move them into the frame of the sensor that the extrinsics are for`,
-    );
-}
-
 interface Unit {
   metres: number;
   warnings: ReaderWarning[];
 }
 
-function unitOf(sorted: Float64Array, isMetric: boolean, given: number | undefined): Unit {
+export function unitOf(sorted: Float64Array, isMetric: boolean, given: number | undefined): Unit {
   if (given !== undefined) return { metres: given, warnings: [] };
   const metres = quantile(sorted, 0.5) > FARTHEST ? 0.001 : 1;
   if (isMetric && metres === 1) return { metres, warnings: [] };
-  const words = `The file does not give its unit. Its points were read as ${metres === 1 ? "metres" : "millimetres"}; give the unit if that is wrong.`;
+  const words = `The file does not state its unit. It was guessed to be ${metres === 1 ? "metres" : "millimetres"}; give the unit if that is wrong.`;
   return { metres, warnings: [warning("unit-guessed", words, { unit: metres })] };
 }
 
@@ -78,7 +57,7 @@ interface Seen {
 }
 
 /** The reading of a depth map of points in metres. */
-function reading(size: Size, points: Float32Array, { format, says, unit, notes, warnings }: Seen): Depth {
+export function reading(size: Size, points: Float32Array, { format, says, unit, notes, warnings }: Seen): Depth {
   const depth = { width: size.width, height: size.height, points };
   const { count, nearest, farthest } = extentOf(ranges(points));
   const valid = count / (size.width * size.height);
@@ -112,38 +91,3 @@ export function turnedCloud(cloud: Cloud, given: number | undefined): Depth {
 }
 const AXES =
   "The cloud's axes are not those of a camera: z is not forward, as with a LiDAR (x forward, z up). The points keep these axes, so that extrinsics have to be those of this frame.";
-
-/** A warning where the points were measured at different times. */
-function timed({ times }: Scan): ReaderWarning[] {
-  if (times === undefined) return [];
-  let [least, most] = [Infinity, -Infinity];
-  for (const time of times) [least, most] = [Math.min(least, time), Math.max(most, time)];
-  if (!(most > least)) return [];
-  const words =
-    "Its points were measured at different times, and are taken for one moment: where the rig or the scene moves, the cloud is distorted. Take frames in which both stand still, or correct the cloud for the motion first.";
-  return [warning("point-times", words, { span: most - least })];
-}
-
-/** Unorganised points, sorted into a range image. */
-export async function pointsDepth(cloud: Points, { unit: given }: ReadOptions): Promise<Depth> {
-  const { scan, format } = cloud;
-  const sorted = sampled(ranges(scan.points));
-  checkSensor(sorted);
-  const unit = unitOf(sorted, cloud.isMetric, given);
-  if (unit.metres !== 1) scan.points = scan.points.map((value) => value * unit.metres);
-  const { rangeImage } = await import("./lidar/index.js");
-  const image = rangeImage(scan);
-  if (image === undefined)
-    throw badFile("it holds no point that a sensor may have measured: all are at the origin, or none is a number");
-  const size = `${image.width}x${image.height}`;
-  const count = scan.points.length / 3;
-  const words = `Its ${count} points are not in rows and columns (unorganised), as with a LiDAR; they were sorted into a range image of ${size} ${HOW[image.how]}, in the cloud's own axes.`;
-  const warnings = [
-    ...cloud.warnings,
-    warning("points-sorted", words, { points: count, rows: image.height }),
-    ...timed(scan),
-  ];
-  const notes = [...(image.hidden > 0 ? [`${image.hidden} hidden by others left out`] : []), ...cloud.notes];
-  const says = `${count} points (${format}), sorted into ${size} ${HOW[image.how]}`;
-  return { ...reading(image, image.points, { format: "points", says, unit, notes, warnings }), scan };
-}

@@ -190,16 +190,14 @@ test("numbers that the text states of the method are the method's own", LONG, as
   await expect(page.locator(".learn-text")).toContainText(`compares ${constant("DIRECTIONS")} directions`);
   await page.goto("./#learn&at=exercises");
   await answers(page, `beyond some ${((constant("PRIOR_SCALE") * 180) / Math.PI).toFixed(0)}°`);
-  await answers(
-    page,
-    `ambiguous once it passes ${/const DOUBTFUL_SIGMA: f64 = ([\d.]+);/.exec(await source("src/estimator/verdict.rs"))?.[1]}°`,
-  );
   const { OPTIONS } = (await import("../../pkg/options.js")) as {
     OPTIONS: {
       lambda: { members: { prior: { default: number } } };
       startTolerance: { members: { degrees: { default: number } } };
+      tolerance: { default: number };
     };
   };
+  await answers(page, `ambiguous once it passes ${OPTIONS.tolerance.default}°`);
   await answers(page, `the module's ${OPTIONS.lambda.members.prior.default} against`);
   await open(page, "at=pose");
   await expect(page.locator(".learn-text")).toContainText(

@@ -3,7 +3,7 @@ import { badFile, reasonOf } from "../../errors.js";
 import { pictureColour } from "../colour.js";
 import { cloudDepth, pictureDepth } from "../depth.js";
 import type { Cloud, Picture } from "../formats/picture.js";
-import { pointsDepth } from "../scan.js";
+import { pointsDepth } from "../points.js";
 import type { ReadOptions } from "../types.js";
 import { turned } from "./axes.js";
 import { compressed, compressedDepth, isCompressedDepth } from "./compressed.js";

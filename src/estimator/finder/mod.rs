@@ -380,7 +380,7 @@ impl Near {
         &mut self,
         pair: &ViewPair,
         colours: &mut ColourRegistration,
-        Choice { best, .. }: Choice,
+        Choice { best, rivals }: Choice,
         found: Option<Conclusion>,
     ) -> Result<Decision> {
         let region = &self.region;
@@ -410,10 +410,10 @@ impl Near {
         };
         // All points follow the sample that candidates are registered by.
         let found = colours.register_all(pair, *best)?;
-        Ok(Decision::of(match region.holds(pair, &found.pose) {
-            true => Method::Image(Box::new(found)),
-            false => stay(pair, colours, region),
-        }))
+        Ok(match region.holds(pair, &found.pose) {
+            true => Decision { by: Method::Image(Box::new(found)), rivals: Some(rivals) },
+            false => Decision::of(stay(pair, colours, region)),
+        })
     }
 }
 
