@@ -77,7 +77,8 @@ const DARKEST_LEVEL_8: u8 = 4;
 const DARKEST_LEVEL_16: u16 = 64;
 
 impl ColourView {
-    /// Checks the image and takes its logarithms. Masked out are black and saturated pixels, and transparent ones.
+    /// Checks the image and takes its logarithms. The mask leaves out pixels that are black, saturated, transparent, or over 10000 times
+    /// brighter or darker than the median.
     ///
     /// # Errors
     /// [`ErrorKind::Size`] for sizes that disagree, [`ErrorKind::Range`] for bad intrinsics or lenses,
@@ -102,6 +103,7 @@ impl ColourView {
                 }
             }
         }
+        leave_out_far_from_median(&log, &mut usable);
         let camera = image.camera.map_or(Camera::Orthographic, Camera::Pinhole);
         camera.keep_pixels_with_rays("image.camera.distortion", size, &log[0], &mut usable)?;
         for index in (0..size.len()).filter(|&index| !usable[index]) {
@@ -209,6 +211,23 @@ pub(super) fn checked(image: &ColourImage) -> Result<(Size, Vec<bool>)> {
         ));
     }
     Ok((size, object))
+}
+
+/// Log intensity: farthest from the channel's median, either way. The factor of 10000 exceeds the contrast of any picture of one object; floats
+/// beyond it mark missing pixels.
+const FARTHEST_FROM_MEDIAN: f32 = 9.21;
+
+fn leave_out_far_from_median(log: &[Vec<f32>; 3], usable: &mut [bool]) {
+    for channel in log {
+        let mut known: Vec<f32> = channel.iter().copied().filter(|log| !log.is_nan()).collect();
+        if known.is_empty() {
+            return;
+        }
+        let middle = quantile(&mut known, 0.5);
+        for (usable, log) in usable.iter_mut().zip(channel) {
+            *usable &= (log - middle).abs() <= FARTHEST_FROM_MEDIAN;
+        }
+    }
 }
 
 fn spread_of(log: &[Vec<f32>; 3]) -> f64 {
@@ -370,6 +389,17 @@ mod tests {
         wide.height = 4;
         let view = ColourView::new(wide).unwrap();
         assert_eq!(view.mask.iter().filter(|&&usable| usable).count(), 22);
+    }
+
+    #[test]
+    fn pixels_far_from_the_median_are_masked() {
+        let mut data = vec![0.5_f32; 3 * 24];
+        (data[0], data[4], data[8]) = (f32::MAX, 6e3, 1e-30);
+        let mut linear = image(ColourSamples::RgbLinear(data));
+        (linear.width, linear.height) = (6, 4);
+        let view = ColourView::new(linear).unwrap();
+        assert_eq!(view.mask[..4], [false, false, false, true]);
+        assert_eq!(view.log_spread(), 0.0);
     }
 
     #[test]

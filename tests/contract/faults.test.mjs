@@ -6,7 +6,7 @@ import { BimodalError, Estimator, init, outcome, pair, refused, sample } from ".
 
 /** Degrees beyond which a pose that is called converged is confidently wrong. */
 const WRONG = 3;
-const SIDE = 48;
+const SIDE = 64;
 /** Side of the scenes that are searched. */
 const SMALL = 32;
 const ENDS = ["converged", "ambiguous", "lost", "max-iterations"];
