@@ -20,20 +20,20 @@ export function isScattered(data: ArrayLike<number>, width: number): boolean {
   return valid > 0 && valid < SPARSE * data.length && beside < ALONE * valid;
 }
 
-/** A change between neighbours by more than this share is no surface's .. */
+/** No surface makes a pixel differ from the mean of its neighbours by more than this share, except at edges. */
 const CHANGE = 0.04;
-/** .. and in a noisy infrared image more than this share of pixels changes so much, ten times as many as in a depth map. */
+/** In a noisy infrared image more than this share of pixels differs so much, ten times as many as in a depth map. */
 const MANY = 0.3;
 
 /** Whether values change from pixel to pixel as those of an image do. */
 export function looksLikeImage(data: Uint16Array, width: number): boolean {
   if (data.length < FEWEST) return false;
-  let [pairs, changed] = [0, 0];
-  for (let at = 1; at < data.length; at++) {
-    const [value, before] = [data[at] ?? 0, data[at - 1] ?? 0];
-    if (at % width === 0 || value === 0 || before === 0) continue;
-    pairs++;
-    if (Math.abs(value - before) > CHANGE * Math.max(value, before)) changed++;
+  let [known, changed] = [0, 0];
+  for (let at = 2; at < data.length; at++) {
+    const [value, middle, before] = [data[at] ?? 0, data[at - 1] ?? 0, data[at - 2] ?? 0];
+    if (at % width < 2 || value === 0 || middle === 0 || before === 0) continue;
+    known++;
+    if (Math.abs((value + before) / 2 - middle) > CHANGE * middle) changed++;
   }
-  return pairs > FEWEST / 2 && changed > MANY * pairs;
+  return known > FEWEST / 2 && changed > MANY * known;
 }

@@ -146,10 +146,9 @@ test(
     await lab.reaches("ready");
     // What the reader has against a file is said where it lies.
     await put(lab, "Depth map", await fixture("large-b44.exr"));
-    await expect(slot(lab, 1)).toContainText("compressed by B44");
-    await lab.reaches("error");
+    await expect(slot(lab, 1)).toContainText("compressed with loss");
     await put(lab, "Depth map", await fixture("colour.jpg"));
-    await expect(slot(lab, 1)).toContainText("a colour picture where a depth map was asked for");
+    await expect(slot(lab, 1)).toContainText("a colour picture where a depth map");
     await lab.reaches("error");
     const cut = depthTiff("cut.tif");
     await put(lab, "Depth map", { ...cut, buffer: cut.buffer.subarray(0, 900) });
@@ -348,7 +347,7 @@ test("what can't be used is said: a recording, a second depth map, a pose; a fis
   await drop(page, "body", [colourPng(), depthPng("one.png"), depthPng("two.png"), fisheye, pose, zip]);
   const remarks = page.locator(".remarks");
   await expect(remarks).toContainText("two.png: another depth map; the Lab takes one.");
-  await expect(remarks).toContainText("eye.json: the colour camera; its numbers are in the fields below");
+  await expect(remarks).toContainText("eye.json: the colour camera, which is that of both images. Its numbers are in the fields below");
   await expect(page.locator("#fields-colour").getByLabel("lens model")).toHaveValue("fisheye");
   await expect(remarks).toContainText("T.txt: a pose");
   await expect(remarks).toContainText("all.zip: it is a ZIP archive");

@@ -233,9 +233,9 @@ function addCameras(cameras: readonly Given[], sizes: Partial<Record<Side, Look 
   ] as const) {
     if (!given) continue;
     Object.assign(result.settings, fieldsOf(side, given.camera));
-    const both = only === given && colour === depth ? ", as of both" : "";
+    const shared = colour === depth ? ", which is that of both images" : "";
     result.remarks.push({
-      words: `${given.file}: the ${side} camera${both}; its numbers are in the fields below, Undo takes them back.`,
+      words: `${given.file}: the ${side} camera${shared}. Its numbers are in the fields below; Undo removes them.`,
       wrong: false,
     });
   }
