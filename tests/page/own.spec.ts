@@ -347,7 +347,9 @@ test("what can't be used is said: a recording, a second depth map, a pose; a fis
   await drop(page, "body", [colourPng(), depthPng("one.png"), depthPng("two.png"), fisheye, pose, zip]);
   const remarks = page.locator(".remarks");
   await expect(remarks).toContainText("two.png: another depth map; the Lab takes one.");
-  await expect(remarks).toContainText("eye.json: the colour camera, which is that of both images. Its numbers are in the fields below");
+  await expect(remarks).toContainText(
+    "eye.json: the colour camera, which is that of both images. Its numbers are in the fields below",
+  );
   await expect(page.locator("#fields-colour").getByLabel("lens model")).toHaveValue("fisheye");
   await expect(remarks).toContainText("T.txt: a pose");
   await expect(remarks).toContainText("all.zip: it is a ZIP archive");
