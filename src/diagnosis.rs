@@ -1,7 +1,8 @@
 //! Whether a single albedo explains an image, or what is left of it is an error of the model or an albedo that varies.
 //!
-//! Nothing else in the crate decides this. [`Residuals::diagnose`] gives the diagnosis for each method that could take over, because each has
-//! its own threshold; [`excess`] and [`share_of_model`] grade the residuals where a weight depends on them.
+//! Nothing else in the crate decides this from residuals. [`Residuals::diagnose`] gives the diagnosis for each method that could take over,
+//! because each has its own threshold; [`excess`] and [`share_of_model`] grade the residuals where a weight depends on them. A method may
+//! still decline: local contrast also needs clean normals or edges of the albedo (`estimator/finder/local_contrast`).
 //!
 //! | threshold | value | set on | held out |
 //! |---|---|---|---|

@@ -41,9 +41,9 @@ pub enum Start {
     Pose {
         /// R.
         rotation: Matrix3<f64>,
-        /// s; `None`: the ratio of the units of both views.
+        /// s; `None`: the ratio of the units of both views. Not used behind a pinhole, where s is [`Options::scale`] or 1.
         scale: Option<f64>,
-        /// t; `None`: the masks' centres coincide.
+        /// t; `None`: the centroid of the depth points projects onto the centre of the image's mask.
         translation: Option<Vector3<f64>>,
     },
 }
@@ -140,6 +140,7 @@ pub struct Options {
     /// The loop converges when the rotation changes by less than this, in degrees.
     pub stop_degrees: f64,
     /// The largest one sigma of the rotation about any axis at which a run ends "converged", in degrees; above it the run ends "ambiguous".
+    /// A pose by image or local contrast with a sigma above 5 degrees is "lost", whatever the tolerance.
     pub tolerance: f64,
     /// Accepted distance of a correspondence in image pixels; `None` follows the data (never under one pixel, the
     /// paper's value).

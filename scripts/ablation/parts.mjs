@@ -106,7 +106,7 @@ export const PARTS = [
     what: "instrumental variables of the registration by colours: the sharp image's own gradient instead of the blurred one's",
     changes: [
       {
-        file: "src/pose/photometric/fit.rs",
+        file: "src/pose/photometric/solver.rs",
         from: "pub(super) const INSTRUMENT_BLUR: f64 = 1.0;",
         to: "pub(super) const INSTRUMENT_BLUR: f64 = 0.0;",
       },

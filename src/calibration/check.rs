@@ -8,6 +8,7 @@ use nalgebra::Vector3;
 use super::cue::Cue;
 use super::distortion;
 use super::guessed;
+use super::health::Health;
 use super::input::RigView;
 use super::planes::Planes;
 use super::reason::{CheckReason, Warning, WarningKind};
@@ -267,35 +268,10 @@ impl CalibrationCheck {
         let covariance = scale * Judge::VARIANCE;
         let judge = Judge::new(units, &state.camera(&frame.camera), &cloud, &scale, frame.pixel, self.width)
             .explaining(if self.scene.focal_is_free { guessed::explains(self.width) } else { 0.0 });
-        let weakest = judge.weakest(&covariance);
-        let is_seen = self.scene.is_seen(&state);
-        let is_silent = findings.cues.iter().all(|(.., weight)| *weight == 0.0);
-        let report = |(name, candidate): &(String, State)| {
-            let mut report = judge.judge(name, &state, candidate, weakest);
-            if is_silent {
-                report.without_evidence();
-            }
-            if !is_seen || !self.scene.is_seen(candidate) {
-                report.without_points(is_seen, self.width);
-            }
-            report
-        };
-        let candidates: Vec<CandidateReport> = self.candidates.iter().map(report).collect();
-        let mut warnings = self.warnings.clone();
-        self.warn_of_inverses(&judge, &mut warnings);
-        if let Some(term) = self.lens {
-            let kind = WarningKind::LensLeftOut { k1: term };
-            warnings.push(Warning { name: String::new(), field: "frames".into(), kind });
-        }
-        let health = if is_seen { judge.estimate() } else { Judge::blind(self.width) };
-        let (mut verdict, mut reason) = match candidates.first() {
-            Some(first) => (first.verdict, first.reason.clone()),
-            None => (CheckVerdict::Undecided, CheckReason::NoCandidate { pixels: health.pixels }),
-        };
-        if let (Some(warning), CheckVerdict::Consistent) = (warnings.first(), verdict) {
-            verdict = CheckVerdict::Undecided;
-            reason = CheckReason::Doubtful { warning: Box::new(warning.clone()), reason: Box::new(reason) };
-        }
+        let candidates = self.candidate_reports(&judge, findings, &covariance);
+        let warnings = self.all_warnings(&judge);
+        let health = if self.scene.is_seen(&state) { judge.estimate() } else { Judge::blind(self.width) };
+        let (verdict, reason) = first_verdict(&candidates, &warnings, health);
         let scaled = Matrix::from_diagonal(&units.of);
         let metric = scaled * covariance * scaled;
         CheckReport {
@@ -312,6 +288,34 @@ impl CalibrationCheck {
             frames: FrameReport::all(&self.scene, findings),
             sensitivity: vec![],
         }
+    }
+
+    fn candidate_reports(&self, judge: &Judge, findings: &Findings, covariance: &Matrix) -> Vec<CandidateReport> {
+        let estimate = self.best.state;
+        let weakest = judge.weakest(covariance);
+        let is_seen = self.scene.is_seen(&estimate);
+        let is_silent = findings.cues.iter().all(|(.., weight)| *weight == 0.0);
+        let report = |(name, candidate): &(String, State)| {
+            let mut report = judge.judge(name, &estimate, candidate, weakest);
+            if is_silent {
+                report.without_evidence();
+            }
+            if !is_seen || !self.scene.is_seen(candidate) {
+                report.without_points(is_seen, self.width);
+            }
+            report
+        };
+        self.candidates.iter().map(report).collect()
+    }
+
+    fn all_warnings(&self, judge: &Judge) -> Vec<Warning> {
+        let mut warnings = self.warnings.clone();
+        self.warn_of_inverses(judge, &mut warnings);
+        if let Some(term) = self.lens {
+            let kind = WarningKind::LensLeftOut { k1: term };
+            warnings.push(Warning { name: String::new(), field: "frames".into(), kind });
+        }
+        warnings
     }
 
     /// Of the estimate's distribution; where sums are beyond rounding nothing is known but what was told.
@@ -355,6 +359,21 @@ pub(super) fn rigid(pose: &Similarity) -> Result<State> {
     let nearest = nearest.filter(|nearest| (nearest.rotation - pose.rotation).abs().max() < ROTATION_TOLERANCE);
     let Some(nearest) = nearest else { return Err(wrong("rotation", "must be orthonormal with determinant one")) };
     Ok(State::at(Similarity { scale: 1.0, ..nearest }))
+}
+
+/// The verdict on the first candidate. A warning caps it, because the inputs may have been misread.
+fn first_verdict(candidates: &[CandidateReport], warnings: &[Warning], health: Health) -> (CheckVerdict, CheckReason) {
+    let (verdict, reason) = match candidates.first() {
+        Some(first) => (first.verdict, first.reason.clone()),
+        None => (CheckVerdict::Undecided, CheckReason::NoCandidate { pixels: health.pixels }),
+    };
+    match (warnings.first(), verdict) {
+        (Some(warning), CheckVerdict::Consistent) => {
+            let reason = CheckReason::Doubtful { warning: Box::new(warning.clone()), reason: Box::new(reason) };
+            (CheckVerdict::Undecided, reason)
+        }
+        _ => (verdict, reason),
+    }
 }
 
 fn of_candidate(name: &str, kind: WarningKind) -> Warning {

@@ -11,6 +11,7 @@
 
 use super::evidence::{Share, Tiles};
 use super::frame::{Frame, Projection};
+use super::patches::Sight;
 use super::planes::Planes;
 use super::rims::{self, Rim};
 use super::unknowns::{LOSS, State, Units, Vector, add_square};
@@ -27,6 +28,9 @@ const MOST_EDGES: usize = 12;
 const FAINTEST: f32 = 0.012;
 /// Of the bound's curvature at the least: what is left of it varies from round to round, and steps may not run away.
 const LEAST_LEFT: f64 = 0.1;
+/// Blur of the image over sigma, and the least, pixels.
+const BLUR: f64 = 0.35;
+const LEAST_BLUR: f64 = 0.7;
 
 /// The edges beside one rim.
 struct Profile {
@@ -36,10 +40,15 @@ struct Profile {
     edges: Vec<(f64, f64)>,
 }
 
-/// Rims of one frame with their profiles, for one state. `blur` is that of the planes, pixels.
+/// Rims of one frame with their profiles, for one state.
 pub(super) struct EdgeField {
     profiles: Vec<Profile>,
     window: f64,
+}
+
+/// Blur, pixels, of the planes on which edges known within `sigma` pixels are looked for.
+pub(super) fn blur(sigma: f64) -> f64 {
+    (BLUR * sigma).max(LEAST_BLUR)
 }
 
 impl EdgeField {
@@ -64,16 +73,9 @@ impl EdgeField {
         rims.iter().filter_map(moved).collect()
     }
 
-    /// The edges beside rims as `state` sees them.
-    pub fn new(
-        frame: &Frame,
-        planes: &Planes,
-        rims: &[Rim],
-        state: &State,
-        units: &Units,
-        sigma: f64,
-        blur: f64,
-    ) -> Self {
+    /// The edges beside rims as `state` sees them, on planes blurred for edges known within `sigma` pixels.
+    pub fn new(Sight { frame, planes }: Sight<'_>, rims: &[Rim], state: &State, units: &Units, sigma: f64) -> Self {
+        let blur = blur(sigma);
         let camera = state.camera(&frame.camera);
         let window = (WINDOW * sigma).max(WIDEST * planes.size.width as f64 / 640.0);
         let tiles = Tiles::new(planes.size);

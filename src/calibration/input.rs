@@ -170,59 +170,56 @@ fn is_near(point: &[f32; 3]) -> bool {
     point.iter().all(|value| value.abs() < BEYOND)
 }
 
+const MISSING: [f32; 3] = [f32::NAN; 3];
+
 /// Points in metres, NaN where missing, outside the mask, or where the lens has no ray.
 fn points(view: &RigView, grid: Size) -> Result<Vec<[f32; 3]>> {
     let default = if matches!(view.depth, DepthSamples::Integer(_)) { 0.001 } else { 1.0 };
     let unit = view.unit.unwrap_or(default);
     positive("depth.unit", unit)?;
-    let is_asked = |index: usize| view.depth_mask.as_ref().is_none_or(|mask| mask[index] != 0);
-    const MISSING: [f32; 3] = [f32::NAN; 3];
-    if let DepthSamples::Cloud(data) = &view.depth {
-        must_be("depth.points", data.len(), 3 * grid.len())?;
-        let point = |(index, p): (usize, &[f32])| {
-            let point = [0, 1, 2].map(|k| (f64::from(p[k]) * unit) as f32);
-            let is_known = is_asked(index) && is_near(&point) && point != [0.0; 3];
-            if is_known { point } else { MISSING }
-        };
-        return Ok(data.chunks_exact(3).enumerate().map(point).collect());
+    let mut points = match &view.depth {
+        DepthSamples::Cloud(data) => {
+            must_be("depth.points", data.len(), 3 * grid.len())?;
+            data.chunks_exact(3).map(|point| [0, 1, 2].map(|k| (f64::from(point[k]) * unit) as f32)).collect()
+        }
+        DepthSamples::Float(data) => {
+            must_be("depth.data", data.len(), grid.len())?;
+            points_of_depths(view, grid, |index| f64::from(data[index]) * unit)?
+        }
+        DepthSamples::Integer(data) => {
+            must_be("depth.data", data.len(), grid.len())?;
+            // The largest number of 16 bits marks pixels without a measurement in several cameras.
+            let level = |index: usize| if data[index] == u16::MAX { 0.0 } else { f64::from(data[index]) };
+            points_of_depths(view, grid, |index| level(index) * unit)?
+        }
+    };
+    let is_inside = |index: usize| view.depth_mask.as_ref().is_none_or(|mask| mask[index] != 0);
+    for (index, point) in points.iter_mut().enumerate() {
+        if !is_inside(index) || !is_near(point) || *point == [0.0; 3] {
+            *point = MISSING;
+        }
     }
+    Ok(points)
+}
+
+/// The points on the pixels' rays at depths in metres.
+fn points_of_depths(view: &RigView, grid: Size, depth: impl Fn(usize) -> f64) -> Result<Vec<[f32; 3]>> {
     let camera = view.depth_camera.ok_or_else(|| {
         Error::new(ErrorKind::Missing, "depth.camera", "is required: without intrinsics a depth map has no points")
     })?;
     validate(&camera, grid, "depth.camera")?;
-    let depth = |index: usize| match &view.depth {
-        DepthSamples::Float(data) => f64::from(data[index]),
-        // The largest number of 16 bits stands for "nothing" in several cameras.
-        DepthSamples::Integer(data) => {
-            if data[index] == u16::MAX {
-                0.0
-            } else {
-                f64::from(data[index])
-            }
+    let point = |index: usize| {
+        let z = depth(index);
+        let (column, row) = grid.position(index);
+        if !(z > 0.0 && z.is_finite()) {
+            return MISSING;
         }
-        DepthSamples::Cloud(_) => 0.0,
+        match camera.ray([column as f64, row as f64]) {
+            Some([x, y, along]) if along > 0.0 => [x / along * z, y / along * z, z].map(|value| value as f32),
+            _ => MISSING,
+        }
     };
-    match &view.depth {
-        DepthSamples::Float(data) => must_be("depth.data", data.len(), grid.len())?,
-        DepthSamples::Integer(data) => must_be("depth.data", data.len(), grid.len())?,
-        DepthSamples::Cloud(_) => {}
-    }
-    Ok((0..grid.len())
-        .map(|index| {
-            let z = depth(index) * unit;
-            let (column, row) = grid.position(index);
-            if !(z > 0.0 && z.is_finite() && is_asked(index)) {
-                return MISSING;
-            }
-            match camera.ray([column as f64, row as f64]) {
-                Some([x, y, along]) if along > 0.0 => {
-                    let point = [x / along * z, y / along * z, z].map(|value| value as f32);
-                    if is_near(&point) { point } else { MISSING }
-                }
-                _ => MISSING,
-            }
-        })
-        .collect())
+    Ok((0..grid.len()).map(point).collect())
 }
 
 /// Plausibility of a depth map; each doubt caps the verdict.

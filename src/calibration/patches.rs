@@ -16,6 +16,7 @@ const ROUNDS: usize = 6;
 const NORMAL_WEIGHT: f64 = 0.7;
 
 /// An image and its camera.
+#[derive(Clone, Copy)]
 pub(super) struct Sight<'a> {
     pub frame: &'a Frame,
     pub planes: &'a Planes,

@@ -4,10 +4,10 @@
 //! Encoded intensities, not linear ones: their noise is about the same everywhere, and an edge in shadow counts as one
 //! in light does.
 
-use crate::view::Size;
+use crate::view::{Gaussian, Size};
 
 /// Reach of a Gaussian in sigmas; what lies beyond weighs 1 %.
-const REACH: f32 = 2.6;
+const REACH: f64 = 2.6;
 
 /// Three channels side by side, 0 .. 1.
 #[derive(Clone, Debug)]
@@ -22,12 +22,11 @@ impl Planes {
         if sigma <= 0.0 {
             return self.clone();
         }
-        let Size { width, height } = self.size;
-        // A pose that is far off asks for any width.
-        let reach = ((REACH * sigma).ceil() as usize).min(width.max(height));
-        let weights: Vec<f32> = (0..=reach).map(|k| (-0.5 * (k as f32 / sigma).powi(2)).exp()).collect();
-        let rows = blur_lines(&self.pixels, &weights, (width, 1), (height, width));
-        Self { size: self.size, pixels: blur_lines(&rows, &weights, (height, width), (width, 1)) }
+        let gaussian = Gaussian::new(self.size, f64::from(sigma), REACH);
+        let [red, green, blue] = gaussian.means(|_| true, |channel, index| self.pixels[index][channel]);
+        let pixel = |((red, green), blue)| [red, green, blue].map(|mean: f64| mean as f32);
+        let pixels = red.into_iter().zip(green).zip(blue).map(pixel).collect();
+        Self { size: self.size, pixels }
     }
 
     /// Means of two by two pixels.
@@ -54,42 +53,5 @@ impl Planes {
         let at = top * width + left;
         let [a, b, c, d] = [at, at + 1, at + width, at + width + 1].map(|index| self.pixels[index]);
         Some(std::array::from_fn(|k| (1.0 - v) * ((1.0 - u) * a[k] + u * b[k]) + v * ((1.0 - u) * c[k] + u * d[k])))
-    }
-}
-
-/// The weighted mean along lines: `along` is how many samples a line has and their distance in memory, `across` the same
-/// of the lines.
-fn blur_lines(pixels: &[[f32; 3]], weights: &[f32], along: (usize, usize), across: (usize, usize)) -> Vec<[f32; 3]> {
-    let mut blurred = vec![[0.0; 3]; pixels.len()];
-    let ((count, stride), reach) = (along, weights.len() - 1);
-    for line in 0..across.0 {
-        let start = line * across.1;
-        for k in 0..count {
-            let (mut sum, mut total) = ([0.0; 3], 0.0);
-            for other in k.saturating_sub(reach)..=(k + reach).min(count - 1) {
-                let weight = weights[other.abs_diff(k)];
-                let pixel = &pixels[start + other * stride];
-                (0..3).for_each(|channel| sum[channel] += weight * pixel[channel]);
-                total += weight;
-            }
-            blurred[start + k * stride] = sum.map(|value| value / total);
-        }
-    }
-    blurred
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Found by the fuzzer: candidates that lie far off ask for any width, and its weights would not have fitted into memory.
-    #[test]
-    fn a_blur_of_any_width_is_the_mean() {
-        let size = Size { width: 5, height: 3 };
-        let pixels: Vec<[f32; 3]> = (0..size.len()).map(|k| [k as f32, 1.0, 0.0]).collect();
-        for sigma in [1e4, 1e30, f32::INFINITY] {
-            let blurred = Planes { size, pixels: pixels.clone() }.blurred(sigma);
-            assert!(blurred.pixels.iter().all(|pixel| (pixel[0] - 7.0).abs() < 1e-3 && pixel[1] == 1.0), "{sigma}");
-        }
     }
 }

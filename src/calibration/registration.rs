@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 
 use super::cue::Cue;
 use super::differences::differences;
-use super::edges::EdgeField;
+use super::edges::{EdgeField, blur};
 use super::evidence::{Evidence, Share, Tiles};
 use super::frame::{Frame, Projection};
 use super::information::Information;
@@ -36,9 +36,6 @@ pub(super) const MOST_SETTLING: usize = 8;
 pub(super) const ARRIVED: f64 = 0.02;
 /// Longest step of a settling round, pixels: beyond it derivatives by differences mean nothing.
 const LONGEST: f64 = 3.0;
-/// Blur of the image over sigma, and the least, pixels.
-const BLUR: f64 = 0.35;
-const LEAST_BLUR: f64 = 0.7;
 /// Blur for the cues of surfaces: that of a depth map's own pixel.
 const SURFACE_BLUR: f32 = 1.2;
 /// Rims and samples of all frames together.
@@ -160,25 +157,9 @@ impl Scene {
         let mut evidence = Evidence::default();
         for ((frame, planes), projection) in self.frames.iter().zip(planes).zip(projections) {
             let found = EdgeField::rims(frame, projection, most);
-            self.add_edges(frame, planes, &found, round, units, &mut evidence);
+            add_edges(Sight { frame, planes }, &found, round, units, &mut evidence);
         }
         evidence
-    }
-
-    fn add_edges(
-        &self,
-        frame: &Frame,
-        planes: &Planes,
-        rims: &[Rim],
-        round: &Round,
-        units: &Units,
-        evidence: &mut Evidence,
-    ) -> usize {
-        let field = EdgeField::new(frame, planes, rims, &round.state, units, round.sigma, blur(round.sigma));
-        let mut shares = vec![Share::none(); Tiles::new(planes.size).count()];
-        field.evidence(round.sigma, &mut shares);
-        evidence.shares.extend(shares);
-        field.len()
     }
 
     /// One of the cues that look at surfaces.
@@ -238,7 +219,7 @@ impl Scene {
             let (mut evidence, mut count) = (Evidence::default(), 0);
             for ((frame, planes), rims) in self.frames.iter().zip(planes).zip(&start.rims) {
                 let moved = EdgeField::moved(frame, rims, &start.found, &state);
-                count += self.add_edges(frame, planes, &moved, &start.round, &units, &mut evidence);
+                count += add_edges(Sight { frame, planes }, &moved, &start.round, &units, &mut evidence);
             }
             let mean = evidence.value() / count.max(1) as f64;
             let mut total = Evidence::default();
@@ -276,8 +257,13 @@ const SURFACE_TRUST: f64 = 0.25;
 /// of a scene's thousands are independent.
 const SCORE_PRIOR: f64 = 0.01;
 
-pub(super) fn blur(sigma: f64) -> f64 {
-    (BLUR * sigma).max(LEAST_BLUR)
+/// Adds the evidence of a frame's edges, and returns how many rims have any.
+fn add_edges(sight: Sight<'_>, rims: &[Rim], round: &Round, units: &Units, evidence: &mut Evidence) -> usize {
+    let mut shares = vec![Share::none(); Tiles::new(sight.planes.size).count()];
+    let field = EdgeField::new(sight, rims, &round.state, units, round.sigma);
+    field.evidence(round.sigma, &mut shares);
+    evidence.shares.extend(shares);
+    field.len()
 }
 
 fn step(total: &Evidence, prior: &Matrix, back: &Vector) -> Vector {

@@ -68,50 +68,76 @@ fn ends_before_farther(frame: &Frame, projection: &Projection, index: usize) -> 
     })
 }
 
-/// Position and normal of the rim at a near pixel: the map from raster to image is fitted to the near neighbours.
+/// The pixels around one on a rim.
+#[derive(Default)]
+struct Neighbourhood {
+    /// Sum of the offsets on the raster of farther pixels, less those of near and nearer ones: away from the near surface.
+    away: [f64; 2],
+    /// Near pixels, their moments on the raster (xx, xy, yy), and their offsets on the image times those on the raster, row by row.
+    count: usize,
+    moments: [f64; 3],
+    by_image: [[f64; 2]; 2],
+}
+
+impl Neighbourhood {
+    fn of(frame: &Frame, projection: &Projection, index: usize) -> Self {
+        let grid = frame.grid;
+        let (column, row) = grid.position(index);
+        let here = depth(projection, index);
+        let gap = frame.clear_gap(here);
+        let centre = projection.pixels[index];
+        let mut sums = Self::default();
+        for down in -REACH..=REACH {
+            for right in -REACH..=REACH {
+                let (column, row) = (column as isize + right, row as isize + down);
+                if column < 0 || row < 0 || column as usize >= grid.width || row as usize >= grid.height {
+                    continue;
+                }
+                let other = grid.index(column as usize, row as usize);
+                let is_near = (depth(projection, other) - here).abs() <= gap;
+                let offset = [right as f64, down as f64];
+                // Nearer ones belong to something before the rim.
+                let side = if is_near || depth(projection, other) < here { -1.0 } else { 1.0 };
+                (0..2).for_each(|k| sums.away[k] += side * offset[k]);
+                let pixel = projection.pixels[other];
+                if is_near && !pixel[0].is_nan() {
+                    sums.add(offset, [0, 1].map(|k| f64::from(pixel[k] - centre[k])));
+                }
+            }
+        }
+        sums
+    }
+
+    fn add(&mut self, [x, y]: [f64; 2], on_image: [f64; 2]) {
+        let [xx, xy, yy] = self.moments;
+        self.moments = [xx + x * x, xy + x * y, yy + y * y];
+        (0..2).for_each(|k| {
+            self.by_image[k] = [self.by_image[k][0] + on_image[k] * x, self.by_image[k][1] + on_image[k] * y];
+        });
+        self.count += 1;
+    }
+
+    /// The unit direction away from the near surface on the raster, and the fitted map d image / d raster, row by row.
+    fn fitted(&self) -> Option<([f64; 2], [[f64; 2]; 2])> {
+        let [xx, xy, yy] = self.moments;
+        let length = self.away[0].hypot(self.away[1]);
+        let determinant = xx * yy - xy * xy;
+        if self.count < FEWEST_NEIGHBOURS || length < 1.0 || determinant < 1e-6 * xx * yy {
+            return None;
+        }
+        let map = self.by_image.map(|[x, y]| [(x * yy - y * xy) / determinant, (y * xx - x * xy) / determinant]);
+        Some((self.away.map(|value| value / length), map))
+    }
+}
+
+/// Position and normal of the rim at a near pixel.
 fn rim(frame: &Frame, projection: &Projection, index: usize) -> Option<Rim> {
-    let grid = frame.grid;
-    let (column, row) = grid.position(index);
-    let here = depth(projection, index);
-    let gap = frame.clear_gap(here);
     let centre = projection.pixels[index];
     if centre[0].is_nan() {
         return None;
     }
-    // Of the raster: away from the near pixels of the neighbourhood.
-    let mut away = [0.0; 2];
-    // Sums of the least squares: offsets on the raster by offsets on the image.
-    let (mut xx, mut xy, mut yy, mut by_image, mut count) = (0.0, 0.0, 0.0, [[0.0; 2]; 2], 0);
-    for down in -REACH..=REACH {
-        for right in -REACH..=REACH {
-            let (column, row) = (column as isize + right, row as isize + down);
-            if column < 0 || row < 0 || column as usize >= grid.width || row as usize >= grid.height {
-                continue;
-            }
-            let other = grid.index(column as usize, row as usize);
-            let is_near = (depth(projection, other) - here).abs() <= gap;
-            let (x, y) = (right as f64, down as f64);
-            // Nearer ones belong to something before the rim.
-            let side = if is_near || depth(projection, other) < here { -1.0 } else { 1.0 };
-            away = [away[0] + side * x, away[1] + side * y];
-            if is_near && !projection.pixels[other][0].is_nan() {
-                let offset = [0, 1].map(|k| f64::from(projection.pixels[other][k] - centre[k]));
-                (xx, xy, yy) = (xx + x * x, xy + x * y, yy + y * y);
-                (0..2).for_each(|k| by_image[k] = [by_image[k][0] + offset[k] * x, by_image[k][1] + offset[k] * y]);
-                count += 1;
-            }
-        }
-    }
-    let length = away[0].hypot(away[1]);
-    let determinant = xx * yy - xy * xy;
-    if count < FEWEST_NEIGHBOURS || length < 1.0 || determinant < 1e-6 * xx * yy {
-        return None;
-    }
-    let away = away.map(|value| value / length);
-    // d image / d raster, row by row.
-    let map = by_image.map(|[x, y]| [(x * yy - y * xy) / determinant, (y * xx - x * xy) / determinant]);
-    let (a, b, c, d) = (map[0][0], map[0][1], map[1][0], map[1][1]);
-    // Normals go by the inverse transpose.
+    let (away, [[a, b], [c, d]]) = Neighbourhood::of(frame, projection, index).fitted()?;
+    // Normals transform by the inverse transpose.
     let sign = (a * d - b * c).signum();
     let normal = [sign * (d * away[0] - c * away[1]), sign * (a * away[1] - b * away[0])];
     let length = normal[0].hypot(normal[1]);

@@ -59,7 +59,10 @@ pub(super) fn curves(
         .collect();
     let mut values = vec![0.0; states.len()];
     for (frame, planes) in planes.iter().enumerate() {
-        let of_frame = along(scene, round, units, planes, cue, frame, &states);
+        let of_frame = match cue {
+            Cue::Edges => edges_along(Sight { frame: &scene.frames[frame], planes }, round, units, &states),
+            _ => surfaces_along(scene, round, cue, frame, &states),
+        };
         values.iter_mut().zip(of_frame).for_each(|(value, more)| *value += weight * more);
     }
     let curve = |(axis, values): (usize, &[f64])| {
@@ -75,37 +78,25 @@ pub(super) fn curves(
     values.chunks(shares.len()).enumerate().map(curve).collect()
 }
 
-/// The log likelihood of one frame at some states.
-fn along(
-    scene: &Scene,
-    round: &Round,
-    units: &Units,
-    planes: &Planes,
-    cue: Cue,
-    index: usize,
-    states: &[State],
-) -> Vec<f64> {
+/// The log likelihood by edges of one frame at some states.
+fn edges_along(sight: Sight<'_>, round: &Round, units: &Units, states: &[State]) -> Vec<f64> {
+    let Sight { frame, planes } = sight;
+    let rims = EdgeField::rims(frame, &Projection::new(frame, &round.state), MOST_RIMS);
+    let value = |state: &State| {
+        let moved = EdgeField::moved(frame, &rims, &round.state, state);
+        let field = EdgeField::new(Sight { frame, planes }, &moved, state, units, round.sigma);
+        let mut shares = vec![Share::none(); Tiles::new(planes.size).count()];
+        field.evidence(round.sigma, &mut shares);
+        shares.iter().map(|share| share.value).sum::<f64>() * rims.len() as f64 / field.len().max(1) as f64
+    };
+    states.iter().map(value).collect()
+}
+
+/// The log likelihood by a cue of surfaces of one frame at some states.
+fn surfaces_along(scene: &Scene, round: &Round, cue: Cue, index: usize, states: &[State]) -> Vec<f64> {
     let frame = &scene.frames[index];
-    if cue == Cue::Edges {
-        let rims = EdgeField::rims(frame, &Projection::new(frame, &round.state), MOST_RIMS);
-        let value = |state: &State| {
-            let moved = EdgeField::moved(frame, &rims, &round.state, state);
-            let field = EdgeField::new(
-                frame,
-                planes,
-                &moved,
-                state,
-                units,
-                round.sigma,
-                super::registration::blur(round.sigma),
-            );
-            let mut shares = vec![Share::none(); Tiles::new(planes.size).count()];
-            field.evidence(round.sigma, &mut shares);
-            shares.iter().map(|share| share.value).sum::<f64>() * rims.len() as f64 / field.len().max(1) as f64
-        };
-        return states.iter().map(value).collect();
-    }
-    let sight = Sight { frame, planes: &scene.surface_planes[index] };
+    let planes = &scene.surface_planes[index];
+    let sight = Sight { frame, planes };
     let patches = Patches::new(&scene.samples[index], &Projection::new(frame, &round.state), frame);
     let mut out = vec![0.0; Tiles::new(planes.size).count()];
     let shading = (cue == Cue::Shading).then(|| Shading::new(&patches, &sight, &round.state));

@@ -16,7 +16,7 @@ use nalgebra::{SMatrix, SVector, Vector3};
 
 use super::health::Health;
 use super::reason::{CheckReason, Margin, Offset};
-use super::unknowns::{Matrix, POSE, State, Units};
+use super::unknowns::{Matrix, POSE, State, Units, Vector};
 use crate::numeric::quantile;
 use crate::numeric::random::Random;
 use crate::pose::{Axis, Unknown};
@@ -198,53 +198,65 @@ impl Judge {
     pub fn judge(&self, name: &str, estimate: &State, candidate: &State, weakest: Option<Unknown>) -> CandidateReport {
         let between = self.units.between(estimate, candidate);
         let offset: PoseVector = between.fixed_rows::<POSE>(0).into();
-        let metric = between.component_mul(&self.units.of);
-        let turn = metric.fixed_rows::<3>(0).norm().to_degrees();
-        let shift = metric.fixed_rows::<3>(3).norm() * 1000.0;
         let health = self.health(&offset);
         let distance = offset.dot(&(self.inverse * offset));
         let farther = self.draws.iter().filter(|draw| draw.dot(&(self.inverse * **draw)) > distance).count();
-        let [low, high] = health.interval;
         let probability = farther as f64 / self.draws.len() as f64;
         let is_likely = probability >= 1.0 - INSIDE;
-        let would_show = self.reach <= self.tolerance;
-        let bound = self.tolerance.max(self.explained);
-        let verdict = if high <= self.tolerance || (is_likely && would_show) {
-            CheckVerdict::Consistent
-        } else if low > bound && self.own.interval[0] <= bound && !is_likely {
-            CheckVerdict::Off
-        } else {
-            CheckVerdict::Undecided
-        };
-        let margin = Margin { health, tolerance: self.tolerance };
-        let axis = |rows: [f64; 3]| {
-            [Axis::X, Axis::Y, Axis::Z][(0..3).max_by(|&a, &b| rows[a].abs().total_cmp(&rows[b].abs())).unwrap_or(0)]
-        };
-        let reason = match verdict {
-            CheckVerdict::Consistent if high <= self.tolerance => CheckReason::WithinTolerance(margin),
-            CheckVerdict::Consistent => CheckReason::NothingAgainst { margin, shown: self.reach },
-            CheckVerdict::Off => {
-                let (about, along) = (axis([metric[0], metric[1], metric[2]]), axis([metric[3], metric[4], metric[5]]));
-                let distance = self.units.middle.norm();
-                let offset = Offset { degrees: turn, about, millimetres: shift, along, distance };
-                CheckReason::OffTarget { margin, offset }
-            }
-            CheckVerdict::Undecided if low > self.tolerance && low <= bound && !is_likely => {
-                CheckReason::GuessedCamera { margin, explained: self.explained }
-            }
-            CheckVerdict::Undecided => match weakest {
-                Some(weakest) => CheckReason::Unconstrained { margin, weakest },
-                None => CheckReason::TooClose(margin),
-            },
-        };
+        let offset = self.offset(&between);
+        let (verdict, reason) = self.decide(health, is_likely, offset, weakest);
         CandidateReport {
             name: name.to_owned(),
             verdict,
             reason,
-            off_degrees: turn,
-            off_millimetres: shift,
+            off_degrees: offset.degrees,
+            off_millimetres: offset.millimetres,
             health,
             probability,
+        }
+    }
+
+    /// The verdict on a candidate with this error, and the reason for it.
+    fn decide(
+        &self,
+        health: Health,
+        is_likely: bool,
+        offset: Offset,
+        weakest: Option<Unknown>,
+    ) -> (CheckVerdict, CheckReason) {
+        let [low, high] = health.interval;
+        let bound = self.tolerance.max(self.explained);
+        let margin = Margin { health, tolerance: self.tolerance };
+        if high <= self.tolerance {
+            (CheckVerdict::Consistent, CheckReason::WithinTolerance(margin))
+        } else if is_likely && self.reach <= self.tolerance {
+            (CheckVerdict::Consistent, CheckReason::NothingAgainst { margin, shown: self.reach })
+        } else if low > bound && self.own.interval[0] <= bound && !is_likely {
+            (CheckVerdict::Off, CheckReason::OffTarget { margin, offset })
+        } else if low > self.tolerance && low <= bound && !is_likely {
+            (CheckVerdict::Undecided, CheckReason::GuessedCamera { margin, explained: self.explained })
+        } else {
+            let reason = match weakest {
+                Some(weakest) => CheckReason::Unconstrained { margin, weakest },
+                None => CheckReason::TooClose(margin),
+            };
+            (CheckVerdict::Undecided, reason)
+        }
+    }
+
+    /// The turn and the shift of a difference of states, with the axis of the largest part of each.
+    fn offset(&self, between: &Vector) -> Offset {
+        let metric = between.component_mul(&self.units.of);
+        let axis = |first: usize| {
+            let largest = (0..3).max_by(|&a, &b| metric[first + a].abs().total_cmp(&metric[first + b].abs()));
+            [Axis::X, Axis::Y, Axis::Z][largest.unwrap_or(0)]
+        };
+        Offset {
+            degrees: metric.fixed_rows::<3>(0).norm().to_degrees(),
+            about: axis(0),
+            millimetres: metric.fixed_rows::<3>(3).norm() * 1000.0,
+            along: axis(3),
+            distance: self.units.middle.norm(),
         }
     }
 }

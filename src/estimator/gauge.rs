@@ -143,7 +143,7 @@ fn median_depth(depth: &DepthView) -> f64 {
 
 /// Puts the image's surface where neither view can tell: an orthographic one's median depth is zero, a pinhole's stands
 /// where it meets the depth points that fall on it. Writes the image's points, and the pose's t_z.
-pub fn settle_surface(
+pub fn fix_depth_of_surface(
     pair: &ViewPair,
     correspondences: &Correspondences,
     spare: &mut Vec<f32>,
@@ -158,11 +158,11 @@ pub fn settle_surface(
         }
     }
     solution.image.place_image_points(&pair.image);
-    settle_depth(pair, correspondences, spare, solution);
+    fix_depth_of_pose(pair, correspondences, spare, solution);
 }
 
 /// The pose's t_z of an orthographic image: the median depth difference of the overlap becomes zero.
-pub fn settle_depth(pair: &ViewPair, correspondences: &Correspondences, spare: &mut Vec<f32>, solution: &mut Solution) {
+pub fn fix_depth_of_pose(pair: &ViewPair, correspondences: &Correspondences, spare: &mut Vec<f32>, solution: &mut Solution) {
     if pair.image.camera.is_orthographic()
         && let Some(difference) = median_gap(solution, correspondences, spare, |image, depth| image - depth)
     {

@@ -15,9 +15,9 @@ use crate::view::Normals;
 const MOST_MEDIANS: f32 = 3.0;
 
 /// Residuals of the image's pixels; NaN off the mask.
-pub struct Residuals(Vec<f32>);
+pub struct PixelResiduals(Vec<f32>);
 
-impl Residuals {
+impl PixelResiduals {
     /// None yet, for so many pixels.
     pub fn new(pixels: usize) -> Self {
         Self(vec![f32::NAN; pixels])
@@ -89,7 +89,7 @@ fn shading_light(paint: &PaintStage, solution: &Solution) -> Light {
     solution.light.total().tinted(paint.found().map_or([0.0; 3], |found| found.tint))
 }
 
-/// Log shading of each image pixel, R, G, B interleaved: what [`Residuals`] are off. NaN off the mask.
+/// Log shading of each image pixel, R, G, B interleaved: from which [`PixelResiduals`] are taken. NaN off the mask.
 pub fn shading(
     pair: &ViewPair,
     paint: &PaintStage,

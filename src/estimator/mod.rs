@@ -42,7 +42,7 @@ use crate::report::{Stage, Status, StepReport};
 use crate::shape::Scratch;
 use crate::view::{ColourImage, DepthMap};
 use finder::Opening;
-use measurement::Residuals;
+use measurement::PixelResiduals;
 pub use outputs::Surface;
 use pair::ViewPair;
 use reported::Reported;
@@ -77,7 +77,7 @@ pub struct Estimator {
     run: Run,
     stages: Stages,
     correspondences: Correspondences,
-    residuals: Residuals,
+    residuals: PixelResiduals,
     /// Memory that the stages take turns at.
     scratch: Scratch,
     /// What the stages of this iteration work on.
@@ -127,7 +127,7 @@ impl Estimator {
                 Shading::Pixel => correspondences.of_points_alone(),
                 Shading::Surface => correspondences,
             },
-            residuals: Residuals::new(pixels),
+            residuals: PixelResiduals::new(pixels),
             scratch,
             accepted: Accepted::new(&solution, objective::MOST_POINTS),
             solution,
@@ -293,7 +293,7 @@ impl Estimator {
             self.report.iteration,
         );
         self.stages.shape.find_surface(inputs, &light, &mut self.scratch, &mut self.solution.image)?;
-        gauge::settle_surface(&self.pair, &self.correspondences, &mut self.scratch.spare, &mut self.solution);
+        gauge::fix_depth_of_surface(&self.pair, &self.correspondences, &mut self.scratch.spare, &mut self.solution);
         Ok(())
     }
 
@@ -329,7 +329,7 @@ impl Estimator {
             }
         }
         if !self.settling.keeps_all() {
-            gauge::settle_depth(&self.pair, &self.correspondences, &mut self.scratch.spare, &mut self.solution);
+            gauge::fix_depth_of_pose(&self.pair, &self.correspondences, &mut self.scratch.spare, &mut self.solution);
             self.find_correspondences();
         }
     }

@@ -162,7 +162,7 @@ pub(crate) fn basis_gradient<T: Real>([x, y, z]: [T; 3]) -> [[T; 3]; HARMONICS] 
 /// How one channel's log S falls when normals turn about x, y and z, per radian: the coefficients of grad log S x n, since
 /// harmonics of either order turn into each other.
 pub(crate) fn falling_by_turns(l: &[f64; HARMONICS]) -> [[f64; HARMONICS]; 3] {
-    // The ratio C3 / C1, twice.
+    // C3 / C1.
     let root = 3.0_f64.sqrt();
     [
         [0.0, -l[2], l[1], 0.0, -l[7], -l[8] - root * l[6], root * l[5], l[4], l[5]],

@@ -13,8 +13,9 @@
 //! | `angles` | Eq. 16: the angles of a rotation | | alpha, beta, gamma | closed form |
 //! | `correspondence`, `visibility` | which depth point is which pixel, with occlusion in both directions: the 1-pixel rule | | | z-buffers |
 //! | `prior` | a Gaussian about an initial pose | | | |
+//! | `descent` | the step control of damped Gauss-Newton, for `photometric/` and `contrast/` | | | |
 //! | `increment` | a Gauss-Newton step of a similarity: seven unknowns | | | |
-//! | `sandwich` | the covariance of a pose from the scores of independent clusters | | | |
+//! | `sandwich`, `jackknife` | the covariance of a pose from the scores of independent clusters, and from its moves without each sector | | | |
 //! | `sums` | the sums of a step over robust residuals | | | |
 //! | `uncertainty` | one sigma of each number of a pose, from the information of matched surfaces | | | |
 //! | `spline_image`, `silhouette`, `distance_transform` | log S between pixels; distance to the mask | | | |
@@ -47,7 +48,7 @@ mod uncertainty;
 mod visibility;
 
 pub use angles::Angles;
-pub(crate) use contrast::{ContrastOutcome, ContrastProblem, ContrastReport, ContrastSearch, settle};
+pub(crate) use contrast::{ContrastOutcome, ContrastProblem, ContrastReport, ContrastSearch, register_again};
 pub use correspondence::{CorrespondenceProblem, Correspondences};
 pub use icp::{Icp, IcpOptions, IcpProblem, IcpReport, IcpTermination, Metric, Pair};
 pub(crate) use increment::rotation_vector;

@@ -14,7 +14,7 @@
 use std::sync::Arc;
 
 use crate::numeric::{LANES, Lanes, Real};
-use crate::view::{ColourView, Size};
+use crate::view::{ColourView, Gaussian, Size};
 
 /// Pole of the cubic B-spline's inverse filter.
 const POLE: f64 = -0.267_949_192_431_122_7;
@@ -226,43 +226,9 @@ fn blurred(view: &ColourView, sigma: f64) -> [Vec<f32>; 3] {
     if sigma <= 0.0 {
         return view.log.clone();
     }
-    let reach = (REACH * sigma).ceil() as usize;
-    let kernel: Vec<f64> = (0..=2 * reach).map(|k| (-0.5 * (k.abs_diff(reach) as f64 / sigma).powi(2)).exp()).collect();
-    let inside = || view.mask.iter().copied();
-    let weights = smoothed(view.size, &kernel, inside().map(f64::from).collect());
-    view.log.each_ref().map(|log| {
-        let masked = log.iter().zip(inside()).map(|(&value, inside)| if inside { f64::from(value) } else { 0.0 });
-        let sums = smoothed(view.size, &kernel, masked.collect());
-        let mean = |((sum, weight), inside): ((f64, &f64), bool)| if inside { (sum / weight) as f32 } else { f32::NAN };
-        sums.into_iter().zip(&weights).zip(inside()).map(mean).collect()
-    })
-}
-
-/// Sums of the values around each pixel, weighted by the kernel along rows, then along columns.
-fn smoothed(size: Size, kernel: &[f64], mut values: Vec<f64>) -> Vec<f64> {
-    let reach = kernel.len() / 2;
-    let mut sums = vec![0.0; values.len()];
-    for (sums, values) in sums.chunks_exact_mut(size.width).zip(values.chunks_exact(size.width)) {
-        for (k, &share) in kernel.iter().enumerate() {
-            // What lies beyond the ends counts as zero.
-            let (first, source) = (reach.saturating_sub(k), k.saturating_sub(reach));
-            add(sums.get_mut(first..), share, values.get(source..));
-        }
-    }
-    values.fill(0.0);
-    for (row, values) in values.chunks_exact_mut(size.width).enumerate() {
-        for (k, &share) in kernel.iter().enumerate() {
-            let source = (row + k).checked_sub(reach).and_then(|row| sums.chunks_exact(size.width).nth(row));
-            add(Some(&mut *values), share, source);
-        }
-    }
-    values
-}
-
-/// Adds a share of the values to as many sums, if there are any.
-fn add(sums: Option<&mut [f64]>, share: f64, values: Option<&[f64]>) {
-    let (Some(sums), Some(values)) = (sums, values) else { return };
-    sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += share * value);
+    Gaussian::new(view.size, sigma, REACH)
+        .means(|index| view.mask[index], |channel, index| view.log[channel][index])
+        .map(|means| means.into_iter().map(|mean| mean as f32).collect())
 }
 
 /// Continues fields beyond their mask: each new pixel is the mean of the straight lines (of the values, where there is

@@ -4,12 +4,12 @@ use nalgebra::Vector3;
 
 use super::relief::Relief;
 use crate::error::{Error, ErrorKind, Result};
-use crate::view::Size;
+use crate::view::{Gaussian, Size};
 
 /// Sigma of the smoothing of the heights in samples (docs/method.md, section 15): scanner noise goes, features stay.
 const SMOOTHING: f64 = 1.0;
-/// Samples on each side of the smoothing kernel: what lies beyond four sigma weighs less than 1e-4.
-const SMOOTHING_REACH: usize = 4;
+/// Reach of the smoothing kernel in sigmas; samples beyond it would have weights below 1e-4.
+const SMOOTHING_REACH: f64 = 4.0;
 /// Largest difference of the heights in one triangle, in samples (docs/method.md, section 15): beyond it the grid jumps
 /// from one part of the object to another, and there is no surface in between.
 const LARGEST_JUMP: f64 = 12.0;
@@ -105,34 +105,9 @@ impl Mesh {
 
 /// Gaussian mean over the samples of the object alone, so that the background does not lower its rim.
 fn smooth(heights: &[f32], object: &[bool], size: Size) -> Vec<f64> {
-    let weighted: Vec<[f64; 2]> = heights
-        .iter()
-        .zip(object)
-        .map(|(&height, &inside)| if inside { [f64::from(height), 1.0] } else { [0.0, 0.0] })
-        .collect();
-    let rows = blur(&weighted, size.width, size.height, 1, size.width);
-    let both = blur(&rows, size.height, size.width, size.width, 1);
-    both.iter().zip(object).map(|([sum, weight], &inside)| if inside { sum / weight } else { 0.0 }).collect()
-}
-
-/// Gaussian sums along `lines` lines of `length` samples, `stride` apart; the lines start `step` apart.
-fn blur(values: &[[f64; 2]], length: usize, lines: usize, stride: usize, step: usize) -> Vec<[f64; 2]> {
-    let kernel: [f64; SMOOTHING_REACH + 1] =
-        std::array::from_fn(|offset| (-0.5 * (offset as f64 / SMOOTHING).powi(2)).exp());
-    let mut result = vec![[0.0; 2]; values.len()];
-    for line in 0..lines {
-        for place in 0..length {
-            let first = place.saturating_sub(SMOOTHING_REACH);
-            let last = (place + SMOOTHING_REACH).min(length - 1);
-            let sum = &mut result[line * step + place * stride];
-            for other in first..=last {
-                let [value, weight] = values[line * step + other * stride];
-                let share = kernel[place.abs_diff(other)];
-                *sum = [sum[0] + share * value, sum[1] + share * weight];
-            }
-        }
-    }
-    result
+    let [means] =
+        Gaussian::new(size, SMOOTHING, SMOOTHING_REACH).means(|index| object[index], |_, index| heights[index]);
+    means.into_iter().map(|mean| if mean.is_nan() { 0.0 } else { mean }).collect()
 }
 
 fn triangulate(heights: &[f64], object: &[bool], size: Size) -> Vec<[usize; 3]> {

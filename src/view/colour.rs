@@ -55,19 +55,18 @@ pub struct ColourView {
     pub log: [Vec<f32>; 3],
     /// How integers were decoded; floats are linear.
     pub transfer: Transfer,
-    /// The whole frame, where its intrinsics are known.
+    /// The whole frame; empty in views that were derived from another.
     pub whole: WholeFrame,
     log_spread: f64,
     log_noise: f64,
 }
 
-/// What outlines are read off: the object with its black and saturated pixels, and the brightness beside it. Empty
-/// without intrinsics.
+/// What silhouettes and edges are read from.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WholeFrame {
-    /// Object pixels, as the caller says.
+    /// The caller's mask, black and saturated pixels included; everything without one.
     pub object: Vec<bool>,
-    /// Brightness, as bright as it looks, 0 .. 1 for integers; zero where it is none.
+    /// Brightness as displayed, 0 .. 1 for integers, also beside the object; empty without intrinsics.
     pub grey: Vec<f32>,
 }
 
@@ -86,13 +85,9 @@ impl ColourView {
     pub fn new(image: ColourImage) -> Result<Self> {
         let (size, object) = checked(&image)?;
         let transfer = transfer_of(&image.samples, image.transfer);
-        let whole = match image.camera {
-            Some(_) => WholeFrame {
-                object: object.clone(),
-                grey: (0..size.len()).map(|index| image.samples.grey(index)).collect(),
-            },
-            None => WholeFrame::default(),
-        };
+        let grey = |index| image.samples.grey(index);
+        let grey = if image.camera.is_some() { (0..size.len()).map(grey).collect() } else { Vec::new() };
+        let whole = WholeFrame { object: object.clone(), grey };
         let mut log = [(); 3].map(|()| vec![f32::NAN; size.len()]);
         let mut usable = vec![false; size.len()];
         for index in (0..size.len()).filter(|&index| object[index]) {
@@ -124,7 +119,12 @@ impl ColourView {
         let (width, whole) = (self.size.width, &self.whole.object);
         let shown = |row: &[bool]| row.iter().filter(|&&is_shown| is_shown).count();
         let edges = shown(&self.mask[..width]) + shown(&self.mask[self.mask.len() - width..]);
-        edges > width && !whole.is_empty() && !whole.contains(&false)
+        !self.camera.is_orthographic() && edges > width && !whole.is_empty() && !whole.contains(&false)
+    }
+
+    /// Where the object is: the caller's mask, or the pixels with usable colours without one.
+    pub(crate) fn object(&self) -> &[bool] {
+        if self.whole.object.contains(&false) { &self.whole.object } else { &self.mask }
     }
 
     /// The view of these logarithms, NaN off the mask.
@@ -389,6 +389,20 @@ mod tests {
         wide.height = 4;
         let view = ColourView::new(wide).unwrap();
         assert_eq!(view.mask.iter().filter(|&&usable| usable).count(), 22);
+    }
+
+    #[test]
+    fn black_and_saturated_pixels_belong_to_the_object_of_a_mask() {
+        let mut data = [100_u8, 100, 100, 255].repeat(24);
+        (data[0], data[5]) = (0, 255);
+        let mask = (0..24).map(|index| u8::from(index < 20)).collect();
+        let mut masked = image(ColourSamples::Rgba8(data));
+        (masked.width, masked.height, masked.mask) = (6, 4, Some(mask));
+        let view = ColourView::new(masked.clone()).unwrap();
+        assert_eq!(view.object().iter().filter(|&&inside| inside).count(), 20);
+        masked.mask = None;
+        let view = ColourView::new(masked).unwrap();
+        assert_eq!(view.object(), view.mask);
     }
 
     #[test]

@@ -10,6 +10,7 @@ pub(crate) mod depth_noise;
 #[cfg(feature = "image")]
 mod dynamic_image;
 mod flying_pixels;
+mod gaussian;
 mod half_resolution;
 mod heights;
 mod lens;
@@ -28,6 +29,7 @@ pub use colour::{ColourImage, ColourSamples, ColourView, Transfer};
 pub(crate) use colour::{to_srgb, transfer_of};
 pub use depth::{DepthMap, DepthSamples, DepthView};
 pub use depth_noise::DepthNoise;
+pub(crate) use gaussian::Gaussian;
 pub use lens::Lens;
 pub(crate) use limbs::is_hollow;
 pub(crate) use pinhole::FARTHEST;

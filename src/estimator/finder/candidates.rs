@@ -12,8 +12,8 @@ use crate::estimator::workers::task::{Finding, Found, Task, Work};
 use crate::pose::{ImageGrid, Search, SearchProblem, Similarity, TaskResults};
 use crate::reason::Activity;
 
-use super::local_optima::{Choice, LocalOptima, Optimum, RegisteredCandidate};
-use super::scope::TrustRegion;
+use super::local_optima::{Choice, LocalOptima, Origin, Ranking, RegisteredCandidate};
+use super::trust_region::TrustRegion;
 
 /// How many candidates are registered.
 #[derive(Clone, Copy)]
@@ -73,7 +73,7 @@ pub struct Candidates {
     may_vary: bool,
     /// Whether registrations are kept near the initial pose.
     is_near: bool,
-    chosen: Option<Optimum>,
+    chosen: Option<Ranking>,
 }
 
 impl Candidates {
@@ -210,10 +210,10 @@ impl Candidates {
             let Some(registered) = self.registrations.get(self.next) else { return };
             (self.next, self.tried) = (self.next + 1, self.tried + 1);
             if let Some(registered) = registered.clone().filter(|registered| is_allowed(&registered.pose)) {
-                self.optima.enter(self.next - 1, registered);
+                self.optima.enter(Origin::Candidate(self.next - 1), registered);
             }
         }
-        self.chosen = Some(self.optima.decide());
+        self.chosen = Some(self.optima.ranked());
     }
 
     /// Whether no further candidate counts.
@@ -225,18 +225,18 @@ impl Candidates {
     }
 
     /// The choice, once the best one's whole report is here: a worker brings only what tells one optimum from another.
-    fn conclude(&mut self, pair: &ViewPair, colours: &mut ColourRegistration, chosen: Optimum) -> Option<Choice> {
-        let Optimum { best, rivals } = chosen;
+    fn conclude(&mut self, pair: &ViewPair, colours: &mut ColourRegistration, chosen: Ranking) -> Option<Choice> {
+        let Ranking { best, rivals } = chosen;
         let Some(mut best) = best else { return Some(Choice::default()) };
-        if best.registered.report.is_none() {
-            match self.step_candidate(pair, colours, best.candidate) {
+        if let (Origin::Candidate(candidate), None) = (best.origin, &best.registered.report) {
+            match self.step_candidate(pair, colours, candidate) {
                 Attempt::Ended(report) => best.registered.report = report,
                 Attempt::Ongoing => {
-                    self.chosen = Some(Optimum { best: Some(best), rivals });
+                    self.chosen = Some(Ranking { best: Some(best), rivals });
                     return None;
                 }
             }
         }
-        Some(Choice::of(Optimum { best: Some(best), rivals }))
+        Some(Choice::of(Ranking { best: Some(best), rivals }))
     }
 }

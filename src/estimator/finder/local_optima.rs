@@ -12,10 +12,17 @@
 use crate::diagnosis::{Alternative, Diagnosis, Residuals};
 use crate::pose::{PhotometricReport, Similarity};
 
-/// Number of the initial pose among the candidates: none of the others has it.
-pub const STAYING: usize = usize::MAX;
-/// That of what is tried before the search; the reports of these are at hand.
-pub const BEFORE: usize = usize::MAX - 1;
+/// Where a registration began.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Origin {
+    /// The initial pose itself, which was evaluated and not registered.
+    Initial,
+    /// A pose near the initial one, tried before the search.
+    Nearby,
+    /// A candidate of the search, by its number.
+    Candidate(usize),
+}
+
 /// Power of the number of visible points. A cube root of its own would be 1 kB of the download.
 const THIRD: f64 = 1.0 / 3.0;
 /// A local optimum convinces when the noise of every other one that sees as much is larger by this factor.
@@ -54,8 +61,8 @@ impl RegisteredCandidate {
 /// A pose where registrations end.
 #[derive(Clone)]
 pub struct LocalOptimum {
-    /// The candidate that ended best here.
-    pub candidate: usize,
+    /// Of the registration that ended best here.
+    pub origin: Origin,
     pub registered: RegisteredCandidate,
     gain: f64,
     /// Number of registrations that ended here.
@@ -74,8 +81,8 @@ impl LocalOptimum {
     }
 }
 
-/// The best optimum, if any is worth something, and its rivals.
-pub struct Optimum {
+/// The best optimum, if it explains anything, and its rivals.
+pub struct Ranking {
     pub best: Option<LocalOptimum>,
     pub rivals: Vec<Similarity>,
 }
@@ -91,8 +98,8 @@ pub struct Choice {
 
 impl Choice {
     /// Of the best optimum, whose report is there.
-    pub fn of(Optimum { best, rivals }: Optimum) -> Self {
-        let best = best.filter(|best| best.candidate != STAYING).and_then(|best| best.registered.report);
+    pub fn of(Ranking { best, rivals }: Ranking) -> Self {
+        let best = best.filter(|best| best.origin != Origin::Initial).and_then(|best| best.registered.report);
         Self { best, rivals }
     }
 }
@@ -116,7 +123,7 @@ impl LocalOptima {
     }
 
     /// Enters where a registration ended: the better of two that are one.
-    pub fn enter(&mut self, candidate: usize, registered: RegisteredCandidate) {
+    pub fn enter(&mut self, origin: Origin, registered: RegisteredCandidate) {
         let gain = registered.visible.powf(THIRD) * (self.image.spread / registered.noise).ln();
         if !gain.is_finite() {
             return;
@@ -126,10 +133,10 @@ impl LocalOptima {
             Some(known) => {
                 known.support += 1;
                 if gain > known.gain {
-                    *known = LocalOptimum { candidate, registered, gain, support: known.support };
+                    *known = LocalOptimum { origin, registered, gain, support: known.support };
                 }
             }
-            None => self.optima.push(LocalOptimum { candidate, registered, gain, support: 1 }),
+            None => self.optima.push(LocalOptimum { origin, registered, gain, support: 1 }),
         }
     }
 
@@ -168,7 +175,7 @@ impl LocalOptima {
     }
 
     /// The best optimum and those that the data can't tell from it, given the noise of the image.
-    pub fn decide(&mut self) -> Optimum {
+    pub fn ranked(&mut self) -> Ranking {
         let (mut optima, noise) = (std::mem::take(&mut self.optima), self.image.image_noise);
         optima.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         // Nothing but the image's noise is left by it, and far more by the first.
@@ -180,14 +187,14 @@ impl LocalOptima {
         }
         let mut optima = optima.into_iter();
         let Some(best) = optima.next().filter(|best| best.gain > 0.0) else {
-            return Optimum { best: None, rivals: Vec::new() };
+            return Ranking { best: None, rivals: Vec::new() };
         };
         let rivals = optima
             .filter(|other| other.is_apart(&best) && other.rivals(&best, RIVAL_NOISE))
             .map(|other| other.registered.pose)
             .take(MOST_RIVALS)
             .collect();
-        Optimum { best: Some(best), rivals }
+        Ranking { best: Some(best), rivals }
     }
 }
 
@@ -203,35 +210,35 @@ mod tests {
         let pose = Similarity { rotation, ..Similarity::identity() };
         let registered = RegisteredCandidate { pose, visible, noise, report: None };
         let gain = visible.powf(THIRD) * (1.0 / noise).ln();
-        LocalOptimum { candidate: degrees as usize, registered, gain, support: 2 }
+        LocalOptimum { origin: Origin::Candidate(degrees as usize), registered, gain, support: 2 }
     }
 
-    fn winner(optima: &[LocalOptimum], noise: f64) -> (Option<usize>, usize) {
+    fn winner(optima: &[LocalOptimum], noise: f64) -> (Option<Origin>, usize) {
         let mut all = LocalOptima {
             optima: optima.to_vec(),
             image: Residuals { noise: 0.0, covariance: None, image_noise: noise, spread: 1.0 },
         };
-        let Optimum { best, rivals } = all.decide();
-        (best.map(|best| best.candidate), rivals.len())
+        let Ranking { best, rivals } = all.ranked();
+        (best.map(|best| best.origin), rivals.len())
     }
 
     #[test]
     fn what_leaves_only_the_image_s_noise_comes_before_what_sees_more() {
         let (large, exact) = (optimum(40.0, 1000.0, 0.02), optimum(0.0, 600.0, 0.0099));
         assert!(large.gain > exact.gain);
-        assert_eq!(winner(&[large.clone(), exact.clone()], 0.01), (Some(0), 0));
+        assert_eq!(winner(&[large.clone(), exact.clone()], 0.01), (Some(Origin::Candidate(0)), 0));
         // Not where the image is so clean that there is more to explain ..
-        assert_eq!(winner(&[large.clone(), exact], 0.005).0, Some(40));
+        assert_eq!(winner(&[large.clone(), exact], 0.005).0, Some(Origin::Candidate(40)));
         // .. nor where the first leaves hardly more, or the other sees little.
-        assert_eq!(winner(&[optimum(40.0, 1000.0, 0.012), optimum(0.0, 600.0, 0.0099)], 0.01), (Some(40), 1));
-        assert_eq!(winner(&[large, optimum(0.0, 400.0, 0.0099)], 0.01), (Some(40), 0));
+        assert_eq!(winner(&[optimum(40.0, 1000.0, 0.012), optimum(0.0, 600.0, 0.0099)], 0.01), (Some(Origin::Candidate(40)), 1));
+        assert_eq!(winner(&[large, optimum(0.0, 400.0, 0.0099)], 0.01), (Some(Origin::Candidate(40)), 0));
     }
 
     #[test]
     fn rivals_are_apart_and_what_explains_nothing_wins_nothing() {
         let poses = [(0.0, 900.0, 0.01), (2.0, 800.0, 0.01), (30.0, 500.0, 0.012), (60.0, 900.0, 0.02)];
         let optima = poses.map(|(degrees, visible, noise)| optimum(degrees, visible, noise));
-        assert_eq!(winner(&optima, 0.0), (Some(0), 1));
+        assert_eq!(winner(&optima, 0.0), (Some(Origin::Candidate(0)), 1));
         assert_eq!(winner(&[optimum(0.0, 900.0, 1.1)], 0.0), (None, 0));
         assert_eq!(winner(&[], 0.0), (None, 0));
     }

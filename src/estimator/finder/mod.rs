@@ -26,7 +26,7 @@
 //!
 //! | file | what it holds |
 //! |---|---|
-//! | `scope` | where a pose is looked for, and the trust region of an initial one |
+//! | `trust_region` | an initial pose, and how far from it the answer may lie |
 //! | `nearby` | what is tried before the search where there is an initial pose |
 //! | `candidates` | the search, and the registration of its candidates |
 //! | `local_optima` | where registrations ended; the best of these poses, and its rivals |
@@ -40,8 +40,8 @@ mod local_contrast;
 mod local_optima;
 mod nearby;
 mod opening;
-mod scope;
 mod silhouettes;
+mod trust_region;
 
 use nalgebra::Matrix3;
 
@@ -64,7 +64,7 @@ pub use decision::{Decision, Method, Staying};
 pub use local_optima::RegisteredCandidate;
 pub use nearby::explains;
 pub use opening::Opening;
-pub use scope::TrustRegion;
+pub use trust_region::TrustRegion;
 
 /// Share of the work that comes before local contrast.
 const BEFORE_CONTRAST: f64 = 0.75;

@@ -11,8 +11,8 @@ use crate::estimator::stages::{Attempt, ColourRegistration, FIRST_LEVEL_NEAR};
 use crate::pose::{COARSEST_NEAR, ImageGrid, OutlineReport, PhotometricReport, Search, Similarity};
 
 use super::candidates::{Candidates, NEARBY, search};
-use super::local_optima::{BEFORE, Choice, LocalOptima, RegisteredCandidate, STAYING};
-use super::scope::TrustRegion;
+use super::local_optima::{Choice, LocalOptima, Origin, RegisteredCandidate};
+use super::trust_region::TrustRegion;
 use super::silhouettes;
 
 /// What has come of a slice.
@@ -117,10 +117,10 @@ impl Nearby {
         let region = &self.region;
         let Some(optima) = &mut self.optima else { return };
         if let Some(staying) = colours.judge(pair, &region.initial) {
-            optima.enter(STAYING, RegisteredCandidate::of(staying));
+            optima.enter(Origin::Initial, RegisteredCandidate::of(staying));
         }
         if let Some(plain) = self.plain.take() {
-            optima.enter(BEFORE, RegisteredCandidate::of(plain));
+            optima.enter(Origin::Nearby, RegisteredCandidate::of(plain));
         }
         let found = region.prior(pair).and_then(|prior| silhouettes::near(pair, colours.normals(), prior));
         self.silhouettes = found.filter(|found| region.holds(pair, &found.pose)).map(Box::new);
@@ -144,8 +144,8 @@ impl Nearby {
         let found = found.filter(|found| self.region.holds(pair, &found.pose));
         let (Some(found), Some(optima)) = (found, &mut self.optima) else { return Progress::Ongoing };
         let is_explained = explains(pair, &found);
-        optima.enter(BEFORE, RegisteredCandidate::of(found));
-        if is_explained { Progress::Explained(Choice::of(optima.decide())) } else { Progress::Ongoing }
+        optima.enter(Origin::Nearby, RegisteredCandidate::of(found));
+        if is_explained { Progress::Explained(Choice::of(optima.ranked())) } else { Progress::Ongoing }
     }
 }
 

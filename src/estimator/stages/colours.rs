@@ -136,7 +136,7 @@ impl ColourRegistration {
     pub fn contrast_problem<'a>(&'a self, pair: &'a ViewPair, image: &'a ColourView) -> ContrastProblem<'a> {
         ContrastProblem {
             image,
-            object: &pair.image.mask,
+            object: pair.image.object(),
             depth: &pair.depth,
             normals: &self.sharp.normals,
             normal_error: &self.sharp.error,

@@ -10,7 +10,7 @@ use super::colours::ColourRegistration;
 use super::paint::PaintStage;
 use crate::estimator::finder::TrustRegion;
 use crate::estimator::pair::ViewPair;
-use crate::pose::{ContrastReport, Similarity, settle};
+use crate::pose::{ContrastReport, Similarity, register_again};
 
 /// Rounds at most. Of twenty photographs most stand after the first, since E rises in the second; two go on to the third.
 const ROUNDS: usize = 3;
@@ -49,7 +49,7 @@ impl Contrasted {
         let rounds = self.rounds.checked_sub(1)?;
         self.rounds = 0;
         let image = paint.without_albedo(pair)?;
-        let (pose, objective) = settle(&colours.contrast_problem(pair, &image), &self.report.pose)?;
+        let (pose, objective) = register_again(&colours.contrast_problem(pair, &image), &self.report.pose)?;
         let is_allowed = region.is_none_or(|region| region.holds(pair, &pose));
         if !is_allowed || objective >= self.objective {
             return None;

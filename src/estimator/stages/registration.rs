@@ -1,4 +1,4 @@
-//! The registration stage: which of the two registrations a pair asks for, and what it found.
+//! The registration stage: runs the finder or the matching of surfaces, as the options say, and keeps what it found.
 
 use crate::estimator::finder::{Decision, Finder, Method, Staying, TrustRegion, explains};
 use crate::estimator::gauge;

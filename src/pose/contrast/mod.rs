@@ -28,7 +28,7 @@
 //! | `seen` | visible samples and the contour generator |
 //! | `local_means` | H |
 //! | `equations` | the linear system, the light eliminated |
-//! | `uncertainty` | one sigma of the pose |
+//! | `uncertainty`, `jackknife` | one sigma of the pose |
 //!
 //! Limits: about a degree on photographs at 96x96, which is 0.3 pixels of parallax; an object without relief (a printed
 //! bag) or with a symmetry (a cylinder) has no minimum of its own. It needs a mask.
@@ -47,4 +47,4 @@ mod seen;
 mod uncertainty;
 
 pub use problem::{ContrastProblem, ContrastReport};
-pub use search::{ContrastOutcome, ContrastSearch, settle};
+pub use search::{ContrastOutcome, ContrastSearch, register_again};

@@ -76,8 +76,8 @@ pub(super) struct Objective {
     values: Vec<[f32; CHANNELS]>,
     derivatives: Vec<[f32; DERIVATIVES]>,
     prediction: Prediction,
-    /// Whether derivatives are those of the prediction, and the shading settles the pose rather than the outline.
-    settles: bool,
+    /// Whether derivatives are those of the prediction, and the shading has_instruments the pose rather than the outline.
+    has_instruments: bool,
     squares: Vec<f32>,
     /// Sum of the weights of samples on and beside the mask, and of those beside it.
     all: f64,
@@ -103,7 +103,7 @@ impl Objective {
             values: vec![[0.0; CHANNELS]; length],
             derivatives: vec![[0.0; DERIVATIVES]; length],
             prediction: Prediction::new(length),
-            settles: false,
+            has_instruments: false,
             squares: Vec::with_capacity(samples.list.len()),
             all: 0.0,
             beside: 0.0,
@@ -130,8 +130,8 @@ impl Objective {
     }
 
     /// Whether the equations have the gradient of the prediction as instruments in place of that of the image.
-    pub fn settle(&mut self, settles: bool) {
-        self.settles = settles;
+    pub fn use_instruments(&mut self, has_instruments: bool) {
+        self.has_instruments = has_instruments;
     }
 
     /// Takes the robust scale of a noise, log units.
@@ -298,7 +298,7 @@ impl Objective {
 
     /// Weight of one limb: there are as many more of them as samples lie closer.
     fn limb_weight(&self) -> f64 {
-        let weight = if self.settles { SETTLING_LIMB_WEIGHT } else { LIMB_WEIGHT };
+        let weight = if self.has_instruments { SETTLING_LIMB_WEIGHT } else { LIMB_WEIGHT };
         weight * self.samples.stride as f64 / self.border
     }
 
@@ -311,7 +311,7 @@ impl Objective {
         state: &State,
     ) -> Option<Reduced> {
         let mut equations = Equations::new();
-        if self.settles {
+        if self.has_instruments {
             let (samples, visible) = (&self.samples, &self.seen.visible);
             self.prediction.predict(problem, samples, visible, &level.shades, (&state.pose, &state.light));
         }
@@ -346,7 +346,7 @@ impl Objective {
             let Some(colours) = level.image.at(place) else { continue };
             self.seen_values[cell] = colours.log.map(|log| log as f32);
             let (rows, _) = self.derivatives[cell].as_chunks_mut::<UNKNOWNS>();
-            let gradient = if self.settles { self.prediction.gradient(cell) } else { colours.gradient };
+            let gradient = if self.has_instruments { self.prediction.gradient(cell) } else { colours.gradient };
             for (row, [by_column, by_row]) in rows.iter_mut().zip(gradient) {
                 let derivative = by_column * by_pose[0] + by_row * by_pose[1];
                 row.iter_mut().zip(&derivative).for_each(|(out, value)| *out = *value as f32);

@@ -48,7 +48,7 @@ impl ContrastProblem<'_> {
 impl<'a> ContrastProblem<'a> {
     /// Of two views as they are, both in pixels.
     pub fn of_views(image: &'a ColourView, depth: &'a DepthView, normal_error: &'a [f32]) -> Self {
-        let (object, normals) = (&image.mask, &depth.normals);
+        let (object, normals) = (image.object(), &depth.normals);
         Self { image, object, depth, normals, normal_error, unit_scale: 1.0, scale_is_held: false }
     }
 }

@@ -201,9 +201,9 @@ impl ContrastRegistration {
         frame: &Frame,
         state: &State,
     ) -> Option<Reduced> {
-        self.objective.settle(true);
+        self.objective.use_instruments(true);
         let reduced = self.objective.linearise(problem, &mut self.levels[0], frame, state);
-        self.objective.settle(false);
+        self.objective.use_instruments(false);
         reduced
     }
 
@@ -219,12 +219,12 @@ impl ContrastRegistration {
         self.objective.expect_size(problem, pose);
         let by_sectors = self.jackknife(problem, pose);
         let frame = self.look(problem, &mut state, None)?;
-        self.objective.settle(true);
+        self.objective.use_instruments(true);
         let reduced = self.objective.linearise(problem, &mut self.levels[0], &frame, &state);
         let (objective, frame, state) = (&self.objective, &frame, &state);
         let uncertainty = reduced
             .map(|reduced| described(&Linearised { problem, objective, reduced: &reduced, frame, state }, by_sectors));
-        self.objective.settle(false);
+        self.objective.use_instruments(false);
         uncertainty
     }
 

@@ -158,7 +158,7 @@ impl ContrastSearch {
 /// Registers from `start`, which is near the end already, as the last stage of the search does, by another version of the
 /// image; the pose and its E.
 #[must_use]
-pub fn settle(problem: &ContrastProblem<'_>, start: &Similarity) -> Option<(Similarity, f64)> {
+pub fn register_again(problem: &ContrastProblem<'_>, start: &Similarity) -> Option<(Similarity, f64)> {
     let mut registration = registration(problem, &LAST, 0.0);
     registration.begin(problem, start, LAST.effort);
     while !registration.step(problem) {}

@@ -8,10 +8,11 @@ use crate::pose::sandwich::Scores;
 use crate::pose::uncertainty::{Uncertainty, describe, weakest_of};
 use crate::view::Size;
 
-/// Side of the tiles of the depth map whose scores count as one observation, depth pixels: three sigmas of the local
-/// means, and as they larger on larger objects. So are the outline's, by tiles of the image.
+/// Side of the tiles of the depth map whose scores count as one observation, depth pixels: three sigmas of the local means. Like these, it
+/// grows with the object. Scores of the silhouette are summed by tiles of the image of the same side.
 const TILE: f64 = 9.0;
-/// What a covariance is taken of.
+
+/// The linearised problem whose covariance is computed.
 pub(super) struct Linearised<'a> {
     pub problem: &'a ContrastProblem<'a>,
     pub objective: &'a Objective,
@@ -48,8 +49,8 @@ impl Linearised<'_> {
     }
 }
 
-/// Of the linearisation that the objective holds; held unknowns have none. The outline is as little free of errors as the
-/// contrast: what it adds to the information it adds to the scores as well.
+/// The covariance of the linearisation that the objective holds, zero for held unknowns. The silhouette adds to the scores as it does to the
+/// information, because its errors are as real as those of the contrast. Student's correction is left out: the jackknife has one.
 fn covariance(linearised: &Linearised<'_>, held: &[bool; UNKNOWNS]) -> PoseMatrix {
     let [contrast, outline] = linearised.tiles();
     let mut scores = Scores::of(contrast.iter());

@@ -2,7 +2,7 @@
 //!
 //! Limits: brightness alone; an edge of print is one as well, which rounds and robust weights have to tell.
 
-use crate::view::Size;
+use crate::view::{Gaussian, Size};
 
 /// Gaussian blurs, pixels, and how far along the normal an edge is looked for on each.
 pub const LEVELS: [(f64, f64); 3] = [(3.0, 14.0), (1.5, 7.0), (0.8, 3.5)];
@@ -62,23 +62,7 @@ impl Edges {
     }
 }
 
-/// A Gaussian blur, the frame continued by its border.
 fn blurred(size: Size, values: &[f32], sigma: f64) -> Vec<f32> {
-    let reach = (REACH * sigma).ceil() as isize;
-    let weights: Vec<f32> = (-reach..=reach).map(|k| (-0.5 * (k as f64 / sigma).powi(2)).exp() as f32).collect();
-    let total: f32 = weights.iter().sum();
-    let pass = |source: &[f32], along_rows: bool| -> Vec<f32> {
-        let sum = |index: usize| {
-            let (column, row) = size.position(index);
-            let value = |k: isize| {
-                let within = |at: usize, length: usize| (at as isize + k).clamp(0, length as isize - 1) as usize;
-                let (column, row) =
-                    if along_rows { (within(column, size.width), row) } else { (column, within(row, size.height)) };
-                source[size.index(column, row)]
-            };
-            (-reach..=reach).zip(&weights).map(|(k, weight)| weight * value(k)).sum::<f32>() / total
-        };
-        (0..size.len()).map(sum).collect()
-    };
-    pass(&pass(values, true), false)
+    let [means] = Gaussian::new(size, sigma, REACH).means(|_| true, |_, index| values[index]);
+    means.into_iter().map(|mean| mean as f32).collect()
 }

@@ -1,6 +1,6 @@
 //! Annealing: rounds of damped Gauss-Newton whose robust scale shrinks to that of the noise, from coarse to fine.
 
-use super::fit::{Photometric, undetermined_light};
+use super::solver::{Photometric, undetermined_light};
 use super::phase::{Descent, Phase};
 use super::points::Sampling;
 use super::problem::PhotometricProblem;

@@ -1,6 +1,6 @@
 //! Covariance of the pose: the [sandwich](crate::pose::sandwich) over tiles of the depth map (docs/method.md, section 14).
 //!
-//! M is the matrix of the equations that the pose solves, and a tile's score that once the light has followed. The
+//! M is the matrix of the pose's equations with the light eliminated, and so is the score of a tile. The
 //! [jackknife](super::jackknife) adds the errors that correlate over more than a tile.
 //!
 //! M itself is in part an effect of noise: gradients of a noisy image are noisy as well, and noise squared looks like
@@ -156,7 +156,7 @@ fn sigma_growth(matrix: &PoseMatrix, noise_information: &PoseMatrix) -> Option<P
 mod tests {
     use super::*;
     use crate::numeric::noise;
-    use crate::pose::photometric::fit::INSTRUMENT_BLUR;
+    use crate::pose::photometric::solver::INSTRUMENT_BLUR;
     use crate::pose::spline_image::SplineImage;
     use crate::view::{ColourImage, ColourSamples, ColourView};
 

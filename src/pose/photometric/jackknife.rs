@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::fit::Photometric;
+use super::solver::Photometric;
 use super::problem::PhotometricProblem;
 use crate::error::Result;
 use crate::pose::increment::{Frame, PoseMatrix, PoseVector};

@@ -31,7 +31,7 @@
 //! | `problem` | what goes in, what comes out |
 //! | `registration` | [`Photometric`] from its start to its report: rounds of `annealing`, then of `instruments` |
 //! | `phase` | what it does next |
-//! | `fit` | what it owns, and what each round takes from it |
+//! | `solver` | what it owns, and what each round takes from it |
 //! | `state` | pose and light, and a step of both |
 //! | `points` | which depth points take part |
 //! | `residual` | r and its derivatives |
@@ -50,7 +50,6 @@ mod annealing;
 mod covariance;
 mod equations;
 mod evaluation;
-mod fit;
 mod instruments;
 mod jackknife;
 mod near;
@@ -61,6 +60,7 @@ mod problem;
 mod registration;
 mod relief;
 mod residual;
+mod solver;
 mod state;
 mod weighting;
 

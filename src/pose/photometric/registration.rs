@@ -1,8 +1,8 @@
 //! A photometric registration from its initial pose to its report: annealing, then instrumental variables.
 
 use super::annealing::SCALE_SHRINKING;
-pub use super::fit::Photometric;
-use super::fit::coarsest;
+pub use super::solver::Photometric;
+use super::solver::coarsest;
 use super::phase::Phase;
 use super::points::Sampling;
 use super::problem::{PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination};
