@@ -91,7 +91,7 @@ fn searched(value: &Value, format: &str) -> Result<Calibration, Reason> {
     }
     let mut found = tree::search(value)?;
     if found.cameras.is_empty() && found.poses.is_empty() {
-        return Err(format!("it is {format}, but holds {NEITHER} that is known here"));
+        return Err(format!("it is {format}, but holds {NEITHER} by a known name"));
     }
     found.format = format.into();
     Ok(found)

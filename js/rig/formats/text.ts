@@ -59,7 +59,7 @@ function nothingIn(value: unknown, format: string): BimodalError {
   const isText = (each: unknown) => typeof each !== "object" || each === null;
   if (isText(value) || (Array.isArray(value) && value.every(isText)))
     return badFile("it is a text in none of the formats that are read");
-  return badFile(`it is ${format}, but has ${NEITHER} by a known name`);
+  return badFile(`it is ${format}, but holds ${NEITHER} by a known name`);
 }
 
 async function searched(value: unknown, format: string, text: string): Promise<Read> {
