@@ -3,7 +3,7 @@ import { type Check, isObject, number, numbers, object, word, wrong } from "./ch
 import { BimodalError } from "./errors.js";
 import { cameraOf } from "./matrices.js";
 
-/** OpenCV's longest list; what of it is known here, the numerics judge. */
+/** OpenCV's longest list. The numerics refuse the coefficients that they do not support. */
 const MOST_COEFFICIENTS = 14;
 
 /** As many numbers as the lens model has. */

@@ -158,7 +158,7 @@ describe("what is not read is named, with the way out", () => {
     "mesh.stl": ["solid a\n facet normal 0 0 1\n  outer loop\n", /STL/],
     "mesh.gltf": ['{"scene": 0, "asset": {"generator": "x", "version": "2.0"}}', /mesh \(glTF\)/],
     "mesh.off": ["OFF\n8 6 12\n0 0 0\n", /OFF/],
-    "noise.bin": ["\x00\x01\x02\xff", /not known here; .*raw data without a header, give its size/],
+    "noise.bin": ["\x00\x01\x02\xff", /not supported; .*raw data without a header, give its size/],
   };
   for (const [name, [head, reason]] of Object.entries(heads))
     test(name, () => refused(name, new Uint8Array(Buffer.from(head, "latin1")), reason));

@@ -37,7 +37,7 @@ const FILES = [
   ["empty.png", new Uint8Array(0), /it is empty/],
   ["spaces.txt", text(" \n\t "), /it is empty or has only spaces/],
   ["large.bin", new Uint8Array(65 * MEGABYTE), /65 MB large; up to 64 MB/],
-  ["noise.bin", new Uint8Array([0, 1, 2, 3, 255]), /format is not known here/],
+  ["noise.bin", new Uint8Array([0, 1, 2, 3, 255]), /format is not supported/],
   ["a.gif", text("GIF89a\x00\x01"), /a GIF; save it as PNG/],
   ["a.bmp", text("BM\x00\x01"), /a BMP; save it as PNG/],
   ["a.npz", text("PK\x03\x04...."), /ZIP archive .* unpack/],
@@ -104,7 +104,7 @@ const FILES = [
   ["cut.tif", cut("depth-float-zlib.tif", 300), /TIFF|beyond its own end/],
   ["big.tif", cut("depth-bigtiff.tif", 40), /beyond its own end/],
   ["tags.tif", bytes([0x49, 0x49, 43, 0, 8, 0, 0, 0], u32(16, 0, 0xffffffff, 0xffff)), /TIFF has \d+ tags/],
-  ["kind.tif", changed("depth-16-None.tif", [2, 44]), /not known here/],
+  ["kind.tif", changed("depth-16-None.tif", [2, 44]), /not supported/],
   ["zstd.tif", tiff(tiffTags(4096, 4096, { 259: 50000, 273: 110, 279: 8 }), zstdOf(2 ** 31)), /damaged|cut off/],
   ["lerc.tif", tiff(tiffTags(4, 4, { 259: 34887, 273: 110, 279: 100 }), lercOf({ width: 2 ** 15 })), /kind of LERC/],
   [

@@ -142,11 +142,11 @@ fn lens_of(raw: &RawCamera, label: &str, warnings: &mut Warnings) -> Result<Lens
         );
     } else if !BROWN.is_match(&model) {
         let short: String = raw.model.as_deref().unwrap_or("").chars().take(40).collect();
-        return Err(format!("its lens model \"{short}\" is not known here; Brown's and Kannala-Brandt's are"));
+        return Err(format!("its lens model \"{short}\" is not supported; Brown's and Kannala-Brandt's are"));
     }
     // Further coefficients are those of thin prisms and of a tilted sensor.
     if values.len() > 14 || is_bent(values.get(8..).unwrap_or(&[])) {
-        return Err("its distortion has thin-prism or tilt terms, which are not known here".into());
+        return Err("its distortion has thin-prism or tilt terms, which are not supported".into());
     }
     Ok(Lens::Brown(std::array::from_fn(|index| values.get(index).copied().unwrap_or(0.0))))
 }

@@ -42,7 +42,7 @@ fn camera(line: &str) -> Result<RawCamera, Reason> {
     let parts = parts.ok_or_else(|| format!("it has a line that is no camera: {}", short()))?;
     let (id, name) = (&parts[1], &parts[2]);
     let (focals, lens, is_fisheye) =
-        model(name).ok_or_else(|| format!("its camera {id} is of the model {name}, which is not known here"))?;
+        model(name).ok_or_else(|| format!("its camera {id} is of the model {name}, which is not supported"))?;
     let values: Vec<Option<f64>> = parts[5].split_whitespace().map(number_in).collect();
     let needed = focals + 2 + lens;
     let numbers = values.iter().copied().collect::<Option<Vec<f64>>>().filter(|numbers| numbers.len() == needed);

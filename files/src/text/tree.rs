@@ -155,7 +155,7 @@ impl Search {
             if model != "pinhole" {
                 let model = short(&model);
                 return Err(format!(
-                    "its camera \"{called}\" is of Kalibr's model \"{model}\"; only pinhole is known here"
+                    "its camera \"{called}\" is of Kalibr's model \"{model}\"; only pinhole is supported"
                 ));
             }
             let [fx, fy, cx, cy] = four[..] else {

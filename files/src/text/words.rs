@@ -122,6 +122,6 @@ pub fn strange(bytes: &[u8]) -> String {
     }
     match kind_in(&PICTURES, bytes).or_else(|| kind_in(&STRANGE, bytes)) {
         Some(kind) => format!("it is {kind}"),
-        None => "its format is not known here".into(),
+        None => "its format is not supported".into(),
     }
 }

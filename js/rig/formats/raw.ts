@@ -113,6 +113,6 @@ export function rawRefused(bytes: Uint8Array) {
     ),
   );
   return badFile(
-    `its format is not known here; if it is raw data without a header, give its size in pixels (width and height)${fitting.length > 0 ? `: ${fitting.join(" or ")} would have its ${bytes.length} bytes` : ""}, or save it as 16-bit PNG or .npy`,
+    `its format is not supported; if it is raw data without a header, give its size in pixels (width and height)${fitting.length > 0 ? `: ${fitting.join(" or ")} would have its ${bytes.length} bytes` : ""}, or save it as 16-bit PNG or .npy`,
   );
 }

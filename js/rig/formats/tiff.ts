@@ -247,7 +247,7 @@ export function readTiff(bytes: Uint8Array): Picture | Promise<Picture> {
   const { tags, little, hasMore } = directory(view);
   const found = layout(tags);
   if (![1, 2, 3].includes(found.predictor) || (found.predictor === 3 && !found.isFloat))
-    throw badFile(`this TIFF has the predictor ${found.predictor}, which is not known here`);
+    throw badFile(`this TIFF has the predictor ${found.predictor}, which is not supported`);
   const picture = (codecs?: Codecs) =>
     turnedBy(
       { ...asPicture(pixels(bytes, found, little, codecs), found), warnings: hasMore ? [MORE] : [] },
