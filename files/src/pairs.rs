@@ -11,7 +11,7 @@ use walkdir::{DirEntry, WalkDir};
 
 use crate::problem::{Problem, Result, plain, shown};
 use crate::read;
-use crate::text::words::is_strange_picture;
+use crate::read::foreign::is_foreign_picture;
 use crate::warning::{Warning, Warnings};
 
 /// Time stamps farther apart than this, in seconds, are no pair; TUM's own tool has the same.
@@ -260,7 +260,7 @@ fn by_time(mut colours: Vec<(f64, String)>, mut depths: Vec<(f64, String)>) -> V
 fn by_names(folder: &Path, files: &[PathBuf], warnings: &mut Warnings) -> Vec<Pair> {
     let is_picture = |path: &&PathBuf| {
         PICTURE.is_match(&path.to_string_lossy())
-            || read::head(path, HEAD).is_ok_and(|bytes| read::kind_of(&bytes).is_some() || is_strange_picture(&bytes))
+            || read::head(path, HEAD).is_ok_and(|bytes| read::kind_of(&bytes).is_some() || is_foreign_picture(&bytes))
     };
     let named = |path: &PathBuf| (name_in(folder, path), path.clone());
     let (masks, others): (Vec<_>, Vec<_>) =

@@ -12,7 +12,7 @@ use crate::colour;
 use crate::depth::depth_of;
 use crate::pairs::{self, Pair, Pairs, base, key, name_in};
 use crate::problem::{Problem, Result, shown};
-use crate::read::{self, kind_of};
+use crate::read::{self, foreign, kind_of};
 use crate::text::names::{Pattern, pattern};
 use crate::text::numbers::shown as number;
 use crate::text::{self, Calibration, NamedCamera, NamedPose, words};
@@ -78,7 +78,7 @@ pub fn read_calibration(path: &Path) -> Result<Calibration> {
     let found = match text::text_of(&bytes) {
         Some(_) if is_raster(&bytes) => Err("it is a picture where cameras or poses were asked for".into()),
         Some(text) => text::read_text(&text),
-        None => Err(words::strange(&bytes)),
+        None => Err(foreign::describe(&bytes)),
     };
     found.map_err(|reason| Problem::file(path, reason))
 }
@@ -127,7 +127,7 @@ fn add_cameras(folder: &mut RigFolder) {
 }
 
 fn is_raster(bytes: &[u8]) -> bool {
-    kind_of(bytes).is_some() || words::is_strange_picture(bytes)
+    kind_of(bytes).is_some() || foreign::is_foreign_picture(bytes)
 }
 
 struct Reader {
@@ -232,7 +232,7 @@ impl Reader {
     fn text(&mut self, name: &str, path: &Path) -> Option<Calibration> {
         self.read((name, path), || {
             let bytes = read::whole(path).map_err(|problem| problem.reason().to_owned())?;
-            let text = text::text_of(&bytes).ok_or_else(|| words::strange(&bytes))?;
+            let text = text::text_of(&bytes).ok_or_else(|| foreign::describe(&bytes))?;
             let found = text::read_text(&text)?;
             let (says, warnings) = (says(&found), found.warnings.clone());
             Ok((found, says, warnings))

@@ -162,7 +162,12 @@ pub fn fix_depth_of_surface(
 }
 
 /// The pose's t_z of an orthographic image: the median depth difference of the overlap becomes zero.
-pub fn fix_depth_of_pose(pair: &ViewPair, correspondences: &Correspondences, spare: &mut Vec<f32>, solution: &mut Solution) {
+pub fn fix_depth_of_pose(
+    pair: &ViewPair,
+    correspondences: &Correspondences,
+    spare: &mut Vec<f32>,
+    solution: &mut Solution,
+) {
     if pair.image.camera.is_orthographic()
         && let Some(difference) = median_gap(solution, correspondences, spare, |image, depth| image - depth)
     {

@@ -1,5 +1,6 @@
 //! Files as rasters: PNG and JPEG through `image`, `.npy` by hand. What they hold is told by their first bytes.
 
+pub mod foreign;
 mod npy;
 mod picture;
 mod raster;
@@ -11,7 +12,6 @@ use std::path::Path;
 use bimodal_stereo::{Light, LightGaussian, LightPrior};
 
 use crate::problem::{Problem, Result};
-use crate::text::words;
 pub use npy::bytes as npy_bytes;
 pub use raster::{MOST_SIDE, Raster, Samples};
 
@@ -61,7 +61,7 @@ pub fn decoded(bytes: &[u8]) -> std::result::Result<Raster, String> {
         Some(Kind::Png) => picture::png(bytes),
         Some(Kind::Jpeg) => picture::jpeg(bytes),
         Some(Kind::Npy) => npy::read(bytes),
-        None => Err(format!("it is neither a PNG nor a JPEG nor a .npy file: {}", words::strange(bytes))),
+        None => Err(format!("it is neither a PNG nor a JPEG nor a .npy file: {}", foreign::describe(bytes))),
     }
 }
 

@@ -230,7 +230,10 @@ mod tests {
         // Not where the image is so clean that there is more to explain ..
         assert_eq!(winner(&[large.clone(), exact], 0.005).0, Some(Origin::Candidate(40)));
         // .. nor where the first leaves hardly more, or the other sees little.
-        assert_eq!(winner(&[optimum(40.0, 1000.0, 0.012), optimum(0.0, 600.0, 0.0099)], 0.01), (Some(Origin::Candidate(40)), 1));
+        assert_eq!(
+            winner(&[optimum(40.0, 1000.0, 0.012), optimum(0.0, 600.0, 0.0099)], 0.01),
+            (Some(Origin::Candidate(40)), 1)
+        );
         assert_eq!(winner(&[large, optimum(0.0, 400.0, 0.0099)], 0.01), (Some(Origin::Candidate(40)), 0));
     }
 

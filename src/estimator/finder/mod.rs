@@ -37,7 +37,7 @@
 mod candidates;
 mod decision;
 mod local_contrast;
-mod local_optima;
+pub mod local_optima;
 mod nearby;
 mod opening;
 mod silhouettes;
@@ -61,7 +61,6 @@ use silhouettes::Anywhere;
 
 pub use candidates::search;
 pub use decision::{Decision, Method, Staying};
-pub use local_optima::RegisteredCandidate;
 pub use nearby::explains;
 pub use opening::Opening;
 pub use trust_region::TrustRegion;

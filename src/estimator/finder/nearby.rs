@@ -12,8 +12,8 @@ use crate::pose::{COARSEST_NEAR, ImageGrid, OutlineReport, PhotometricReport, Se
 
 use super::candidates::{Candidates, NEARBY, search};
 use super::local_optima::{Choice, LocalOptima, Origin, RegisteredCandidate};
-use super::trust_region::TrustRegion;
 use super::silhouettes;
+use super::trust_region::TrustRegion;
 
 /// What has come of a slice.
 pub enum Progress {

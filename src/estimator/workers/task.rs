@@ -3,7 +3,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::estimator::finder::RegisteredCandidate;
+use crate::estimator::finder::local_optima::RegisteredCandidate;
 use crate::pose::{Candidate, Hypothesis, SearchFinding, SearchTask, Similarity};
 
 /// A part of the initialisation. It depends on the pair, the options and itself alone, so that whoever has these gets

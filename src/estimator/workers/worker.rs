@@ -1,7 +1,8 @@
 //! Does parts of an estimator's work for it, in another thread with an instance of its own.
 
 use crate::error::Result;
-use crate::estimator::finder::{Opening, RegisteredCandidate, TrustRegion, search};
+use crate::estimator::finder::local_optima::RegisteredCandidate;
+use crate::estimator::finder::{Opening, TrustRegion, search};
 use crate::estimator::pair::ViewPair;
 use crate::estimator::stages::ColourRegistration;
 use crate::options::Options;

@@ -1,9 +1,9 @@
 //! Annealing: rounds of damped Gauss-Newton whose robust scale shrinks to that of the noise, from coarse to fine.
 
-use super::solver::{Photometric, undetermined_light};
 use super::phase::{Descent, Phase};
 use super::points::Sampling;
 use super::problem::PhotometricProblem;
+use super::solver::{Photometric, undetermined_light};
 use super::weighting::final_robust_scale;
 use crate::error::Result;
 use crate::pose::descent::{Damping, Lowered};

@@ -1,10 +1,10 @@
 //! Rounds with instrumental variables: sum w Z^T r = 0 in place of sum w J^T r = 0, because the gradients J of a noisy image are noisy
 //! as well (docs/method.md, section 10).
 
-use super::solver::Photometric;
 use super::phase::Phase;
 use super::points::Sampling;
 use super::problem::{PhotometricProblem, PhotometricTermination};
+use super::solver::Photometric;
 use super::state::State;
 use crate::error::Result;
 use crate::pose::increment::Frame;

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::solver::Photometric;
 use super::problem::PhotometricProblem;
+use super::solver::Photometric;
 use crate::error::Result;
 use crate::pose::increment::{Frame, PoseMatrix, PoseVector};
 use crate::pose::jackknife::{SECTORS, covariance, sectors};

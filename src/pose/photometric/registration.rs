@@ -1,11 +1,11 @@
 //! A photometric registration from its initial pose to its report: annealing, then instrumental variables.
 
 use super::annealing::SCALE_SHRINKING;
-pub use super::solver::Photometric;
-use super::solver::coarsest;
 use super::phase::Phase;
 use super::points::Sampling;
 use super::problem::{PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination};
+pub use super::solver::Photometric;
+use super::solver::coarsest;
 use super::state::State;
 use super::weighting::{Weighting, final_robust_scale};
 use crate::error::Result;
