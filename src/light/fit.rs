@@ -25,7 +25,7 @@ const MOST_PIXELS: usize = 8000;
 /// deviations of normal noise).
 const SCALE_OF_MEDIAN: f64 = 3.0;
 /// Smallest robust scale in log units: the noise of a good 8-bit image. Exact colours would make it zero.
-const SMALLEST_SCALE: f64 = 0.005;
+pub(super) const SMALLEST_SCALE: f64 = 0.005;
 /// Pixels whose terms are summed in f32 before the sum is added to one in f64: few enough to keep six digits.
 const SUMMANDS: usize = 256;
 /// How often the prior's weight is taken tenfold until the equations of the light can be solved. Sums in f32 are off by up

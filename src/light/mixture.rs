@@ -11,6 +11,7 @@
 //! A. Dempster, N. Laird, D. Rubin, J. R. Stat. Soc. B 39, 1977; K. Lange, R. Little, J. Taylor: "Robust statistical
 //! modeling using the t distribution", J. Am. Stat. Assoc. 84, 1989.
 
+use super::fit::SMALLEST_SCALE;
 use crate::light::Light;
 use crate::light::colour_axes::{Axes, AxesPrior, principal_axis};
 use crate::light::harmonics::HARMONICS;
@@ -22,8 +23,6 @@ pub const MOST_REGIONS: usize = 8;
 const MOST_UNKNOWNS: usize = COEFFICIENTS + 3 * MOST_REGIONS;
 /// Degrees of freedom of Student's t: the usual choice of robust regression.
 const DEGREES: f64 = 4.0;
-/// Smallest scale in log units: the noise of a good 8-bit image. Exact colours would make it zero.
-const SMALLEST_SCALE: f64 = 0.005;
 /// Standard deviation of a paint's log offset: most paints reflect 4 to 90 percent.
 const PAINT_SPREAD: f64 = 1.0;
 /// Rounds of expectation maximisation for each number of regions, and the gain of log likelihood for each pixel below

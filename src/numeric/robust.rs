@@ -10,6 +10,13 @@ use super::Real;
 /// sigma = 1.4826 median |x| of normal x: the median absolute deviation as a standard deviation.
 pub(crate) const SIGMA_OF_MEDIAN: f64 = 1.4826;
 
+/// The robust scale s in standard deviations of the residuals: those of three sigmas, beyond which hardly any is noise, keep a quarter of
+/// their weight.
+pub(crate) const SCALE_IN_SIGMAS: f64 = 3.0;
+
+/// Root mean square of |r| over three channels of unit normal noise.
+pub(crate) const NORM_OF_CHANNELS: f64 = 1.732_050_807_568_877_2;
+
 /// Median of |r| over three channels of unit normal noise: the root of the median of chi squared with three degrees of
 /// freedom.
 pub(crate) const MEDIAN_OF_THREE: f64 = 1.538_172_253_6;

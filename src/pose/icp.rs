@@ -39,8 +39,6 @@ const SHRINKING: f64 = 0.9;
 const FIRST_POINT_WEIGHT: f64 = 1.0;
 /// Damping as a share of the weight: 1e-2 slows far starts so much that 10 of 34 do not arrive, 1e-5 is no faster.
 const DAMPING: f64 = 1e-3;
-/// The robust scale in robust standard deviations of the residuals: beyond three hardly any residual is noise.
-const SCALE_IN_SIGMAS: f64 = 3.0;
 /// Least robust scale as a share of the final distance: below it residuals are rounding.
 const LEAST_SCALE: f64 = 0.02;
 /// Settled: a step that rotates by less (radians), moves by less (object sizes) and grows by less. 0.0006 degrees.
@@ -296,7 +294,8 @@ impl Icp {
             residual(options.metric, &found.difference, &found.normal).abs() as f32
         }));
         let median = quantile(&mut self.distances, 0.5);
-        (SCALE_IN_SIGMAS * robust::SIGMA_OF_MEDIAN * f64::from(median)).max(LEAST_SCALE * options.final_distance)
+        (robust::SCALE_IN_SIGMAS * robust::SIGMA_OF_MEDIAN * f64::from(median))
+            .max(LEAST_SCALE * options.final_distance)
     }
 
     /// Centroid of the transformed points of the pairs and their root mean square distance from it.

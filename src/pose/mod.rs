@@ -16,6 +16,7 @@
 //! | `descent` | the step control of damped Gauss-Newton, for `photometric/` and `contrast/` | | | |
 //! | `increment` | a Gauss-Newton step of a similarity: seven unknowns | | | |
 //! | `sandwich`, `jackknife` | the covariance of a pose from the scores of independent clusters, and from its moves without each sector | | | |
+//! | `residuals` | what `photometric/` and `contrast/` expect of residuals | | | |
 //! | `sums` | the sums of a step over robust residuals | | | |
 //! | `uncertainty` | one sigma of each number of a pose, from the information of matched surfaces | | | |
 //! | `spline_image`, `silhouette`, `distance_transform` | log S between pixels; distance to the mask | | | |
@@ -37,6 +38,7 @@ mod outline;
 mod photometric;
 mod prior;
 mod ransac;
+mod residuals;
 mod sandwich;
 mod search;
 mod silhouette;

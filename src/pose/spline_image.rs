@@ -24,8 +24,6 @@ const HORIZON: usize = 14;
 const RINGS: u8 = 8;
 /// Mirrored samples of a line: one before, two behind.
 const MIRRORED: usize = 3;
-/// Reach of a Gaussian in sigmas: what lies beyond weighs 1 %.
-const REACH: f64 = 3.0;
 
 /// Lanes that hold the three colours of a sample: one, and what follows in the fourth is ignored.
 const CHUNKS: usize = 3_usize.div_ceil(LANES);
@@ -226,7 +224,7 @@ fn blurred(view: &ColourView, sigma: f64) -> [Vec<f32>; 3] {
     if sigma <= 0.0 {
         return view.log.clone();
     }
-    Gaussian::new(view.size, sigma, REACH)
+    Gaussian::new(view.size, sigma, Gaussian::REACH)
         .means(|index| view.mask[index], |channel, index| view.log[channel][index])
         .map(|means| means.into_iter().map(|mean| mean as f32).collect())
 }

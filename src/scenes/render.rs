@@ -8,7 +8,7 @@ use crate::view::{Camera, Normals, Size};
 
 /// How far outside a triangle a pixel centre may lie, in barycentric coordinates (no unit): rounding must not open
 /// a crack between two triangles that share an edge. 64-bit rounding at 1024 pixels is 1e-13.
-const EDGE_TOLERANCE: f64 = 1e-9;
+pub(super) const EDGE_TOLERANCE: f64 = 1e-9;
 /// A triangle smaller than this is seen edge on, in squared units of the ray plane, relative to its longest edge
 /// squared.
 const EDGE_ON: f64 = 1e-12;

@@ -10,6 +10,9 @@ pub(crate) struct Gaussian {
 }
 
 impl Gaussian {
+    /// A reach, sigmas, beyond which weights are below 1 %.
+    pub const REACH: f64 = 3.0;
+
     /// Of `sigma` pixels, above zero, cut off at `reach` sigmas or at the raster's longer side.
     pub fn new(size: Size, sigma: f64, reach: f64) -> Self {
         let reach = ((reach * sigma).ceil() as usize).min(size.width.max(size.height));

@@ -13,6 +13,7 @@ use super::samples::Samples;
 use super::seen::Seen;
 use crate::numeric::{quantile, robust};
 use crate::pose::increment::{Frame, PoseVector, SCALE, TRANSLATION_Z, UNKNOWNS};
+use crate::pose::residuals::LEAST_NOISE;
 use crate::pose::silhouette::{OUTSIDE_WEIGHT, SLACK, Silhouette};
 use crate::pose::similarity::Similarity;
 use crate::pose::spline_image::SplineImage;
@@ -32,9 +33,7 @@ const SIZE_WEIGHT: f64 = 5.0;
 /// The same over that of the units, where poses are compared: a view may be a quarter larger or smaller than they say.
 const UNIT_WEIGHT: f64 = 1.0;
 /// The robust scale over the noise: three sigmas of three channels.
-const SCALE_OVER_NOISE: f64 = 5.196_152_422_706_632;
-/// Noise that is always allowed for, log units.
-const LEAST_NOISE: f64 = 0.002;
+const SCALE_OVER_NOISE: f64 = robust::SCALE_IN_SIGMAS * robust::NORM_OF_CHANNELS;
 /// The least share of its weight that a sample keeps in the local means: one that has none would have no mean.
 const LEAST_SHARE: f64 = 1e-4;
 /// Fits of the light, each reweighted, at the beginning of a round.

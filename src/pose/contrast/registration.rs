@@ -9,6 +9,7 @@ use super::seen::Seen;
 use super::uncertainty::{Linearised, described};
 use crate::pose::descent::{Damping, Lowered};
 use crate::pose::increment::{Frame, PoseVector};
+use crate::pose::residuals::{FIRST_SCALE, MEASURED_SIDE, SHRINKING};
 use crate::pose::silhouette::Silhouette;
 use crate::pose::similarity::Similarity;
 use crate::pose::spline_image::SplineImage;
@@ -20,15 +21,10 @@ const BLUR: f64 = 1.5;
 /// .. with local means over a Gaussian of this sigma, depth pixels; that of 2 to 5 serve alike. Both for objects as
 /// large as those that they were measured on, views of 96x96; on larger ones they grow with it.
 const MEANS: [f64; LEVELS] = [3.0, 5.0];
-/// Depth pixels of such an object, root of their number.
-const MEASURED_SIDE: f64 = 64.0;
 /// Blur of the sharp image in strides beyond the first: what lies between samples would be noise.
 const BLUR_OF_STRIDE: f64 = 0.4;
 /// v = log(I + 0.1 median I).
 const LIFT: f32 = 0.1;
-/// The noise whose robust scale a registration starts with, over that of the residuals; it shrinks by 0.6 a round.
-const FIRST_SCALE: f64 = 2.0;
-const SHRINKING: f64 = 0.6;
 /// Gauss-Newton steps of a round, and attempts to find the damping of each.
 const MOST_STEPS: usize = 4;
 const MOST_ATTEMPTS: usize = 6;

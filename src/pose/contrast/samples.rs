@@ -7,11 +7,8 @@ use super::equations::SHADES;
 use super::problem::ContrastProblem;
 use crate::light::basis;
 use crate::numeric::robust;
+use crate::pose::residuals::NORMAL_ERROR;
 use crate::view::{Size, extent};
-
-/// Error of a normal, radians, at which its point has lost three quarters of its weight, as in the registration by
-/// colours.
-const NORMAL_ERROR: f64 = 0.1;
 
 /// A pixel of the grid that has a point and a normal.
 pub(super) struct Sample {

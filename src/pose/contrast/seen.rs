@@ -5,12 +5,11 @@ use nalgebra::Vector3;
 use super::problem::ContrastProblem;
 use super::samples::Samples;
 use crate::pose::similarity::Similarity;
+use crate::pose::visibility::HIDDEN_BEHIND;
 use crate::view::Size;
 
 /// Cosine at the rim: flatter views of a surface have no reliable pixel.
 const RIM: f64 = 0.05;
-/// A sample counts as hidden when it lies this many cells behind the nearest one.
-const HIDDEN_BEHIND: f64 = 3.0;
 /// Neighbours farther apart than this many median steps do not belong to one surface.
 const JUMP: f64 = 4.0;
 

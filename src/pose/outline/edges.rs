@@ -8,8 +8,6 @@ use crate::view::{Gaussian, Size};
 pub const LEVELS: [(f64, f64); 3] = [(3.0, 14.0), (1.5, 7.0), (0.8, 3.5)];
 /// Steps along the normal, pixels.
 const STEP: f64 = 0.5;
-/// Standard deviations that a blur reaches.
-const REACH: f64 = 3.0;
 /// Gradient that is no edge, brightness of 0 .. 1 for each pixel: two levels of 8 bit.
 const LEAST_GRADIENT: f64 = 0.008;
 
@@ -63,6 +61,6 @@ impl Edges {
 }
 
 fn blurred(size: Size, values: &[f32], sigma: f64) -> Vec<f32> {
-    let [means] = Gaussian::new(size, sigma, REACH).means(|_| true, |_, index| values[index]);
+    let [means] = Gaussian::new(size, sigma, Gaussian::REACH).means(|_| true, |_, index| values[index]);
     means.into_iter().map(|mean| mean as f32).collect()
 }

@@ -7,9 +7,8 @@ use super::solver::{Photometric, undetermined_light};
 use super::weighting::final_robust_scale;
 use crate::error::Result;
 use crate::pose::descent::{Damping, Lowered};
+use crate::pose::residuals::SHRINKING;
 
-/// The robust scale of a round over the one before, at least.
-pub(super) const SCALE_SHRINKING: f64 = 0.6;
 /// Gauss-Newton steps of a round, and attempts to find the damping of each.
 const MOST_STEPS: usize = 6;
 const MOST_ATTEMPTS: usize = 8;
@@ -39,7 +38,7 @@ impl Photometric {
         self.fit_light(problem, level)?;
         self.measure_noise(problem, level);
         let target = final_robust_scale(self.noise.residuals);
-        let tolerated = if self.options.annealing { SCALE_SHRINKING * self.weighting.robust_scale } else { 0.0 };
+        let tolerated = if self.options.annealing { SHRINKING * self.weighting.robust_scale } else { 0.0 };
         self.weigh(problem, target.max(tolerated));
         Ok(Phase::AnnealingStep(Descent {
             level,

@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use super::problem::{Indices, PhotometricProblem};
 use crate::numeric::{DOUBLE_LANES, Doubles, robust};
 use crate::pose::increment::Frame;
+use crate::pose::residuals::NORMAL_ERROR;
 use crate::pose::similarity::Similarity;
 use crate::pose::spline_image::SplineImage;
 use crate::pose::visibility::{Visibility, VisibilityProblem};
@@ -13,9 +14,6 @@ use crate::view::{Size, extent};
 /// Distance from the border of the mask within which points stay out, image pixels: they would enter and leave with
 /// every step, and the spline is continued there.
 const MARGIN: usize = 1;
-/// Error of a normal, radians, at which its point has lost three quarters of its weight. Errors act in the mean by
-/// their square: 0.1 rad shifts the pose by some tenths of a degree whatever the light.
-const NORMAL_ERROR: f64 = 0.1;
 /// Points that a coarse level needs: 20 for each unknown of the pose, 30 where the light's 27 unknowns come in as well,
 /// which may fit the colours in a wrong pose. Measured on Mozart at 64x64, starts 20 and 30 degrees off.
 const ENOUGH_KNOWN: usize = 100;

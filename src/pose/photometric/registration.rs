@@ -1,6 +1,5 @@
 //! A photometric registration from its initial pose to its report: annealing, then instrumental variables.
 
-use super::annealing::SCALE_SHRINKING;
 use super::phase::Phase;
 use super::points::Sampling;
 use super::problem::{PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination};
@@ -10,11 +9,9 @@ use super::state::State;
 use super::weighting::{Weighting, final_robust_scale};
 use crate::error::Result;
 use crate::pose::increment::{PoseMatrix, SCALE, TRANSLATION_Z, clear_unknowns};
+use crate::pose::residuals::{FIRST_SCALE, SHRINKING};
 use crate::pose::similarity::Similarity;
 use crate::pose::uncertainty::{describe, weakest_of};
-
-/// The first robust scale over that of the residuals at the start.
-const FIRST_SCALE: f64 = 2.0;
 
 impl Photometric {
     /// The pose from `start`: [`begin`](Self::begin), [`step`](Self::step) to the end, [`report`](Self::report).
@@ -65,7 +62,7 @@ impl Photometric {
         self.noise.residuals = f64::INFINITY;
         self.fit_light(problem, level)?;
         self.measure_noise(problem, level);
-        let tolerance = if options.annealing { FIRST_SCALE / SCALE_SHRINKING } else { 1.0 };
+        let tolerance = if options.annealing { FIRST_SCALE / SHRINKING } else { 1.0 };
         self.weigh(problem, tolerance * final_robust_scale(self.noise.residuals));
         Ok(())
     }

@@ -8,6 +8,7 @@ use nalgebra::{SMatrix, SVector};
 use super::problem::PhotometricProblem;
 use super::weighting::CORRELATED;
 use crate::pose::contrast::LocalMeans;
+use crate::pose::residuals::MEASURED_SIDE;
 use crate::view::{Normals, Size};
 
 /// Regressors of a point.
@@ -17,7 +18,6 @@ type Coefficients = SVector<f64, REGRESSORS>;
 
 /// Sigmas of the Gaussians, depth pixels of an object as large as that of [`MEASURED_SIDE`].
 const SCALES: [f64; 2] = [1.5, 4.0];
-const MEASURED_SIDE: f64 = 64.0;
 /// Curvatures beyond so many standard deviations count as that.
 const LARGEST: f32 = 2.5;
 /// One sigma of a coefficient, log units a standard deviation of its regressor.

@@ -13,6 +13,7 @@ use super::state::State;
 use super::weighting::{Weighting, final_robust_scale, prior_weight};
 use crate::error::{Error, ErrorKind, Result};
 use crate::pose::increment::{Frame, PoseMatrix, PoseVector};
+use crate::pose::residuals::LEAST_NOISE;
 use crate::pose::similarity::Similarity;
 use crate::pose::spline_image::SplineImage;
 use crate::pose::sums::Sums;
@@ -26,8 +27,6 @@ const BLURS: [f64; COARSEST_NEAR + 1] = [0.0, 1.5, 3.0, 6.0];
 const COARSEST_UNKNOWN: usize = 1;
 /// Blur of the image whose gradients are the instrumental variables, pixels: 0.7 to 1.5 serve alike.
 pub(super) const INSTRUMENT_BLUR: f64 = 1.0;
-/// Noise of log S that is always allowed for: half a percent of a good 8-bit image's rounding, log units.
-const LEAST_NOISE: f64 = 0.002;
 /// Reweightings of the light at the start of a round.
 const LIGHT_ROUNDS: usize = 6;
 /// Fewest points: two for each unknown of the pose.

@@ -3,11 +3,8 @@
 use super::problem::PhotometricProblem;
 use crate::diagnosis::excess;
 use crate::light::{COEFFICIENTS, Light};
+use crate::numeric::robust;
 
-/// The robust scale in standard deviations of |r|: beyond three hardly any residual is noise.
-const SCALE_IN_SIGMAS: f64 = 3.0;
-/// |r| over three channels in standard deviations of one: 3^(1/2).
-const NORM_OF_CHANNELS: f64 = 1.732_050_807_568_877_2;
 /// By how much the scale grows at most where residuals are more than noise: a narrow scale would settle on a part of the object that
 /// light and normals happen to explain.
 const LARGEST_WIDENING: f64 = 2.0;
@@ -36,7 +33,7 @@ impl Weighting {
 
 /// The robust scale for residuals with this standard deviation per channel, log units.
 pub(super) fn final_robust_scale(noise: f64) -> f64 {
-    SCALE_IN_SIGMAS * NORM_OF_CHANNELS * noise * excess(noise, [1.0, LARGEST_WIDENING])
+    robust::SCALE_IN_SIGMAS * robust::NORM_OF_CHANNELS * noise * excess(noise, [1.0, LARGEST_WIDENING])
 }
 
 /// Weight of the prior at a light: that of a Gaussian near the natural lights, with the tails of Student's t for lights

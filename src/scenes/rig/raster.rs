@@ -8,13 +8,11 @@ use nalgebra::Vector3;
 
 use super::stage::Stage;
 use crate::pose::Similarity;
+use crate::scenes::render::EDGE_TOLERANCE;
 use crate::view::{Lens, Pinhole, Size};
 
 /// Nearest depth that is drawn, metres.
 const NEAR: f64 = 0.1;
-/// How far outside a triangle a ray may pass, in barycentric coordinates: rounding must not open a crack between two
-/// triangles.
-const EDGE_TOLERANCE: f64 = 1e-9;
 /// Rays are found exactly at every so many samples of a row, and by cubic polynomials in between: 1e-4 pixels off at 160 columns, far less at 640.
 const NODES: usize = 8;
 /// Samples around the corners of a triangle in which it may show: a constant for rounding, and a share of its size for

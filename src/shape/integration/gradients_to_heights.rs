@@ -31,8 +31,6 @@ use crate::view::Size;
 const LARGEST_GRADIENT: f32 = 1e6;
 /// sigma of one edge's noise in medians of |curl|: a curl sums four edges, which doubles sigma.
 const SIGMA_OF_CURL: f64 = robust::SIGMA_OF_MEDIAN / 2.0;
-/// s in sigmas: residuals of three sigma, the most that noise has, keep a quarter of their weight, spikes lose theirs.
-const SCALE_IN_SIGMAS: f64 = 3.0;
 /// Least s as a share of the mean |gradient|: a few times the trapezoidal error of a surface sampled well.
 const LEAST_SCALE: f64 = 0.05;
 /// Least weight of an edge: keeps pixels whose every edge is an outlier attached to their neighbours.
@@ -293,7 +291,7 @@ impl Integrator {
             Robustness::Scale(scale) => scale,
             Robustness::Off | Robustness::Estimated => self.noise_scale().max(LEAST_SCALE * self.mean_gradient()),
         };
-        let mut start = if self.robust { 0.0 } else { SCALE_IN_SIGMAS * self.residual_rms() };
+        let mut start = if self.robust { 0.0 } else { robust::SCALE_IN_SIGMAS * self.residual_rms() };
         while report.rounds < options.max_rounds && report.termination != IntegrationTermination::Breakdown {
             let scale = start.max(aim);
             start *= ANNEALING;
@@ -362,7 +360,7 @@ impl Integrator {
         if samples.is_empty() {
             return 0.0;
         }
-        SCALE_IN_SIGMAS * SIGMA_OF_CURL * f64::from(quantile(samples, 0.5))
+        robust::SCALE_IN_SIGMAS * SIGMA_OF_CURL * f64::from(quantile(samples, 0.5))
     }
 
     /// Sets the weights for the current heights; returns their mean change.
