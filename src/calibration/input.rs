@@ -101,7 +101,11 @@ impl RigView {
         });
         validate(&camera, size, "image.camera")?;
         let mut frame = Frame::new(self.name, planes, camera, grid, points);
-        frame.image_mask = self.image_mask.map(|mask| mask.into_iter().map(|value| value != 0).collect());
+        let mask = self.image_mask.map(|mask| mask.into_iter().map(|value| value != 0).collect::<Vec<bool>>());
+        if let Some(mask) = &mask {
+            frame.planes.keep_near(mask);
+        }
+        frame.image_mask = mask;
         frame.has_depth_mask = self.depth_mask.is_some();
         while frame.planes.size.width.max(frame.planes.size.height) > WIDEST {
             frame.halve();

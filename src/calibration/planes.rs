@@ -4,12 +4,16 @@
 //! Encoded intensities, not linear ones: their noise is about the same everywhere, and an edge in shadow counts as one
 //! in light does.
 
+use crate::pose::Silhouette;
 use crate::view::{Gaussian, Size};
 
 /// Reach of a Gaussian in sigmas; what lies beyond weighs 1 %.
 const REACH: f64 = 2.6;
 
-/// Three channels side by side, 0 .. 1.
+/// Pixels around the mask that still count, of an image 640 wide: the object's own edges lie on the mask's border.
+const MARGIN: f64 = 4.0;
+
+/// Three channels side by side, 0 .. 1; NaN where the image is not to be used.
 #[derive(Clone, Debug)]
 pub(super) struct Planes {
     pub size: Size,
@@ -23,10 +27,23 @@ impl Planes {
             return self.clone();
         }
         let gaussian = Gaussian::new(self.size, f64::from(sigma), REACH);
-        let [red, green, blue] = gaussian.means(|_| true, |channel, index| self.pixels[index][channel]);
+        let is_used = |index: usize| !self.pixels[index][0].is_nan();
+        let [red, green, blue] = gaussian.means(is_used, |channel, index| self.pixels[index][channel]);
         let pixel = |((red, green), blue)| [red, green, blue].map(|mean: f64| mean as f32);
         let pixels = red.into_iter().zip(green).zip(blue).map(pixel).collect();
         Self { size: self.size, pixels }
+    }
+
+    /// Leaves out what lies beyond a margin around the mask.
+    pub fn keep_near(&mut self, mask: &[bool]) {
+        let margin = (MARGIN * self.size.width as f64 / 640.0).max(1.0);
+        let mask = Silhouette::new(self.size, mask);
+        for (index, pixel) in self.pixels.iter_mut().enumerate() {
+            let (column, row) = self.size.position(index);
+            if mask.beyond_frame_at([column as f64, row as f64]) > margin {
+                *pixel = [f32::NAN; 3];
+            }
+        }
     }
 
     /// Means of two by two pixels.
@@ -41,7 +58,7 @@ impl Planes {
         Self { size, pixels: (0..size.len()).map(mean).collect() }
     }
 
-    /// Bilinear values at a position, `None` outside.
+    /// Bilinear values at a position, `None` outside and where the image is not to be used.
     pub fn at(&self, [column, row]: [f64; 2]) -> Option<[f32; 3]> {
         let Size { width, height } = self.size;
         let inside = column >= 0.0 && row >= 0.0 && column <= (width - 1) as f64 && row <= (height - 1) as f64;
@@ -52,6 +69,8 @@ impl Planes {
         let (u, v) = ((column - left as f64) as f32, (row - top as f64) as f32);
         let at = top * width + left;
         let [a, b, c, d] = [at, at + 1, at + width, at + width + 1].map(|index| self.pixels[index]);
-        Some(std::array::from_fn(|k| (1.0 - v) * ((1.0 - u) * a[k] + u * b[k]) + v * ((1.0 - u) * c[k] + u * d[k])))
+        let mean = |k: usize| (1.0 - v) * ((1.0 - u) * a[k] + u * b[k]) + v * ((1.0 - u) * c[k] + u * d[k]);
+        let means = [0, 1, 2].map(mean);
+        means.iter().all(|mean| !mean.is_nan()).then_some(means)
     }
 }

@@ -55,6 +55,8 @@ impl EdgeMap {
                 gradient[at] = [light[at + 1] - light[at - 1], light[at + width] - light[at - width]];
             }
         }
+        // Beside pixels that are not to be used there is no gradient.
+        gradient.iter_mut().filter(|[x, y]| (x + y).is_nan()).for_each(|gradient| *gradient = [0.0; 2]);
         let size: Vec<[f32; 3]> = gradient.iter().map(|[x, y]| [x.hypot(*y), 0.0, 0.0]).collect();
         let around = Planes { size: planes.size, pixels: size.clone() }.blurred((AROUND * pace) as f32);
         for (index, gradient) in gradient.iter_mut().enumerate() {

@@ -111,3 +111,35 @@ fn silhouettes_without_masks_leave_every_candidate_undecided() {
         }
     }
 }
+
+/// Pixels that a mask of the image leaves out say nothing: other colours there change no digit of what any cue finds.
+#[test]
+fn every_cue_obeys_the_mask_of_the_image() {
+    let size = Size { width: 192, height: 144 };
+    let request =
+        RigRequest { colour_size: Some(size), depth_size: Some(size), ..RigRequest::new(RigKind::Boxes, 3, 0) };
+    let frame = render(&request).expect("a frame");
+    let is_used = |index: usize| (48..144).contains(&(index % size.width)) && (36..108).contains(&(index / size.width));
+    let far = |index: usize| !((40..152).contains(&(index % size.width)) && (28..116).contains(&(index / size.width)));
+    let mask: Vec<u8> = (0..size.len()).map(|index| u8::from(is_used(index))).collect();
+    let mut other = frame.colour.clone();
+    for index in (0..size.len()).filter(|&index| far(index)) {
+        other[4 * index..4 * index + 3].fill((37 * index % 251) as u8);
+    }
+    for cue in [Cue::Edges, Cue::Shading, Cue::Information, Cue::Silhouette] {
+        let report = |colour: &[u8], mask: Option<&[u8]>| {
+            let view = RigView {
+                image: ColourSamples::Rgba8(colour.to_vec()),
+                image_mask: mask.map(<[u8]>::to_vec),
+                depth_mask: Some(vec![1; size.len()]),
+                ..view(&frame, true)
+            };
+            let report = check(view, &[frame.pose], &[cue]);
+            (report.estimate.matrix(), report.candidates[0].probability)
+        };
+        assert_eq!(report(&frame.colour, Some(&mask)), report(&other, Some(&mask)), "{cue:?}");
+        if cue != Cue::Silhouette {
+            assert_ne!(report(&frame.colour, None), report(&other, None), "{cue:?}");
+        }
+    }
+}
