@@ -98,7 +98,7 @@ export const DEPTHS: readonly Row[] = [
     sample: "depth-exr-others",
     reads: "depth",
     warnings: ["unit-guessed"],
-    taken: "The same.",
+    taken: "As above.",
     guessed: METRES,
     exported: SEE_PRODUCT,
   },

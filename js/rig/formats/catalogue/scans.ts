@@ -50,9 +50,9 @@ export const SCANS: readonly Row[] = [
     sample: "scan-laz",
     reads: "depth",
     warnings: ["points-sorted", "point-times"],
-    taken: "The same. Wave packets (formats 4, 5, 9 and 10) are refused by name.",
+    taken: "As above. Wave packets (formats 4, 5, 9 and 10) are refused by name.",
     guessed: NO_RINGS,
-    exported: "As for LAS",
+    exported: "As above.",
   },
   {
     product: "KITTI",
