@@ -24,6 +24,7 @@ import { pointList, readTable } from "./formats/table.js";
 import { textOf } from "./formats/decode.js";
 import { readTiff } from "./formats/tiff.js";
 import { kindOfPicture, nameWarnings, unitOfName } from "./recognise.js";
+import { once } from "./once.js";
 import type { NamedFile, ReadOptions, RigReading, Unnamed } from "./types.js";
 import { distinct } from "./warnings.js";
 import { inWords } from "./words.js";
@@ -31,7 +32,8 @@ import { inWords } from "./words.js";
 type Content = Unnamed<RigReading>;
 
 /** Formats that are not read, which are loaded with the first file of no known picture format. */
-const refusals = () => import("./formats/containers.js");
+const refusals = once(() => import("./formats/containers.js"));
+const texts = once(() => import("./formats/text.js"));
 const clouds = () => import("./formats/pointclouds.js");
 const CLOUDS: Record<"ply" | "pcd" | "las", (bytes: Uint8Array) => Promise<Cloud | Points>> = {
   ply: async (bytes) => (await clouds()).readPly(bytes),
@@ -82,7 +84,7 @@ async function ofCloud(cloud: Cloud | Points, options: ReadOptions): Promise<Con
 async function ofText(file: string, text: string, { as }: ReadOptions): Promise<Content> {
   if (as === "colour" || as === "depth" || as === "mask")
     throw badFile(`it is a text where a ${as === "depth" ? "depth map" : `${as} image`} was expected`);
-  const { readText } = await import("./formats/text.js");
+  const { readText } = await texts();
   const { cameras, poses: found, warnings, format, depthUnit } = await readText(text);
   const poses = inOrder(withEnds(found, file));
   const reading = { says: `${format}: ${inWords(cameras, poses)}`, warnings: distinct(warnings) };
