@@ -11,7 +11,7 @@ import {
   writeFileSync,
 } from "node:fs";
 import { join } from "node:path";
-import { gzipSync } from "node:zlib";
+import { deflateSync, gzipSync } from "node:zlib";
 import { collector } from "./notices/bundled.mjs";
 import { NOTICES, section } from "./notices/text.mjs";
 import { ALL, GLUE, NUMERICS, allNumerics, node } from "./numerics.mjs";
@@ -111,6 +111,25 @@ const withoutEval = {
   },
 };
 
+/**
+ * laz-perf's code inside the script that uses it: by itself, an application would have to serve one more file for a format that few have. Its
+ * glue for browsers asks whether it is in one, because it would fetch that file, and for Node's `require`; here it runs in Node as well.
+ */
+const lazInside = {
+  name: "laz-inside",
+  load(id) {
+    if (!/[\\/]laz-perf\.wasm$/.test(id)) return undefined;
+    const packed = deflateSync(readFileSync(id), { level: 9 }).toString("base64");
+    return { code: `export default "${packed}";`, moduleType: "js" };
+  },
+  transform(code, id) {
+    if (!/[\\/]laz-perf\.js$/.test(id)) return undefined;
+    const asked = ['!(typeof window=="object"||typeof importScripts=="function")', 'typeof require==="function"'];
+    if (!asked.every((words) => code.includes(words))) throw new Error("laz-perf has changed: see what it asks for");
+    return { code: asked.reduce((text, words) => text.replaceAll(words, "false"), code), map: null };
+  },
+};
+
 /** One file for each entry and one for what they share, with the PNG decoder in the files module alone. */
 async function facade() {
   const { rolldown } = await import("rolldown");
@@ -119,7 +138,7 @@ async function facade() {
     input: Object.fromEntries(Object.entries(ENTRIES).map(([name, source]) => [name, inRoot(`js/${source}.ts`)])),
     external: /^node:/,
     platform: "neutral",
-    plugins: [npm.plugin, endingExr, withoutEval],
+    plugins: [npm.plugin, endingExr, withoutEval, lazInside],
     resolve: { mainFields: ["module", "main"] },
     // What the splitting below needs; set in silence it is warned of.
     preserveEntrySignatures: "allow-extension",

@@ -9,7 +9,6 @@ import { inOrder } from "./assign.js";
 import { pictureColour, pictureMask } from "./colour.js";
 import { cloudDepth, pictureDepth } from "./depth.js";
 import { colmapText } from "./formats/colmap-others.js";
-import { knownContainer, knownText } from "./formats/containers.js";
 import { withEnds } from "./formats/filename.js";
 import { readExr } from "./formats/exr.js";
 import { type RasterKind, rasterKind } from "./formats/headerless.js";
@@ -25,12 +24,16 @@ import { pointList, readTable } from "./formats/table.js";
 import { textOf } from "./formats/decode.js";
 import { readTiff } from "./formats/tiff.js";
 import { kindOfPicture, nameWarnings, unitOfName } from "./recognise.js";
+import { once } from "./once.js";
 import type { NamedFile, ReadOptions, RigReading, Unnamed } from "./types.js";
 import { distinct } from "./warnings.js";
 import { inWords } from "./words.js";
 
 type Content = Unnamed<RigReading>;
 
+/** Formats that are not read, which are loaded with the first file of no known picture format. */
+const refusals = once(() => import("./formats/containers.js"));
+const texts = once(() => import("./formats/text.js"));
 const clouds = () => import("./formats/pointclouds.js");
 const CLOUDS: Record<"ply" | "pcd" | "las", (bytes: Uint8Array) => Promise<Cloud | Points>> = {
   ply: async (bytes) => (await clouds()).readPly(bytes),
@@ -81,7 +84,7 @@ async function ofCloud(cloud: Cloud | Points, options: ReadOptions): Promise<Con
 async function ofText(file: string, text: string, { as }: ReadOptions): Promise<Content> {
   if (as === "colour" || as === "depth" || as === "mask")
     throw badFile(`it is a text where a ${as === "depth" ? "depth map" : `${as} image`} was expected`);
-  const { readText } = await import("./formats/text.js");
+  const { readText } = await texts();
   const { cameras, poses: found, warnings, format, depthUnit } = await readText(text);
   const poses = inOrder(withEnds(found, file));
   const reading = { says: `${format}: ${inWords(cameras, poses)}`, warnings: distinct(warnings) };
@@ -94,6 +97,7 @@ async function ofText(file: string, text: string, { as }: ReadOptions): Promise<
 
 /** A file without known first bytes: raw pixels of a given size, headerless points, or a text. */
 async function ofOthers({ name, bytes }: NamedFile, isPoints: boolean, options: ReadOptions): Promise<Content> {
+  const { knownContainer, knownText } = await refusals();
   const container = knownContainer(name, bytes);
   if (container !== undefined) throw container;
   if (options.size !== undefined && isRawName(name)) return ofPicture(name, readRaw(bytes, options.size), options);
@@ -116,7 +120,8 @@ async function content({ name, bytes }: NamedFile, options: ReadOptions): Promis
   if (bytes.length === 0) throw badFile("it is empty");
   const kind = rasterKind(bytes);
   // Recordings are refused by name, whatever their size; a camera's raw photograph begins as a TIFF.
-  const container = bytes.length > MOST_BYTES || kind === "tiff" ? knownContainer(name, bytes) : undefined;
+  const isDoubtful = bytes.length > MOST_BYTES || kind === "tiff";
+  const container = isDoubtful ? (await refusals()).knownContainer(name, bytes) : undefined;
   if (container !== undefined) throw container;
   if (bytes.length > MOST_BYTES)
     throw badFile(

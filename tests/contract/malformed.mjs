@@ -23,6 +23,41 @@ export async function inTime(what, run) {
   assert.ok(spent <= MOST_MILLISECONDS, `${what}: ${spent} ms`);
 }
 
+const BUFFERS = [
+  ...["ArrayBuffer", "Uint8Array", "Uint8ClampedArray", "Int8Array", "Uint16Array", "Int16Array", "Uint32Array"],
+  ...["Int32Array", "Float32Array", "Float64Array", "BigInt64Array", "BigUint64Array"],
+];
+
+/**
+ * Runs what may ask for memory, and checks the sum of all buffers that it asks for: room that is never written to is not resident, and would
+ * not show in the memory of this process.
+ */
+export async function inRoom(what, run) {
+  let asked = 0;
+  const plain = BUFFERS.map((name) => [name, globalThis[name]]);
+  for (const [name, Buffer] of plain) {
+    globalThis[name] = new Proxy(Buffer, {
+      construct(target, given, own) {
+        const [first] = given;
+        const each = target.BYTES_PER_ELEMENT ?? 1;
+        if (!(first instanceof ArrayBuffer)) asked += each * (typeof first === "number" ? first : (first?.length ?? 0));
+        return Reflect.construct(target, given, own);
+      },
+    });
+    // Copies, slices and maps are made by the constructor that the prototype names.
+    Buffer.prototype.constructor = globalThis[name];
+  }
+  try {
+    await run();
+  } finally {
+    for (const [name, Buffer] of plain) {
+      globalThis[name] = Buffer;
+      Buffer.prototype.constructor = Buffer;
+    }
+  }
+  assert.ok(asked < MOST_MEMORY, `${what}: ${(asked / MEGABYTE).toFixed(0)} MB`);
+}
+
 /** Whether this process has never held a gigabyte. */
 export function assertSmall() {
   const most = 1024 * process.resourceUsage().maxRSS;

@@ -3,6 +3,10 @@ import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import { deflateSync } from "node:zlib";
 import { readRigFile } from "../../pkg/rig.js";
+import { openRecording } from "../../pkg/rig-recordings.js";
+import { PICTURES } from "./malformed-pictures.mjs";
+import { BINARIES, CALIBRATIONS } from "./malformed-products.mjs";
+import { RECORDINGS } from "./malformed-recordings.mjs";
 import {
   MEGABYTE,
   assertSmall,
@@ -14,6 +18,7 @@ import {
   exr,
   idat,
   ihdr,
+  inRoom,
   inTime,
   jpeg,
   laughs,
@@ -29,7 +34,7 @@ import {
   u32,
   zstdOf,
 } from "./malformed.mjs";
-import { fixture, refusedFile, text } from "./rig-support.mjs";
+import { codes, fixture, refusedFile, text } from "./rig-support.mjs";
 import { npy, png } from "./support.mjs";
 
 /** File, bytes, what the error has to say, and options where it needs some. */
@@ -270,17 +275,34 @@ const FILES = [
   ["quotes.txt", text(`"${"\\".repeat(300_000)}`), /none of the formats/],
 ];
 
+const ALL = [...FILES, ...PICTURES, ...CALIBRATIONS, ...BINARIES];
+
+/** Refused with a BimodalError of the code "file" that names the file and fits the pattern; or read with this doubt or gap. */
+async function isTold(reading, name, outcome) {
+  if (outcome instanceof RegExp) return refusedFile(reading, name, outcome);
+  const { warnings } = await reading;
+  assert.ok(codes({ warnings }).includes(outcome), JSON.stringify(warnings));
+}
+const titled = (name, outcome) => `${name}: ${outcome instanceof RegExp ? outcome.source : outcome}`;
+
 describe("malformed and odd files", () => {
-  test(`there are ${FILES.length}, each with a name of its own`, () => {
-    assert.ok(FILES.length >= 60);
-    assert.equal(new Set(FILES.map(([name]) => name)).size, FILES.length);
+  test(`there are ${ALL.length} and ${RECORDINGS.length} recordings, each with a name of its own`, () => {
+    assert.ok(ALL.length >= 280 && RECORDINGS.length >= 35);
+    const names = [...ALL, ...RECORDINGS].map(([name]) => name);
+    assert.equal(new Set(names).size, names.length);
   });
 
-  for (const [name, content, reason, options] of FILES) {
-    test(`${name}: ${reason.source}`, async () => {
-      await inTime(name, () => refusedFile(readRigFile({ name, bytes: content }, options), name, reason));
+  for (const [name, content, outcome, options] of ALL)
+    test(titled(name, outcome), () =>
+      inRoom(name, () => inTime(name, () => isTold(readRigFile({ name, bytes: content }, options), name, outcome))),
+    );
+
+  for (const [name, make, outcome] of RECORDINGS)
+    test(titled(name, outcome), async () => {
+      const content = await make();
+      const reading = async () => (await openRecording({ name, content })).read();
+      await inRoom(name, () => inTime(name, () => isTold(reading(), name, outcome)));
     });
-  }
 });
 
 test("no file took a gigabyte", assertSmall);

@@ -5,6 +5,8 @@ import { test } from "node:test";
 import { fileURLToPath } from "node:url";
 import { BimodalError, readRigFile } from "../../pkg/rig.js";
 import { assertSmall, bytes, inTime } from "./malformed.mjs";
+import { CALIBRATION_SAMPLES } from "./product-calibrations.mjs";
+import { PICTURE_SAMPLES } from "./product-pictures.mjs";
 import { fixture } from "./rig-support.mjs";
 
 /** Mulberry32: the same cases in each run. */
@@ -19,6 +21,8 @@ function generator(seed) {
 }
 
 const CASES = 120;
+/** Of each file of a product, which are short. */
+const CASES_OF_PRODUCTS = 40;
 const KINDS = ["colour", "depth", "mask", "cameras", "poses", undefined, undefined, undefined];
 const BYTES = [0, 255, 127, 128, 45, 48, 57, 10];
 
@@ -36,35 +40,43 @@ function mutated(file, random) {
 
 const folder = fileURLToPath(new URL("../fixtures/rig", import.meta.url));
 // Folders beside them hold what the writers wrote.
-const names = readdirSync(folder, { withFileTypes: true })
+const fixtures = readdirSync(folder, { withFileTypes: true })
   .filter((entry) => entry.isFile())
-  .map(({ name }) => name)
-  .sort();
+  .map(({ name }) => ({ name, content: fixture(name), cases: CASES }))
+  .sort((a, b) => (a.name < b.name ? -1 : 1));
+const products = await Promise.all(
+  Object.values({ ...CALIBRATION_SAMPLES, ...PICTURE_SAMPLES }).map(async ({ name, bytes: own }) => ({
+    ...{ name, content: await own, cases: CASES_OF_PRODUCTS },
+  })),
+);
 
-test(`${CASES * names.length} cases end in a reading or in a BimodalError that names the file`, async () => {
-  const random = generator(15);
-  let [read, refused] = [0, 0];
-  for (const name of names) {
-    const file = fixture(name);
-    for (let index = 0; index < CASES; index++) {
-      const as = KINDS[Math.floor(random() * KINDS.length)];
-      const content = mutated(file, random);
-      await inTime(`${name}, case ${index}`, async () => {
-        try {
-          const reading = await readRigFile({ name, bytes: content }, as && { as });
-          assert.ok(reading.says.length > 0 && Array.isArray(reading.warnings));
-          read++;
-        } catch (error) {
-          assert.ok(
-            error instanceof BimodalError && error.code === "file" && error.message.includes(name),
-            `${name}, case ${index}: ${error.stack}`,
-          );
-          refused++;
-        }
-      });
+for (const [what, files, least] of [
+  ["fixtures", fixtures, [500, 5000]],
+  ["files of products", products, [300, 1000]],
+])
+  test(`${what}, changed ${files.reduce((sum, { cases }) => sum + cases, 0)} times, end in a reading or in a BimodalError that names the file`, async () => {
+    const random = generator(15);
+    let [read, refused] = [0, 0];
+    for (const { name, content: file, cases } of files) {
+      for (let index = 0; index < cases; index++) {
+        const as = KINDS[Math.floor(random() * KINDS.length)];
+        const content = mutated(file, random);
+        await inTime(`${name}, case ${index}`, async () => {
+          try {
+            const reading = await readRigFile({ name, bytes: content }, as && { as });
+            assert.ok(reading.says.length > 0 && Array.isArray(reading.warnings));
+            read++;
+          } catch (error) {
+            assert.ok(
+              error instanceof BimodalError && error.code === "file" && error.message.includes(name),
+              `${name}, case ${index}: ${error.stack}`,
+            );
+            refused++;
+          }
+        });
+      }
     }
-  }
-  assert.ok(read > 500 && refused > 5000, `${read} read, ${refused} refused`);
-});
+    assert.ok(read > least[0] && refused > least[1], `${read} read, ${refused} refused`);
+  });
 
 test("no file took a gigabyte", assertSmall);

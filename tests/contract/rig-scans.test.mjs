@@ -104,7 +104,7 @@ describe("points in no rows and columns", () => {
     await holds(found, /by the file's rings.*5 floats to a point.*nuScenes/);
   });
 
-  test("LAS, with the time of each pulse; LAZ is named, and how to unpack it", async () => {
+  test("LAS, with the time of each pulse; a damaged LAZ is named, and how to unpack it", async () => {
     const las = new DataView(new ArrayBuffer(227 + 28 * COUNT));
     [..."LASF"].forEach((letter, at) => las.setUint8(at, letter.charCodeAt(0)));
     las.setUint8(24, 1);

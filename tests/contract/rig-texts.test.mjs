@@ -18,6 +18,11 @@ describe("languages", () => {
     sameCamera(only((await read("k.txt", printed)).cameras));
   });
 
+  test("texts of an older Windows, whose umlauts are bytes that UTF-8 has not", async () => {
+    const line = "# Kalibrierung für die Tür, 20 °C\nfx: 518.5\nfy: 519.25\ncx: 325.5\ncy: 253.75\n";
+    sameCamera(only((await read("k.yaml", new Uint8Array(Buffer.from(line, "latin1")))).cameras), null);
+  });
+
   test("TOML, and sections that are none", async () => {
     const toml = await read(
       "rig.toml",

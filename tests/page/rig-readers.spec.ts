@@ -1,4 +1,4 @@
-/** What a rig's readers leave to browsers: JPEG and WebP, turned and in sRGB. */
+/** What a rig's readers leave to browsers: JPEG and WebP, turned and in sRGB; and what a browser has to permit: LAZ. */
 
 import { readFile } from "node:fs/promises";
 import { expect, test } from "@playwright/test";
@@ -14,9 +14,18 @@ interface Read {
   warnings: string[];
 }
 
+/** As the site's: WebAssembly may be compiled, and no script is made of a text. */
+const POLICY = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; connect-src 'self'";
+const WORKER = `import { readRigFile } from "/pkg/rig.js";
+onmessage = async ({ data }) => postMessage((await readRigFile(data)).says);`;
+
 test.beforeEach(async ({ page }) => {
   await page.route(`${ORIGIN}**`, async (route) => {
     const path = new URL(route.request().url()).pathname;
+    const headers = { "content-security-policy": POLICY };
+    if (path === "/strict")
+      return route.fulfill({ contentType: "text/html", headers, body: "<!doctype html><title>rig</title>" });
+    if (path === "/worker.js") return route.fulfill({ contentType: "text/javascript", headers, body: WORKER });
     if (path === "/") return route.fulfill({ contentType: "text/html", body: "<!doctype html><title>rig</title>" });
     const folder = path.startsWith("/pkg/") ? "../.." : "../fixtures/rig";
     const contentType = path.endsWith(".js") ? "text/javascript" : "application/octet-stream";
@@ -80,4 +89,24 @@ test("a WebP or JPEG that is cut off is an error that names it", async ({ page }
     );
   expect(await message("colour.webp", 40)).toMatch(/^file colour\.webp: this WebP is cut off/);
   expect(await message("colour.jpg", 500)).toMatch(/^file colour\.jpg: this JPEG is/);
+});
+
+test("LAZ is unpacked in a page and in a worker, under the policy of the site", async ({ page }) => {
+  await page.goto(`${ORIGIN}strict`);
+  const says = await page.evaluate(async () => {
+    const module = "/pkg/rig.js";
+    const { readRigFile } = await import(module);
+    const bytes = new Uint8Array(await (await fetch("/scan-6.laz")).arrayBuffer());
+    const file = { name: "scan-6.laz", bytes };
+    const here = await readRigFile(file);
+    const worker = new Worker("/worker.js", { type: "module" });
+    const there = await new Promise<unknown>((resolve, reject) => {
+      worker.onmessage = ({ data }) => resolve(data);
+      worker.onerror = ({ message }) => reject(new Error(message));
+      worker.postMessage(file);
+    });
+    return [here.says, there];
+  });
+  expect(says[0]).toMatch(/^576 points \(LAZ\), sorted into \d+x8/);
+  expect(says[1]).toBe(says[0]);
 });

@@ -41,6 +41,8 @@ export function readBop(root: Node): Findings {
     found.camera(isOne ? { ...raw, name: "camera" } : raw, takes);
   if (scale !== undefined && scale > 0)
     found.depthUnit = isPerMillimetre(scale) ? scale * MILLIMETRE : scale < 1 ? scale : 1 / scale;
+  else if (scale !== undefined)
+    found.warn("unit-guessed", `Its depth_scale of ${scale} is not a unit and was not used.`);
   if (images.some(([, { depth_scale }]) => (numberOf(depth_scale) ?? scale) !== scale))
     found.warn(
       "units-differ",

@@ -54,7 +54,10 @@ const FIRST: Row[] = [
   [/^\xff\x4f\xff\x51|^.{4}jP {2}/s, "JPEG 2000; save it as PNG", true],
   [/^PIEH/, "Sintel's .dpt or .flo; save the depth as .npy"],
   [/^livox_tech/, "a recording of Livox (.lvx); save a scan of it as PCD or LAS by Livox Viewer"],
-  [/^.{4}OSF!/s, "a recording of Ouster (.osf); save a scan of it as PCD or LAS by ouster-cli"],
+  [
+    /^.{4}OSF!/s,
+    "a recording of Ouster (.osf); `ouster-cli source in.osf save out.bag` makes a bag of it, which is read as a recording",
+  ],
   [/^PAR1/, "a table in Parquet; export its images first"],
   [
     /^\x0a\x0d\x0d\x0a|^\xd4\xc3\xb2\xa1|^\xa1\xb2\xc3\xd4/,

@@ -9,6 +9,7 @@ const LINES: Record<number, number> = { 0: 1, 1: 1, 2: 1, 3: 16, 4: 32, 5: 16, 6
 export const [B44, B44A, DWAA] = [6, 7, 8];
 /** Bytes of a sample of each type. */
 export const SIZES = [4, 2, 4];
+const VERSION = 2;
 const MOST_CHANNELS = 64;
 const MOST_HEADER = 65_536;
 
@@ -53,6 +54,7 @@ function channelList(view: DataView, bytes: Uint8Array, from: number, until: num
 export function readHeader(bytes: Uint8Array): Header {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   const flags = view.getUint32(4, true);
+  if ((flags & 0xff) > VERSION) throw badFile(`this EXR is of the unknown version ${flags & 0xff}`);
   if (flags & 0x1a00)
     throw badFile(
       `this EXR is ${flags & 0x200 ? "tiled" : flags & 0x800 ? "deep" : "of several parts"}, which is not read here; save it as plain scan lines`,

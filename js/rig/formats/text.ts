@@ -1,5 +1,6 @@
 /** Text files: the format is recognised from the text, and the result is cameras and poses. */
 import { BimodalError, badFile } from "../../errors.js";
+import { once } from "../once.js";
 import { readColmap, isColmap } from "./colmap.js";
 import { isColmapImages, readColmapImages } from "./colmap-others.js";
 import { readColumns } from "./columns.js";
@@ -45,7 +46,7 @@ const NEITHER =
 type Read = Calibration & { format: string };
 
 /** The readers of products, which are loaded with the first text. */
-const products = () => import("./products.js");
+const products = once(() => import("./products.js"));
 
 /** The findings of a product's reader or of the search by names; undefined where there is neither a camera nor a pose. */
 async function search(value: unknown, format: string, text: string): Promise<Read | undefined> {

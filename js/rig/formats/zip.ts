@@ -25,6 +25,8 @@ const LOCAL = 0x04034b50;
 const [END_BYTES, COMMENT] = [22, 65_535];
 const MOST_ENTRIES = 1000;
 const [STORED, DEFLATED] = [0, 8];
+/** Bit of an entry's flags. */
+const ENCRYPTED = 1;
 
 const damaged = () => badFile("this ZIP archive is damaged or cut off; unpack it and hand over its files");
 
@@ -68,6 +70,7 @@ export function unpacked(bytes: Uint8Array, entry: Entry): Uint8Array {
   const { packed, length, checksum, at } = entry;
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   if (view.getUint32(at, true) !== LOCAL) throw damaged();
+  if (view.getUint16(at + 6, true) & ENCRYPTED) throw badFile("this ZIP archive is encrypted; unpack it first");
   const from = at + 30 + view.getUint16(at + 26, true) + view.getUint16(at + 28, true);
   if (from + packed > bytes.length) throw damaged();
   if (length > MOST_BYTES)

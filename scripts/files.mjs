@@ -1,0 +1,53 @@
+// node scripts/files.mjs: writes docs/guide/files.md, the files that are read, from the table beside the readers (js/rig/formats/catalogue).
+// tests/contract/files-page.test.mjs holds that both say the same, and that the readers do what the table says.
+import { mkdirSync, realpathSync, writeFileSync } from "node:fs";
+import { dirname } from "node:path";
+import { inRoot, say } from "./shell.mjs";
+
+export const DOCUMENT = "docs/guide/files.md";
+
+/** What some sources export, which Node cannot load as they are. */
+export async function loaded(source) {
+  // Imported late: before the set-up there are no node_modules.
+  const { build } = await import("esbuild");
+  const stdin = { contents: source, resolveDir: inRoot("js"), loader: "ts" };
+  const { outputFiles } = await build({ stdin, bundle: true, format: "esm", write: false, logLevel: "error" });
+  return import(`data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString("base64")}`);
+}
+
+/** The groups of the table. */
+export const catalogue = async () =>
+  (await loaded('export { CATALOGUE } from "./rig/formats/catalogue/index.js";')).CATALOGUE;
+
+const INTRODUCTION = `Files are recognised by their content; their names say what the content leaves open. Whatever is guessed has a warning with a code
+([codes](../codes.md)), and a warning keeps a verdict from being better than "settled, but check". A file that is not read is refused with
+an error that names its format and the way out. The option \`as\` gives the kind, and \`unit\` the metres per stored unit.
+
+This page is made by \`node scripts/files.mjs\` from \`js/rig/formats/catalogue/\`. A test reads a file of each row and compares the kind and
+the warnings. What the Rust command line and the Python package read of these is in [check.md](../check.md#what-is-read).`;
+
+const HEAD = ["| product | file | what is taken | what is guessed | how to export it |", "|---|---|---|---|---|"];
+
+/** A cell of a Markdown table. */
+const cell = (words) => words.replaceAll("|", "\\|");
+
+/** The document that a table makes. */
+export function documentOf(groups) {
+  const sections = groups.flatMap(({ title, rows }) => [
+    `## ${title}`,
+    "",
+    ...HEAD,
+    ...rows.map(
+      ({ product, file, taken, guessed, exported }) =>
+        `| ${[product, file, taken, guessed, exported].map(cell).join(" | ")} |`,
+    ),
+    "",
+  ]);
+  return ["# Files that are read", "", INTRODUCTION, "", ...sections].join("\n");
+}
+
+if (import.meta.filename === realpathSync(process.argv[1])) {
+  mkdirSync(dirname(inRoot(DOCUMENT)), { recursive: true });
+  writeFileSync(inRoot(DOCUMENT), documentOf(await catalogue()));
+  say(`wrote ${DOCUMENT}`);
+}
