@@ -1,4 +1,4 @@
-// What the tables are made of: surfaces, lights, angles, overlaps, and the paper's own figures (docs/method.md, section 15).
+// What the tables are made of: surfaces, lights, angles, overlaps, and the paper's own figures (docs/lab/protocols.md).
 
 export const BETAS = [20, 40, 60, 80, 90];
 export const OVERLAPS = [0.125, 0.25, 0.375, 0.5, 0.75, 1];

@@ -61,7 +61,7 @@ export const figure5 = {
     ),
 };
 
-/** Means over draws (docs/method.md, section 15): one draw says as much about its noise as about the method. */
+/** Means over draws (docs/lab/protocols.md): one draw says as much about its noise as about the method. */
 const REFINEMENT_SEEDS = [1, 2, 3, 4, 5];
 const DEPTH_NOISE = 0.5;
 const HOLES = 0.1;

@@ -58,7 +58,7 @@
 //! # Tutorial
 //!
 //! The module [`tutorial`] explains the method in eight short chapters, each with its equation and an example that runs.
-//! The formulas, solvers, costs and limits of each stage are in `docs/method.md` of the repository.
+//! The formulas, solvers, costs and limits of each stage are in `docs/method/` of the repository.
 //!
 //! # Frames and units
 //!

@@ -9,7 +9,7 @@ import { NOISE, kit, requestOf } from "../../protocols/scenes.mjs";
 const FOLDER = "target/bench/scenes";
 /** Samples of a relief on a side: of Mozart and of the built-in surfaces. */
 const RELIEF_SIDE = 256;
-/** Under this height a relief has no surface (docs/method.md, section 15), samples. */
+/** Under this height a relief has no surface (docs/lab/protocols.md), samples. */
 const FLOOR = 5;
 
 /** "640x480" as numbers. */

@@ -1,4 +1,4 @@
-//! Whether a calibration between a colour camera and a depth camera is right (docs/method.md, section 19).
+//! Whether a calibration between a colour camera and a depth camera is right (docs/method/check.md).
 //!
 //! Frames of a rig and some candidates for its extrinsics go in; an estimate with its covariance and a verdict on each
 //! candidate come out. Whole frames are looked at, because what stands before a background carries most of the answer.

@@ -31,7 +31,7 @@ const SEED: u64 = 1;
 const INSIDE: f64 = 0.95;
 /// Degrees of freedom of the estimate's distribution, the only number here that was fitted: what all of an outline shares moves its
 /// tiles alike, so that their scatter is a guess of the error's size, on some scenes by far too small. The likelihood of 112 rendered
-/// rigs' true errors is highest at 3.3 (docs/method.md, section 16); at 3 the distribution has a covariance still.
+/// rigs' true errors is highest at 3.3 (docs/lab/thresholds.md); at 3 the distribution has a covariance still.
 const DEGREES: f64 = 3.0;
 /// Above this sigma an axis is not seen by a scene: about half of what the prior alone leaves open.
 const UNSEEN_DEGREES: f64 = 2.0;

@@ -1,4 +1,4 @@
-//! Units, starts and gauges: what the data cannot say, decided once and for all (`docs/method.md`, section 1).
+//! Units, starts and gauges: what the data cannot say, decided once and for all (`docs/method/frames.md`).
 //!
 //! - Scale: a metric cloud against a pixel image has s near s0 = focal length / median Z; pixels against pixels and
 //!   any image with known intrinsics have s0 = 1.

@@ -1,4 +1,4 @@
-//! Which shapes have settled, so that the next iteration keeps them (docs/method.md, section 13).
+//! Which shapes have settled, so that the next iteration keeps them (docs/method/loop.md).
 //!
 //! Where the pose no longer moves, two shapes go on: the image's, from colours and the depth view's normals, and the
 //! depth view's, from colours and the image's normals. A shape has settled where its own last solve moved it, and the

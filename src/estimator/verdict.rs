@@ -2,7 +2,7 @@
 //!
 //! One pure function: evidence in, status and reason out. First it decides whether the loop goes on; an end that looks
 //! good is then held against what the registration by colours says of its own answer, and may turn out to be ambiguous
-//! or lost. `docs/method.md`, section 16, lists the thresholds with the data they were calibrated on.
+//! or lost. `docs/lab/thresholds.md` lists the thresholds with the data they were calibrated on.
 
 use crate::diagnosis::{LARGEST_UNEXPLAINED, LARGEST_UNEXPLAINED_CONTRAST};
 use crate::options::{Registration, Shading};

@@ -1,4 +1,4 @@
-//! Axes of colour of a light, and the prior over lights along them (docs/method.md, section 3).
+//! Axes of colour of a light, and the prior over lights along them (docs/method/image-model.md).
 //!
 //! Shading varies most in one direction of colour, under white lamps that of lightness. Along axes that begin with it, errors
 //! of shading fall into the first coordinate, and hue, which tells paints apart, into the two others.

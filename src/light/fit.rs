@@ -1,4 +1,4 @@
-//! The light from normals and colours (Eq. 2; docs/method.md, section 3).
+//! The light from normals and colours (Eq. 2; docs/method/image-model.md).
 //!
 //! Given normals, log S is linear in the light: min over L of
 //! mean_i w_i |log S_i - B(n_i) L|^2 + lambda_L h(L), B the nine harmonics of each channel. The weights w are those of

@@ -1,4 +1,4 @@
-//! log S = n^T M n with n = [n_x n_y n_z 1]: second-order spherical harmonics (Eq. 3, 5; docs/method.md, section 2).
+//! log S = n^T M n with n = [n_x n_y n_z 1]: second-order spherical harmonics (Eq. 3, 5; docs/method/image-model.md).
 
 use nalgebra::{Matrix3, Vector3};
 

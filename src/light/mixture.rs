@@ -1,6 +1,6 @@
-//! Light and a palette of paints together, for one number of regions (docs/method.md, section 3).
+//! Light and a palette of paints together, for one number of regions (docs/method/image-model.md).
 //!
-//! log S = B(n) L + a_k + e: the light L of section 2, and for each pixel one of a few log offsets a_k, nobody knows
+//! log S = B(n) L + a_k + e: the light L of the image model, and for each pixel one of a few log offsets a_k, nobody knows
 //! which. The error e falls into the direction in which this light's shading varies most with the normal, where wrong
 //! normals and cast shadows go (lightness, under white lamps), and into the two others, where they leave hardly any.
 //! Each has a scale of its own, so that hue decides which paint a pixel has wherever it can, and lightness where shading
@@ -17,7 +17,7 @@ use crate::light::colour_axes::{Axes, AxesPrior, principal_axis};
 use crate::light::harmonics::HARMONICS;
 use crate::light::prior::COEFFICIENTS;
 
-/// Most paints of an object. Each of ten photographs was as well explained by eight as by more (docs/method.md, 16).
+/// Most paints of an object. Each of ten photographs was as well explained by eight as by more (docs/lab/thresholds.md).
 pub const MOST_REGIONS: usize = 8;
 /// Most unknowns: a light and three offsets for each paint.
 const MOST_UNKNOWNS: usize = COEFFICIENTS + 3 * MOST_REGIONS;

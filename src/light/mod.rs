@@ -1,4 +1,4 @@
-//! The image model and its light (Eq. 2, 3, 5; docs/method.md, sections 2 and 3).
+//! The image model and its light (Eq. 2, 3, 5; docs/method/image-model.md).
 
 mod colour_axes;
 mod environments;

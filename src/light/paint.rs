@@ -1,4 +1,4 @@
-//! Paint: the log albedo of an object in a few colours, told from its shading (docs/method.md, section 3).
+//! Paint: the log albedo of an object in a few colours, told from its shading (docs/method/image-model.md).
 //!
 //! How many paints there are is decided by evidence (Bayesian information criterion): a further one has to raise the
 //! likelihood of the colours by more than its four unknowns would by chance, with tiles of neighbouring pixels counted
@@ -22,7 +22,7 @@ use crate::view::Normals;
 const MOST_SAMPLES: usize = 2000;
 /// Fewest pixels that a palette is looked for in.
 const FEWEST_SAMPLES: usize = 100;
-/// Pixels that count as one for the evidence: tiles of 8x8, as for the uncertainty of a pose (section 14) ..
+/// Pixels that count as one for the evidence: tiles of 8x8, as for the uncertainty of a pose (docs/method/uncertainty.md) ..
 const TILE: f64 = 64.0;
 /// .. and tiles at most: in a larger image errors of shading are larger patches, and not more of them.
 const MOST_TILES: f64 = 125.0;

@@ -1,4 +1,4 @@
-//! h(L) = (L - mu)^T Sigma^-1 (L - mu) with the exposure left free (Eq. 2; docs/method.md, section 3).
+//! h(L) = (L - mu)^T Sigma^-1 (L - mu) with the exposure left free (Eq. 2; docs/method/image-model.md).
 //!
 //! A common offset of log S is the exposure and says nothing about the light. It moves L1 of all three channels alike,
 //! along e = (1 at R1, G1, B1). Minimising h over that direction leaves the precision P = W^T (I - w w^T / w^T w) W

@@ -1,5 +1,5 @@
 //! Preconditioned conjugate gradients: the minimum over x of x^T A x / 2 - b^T x, A symmetric and positive
-//! semi-definite, without its matrix (docs/method.md, sections 6 and 7).
+//! semi-definite, without its matrix (docs/method/normals.md and docs/method/heights.md).
 //!
 //! M, the preconditioner, is close to A and easy to solve for. In exact arithmetic each iteration minimises over one
 //! more dimension, and the error in the norm of A falls by (k - 1) / (k + 1) or better, k the root of the condition

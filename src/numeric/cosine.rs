@@ -7,7 +7,7 @@
 //! have any length. Cost O(W H log W). Eight rows are transformed at once, see [`Rows`].
 //!
 //! A rectangle whose width has large prime factors is solved as part of a wider one, zero beyond it: a preconditioner
-//! need not be exact (docs/method.md, section 6).
+//! need not be exact (docs/method/normals.md).
 //!
 //! Why not rustdct (0.7): it takes one row after the other. A solve of 640x480 takes 5.9 ms instead of 2.9 with simd128 and
 //! rustfft's SIMD for WebAssembly, 8.0 without the latter (Node 20); a solve is most of an iteration of the integration.

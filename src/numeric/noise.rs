@@ -1,4 +1,4 @@
-//! The noise of a raster by the fourth differences of neighbours (docs/method.md, section 4).
+//! The noise of a raster by the fourth differences of neighbours (docs/method/views.md).
 //!
 //! Fourth differences of a cubic vanish, so what a cubic through five neighbours does not follow counts as noise.
 //! Limits: so does texture as fine as that.

@@ -1,6 +1,6 @@
 //! Which depth point is which image pixel (the paper's 1-pixel rule), with occlusion in both directions.
 //!
-//! See docs/method.md, section 12. A depth point is transformed by the pose and projected. It corresponds to the pixel
+//! See docs/method/surfaces.md. A depth point is transformed by the pose and projected. It corresponds to the pixel
 //! that it falls on if the pixel is on the mask, the point faces the colour camera, no other depth point hides it there
 //! (z-buffer), the image surface does not hide it from the depth camera (z-buffer of the reverse view), and both
 //! surfaces are close to each other. How close is the caller's threshold, or follows the robust spread of the

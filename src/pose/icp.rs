@@ -1,6 +1,6 @@
 //! Iterative closest points with scale (Eq. 12): the depth view's points onto the image surface.
 //!
-//! See docs/method.md, section 11. Each iteration transforms the depth points by the present pose, finds their nearest
+//! See docs/method/surfaces.md. Each iteration transforms the depth points by the present pose, finds their nearest
 //! points on the image surface, and takes one damped Gauss-Newton step of the seven unknowns (six where the scale is
 //! held). Pairs whose normals disagree, that end on the border of the image surface (where everything that has no
 //! counterpart ends), that are farther apart than a distance which shrinks from iteration to iteration, or that are

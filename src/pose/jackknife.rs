@@ -1,4 +1,4 @@
-//! The delete-group jackknife of a registration: the pose without each sector of the object in turn (docs/method.md, section 14).
+//! The delete-group jackknife of a registration: the pose without each sector of the object in turn (docs/method/uncertainty.md).
 //!
 //! Slowly varying albedo, ambient shadow and biased normals correlate over more than a tile, so the scores of tiles do not show them. They
 //! bias each part of the object differently, so the pose moves when a part is left out.

@@ -1,4 +1,4 @@
-//! The pose between both views: P_colour = s R P_depth + t (docs/method.md, sections 9 to 12 and 14).
+//! The pose between both views: P_colour = s R P_depth + t (docs/method/).
 //!
 //! | file | what it holds | objective | unknowns | solver |
 //! |---|---|---|---|---|

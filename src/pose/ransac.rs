@@ -1,5 +1,5 @@
 //! Consensus of correspondences over the linear model of Eq. 14, an affine map P -> A P + t with twelve parameters
-//! theta (docs/method.md, section 11).
+//! theta (docs/method/surfaces.md).
 //!
 //! Four pairs determine theta. The sample whose model has the least objective, sum min(|r|^2, threshold^2), is
 //! improved by least squares on its inliers; A becomes a similarity as in Eq. 15, and the similarity is fitted to its

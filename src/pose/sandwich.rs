@@ -1,4 +1,4 @@
-//! The sandwich estimator of a pose's covariance: G (sum over clusters of g g^T) G^T (docs/method.md, section 14).
+//! The sandwich estimator of a pose's covariance: G (sum over clusters of g g^T) G^T (docs/method/uncertainty.md).
 //!
 //! g is the sum of the scores of a cluster of neighbouring residuals, G the gain of the equations that the pose solves, as a rule the
 //! inverse of their matrix. Noise, wrong normals and interpolation enter with the size and the correlation that they have; the one

@@ -1,4 +1,4 @@
-//! P_colour = s R P_depth + t: the pose (Eq. 12 with known pairs, Eq. 15; docs/method.md, sections 1 and 11).
+//! P_colour = s R P_depth + t: the pose (Eq. 12 with known pairs, Eq. 15; docs/method/frames.md and docs/method/surfaces.md).
 
 use nalgebra::{Matrix3, Matrix4, Quaternion, Rotation3, UnitQuaternion, Vector3};
 

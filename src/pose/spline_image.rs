@@ -1,4 +1,4 @@
-//! log S between pixels: cubic splines over the mask, with their gradients (docs/method.md, section 10).
+//! log S between pixels: cubic splines over the mask, with their gradients (docs/method/registration.md).
 //!
 //! f(x, y) = sum c_ij b(x - i) b(y - j) with the cubic B-spline b and coefficients that make f pass through every pixel
 //! (M. Unser: "Splines: a perfect fit for signal and image processing", IEEE Signal Processing Magazine 16, 1999: one

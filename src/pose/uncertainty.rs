@@ -6,7 +6,7 @@
 //! J_n: errors of two independent normals do not multiply up, where noise squared would pass for shape.
 //!
 //! One sigma covers what the residuals show, correlated ones included; an error that leaves no residual (a surface that
-//! is tilted as a whole, another local optimum that fits as well) is not seen by it. See docs/method.md, section 14.
+//! is tilted as a whole, another local optimum that fits as well) is not seen by it. See docs/method/uncertainty.md.
 
 use std::fmt;
 

@@ -2,7 +2,7 @@
 //!
 //! A point is visible where it falls on the mask, faces the camera, and no other depth point hides it (z-buffer of the
 //! colour view's own resolution, so parts thinner than two pixels may be wrong).
-//! See docs/method.md, section 12.
+//! See docs/method/surfaces.md.
 
 use nalgebra::Vector3;
 

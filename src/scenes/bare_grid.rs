@@ -1,4 +1,4 @@
-//! The pair of the paper's easy reading (docs/method.md, section 15, Table 2A): one bare grid, seen twice without
+//! The pair of the paper's easy reading (docs/lab/protocols.md, Table 2A): one bare grid, seen twice without
 //! occlusion and without resampling.
 
 use nalgebra::{Matrix3, Vector3};

@@ -6,7 +6,7 @@ use crate::light::Light;
 /// Names of the built-in lights.
 pub const NAMES: [&str; 3] = ["colourful", "window", "overcast"];
 
-/// Three strong coloured lamps (docs/method.md, section 15): every normal has a colour of its own.
+/// Three strong coloured lamps (docs/lab/protocols.md): every normal has a colour of its own.
 pub const COLOURFUL: Light = Light([
     [-1.2, 0.1, -0.9, 0.7, 0.1, 0.2, 0.15, -0.2, -0.1],
     [-1.1, 0.8, -0.7, -0.3, -0.2, -0.15, -0.1, -0.1, 0.2],

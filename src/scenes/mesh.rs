@@ -1,4 +1,4 @@
-//! One triangle mesh of a relief (docs/method.md, section 15), from which every view of a scene is rendered.
+//! One triangle mesh of a relief (docs/lab/protocols.md), from which every view of a scene is rendered.
 
 use nalgebra::Vector3;
 
@@ -6,11 +6,11 @@ use super::relief::Relief;
 use crate::error::{Error, ErrorKind, Result};
 use crate::view::{Gaussian, Size};
 
-/// Sigma of the smoothing of the heights in samples (docs/method.md, section 15): scanner noise goes, features stay.
+/// Sigma of the smoothing of the heights in samples (docs/lab/protocols.md): scanner noise goes, features stay.
 const SMOOTHING: f64 = 1.0;
 /// Reach of the smoothing kernel in sigmas; samples beyond it would have weights below 1e-4.
 const SMOOTHING_REACH: f64 = 4.0;
-/// Largest difference of the heights in one triangle, in samples (docs/method.md, section 15): beyond it the grid jumps
+/// Largest difference of the heights in one triangle, in samples (docs/lab/protocols.md): beyond it the grid jumps
 /// from one part of the object to another, and there is no surface in between.
 const LARGEST_JUMP: f64 = 12.0;
 

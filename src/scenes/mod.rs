@@ -1,4 +1,4 @@
-//! Built-in surfaces, lights and the renderer that tests, tables and the page share (docs/method.md, section 15).
+//! Built-in surfaces, lights and the renderer that tests, tables and the page share (docs/lab/protocols.md).
 //!
 //! [`surface`] and [`Relief`] give heights, [`Scene`] makes a mesh of them, [`Scene::sample`] a pair of views with a
 //! known pose; [`bare_grid`] makes the pair of the paper's own synthetic test, and [`rig`] frames of a rig of cameras.

@@ -11,9 +11,9 @@ pub const LARGEST_RELIEF: usize = 512;
 /// Largest height in samples: eight times the largest side, far beyond any relief, and exact in f32.
 const LARGEST_HEIGHT: f32 = 4096.0;
 
-/// Side of the grid for which the thresholds of the protocol (docs/method.md, section 15) are stated, in samples.
+/// Side of the grid for which the thresholds of the protocol (docs/lab/protocols.md) are stated, in samples.
 const PROTOCOL_SIDE: f64 = 256.0;
-/// Height above which a sample of a 256 grid belongs to the object, in samples (docs/method.md, section 15): the
+/// Height above which a sample of a 256 grid belongs to the object, in samples (docs/lab/protocols.md): the
 /// scanned bust has a skirt of small values around it. On other grids it shrinks and grows with the side.
 const PROTOCOL_FLOOR: f64 = 5.0;
 

@@ -1,4 +1,4 @@
-//! Two views of one surface with a known pose between them (docs/method.md, section 15).
+//! Two views of one surface with a known pose between them (docs/lab/protocols.md).
 
 use nalgebra::{Matrix3, Vector3};
 

@@ -10,7 +10,7 @@ use crate::error::{Error, ErrorKind, Result};
 /// Names of the built-in surfaces.
 pub const NAMES: [&str; 3] = ["bust", "vase", "ripples"];
 
-/// Side of the grid of every built-in surface in samples: that of the protocol (docs/method.md, section 15).
+/// Side of the grid of every built-in surface in samples: that of the protocol (docs/lab/protocols.md).
 const SIDE: usize = 256;
 
 /// The built-in surface of that name, one of [`NAMES`], as heights on a 256 x 256 grid.

@@ -1,5 +1,5 @@
 //! The shape of the colour view: normals of its pixels, a surface that has them, and the normals once more, with the
-//! surface for a prior (docs/method.md, sections 5 to 7).
+//! surface for a prior (docs/method/normals.md and docs/method/heights.md).
 //!
 //! The surface is found in one of two ways: by integration alone, as the paper does, or as a whole, heights from
 //! shading, for which the integrated surface is one of several starts.

@@ -1,4 +1,4 @@
-//! Shape of both views (docs/method.md, sections 5 to 8). Four problems, each with its unknowns, objective and solver:
+//! Shape of both views (docs/method/normals.md and docs/method/heights.md). Four problems, each with its unknowns, objective and solver:
 //!
 //! | where | unknowns | objective | solver |
 //! |---|---|---|---|

@@ -1,4 +1,4 @@
-//! Shading-based refinement of the depth view (Eq. 17 to 19; docs/method.md, section 8): shape from shading over the
+//! Shading-based refinement of the depth view (Eq. 17 to 19; docs/method/heights.md): shape from shading over the
 //! pixels of the other view.
 //!
 //! Each depth pixel that the colour camera sees has a colour: its normal, rotated into the colour view's frame, has to

@@ -1,4 +1,4 @@
-//! From pixels to rays and back (docs/method.md, section 1: x right, y down, z forward).
+//! From pixels to rays and back (docs/method/frames.md: x right, y down, z forward).
 
 use super::pinhole::Pinhole;
 use crate::error::{Error, ErrorKind, Result};

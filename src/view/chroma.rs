@@ -1,4 +1,4 @@
-//! Hues as sharp as the brightness beside them (docs/method.md, section 4).
+//! Hues as sharp as the brightness beside them (docs/method/views.md).
 //!
 //! JPEG keeps colours at half the resolution of brightness, and a Bayer sensor has one colour a pixel: where two paints
 //! meet brightness leaps and hue drifts over three or four pixels, which is neither the one paint nor the other, and no edge.

@@ -1,4 +1,4 @@
-//! The colour image: checked once and converted to log intensities over a mask (docs/method.md, section 4).
+//! The colour image: checked once and converted to log intensities over a mask (docs/method/views.md).
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::numeric::{noise, quantile};

@@ -1,5 +1,5 @@
 //! A cubic w(a, b) = sum c_jk a^j b^k, j + k <= 3, fitted to the neighbours of a point by weighted least squares
-//! (docs/method.md, section 4): the sums over the neighbours, and the slopes at the point that follow from them.
+//! (docs/method/views.md): the sums over the neighbours, and the slopes at the point that follow from them.
 //!
 //! The products of a cubic's terms are powers up to the sixth, so that 28 sums hold the normal equations. Two points are
 //! fitted side by side.

@@ -1,5 +1,5 @@
 //! w(a, b) = sum c_jk a^j b^k, j + k <= 3, over the tangent plane: normals of third order, with their errors
-//! (docs/method.md, section 4).
+//! (docs/method/views.md).
 //!
 //! The neighbours of a point are expressed in its tangent plane (a, b along it, w off it), and a cubic is fitted to
 //! them by weighted least squares; its slope at the point corrects the normal, twice. Neighbours are those within two

@@ -1,5 +1,4 @@
-//! The depth map: checked once and converted to points and normals; holes are told from background (docs/method.md,
-//! section 4).
+//! The depth map: checked once and converted to points and normals; holes are told from background (docs/method/views.md).
 
 use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};

@@ -1,5 +1,4 @@
-//! The noise of a depth map, told from its surface by how second differences grow with their span (docs/method.md,
-//! section 4).
+//! The noise of a depth map, told from its surface by how second differences grow with their span (docs/method/views.md).
 //!
 //! D_k = z(x - k) - 2 z(x) + z(x + k). A surface whose slope wanders, by innovations of variance c^2 a pixel, has
 //! var D_k = c^2 k (2 k^2 + 1) / 3; noise has var D_k = 6 sigma^2 for every span that is wider than its correlation.

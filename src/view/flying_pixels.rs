@@ -1,4 +1,4 @@
-//! Trimming: flying pixels and background are taken out of the object (docs/method.md, section 4).
+//! Trimming: flying pixels and background are taken out of the object (docs/method/views.md).
 //!
 //! The depth map is cut wherever neighbours differ by more than a multiple of the median step. Of the pieces those stay
 //! that have enough pixels, relative to the largest piece, and lie no farther before or behind it than its own extent.

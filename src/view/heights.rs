@@ -1,4 +1,4 @@
-//! Heights, the coordinate in which surfaces are solved for (docs/method.md, section 7): depth itself for an
+//! Heights, the coordinate in which surfaces are solved for (docs/method/heights.md): depth itself for an
 //! orthographic camera, f ln Z for a pinhole camera of focal length f. Both are in pixels, so the slopes of both are in
 //! pixels of height per pixel, and gradients of ln Z, which normals give behind a pinhole, become theirs
 //! times f.

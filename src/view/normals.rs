@@ -1,5 +1,4 @@
-//! n = (dP/drow x dP/dcolumn) / |...|: normals of a depth map or an organised cloud P(column, row) (docs/method.md,
-//! section 4).
+//! n = (dP/drow x dP/dcolumn) / |...|: normals of a depth map or an organised cloud P(column, row) (docs/method/views.md).
 //!
 //! Method: central differences of the points along both axes, so that camera and distortion are in them; one-sided at
 //! holes and borders. Or, for noisy depth, the slopes of the weighted least-squares plane P = c + a column + b row over

@@ -1,5 +1,5 @@
 //! A depth map without its noise: min over z of sum a (z - measured)^2 + lambda sum rho(second differences of z)
-//! (docs/method.md, section 4).
+//! (docs/method/views.md).
 //!
 //! lambda = sigma^2 / c^2 is Bayes' rule for the noise and the roughness that the map itself shows ([`DepthNoise`]):
 //! the window is as wide as this map wants it. rho is Geman-McClure with a scale of two c, so that creases and rims

@@ -1,6 +1,5 @@
 //! Unlike resolutions of the two views are matched: a photograph that is finer than the depth map is
-//! worked on where one of its pixels covers about as much of the object as one of the depth map's (docs/method.md,
-//! section 4).
+//! worked on where one of its pixels covers about as much of the object as one of the depth map's (docs/method/views.md).
 //!
 //! A working pixel is the mean of the linear intensities over a square of the photograph, whose side need not be whole:
 //! a pixel counts by its usable area in the square. What is found is carried back to the photograph's pixels. Normals of

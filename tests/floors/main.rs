@@ -1,4 +1,4 @@
-//! The order of the rooms, held: which file may look into which (docs/method.md, section 18).
+//! The order of the rooms, held: which file may look into which (docs/method/code.md).
 
 mod house;
 mod tokens;

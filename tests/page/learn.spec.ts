@@ -18,19 +18,12 @@ test(
   "each lesson says where its method is written down, names its controls and pictures, and fits from 320 to 2560 px",
   LONG,
   async ({ page }) => {
-    const method = await readFile(new URL("../../docs/method.md", import.meta.url), "utf8");
-    const anchors = [...method.matchAll(/^## (.+)$/gm)].map(([, heading = ""]) =>
-      heading
-        .toLowerCase()
-        .replace(/[^\w\s-]/g, "")
-        .replace(/\s/g, "-"),
-    );
     const papers: string[] = [];
     await page.setViewportSize(narrowest);
     for (const id of LESSONS) {
       await open(page, `at=${id}`);
       await expect(page.locator(`[data-lesson="${id}"]`)).toBeVisible();
-      papers.push(...(await referencesOf(page, anchors)));
+      papers.push(...(await referencesOf(page)));
       expect(
         await page
           .locator("#learn :is(input, select)")
@@ -50,15 +43,29 @@ test(
   },
 );
 
-/** The links of a lesson that lead elsewhere; those to sections of the method lead to one that there is. */
-async function referencesOf(page: Page, anchors: string[]): Promise<string[]> {
+/** The links of a lesson that lead elsewhere; those to headings of the documents lead to one that there is. */
+async function referencesOf(page: Page): Promise<string[]> {
   const links = await page
     .locator(".learn-more a")
     .evaluateAll((all) => all.map((link) => (link as HTMLAnchorElement).href));
-  const sections = links.flatMap((link) => /\/docs\/method\.md#(.+)$/.exec(link)?.[1] ?? []);
-  expect(sections.length).toBeGreaterThan(0);
-  for (const section of sections) expect(anchors).toContain(section);
+  const headings = links.flatMap((link) => {
+    const [, file = "", anchor = ""] = /\/(docs\/.+\.md)#(.+)$/.exec(link) ?? [];
+    return file === "" ? [] : [{ file, anchor }];
+  });
+  expect(headings.length).toBeGreaterThan(0);
+  for (const { file, anchor } of headings) expect(await anchorsOf(file), file).toContain(anchor);
   return links.filter((link) => !link.includes("/docs/"));
+}
+
+/** The names that the headings of a document have in an address. */
+async function anchorsOf(file: string): Promise<string[]> {
+  const text = await readFile(new URL(`../../${file}`, import.meta.url), "utf8");
+  return [...text.matchAll(/^#+ (.+)$/gm)].map(([, heading = ""]) =>
+    heading
+      .toLowerCase()
+      .replace(/[^\w\s-]/g, "")
+      .replace(/\s/g, "-"),
+  );
 }
 
 async function fits(page: Page, id: string, width: number): Promise<void> {

@@ -6,18 +6,18 @@ import { make } from "../dom";
 const PAPER = "https://arxiv.org/abs/1905.06499";
 const DOCS = "https://github.com/bimodal-stereo/bimodal-stereo/blob/main/docs";
 
-/** The sections of the method that lessons name: how each is called where it begins. */
+/** The parts of the method that lessons name: their file in `docs/`, and their heading in it. */
 const SECTIONS = {
-  2: "The image model",
-  3: "The light and its prior",
-  5: "Normals of single pixels",
-  6: "Integration of gradients",
-  8: "Refinement of the depth map",
-  9: "Initialisation: search over poses",
-  10: "Registration by colours",
-  13: "The loop, its objective and its end",
-  14: "Uncertainty",
-  15: "Experimental protocols",
+  imageModel: ["method/image-model.md", "The image model"],
+  light: ["method/image-model.md", "The light and its prior"],
+  normals: ["method/normals.md", "Normals of single pixels"],
+  integration: ["method/normals.md", "Integration of gradients"],
+  refinement: ["method/heights.md", "Refinement of the depth map"],
+  search: ["method/search.md", "Search over poses"],
+  registration: ["method/registration.md", "Photometric registration"],
+  loop: ["method/loop.md", "The loop, its objective and its end"],
+  uncertainty: ["method/uncertainty.md", "Uncertainty"],
+  protocols: ["lab/protocols.md", "Protocols of the experiments"],
 } as const;
 
 export interface References {
@@ -38,13 +38,10 @@ const anchor = (heading: string): string =>
 export function referencesOf({ sections, paper, others = [] }: References): HTMLElement {
   const links = [
     ...(paper ? [make("a", { href: PAPER }, `The paper, ${paper}`)] : []),
-    ...sections.map((number) =>
-      make(
-        "a",
-        { href: `${DOCS}/method.md#${anchor(`${number} ${SECTIONS[number]}`)}` },
-        `The method, ${number}: ${SECTIONS[number]}`,
-      ),
-    ),
+    ...sections.map((name) => {
+      const [file, heading] = SECTIONS[name];
+      return make("a", { href: `${DOCS}/${file}#${anchor(heading)}` }, `The method: ${heading}`);
+    }),
     ...others.map(([doi, words]) => make("a", { href: `https://doi.org/${doi}` }, words)),
   ];
   return make("ul", { class: "soft learn-more" }, ...links.map((link) => make("li", {}, link)));

@@ -1,4 +1,4 @@
-//! Local contrast, where the albedo varies before an orthographic image (docs/method.md, section 10): from what the search has seen, or around
+//! Local contrast, where the albedo varies before an orthographic image (docs/method/registration.md): from what the search has seen, or around
 //! an initial pose.
 
 use nalgebra::{Rotation3, Vector3};

@@ -1,4 +1,4 @@
-//! The finder: one pose, found everywhere or near an initial one, and decided here (docs/method.md, section 10).
+//! The finder: one pose, found everywhere or near an initial one, and decided here (docs/method/README.md).
 //!
 //! ```text
 //!            scope

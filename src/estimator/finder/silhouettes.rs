@@ -1,4 +1,4 @@
-//! Silhouettes, where the albedo varies behind a pinhole (docs/method.md, section 10): near an initial pose, or from anywhere.
+//! Silhouettes, where the albedo varies behind a pinhole (docs/method/registration.md): near an initial pose, or from anywhere.
 
 use crate::diagnosis::{Alternative, Diagnosis};
 use crate::estimator::gauge;

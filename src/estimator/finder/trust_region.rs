@@ -1,4 +1,4 @@
-//! An initial pose, and how far from it the answer may lie (docs/method.md, section 10).
+//! An initial pose, and how far from it the answer may lie (docs/method/registration.md).
 //!
 //! Limits: where the views share no frame and no translation is given, only the initial rotation is trusted; silhouettes then look for the
 //! place from where the middles of both views meet.

@@ -1,4 +1,4 @@
-//! A painted object's pose and its paint in turn (docs/method.md, section 10).
+//! A painted object's pose and its paint in turn (docs/method/registration.md).
 //!
 //! The search by contrast can take out no paint but what shows at edges, since it has no pose yet. Under its pose the light
 //! stage tells more: a palette and soft changes ([`PaintStage`]). Without these the contrast is compared once more, from

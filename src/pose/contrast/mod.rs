@@ -1,5 +1,5 @@
 //! Registration by local contrast: the pose of a painted object, whose colours are not those of light and shape alone
-//! (docs/method.md, section 10).
+//! (docs/method/registration.md).
 //!
 //! E = sum w rho(|H(v - B L)|^2) / sum w + 3 mean rho(off the mask) + limbs rho(off its outline) + 5 log^2(size)
 //!

@@ -1,4 +1,4 @@
-//! Covariance of a pose from contrast: the sandwich over tiles (docs/method.md, section 14).
+//! Covariance of a pose from contrast: the sandwich over tiles (docs/method/uncertainty.md).
 
 use super::equations::Reduced;
 use super::objective::{Objective, State};

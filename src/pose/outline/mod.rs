@@ -1,4 +1,4 @@
-//! The pose from outlines: where the depth map's rims fall on the image's mask (docs/method.md, section 10).
+//! The pose from outlines: where the depth map's rims fall on the image's mask (docs/method/registration.md).
 //!
 //! Least over w, t, d: three times the mean of rho(max(0, sd(p) + d - 0.7)) over the depth points, and the mean of w rho(sd(p) + d)
 //! over their rims, and 0.4 times that of w s rho(n (p - m) + d) against edges m of the image, and 0.3 times the mean of

@@ -1,4 +1,4 @@
-//! Covariance of the pose: the [sandwich](crate::pose::sandwich) over tiles of the depth map (docs/method.md, section 14).
+//! Covariance of the pose: the [sandwich](crate::pose::sandwich) over tiles of the depth map (docs/method/uncertainty.md).
 //!
 //! M is the matrix of the pose's equations with the light eliminated, and so is the score of a tile. The
 //! [jackknife](super::jackknife) adds the errors that correlate over more than a tile.

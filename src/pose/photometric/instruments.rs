@@ -1,5 +1,5 @@
 //! Rounds with instrumental variables: sum w Z^T r = 0 in place of sum w J^T r = 0, because the gradients J of a noisy image are noisy
-//! as well (docs/method.md, section 10).
+//! as well (docs/method/registration.md).
 
 use super::phase::Phase;
 use super::points::Sampling;

@@ -1,5 +1,5 @@
 //! min over T, L of sum_h w_h rho(|log S(pi(T P_h)) - B(R n_h) L|^2) + sigma^2 h(L): the pose straight from the
-//! colours (docs/method.md, section 10).
+//! colours (docs/method/registration.md).
 //!
 //! Each depth point predicts a colour by its own normal; the pose is right where the image shows it. Unknown are the
 //! rotation, the translation, the logarithm of the scale, and the light: all 27 coefficients under the prior h of

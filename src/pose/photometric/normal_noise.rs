@@ -1,5 +1,5 @@
 //! What white noise of the normals adds to sums of products of their functions: sum w var (f_a g_a + f_b g_b), f_a and
-//! f_b the slopes of f along two tangents of a normal (docs/method.md, section 8).
+//! f_b the slopes of f along two tangents of a normal (docs/method/registration.md).
 //!
 //! Residuals and derivatives owe to the normals linear functions of the harmonics, so that one matrix holds it all: the
 //! same sum over the harmonics alone.

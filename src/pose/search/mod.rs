@@ -1,5 +1,5 @@
 //! Initialisation: poses worth refining when nothing is known of where the views stand, the light known or not
-//! (docs/method.md, section 9).
+//! (docs/method/search.md).
 //!
 //! maximise over R, s, tau: N (N / V) ln( det T / det E ) / 3, see [`score`]: how much better the rotated depth
 //! normals explain the image's log colours than a constant does.

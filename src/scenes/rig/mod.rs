@@ -1,5 +1,5 @@
 //! Rigs with a known answer: a colour and a depth camera, seen scenes of solids before their backgrounds, and what
-//! both sensors make of them (docs/method.md, section 15).
+//! both sensors make of them (docs/lab/protocols.md).
 //!
 //! [`render`] draws cameras and extrinsics from the seed, a scene from seed and frame (`layout`, of `solids` and
 //! `sheet`, with `paint`), and passes it through two z-buffers (`raster`) to both sensors (`colour`, `depth`).

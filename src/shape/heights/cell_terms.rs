@@ -1,5 +1,5 @@
 //! The brightness terms of shape from shading for heights, as functions of the surface's two slopes in a cell, four
-//! cells side by side (docs/method.md, section 7).
+//! cells side by side (docs/method/heights.md).
 //!
 //! N = a + p b + q c points at the camera; n = N / |N|; dn/dp = (b - n (n . b)) / |N|, and so for q.
 

@@ -1,5 +1,5 @@
 //! The image surface from shading as a whole: heights with integrability built in, from several starts, coarse to fine
-//! (docs/method.md, section 7).
+//! (docs/method/heights.md).
 //!
 //! Under natural light three colours hardly tell one normal from another, but the normals of one surface are not free.
 //! The heights of [`HeightSolver`] are solved at falling robust scales from several starts: the surface integrated from

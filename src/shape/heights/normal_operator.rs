@@ -1,5 +1,5 @@
 //! The Gauss-Newton matrix of the heights, A = D^T H D + S^T kappa S + E^T w E + diag a + damping L, applied to a
-//! direction (docs/method.md, section 7).
+//! direction (docs/method/heights.md).
 //!
 //! D takes the slopes p, q in the middle of each cell of four pixels, H is the 2x2 matrix of its brightness terms; S
 //! takes second differences along rows and columns, E first differences along the edges; a are the anchors' weights, L

@@ -1,4 +1,4 @@
-//! How a normal follows from the slopes of a surface at a pixel (docs/method.md, section 7).
+//! How a normal follows from the slopes of a surface at a pixel (docs/method/heights.md).
 
 use nalgebra::Vector3;
 

@@ -1,6 +1,6 @@
 //! Shape from shading for the heights themselves: min over z of
 //! sum_cells rho(|log S - S(n)|) + sum_edges w (z_j - z_i - g)^2 + sum_i a_i (z_i - anchor_i)^2
-//! + sum_i kappa_i (second differences of z)^2 (docs/method.md, section 7).
+//! + sum_i kappa_i (second differences of z)^2 (docs/method/heights.md).
 //!
 //! The unknown is the surface, so every normal is integrable by construction: under natural light, where three colours
 //! hardly tell one normal from another, this is what a pixel alone does not know. n is the unit vector of

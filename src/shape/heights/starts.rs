@@ -1,4 +1,4 @@
-//! Several starts at one resolution, of which the local optimum of least objective is kept (docs/method.md, section 7).
+//! Several starts at one resolution, of which the local optimum of least objective is kept (docs/method/heights.md).
 
 use nalgebra::Matrix3;
 

@@ -1,5 +1,5 @@
 //! min over z of sum_e w_e (z_j - z_i - g_e)^2 + sum_i a_i (z_i - t_i)^2 over the edges e = (i, j) of a masked raster:
-//! a weighted discrete Poisson equation (docs/method.md, section 6).
+//! a weighted discrete Poisson equation (docs/method/normals.md).
 //!
 //! Method: conjugate gradients on the normal equations (L_w + diag a) z = b, preconditioned by the rectangle: extend
 //! the residual by zero, solve (c L + s) there by [`CosineSolver`], restrict; c is the mean weight of the edges and s

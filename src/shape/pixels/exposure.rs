@@ -1,4 +1,4 @@
-//! The exposure of a known light (docs/method.md, section 3).
+//! The exposure of a known light (docs/method/image-model.md).
 //!
 //! A light is known only up to the exposure of the camera: log S = c + [n;1]^T M [n;1] with one c for all pixels.
 //! First c comes from the colours alone: the colours of the hemisphere are a surface in log RGB, and c shifts the

@@ -1,4 +1,4 @@
-//! The objective of one pixel over all normals that a camera can see (Eq. 6; docs/method.md, section 5), to look at: its
+//! The objective of one pixel over all normals that a camera can see (Eq. 6; docs/method/normals.md), to look at: its
 //! values, its minima with the share of the hemisphere that leads to each, and the steps of one descent.
 //!
 //! Terms, descent and starts are those of [`ShadingSolver`]. Limits: the values are those of unit normals, while a

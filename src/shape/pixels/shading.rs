@@ -1,4 +1,4 @@
-//! Shape from shading with a shape prior, one normal for each pixel (Eq. 6 to 9; docs/method.md, section 5).
+//! Shape from shading with a shape prior, one normal for each pixel (Eq. 6 to 9; docs/method/normals.md).
 //!
 //! For each pixel: min over n of
 //! sum_j (log S_j - [n;1]^T M_j [n;1])^2 + lambda_2 rho(|n - m|^2) + lambda_3 (n^T n - 1)^2,

@@ -53,7 +53,7 @@ export const pixel: Lesson = {
   drags: { ball: { x: "nx", y: "ny" }, bust: { x: "beta", y: "alpha" } },
   more: {
     paper: "Eq. 3 and 5",
-    sections: [2],
+    sections: ["imageModel"],
     others: [
       [
         "10.1145/383259.383317",
@@ -106,7 +106,7 @@ export const grey: Lesson = {
   ],
   drags: { hill: { x: "px", y: "py" } },
   more: {
-    sections: [2],
+    sections: ["imageModel"],
     others: [["10.1023/A:1008154927611", "Belhumeur, Kriegman and Yuille, The bas-relief ambiguity, 1999"]],
   },
 };
@@ -158,5 +158,5 @@ export const colours: Lesson = {
     { key: "good", label: "Valleys as low as it", digits: 0, ink: "minimum" },
   ],
   drags: { picture: { x: "px", y: "py" } },
-  more: { paper: "Eq. 8", sections: [5] },
+  more: { paper: "Eq. 8", sections: ["normals"] },
 };

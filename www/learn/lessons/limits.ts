@@ -45,7 +45,7 @@ export const paint: Lesson = {
   ],
   drags: {},
   more: {
-    sections: [3],
+    sections: ["light"],
     others: [
       ["10.1109/TPAMI.2014.2377712", "Barron and Malik, Shape, illumination, and reflectance from shading, 2015"],
     ],
@@ -99,5 +99,5 @@ export const failure: Lesson = {
     { key: "residual", label: "Residual of the colours", digits: 3, ink: "error" },
   ],
   drags: {},
-  more: { sections: [13, 14] },
+  more: { sections: ["loop", "uncertainty"] },
 };

@@ -79,7 +79,7 @@ export const pose: Lesson = {
   drags: { picture: { x: "px", y: "py" } },
   more: {
     paper: "Eq. 1, 9 and 12 to 16",
-    sections: [5, 9, 10, 13],
+    sections: ["normals", "search", "registration", "loop"],
     others: [["10.1109/34.121791", "Besl and McKay, A method for registration of 3-D shapes, 1992"]],
   },
 };
@@ -150,5 +150,5 @@ export const sensor: Lesson = {
     { key: "filled", label: "Holes filled", unit: "%", digits: 0, ink: "sensor" },
   ],
   drags: {},
-  more: { paper: "Eq. 17 to 19", sections: [8] },
+  more: { paper: "Eq. 17 to 19", sections: ["refinement"] },
 };

@@ -49,7 +49,7 @@ export const surface: Lesson = {
   drags: {},
   more: {
     paper: "Eq. 4, 10 and 11",
-    sections: [6],
+    sections: ["integration"],
     others: [
       [
         "10.1109/34.3909",
@@ -106,5 +106,5 @@ export const prior: Lesson = {
     { key: "pixels", label: "Pixels with a prior", digits: 0, ink: "prior" },
   ],
   drags: {},
-  more: { paper: "Eq. 6 to 9 and Figure 5", sections: [5, 15] },
+  more: { paper: "Eq. 6 to 9 and Figure 5", sections: ["normals", "protocols"] },
 };
