@@ -34,7 +34,9 @@ export function pictureColour(picture: Picture): Unnamed<Extract<RigReading, { k
 
 export function pictureMask(picture: Picture): Unnamed<Extract<RigReading, { kind: "mask" }>> {
   const mask = toMask(picture);
-  const share = mask.data.reduce((sum, value) => sum + (value > 0 ? 1 : 0), 0) / mask.data.length;
+  let inside = 0;
+  for (const value of mask.data) if (value > 0) inside++;
+  const share = inside / mask.data.length;
   const warnings = [...picture.warnings];
   if (share === 0) warnings.push(warning("mask-empty", "The mask is empty: no pixel belongs to the object."));
   if (share === 1) warnings.push(warning("mask-full", "The mask covers the whole picture."));
@@ -50,8 +52,13 @@ export function pictureMask(picture: Picture): Unnamed<Extract<RigReading, { kin
 /** The different levels of a grey picture of integers, the lowest first; undefined for more than `most`. */
 function levelsOf({ data, channels }: Picture, most: number): number[] | undefined {
   const levels = new Set<number>();
+  let last: number | undefined;
   for (let at = 0; at < data.length; at += channels) {
-    levels.add(data[at] ?? 0);
+    const level = data[at] ?? 0;
+    // Neighbours mostly have the same, and a set takes long.
+    if (level === last) continue;
+    last = level;
+    levels.add(level);
     if (levels.size > most) return undefined;
   }
   return [...levels].sort((a, b) => a - b);

@@ -4,7 +4,16 @@ import { byId } from "../dom";
 import { EngineError } from "../engine/engine";
 import type { Opened } from "../engine/protocol";
 import type { Form } from "./form";
-import type { Intake } from "./intake";
+import type { Intake, Remark } from "./intake";
+
+/** What was guessed that may be wrong, in sight beside the files as well: fields may be folded. */
+function standing(notes: Opened["notes"]): Remark[] {
+  const { "depth.unit": unit, "image.mask": mask } = notes;
+  return [
+    ...(unit ? [{ words: `Unit of the depth map (Depth camera): ${unit}`, wrong: false }] : []),
+    ...(mask ? [{ words: `${mask} Drop a mask.`, wrong: false }] : []),
+  ];
+}
 
 export class Messages {
   readonly #alert = byId("alert", HTMLElement);
@@ -28,6 +37,7 @@ export class Messages {
     this.#notes = notes;
     this.#form.clearMessages();
     this.#intake.clearMessages();
+    this.#intake.remarks("pair", standing(notes));
     for (const [path, note] of Object.entries(notes)) {
       if (!this.#intake.remark(path, note)) this.#form.remark(path, note);
     }

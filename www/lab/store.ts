@@ -56,6 +56,14 @@ export class Store {
     for (const listener of this.#listeners) listener(next, [], false);
   }
 
+  /** What the page fills in by itself, such as what it guessed: no step of its own, and nothing has to be run for it. */
+  complete(patch: Settings): void {
+    const next = { ...this.#now, ...patch };
+    if (differing(next, this.#now).length === 0) return;
+    this.#now = next;
+    for (const listener of this.#listeners) listener(next, [], false);
+  }
+
   resetToDefaults(): void {
     this.change(defaults);
   }
