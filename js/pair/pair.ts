@@ -62,17 +62,15 @@ function wholeImage({ colour, colourMask, colourCamera, transfer }: Parts, notes
   return whole;
 }
 
-/** What is said of the unit in the file, or guessed from the values. */
-function unitInWords({ warnings, guessed }: Parts["depth"], unit: number): string {
-  const doubt = warnings.find(({ code }) => code === "unit-guessed");
-  const words =
-    guessed.length > 0 && doubt
-      ? doubt.message.replace("give the unit if that is wrong", "change it here if that is wrong")
-      : `As the file has it: ${nameOf(unit)}.`;
+/** What the reader guessed of the unit, and whether the depths are in range; nothing where the file gives it. */
+function guessInWords({ warnings, guessed }: Parts["depth"]): string {
+  const doubt = guessed.length > 0 ? warnings.find(({ code }) => code === "unit-guessed") : undefined;
   const range = warnings.find(({ code }) => code === "depth-range");
-  return [words, ...(range ? [range.message] : [])].join(" ");
+  return [doubt?.message.replace("; give the unit if that is wrong", ""), range?.message].filter(Boolean).join(" ");
 }
 
+const RELATIVE =
+  "Inverse depths are known up to a factor only: the median depth was set to the longer side of the map, in pixels. Another unit makes the relief deeper or flatter.";
 const SAME = 1e-9;
 
 /** The unit of the map: given, or with a camera that of the file or its values. Without a camera a stored number is a pixel. */
@@ -82,17 +80,18 @@ function unitOf(parts: Parts, notes: Notes): { unit?: number; found?: number } {
   const own = depth.depth.unit ?? (doubt?.unit as number | undefined) ?? 1;
   const isRelative = depth.guessed.length > 0 && doubt?.unit === undefined;
   if (isRelative) {
-    notes["depth.unit"] = doubt?.message ?? "";
+    notes["depth.unit"] = RELATIVE;
     return given === undefined ? {} : { unit: given };
   }
   const isSame = given !== undefined && Math.abs(given / own - 1) < SAME;
   if (depthCamera === undefined) {
     if (given === undefined && doubt)
       notes["depth.unit"] =
-        `Its numbers look like ${nameOf(own)}. Without a depth camera each counts as one pixel of depth: give the camera, or type here how many pixels it is.`;
+        `Its numbers look like ${nameOf(own)}, but without a depth camera each counts as one pixel of depth.`;
     return given === undefined ? {} : { unit: given };
   }
-  if (given === undefined || isSame) notes["depth.unit"] = unitInWords(depth, own);
+  const words = given === undefined || isSame ? guessInWords(depth) : "";
+  if (words) notes["depth.unit"] = words;
   return given === undefined ? { unit: own, found: own } : { unit: given };
 }
 
@@ -115,7 +114,7 @@ export function pairOf(parts: Parts, say: Say): Pair {
   const [image, { depth: map, found }] = [wholeImage(parts, notes), wholeDepth(parts, notes)];
   const thin = least(map);
   if (thin > 1) {
-    notes.depth = `${inPixels(map)} is more than the library takes: every ${thin}th pixel is used`;
+    notes.depth = `${inPixels(map)} is more than the library takes: one pixel in ${thin} is used`;
     say(`${parts.depth.name}: ${notes.depth}.`);
   }
   const depth = thin > 1 ? reducedDepth(map, thin) : map;

@@ -73,6 +73,27 @@ export function looksLikeMask(picture: Picture): boolean {
   return isMask && (picture.bits <= 8 || levels[1] === 0xffff || levels[1] === 1 || levels[1] === 255);
 }
 
+/** Share of the pixels of a mask with soft edges that are wholly inside or outside, and of either alone, at least. */
+const [HARD, EACH] = [0.95, 0.02];
+
+/** Whether nearly all pixels of a grey picture have one of two levels, zero and the largest of its bits or, where `ofName`, of its own. */
+export function looksLikeSoftMask(picture: Picture, ofName: boolean): boolean {
+  const { data, channels, bits } = picture;
+  if (data instanceof Float32Array || bits < 8 || !isGrey(picture)) return false;
+  let most = bits > 8 ? 0xffff : 0xff;
+  if (ofName) {
+    most = 0;
+    for (let at = 0; at < data.length; at += channels) most = Math.max(most, data[at] ?? 0);
+  }
+  let [outside, inside] = [0, 0];
+  for (let at = 0; at < data.length; at += channels) {
+    if (data[at] === 0) outside++;
+    else if (data[at] === most) inside++;
+  }
+  const count = data.length / channels;
+  return inside >= EACH * count && outside >= EACH * count && inside + outside >= HARD * count;
+}
+
 /** The largest number of an object's label. */
 const MOST_LABELS = 64;
 /** In a picture of fewer pixels, few different levels do not suggest labels. */

@@ -201,7 +201,7 @@ function ofFloats(picture: Picture, stored: Float32Array, given: number | undefi
 }
 
 const RELATIVE =
-  "Its numbers are inverse depths, which are known up to a factor: the median depth is as many pixels away as the longer side of the map is long, which suits a view without a camera. For metres give the numerator (focal length * baseline).";
+  "Its numbers are inverse depths, known up to a factor only. The median depth was set to the longer side of the map, in pixels, which suits a view without a camera; for metres give the numerator (focal length * baseline).";
 
 /** A map of numbers that are larger where a surface is nearer. */
 function ofInverse(

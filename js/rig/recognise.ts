@@ -1,6 +1,6 @@
 /** Recognises what a picture holds, by its content, and by its name where the content is ambiguous. */
 import { badFile } from "../errors.js";
-import { looksLikeDepth, looksLikeLabels, looksLikeMask } from "./colour.js";
+import { looksLikeDepth, looksLikeLabels, looksLikeMask, looksLikeSoftMask } from "./colour.js";
 import { isGrey } from "./depth.js";
 import { isCoded } from "./formats/coded.js";
 import type { Picture } from "./formats/picture.js";
@@ -50,9 +50,10 @@ const refusal = (role: Other) =>
 /** The kind of a picture, by its content where that is clear, else by its name. */
 export function kindOfPicture(name: string, picture: Picture): Kind {
   const role = roleOf(name);
-  // A mask that was drawn by hand may have soft edges.
   if (role !== "confidence" && looksLikeMask(picture)) return "mask";
   if (role === "mask" && picture.bits === 8 && isGrey(picture)) return "mask";
+  // A mask that was drawn by hand may have soft edges.
+  if ((role === undefined || role === "mask") && looksLikeSoftMask(picture, role === "mask")) return "mask";
   const isSeveral = picture.data instanceof Float32Array && picture.channels >= 3;
   if (isSeveral && role !== "normals") return kindOfFloats(picture, role);
   if (isColourful(picture)) return isDepthRole(role) && isCoded(picture) ? "depth" : "colour";

@@ -228,13 +228,13 @@ export const fields: readonly Field[] = [
     kind: "choice",
     key: "meaning",
     label: "Numbers",
-    hint: "Whether larger numbers are farther, as depths, or nearer, as disparities and what networks estimate.",
+    hint: "Depths are larger where a surface is farther; disparities, inverse depths and what networks estimate are larger where it is nearer.",
     initial: "depth",
     group: "depth",
     path: "depth.inverse",
     choices: [
-      ["depth", "depth: larger is farther"],
-      ["inverse", "inverse depth: larger is nearer"],
+      ["depth", "larger is farther"],
+      ["inverse", "larger is nearer"],
     ],
   },
   {

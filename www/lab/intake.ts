@@ -213,10 +213,10 @@ export class Intake {
 
     picker.addEventListener("change", () => {
       const file = picker.files?.[0];
-      if (file) this.#put(slot, file);
+      if (file) this.put(slot, file);
       picker.value = ""; // so that the same file, mended on disk, can be picked again
     });
-    clear.addEventListener("click", () => this.#put(slot, undefined));
+    clear.addEventListener("click", () => this.put(slot, undefined));
     zone.addEventListener("dragover", (event) => {
       event.preventDefault();
       zone.toggleAttribute("data-over", true);
@@ -229,7 +229,7 @@ export class Intake {
       // Several are sorted as anywhere else on the page.
       if (files.length > 1) return;
       event.stopPropagation();
-      if (files[0]) this.#put(slot, files[0]);
+      if (files[0]) this.put(slot, files[0]);
     });
   }
 
@@ -246,7 +246,7 @@ export class Intake {
   }
 
   /** By hand: what was said of the files that came before is over. */
-  #put(slot: Slot, file: File | undefined): void {
+  put(slot: Slot, file: File | undefined): void {
     this.remarks("files", []);
     this.#set(slot, file);
     this.#hooks.onChange();

@@ -92,7 +92,7 @@ export class Lab {
     this.store = store;
     this.#form = form;
     this.gallery = gallery;
-    this.#messages = new Messages(this.#form, this.#own.intake);
+    this.#messages = new Messages(this.#form, this.#own.intake, () => void this.#own.drawMask());
     const unlessGone = (): undefined => undefined;
     gallery.serve({
       look: (look) => this.#engine.call("look", { look }).catch(unlessGone),

@@ -114,6 +114,17 @@ async function look(file: File): Promise<Look> {
   }
 }
 
+/** A picture at most so wide; of one that these readers do not know, by the browser. */
+export async function pictureOf(file: File, width: number): Promise<ImageBitmap> {
+  const number = numberOf(file);
+  if (kept.has(number)) return session.call("picture", { file: number, width });
+  const whole = await createImageBitmap(file);
+  if (whole.width <= width) return whole;
+  const picture = await createImageBitmap(whole, { resizeWidth: width, resizeQuality: "medium" });
+  whole.close();
+  return picture;
+}
+
 const KINDS = { colour: "colour", depth: "depth", colourMask: "mask", depthMask: "mask" } as const;
 
 /** A file in its place: one that its content or name speaks against is read as what its place asks for, and that is said. */

@@ -74,15 +74,18 @@ export class OwnCameras {
     if (this.#given !== given) return undefined;
     const fields: Fields = {};
     const remarks: Remark[] = [];
+    const isShared = given.length === 1 && found.colour !== undefined && found.depth !== undefined;
+    const isOfBoth = isShared ? ", which is that of both images" : "";
     for (const side of ["colour", "depth"] as const) {
       const camera = found[side];
       if (!camera) continue;
       Object.assign(fields, fieldsOf(side, camera.camera));
-      const words = `${camera.file}: the ${side} camera. Its numbers are in the fields below; Undo removes them.`;
+      const words = `${camera.file}: the ${side} camera${isOfBoth}. Its numbers are in the fields below; Undo removes them.`;
       remarks.push({ words, wrong: false });
     }
     const isLeftOut = found.warnings.some(({ code }) => code === "camera-left-out");
-    for (const { code, message } of found.warnings)
+    const isSaid = (code: string) => code === "camera-shared" && colour.width === depth.width;
+    for (const { code, message } of found.warnings.filter((each) => !isSaid(each.code)))
       remarks.push({ words: message, wrong: code === "camera-left-out" || (isLeftOut && code === "camera-size") });
     this.#filled = fields;
     return { fields, remarks };

@@ -77,6 +77,14 @@ export class OwnFiles {
     else this.#hooks.onLooking("");
   }
 
+  /** Has a mask of the colour image drawn, in the place of the one that there is. */
+  async drawMask(): Promise<void> {
+    const { colour } = this.intake.files;
+    if (!colour) return;
+    const { drawMask } = await import("./drawmask");
+    await drawMask(colour, (mask) => this.intake.files.colour === colour && this.intake.put("colourMask", mask));
+  }
+
   /** The cameras' numbers for these pictures, and what is said of them. */
   async #assign(files: Files): Promise<Record<string, Value>> {
     const assigned = await this.#cameras?.assign(files, this.#hooks.settings());
