@@ -127,7 +127,9 @@ export function pairOf(parts: Parts, say: Say): Pair {
   if (factor > 1) {
     const why =
       needed >= useful ? "is more than the library takes" : `is ${finer.toFixed(1)} times as fine as the depth map`;
-    notes.image = `${inPixels(image)} ${why}: scaled down by ${factor}`;
+    // Poses of views without a camera are in pixels.
+    const whose = needed < useful && image.camera === undefined ? "; pixels are those of the smaller picture" : "";
+    notes.image = `${inPixels(image)} ${why}: scaled down by ${factor}${whose}`;
     say(`${parts.colour.name}: ${notes.image}.`);
   }
   return {

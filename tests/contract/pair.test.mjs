@@ -91,7 +91,10 @@ describe("a large image beside a coarse depth map", () => {
       // Half a level of 16 bits, and single precision of the table.
       close([small.data[4 * 700 + c]], [65535 * code], 1);
     }
-    assert.equal(notes.image, "1280 × 960 px is 20.0 times as fine as the depth map: scaled down by 20");
+    assert.equal(
+      notes.image,
+      "1280 × 960 px is 20.0 times as fine as the depth map: scaled down by 20; pixels are those of the smaller picture",
+    );
     assert.deepEqual(said, [`c.png: ${notes.image}.`]);
   });
 
