@@ -53,8 +53,8 @@ export interface Remark {
   action?: { label: string; press(): void };
 }
 
-/** What remarks are about: files that were dropped, their cameras, the pair that they make. */
-const TOPICS = ["files", "cameras", "pair"] as const;
+/** What remarks are about: files that were dropped, the pair that they make, its cameras. */
+const TOPICS = ["files", "pair", "cameras"] as const;
 type Topic = (typeof TOPICS)[number];
 
 export interface IntakeHooks {
@@ -132,7 +132,9 @@ export class Intake {
   /** What is to be said of one topic, in the place of what was. */
   remarks(topic: Topic, said: readonly Remark[]): void {
     this.#said[topic] = said;
-    const all = TOPICS.flatMap((each) => this.#said[each] ?? []);
+    // There may be more than is in sight at once.
+    const rank = ({ wrong, action }: Remark) => (wrong ? 0 : action ? 1 : 2);
+    const all = TOPICS.flatMap((each) => this.#said[each] ?? []).sort((a, b) => rank(a) - rank(b));
     this.#remarks.hidden = all.length === 0;
     this.#remarks.replaceChildren(
       ...all.map(({ words, wrong, action }) => {

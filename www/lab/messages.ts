@@ -9,8 +9,10 @@ import type { Intake, Remark } from "./intake";
 /** What was guessed that may be wrong, in sight beside the files as well: fields may be folded. */
 function standing({ "depth.unit": unit, "image.mask": mask }: Opened["notes"], drawMask: () => void): Remark[] {
   const action = { label: "Draw a mask", press: drawMask };
+  // What other units would come to stands beside the field.
+  const short = unit?.replace(/ \([^()]*\)/, "");
   return [
-    ...(unit ? [{ words: `Unit of depth: ${unit} Settings, Depth camera, Unit changes that.`, wrong: false }] : []),
+    ...(short ? [{ words: `Unit of depth: ${short} Settings, Depth camera, Unit changes that.`, wrong: false }] : []),
     ...(mask ? [{ words: `${mask} Drop a mask, or draw one.`, wrong: false, action }] : []),
   ];
 }
