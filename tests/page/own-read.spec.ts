@@ -6,7 +6,7 @@ import init, { sample } from "../../pkg/index.js";
 import { LONG, expect, test, type Lab } from "./lab";
 import { Messages } from "./messages";
 import { own, put, slot } from "./ownfiles";
-import { SIDE, cameraJson, colourPng, depthPng, drop, maskPng, type Upload } from "./uploads";
+import { SIDE, cameraJson, colourPng, depthPng, drop, maskPng, roomPng, type Upload } from "./uploads";
 
 const middle = (SIDE - 1) / 2;
 const radius = (i: number) => Math.hypot((i % SIDE) - middle, Math.floor(i / SIDE) - middle);
@@ -16,10 +16,6 @@ const image = (name: string, channels: 1 | 3, depth: 8 | 16, value: (i: number) 
   const buffer = Buffer.from(encode({ width: SIDE, height: SIDE, channels, depth, data }));
   return { name, mimeType: "image/png", buffer };
 };
-/** A ball before a wall that is not black. */
-const roomPng = (name = "room.png") =>
-  image(name, 3, 8, (i) => (radius(Math.floor(i / 3)) < 20 ? 90 + (i % 150) : 140 + (i % 40)));
-
 const remarks = ({ page }: Lab) => page.locator(".remarks");
 const unit = ({ page }: Lab) => page.getByLabel("Unit", { exact: true });
 const unfoldDepth = ({ page }: Lab) => page.getByText("Depth camera", { exact: true }).click();

@@ -3,7 +3,6 @@
  * depths. The Lab draws its masks with it, too.
  */
 
-import "../style/rig-parts.css";
 import "../style/rig-mask.css";
 import { make } from "../dom";
 import { choose, draw, labelled, numberField, press, show } from "./parts";
@@ -76,7 +75,8 @@ export class MaskTool {
     );
     const board = make(
       "div",
-      { class: "rig-mask-board" },
+      // Of a picture that is taller than the window it scrolls.
+      { class: "rig-mask-board", tabindex: "0", role: "group", "aria-label": "Picture" },
       make("div", { class: "rig-mask-picture" }, this.#image, this.#layer, this.#frameBox),
     );
     this.element.append(
@@ -128,6 +128,7 @@ export class MaskTool {
       this.#tool,
       (value) => (this.#tool = value as Tool),
     );
+    tool.autofocus = true;
     const use = choose(
       [
         { value: "use", label: "use what I draw" },

@@ -1,6 +1,5 @@
 /** Check a rig: is the calibration between a colour camera and a depth camera right? Three steps on one page. */
 
-import "../style/rig-parts.css";
 import "../style/rig.css";
 import "../style/rig-steps.css";
 import "../style/rig-verdict.css";
