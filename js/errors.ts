@@ -57,8 +57,11 @@ export interface ErrorDetails {
   readonly file?: string;
   /** What is wrong with it, without its name. */
   readonly reason?: string;
-  /** "too-large": it holds more than is read here; "picture": a picture of a format that browsers read and these readers do not. */
-  readonly problem?: "too-large" | "picture";
+  /**
+   * "too-large": it holds more than is read here; "picture": a picture of a format that browsers read and these readers do not;
+   * "disparity": by its name it holds disparities or inverse depths, which the option `inverse` reads.
+   */
+  readonly problem?: "too-large" | "picture" | "disparity";
   /** Its columns, where its size is the problem. */
   readonly width?: number;
   /** Its rows, where its size is the problem. */

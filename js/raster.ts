@@ -9,15 +9,19 @@ export const hasColour = (channels: number): boolean => channels >= 3;
 const hasAlpha = (channels: number): boolean => channels === 2 || channels === 4;
 
 /** Copies pixels into another number of channels; grey is repeated. */
-function spread<T extends Pixels>(from: Raster<Pixels>, to: T, channels: number, opaque: number): T {
-  const pixels = from.width * from.height;
-  const last = from.channels - 1;
-  for (let pixel = 0; pixel < pixels; pixel++) {
-    const at = pixel * from.channels;
-    for (let channel = 0; channel < 3; channel++) {
-      to[pixel * channels + channel] = from.data[at + (hasColour(from.channels) ? channel : 0)] ?? 0;
-    }
-    if (channels === 4) to[pixel * 4 + 3] = hasAlpha(from.channels) ? (from.data[at + last] ?? 0) : opaque;
+function spread<T extends Pixels>(
+  { data, channels: from }: Raster<Pixels>,
+  to: T,
+  channels: number,
+  opaque: number,
+): T {
+  const [green, blue] = hasColour(from) ? [1, 2] : [0, 0];
+  const alpha = channels === 4 && hasAlpha(from) ? from - 1 : undefined;
+  for (let at = 0, out = 0; out < to.length; at += from, out += channels) {
+    to[out] = data[at] ?? 0;
+    to[out + 1] = data[at + green] ?? 0;
+    to[out + 2] = data[at + blue] ?? 0;
+    if (channels === 4) to[out + 3] = alpha === undefined ? opaque : (data[at + alpha] ?? 0);
   }
   return to;
 }
@@ -68,10 +72,10 @@ export function toMask(raster: Raster<Pixels>): Mask {
   const opaque = alphaMask(raster);
   const visible = hasColour(channels) ? 3 : 1;
   const mask = new Uint8Array(width * height);
-  for (let pixel = 0; pixel < mask.length; pixel++) {
-    const at = pixel * channels;
-    const lit = data.subarray(at, at + visible).some((value) => value > 0);
-    mask[pixel] = lit && opaque?.[pixel] !== 0 ? 255 : 0;
+  for (let pixel = 0, at = 0; pixel < mask.length; pixel++, at += channels) {
+    let isLit = false;
+    for (let channel = 0; channel < visible; channel++) isLit ||= (data[at + channel] ?? 0) > 0;
+    if (isLit && opaque?.[pixel] !== 0) mask[pixel] = 255;
   }
   return { width, height, data: mask };
 }

@@ -31,7 +31,7 @@ const SOURCES = [
   "scripts/notices",
 ];
 const MARK = "pkg/.stamp";
-/** One for programs, one for images and depth maps, three for what reads and writes a rig's files and reads its recordings, one for what writes a run's, one for the page's fields, one for the threads of workers, and one for shells. */
+/** One for programs, one for images and depth maps, three for what reads and writes a rig's files and reads its recordings, one for what writes a run's, two for the page's fields and its visitor's files, one for the threads of workers, and one for shells. */
 const ENTRIES = {
   index: "index",
   files: "files",
@@ -40,6 +40,7 @@ const ENTRIES = {
   "rig-write": "rig/write/index",
   write: "write/index",
   options: "options",
+  pair: "pair/index",
   thread: "workers/thread",
   cli: "cli/main",
 };

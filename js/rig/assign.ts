@@ -121,7 +121,7 @@ function checkOnly(
 }
 
 /** Both cameras by what is said of them, then by size, then by order. */
-function chosen(
+export function chosen(
   cameras: NamedCamera[],
   { image, depth }: CheckFrame,
   warnings: ReaderWarning[],
@@ -156,7 +156,12 @@ function chosen(
 const [OFF_MIDDLE, FEW_PIXELS] = [0.15, 8];
 
 /** The camera for pictures of this size, with a warning where it is of another. */
-function forSize(camera: NamedCamera | undefined, size: Size, what: string, warnings: ReaderWarning[]) {
+export function forSize(
+  camera: NamedCamera | undefined,
+  size: Size,
+  what: string,
+  warnings: ReaderWarning[],
+): NamedCamera | undefined {
   if (camera === undefined) return undefined;
   const { width, height } = size;
   const { cx, cy } = camera.camera;

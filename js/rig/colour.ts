@@ -34,7 +34,9 @@ export function pictureColour(picture: Picture): Unnamed<Extract<RigReading, { k
 
 export function pictureMask(picture: Picture): Unnamed<Extract<RigReading, { kind: "mask" }>> {
   const mask = toMask(picture);
-  const share = mask.data.reduce((sum, value) => sum + (value > 0 ? 1 : 0), 0) / mask.data.length;
+  let inside = 0;
+  for (const value of mask.data) if (value > 0) inside++;
+  const share = inside / mask.data.length;
   const warnings = [...picture.warnings];
   if (share === 0) warnings.push(warning("mask-empty", "The mask is empty: no pixel belongs to the object."));
   if (share === 1) warnings.push(warning("mask-full", "The mask covers the whole picture."));
@@ -50,8 +52,13 @@ export function pictureMask(picture: Picture): Unnamed<Extract<RigReading, { kin
 /** The different levels of a grey picture of integers, the lowest first; undefined for more than `most`. */
 function levelsOf({ data, channels }: Picture, most: number): number[] | undefined {
   const levels = new Set<number>();
+  let last: number | undefined;
   for (let at = 0; at < data.length; at += channels) {
-    levels.add(data[at] ?? 0);
+    const level = data[at] ?? 0;
+    // Neighbours mostly have the same, and a set takes long.
+    if (level === last) continue;
+    last = level;
+    levels.add(level);
     if (levels.size > most) return undefined;
   }
   return [...levels].sort((a, b) => a - b);
@@ -64,6 +71,27 @@ export function looksLikeMask(picture: Picture): boolean {
   const isMask = levels?.length === 2 && levels[0] === 0;
   // A 16-bit depth map of a flat wall has two levels as well; the level of a mask is the largest value, or 1.
   return isMask && (picture.bits <= 8 || levels[1] === 0xffff || levels[1] === 1 || levels[1] === 255);
+}
+
+/** Share of the pixels of a mask with soft edges that are wholly inside or outside, and of either alone, at least. */
+const [HARD, EACH] = [0.95, 0.02];
+
+/** Whether nearly all pixels of a grey picture have one of two levels, zero and the largest of its bits or, where `ofName`, of its own. */
+export function looksLikeSoftMask(picture: Picture, ofName: boolean): boolean {
+  const { data, channels, bits } = picture;
+  if (data instanceof Float32Array || bits < 8 || !isGrey(picture)) return false;
+  let most = bits > 8 ? 0xffff : 0xff;
+  if (ofName) {
+    most = 0;
+    for (let at = 0; at < data.length; at += channels) most = Math.max(most, data[at] ?? 0);
+  }
+  let [outside, inside] = [0, 0];
+  for (let at = 0; at < data.length; at += channels) {
+    if (data[at] === 0) outside++;
+    else if (data[at] === most) inside++;
+  }
+  const count = data.length / channels;
+  return inside >= EACH * count && outside >= EACH * count && inside + outside >= HARD * count;
 }
 
 /** The largest number of an object's label. */

@@ -5,7 +5,7 @@
  * Limits: values alone do not always tell millimetres from fifths of them (TUM), so that every guess is a warning.
  */
 import { badFile } from "../errors.js";
-import { hasColour, single } from "../raster.js";
+import { type Pixels, hasColour, single } from "../raster.js";
 import { checkAxes } from "./axes.js";
 import { decoded } from "./formats/coded.js";
 import type { Cloud, Picture } from "./formats/picture.js";
@@ -26,6 +26,7 @@ import {
   unitOfFloats,
   unitOfIntegers,
 } from "./guess.js";
+import { type InverseDepth, depthsOf } from "./inverse.js";
 import { isOptical, turnedCloud } from "./scan.js";
 import { quantile } from "./statistics.js";
 import { isScattered, looksLikeImage } from "./texture.js";
@@ -199,6 +200,30 @@ function ofFloats(picture: Picture, stored: Float32Array, given: number | undefi
   return reading(picture, depth, `${bits}-bit float`, { ...extentOf(data), sample }, unit);
 }
 
+const RELATIVE =
+  "Its numbers are inverse depths, known up to a factor only. The median depth was set to the longer side of the map, in pixels, which suits a view without a camera; for metres give the numerator (focal length * baseline).";
+
+/** A map of numbers that are larger where a surface is nearer. */
+function ofInverse(
+  picture: Picture,
+  stored: Exclude<Pixels, Uint8Array>,
+  inverse: InverseDepth,
+  given?: number,
+): Depth {
+  const data = depthsOf(stored, picture, inverse);
+  const sample = sampled(data);
+  if (sample.length === 0) throw nothing();
+  const { width, height, bits } = picture;
+  const { numerator } = inverse;
+  const said = numerator === undefined ? "pixels, from inverse depths" : `metres: ${numerator} / stored number`;
+  const unit: Unit = given === undefined ? { metres: 1, says: said, isGuessed: false } : knownUnit(given);
+  const kind = stored instanceof Float32Array ? `${bits}-bit float` : `${bits}-bit`;
+  const found = reading(picture, { width, height, data, unit: unit.metres }, kind, { ...extentOf(data), sample }, unit);
+  if (numerator !== undefined) return found;
+  const warnings = found.warnings.filter(({ code }) => code !== "depth-range");
+  return { ...found, guessed: ["unit"], warnings: [...warnings, warning("unit-guessed", RELATIVE)] };
+}
+
 /** An organised cloud; its points are converted to metres in place, NaN where there is none. */
 export function cloudDepth(cloud: Cloud, { unit: given }: ReadOptions): Depth {
   const { points, width, height } = cloud;
@@ -226,14 +251,17 @@ const every = (data: Float32Array, channels: number, kept: number): Float32Array
 /** A picture as a depth map; floats of three channels are a cloud, which .npy files hold. */
 export function pictureDepth(picture: Picture, options: ReadOptions): Depth {
   const { data, channels } = picture;
+  const { unit, inverse } = options;
+  const floats = (values: Float32Array) =>
+    inverse ? ofInverse(picture, values, inverse, unit) : ofFloats(picture, values, unit);
   if (data instanceof Float32Array) {
     const isRepeated = channels === 3 && isGrey(picture);
-    if (isRepeated) return ofFloats(picture, every(data, 3, 1), options.unit);
+    if (isRepeated) return floats(every(data, 3, 1));
     if (channels === 3) return cloudDepth({ ...picture, points: data }, options);
     // The channels are x, y, z and intensity.
     if (channels === 4) return cloudDepth({ ...picture, points: every(data, 4, 3) }, options);
     if (channels !== 1) throw badFile(`a depth map has 1 channel and a cloud 3, not ${channels}`);
-    return ofFloats(picture, data, options.unit);
+    return floats(data);
   }
   const inside = hasColour(channels) && !isGrey(picture) ? decoded(picture) : undefined;
   if (inside !== undefined) return pictureDepth(inside, options);
@@ -243,7 +271,7 @@ export function pictureDepth(picture: Picture, options: ReadOptions): Depth {
     );
   const one = single(picture);
   if (one instanceof Float32Array) throw badFile("a depth map has 1 channel");
-  return ofIntegers(picture, one, options.unit);
+  return inverse ? ofInverse(picture, Uint16Array.from(one), inverse, unit) : ofIntegers(picture, one, unit);
 }
 
 /** Whether all pixels are grey. */

@@ -9,4 +9,5 @@ export { readRigFile } from "./read.js";
 export { isRecording } from "./recordings/kinds.js";
 export { rangeImage } from "./range.js";
 export type { ReaderCode, ReaderWarning } from "./warnings.js";
+export type { InverseDepth } from "./inverse.js";
 export type { NamedCamera, NamedFile, NamedPose, ReadOptions, Reading, RigFolder, RigReading } from "./types.js";

@@ -3,7 +3,7 @@
  *
  * Every failure is a BimodalError of the code "file" that names the file and the reason.
  */
-import { type Check, object, signal, word, wrong } from "../check.js";
+import { type Check, number, object, ranged, signal, word, wrong } from "../check.js";
 import { BimodalError, badFile, badNamed, refused } from "../errors.js";
 import { inOrder } from "./assign.js";
 import { pictureColour, pictureMask } from "./colour.js";
@@ -46,14 +46,14 @@ const PICTURES: Record<
   Exclude<RasterKind, keyof typeof CLOUDS | "points">,
   (bytes: Uint8Array, options: ReadOptions) => Picture | Promise<Picture>
 > = {
-  png: pngPicture,
+  png: (bytes) => pngPicture(bytes),
   jpeg: readJpeg,
   webp: readWebp,
   tiff: readTiff,
   exr: (bytes, { as }) => readExr(bytes, as === "depth"),
   pfm: readPfm,
   pnm: readPnm,
-  npy: npyPicture,
+  npy: (bytes) => npyPicture(bytes),
   npz: npzPicture,
   colmap: readColmapMap,
   table: readTable,
@@ -66,8 +66,9 @@ export const isTextFile = (bytes: Uint8Array): boolean => (textOf(bytes) ?? writ
 /** A binary calibration as the text with the same content. */
 const writtenOf = (bytes: Uint8Array): string | undefined => colmapText(bytes) ?? matrixText(bytes);
 
-function ofPicture(name: string, picture: Picture, options: ReadOptions): Content {
-  const kind = options.as ?? kindOfPicture(name, picture);
+/** A picture as what it holds, or as what is asked for. */
+export function ofPicture(name: string, picture: Picture, options: ReadOptions): Content {
+  const kind = options.as ?? (options.inverse ? "depth" : kindOfPicture(name, picture));
   const warnings = [...picture.warnings, ...nameWarnings(name, picture, kind, options)];
   if (kind === "colour") return pictureColour({ ...picture, warnings });
   if (kind === "depth") return pictureDepth({ ...picture, ...unitOfName(name, picture), warnings }, options);
@@ -78,6 +79,8 @@ function ofPicture(name: string, picture: Picture, options: ReadOptions): Conten
 async function ofCloud(cloud: Cloud | Points, options: ReadOptions): Promise<Content> {
   if (options.as !== undefined && options.as !== "depth")
     throw badFile(`it is a cloud of points (${cloud.format}) where ${options.as} was expected`);
+  if (options.inverse)
+    throw badFile(`it is a cloud of points (${cloud.format}), whose z is a depth and no inverse depth`);
   return "scan" in cloud ? (await clouds()).pointsDepth(cloud, options) : cloudDepth(cloud, options);
 }
 
@@ -167,9 +170,16 @@ export const pixelSize: Check = (value, field) => {
   if (!(Array.isArray(value) && value.length === 2 && value.every(isSide)))
     throw new BimodalError("option", `${field}: width and height in pixels are needed, [640, 480]`, field);
 };
+/** A number other than zero. */
+const factor: Check = (value, field) => {
+  number(value, field);
+  if (value === 0 || !Number.isFinite(value))
+    throw new BimodalError("option", `${field}: a finite number other than zero is needed`, field, refused(value));
+};
 const checkOptions = object({
   as: word("colour", "depth", "mask", "cameras", "poses"),
   unit: metresPerUnit,
+  inverse: object({ numerator: factor, offset: ranged({ kind: "number" }) }),
   size: pixelSize,
   signal,
 });

@@ -1,6 +1,6 @@
 /** Recognises what a picture holds, by its content, and by its name where the content is ambiguous. */
 import { badFile } from "../errors.js";
-import { looksLikeDepth, looksLikeLabels, looksLikeMask } from "./colour.js";
+import { looksLikeDepth, looksLikeLabels, looksLikeMask, looksLikeSoftMask } from "./colour.js";
 import { isGrey } from "./depth.js";
 import { isCoded } from "./formats/coded.js";
 import type { Picture } from "./formats/picture.js";
@@ -41,16 +41,19 @@ function kindOfFloats(picture: Picture, role: Role | undefined): Kind {
 const refusal = (role: Other) =>
   badFile(
     role === "disparity"
-      ? "its name says that it holds disparities or inverse depths rather than depths: compute z = focal length * baseline / (disparity + doffs) and save that. Give the unit if it holds depths"
+      ? "its name says that it holds disparities or inverse depths rather than depths: read it as such (the option `inverse`), or compute z = focal length * baseline / (disparity + doffs) and save that. Give the unit if it holds depths"
       : `its name says that it holds ${CONTENTS[role]}: that is neither a colour image nor a depth map nor a mask. If it is one, give the kind to read it as`,
+    undefined,
+    role === "disparity" ? { problem: "disparity" } : {},
   );
 
 /** The kind of a picture, by its content where that is clear, else by its name. */
 export function kindOfPicture(name: string, picture: Picture): Kind {
   const role = roleOf(name);
-  // A mask that was drawn by hand may have soft edges.
   if (role !== "confidence" && looksLikeMask(picture)) return "mask";
   if (role === "mask" && picture.bits === 8 && isGrey(picture)) return "mask";
+  // A mask that was drawn by hand may have soft edges.
+  if ((role === undefined || role === "mask") && looksLikeSoftMask(picture, role === "mask")) return "mask";
   const isSeveral = picture.data instanceof Float32Array && picture.channels >= 3;
   if (isSeveral && role !== "normals") return kindOfFloats(picture, role);
   if (isColourful(picture)) return isDepthRole(role) && isCoded(picture) ? "depth" : "colour";
@@ -66,9 +69,15 @@ export function kindOfPicture(name: string, picture: Picture): Kind {
 }
 
 /** Warnings where a file's name contradicts the kind it is read as; a disparity map is refused as a depth map unless the unit is given. */
-export function nameWarnings(name: string, picture: Picture, kind: string, { unit }: ReadOptions): ReaderWarning[] {
+export function nameWarnings(
+  name: string,
+  picture: Picture,
+  kind: string,
+  { unit, inverse }: ReadOptions,
+): ReaderWarning[] {
   const role = roleOf(name);
   if (kind === "depth" && isOther(role)) {
+    if (role === "disparity" && inverse !== undefined) return [];
     if (role === "disparity" && unit === undefined) throw refusal(role);
     return [warning("files-swapped", `Its name says that it holds ${CONTENTS[role]}, but it was read as a depth map.`)];
   }

@@ -1,9 +1,10 @@
 /** What is read from the files of a rig. */
 import type { CheckFrame, Mask, Pinhole, Pose } from "../types/index.js";
+import type { InverseDepth } from "./inverse.js";
 import type { Scan } from "./lidar/scan.js";
 import type { ReaderWarning } from "./warnings.js";
 
-export type { CheckFrame, Mask, Pinhole, Pose, ReaderWarning, Scan };
+export type { CheckFrame, InverseDepth, Mask, Pinhole, Pose, ReaderWarning, Scan };
 
 /** A file as it was dropped or read; the name may hold a path, "depth/0001.png". */
 export interface NamedFile {
@@ -114,6 +115,8 @@ export interface ReadOptions {
   as?: RigReading["kind"];
   /** Metres per stored unit of a depth map or cloud; by default the values decide. */
   unit?: number;
+  /** The stored numbers of the depth map are disparities or inverse depths, larger where it is nearer: how they become depths. */
+  inverse?: InverseDepth;
   /** Width and height of raw pixels (.raw, .bin), which have no header. */
   size?: readonly [width: number, height: number];
   /** Stops the reading; the promise is rejected with the signal's reason. */

@@ -16,7 +16,13 @@ const MAY_LOOK = {
 };
 /** The places of the page, which stand side by side, and what they borrow from each other. */
 const PLACES = ["www/lab", "www/learn", "www/rig", "www/tables"];
-const BORROWED = ["www/rig/protocol.ts", "www/rig/session.ts", "www/lab/settings.ts"];
+const BORROWED = [
+  "www/rig/protocol.ts",
+  "www/rig/session.ts",
+  "www/rig/masktool.ts",
+  "www/rig/paint.ts",
+  "www/lab/settings.ts",
+];
 /** What all places stand on. */
 const GROUND = ["www/draw", "www/engine"];
 

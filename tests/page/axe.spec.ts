@@ -11,6 +11,7 @@ import { driver } from "../contract/recordings.mjs";
 import { LONG, expect, test, type Lab } from "./lab";
 import { Messages } from "./messages";
 import { answerChecks } from "./rig";
+import { cameraJson, depthPng, drop, roomPng } from "./uploads";
 
 const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 
@@ -79,6 +80,15 @@ async function lab(lab: Lab, page: Page): Promise<void> {
   await clean(page, "a field explained");
   await page.getByRole("button", { name: "Own files" }).click();
   await clean(page, "own files");
+  await drop(page, "body", [roomPng(), depthPng(), cameraJson()]);
+  await expect(page.locator("#status")).toHaveAttribute("data-state", "ready");
+  await clean(page, "own files with remarks");
+  await page.getByRole("button", { name: "Draw a mask" }).click();
+  await expect(page.getByRole("dialog")).toBeVisible();
+  await clean(page, "drawing a mask");
+  await page.keyboard.press("Escape");
+  await page.getByRole("button", { name: "Sample", exact: true }).click();
+  await expect(page.locator("#status")).toHaveAttribute("data-state", "ready");
   await page.getByRole("button", { name: "Close settings" }).click();
   await page.locator("#stages button").first().click();
   await expect(page.locator("#explanation")).toBeVisible();

@@ -5,8 +5,8 @@
 
 import type { Page } from "@playwright/test";
 
-/** What a message asks for: of the Lab's worker by its kind, or a cell of the tables. Clouds to be drawn have no kind. */
-type Kind = "catalogue" | "open" | "reset" | "advance" | "look" | "probe" | "cell";
+/** What a message asks for: of the Lab's worker and of the readers' by its kind, or a cell of the tables. Clouds to be drawn have no kind. */
+type Kind = "catalogue" | "open" | "reset" | "advance" | "look" | "probe" | "read" | "pair" | "cell";
 
 interface Box {
   counts: Partial<Record<Kind, number>>;

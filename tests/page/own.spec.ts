@@ -178,7 +178,9 @@ test("swapped files are offered to be swapped, and then run", async ({ lab, page
   await expect(page.locator(".offer")).toContainText("Colour and depth seem to be swapped.");
   await lab.reaches("error");
   // Where the eye is, too: the settings may be closed.
-  await expect(page.locator("#verdict")).toContainText("second.png: a depth map has one value for each pixel");
+  await expect(page.locator("#verdict")).toContainText(
+    "second.png: it is a colour picture where a depth map was expected",
+  );
   await expect(page.locator("#next")).toHaveText("Colour and depth seem to be swapped: Settings, Swap them.");
   // With the samples nothing is swapped.
   await page.getByRole("button", { name: "Sample", exact: true }).click();

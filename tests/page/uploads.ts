@@ -27,6 +27,17 @@ export const colourPng = (name = "a.png", tint = 0): Upload =>
     ),
   );
 
+/** The ball before a wall that is not black. */
+export const roomPng = (name = "room.png"): Upload =>
+  png(
+    name,
+    3,
+    8,
+    Uint8Array.from({ length: 3 * SIDE * SIDE }, (_, i) =>
+      radius(Math.floor(i / 3)) < 20 ? 90 + (i % 150) : 140 + (i % 40),
+    ),
+  );
+
 /** A ball in tenths of a pixel, holes around it; column by column in a .npy as numpy writes a transposed array. */
 const depthAt = (i: number) => (radius(i) < 20 ? Math.round(300 - 10 * Math.sqrt(400 - radius(i) ** 2)) : 0);
 export const depthPng = (name = "b.png"): Upload =>

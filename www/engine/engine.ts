@@ -32,8 +32,6 @@ interface Pending {
 export interface EngineHooks {
   /** Told how many bytes of the module have arrived. */
   onLoad(bytes: number): void;
-  /** Told what is done to a file that is being read. */
-  onDoing(words: string): void;
   /** The worker is gone, and with it the input that it held; calls under way are rejected with the same error. */
   onLost(error: EngineError): void;
 }
@@ -52,12 +50,17 @@ export class Engine {
     this.#hooks = hooks;
   }
 
-  call<K extends Kind>(kind: K, request: Calls[K]["request"]): Promise<Calls[K]["reply"]> {
+  /** What is transferred, the page has no longer. */
+  call<K extends Kind>(
+    kind: K,
+    request: Calls[K]["request"],
+    transfer: Transferable[] = [],
+  ): Promise<Calls[K]["reply"]> {
     const id = this.#next++;
     return new Promise((resolve, reject) => {
       this.#pending.set(id, { resolve, reject });
       this.#worker ??= this.#spawn();
-      this.#worker.postMessage({ id, kind, ...request });
+      this.#worker.postMessage({ id, kind, ...request }, transfer);
     });
   }
 
@@ -90,8 +93,7 @@ export class Engine {
 
   #receive(answer: Answer): void {
     if (answer.id === null) {
-      if ("doing" in answer) this.#hooks.onDoing(answer.doing);
-      else this.#hooks.onLoad(answer.loaded);
+      this.#hooks.onLoad(answer.loaded);
       return;
     }
     this.#loaded = true;

@@ -1,14 +1,16 @@
 /** What the page and its worker say to each other. Both sides import this file and nothing else of one another. */
 
 import type { ErrorDetails } from "../../pkg/index.js";
-import type { ColorImage, DepthMap, Mask, Options, Pinhole, Pose, SampleRequest, StepReport } from "../../pkg/index.js";
+import type { ColorImage, DepthMap, Options, Pinhole, Pose, SampleRequest, StepReport } from "../../pkg/index.js";
 
-/** Files whose pixels have been read already, as the worker's decoders do not know them; depths in stored numbers. */
-export interface Read {
-  colour?: ColorImage;
-  depth?: DepthMap;
-  colourMask?: Mask;
-  depthMask?: Mask;
+/** A pair as the library takes it, read of the visitor's files. */
+export interface Pair {
+  image: ColorImage;
+  depth: DepthMap;
+  /** What was guessed or changed on the way in, in words, by the field that it belongs to. */
+  notes: Record<string, string>;
+  /** The unit of depth that was found where none was given. */
+  unit?: number;
 }
 
 /** Files as dropped or picked, with what only their owner knows about them. */
@@ -17,19 +19,22 @@ export interface OwnFiles {
   depth: File;
   colourMask?: File;
   depthMask?: File;
-  read?: Read;
   colourCamera?: Pinhole;
   depthCamera?: Pinhole;
-  /** Metres (or pixels) per stored unit of depth; the library's default without it. */
+  /** Metres (or pixels) per stored unit of depth; guessed without it where there is a camera. */
   unit?: number;
+  /** Larger numbers of the depth map are nearer; with the factor where it is known. */
+  inverse?: { numerator?: number };
   /** Guessed from the bit depth without it. */
   transfer?: "srgb" | "linear";
 }
 
 /** A sample's light may be turned, degrees about the colour view's x and y. */
 export type SampleSource = { kind: "sample"; request: SampleRequest; turn: { alpha: number; beta: number } };
-/** A saved run goes on where it stood. */
+/** What is to be seen; a saved run goes on where it stood. */
 export type Source = SampleSource | { kind: "files"; files: OwnFiles } | { kind: "saved"; file: File };
+/** The same for the worker, with the files read. */
+export type Input = Exclude<Source, { kind: "files" }> | { kind: "pair"; pair: Pair };
 
 /** Options whose light may also be "known" and whose start "truth": those of the sample, which only the worker holds. */
 export type LabOptions = Omit<Options, "light" | "start"> & {
@@ -211,7 +216,7 @@ export interface Taken {
 /** Each request with its reply. */
 export interface Calls {
   catalogue: { request: Record<never, never>; reply: Catalogue };
-  open: { request: { source: Source; options: LabOptions; look: Look }; reply: Opened };
+  open: { request: { source: Input; options: LabOptions; look: Look }; reply: Opened };
   take: { request: Record<never, never>; reply: Taken };
   /** The run as bytes that `open` takes as a saved one. */
   save: { request: Record<never, never>; reply: Uint8Array };
@@ -239,6 +244,4 @@ export interface Fault {
 export type Answer =
   | { id: number; ok: true; reply: Calls[Kind]["reply"] }
   | { id: number; ok: false; fault: Fault }
-  | { id: null; loaded: number }
-  /** What is done to a file, as soon as it is known. */
-  | { id: null; doing: string };
+  | { id: null; loaded: number };

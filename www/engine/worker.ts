@@ -18,12 +18,11 @@ import type {
   Kind,
   KnownLight,
   Look,
-  OwnFiles,
   Request,
+  Input as Source,
   LabOptions,
   Preview,
   SampleSource,
-  Source,
   Drawings,
 } from "./protocol";
 import { faultOf } from "./fault";
@@ -110,8 +109,7 @@ const known = (light: Float64Array): KnownLight => ({ ball: lit(light), coeffici
 
 /** The new input replaces the old one only when it has been accepted, so a refusal loses nothing. */
 async function open({ source, options, look }: Calls["open"]["request"]): Promise<Calls["open"]["reply"]> {
-  const { estimator, ...opened } =
-    source.kind === "saved" ? await fromSaved(source.file) : await prepared(source, options);
+  const { estimator, ...opened } = source.kind === "saved" ? await fromSaved(source.file) : prepared(source, options);
   experiment?.estimator.free();
   const numbers = new Numbers(estimator);
   experiment = {
@@ -134,11 +132,11 @@ async function open({ source, options, look }: Calls["open"]["request"]): Promis
 
 type Prepared = Input & Pick<Calls["open"]["reply"], "notes">;
 
-async function prepared(
+function prepared(
   source: Exclude<Source, { kind: "saved" }>,
   options: LabOptions,
-): Promise<Prepared & { estimator: Estimator }> {
-  const input = source.kind === "sample" ? fromSample(source) : await fromFiles(source.files);
+): Prepared & { estimator: Estimator } {
+  const input = source.kind === "sample" ? fromSample(source) : { ...source.pair, truth: null };
   return { ...input, estimator: new Estimator(input.image, input.depth, resolve(options, input)) };
 }
 
@@ -181,12 +179,6 @@ function take(): Calls["take"]["reply"] {
 function preview({ source }: Calls["preview"]["request"]): Preview {
   const { image, depth, light } = sample(requestOf(source));
   return { picture: new ViewPainter({ image, depth }).given(), trueLight: known(light) };
-}
-
-/** The decoders are large and only needed here, so they load with the first file. */
-async function fromFiles(files: OwnFiles): Promise<Prepared> {
-  const { readPair } = await import("./pair");
-  return { ...(await readPair(files, (doing) => post({ id: null, doing }, []))), truth: null };
 }
 
 function reset({ options, look }: Calls["reset"]["request"]): Frame {

@@ -1,7 +1,8 @@
-/** Four slots for the visitor's own files: dropped anywhere, or picked. What is in a file is told by `own.ts`, which loads with the first. */
+/** Four slots for the visitor's own files: dropped anywhere, or picked. What is in a file is told by `look.ts`, which loads with the first. */
 
 import { freshId, make } from "../dom";
-import type { Look, Offer } from "./own";
+import type { Look } from "./look";
+import type { Offer } from "./offer";
 import type { Slot } from "./storage";
 
 const slots: readonly { slot: Slot; label: string; accept: string; hint: string; paths: readonly string[] }[] = [
@@ -45,6 +46,17 @@ interface Entry {
   paths: readonly string[];
 }
 
+/** Something to be said of the files, and what may be done about it. */
+export interface Remark {
+  words: string;
+  wrong: boolean;
+  action?: { label: string; press(): void };
+}
+
+/** What remarks are about: files that were dropped, the pair that they make, its cameras. */
+const TOPICS = ["files", "pair", "cameras"] as const;
+type Topic = (typeof TOPICS)[number];
+
 export interface IntakeHooks {
   /** Other files than before. */
   onChange(): void;
@@ -55,6 +67,7 @@ export class Intake {
   readonly element: HTMLElement;
   #files: Partial<Record<Slot, File>> = {};
   #entries = new Map<Slot, Entry>();
+  #said: Partial<Record<Topic, readonly Remark[]>> = {};
   readonly #hooks: IntakeHooks;
   readonly #offer = make("p", { class: "offer", role: "status" });
   readonly #remarks = make("ul", { class: "remarks", hidden: true });
@@ -67,7 +80,7 @@ export class Intake {
     for (const each of slots) this.#build(each);
     this.#forget.addEventListener("click", () => {
       this.replaceAll({});
-      this.remarks([]);
+      this.silence();
       this.#hooks.onForget();
     });
     // Below the slots, which stay where they are whatever is said of them; what asks for an answer is in sight all the same.
@@ -110,18 +123,34 @@ export class Intake {
     if (!offer) return;
     const button = make("button", { type: "button" }, offer.button);
     button.addEventListener("click", () => {
-      this.remarks([]);
+      this.remarks("files", []);
       this.replaceAll(offer.slots);
     });
     this.#offer.append(offer.words, " ", button);
   }
 
-  /** What is to be said of files that are in no slot. */
-  remarks(all: readonly { words: string; wrong: boolean }[]): void {
+  /** What is to be said of one topic, in the place of what was. */
+  remarks(topic: Topic, said: readonly Remark[]): void {
+    this.#said[topic] = said;
+    // There may be more than is in sight at once.
+    const rank = ({ wrong, action }: Remark) => (wrong ? 0 : action ? 1 : 2);
+    const all = TOPICS.flatMap((each) => this.#said[each] ?? []).sort((a, b) => rank(a) - rank(b));
     this.#remarks.hidden = all.length === 0;
     this.#remarks.replaceChildren(
-      ...all.map(({ words, wrong }) => make("li", { class: wrong ? "note error" : "note" }, words)),
+      ...all.map(({ words, wrong, action }) => {
+        const line = make("li", { class: wrong ? "note error" : "note" }, words);
+        if (!action) return line;
+        const button = make("button", { type: "button" }, action.label);
+        button.addEventListener("click", action.press);
+        line.append(" ", button);
+        return line;
+      }),
     );
+  }
+
+  /** Nothing is left to be said. */
+  silence(): void {
+    for (const topic of TOPICS) this.remarks(topic, []);
   }
 
   /** Where the files are while the page is closed, in words, and whether there is something to forget. */
@@ -186,10 +215,10 @@ export class Intake {
 
     picker.addEventListener("change", () => {
       const file = picker.files?.[0];
-      if (file) this.#put(slot, file);
+      if (file) this.put(slot, file);
       picker.value = ""; // so that the same file, mended on disk, can be picked again
     });
-    clear.addEventListener("click", () => this.#put(slot, undefined));
+    clear.addEventListener("click", () => this.put(slot, undefined));
     zone.addEventListener("dragover", (event) => {
       event.preventDefault();
       zone.toggleAttribute("data-over", true);
@@ -202,7 +231,7 @@ export class Intake {
       // Several are sorted as anywhere else on the page.
       if (files.length > 1) return;
       event.stopPropagation();
-      if (files[0]) this.#put(slot, files[0]);
+      if (files[0]) this.put(slot, files[0]);
     });
   }
 
@@ -219,8 +248,8 @@ export class Intake {
   }
 
   /** By hand: what was said of the files that came before is over. */
-  #put(slot: Slot, file: File | undefined): void {
-    this.remarks([]);
+  put(slot: Slot, file: File | undefined): void {
+    this.remarks("files", []);
     this.#set(slot, file);
     this.#hooks.onChange();
   }

@@ -7,23 +7,6 @@ const [BITS, COLOUR, END] = [24, 25, 26];
 
 const begins = (bytes: Uint8Array, magic: readonly number[]): boolean => magic.every((byte, i) => bytes[i] === byte);
 
-/** Pictures that neither the library's own decoders nor browsers know, and clouds: TIFF, EXR, PFM, PGM and PPM, PLY and PCD. */
-const FURTHER = /^(?:II[*+]\0|MM\0[*+]|\x76\x2f\x31\x01|P[Ff1-7]\s|ply\s|(?:#[^\n]*\n|\s)*(?:VERSION|FIELDS)\s)/;
-/** Enough for a PCD's comments. */
-const HEAD = 512;
-
-/** Whether the package's readers of a rig's files are needed for it: colours that nobody else knows, and all other depth maps and masks, which no browser decodes. */
-export async function isFurther(file: File, isColour: boolean): Promise<boolean> {
-  // One that is gone is told of where it is read.
-  const bytes = new Uint8Array(
-    await file
-      .slice(0, HEAD)
-      .arrayBuffer()
-      .catch(() => Uint8Array.from(PNG).buffer),
-  );
-  return isColour ? FURTHER.test(String.fromCharCode(...bytes)) : !begins(bytes, PNG) && !begins(bytes, NPY);
-}
-
 /** How a saved run begins. */
 const RUN = new TextEncoder().encode("bimodal-stereo\n");
 

@@ -14,9 +14,9 @@ import { offerPictures } from "./pictures";
 import { Panels } from "./panels";
 import { RunRecord } from "./record";
 import { areOfInput } from "./fields";
-import { methodOf, runOptions, settingsOf, startNear, turnOf, type Origin, type Settings } from "./settings";
+import { guess, methodOf, runOptions, settingsOf, startNear, turnOf, type Origin, type Settings } from "./settings";
 import { download, writeAddress } from "./share";
-import { namesIn, objectOf, originOf, readable, rememberOrigin, sourceOf } from "./source";
+import { belongings, namesIn, objectOf, originOf, readable, rememberOrigin, sourceOf } from "./source";
 import { handOver } from "./handover";
 import type { Store } from "./store";
 import { Transport } from "./transport";
@@ -42,7 +42,6 @@ export class Lab {
       if (!this.#record.report)
         this.#notices.announce("loading", `loading the numerics, ${Math.round(bytes / 1000)} kB`);
     },
-    onDoing: (words) => this.#notices.detail(words),
     onLost: (error) => this.#lose(error),
   });
   readonly #form: Form;
@@ -51,7 +50,8 @@ export class Lab {
       this.#saved = undefined;
       void this.#reopen();
     },
-    onCameras: (fields) => this.store.change(fields),
+    settings: () => this.store.settings,
+    onFields: (fields, isFollowed) => (isFollowed ? this.store.adopt(fields) : this.store.change(fields)),
     onRun: (file) => this.#goOnWith(file),
     onDoubt: () => this.#showState(),
     onLooking: (names) => typeof this.#wanted === "string" && this.#notices.lack(this.#wanted, names),
@@ -92,7 +92,7 @@ export class Lab {
     this.store = store;
     this.#form = form;
     this.gallery = gallery;
-    this.#messages = new Messages(this.#form, this.#own.intake);
+    this.#messages = new Messages(this.#form, this.#own.intake, () => void this.#own.drawMask());
     const unlessGone = (): undefined => undefined;
     gallery.serve({
       look: (look) => this.#engine.call("look", { look }).catch(unlessGone),
@@ -188,7 +188,7 @@ export class Lab {
   #goOnWith(file: File): void {
     this.player.pause();
     this.#saved = { kind: "saved", file };
-    this.#own.intake.remarks([
+    this.#own.intake.remarks("files", [
       { words: `${file.name}: a saved run, from where it stood; its options are in the fields.`, wrong: false },
     ]);
     this.#vacate();
@@ -214,6 +214,7 @@ export class Lab {
   #settingsChanged(settings: Settings, changed: readonly string[], live: boolean): void {
     writeAddress(settings);
     this.#form.adapt(settings, this.#origin);
+    this.#own.adapt(settings);
     // Those of a run that is there already.
     if (changed.length === 0) return;
     this.#panels.date(true);
@@ -285,7 +286,8 @@ export class Lab {
       } else {
         if (!(await this.#open(source, options, turn))) return;
       }
-      this.#good = { source, settings: source.kind === "saved" ? this.store.settings : settings };
+      // With what the page has filled in by itself.
+      this.#good = { source, settings: turn === this.#turn ? this.store.settings : settings };
       if (turn === this.#turn) this.#notices.settle();
     } catch (error) {
       if (turn === this.#turn) await this.#fail(error);
@@ -306,13 +308,14 @@ export class Lab {
 
   /** Has the worker open an input and shows it, unless that has been overtaken by then. */
   async #open(source: Source, options: LabOptions, turn: number): Promise<boolean> {
-    const opened = await this.#engine.call("open", {
-      source: await readable(source),
-      options,
-      look: this.gallery.look,
-    });
+    const input = await readable(source, (words) => turn === this.#turn && this.#notices.detail(words));
+    if (turn !== this.#turn) return false;
+    const request = { source: input, options, look: this.gallery.look };
+    const opened = await this.#engine.call("open", request, belongings(input));
     this.#held = source;
     if (turn !== this.#turn) return false;
+    if (input.kind === "pair" && source.kind === "files" && source.files.unit === undefined)
+      this.store.complete(guess("unit", input.pair.unit));
     this.#pair = source.kind === "files" ? [source.files.colour, source.files.depth] : [];
     await this.#present(opened);
     return true;

@@ -4,17 +4,30 @@ import { byId } from "../dom";
 import { EngineError } from "../engine/engine";
 import type { Opened } from "../engine/protocol";
 import type { Form } from "./form";
-import type { Intake } from "./intake";
+import type { Intake, Remark } from "./intake";
+
+/** What was guessed that may be wrong, in sight beside the files as well: fields may be folded. */
+function standing({ "depth.unit": unit, "image.mask": mask }: Opened["notes"], drawMask: () => void): Remark[] {
+  const action = { label: "Draw a mask", press: drawMask };
+  // What other units would come to stands beside the field.
+  const short = unit?.replace(/ \([^()]*\)/, "");
+  return [
+    ...(short ? [{ words: `Unit of depth: ${short} Settings, Depth camera, Unit changes that.`, wrong: false }] : []),
+    ...(mask ? [{ words: `${mask} Drop a mask, or draw one.`, wrong: false, action }] : []),
+  ];
+}
 
 export class Messages {
   readonly #alert = byId("alert", HTMLElement);
   readonly #form: Form;
   readonly #intake: Intake;
+  readonly #drawMask: () => void;
   #notes: Opened["notes"] = {};
 
-  constructor(form: Form, intake: Intake) {
+  constructor(form: Form, intake: Intake, drawMask: () => void) {
     this.#form = form;
     this.#intake = intake;
+    this.#drawMask = drawMask;
   }
 
   /** Errors go; what was guessed about the input stays beside the fields. */
@@ -28,8 +41,11 @@ export class Messages {
     this.#notes = notes;
     this.#form.clearMessages();
     this.#intake.clearMessages();
+    this.#intake.remarks("pair", standing(notes, this.#drawMask));
     for (const [path, note] of Object.entries(notes)) {
-      if (!this.#intake.remark(path, note)) this.#form.remark(path, note);
+      // A missing mask is said beside a way to draw one.
+      if (path === "image.mask" || this.#intake.remark(path, note)) continue;
+      this.#form.remark(path, path === "depth.unit" ? `${note} Change it here if that is wrong.` : note);
     }
   }
 

@@ -2,8 +2,9 @@
 
 import { Intake } from "./intake";
 import { runAmong } from "./kind";
-import type { Offer } from "./own";
-import type { Origin, Value } from "./settings";
+import type { Offer } from "./offer";
+import type { OwnCameras } from "./owncameras";
+import type { Origin, Settings, Value } from "./settings";
 import type { Files, Slot } from "./storage";
 
 export interface OwnFilesHooks {
@@ -15,8 +16,10 @@ export interface OwnFilesHooks {
   onDoubt(): void;
   /** Files are being looked at before they go anywhere: their names, or nothing once none of them went anywhere. */
   onLooking(names: string): void;
-  /** Fields that a camera's file has filled. */
-  onCameras(fields: Record<string, Value>): void;
+  /** What is in the fields now. */
+  settings(): Settings;
+  /** Fields that files fill; other files follow at once where `isFollowed`. */
+  onFields(fields: Record<string, Value>, isFollowed: boolean): void;
 }
 
 export class OwnFiles {
@@ -27,6 +30,8 @@ export class OwnFiles {
   #doubt = "";
   /** How often files have come by hand: those of last time come too late after the first. */
   #hands = 0;
+  /** There once a file of cameras has come. */
+  #cameras: OwnCameras | undefined;
 
   constructor(hooks: OwnFilesHooks) {
     this.#hooks = hooks;
@@ -40,7 +45,12 @@ export class OwnFiles {
   /** The visitor turns to their own files, or away from them and from what was wrong with any. */
   choose(origin: Origin): void {
     if (origin === "files") void this.#restore();
-    else this.intake.remarks([]);
+    else this.intake.silence();
+  }
+
+  /** Other fields than before: what is said of cameras that are no longer in them is over. */
+  adapt(settings: Settings): void {
+    if (this.#cameras && !this.#cameras.areIn(settings)) this.intake.remarks("cameras", []);
   }
 
   /** Any number of them, each into the slot that its content is of. */
@@ -50,13 +60,36 @@ export class OwnFiles {
     const run = await runAmong(files);
     if (run) return this.#hooks.onRun(run);
     this.#hooks.onLooking(files.map(({ name }) => name).join(", "));
-    const { sorted } = await import("./own");
-    const { slots, settings, remarks } = await sorted(files, this.intake.files);
-    this.intake.remarks(remarks);
-    if (Object.keys(settings).length > 0) this.#hooks.onCameras(settings);
-    if (slots.has("colour") && slots.has("depth")) this.intake.replaceAll(Object.fromEntries(slots));
+    const { sorted } = await import("./sorted");
+    const { slots, fields, cameras, remarks } = await sorted(files, this.intake.files, this.#hooks.settings());
+    const isPair = slots.has("colour") && slots.has("depth");
+    const placed = Object.fromEntries(slots);
+    this.intake.remarks("files", remarks);
+    if (cameras.length > 0) {
+      this.#cameras ??= new (await import("./owncameras")).OwnCameras();
+      this.#cameras.bring(cameras);
+    }
+    const filled = await this.#assign(isPair ? placed : { ...this.intake.files, ...placed });
+    const all = { ...fields, ...filled };
+    if (Object.keys(all).length > 0) this.#hooks.onFields(all, slots.size > 0);
+    if (isPair) this.intake.replaceAll(placed);
     else if (slots.size > 0) this.intake.putAll(slots);
     else this.#hooks.onLooking("");
+  }
+
+  /** Has a mask of the colour image drawn, in the place of the one that there is. */
+  async drawMask(): Promise<void> {
+    const { colour } = this.intake.files;
+    if (!colour) return;
+    const { drawMask } = await import("./drawmask");
+    await drawMask(colour, (mask) => this.intake.files.colour === colour && this.intake.put("colourMask", mask));
+  }
+
+  /** The cameras' numbers for these pictures, and what is said of them. */
+  async #assign(files: Files): Promise<Record<string, Value>> {
+    const assigned = await this.#cameras?.assign(files, this.#hooks.settings());
+    if (assigned) this.intake.remarks("cameras", assigned.remarks);
+    return assigned?.fields ?? {};
   }
 
   /** The files of last time, once, unless there are others by then. */
@@ -82,14 +115,24 @@ export class OwnFiles {
     const files: Files = { ...this.intake.files };
     this.#offer(undefined);
     if (Object.keys(files).length === 0) return;
-    const { lookAt, offerFor } = await import("./own");
+    const [{ lookIn, release }, { offerFor }] = await Promise.all([import("./look"), import("./offer")]);
+    release(files);
     await Promise.all(
-      Object.entries(files).map(async ([slot, file]) => this.intake.show(slot as Slot, file, await lookAt(file))),
+      Object.entries(files).map(async ([slot, file]) =>
+        this.intake.show(slot as Slot, file, await lookIn(slot as Slot, file)),
+      ),
     );
     const offer = await offerFor(files);
+    if (!this.#areStill(files)) return;
+    this.#offer(offer);
+    const fields = await this.#assign(files);
+    const isNew = Object.entries(fields).some(([key, value]) => this.#hooks.settings()[key] !== value);
+    if (isNew && this.#areStill(files)) this.#hooks.onFields(fields, false);
+  }
+
+  #areStill(files: Files): boolean {
     const now = this.intake.files;
-    const isSame = Object.keys({ ...files, ...now }).every((slot) => files[slot as Slot] === now[slot as Slot]);
-    if (isSame) this.#offer(offer);
+    return Object.keys({ ...files, ...now }).every((slot) => files[slot as Slot] === now[slot as Slot]);
   }
 
   #offer(offer: Offer | undefined): void {
@@ -132,6 +175,8 @@ export class OwnFiles {
   }
 
   async #forget(): Promise<void> {
+    this.#cameras?.forget();
+    this.intake.remarks("cameras", []);
     const { forget } = await import("./storage");
     const isDone = await forget().then(
       () => true,

@@ -28,6 +28,19 @@ const number = (settings: Settings, key: string): number | undefined => {
 };
 const text = (settings: Settings, key: string): string => String(settings[key]);
 
+/** Settings that no field shows: what the page has put into a field by itself, until the visitor changes that. */
+const GUESSED = { unit: "guessedUnit", meaning: "guessedMeaning" } as const;
+
+/** Whether the field holds what the page has put there. */
+export const isGuessed = (settings: Settings, key: keyof typeof GUESSED): boolean =>
+  settings[key] !== null && settings[key] === settings[GUESSED[key]];
+
+/** A field as the page fills it; nothing empties it. */
+export const guess = (key: keyof typeof GUESSED, value: Value | undefined): Settings => ({
+  [key]: value ?? null,
+  [GUESSED[key]]: value ?? null,
+});
+
 /** Puts a value where its path says, below what its first name stands for. */
 function place(root: Record<string, unknown>, path: string, value: unknown): void {
   const names = path.split(".").slice(1);

@@ -1,10 +1,9 @@
 /** The input that the settings describe, and whether it was the visitor's own before a reload. */
 
-import type { OwnFiles, SampleSource, Source } from "../engine/protocol";
+import type { Input, OwnFiles, SampleSource, Source } from "../engine/protocol";
 import { sizeInWords } from "./intake";
 import type { Slot } from "./storage";
-import { isFurther } from "./kind";
-import { camera, sampleRequest, turnOf, type Origin, type Settings } from "./settings";
+import { camera, isGuessed, sampleRequest, turnOf, type Origin, type Settings } from "./settings";
 
 const OWN = "own-files";
 
@@ -40,23 +39,30 @@ export function namesIn(source: Source): string {
   return files.map(({ name, size }) => `${name}, ${sizeInWords(size)}`).join("; ");
 }
 
-/** With the pixels of the files that the worker's decoders do not know; what does know them loads with the first such file. */
-export async function readable(source: Source): Promise<Source> {
+/** With the visitor's files read; what reads them loads with the first of them, and says what it does to a large one. */
+export async function readable(source: Source, say: (words: string) => void): Promise<Input> {
   if (source.kind !== "files") return source;
-  const { colour, depth, colourMask, depthMask } = source.files;
-  const isNeeded = [colour, depth, colourMask, depthMask].map(
-    (file, i) => file !== undefined && isFurther(file, i === 0),
-  );
-  if (!(await Promise.all(isNeeded)).includes(true)) return source;
-  const { pixelsOf } = await import("./own");
-  return { ...source, files: { ...source.files, read: await pixelsOf(source.files) } };
+  const { pairFrom } = await import("./look");
+  return { kind: "pair", pair: await pairFrom(source.files, say) };
+}
+
+/** The memory of an input's pictures, which the worker is given. */
+export function belongings(input: Input): ArrayBuffer[] {
+  if (input.kind !== "pair") return [];
+  const { image, depth } = input.pair;
+  const arrays = [image.data, image.mask, depth.data, depth.points, depth.mask];
+  return [...new Set(arrays.flatMap((array) => (array?.buffer instanceof ArrayBuffer ? [array.buffer] : [])))];
 }
 
 /** What can be done about what is lacking. */
-export const wayOut = (lacking: string): string =>
-  lacking.includes("camera:")
+export function wayOut(lacking: string): string {
+  if (lacking.includes(FACTOR))
+    return "Inverse depths are known up to a factor. Type it in the settings (Depth camera), or leave all of that camera's numbers empty.";
+  return lacking.includes("camera:")
     ? "Type them in the settings, or leave all of that camera's numbers empty."
     : "Drop files anywhere on this page, or choose them in the settings.";
+}
+const FACTOR = "focal length × baseline";
 
 export const sampleOf = (settings: Settings): SampleSource => ({
   kind: "sample",
@@ -79,7 +85,12 @@ export function sourceOf(
     if (typeof given === "string") return `${side} camera: waiting for ${given}`;
     if (given) files[`${side}Camera`] = given;
   }
-  if (typeof settings.unit === "number") files.unit = settings.unit;
+  if (typeof settings.unit === "number" && !isGuessed(settings, "unit")) files.unit = settings.unit;
+  if (settings.meaning === "inverse") {
+    const { numerator } = settings;
+    if (files.depthCamera && typeof numerator !== "number") return `depth camera: waiting for ${FACTOR}`;
+    files.inverse = files.depthCamera && typeof numerator === "number" ? { numerator } : {};
+  }
   if (settings.transfer === "srgb" || settings.transfer === "linear") files.transfer = settings.transfer;
   return { kind: "files", files };
 }

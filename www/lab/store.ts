@@ -56,6 +56,16 @@ export class Store {
     for (const listener of this.#listeners) listener(next, [], false);
   }
 
+  /** What the page fills in by itself, such as what it guessed: no step of its own, and nothing has to be run for it. */
+  complete(patch: Settings): void {
+    const isNew = Object.entries(patch).some(([key, value]) => value !== (this.#now[key] ?? null));
+    // What the visitor is typing meanwhile is shown over by every change.
+    if (!isNew) return;
+    const next = { ...this.#now, ...patch };
+    this.#now = next;
+    for (const listener of this.#listeners) listener(next, [], false);
+  }
+
   resetToDefaults(): void {
     this.change(defaults);
   }

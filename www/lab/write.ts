@@ -13,3 +13,4 @@ export const poseJson = write.poseJson as typeof Write.poseJson;
 export const matrixText = write.matrixText as typeof Write.matrixText;
 export const lightCsv = write.lightCsv as typeof Write.lightCsv;
 export const runReportHtml = write.runReportHtml as typeof Write.runReportHtml;
+export const writePng = write.writePng as typeof Write.writePng;

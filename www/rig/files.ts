@@ -4,6 +4,7 @@ import * as rig from "../../pkg/rig.js";
 import type * as Rig from "../../pkg/rig/index.js";
 
 export type {
+  InverseDepth,
   NamedCamera,
   NamedFile,
   NamedPose,

@@ -40,7 +40,7 @@ export class FilesStep {
     this.#files = new FileList(rig);
     this.#frames = new FrameList(
       rig,
-      () => (this.#tool ??= import("./masktool").then(({ MaskTool }) => new MaskTool(rig))),
+      () => (this.#tool ??= import("./masktool").then(({ MaskTool }) => new MaskTool())),
     );
     this.#cameras = [new CameraForm(rig, "colour"), new CameraForm(rig, "depth")];
     this.#next = press("Next: your calibration", goOn, { class: "primary" });

@@ -2,6 +2,7 @@
 
 import { make } from "../dom";
 import { choose, draw, fill, Keyed, press, THUMB } from "./parts";
+import { subjectOf } from "./framemask";
 import type { MaskTool } from "./masktool";
 import type { Frame, Item, Rig } from "./rig";
 
@@ -51,11 +52,14 @@ export class FrameList {
     );
     const restrict = press(
       "Restrict what is used",
-      () =>
-        void this.#tool().then(
-          (tool) => tool.open(frame),
-          () => {},
-        ),
+      () => {
+        const subject = subjectOf(rig, frame);
+        if (subject)
+          void this.#tool().then(
+            (tool) => tool.open(subject),
+            () => {},
+          );
+      },
       { "aria-haspopup": "dialog" },
     );
     const remove = press("×", () => rig.removeFrame(frame), { class: "icon", "aria-label": `Remove ${frame.name}` });

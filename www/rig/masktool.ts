@@ -1,10 +1,28 @@
-/** A dialog that restricts what of a frame is used: a rectangle, a brush, a range of depths, growing and shrinking. */
+/**
+ * A dialog that restricts what of a picture is used: a rectangle, a brush, growing and shrinking, and where there is a depth map a range of
+ * depths. The Lab draws its masks with it, too.
+ */
 
 import "../style/rig-mask.css";
 import { make } from "../dom";
 import { choose, draw, labelled, numberField, press, show } from "./parts";
 import { Paint, type Box } from "./paint";
-import type { Frame, Rig } from "./rig";
+
+/** Nearest and farthest depth, metres. */
+type Depths = [number, number];
+
+/** What a mask is drawn for. */
+export interface Subject {
+  title: string;
+  advice: string;
+  picture(): Promise<ImageBitmap>;
+  /** What is used so far, of the picture's size; nothing as long as all of it is. */
+  paint?: Uint8Array | undefined;
+  range?: Depths | undefined;
+  /** The depth map, of which the range is used. */
+  depth?: ((range: Depths | undefined) => Promise<ImageBitmap>) | undefined;
+  done(paint: Paint, range: Depths | undefined): void;
+}
 
 type Tool = "rectangle" | "brush";
 
@@ -14,8 +32,8 @@ const MOST_BYTES = 128e6;
 
 export class MaskTool {
   readonly element = make("dialog", { class: "rig-mask", "aria-labelledby": "rig-mask-title" });
-  readonly #rig: Rig;
   readonly #title = make("h2", { id: "rig-mask-title" });
+  readonly #advice = make("p", { class: "soft" });
   readonly #image = make("canvas");
   readonly #layer = make("canvas", {
     class: "rig-mask-layer",
@@ -29,6 +47,7 @@ export class MaskTool {
     "aria-label": "Depth map; grey depths are not used.",
   });
   readonly #share = make("p", { role: "status", class: "soft" });
+  readonly #depths: HTMLElement;
   readonly #near: { element: HTMLElement; input: HTMLInputElement };
   readonly #far: { element: HTMLElement; input: HTMLInputElement };
   #tool: Tool = "rectangle";
@@ -37,48 +56,33 @@ export class MaskTool {
   #radiusInput: HTMLInputElement | undefined;
   #step = 5;
   #box: Box = { left: 0, top: 0, width: 0, height: 0 };
-  #range: [number, number] = [NaN, NaN];
+  #range: Depths = [NaN, NaN];
   #paint = new Paint(1, 1);
   #past: (Uint8Array | undefined)[] = [];
   readonly #undo = press("Undo stroke", () => this.#back(), { disabled: true });
-  #frame: Frame | undefined;
+  #subject: Subject | undefined;
   #late = 0;
 
-  constructor(rig: Rig) {
-    this.#rig = rig;
+  constructor() {
     this.#near = numberField("Nearest depth", "m", (value) => this.#changeRange([value, this.#range[1]]));
     this.#far = numberField("Farthest depth", "m", (value) => this.#changeRange([this.#range[0], value]));
+    this.#depths = make(
+      "fieldset",
+      {},
+      make("legend", {}, "Depths"),
+      make("div", { class: "rig-row" }, this.#near.element, this.#far.element),
+      this.#depth,
+    );
     const board = make(
       "div",
-      { class: "rig-mask-board" },
+      // Of a picture that is taller than the window it scrolls.
+      { class: "rig-mask-board", tabindex: "0", role: "group", "aria-label": "Picture" },
       make("div", { class: "rig-mask-picture" }, this.#image, this.#layer, this.#frameBox),
     );
     this.element.append(
-      make(
-        "div",
-        { class: "rig-mask-head" },
-        this.#title,
-        make(
-          "p",
-          { class: "soft" },
-          "Restrict it to what you trust: a thing and the background behind it, without screens, mirrors, glass or people who moved.",
-        ),
-      ),
+      make("div", { class: "rig-mask-head" }, this.#title, this.#advice),
       board,
-      make(
-        "div",
-        { class: "rig-mask-side" },
-        this.#tools(),
-        this.#typed(),
-        this.#growing(),
-        make(
-          "fieldset",
-          {},
-          make("legend", {}, "Depths"),
-          make("div", { class: "rig-row" }, this.#near.element, this.#far.element),
-          this.#depth,
-        ),
-      ),
+      make("div", { class: "rig-mask-side" }, this.#tools(), this.#typed(), this.#growing(), this.#depths),
       make(
         "div",
         { class: "rig-row rig-mask-foot" },
@@ -93,22 +97,21 @@ export class MaskTool {
     document.body.append(this.element);
   }
 
-  async open(frame: Frame): Promise<void> {
-    const { colour, depth } = frame;
-    if (colour === undefined) return;
-    const picture = await this.#rig.session.call("picture", { file: colour });
-    this.#frame = frame;
-    this.#paint = new Paint(picture.width, picture.height, frame.paint);
+  async open(subject: Subject): Promise<void> {
+    const picture = await subject.picture();
+    this.#subject = subject;
+    this.#paint = new Paint(picture.width, picture.height, subject.paint);
     this.#past = [];
     this.#undo.disabled = true;
-    this.#range = frame.range ? [...frame.range] : [NaN, NaN];
-    this.#title.textContent = `What is used of ${frame.name}`;
+    this.#range = subject.range ? [...subject.range] : [NaN, NaN];
+    this.#title.textContent = subject.title;
+    this.#advice.textContent = subject.advice;
     draw(this.#image, picture);
     this.#layer.width = picture.width;
     this.#layer.height = picture.height;
     this.#radius = Math.max(2, Math.round(picture.width / 40));
     if (this.#radiusInput) this.#radiusInput.value = String(this.#radius);
-    this.#depth.hidden = depth === undefined;
+    this.#depths.hidden = subject.depth === undefined;
     show(this.#near.input, this.#range[0]);
     show(this.#far.input, this.#range[1]);
     this.#showAll();
@@ -125,6 +128,7 @@ export class MaskTool {
       this.#tool,
       (value) => (this.#tool = value as Tool),
     );
+    tool.autofocus = true;
     const use = choose(
       [
         { value: "use", label: "use what I draw" },
@@ -284,13 +288,13 @@ export class MaskTool {
     this.#share.textContent = `${(100 * this.#paint.share).toFixed(0)} % of the image is used.`;
   }
 
-  #changeRange(range: [number, number]): void {
+  #changeRange(range: Depths): void {
     this.#range = range;
     clearTimeout(this.#late);
     this.#late = window.setTimeout(() => this.#showDepth(), 150);
   }
 
-  get #wholeRange(): [number, number] | undefined {
+  get #wholeRange(): Depths | undefined {
     const [near, far] = this.#range;
     return Number.isFinite(near) || Number.isFinite(far)
       ? [Number.isFinite(near) ? near : 0, Number.isFinite(far) ? far : 1000]
@@ -298,10 +302,7 @@ export class MaskTool {
   }
 
   #showDepth(): void {
-    const file = this.#frame?.depth;
-    const range = this.#wholeRange;
-    if (file === undefined) return;
-    void this.#rig.session.call("picture", { file, ...(range ? { range } : {}) }).then(
+    void this.#subject?.depth?.(this.#wholeRange).then(
       (bitmap) => draw(this.#depth, bitmap),
       () => {},
     );
@@ -318,16 +319,7 @@ export class MaskTool {
   }
 
   #done(): void {
-    const frame = this.#frame;
-    if (frame) {
-      this.#rig.undo.keep(`restricting ${frame.name}`);
-      if (this.#paint.data) frame.paint = this.#paint.data;
-      else delete frame.paint;
-      const range = this.#wholeRange;
-      if (range) frame.range = range;
-      else delete frame.range;
-      this.#rig.changed();
-    }
+    this.#subject?.done(this.#paint, this.#wholeRange);
     this.element.close();
   }
 }

@@ -5,13 +5,30 @@ import type { CheckFrame } from "../../pkg/index.js";
 import type { RigReading } from "./files";
 import { metresOf } from "./restrict";
 
-function colour({ width, height, data, transfer }: CheckFrame["image"]): ImageData {
+/** Every so many pixels of a picture, across and down. */
+interface Grid {
+  width: number;
+  height: number;
+  /** The place in the whole picture of each. */
+  from(pixel: number): number;
+}
+
+/** A preview is picked from twice as many pixels as it is wide: the whole of a photograph would take long to paint. */
+function gridOf({ width, height }: { width: number; height: number }, wanted: number | undefined): Grid {
+  const stride = wanted === undefined ? 1 : Math.max(1, Math.floor(width / (2 * wanted)));
+  const columns = Math.ceil(width / stride);
+  const from = (pixel: number) => stride * (Math.floor(pixel / columns) * width + (pixel % columns));
+  return { width: columns, height: Math.ceil(height / stride), from };
+}
+
+function colour({ data, transfer }: CheckFrame["image"], { width, height, from }: Grid): ImageData {
   const out = new ImageData(width, height);
   if (data instanceof Float32Array) {
     let white = 0;
     for (const value of data) if (value > white) white = value;
     for (let i = 0; i < width * height; i++) {
-      for (let c = 0; c < 3; c++) out.data[4 * i + c] = 255 * (Math.max(0, data[3 * i + c] ?? 0) / white) ** (1 / 2.2);
+      const at = 3 * from(i);
+      for (let c = 0; c < 3; c++) out.data[4 * i + c] = 255 * (Math.max(0, data[at + c] ?? 0) / white) ** (1 / 2.2);
       out.data[4 * i + 3] = 255;
     }
     return out;
@@ -20,19 +37,30 @@ function colour({ width, height, data, transfer }: CheckFrame["image"]): ImageDa
   // Linear integers would look black in the shadows.
   const level = (value: number) =>
     transfer === "linear" ? 255 * (value / (wide ? 65535 : 255)) ** (1 / 2.2) : wide ? value / 257 : value;
-  for (let i = 0; i < data.length; i++) out.data[i] = i % 4 === 3 ? 255 : level(data[i] ?? 0);
+  for (let i = 0; i < width * height; i++) {
+    const at = 4 * from(i);
+    for (let c = 0; c < 3; c++) out.data[4 * i + c] = level(data[at + c] ?? 0);
+    out.data[4 * i + 3] = 255;
+  }
   return out;
 }
 
 /** Depths outside the range are grey: they are not used. Holes stay clear, so that the hatching behind shows. */
-function depth(map: CheckFrame["depth"], range: readonly [number, number] | undefined): ImageData {
-  const { width, height } = map;
-  const metres = metresOf(map).map((z) => (z > 0 && z < 1e12 ? z : NaN));
-  const raster = { left: 0, top: 0, width, height, stride: 1, channels: 1 as const, data: metres };
+function depth(
+  map: CheckFrame["depth"],
+  range: readonly [number, number] | undefined,
+  { width, height, from }: Grid,
+): ImageData {
+  const metres = metresOf(map);
+  const data = Float32Array.from({ length: width * height }, (_, i) => {
+    const z = metres[from(i)] ?? NaN;
+    return z > 0 && z < 1e12 ? z : NaN;
+  });
+  const raster = { left: 0, top: 0, width, height, stride: 1, channels: 1 as const, data };
   const image = paintScalar(raster, automaticRange(raster) ?? { min: 0, max: 1 }, "viridis");
   if (range) {
-    for (let i = 0; i < metres.length; i++) {
-      const z = metres[i] ?? NaN;
+    for (let i = 0; i < data.length; i++) {
+      const z = data[i] ?? NaN;
       if (Number.isNaN(z) || (z >= range[0] && z <= range[1])) continue;
       image.data.set([128, 128, 128, 90], 4 * i);
     }
@@ -40,26 +68,35 @@ function depth(map: CheckFrame["depth"], range: readonly [number, number] | unde
   return image;
 }
 
+function mask(data: Uint8Array, { width, height, from }: Grid): ImageData {
+  const out = new ImageData(width, height);
+  for (let i = 0; i < width * height; i++) {
+    out.data.fill(data[from(i)] ? 255 : 0, 4 * i, 4 * i + 3);
+    out.data[4 * i + 3] = 255;
+  }
+  return out;
+}
+
 export function picture(reading: RigReading, range?: readonly [number, number], width?: number): Promise<ImageBitmap> {
-  const made = pixels(reading, range);
+  const made = pixels(reading, range, width);
   return createImageBitmap(
     made,
     width !== undefined && width < made.width ? { resizeWidth: width, resizeQuality: "medium" } : {},
   );
 }
 
-function pixels(reading: RigReading, range: readonly [number, number] | undefined): ImageData {
+function pixels(
+  reading: RigReading,
+  range: readonly [number, number] | undefined,
+  width: number | undefined,
+): ImageData {
   switch (reading.kind) {
     case "colour":
-      return colour(reading.image);
+      return colour(reading.image, gridOf(reading.image, width));
     case "depth":
-      return depth(reading.depth, range);
-    case "mask": {
-      const { width, height, data } = reading.mask;
-      const out = new ImageData(width, height);
-      for (let i = 0; i < data.length; i++) out.data.set(data[i] ? [255, 255, 255, 255] : [0, 0, 0, 255], 4 * i);
-      return out;
-    }
+      return depth(reading.depth, range, gridOf(reading.depth, width));
+    case "mask":
+      return mask(reading.mask.data, gridOf(reading.mask, width));
     default:
       throw new Error(`${reading.name} is no picture.`);
   }

@@ -1,8 +1,8 @@
 /** What the page and its worker say to each other. The worker keeps all pixels; what crosses is summaries, pictures and numbers. */
 
 import type { CheckCue, CheckReport, Pinhole, Pose, Warning } from "../../pkg/index.js";
-import type { Fault } from "../engine/protocol";
-import type { NamedPose, ReaderWarning, Reading, RigReading } from "./files";
+import type { Fault, Pair } from "../engine/protocol";
+import type { InverseDepth, NamedPose, ReaderWarning, Reading, RigReading } from "./files";
 import type { Topic } from "./recordings";
 
 /** What the check found, with what the page knows to be guessed among its warnings. */
@@ -29,7 +29,7 @@ export interface Summary extends Omit<Reading, "name"> {
   guessed: string[];
   width?: number;
   height?: number;
-  /** Metres per stored unit of a depth map. */
+  /** Metres per stored unit of a depth map, or of those that a file of cameras belongs to. */
   unit?: number;
   /** Whether it is an organised cloud, which needs no camera. */
   organised?: boolean;
@@ -62,6 +62,28 @@ export interface Assembly {
   warnings: ReaderWarning[];
 }
 
+/** The places of the files of a run's pair. */
+export type PartName = "colour" | "depth" | "colourMask" | "depthMask";
+
+/** A file of a run's pair: it may have been read under its number. */
+export interface PartFile {
+  file: number;
+  name: string;
+  blob: Blob;
+}
+
+/** Columns and rows of a picture. */
+export interface PictureSize {
+  width: number;
+  height: number;
+  organised?: boolean;
+}
+
+/** A camera, and the name of the file that gave it. */
+export interface GivenCamera extends NamedCamera {
+  file: string;
+}
+
 /** Columns, rows and depths in metres of the points, columns and rows of the depth edges, in the colour image. */
 export interface Projection {
   points: Float32Array;
@@ -72,7 +94,27 @@ export type PoseFormat = "matrix" | "opencv" | "kalibr" | "ros2" | "open3d" | "r
 
 /** Each kind of request, what it carries and what it is answered with. */
 export interface Calls {
-  read: { ask: { file: number; name: string; blob: Blob; as?: Kind; unit?: number }; answer: Summary };
+  read: {
+    ask: { file: number; name: string; blob: Blob; as?: Kind; unit?: number; inverse?: InverseDepth };
+    answer: Summary;
+  };
+  /** The files of the Lab as the pair of a run; tells what it does to a large one. */
+  pair: {
+    ask: {
+      parts: Partial<Record<PartName, PartFile>>;
+      colourCamera?: Pinhole;
+      depthCamera?: Pinhole;
+      unit?: number;
+      inverse?: InverseDepth;
+      transfer?: "srgb" | "linear";
+    };
+    answer: Pair;
+  };
+  /** Which of the cameras took which of two pictures, at the size of these. */
+  cameras: {
+    ask: { cameras: GivenCamera[]; colour: PictureSize; depth: PictureSize };
+    answer: { colour?: GivenCamera; depth?: GivenCamera; warnings: ReaderWarning[] };
+  };
   /** Metres per stored unit of a depth map that came with others. */
   unit: { ask: { file: number; unit: number }; answer: Summary };
   folder: { ask: { first: number; files: { name: string; blob: Blob }[] }; answer: Assembly };
@@ -92,8 +134,6 @@ export interface Calls {
   closed: { ask: object; answer: string };
   disconnect: { ask: object; answer: null };
   forget: { ask: { file: number }; answer: null };
-  /** A file with its pixels. */
-  reading: { ask: { file: number }; answer: RigReading };
   /** As a whole, or at most so wide; depths outside the range are grey. */
   picture: { ask: { file: number; range?: [number, number]; width?: number }; answer: ImageBitmap };
   /** The frames that what follows is about. */

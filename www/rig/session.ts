@@ -49,8 +49,9 @@ export class Session {
     ask: Calls[K]["ask"],
     onProgress?: (share: number, message: string) => void,
   ): Promise<Calls[K]["answer"]> {
-    this.#remember(kind, ask);
+    // A new worker is told what is remembered: this would be among it, and be done twice.
     const worker = this.#thread();
+    this.#remember(kind, ask);
     const id = this.#next++;
     return new Promise<Calls[K]["answer"]>((resolve, reject) => {
       this.#waiting.set(id, { kind, ask, resolve, reject, onProgress });

@@ -16,6 +16,10 @@ const readings = new Map<number, RigReading>();
 let recorded: Promise<Recorded> | undefined;
 /** Recordings and robots; they are few, and their readers large. */
 const recordedOf = () => (recorded ??= import("./recorded").then(({ Recorded }) => new Recorded()));
+let paired: ReturnType<typeof loadPairs> | undefined;
+const loadPairs = () => import("./pairs");
+/** What makes pairs for the Lab. */
+const pairs = () => (paired ??= loadPairs());
 /** Bytes of a file by which recordings are known. */
 const HEAD = 16;
 /** As they were last checked: the overlay and the files out are of these. */
@@ -46,7 +50,12 @@ function summaryOf(reading: RigReading): Summary {
     case "mask":
       return { ...plain, width: reading.mask.width, height: reading.mask.height };
     case "cameras":
-      return { ...plain, cameras: reading.cameras, poses: reading.poses };
+      return {
+        ...plain,
+        cameras: reading.cameras,
+        poses: reading.poses,
+        ...(reading.depthUnit === undefined ? {} : { unit: reading.depthUnit }),
+      };
     case "poses":
       return { ...plain, poses: reading.poses };
   }
@@ -137,11 +146,11 @@ const frameAt = (index: number): CheckFrame => {
 type Handlers = { [K in CallKind]: (ask: Calls[K]["ask"], id: number) => Promise<Calls[K]["answer"]> };
 
 const handlers: Handlers = {
-  async read({ file, name, blob, as, unit }) {
+  async read({ file, name, blob, as, unit, inverse }) {
     if (isRecording(await bytesOf(blob.slice(0, HEAD)))) return (await recordedOf()).open(file, name, blob);
     const reading = await readRigFile(
       { name, bytes: await bytesOf(blob) },
-      { ...(as ? { as } : {}), ...(unit === undefined ? {} : { unit }) },
+      { ...(as ? { as } : {}), ...(unit === undefined ? {} : { unit }), ...(inverse ? { inverse } : {}) },
     );
     readings.set(file, reading);
     return summaryOf(reading);
@@ -185,11 +194,16 @@ const handlers: Handlers = {
   },
   async forget({ file }) {
     readings.delete(file);
+    if (paired) (await paired).forgetOthers(file);
     (await recorded)?.forget(file);
     return null;
   },
-  async reading({ file }) {
-    return read(file);
+  async pair(ask, id) {
+    const { pairFrom } = await pairs();
+    return pairFrom(ask, readings, (message) => post({ id, share: 0, message }));
+  },
+  async cameras({ cameras, colour, depth }) {
+    return (await pairs()).camerasFor(cameras, colour, depth);
   },
   async picture({ file, range, width }) {
     return picture(read(file), range, width);

@@ -102,8 +102,8 @@ function reasonOf(error: unknown): string {
   return error instanceof Error ? error.message : String(error);
 }
 
-/** By the browser, which needs no more than the bytes. */
-async function byBrowser(bytes: Uint8Array, format: string): Promise<Picture> {
+/** By the browser, which needs no more than the bytes; `check` refuses a size. */
+export async function byBrowser(bytes: Uint8Array, format: string, check = checkSize): Promise<Picture> {
   let bitmap: ImageBitmap;
   try {
     bitmap = await createImageBitmap(new Blob([bytes as Uint8Array<ArrayBuffer>]), { premultiplyAlpha: "none" });
@@ -112,7 +112,7 @@ async function byBrowser(bytes: Uint8Array, format: string): Promise<Picture> {
   }
   try {
     const { width, height } = bitmap;
-    checkSize(width, height);
+    check(width, height);
     const context = new OffscreenCanvas(width, height).getContext("2d", { willReadFrequently: true });
     if (!context) throw badFile(`this browser gives no canvas of ${width}x${height} to decode it on`);
     context.drawImage(bitmap, 0, 0);

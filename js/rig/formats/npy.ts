@@ -32,12 +32,13 @@ function ofList(data: Pixels, count: number, columns: number): Picture {
   return { ...list, width: count, height: 1, scan };
 }
 
-export function npyPicture(bytes: Uint8Array): Picture {
+/** `check` refuses a size. */
+export function npyPicture(bytes: Uint8Array, check = checkSize): Picture {
   const { type, ...raster } = readNpy(bytes);
   const { width, height, channels } = raster;
   const isList = channels === 1 && width >= FEWEST_COLUMNS && width <= MOST_COLUMNS && height >= TALL * width;
   if (isList) return ofList(raster.data, height, width);
-  checkSize(width, height);
+  check(width, height);
   const data = /^[iu]/.test(type) && channels === 1 ? asLevels(raster.data) : raster.data;
   const bits = 8 * (type === "f2" ? 2 : data.BYTES_PER_ELEMENT);
   return { ...raster, data, format: "npy", bits, notes: [], warnings: [] };

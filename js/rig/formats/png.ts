@@ -40,8 +40,9 @@ function inColour(picture: Picture, chunks: Map<string, Uint8Array>): Picture {
   return gamma ? withGamma(picture, gamma) : picture;
 }
 
-export function pngPicture(bytes: Uint8Array): Picture {
-  const { chunks, ...raster } = readPng(bytes, checkSize);
+/** `check` refuses a size. */
+export function pngPicture(bytes: Uint8Array, check = checkSize): Picture {
+  const { chunks, ...raster } = readPng(bytes, check);
   const picture: Picture = { ...raster, format: "PNG", notes: [], warnings: [] };
   // What it says of its colours is nothing to depths.
   const coloured = picture.channels >= 3 ? inColour(picture, chunks) : picture;

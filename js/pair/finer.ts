@@ -1,0 +1,36 @@
+/** By which whole factor an image is finer than a run can use beside its depth map: the rule of src/view/working_size.rs, rounded down. */
+import type { ColorImage, DepthMap } from "../types/index.js";
+
+/** Pixels from which an image is made smaller before the run: drawing and keeping the results of more takes longer than the run. */
+const LARGE = 2 ** 20;
+/** Ratios that are whole but for rounding. */
+const ROUNDING = 1e-6;
+
+const focalLength = ({ fx, fy }: { fx: number; fy: number }): number => Math.sqrt(fx * fy);
+
+function measured({ width, height, data, points, mask }: DepthMap): number {
+  let count = 0;
+  for (let pixel = 0; pixel < width * height; pixel++) {
+    if (mask !== undefined && mask[pixel] === 0) continue;
+    const value = points ? (points[3 * pixel + 2] ?? NaN) : (data?.[pixel] ?? NaN);
+    if (Number.isFinite(value) && (points !== undefined || value > 0)) count++;
+  }
+  return count;
+}
+
+const ratio = (fine: number, coarse: number): number => Math.sqrt(fine / Math.max(1, coarse));
+
+/** How many times as fine as the depth map an image is, at the object. */
+export function finerBy(image: ColorImage, depth: DepthMap): number {
+  const frames = ratio(image.width * image.height, depth.width * depth.height);
+  if (image.camera && depth.camera) return Math.min(frames, focalLength(image.camera) / focalLength(depth.camera));
+  if (image.mask === undefined) return frames;
+  let inside = 0;
+  for (const value of image.mask) if (value > 0) inside++;
+  return Math.min(frames, ratio(inside, measured(depth)));
+}
+
+/** The factor by which a large image is made smaller before a run, where it is so many times as fine as the depth map; 1 leaves it. */
+export function surplus({ width, height }: ColorImage, finer: number): number {
+  return width * height <= LARGE ? 1 : Math.max(1, Math.floor(finer + ROUNDING));
+}

@@ -1,0 +1,141 @@
+/**
+ * What was read of a visitor's files as the pair that a run takes, with what was guessed or changed on the way in words, by the field that
+ * it concerns.
+ */
+import { BimodalError } from "../errors.js";
+import { nameOf } from "../rig/guess.js";
+import type { DepthReading, RigReading } from "../rig/types.js";
+import type { ColorImage, DepthMap, Mask, Pinhole } from "../types/index.js";
+import { showsBackground } from "./background.js";
+import { finerBy, surplus } from "./finer.js";
+import { reducedDepth, reducedImage } from "./reduce.js";
+
+/** Longest side that a run takes. */
+const LONGEST = 4096;
+
+/** What was read, and what the owner of the files knows about them. */
+export interface Parts {
+  colour: Extract<RigReading, { kind: "colour" }>;
+  depth: DepthReading & { name: string; measured?: { range: [number, number] } };
+  colourMask?: Mask;
+  depthMask?: Mask;
+  colourCamera?: Pinhole;
+  depthCamera?: Pinhole;
+  /** Metres per stored unit, or pixels without a depth camera. */
+  unit?: number;
+  transfer?: "srgb" | "linear";
+}
+
+/** A pair as the library takes it. */
+export interface Pair {
+  image: ColorImage;
+  depth: DepthMap;
+  /** What was guessed or changed, in words, by the field that it concerns. */
+  notes: Record<string, string>;
+  /** The unit that the file gives or its values suggest, where none was given. */
+  unit?: number;
+}
+
+/** Says what is being done to a large picture. */
+type Say = (words: string) => void;
+type Notes = Pair["notes"];
+
+/** 8 bits are made for screens, and so are 16 that only repeat 8. Finer levels come from sensors and renderers. */
+function guessedTransfer(data: Exclude<ColorImage["data"], Float32Array>): "srgb" | "linear" {
+  return data instanceof Uint16Array && !data.every((level) => level % 257 === 0) ? "linear" : "srgb";
+}
+
+function fitting(mask: Mask, { width, height }: { width: number; height: number }, field: string): Uint8Array {
+  if (mask.width === width && mask.height === height) return mask.data;
+  const words = `the mask is ${mask.width} × ${mask.height} px, its picture ${width} × ${height}`;
+  throw new BimodalError("size", words, field);
+}
+
+function wholeImage({ colour, colourMask, colourCamera, transfer }: Parts, notes: Notes): ColorImage {
+  const { camera: _, ...image } = colour.image;
+  const whole: ColorImage = { ...image, ...(colourCamera && { camera: colourCamera }) };
+  if (colourMask) whole.mask = fitting(colourMask, whole, "image.mask");
+  if (whole.data instanceof Float32Array) return whole;
+  const known = transfer ?? whole.transfer;
+  whole.transfer = known ?? guessedTransfer(whole.data);
+  if (!known) notes["image.transfer"] = `guessed: ${whole.transfer === "srgb" ? "sRGB" : "linear"}`;
+  return whole;
+}
+
+/** What the reader guessed of the unit, and whether the depths are in range; nothing where the file gives it. */
+function guessInWords({ warnings, guessed }: Parts["depth"]): string {
+  const doubt = guessed.length > 0 ? warnings.find(({ code }) => code === "unit-guessed") : undefined;
+  const range = warnings.find(({ code }) => code === "depth-range");
+  return [doubt?.message.replace("; give the unit if that is wrong", ""), range?.message].filter(Boolean).join(" ");
+}
+
+const RELATIVE =
+  "Inverse depths are known up to a factor only: the median depth was set to the longer side of the map, in pixels. Another unit makes the relief deeper or flatter.";
+const SAME = 1e-9;
+
+/** The unit of the map: given, or with a camera that of the file or its values. Without a camera a stored number is a pixel. */
+function unitOf(parts: Parts, notes: Notes): { unit?: number; found?: number } {
+  const { depth, depthCamera, unit: given } = parts;
+  const doubt = depth.warnings.find(({ code }) => code === "unit-guessed");
+  const own = depth.depth.unit ?? (doubt?.unit as number | undefined) ?? 1;
+  const isRelative = depth.guessed.length > 0 && doubt?.unit === undefined;
+  if (isRelative) {
+    notes["depth.unit"] = RELATIVE;
+    return given === undefined ? {} : { unit: given };
+  }
+  const isSame = given !== undefined && Math.abs(given / own - 1) < SAME;
+  if (depthCamera === undefined) {
+    if (given === undefined && doubt)
+      notes["depth.unit"] =
+        `Its numbers look like ${nameOf(own)}, but without a depth camera each counts as one pixel of depth.`;
+    return given === undefined ? {} : { unit: given };
+  }
+  const words = given === undefined || isSame ? guessInWords(depth) : "";
+  if (words) notes["depth.unit"] = words;
+  return given === undefined ? { unit: own, found: own } : { unit: given };
+}
+
+function wholeDepth(parts: Parts, notes: Notes): { depth: DepthMap; found?: number } {
+  const { depthMask, depthCamera } = parts;
+  const { unit: _, camera: __, ...map } = parts.depth.depth;
+  const { unit, found } = unitOf(parts, notes);
+  const depth: DepthMap = { ...map, ...(depthCamera && { camera: depthCamera }), ...(unit !== undefined && { unit }) };
+  if (depthMask) depth.mask = fitting(depthMask, depth, "depth.mask");
+  return { depth, ...(found !== undefined && { found }) };
+}
+
+const inPixels = ({ width, height }: { width: number; height: number }): string => `${width} × ${height} px`;
+const least = ({ width, height }: { width: number; height: number }): number =>
+  Math.ceil(Math.max(width, height) / LONGEST);
+
+/** The depth map at a size that the library takes, and the image at one that the run can use beside it. */
+export function pairOf(parts: Parts, say: Say): Pair {
+  const notes: Notes = {};
+  const [image, { depth: map, found }] = [wholeImage(parts, notes), wholeDepth(parts, notes)];
+  const thin = least(map);
+  if (thin > 1) {
+    notes.depth = `${inPixels(map)} is more than the library takes: one pixel in ${thin} is used`;
+    say(`${parts.depth.name}: ${notes.depth}.`);
+  }
+  const depth = thin > 1 ? reducedDepth(map, thin) : map;
+  if (showsBackground(image))
+    notes["image.mask"] =
+      "The colour image has no mask, and its background is not black: it counts as part of the object.";
+  const finer = finerBy(image, depth);
+  const [needed, useful] = [least(image), surplus(image, finer)];
+  const factor = Math.max(needed, useful);
+  if (factor > 1) {
+    const why =
+      needed >= useful ? "is more than the library takes" : `is ${finer.toFixed(1)} times as fine as the depth map`;
+    // Poses of views without a camera are in pixels.
+    const whose = needed < useful && image.camera === undefined ? "; pixels are those of the smaller picture" : "";
+    notes.image = `${inPixels(image)} ${why}: scaled down by ${factor}${whose}`;
+    say(`${parts.colour.name}: ${notes.image}.`);
+  }
+  return {
+    image: factor > 1 ? reducedImage(image, factor) : image,
+    depth,
+    notes,
+    ...(found !== undefined && { unit: found }),
+  };
+}

@@ -1,0 +1,45 @@
+/**
+ * The files of a run's pair, read as those of a rig. A run takes more than a rig does: larger pictures, which are scaled down, and colour
+ * images of formats that only the browser knows.
+ */
+import { BimodalError, badFile, badNamed, reasonOf } from "../errors.js";
+import { isNpy } from "../npy.js";
+import { isPng } from "../png.js";
+import { byBrowser } from "../rig/formats/jpeg.js";
+import { npyPicture } from "../rig/formats/npy.js";
+import type { Picture } from "../rig/formats/picture.js";
+import { pngPicture } from "../rig/formats/png.js";
+import { ofPicture, readRigFile } from "../rig/read.js";
+import type { NamedFile, ReadOptions, RigReading } from "../rig/types.js";
+
+/** Pixels of a picture, at most: a photograph of 12000x9000 has 108 million, and a canvas of more takes all memory. */
+const MOST_PIXELS = 2 ** 27;
+
+function checkPixels(width: number, height: number): void {
+  if (width * height > MOST_PIXELS)
+    throw badFile(`it is ${width}x${height} pixels large; up to ${MOST_PIXELS} pixels are read`);
+}
+
+/** A picture of any size that memory holds. */
+async function picture(bytes: Uint8Array, isColour: boolean): Promise<Picture> {
+  if (isPng(bytes)) return pngPicture(bytes, checkPixels);
+  if (isNpy(bytes)) return npyPicture(bytes, checkPixels);
+  if (isColour) return byBrowser(bytes, "picture", checkPixels);
+  throw badFile("it is too large for its format; save it as a PNG or a .npy file");
+}
+
+/** Reads a file as one of a pair. */
+export async function readPart(file: NamedFile, options: ReadOptions): Promise<RigReading> {
+  try {
+    return await readRigFile(file, options);
+  } catch (error) {
+    const problem = error instanceof BimodalError ? error.details?.problem : undefined;
+    const isColour = options.as === undefined || options.as === "colour";
+    if (problem !== "too-large" && !(problem === "picture" && isColour)) throw error;
+    try {
+      return { name: file.name, ...ofPicture(file.name, await picture(file.bytes, isColour), options) };
+    } catch (other) {
+      throw badNamed(file.name, reasonOf(other), other);
+    }
+  }
+}

@@ -1,0 +1,183 @@
+/**
+ * The visitor's files, each read once by the package's readers of a rig, in their own thread, which keeps the pixels: what a file is, what it
+ * looks like, and a pair of them as a run takes it. Loaded with the first file.
+ */
+
+import type { ErrorDetails } from "../../pkg/index.js";
+import { EngineError } from "../engine/engine";
+import type { OwnFiles, Pair } from "../engine/protocol";
+import type { Calls, PartName, Summary } from "../rig/protocol";
+import { RigError, Session } from "../rig/session";
+import { sniffed } from "./kind";
+import type { Files, Slot } from "./storage";
+
+/** What a file turned out to be. */
+export interface Look {
+  kind: Summary["kind"] | undefined;
+  says: string;
+  /** Why it could not be read here; the browser may still read it. */
+  fault?: string;
+  warnings: string[];
+  /** Whether a picture is stored without colours. */
+  isGrey?: boolean;
+  /** Whether it is a depth map whose name says that larger numbers are nearer. */
+  isInverse?: boolean;
+  width?: number;
+  height?: number;
+  /** Whether it is an organised cloud. */
+  organised?: boolean;
+  cameras: Summary["cameras"];
+  /** Metres per stored unit that a file of cameras gives for the depth maps beside it. */
+  unit?: number;
+  picture?: ImageBitmap;
+}
+
+/** Warnings that are said beside the Lab's own fields; and an object before nothing has holes around it. */
+const SETTLED: ReadonlySet<string> = new Set(["unit-guessed", "units-differ", "depth-range", "many-holes"]);
+
+/** Pixels of a preview's width. */
+const PREVIEW = 192;
+
+const session = new Session();
+const looks = new WeakMap<File, Promise<Look>>();
+const numbers = new WeakMap<File, number>();
+/** Files whose pixels the thread keeps. */
+const kept = new Map<number, File>();
+let next = 1;
+
+function numberOf(file: File): number {
+  const number = numbers.get(file) ?? next++;
+  numbers.set(file, number);
+  return number;
+}
+
+/** Looks at a file once. */
+export function lookAt(file: File): Promise<Look> {
+  const known = looks.get(file) ?? look(file);
+  looks.set(file, known);
+  return known;
+}
+
+/** Forgets the pixels of all files but these. */
+export function release(files: Files): void {
+  const needed = new Set(Object.values(files));
+  for (const [number, file] of kept) {
+    if (needed.has(file)) continue;
+    kept.delete(number);
+    void session.call("forget", { file: number });
+  }
+}
+
+type Reading = Omit<Calls["read"]["ask"], "file" | "name" | "blob">;
+
+async function seen(file: File, number: number, how: Reading): Promise<Look> {
+  const read = await session.call("read", { file: number, name: file.name, blob: file, ...how });
+  const { kind, width, height, organised = false, cameras, unit } = read;
+  const isPicture = kind === "colour" || kind === "depth" || kind === "mask";
+  const picture = isPicture ? await session.call("picture", { file: number, width: PREVIEW }) : undefined;
+  const warnings = read.warnings.filter(({ code }) => kind !== "depth" || !SETTLED.has(code));
+  return {
+    kind,
+    says: inWords(read),
+    warnings: warnings.map(({ message }) => message),
+    isGrey: read.isGrey ?? false,
+    organised,
+    cameras,
+    ...(width && height ? { width, height } : {}),
+    ...(kind === "cameras" && unit !== undefined ? { unit } : {}),
+    ...(picture ? { picture } : {}),
+  };
+}
+
+/** A look of which no pixels are kept. */
+async function glance(file: File, how: Reading): Promise<Look> {
+  const number = next++;
+  try {
+    return await seen(file, number, how);
+  } finally {
+    void session.call("forget", { file: number });
+  }
+}
+
+async function look(file: File): Promise<Look> {
+  const number = numberOf(file);
+  try {
+    const found = await seen(file, number, {});
+    if (found.picture) kept.set(number, file);
+    else void session.call("forget", { file: number });
+    return found;
+  } catch (error) {
+    const details = error instanceof RigError ? error.fault.details : undefined;
+    if (details?.problem === "disparity")
+      return { ...(await glance(file, { as: "depth", inverse: {} })), isInverse: true };
+    return unread(file, details?.reason ?? (error instanceof Error ? error.message : String(error)), details);
+  }
+}
+
+/** A picture at most so wide; of one that these readers do not know, by the browser. */
+export async function pictureOf(file: File, width: number): Promise<ImageBitmap> {
+  const number = numberOf(file);
+  if (kept.has(number)) return session.call("picture", { file: number, width });
+  const whole = await createImageBitmap(file);
+  if (whole.width <= width) return whole;
+  const picture = await createImageBitmap(whole, { resizeWidth: width, resizeQuality: "medium" });
+  whole.close();
+  return picture;
+}
+
+const KINDS = { colour: "colour", depth: "depth", colourMask: "mask", depthMask: "mask" } as const;
+
+/** A file in its place: one that its content or name speaks against is read as what its place asks for, and that is said. */
+export async function lookIn(slot: Slot, file: File): Promise<Look> {
+  const own = await lookAt(file);
+  if (own.fault === undefined) return own;
+  const asked = await glance(file, { as: KINDS[slot] }).catch(() => undefined);
+  return asked ? { ...asked, warnings: [...asked.warnings, `By itself it would have been refused: ${own.says}`] } : own;
+}
+
+const short = (value: number): string => String(Number(value.toPrecision(3)));
+
+function inWords({ kind, says, measured, width, height, unit = 1 }: Summary): string {
+  if (kind !== "depth" || !measured) return says;
+  const range = measured.range.map((metres) => short(metres / unit)).join(" to ");
+  return `${width}x${height}, ${measured.stored}, ${(100 * measured.valid).toFixed(1)} % valid, stored numbers ${range}`;
+}
+
+/** What these readers do not take the Lab may still: larger pictures, which it scales down, and whatever else the browser decodes. */
+async function unread(
+  file: File,
+  fault: string,
+  { problem, width: wide, height: high }: ErrorDetails = {},
+): Promise<Look> {
+  const none = { warnings: [], cameras: [] };
+  if (problem === "too-large") {
+    const extent = wide && high ? { width: wide, height: high } : {};
+    const says = [wide && high ? `${wide}x${high}` : "", "too large for a preview"].filter(Boolean).join(", ");
+    return { ...none, ...extent, kind: await sniffed(file), says };
+  }
+  const whole = problem === "picture" ? await createImageBitmap(file).catch(() => undefined) : undefined;
+  if (!whole) return { ...none, kind: undefined, says: fault, fault };
+  const { width, height } = whole;
+  const picture = await createImageBitmap(whole, { resizeWidth: Math.min(PREVIEW, width), resizeQuality: "medium" });
+  whole.close();
+  return { ...none, kind: "colour", says: `${width}x${height}, read by the browser`, width, height, picture };
+}
+
+/** Which cameras took which pictures. */
+export const camerasFor = (ask: Calls["cameras"]["ask"]): Promise<Calls["cameras"]["answer"]> =>
+  session.call("cameras", ask);
+
+/** The files as a run takes them. What is wrong with one is said of its slot; what is done to a large one, as soon as it is known. */
+export async function pairFrom(files: OwnFiles, say: (words: string) => void): Promise<Pair> {
+  const { colour, depth, colourMask, depthMask, ...given } = files;
+  const slots = Object.entries({ colour, depth, colourMask, depthMask }) as [PartName, File | undefined][];
+  const parts = slots.flatMap(([slot, file]) =>
+    file ? [[slot, { file: numberOf(file), name: file.name, blob: file }] as const] : [],
+  );
+  try {
+    return await session.call("pair", { ...given, parts: Object.fromEntries(parts) }, (_, words) => say(words));
+  } catch (error) {
+    if (!(error instanceof RigError)) throw error;
+    throw new EngineError({ ...error.fault, fatal: false });
+  }
+}

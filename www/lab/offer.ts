@@ -1,0 +1,68 @@
+/** What of the visitor's files seems to be in the wrong place, and the change that would mend it. */
+
+import { type Look, lookAt } from "./look";
+import type { Files, Slot } from "./storage";
+
+/** A change of places that seems due, in words. */
+export interface Offer {
+  words: string;
+  button: string;
+  slots: Files;
+}
+
+const called: Readonly<Record<Slot, string>> = {
+  colour: "Colour image",
+  depth: "Depth map",
+  colourMask: "Colour mask",
+  depthMask: "Depth mask",
+};
+const sorts: Readonly<Record<string, string>> = { colour: "a colour image", depth: "a depth map", mask: "a mask" };
+
+/** What of the files seems to be in the wrong place. */
+export async function offerFor(files: Files): Promise<Offer | undefined> {
+  const look = async (slot: Slot) => {
+    const file = files[slot];
+    return file && (await lookAt(file));
+  };
+  const [colour, depth, colourMask, depthMask] = await Promise.all([
+    look("colour"),
+    look("depth"),
+    look("colourMask"),
+    look("depthMask"),
+  ]);
+  const seems = (there: Look | undefined, kind: Look["kind"]) => there?.kind === kind;
+  const isCoarse = seems(depth, "colour") && depth?.isGrey === true;
+  // Of a grey picture and a coloured one the coloured one is no depth map, while the grey one may be.
+  const isGrey = seems(colour, "colour") && colour?.isGrey === true;
+  if (
+    files.colour &&
+    files.depth &&
+    ((seems(colour, "depth") && !seems(depth, "depth")) ||
+      (seems(depth, "colour") && !isCoarse && (!seems(colour, "colour") || isGrey)))
+  ) {
+    return {
+      words: "Colour and depth seem to be swapped.",
+      button: "Swap them",
+      slots: { ...files, colour: files.depth, depth: files.colour },
+    };
+  }
+  // A mask may have soft edges, and a coarse depth map 8 bits of grey: that alone proves nothing.
+  const wrong: [Slot, Look | undefined, boolean][] = [
+    ["colour", colour, seems(colour, "depth") || seems(colour, "mask")],
+    ["depth", depth, (seems(depth, "colour") && !isCoarse) || seems(depth, "mask")],
+    ["colourMask", colourMask, seems(colourMask, "depth") || colourMask?.isGrey === false],
+    ["depthMask", depthMask, seems(depthMask, "depth") || depthMask?.isGrey === false],
+  ];
+  for (const [slot, there, isWrong] of wrong) {
+    const file = files[slot];
+    if (!isWrong || !there?.kind || !file) continue;
+    const words = `${file.name} looks like ${sorts[there.kind]}, and is in the place of the ${called[slot].toLowerCase()}.`;
+    const masks: Slot[] = slot === "depth" ? ["depthMask", "colourMask"] : ["colourMask", "depthMask"];
+    const targets: Slot[] = there.kind === "mask" ? masks : there.kind === "depth" ? ["depth"] : ["colour"];
+    const to = targets.find((each) => files[each] === undefined);
+    const { [slot]: _, ...rest } = files;
+    if (to) return { words, button: `Move it to ${called[to]}`, slots: { ...rest, [to]: file } };
+    return { words, button: "Take it out", slots: rest };
+  }
+  return undefined;
+}

@@ -1,0 +1,132 @@
+/** The visitor's files, each told by what is in it: where it belongs, what it gives the fields, and what is said of those that go nowhere. */
+
+import type { GivenCamera } from "../rig/protocol";
+import type { Remark } from "./intake";
+import { type Look, lookAt } from "./look";
+import { type Settings, type Value, guess, isGuessed } from "./settings";
+import type { Files, Slot } from "./storage";
+
+export interface Sorted {
+  slots: Map<Slot, File>;
+  /** What the files say of fields, cameras aside. */
+  fields: Record<string, Value>;
+  cameras: GivenCamera[];
+  remarks: Remark[];
+}
+
+const isDepthName = (name: string): boolean => /depth|dpt|\bir\b|infra|tof/i.test(name.replace(/[_.-]+/g, " "));
+const isColourName = (name: string): boolean => /colou?r|rgb/i.test(name.replace(/[_.-]+/g, " "));
+
+interface Seen {
+  file: File;
+  look: Look;
+}
+
+/** Of two pictures that claim the same place, the one that rather belongs into the other: by its name, or the grey one. */
+function odd(pair: readonly [Seen, Seen], isOther: (name: string) => boolean): Seen {
+  return pair.find(({ file }) => isOther(file.name)) ?? pair.find(({ look }) => look.isGrey) ?? pair[1];
+}
+
+const ofKind = (seen: readonly Seen[], kind: Look["kind"]): Seen[] => seen.filter(({ look }) => look.kind === kind);
+
+/** Colour images and depth maps; where two of one kind come for two free places, one of them is the other. */
+function picturesOf(seen: readonly Seen[], there: Files): { colours: Seen[]; depths: Seen[] } {
+  const [colours, depths] = [ofKind(seen, "colour"), ofKind(seen, "depth")];
+  const [one, two] = colours.length > 0 ? colours : depths;
+  if (one && two && depths.length === 0 && !there.depth) {
+    const moved = odd([one, two], isDepthName);
+    return { colours: colours.filter((each) => each !== moved), depths: [moved] };
+  }
+  if (one && two && colours.length === 0 && !there.colour) {
+    const moved = odd([one, two], isColourName);
+    return { colours: [moved], depths: depths.filter((each) => each !== moved) };
+  }
+  return { colours, depths };
+}
+
+/** Masks by their names, by the size of the pictures, or into the free place. */
+async function placeMasks(masks: readonly Seen[], after: Files, slots: Sorted["slots"]): Promise<void> {
+  const lookOf = async (file: File | undefined) => file && (await lookAt(file));
+  const [colour, depth] = [await lookOf(after.colour), await lookOf(after.depth)];
+  const fits = (look: Look, other: Look | undefined) =>
+    other !== undefined && look.width === other.width && look.height === other.height;
+  for (const { file, look } of masks) {
+    const [isColours, isDepths] = [fits(look, colour), fits(look, depth)];
+    const free = after.colourMask === undefined ? "colourMask" : "depthMask";
+    const bySize = isColours === isDepths ? undefined : isColours ? "colourMask" : "depthMask";
+    const slot = isDepthName(file.name) ? "depthMask" : isColourName(file.name) ? "colourMask" : (bySize ?? free);
+    slots.set(slot, file);
+    after[slot] = file;
+  }
+}
+
+/** What the kind of a depth map, and the text beside it, say of its numbers. A unit that the visitor typed stays. */
+function fieldsOf(
+  depth: Seen | undefined,
+  seen: readonly Seen[],
+  settings: Settings,
+  remarks: Remark[],
+): Sorted["fields"] {
+  const fields: Sorted["fields"] = {};
+  const say = (words: string) => remarks.push({ words, wrong: false });
+  if (depth?.look.isInverse && settings.meaning !== "inverse") {
+    Object.assign(fields, guess("meaning", "inverse"));
+    say(
+      `${depth.file.name}: by its name it holds disparities or inverse depths, so that larger numbers are nearer (Depth camera, Numbers).`,
+    );
+  } else if (depth && !depth.look.isInverse && isGuessed(settings, "meaning")) fields.meaning = "depth";
+  const beside = ofKind(seen, "cameras").find(({ look }) => look.unit !== undefined);
+  const { file, look: { unit } = { unit: undefined } } = beside ?? {};
+  if (file === undefined || unit === undefined) return fields;
+  const isOpen = settings.unit === null || isGuessed(settings, "unit");
+  if (isOpen) fields.unit = unit;
+  const millimetres = Number((1000 * unit).toPrecision(4));
+  say(
+    `${file.name}: ${millimetres} mm for each stored number of depth${isOpen ? "" : "; the unit that was typed stays"}.`,
+  );
+  return fields;
+}
+
+/** The way out of a refusal here: the readers' own is an option. */
+const byHand = (words: string): string =>
+  words.replace(/give (?:that as )?the kind to read it as/, "choose it by hand in its place in the settings");
+
+function sayOthers(seen: readonly Seen[], say: (words: string, wrong?: boolean) => void): void {
+  for (const { file, look } of seen) {
+    if (look.kind === "poses")
+      say(`${file.name}: a pose, which the Lab finds by itself; Settings, Start, near takes its angles.`);
+    else if (look.kind === "recording") say(`${file.name}: a recording, which Check a rig reads.`, true);
+    else if (look.kind === undefined) say(`${file.name}: ${byHand(look.says)}`, true);
+  }
+}
+
+/** One of each kind; `there` are the files that the slots already hold. */
+export async function sorted(files: readonly File[], there: Files, settings: Settings): Promise<Sorted> {
+  const seen = await Promise.all(files.map(async (file): Promise<Seen> => ({ file, look: await lookAt(file) })));
+  const slots: Sorted["slots"] = new Map();
+  const remarks: Remark[] = [];
+  const say = (words: string, wrong = false) => void remarks.push({ words, wrong });
+  const { colours, depths } = picturesOf(seen, there);
+  for (const [slot, all] of [
+    ["colour", colours],
+    ["depth", depths],
+  ] as const) {
+    const [first, ...more] = all;
+    if (first) slots.set(slot, first.file);
+    for (const { file } of more)
+      say(`${file.name}: another ${slot === "colour" ? "colour image" : "depth map"}; the Lab takes one.`);
+  }
+  // A pair that comes whole is another one, to which the masks of the last do not belong.
+  const isPair = slots.has("colour") && slots.has("depth");
+  const after: Files = { ...(isPair ? {} : there), ...Object.fromEntries(slots) };
+  const masks = ofKind(seen, "mask");
+  await placeMasks(masks, after, slots);
+  if (masks.length > 0 && after.colourMask && after.depth && !after.depthMask)
+    say("The depth map has no mask: if it shows more than the object, give it one.");
+  const fields = fieldsOf(depths[0], seen, settings, remarks);
+  sayOthers(seen, say);
+  const cameras = ofKind(seen, "cameras").flatMap(({ file, look }) =>
+    look.cameras.map((camera) => ({ ...camera, file: file.name })),
+  );
+  return { slots, fields, cameras, remarks };
+}
