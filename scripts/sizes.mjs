@@ -52,15 +52,10 @@ const RIG_FILES = /T_cn_cnm1/;
 const EXAMPLE = /\/(?:rigs-|bimodal_stereo_rigs_bg)/;
 /**
  * Readers that are loaded for a file of their kind: JPEG where there is no browser, texts, YAML, TOML, JSON with comments, calibrations of
-<<<<<<< HEAD
- * products, clouds of points, rare compressions of EXR and TIFF, recordings, and the words for what is not read.
+ * products, clouds of points, rare compressions of EXR and TIFF, recordings, the words for what is not read; and what makes the pair of a run
+ * of the Lab's files.
  */
-const OTHERS = /\/(?:decoder|dist\d*|pointclouds|exr-others|products|text|tiff-codecs|js-yaml|recorded|containers)-/;
-=======
- * products, clouds of points, rare compressions of EXR and TIFF, recordings; and what makes the pair of a run of the Lab's files.
- */
-const OTHERS = /\/(?:decoder|dist\d*|pointclouds|exr-others|products|text|tiff-codecs|js-yaml|recorded|pairs)-/;
->>>>>>> w2
+const OTHERS = /\/(?:decoder|dist\d*|pointclouds|exr-others|products|text|tiff-codecs|js-yaml|recorded|containers|pairs)-/;
 
 /** What runs a check, reads its files and writes them, all of it on demand; and what the example takes besides. */
 function checkFiles() {
