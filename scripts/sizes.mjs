@@ -55,7 +55,8 @@ const EXAMPLE = /\/(?:rigs-|bimodal_stereo_rigs_bg)/;
  * products, clouds of points, rare compressions of EXR and TIFF, recordings, the words for what is not read; and what makes the pair of a run
  * of the Lab's files.
  */
-const OTHERS = /\/(?:decoder|dist\d*|pointclouds|exr-others|products|text|tiff-codecs|js-yaml|recorded|containers|pairs)-/;
+const OTHERS =
+  /\/(?:decoder|dist\d*|pointclouds|exr-others|products|text|tiff-codecs|js-yaml|recorded|containers|pairs)-/;
 
 /** What runs a check, reads its files and writes them, all of it on demand; and what the example takes besides. */
 function checkFiles() {
