@@ -52,6 +52,7 @@ const ANYWHERE = [
   {
     name: "bust, colourful light, 160x160, beta 30",
     sample: sample("bust", "colourful", 160, { angles: { beta: 30 } }),
+    options: { tolerance: 0.01 },
     drive: "step",
   },
   {
@@ -62,6 +63,7 @@ const ANYWHERE = [
   {
     name: "hills and a light of our own, 72 columns, 56 rows",
     sample: sample("hills", "own", 72, { height: 56, angles: { alpha: 15, beta: 10 }, seed: 2 }),
+    options: { tolerance: 4 },
   },
 ];
 
@@ -87,7 +89,7 @@ const LIGHT_KNOWN = [
   {
     name: "light known: vase, overcast, 64x64, beta -60, stage by stage",
     sample: sample("vase", "overcast", 64, { angles: { beta: -60 } }),
-    options: { light: "known" },
+    options: { light: "known", tolerance: 0.3 },
     drive: "stage",
   },
   {
