@@ -86,7 +86,7 @@ mod tests {
         let [means] = Gaussian::new(size, 2.0, 3.0).means(|_| true, slope);
         let middle = size.index(10, 10);
         assert!((means[middle] - f64::from(slope(0, middle))).abs() < 1e-5);
-        let inside = |index: usize| index % 2 == 0;
+        let inside = |index: usize| index.is_multiple_of(2);
         let value = |_, index: usize| if inside(index) { 3.0 } else { f32::MAX };
         let [means] = Gaussian::new(size, 1.0, 3.0).means(inside, value);
         assert!((0..size.len()).all(|index| if inside(index) {

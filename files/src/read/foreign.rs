@@ -11,7 +11,7 @@ const PICTURES: [(usize, &[u8], &str); 7] = [
     (8, b"WEBP", "WebP; save it as PNG"),
 ];
 
-/// The same of what is no picture.
+/// The same for files that are not pictures.
 const OTHERS: [(usize, &[u8], &str); 10] = [
     (0, b"PK\x03\x04", "a ZIP archive (.npz is one); unpack it first"),
     (0, b"\x1f\x8b", "compressed by gzip; unpack it first"),
@@ -25,7 +25,7 @@ const OTHERS: [(usize, &[u8], &str); 10] = [
     (0, b"%PDF", "a PDF"),
 ];
 
-/// Kinds of pixels and points that the package for JavaScript reads.
+/// Files of pixels and points that only the npm package reads.
 const ELSEWHERE: [(usize, &[u8], &str); 12] = [
     (0, b"II*\0", "TIFF"),
     (0, b"MM\0*", "TIFF"),

@@ -75,7 +75,7 @@ pub(super) struct Objective {
     values: Vec<[f32; CHANNELS]>,
     derivatives: Vec<[f32; DERIVATIVES]>,
     prediction: Prediction,
-    /// Whether derivatives are those of the prediction, and the shading has_instruments the pose rather than the outline.
+    /// Whether derivatives are those of the prediction; the shading then determines the pose rather than the silhouette.
     has_instruments: bool,
     squares: Vec<f32>,
     /// Sum of the weights of samples on and beside the mask, and of those beside it.
