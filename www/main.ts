@@ -144,9 +144,9 @@ async function copyLink(): Promise<void> {
   const target = byId("link", HTMLButtonElement);
   try {
     await navigator.clipboard.writeText(location.href);
-    target.textContent = placeOf(location.hash) === "lab" && !isSample() ? "Copied, no files" : "Copied";
+    target.textContent = placeOf(location.hash) === "lab" && !isSample() ? "Copied without files" : "Copied";
   } catch {
-    target.textContent = "See address bar";
+    target.textContent = "Copy the address bar";
   }
   setTimeout(() => (target.textContent = "Link"), 2000);
 }

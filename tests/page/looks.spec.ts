@@ -100,7 +100,7 @@ test("a view without values has no range of earlier ones, and the surfaces' lege
   page,
 }) => {
   await lab.open();
-  const shape = page.getByText("shape from the picture", { exact: true });
+  const shape = page.getByText("shape from the image", { exact: true });
   await expect(shape).toBeHidden();
   await page.keyboard.press("s");
   await expect(lab.iteration).toHaveText("1");

@@ -186,7 +186,7 @@ test("swapped files are offered to be swapped, and then run", async ({ lab, page
   await expect(page.locator("#next")).not.toContainText("swapped");
   await page.getByRole("button", { name: "Own files" }).click();
   await lab.reaches("error");
-  await page.getByRole("button", { name: "Swap them" }).click();
+  await page.getByRole("button", { name: "Swap" }).click();
   await expect(slot(lab, 0)).toContainText("second.png");
   await expect(slot(lab, 1)).toContainText("first.png");
   await lab.reaches("ready");

@@ -257,8 +257,8 @@ test("a pose with a rival says so, and the rival can be seen and chosen", LONG, 
   await expect(page.locator("#next")).toContainText("poses on the surfaces");
   expect(await panelHeight(lab)).toBe(height);
   const rivals = page.locator("#rivals");
-  await expect(rivals.getByRole("button", { name: "the one found" })).toHaveAttribute("aria-pressed", "true");
-  const rival = rivals.getByRole("button", { name: /^rival, \d+° away$/ });
+  await expect(rivals.getByRole("button", { name: "best pose" })).toHaveAttribute("aria-pressed", "true");
+  const rival = rivals.getByRole("button", { name: /^alternative, \d+° away$/ });
   const away = Number(/\d+/.exec((await rival.textContent()) ?? "")?.[0]);
   const beta = page.locator("#pose tbody tr").nth(2).locator("td").first();
   const [foundBeta, foundOff] = [await beta.textContent(), await lab.errorDegrees()];
@@ -266,23 +266,23 @@ test("a pose with a rival says so, and the rival can be seen and chosen", LONG, 
   await rival.click();
   await expect(rival).toHaveAttribute("aria-pressed", "true");
   // The table is the rival's, and nothing has made room for what can be done with it.
-  await expect(page.locator("#pose-found")).toHaveText("rival");
+  await expect(page.locator("#pose-found")).toHaveText("alternative");
   await expect(beta).not.toHaveText(String(foundBeta));
   expect(await lab.errorDegrees()).toBeGreaterThan(away - 5);
-  await expect(rivals.getByRole("button", { name: "Start from it" })).toBeVisible();
+  await expect(rivals.getByRole("button", { name: "Restart from here" })).toBeVisible();
   // Verdict and light are those of the pose found, and say so.
   await expect(page.locator("#status")).toHaveText(/^found: ambiguous, /);
-  await expect(page.locator("#pose-error")).toHaveText(/° off the true rotation; \d\.\d° the one found/);
-  await expect(page.locator("#light figcaption").first()).toHaveText("the one found");
+  await expect(page.locator("#pose-error")).toHaveText(/° from the true rotation \(best pose: \d\.\d°\)/);
+  await expect(page.locator("#light figcaption").first()).toHaveText("best pose");
   expect(await places()).toEqual(before);
-  await rivals.getByRole("button", { name: "the one found" }).click();
+  await rivals.getByRole("button", { name: "best pose" }).click();
   await expect(page.locator("#pose-found")).toHaveText("found");
   await expect(page.locator("#status")).toHaveText(/^ambiguous, /);
   await expect(page.locator("#light figcaption").first()).toHaveText("found");
   await expect(beta).toHaveText(String(foundBeta));
   expect(await lab.errorDegrees()).toBe(foundOff);
   await rival.click();
-  await rivals.getByRole("button", { name: "Start from it" }).click();
+  await rivals.getByRole("button", { name: "Restart from here" }).click();
   await expect(page).toHaveURL(/start=near/);
 });
 
@@ -303,11 +303,11 @@ test("a stage explains the method that runs", async ({ lab, page }) => {
   for (const [settings, stage, words] of [
     ["", "registration", "Equations 12 to 16"],
     ["registration=joint", "registration", "until its normals predict the colours"],
-    ["registration=fixed", "registration", "The pose is kept as it was at the start"],
-    ["", "surface", "Normals are slopes"],
+    ["registration=fixed", "registration", "The pose stays at its initial value"],
+    ["", "surface", "Normals give slopes"],
     ["shading=surface", "surface", "The unknowns are the heights themselves"],
-    ["lighting=estimate", "light", "fitted by robust least squares"],
-    ["", "light", "only the exposure of the picture"],
+    ["lighting=estimate", "light", "Robust least squares fits them"],
+    ["", "light", "Only the exposure of the image"],
   ] as const) {
     // Another address alone: the page hears of it a moment later, so that the first press may come too early.
     await lab.open(`size=32${settings && "&"}${settings}`);

@@ -86,8 +86,8 @@ export class Chart {
     this.#still.hidden = this.#lines.length > 1 || (isDrawn ? !zeros : !values.includes(0) && !pinned.includes(0));
     this.#still.toggleAttribute("data-some", isDrawn);
     this.#still.textContent = isDrawn
-      ? `${zeros.charAt(0).toUpperCase()}${zeros.slice(1)}: a logarithmic axis leaves those out.`
-      : "No change in any iteration: a logarithmic axis has no zero.";
+      ? `${zeros.charAt(0).toUpperCase()}${zeros.slice(1)} (not shown on a logarithmic axis).`
+      : "No change in any iteration (a logarithmic axis cannot show zero).";
   }
 
   /** uPlot draws on a canvas and has to be told the theme's colours anew. */
@@ -120,7 +120,7 @@ function inWords(name: string, lines: readonly Line[], curves: readonly (readonl
     if (first === undefined || last === undefined) return `${label}: none yet`;
     if (!values.some((value) => value > 0)) return `${label}: zero throughout`;
     const zeros = zerosIn(values);
-    return `${label}: from ${short(first)} to ${short(last)}${zeros && `, ${zeros}, which a logarithmic axis leaves out`}`;
+    return `${label}: from ${short(first)} to ${short(last)}${zeros && `, ${zeros} (not shown on a logarithmic axis)`}`;
   });
   return `${name} over the iterations. ${said.join("; ")}.`;
 }

@@ -21,4 +21,4 @@ export function onGone(worker: Worker, tell: () => void): void {
 }
 
 /** The words for it. */
-export const GONE = "the thread that computed was ended, as browsers do where memory is short";
+export const GONE = "the browser ended the computing thread, probably because memory ran short";

@@ -7,7 +7,7 @@ import { gridOf, type Cut } from "./rasters";
 export function contextOf(width: number, height: number): OffscreenCanvasRenderingContext2D {
   // It is written to and read from pixel by pixel, which a graphics card is bad at.
   const context = new OffscreenCanvas(width, height).getContext("2d", { willReadFrequently: true });
-  if (!context) throw new Error("This browser draws nothing in a worker.");
+  if (!context) throw new Error("This browser cannot draw in a worker.");
   return context;
 }
 

@@ -66,7 +66,7 @@ export class Engine {
     if (this.#pending.size === 0) return;
     const rest = new Promise<void>((resolve) => this.#resting.push(resolve));
     const late = setTimeout(() => {
-      if (this.#loaded) this.#drop({ code: "interrupted", message: "broken off for something newer", fatal: false });
+      if (this.#loaded) this.#drop({ code: "interrupted", message: "cancelled by a newer request", fatal: false });
     }, LONGEST_WAIT);
     await rest;
     clearTimeout(late);
@@ -75,7 +75,7 @@ export class Engine {
   #spawn(): Worker {
     const worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
     onGone(worker, () => {
-      if (worker === this.#worker) this.#drop({ code: LOST, message: `The run broke off: ${GONE}.`, fatal: true });
+      if (worker === this.#worker) this.#drop({ code: LOST, message: `The run stopped: ${GONE}.`, fatal: true });
     });
     // What a worker said before its end may arrive after it.
     worker.onmessage = (event: MessageEvent<Answer>) => {

@@ -39,7 +39,7 @@ async function readImage(files: OwnFiles, notes: Record<string, string>, say: Sa
     files.read?.colourMask ?? (colourMask && (await read(colourMask, "image.mask", (bytes) => decodeMask(bytes))));
   const factor = factorFor(raw);
   if (factor > 1) {
-    notes.image = `${raw.width} × ${raw.height} px is more than the library takes: scaled down by ${factor}`;
+    notes.image = `${raw.width} × ${raw.height} px exceeds the library's limit; scaled down by ${factor}`;
     say(`${colour.name}: ${notes.image}.`);
   }
   const image = factor > 1 ? shrink(raw, factor) : raw;
@@ -60,14 +60,14 @@ async function readDepth(files: OwnFiles, notes: Record<string, string>, say: Sa
     files.read?.depthMask ?? (depthMask && (await read(depthMask, "depth.mask", (bytes) => decodeMask(bytes))));
   const factor = factorFor(raw);
   if (factor > 1) {
-    notes.depth = `${raw.width} × ${raw.height} px is more than the library takes: every ${factor}th pixel is used`;
+    notes.depth = `${raw.width} × ${raw.height} px exceeds the library's limit; every ${factor}th pixel is used`;
     say(`${file.name}: ${notes.depth}.`);
   }
   const depth = factor > 1 ? thin(raw, factor) : raw;
   if (mask) depth.mask = fitMask(mask, raw, factor, "depth.mask");
   if (depthCamera) depth.camera = reduced(depthCamera, factor, Math.floor(factor / 2));
   if (unit !== undefined) depth.unit = unit;
-  else if (depthCamera && depth.data instanceof Uint16Array) notes["depth.unit"] = "assumed: 0.001 m, millimetres";
+  else if (depthCamera && depth.data instanceof Uint16Array) notes["depth.unit"] = "assumed: 0.001 m (millimetres)";
   return depth;
 }
 
@@ -94,22 +94,18 @@ async function decodePhoto(file: File): Promise<ColorImage> {
   const bitmap = await createImageBitmap(file, { imageOrientation: "from-image" }).catch(() => {
     throw new BimodalError(
       "file",
-      "this is no picture that can be read here; use PNG, JPEG, TIFF, EXR or .npy",
+      "this is not an image that can be read here; use PNG, JPEG, TIFF, EXR or .npy",
       "image",
     );
   });
   const { width, height } = bitmap;
   if (width * height > MOST_PIXELS) {
     bitmap.close();
-    throw new BimodalError(
-      "file",
-      `it is ${width} × ${height} px large; up to ${MOST_PIXELS} pixels are read`,
-      "image",
-    );
+    throw new BimodalError("file", `it has ${width} × ${height} px; the limit is ${MOST_PIXELS} pixels`, "image");
   }
   const canvas = new OffscreenCanvas(width, height);
   const context = canvas.getContext("2d");
-  if (!context) throw new BimodalError("file", "this browser gives no canvas to decode it with", "image");
+  if (!context) throw new BimodalError("file", "this browser provides no canvas to decode it", "image");
   context.drawImage(bitmap, 0, 0);
   bitmap.close();
   return { width, height, data: context.getImageData(0, 0, width, height).data };
@@ -163,7 +159,7 @@ function fitMask(mask: Mask, full: Extent, factor: number, field: string): Uint8
   if (mask.width !== full.width || mask.height !== full.height) {
     throw new BimodalError(
       "size",
-      `the mask is ${mask.width} × ${mask.height} px, its picture ${full.width} × ${full.height}`,
+      `the mask is ${mask.width} × ${mask.height} px, its image ${full.width} × ${full.height}`,
       field,
     );
   }

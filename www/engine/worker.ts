@@ -72,7 +72,7 @@ const MOST_WORKERS = 4;
 
 function resolve({ light, start, ...rest }: LabOptions, input: Input): Options {
   if (start === "truth" && !input.truth) {
-    throw new BimodalError("option", "options.start: the true pose is known of a sample alone", "options.start");
+    throw new BimodalError("option", "options.start: the true pose is known only for a sample", "options.start");
   }
   return {
     ...rest,

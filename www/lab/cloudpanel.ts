@@ -7,10 +7,10 @@ import type { Probe } from "../draw/probe";
 import { byId, make } from "../dom";
 import type { Drawings } from "../engine/protocol";
 
-const NONE = "This browser offers no WebGL, so the clouds cannot be turned here.";
-const LOST =
-  "The browser has taken the graphics away (WebGL), so the clouds stand still until it gives them back. All else goes on.";
-const GONE = "What draws the clouds was ended twice; a reload of the page brings them back. All else goes on.";
+const NONE = "This browser has no WebGL, so the surfaces cannot be rotated here.";
+const LOST = "The browser has suspended WebGL. The surfaces stand still until it returns; everything else continues.";
+const GONE =
+  "The browser ended the drawing thread twice. Reload the page to see the surfaces again; everything else continues.";
 
 export class CloudPanel {
   readonly #box = byId("clouds-box", HTMLElement);

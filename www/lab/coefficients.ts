@@ -23,7 +23,7 @@ const ORDERS = [
     ],
   },
   {
-    name: "Order 2: opposite sides alike",
+    name: "Order 2: equal on opposite sides",
     of: [
       [4, "xy"],
       [5, "yz"],

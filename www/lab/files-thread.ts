@@ -42,8 +42,8 @@ async function pack({ kind, taken }: FileRequest): Promise<{ bytes: Uint8Array<A
   switch (kind) {
     case "clouds": {
       const clouds = [
-        tinted("shape from the picture", imagePoints, ORANGE),
-        tinted("depth map, moved by the pose", depthPoints, BLUE),
+        tinted("shape from the image", imagePoints, ORANGE),
+        tinted("depth map in the estimated pose", depthPoints, BLUE),
       ];
       return { bytes: writeClouds(clouds, lengthOf(unit)), says: lengthOf(unit) };
     }

@@ -62,15 +62,15 @@ export class Gallery {
       return built;
     };
     const scalar = (scale: ScaleName): Content => ({ kind: "scalar", scale: this.#scales[scale] });
-    const picture = view("inputs-views", "picture", "Colour", "the colour image as it was given", {
+    const picture = view("inputs-views", "picture", "Colour", "the colour image as supplied", {
       kind: "picture",
-      legend: "as it was given",
+      legend: "as supplied",
     });
     const imageNormals = view(
       "image-views",
       "imageNormals",
       "Normals",
-      "normals found from shading in the colour image",
+      "normals estimated from the shading of the colour image",
       { kind: "normals" },
     );
     const imageDepth = view(
@@ -84,17 +84,17 @@ export class Gallery {
       "image-views",
       "albedo",
       "Albedo",
-      "paint of the object, the colours without light and shadow",
-      { kind: "picture", legend: "grey if all is one paint" },
+      "albedo of the object: its colours without light and shadow",
+      { kind: "picture", legend: "uniform grey if the object has one colour" },
     );
     const shading = view(
       "image-views",
       "shading",
       "Shading",
-      "what the light makes of the shape, the colours without paint",
-      { kind: "picture", legend: "light on shape" },
+      "the effect of the light on the shape: the colours without albedo",
+      { kind: "picture", legend: "lighting only" },
     );
-    const given = view("inputs-views", "given", "Given depth", "the depth map as it was given", scalar("refinedDepth"));
+    const given = view("inputs-views", "given", "Given depth", "the depth map as supplied", scalar("refinedDepth"));
     const refinedDepth = view(
       "depth-views",
       "refinedDepth",
@@ -114,7 +114,7 @@ export class Gallery {
       "image-views",
       "residual",
       "Colour residual",
-      "how far the predicted colours are from the image",
+      "difference between the predicted colours and the image",
       scalar("residual"),
     );
     const normalError = view(
@@ -128,14 +128,14 @@ export class Gallery {
       "error-views",
       "depthError",
       "Error of depth",
-      "distance of the colour view's depth from the true one, both about their middles",
+      "difference between the colour view's depth and the true one, each relative to its mean",
       scalar("depthError"),
     );
     const refinementError = view(
       "error-views",
       "refinementError",
       "Refinement error",
-      "distance of the refined depth from the true one",
+      "difference between the refined depth and the true one",
       scalar("refinementError"),
     );
     this.#views = {

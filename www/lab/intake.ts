@@ -59,7 +59,7 @@ export class Intake {
   readonly #offer = make("p", { class: "offer", role: "status" });
   readonly #remarks = make("ul", { class: "remarks", hidden: true });
   readonly #keeping = make("span", {});
-  readonly #forget = make("button", { type: "button", hidden: true }, "Forget my files");
+  readonly #forget = make("button", { type: "button", hidden: true }, "Remove my files");
 
   constructor(hooks: IntakeHooks) {
     this.#hooks = hooks;

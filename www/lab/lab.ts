@@ -189,7 +189,7 @@ export class Lab {
     this.player.pause();
     this.#saved = { kind: "saved", file };
     this.#own.intake.remarks([
-      { words: `${file.name}: a saved run, from where it stood; its options are in the fields.`, wrong: false },
+      { words: `${file.name}: a saved run, resumed where it stopped. Its options are in the fields.`, wrong: false },
     ]);
     this.#vacate();
     void this.#start(this.#saved);
@@ -270,7 +270,7 @@ export class Lab {
     const options = runOptions(settings, originOf(source));
     this.#notices.announce(
       "loading",
-      source === this.#good?.source ? "starting over" : "reading the input",
+      source === this.#good?.source ? "restarting" : "reading the input",
       source === this.#good?.source ? "" : namesIn(source),
     );
     try {
@@ -401,7 +401,7 @@ export class Lab {
     if (placed)
       this.#notices.announce(
         "error",
-        `${placed.field}: not possible`,
+        `${placed.field}: invalid value`,
         `${sentence(placed.words)} The field is marked.`,
       );
     else this.#notices.announce("error", "see the message");
@@ -436,7 +436,7 @@ export class Lab {
     try {
       if (!(await this.#open(source, runOptions(settings, originOf(source)), turn))) return;
       this.#good = { source, settings };
-      this.#messages.add("The input is kept, and the run begins anew.");
+      this.#messages.add("The input is kept; the run restarts.");
     } catch (error) {
       if (turn !== this.#turn) return;
       this.#good = undefined; // the page waits for another input

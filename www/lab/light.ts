@@ -44,12 +44,12 @@ export class LightPanel {
 
   constructor(hooks: LightHooks) {
     this.#hooks = hooks;
-    this.#found = new Ball("found", "A ball under the light that was found");
+    this.#found = new Ball("found", "A ball under the estimated light");
     this.#truth = new Ball(
-      "true: drag it",
+      "true light (drag to turn)",
       "A ball under the true light. Drag it or use the arrow keys to turn the light.",
     );
-    this.#difference = new Ball("difference", "The light that was found over the true one: grey where both are equal");
+    this.#difference = new Ball("difference", "The estimated light divided by the true one: grey where they are equal");
     this.#coefficients = new Coefficients(hooks);
     this.#box.append(this.#found.element, this.#truth.element, this.#difference.element);
     this.#box.after(this.#coefficients.element);
@@ -59,7 +59,7 @@ export class LightPanel {
   /** Whether the light that is shown as found is of the run before. */
   date(isBefore: boolean): void {
     this.#isBefore = isBefore;
-    this.#found.say(dated(this.#isBesideRival ? "the one found" : this.#standing, isBefore));
+    this.#found.say(dated(this.#isBesideRival ? "best pose" : this.#standing, isBefore));
   }
 
   /** Beside a rival's surfaces and numbers the light stays that of the pose found, in the words of the button that shows it. */

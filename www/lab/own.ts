@@ -174,7 +174,9 @@ export async function sorted(files: readonly File[], there: Files): Promise<Sort
     const [first, ...more] = all;
     if (first) result.slots.set(slot, first.file);
     for (const { file } of more)
-      say(`${file.name}: another ${slot === "colour" ? "colour image" : "depth map"}; the Lab takes one.`);
+      say(
+        `${file.name} looks like a second ${slot === "colour" ? "colour image" : "depth map"}; the Lab uses only one.`,
+      );
   }
   // A pair that comes whole is another one, to which the masks of the last do not belong.
   const isPair = result.slots.has("colour") && result.slots.has("depth");
@@ -195,14 +197,16 @@ export async function sorted(files: readonly File[], there: Files): Promise<Sort
     after[slot] = file;
   }
   if (of("mask").length > 0 && after.colourMask && after.depth && !after.depthMask) {
-    say("The depth map has no mask: if it shows more than the object, give it one.");
+    say("The depth map has no mask. Add one if it shows more than the object.");
   }
   const cameras = of("cameras").flatMap(({ file, look }) =>
     look.cameras.map((camera) => ({ file: file.name, ...camera })),
   );
   addCameras(cameras, { colour, depth }, result);
   for (const { file } of of("poses"))
-    say(`${file.name}: a pose, which the Lab finds by itself; Settings, Start, near takes its angles.`);
+    say(
+      `${file.name}: a pose. The Lab does not need one; to begin from it, enter its angles under Settings, Start, near.`,
+    );
   for (const { file, look } of seen) if (look.kind === undefined) say(`${file.name}: ${look.says}`, true);
   return result;
 }
@@ -233,7 +237,7 @@ function addCameras(cameras: readonly Given[], sizes: Partial<Record<Side, Look 
   ] as const) {
     if (!given) continue;
     Object.assign(result.settings, fieldsOf(side, given.camera));
-    const shared = colour === depth ? ", which is that of both images" : "";
+    const shared = colour === depth ? ", used for both images" : "";
     result.remarks.push({
       words: `${given.file}: the ${side} camera${shared}. Its numbers are in the fields below; Undo removes them.`,
       wrong: false,
@@ -293,7 +297,7 @@ export async function offerFor(files: Files): Promise<Offer | undefined> {
   ) {
     return {
       words: "Colour and depth seem to be swapped.",
-      button: "Swap them",
+      button: "Swap",
       slots: { ...files, colour: files.depth, depth: files.colour },
     };
   }
@@ -307,13 +311,13 @@ export async function offerFor(files: Files): Promise<Offer | undefined> {
   for (const [slot, there, isWrong] of wrong) {
     const file = files[slot];
     if (!isWrong || !there?.kind || !file) continue;
-    const words = `${file.name} looks like ${sorts[there.kind]}, and is in the place of the ${called[slot].toLowerCase()}.`;
+    const words = `${file.name} looks like ${sorts[there.kind]} but is in the slot of the ${called[slot].toLowerCase()}.`;
     const masks: Slot[] = slot === "depth" ? ["depthMask", "colourMask"] : ["colourMask", "depthMask"];
     const targets: Slot[] = there.kind === "mask" ? masks : there.kind === "depth" ? ["depth"] : ["colour"];
     const to = targets.find((each) => files[each] === undefined);
     const { [slot]: _, ...rest } = files;
     if (to) return { words, button: `Move it to ${called[to]}`, slots: { ...rest, [to]: file } };
-    return { words, button: "Take it out", slots: rest };
+    return { words, button: "Remove", slots: rest };
   }
   return undefined;
 }

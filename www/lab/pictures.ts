@@ -48,7 +48,7 @@ function flat(canvas: HTMLCanvasElement): HTMLCanvasElement {
   copy.width = canvas.width;
   copy.height = canvas.height;
   const context = copy.getContext("2d");
-  if (!context) throw new Error("This browser gives no canvas to make the picture with.");
+  if (!context) throw new Error("This browser provides no canvas to draw the picture.");
   context.fillStyle = ink("card");
   context.fillRect(0, 0, copy.width, copy.height);
   context.drawImage(canvas, 0, 0, copy.width, copy.height);

@@ -76,7 +76,7 @@ export class PoseTable {
   ): void {
     const pose = rival ?? report.pose;
     // A search only tries poses: none is found before it is over.
-    this.#standing = rival ? "rival" : standing(report);
+    this.#standing = rival ? "alternative" : standing(report);
     this.#head();
     rows.forEach(({ index, decimals: count, read, unit = length }, i) => {
       const cells = this.#cells[i];
@@ -94,14 +94,14 @@ export class PoseTable {
       this.#error.dataset.degrees = String(degrees);
       // Beside a rival's the error that the verdict speaks of.
       const before = rival
-        ? `; ${decimals(angleBetween(report.pose.rotation, truth.rotation), 1)}° the one found`
+        ? ` (best pose: ${decimals(angleBetween(report.pose.rotation, truth.rotation), 1)}°)`
         : start
-          ? `; ${decimals(angleBetween(start.rotation, truth.rotation), 1)}° at the start`
+          ? ` (${decimals(angleBetween(start.rotation, truth.rotation), 1)}° at the start)`
           : "";
-      this.#error.replaceChildren(make("strong", {}, `${decimals(degrees, 2)}° off`), ` the true rotation${before}`);
+      this.#error.replaceChildren(make("strong", {}, `${decimals(degrees, 2)}°`), ` from the true rotation${before}`);
       // By the truth, so that nothing moves while the search looks around.
       if (Math.abs(truth.angles.beta) > POLE)
-        this.#error.append(". So near β = 90° only α and γ together tell the rotation.");
+        this.#error.append(". This close to β = 90°, only α and γ together determine the rotation.");
     }
     this.#extras.forEach(({ dt, dd, read }) => {
       const value = read(report, length);

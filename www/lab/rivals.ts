@@ -36,13 +36,13 @@ export class Rivals {
     this.#shown = key;
     this.#looked = undefined;
     this.#box.hidden = poses.length === 0;
-    const start = make("button", { type: "button", hidden: true }, "Start from it");
+    const start = make("button", { type: "button", hidden: true }, "Restart from here");
     const choices = [undefined, ...poses].map((rival) => {
       const away = rival && decimals(angleBetween(rival.rotation, pose.rotation), 0);
       const button = make(
         "button",
         { type: "button", "aria-pressed": String(!rival) },
-        rival ? `rival, ${away}° away` : "the one found",
+        rival ? `alternative, ${away}° away` : "best pose",
       );
       button.addEventListener("click", () => {
         for (const choice of choices) choice.setAttribute("aria-pressed", String(choice === button));

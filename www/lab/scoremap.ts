@@ -45,10 +45,10 @@ export class ScoreMap {
     mark(best[0] ?? 0, best[1] ?? 0, ["#000", "#fff"]);
     if (truth) mark(truth.angles.alpha, truth.angles.beta, ["#fff", "#d55e00"]);
     this.#figure.hidden = false;
-    this.#words.textContent = `: ${count} tried; white: best${truth ? ", orange: true" : ""}`;
+    this.#words.textContent = ` of ${count} trial rotations (white ring: best${truth ? "; orange: true" : ""})`;
     this.#canvas.setAttribute(
       "aria-label",
-      `Scores of ${count} rotations; the best turns by ${decimals(best[1], 0)} degrees about the vertical axis and ${decimals(best[0], 0)} about the level one.`,
+      `Scores of ${count} rotations. The best one is ${decimals(best[1], 0)} degrees about the vertical axis and ${decimals(best[0], 0)} about the horizontal one.`,
     );
   }
 

@@ -55,7 +55,7 @@ export async function readable(source: Source): Promise<Source> {
 /** What can be done about what is lacking. */
 export const wayOut = (lacking: string): string =>
   lacking.includes("camera:")
-    ? "Type them in the settings, or leave all of that camera's numbers empty."
+    ? "Enter them in the settings, or leave all fields of that camera empty."
     : "Drop files anywhere on this page, or choose them in the settings.";
 
 export const sampleOf = (settings: Settings): SampleSource => ({
