@@ -37,7 +37,7 @@ test.describe("in the Lab", () => {
     await lab.reaches("ready");
     await endAt(page, { kind: "advance" }, 3);
     await play(lab);
-    await expect(alert(page)).toContainText("The run broke off: the browser ended the computing thread");
+    await expect(alert(page)).toContainText("The run stopped: the browser ended the computing thread");
     await expect(alert(page)).toContainText("The input is kept");
     await lab.reaches("converged");
     await expect(alert(page)).toBeVisible();
@@ -68,7 +68,7 @@ test.describe("in the Lab", () => {
     await lab.open(FAST);
     await endAt(page, { kind: "advance" });
     await page.keyboard.press("s");
-    await expect(alert(page)).toContainText(/broke off.*broke off/);
+    await expect(alert(page)).toContainText(/stopped.*stopped/);
     await page.keyboard.press("s");
     await expect(lab.iteration).toHaveText("1");
   });
@@ -136,11 +136,9 @@ test("in Learn: said, the values stay, and the figure is computed again", async 
   await endAt(page, { lesson: "pixel" });
   const beta = page.locator('.learn-controls input[name="beta"]');
   await beta.fill("55");
-  await expect(figure.getByRole("alert")).toContainText(
-    "This figure broke off: the browser ended the computing thread",
-  );
+  await expect(figure.getByRole("alert")).toContainText("This figure stopped: the browser ended the computing thread");
   await expect(beta).toHaveValue("55");
-  await page.getByRole("button", { name: "Compute again" }).click();
+  await page.getByRole("button", { name: "Recompute" }).click();
   await expect(figure).toHaveAttribute("aria-busy", "false");
   await expect(figure.getByRole("alert")).toBeHidden();
   expect(lab.complaints).toEqual([]);

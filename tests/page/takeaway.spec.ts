@@ -249,12 +249,12 @@ test("a line puts one figure, as it is set, into another page", async ({ page, c
   await page.goto("./#learn&at=pixel&beta=40");
   await expect(page.locator(".learn-figure")).toHaveAttribute("aria-busy", "false");
   await page.getByRole("button", { name: "Embed" }).click();
-  const line = await page.getByLabel("Line for another page").inputValue();
+  const line = await page.getByLabel("HTML that shows the figure").inputValue();
   expect(line).toMatch(
-    /^<iframe src="[^"<>]+" title="1\. What a pixel knows" width="\d+" height="\d+" loading="lazy"><\/iframe>$/,
+    /^<iframe src="[^"<>]+" title="1\. What a pixel shows" width="\d+" height="\d+" loading="lazy"><\/iframe>$/,
   );
   await page.locator('.learn-controls input[name="beta"]').fill("55");
-  await expect(page.getByLabel("Line for another page")).toHaveValue(/beta=55/);
+  await expect(page.getByLabel("HTML that shows the figure")).toHaveValue(/beta=55/);
 
   const elsewhere = await context.newPage();
   await elsewhere.route("**/elsewhere.html", (route) =>

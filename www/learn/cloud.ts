@@ -21,7 +21,7 @@ export class Cloud {
     const id = freshId("learn-turn");
     this.#turn = make("input", { id, type: "range", min: -90, max: 90, step: 5, value: FIRST_TURN });
     this.#turn.addEventListener("input", () => this.#draw());
-    const turn = make("div", { class: "learn-turn" }, make("label", { for: id }, "Turn the view"), this.#turn);
+    const turn = make("div", { class: "learn-turn" }, make("label", { for: id }, "Rotate the view"), this.#turn);
     this.element = make(
       "figure",
       { class: "learn-panel" },

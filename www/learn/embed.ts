@@ -22,7 +22,7 @@ export class Embed {
     this.element = make(
       "div",
       { class: "learn-embed", hidden: true },
-      make("label", {}, "Line for another page, which shows the figure as it is set now", this.#line),
+      make("label", {}, "HTML that shows the figure with its present settings in another page", this.#line),
       copy,
     );
     this.button.addEventListener("click", () => {

@@ -246,7 +246,7 @@ export class LearnPage {
   #complain(message: string): void {
     const shown = this.#shown;
     if (!shown) return;
-    const again = make("button", { type: "button" }, "Compute again");
+    const again = make("button", { type: "button" }, "Recompute");
     again.addEventListener("click", () => this.#ask());
     shown.alert.replaceChildren(message, " ", again);
     shown.alert.hidden = false;

@@ -33,8 +33,7 @@ export class Session {
   #spawn(): Worker {
     const worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
     onGone(worker, () => {
-      if (worker === this.#worker)
-        this.#fail({ code: "lost", message: `This figure broke off: ${GONE}.`, fatal: true });
+      if (worker === this.#worker) this.#fail({ code: "lost", message: `This figure stopped: ${GONE}.`, fatal: true });
     });
     worker.onmessage = (event: MessageEvent<Answer>) => {
       // What was asked before the newest request is out of date.

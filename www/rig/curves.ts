@@ -11,12 +11,12 @@ type Sensitivity = CheckReport["sensitivity"][number];
 type Axis = Sensitivity["axis"];
 
 const axes: Record<Axis, { title: string; unit: string }> = {
-  rx: { title: "Turn about x (up and down)", unit: "°" },
-  ry: { title: "Turn about y (left and right)", unit: "°" },
-  rz: { title: "Turn about z (in the picture)", unit: "°" },
+  rx: { title: "Rotation about x (up and down)", unit: "°" },
+  ry: { title: "Rotation about y (left and right)", unit: "°" },
+  rz: { title: "Rotation about z (in the image plane)", unit: "°" },
   tx: { title: "Shift along x (sideways)", unit: "mm" },
   ty: { title: "Shift along y (up and down)", unit: "mm" },
-  tz: { title: "Shift along z (to and fro)", unit: "mm" },
+  tz: { title: "Shift along z (forwards and backwards)", unit: "mm" },
 };
 const tokens: Record<string, string> = {
   shading: "series-1",
@@ -77,7 +77,7 @@ export class SensitivityCharts {
     const inside: [number, number] = [Math.max(xs[0] ?? 0, -reach), Math.min(xs.at(-1) ?? 0, reach)];
     const [digits, gap] = unit === "mm" ? [1, " "] : [2, ""];
     const box = make("div", { class: "chart" });
-    const words = `Least at ${decimals(place, digits)}${gap}${unit}; ± ${decimals(reach, digits)}${gap}${unit} (95 %)`;
+    const words = `Minimum at ${decimals(place, digits)}${gap}${unit}; ± ${decimals(reach, digits)}${gap}${unit} (95 %)`;
     this.#figures.append(
       make(
         "figure",

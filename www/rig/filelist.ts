@@ -72,7 +72,7 @@ export class FileList {
         const warnings = summary?.warnings ?? [];
         const isSaid = warnings.some(({ code }) => code === "unit-guessed");
         const guessed = (isSaid ? [] : (summary?.guessed ?? [])).map(
-          (what) => `The ${what} was guessed: correct it here if it is wrong, or choose it to confirm it.`,
+          (what) => `The ${what} was guessed. Correct it here, or select it to confirm it.`,
         );
         notes.replaceChildren(
           ...[...warnings.map(({ message }) => message), ...guessed].map((words) => make("li", {}, words)),

@@ -114,10 +114,10 @@ function describe(rig: Rig, { colour, depth, mask, paint, range }: Frame): strin
     return `${summary?.width}×${summary?.height} px`;
   };
   const limits = [
-    ...(mask === undefined ? [] : ["the mask's file"]),
+    ...(mask === undefined ? [] : ["mask file"]),
     ...(paint
       ? [
-          `${((100 * paint.reduce((sum, value) => sum + (value ? 1 : 0), 0)) / paint.length).toFixed(0)} % of the image, as painted`,
+          `${((100 * paint.reduce((sum, value) => sum + (value ? 1 : 0), 0)) / paint.length).toFixed(0)} % of the image, as drawn`,
         ]
       : []),
     ...(range ? [`depths from ${range[0]} to ${range[1]} m`] : []),

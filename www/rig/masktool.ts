@@ -20,13 +20,13 @@ export class MaskTool {
   readonly #layer = make("canvas", {
     class: "rig-mask-layer",
     role: "img",
-    "aria-label": "What is used of the colour image. Draw with the pointer, or type a rectangle's numbers.",
+    "aria-label": "The used part of the colour image. Draw with the pointer, or enter the numbers of a rectangle.",
   });
   readonly #frameBox = make("div", { class: "rig-mask-band", hidden: true });
   readonly #depth = make("canvas", {
     class: "rig-mask-depth",
     role: "img",
-    "aria-label": "Depth map; grey depths are not used.",
+    "aria-label": "Depth map; depths shown in grey are not used.",
   });
   readonly #share = make("p", { role: "status", class: "soft" });
   readonly #near: { element: HTMLElement; input: HTMLInputElement };
@@ -61,7 +61,7 @@ export class MaskTool {
         make(
           "p",
           { class: "soft" },
-          "Restrict it to what you trust: a thing and the background behind it, without screens, mirrors, glass or people who moved.",
+          "Restrict the check to what you trust: an object and the background behind it, without screens, mirrors, glass or people who moved.",
         ),
       ),
       board,
@@ -102,7 +102,7 @@ export class MaskTool {
     this.#past = [];
     this.#undo.disabled = true;
     this.#range = frame.range ? [...frame.range] : [NaN, NaN];
-    this.#title.textContent = `What is used of ${frame.name}`;
+    this.#title.textContent = `Used part of ${frame.name}`;
     draw(this.#image, picture);
     this.#layer.width = picture.width;
     this.#layer.height = picture.height;
@@ -140,7 +140,7 @@ export class MaskTool {
       {},
       make("legend", {}, "Draw"),
       labelled("Tool", tool),
-      labelled("It means", use),
+      labelled("Effect", use),
       radius.element,
     );
   }

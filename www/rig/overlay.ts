@@ -155,7 +155,7 @@ export class Overlay {
     const i = Math.min(Math.floor(value / WAY), this.#stops.length - 1);
     const [a, b] = [this.#stops[i], this.#stops[i + 1]];
     const share = value / WAY - i;
-    if (!a) throw new Error("There is nothing to show.");
+    if (!a) throw new Error("No frame to show.");
     if (!b || share === 0) return { pose: a.pose, words: a.name, stop: i };
     return {
       pose: between(a.pose, b.pose, share),
@@ -203,7 +203,14 @@ export class Overlay {
         : []),
       ...(this.#what === "points"
         ? []
-        : [make("span", { class: "rig-legend-edge" }, key, "depth edges: they should lie on the image's outlines")]),
+        : [
+            make(
+              "span",
+              { class: "rig-legend-edge" },
+              key,
+              "depth edges; they should coincide with the silhouettes in the image",
+            ),
+          ]),
     );
   }
 

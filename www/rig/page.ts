@@ -53,7 +53,7 @@ export class RigPage {
         make(
           "p",
           {},
-          "A colour camera and a depth camera, and extrinsics that a tool or a factory gave: are they right? Drop a few frames and get an answer with its evidence.",
+          "Are the extrinsics between your colour and depth cameras right? Drop a few frames and get a verdict, with evidence.",
         ),
         this.#stepper(),
       ),

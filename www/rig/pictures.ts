@@ -61,6 +61,6 @@ function pixels(reading: RigReading, range: readonly [number, number] | undefine
       return out;
     }
     default:
-      throw new Error(`${reading.name} is no picture.`);
+      throw new Error(`${reading.name} is not an image.`);
   }
 }

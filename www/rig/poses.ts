@@ -121,12 +121,14 @@ export function inWords(pose: Pose): string {
     .map(({ mm, words }) => `${decimals(Math.abs(mm), 1)} mm ${words}`);
   const place =
     parts.length === 0
-      ? "in the place of"
+      ? "in the same position as"
       : parts.length === 1
         ? parts[0]
         : `${parts.slice(0, -1).join(", ")} and ${parts.at(-1)}`;
   const degrees = degreesOf(pose);
-  return `The depth camera sits ${place} the colour camera, turned by ${decimals(degrees, 2)}°.`;
+  return degrees < 0.005 && parts.length === 0
+    ? "The two cameras coincide: no offset, no rotation."
+    : `The depth camera sits ${place} the colour camera, rotated by ${decimals(degrees, 2)}°.`;
 }
 
 /** Four rows, as a text file has them. */

@@ -176,7 +176,7 @@ export class Rig implements RigState {
   addPose({ name, pose, from, to }: Summary["poses"][number], origin: string, file?: number): void {
     const isBackward = (from !== undefined && COLOUR.test(from)) || (to !== undefined && DEPTH.test(to));
     const direction = isBackward
-      ? ", given from colour to depth and inverted here"
+      ? ", given from colour to depth and inverted"
       : from && to
         ? `, from ${from} to ${to}`
         : "";
@@ -248,7 +248,7 @@ export class Rig implements RigState {
     this.live.stop();
     this.session.cancel();
     if (this.items.length + this.frames.length + this.candidates.length > 0)
-      this.undo.keep("starting over", { isWhole: true });
+      this.undo.keep("clearing everything", { isWhole: true });
     this.items = [];
     this.frames = [];
     this.candidates = [];
@@ -371,17 +371,17 @@ export class Rig implements RigState {
   /** What stands in the way of a check, in words; nothing where it can run. */
   get missing(): string[] {
     const missing: string[] = [];
-    if (this.complete.length === 0) missing.push("a colour image and a depth map of the same moment");
+    if (this.complete.length === 0) missing.push("a colour image and a depth map taken at the same moment");
     const depths = this.complete.map(({ depth }) => this.item(depth)?.summary);
     const isShared = this.cameras.depth.source === "same";
     if (depths.some((summary) => summary?.organised === false) && !this.cameraOf("depth"))
       missing.push(
         isShared
-          ? "the colour camera's numbers, which the depth camera shares"
-          : "the depth camera's numbers (or its field of view)",
+          ? "the colour camera's parameters, which the depth camera shares"
+          : "the depth camera's parameters (or its field of view)",
       );
     if (this.cameras.colour.source === "typed" && !this.cameraOf("colour"))
-      missing.push("all numbers of the colour camera, or “Unknown”");
+      missing.push("all parameters of the colour camera, or “Unknown”");
     return missing;
   }
 

@@ -33,7 +33,7 @@ export class VerdictStep {
   readonly #stale = make(
     "p",
     { class: "rig-stale", hidden: true },
-    "Files, cameras or calibrations have changed since this verdict: run the check again.",
+    "Files, cameras or calibrations have changed since this verdict. Run the check again.",
   );
   readonly #card = make("div", { class: "rig-card rig-verdict-box", hidden: true });
   readonly #results = make("div", { class: "rig-results", hidden: true });
@@ -54,11 +54,11 @@ export class VerdictStep {
     this.#run = press("Run the check", () => void this.start(), { class: "primary" });
     this.#cancel = press("Cancel", () => rig.session.cancel());
     this.#curvesBox.append(
-      make("h3", {}, "How sharply this scene tells each axis"),
+      make("h3", {}, "How well this scene constrains each axis"),
       make(
         "p",
         { class: "soft" },
-        "Log likelihood lost when the calibration found is moved: a narrow valley is a sure answer, a flat one says that this scene can't tell. The dot is the least of all cues together, the band what the answer is certain to (95 %).",
+        "Loss of log likelihood when the calibration found is moved. A narrow valley means a certain result; a flat one means that this scene does not constrain the axis. The dot marks the minimum of all cues together, the band the 95 % interval of the result.",
       ),
     );
     this.#results.append(
@@ -123,8 +123,8 @@ export class VerdictStep {
       this.#status.textContent = run ? ending(run) : "";
       this.#card.querySelector<HTMLElement>(".rig-word")?.focus({ preventScroll: true });
     } catch (error) {
-      this.#status.textContent = wasCancelled(error) ? "Cancelled. Nothing was lost." : "";
-      if (!wasCancelled(error)) this.#complain(`The check could not be done: ${messageOf(error)}`);
+      this.#status.textContent = wasCancelled(error) ? "Cancelled. Files and calibrations are kept." : "";
+      if (!wasCancelled(error)) this.#complain(`The check failed: ${messageOf(error)}`);
     } finally {
       this.#busy = false;
       this.show();
@@ -184,7 +184,9 @@ export class VerdictStep {
     const remark = make("p", { class: "soft", role: "status" });
     const attempt = (action: () => Promise<void>) => async () => {
       note.textContent = remark.textContent = "";
-      await action().catch((error: unknown) => (note.textContent = `It could not be written: ${messageOf(error)}`));
+      await action().catch(
+        (error: unknown) => (note.textContent = `The file could not be written: ${messageOf(error)}`),
+      );
     };
     const poses = [
       { value: "", label: "found" },
@@ -213,7 +215,7 @@ export class VerdictStep {
       attempt(async () => {
         const { name, text, notes } = await session.call("pose", { pose: pose(), format: format.value as PoseFormat });
         saveFile(name, text, "text/plain");
-        remark.textContent = notes.length > 0 ? `Mind: ${notes.join("; ")}.` : `Saved as ${name}.`;
+        remark.textContent = notes.length > 0 ? `Note: ${notes.join("; ")}.` : `Saved as ${name}.`;
       }),
       { class: "primary" },
     );
@@ -248,7 +250,7 @@ export class VerdictStep {
     return make(
       "section",
       { class: "rig-card" },
-      make("h3", {}, "Files out"),
+      make("h3", {}, "Export"),
       make("div", { class: "rig-row rig-bottom" }, labelled("Calibration", which), labelled("Format", format), save),
       make(
         "div",

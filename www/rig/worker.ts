@@ -60,7 +60,7 @@ function read(file: number): RigReading {
 
 function readingOf<K extends RigReading["kind"]>(file: number, kind: K): Extract<RigReading, { kind: K }> {
   const reading = readings.get(file);
-  if (reading?.kind !== kind) throw new Error(`File ${file} is no ${kind}.`);
+  if (reading?.kind !== kind) throw new Error(`File ${file} is not a ${kind}.`);
   return reading as Extract<RigReading, { kind: K }>;
 }
 

@@ -15,11 +15,11 @@ export interface Mark {
 }
 
 export const marks: readonly Mark[] = [
-  { kind: "ambiguous", glyph: "?", words: "ambiguous: other poses explain it as well" },
-  { kind: "doubted", glyph: "~", words: "within 3°, though the run does not trust it" },
+  { kind: "ambiguous", glyph: "?", words: "ambiguous: other poses fit equally well" },
+  { kind: "doubted", glyph: "~", words: "correct (within 3°) but flagged as uncertain" },
   { kind: "lost", glyph: "×", words: "lost, and flagged as such" },
-  { kind: "stopped", glyph: "=", words: "stopped at the cap of iterations" },
-  { kind: "wrong", glyph: "!", words: "over 3° off, and not flagged" },
+  { kind: "stopped", glyph: "=", words: "stopped at the maximum number of iterations" },
+  { kind: "wrong", glyph: "!", words: "more than 3° off and not flagged" },
 ];
 
 /** A wrong pose that is not flagged is worse than any that is, so its mark comes first. */

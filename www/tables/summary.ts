@@ -51,7 +51,7 @@ function aims(panel: Panel, done: Done): HTMLElement[] {
       make(
         "p",
         { class: "soft" },
-        "Set for the paper's surface and for whole tables; here they are computed from the cells that are done, on the built-in bust.",
+        "The aims are set for the paper's surface and for complete tables. Here they are computed from the finished cells, on the built-in bust.",
       ),
       make(
         "div",

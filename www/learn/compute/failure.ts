@@ -84,7 +84,7 @@ export function* failure(values: Values): Generator<Drawing> {
           {
             key: "depth",
             title: "The depth map",
-            alt: "The depth map from the other side.",
+            alt: "The depth map from the other viewpoint.",
             legend: "dark near, bright far; hatched: none",
           },
           made.depth,
@@ -95,7 +95,7 @@ export function* failure(values: Values): Generator<Drawing> {
         scalarOf(
           {
             key: "residual",
-            title: "Colours left unexplained",
+            title: "Unexplained colour",
             alt: "Residual of every pixel.",
             legend: "dark: explained; bright: off by 0.5 and more",
           },

@@ -78,7 +78,11 @@ export function* grey(values: Values): Generator<Drawing> {
         white,
       ),
       plot(
-        { key: "profile", title: "Both from the side", alt: "Cross-sections: one goes up where the other goes down." },
+        {
+          key: "profile",
+          title: "Cross-sections",
+          alt: "Cross-sections of bump and dent: one goes up where the other goes down.",
+        },
         "column, px",
         "height, px",
         [

@@ -44,9 +44,9 @@ export function landscapeOf(
   const panel = scalarOf(
     {
       key: words.key ?? "landscape",
-      title: words.title ?? "Cost of every normal of that pixel",
+      title: words.title ?? "Cost of every normal at that pixel",
       alt: `The hemisphere of all visible normals seen from the front; dark is cheap. It has ${minima.length} minima.`,
-      legend: "dark: explains the pixel; dots: valleys; cross: truth; line: solver",
+      legend: "dark: explains the pixel; dots: minima; cross: truth; line: solver",
     },
     { width: SIDE, height: SIDE },
     distances,

@@ -80,7 +80,7 @@ export function* pose(values: Values): Generator<Drawing> {
   const offset = numberOf(values, "offset");
   const curve: number[] = [];
   let state = afterStages(made, told(made, offset, "fixed"), TO_SURFACE, (estimator) =>
-    stateOf(estimator, "held where you put it"),
+    stateOf(estimator, "fixed where you set it"),
   );
   const draw = (): Drawing => drawing(values, made, state, curve);
   yield draw();
@@ -128,7 +128,7 @@ function drawing(values: Values, made: Sample, state: State, curve: number[]): D
       {
         key: "picture",
         title: "The picture",
-        alt: "A bust; the ring is the pixel of the cost map.",
+        alt: "A bust; the ring marks the pixel of the cost map.",
         legend: "drag to choose a pixel",
       },
       grid,
@@ -139,7 +139,7 @@ function drawing(values: Values, made: Sample, state: State, curve: number[]): D
     scalarOf(
       {
         key: "residual",
-        title: "Colours left unexplained",
+        title: "Unexplained colour",
         alt: "Residual of every pixel under this pose: dark where the colours are explained.",
         legend: "dark: explained; bright: off by 0.5 and more",
       },
@@ -157,9 +157,9 @@ function drawing(values: Values, made: Sample, state: State, curve: number[]): D
         {
           key: "curve",
           title: "Residual against the error of the pose",
-          alt: "The residual is least where the pose is right.",
+          alt: "The residual is smallest where the pose is right.",
         },
-        "pose wrong by, °",
+        "error of the pose, °",
         "residual",
         [{ name: "residual", ink: "pose", points: [...curve], dots: true }],
         { at: numberOf(values, "offset"), domain: ENDS, range: [0, MOST_RESIDUAL[String(values.light)] ?? 1] },

@@ -67,7 +67,7 @@ export function* surface(values: Values): Generator<Drawing> {
         {
           key: "normals",
           title: "Normals of the pixels",
-          alt: "Normals found from the colours: nearly the same on both sides of the step.",
+          alt: "Normals estimated from the colours: nearly the same on both sides of the step.",
         },
         grid,
         pixels,
@@ -76,7 +76,7 @@ export function* surface(values: Values): Generator<Drawing> {
         {
           key: "depth",
           title: "Depth after integration",
-          alt: "The depth that the normals integrate to.",
+          alt: "The depth obtained by integrating the normals.",
           legend: "dark near, bright far",
         },
         grid,
@@ -95,7 +95,7 @@ export function* surface(values: Values): Generator<Drawing> {
         { min: least, max: most },
       ),
       plot(
-        { key: "profile", title: "A section through dome and step", alt: "Heights along one row: true and found." },
+        { key: "profile", title: "A section through dome and step", alt: "Heights along one row: true and estimated." },
         "column, px",
         "height, px",
         [

@@ -7,9 +7,9 @@ import { brief, digits, measure } from "./numbers.js";
 type Axis = CheckReport["sensitivity"][number]["axis"];
 
 const AXES: readonly { axis: Axis; title: string; unit: string }[] = [
-  { axis: "rx", title: "Turn about x", unit: "°" },
-  { axis: "ry", title: "Turn about y", unit: "°" },
-  { axis: "rz", title: "Turn about z", unit: "°" },
+  { axis: "rx", title: "Rotation about x", unit: "°" },
+  { axis: "ry", title: "Rotation about y", unit: "°" },
+  { axis: "rz", title: "Rotation about z", unit: "°" },
   { axis: "tx", title: "Shift along x", unit: "mm" },
   { axis: "ty", title: "Shift along y", unit: "mm" },
   { axis: "tz", title: "Shift along z", unit: "mm" },
