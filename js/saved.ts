@@ -13,7 +13,7 @@ import type { ColorImage, DepthMap, Options, Stage, StepReport } from "./types/i
 
 /** How far a run has come. */
 export interface Reached {
-  /** Whether anything has been run; before that the report has no stage of its own. */
+  /** Whether anything has been run; before that the report names no stage of this run. */
   begun: boolean;
   stage: Stage;
   iteration: number;

@@ -18,7 +18,7 @@ const AXES: readonly { axis: Axis; title: string; unit: string }[] = [
 /** Sigmas that a panel shows: what is further off is ruled out, whatever its height. */
 export const MOST_SIGMAS = 8;
 
-/** Kinds of lines that the style sheet tells apart. */
+/** Line styles that the style sheet distinguishes. */
 const SERIES = 5;
 
 /** A share of a whole, 0 .. 1. */

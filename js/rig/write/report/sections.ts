@@ -134,7 +134,7 @@ const CUES: Readonly<Record<string, readonly [name: string, more: string]>> = {
   shading: ["Shading", "light on the surface's slopes"],
   edges: ["Edges", "depth edges on image edges"],
   information: ["Information", "shared by colour and shape"],
-  silhouette: ["Silhouettes", "outlines in both views"],
+  silhouette: ["Silhouettes", "object contours in both views"],
 };
 
 const about = (cue: string): readonly [name: string, more: string] =>
