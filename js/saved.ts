@@ -159,7 +159,7 @@ const HEADER = {
 /** What a file holds, once it is known to be one of ours and whole; what the views and options are worth, the estimator judges. */
 export function opened(state: unknown): Saved {
   array(Uint8Array)(state, "state");
-  // Of its own kind: `slice` of a Node Buffer is a view.
+  // A plain Uint8Array, because `slice` of a Node Buffer is a view.
   const bytes = bytesOf(state as Uint8Array);
   const { header, end } = readHeader(bytes);
   const { image, depth, arrays, ...run } = header;

@@ -145,8 +145,8 @@ class Estimator:
     def restore(cls, state: Union[bytes, bytearray, memoryview]) -> Estimator:
         """An estimator in the bit-identical state of the saved one.
 
-        Restoring takes as long as the run had taken. Raises a ``BimodalError`` of code "state": the bytes are not a saved run, are damaged, have another format version, come from the JavaScript package, or hold
-        numbers that this build does not reproduce.
+        Restoring takes as long as the run had taken. Raises a ``BimodalError`` of code "state": the bytes are not a saved run, are damaged,
+        have another format version, come from the JavaScript package, or hold numbers that this build does not reproduce.
         """
         own = _saved.opened(state)
         estimator = cls.__new__(cls)

@@ -90,13 +90,13 @@ export class Chart {
       : "No change in any iteration (a logarithmic axis cannot show zero).";
   }
 
-  /** uPlot draws on a canvas and has to be told the theme's colours anew. */
+  /** uPlot draws on a canvas, which does not follow a change of theme by itself. */
   recolour(): void {
     this.#plot.build();
     this.#plot.begin();
   }
 
-  /** Its first drawing, a task of its own: by then the browser has styled and laid out what was built. */
+  /** Its first drawing, as a separate task: by then the browser has styled and laid out what was built. */
   begin(): void {
     this.#plot.begin();
   }
@@ -140,7 +140,7 @@ export interface PlotOptions {
   curves: readonly Curve[];
   /** Whether x counts something: then it begins at one and has no ticks in between. */
   whole: boolean;
-  /** Draws nothing before it is told to begin. */
+  /** Draws nothing before `begin` is called. */
   waits?: boolean;
 }
 
@@ -162,7 +162,7 @@ export class Plot {
     if (!options.waits) this.begin();
     this.#observer = new ResizeObserver(() => {
       const size = this.#size();
-      // The first time it is told what it was built with.
+      // The first size it reports is the one it was built with.
       if (!this.#begin && size.width !== this.#plot?.width) this.#plot?.setSize(size);
     });
     this.#observer.observe(box);
@@ -231,7 +231,7 @@ export class Plot {
             spanGaps: !whole,
             // Where there are few, each was measured and deserves a dot; a line alone needs two.
             points: { show: ({ data }: uPlot) => !whole || data[0].length < FEW },
-            // The newest value, until the pointer asks for another.
+            // The newest value, unless the pointer selects another.
             value: (_: uPlot, value: number | null | undefined, index: number, at: number | null) => {
               const shown = at === null ? this.#newest[index - 1] : value;
               return typeof shown === "number" ? short(shown) : "–";

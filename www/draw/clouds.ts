@@ -41,7 +41,7 @@ export class Clouds {
   readonly #camera = new OrthographicCamera();
   readonly #controls: OrbitControls;
   readonly #renderer: Renderer;
-  /** Of the box, as the browser tells it after a layout: to ask for it in between would have the page laid out twice a frame. */
+  /** The size of the box as reported after a layout: reading it in between would force a second layout in each frame. */
   #size = { width: 0, height: 0 };
   readonly #resized = new ResizeObserver((entries) => {
     const { width, height } = entries.at(-1)?.contentRect ?? this.#size;
@@ -329,7 +329,7 @@ export class Clouds {
 
   async #drawAll(): Promise<void> {
     this.#drawing = true;
-    // To hand the surfaces over is a task of its own, as long as that of looking at them.
+    // Handing the surfaces over is a separate task; it takes as long as reading them.
     await nextTask();
     while (this.#next) {
       const next = this.#next;
@@ -352,7 +352,7 @@ function partsOf(matrix: Matrix4): Parts {
   return parts;
 }
 
-/** The depth map was measured; the image's surface stands in where there is none. */
+/** The depth map was measured; the image's surface is used where it has no value. */
 const boundsOf = ({ depth, image }: Record<Side, Surface>): Sphere | undefined =>
   extent(depth.points) ?? extent(image.points);
 

@@ -7,7 +7,7 @@ export interface Asked {
   pixel: Pixel;
 }
 
-/** Answers, or nothing where there is none to be had. */
+/** Answers, or nothing if no answer is available. */
 type Ask = (asked: Asked) => Promise<Probed | undefined>;
 
 const isSame = (a: Asked | null, b: Asked | null): boolean =>

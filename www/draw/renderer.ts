@@ -1,4 +1,4 @@
-/** What draws the clouds: a thread of its own where the browser lets one, or else the page. */
+/** Draws the clouds in a separate thread if the browser supports it, otherwise on the page. */
 
 import { onGone } from "../engine/alive";
 import { nextTask } from "../dom";
@@ -23,7 +23,7 @@ export async function rendererFor(canvas: HTMLCanvasElement, hooks: CloudsHooks)
   // The page stands still while a thread is made: in a task with nothing else.
   await nextTask();
   const thread = new Thread(hooks);
-  // The thread tries, not the page: whoever asks for WebGL waits for the browser's process that draws.
+  // The thread tries, not the page: a request for WebGL waits for the browser's graphics process.
   if (await thread.ask("can you draw?")) return elsewhere(thread, canvas);
   thread.end();
   return here(canvas, hooks);

@@ -1,4 +1,4 @@
-/** Draws both surfaces, as points or shaded. It needs no page, so that a thread of its own can do it. */
+/** Draws both surfaces, as points or shaded. It does not use the page, so that it can run in a separate thread. */
 
 import {
   AmbientLight,
@@ -76,11 +76,11 @@ export class CloudStage {
   #wipe = 0;
   #sight: Sight | undefined;
 
-  /** Throws where the browser has no WebGL. A browser may take it away for a while, which is told; what there was is drawn again afterwards. */
+  /** Throws if the browser has no WebGL. A browser may suspend WebGL for a while; that is reported, and the scene is drawn again afterwards. */
   constructor(canvas: NonNullable<WebGLRendererParameters["canvas"]>, onLost: (lost: boolean) => void) {
     // Points are squares: smoothing their edges costs a browser without a graphics card half of its time.
     this.#renderer = new WebGLRenderer({ canvas, alpha: true });
-    // Heard after the renderer, which asks for the context back and makes itself anew.
+    // Runs after the renderer's listener, which requests the context again and rebuilds its state.
     canvas.addEventListener("webglcontextlost", () => onLost(true));
     canvas.addEventListener("webglcontextrestored", () => {
       this.show({});

@@ -1,4 +1,4 @@
-/** One canvas with its caption, legend and the value under the pointer. What it shows comes painted. */
+/** One canvas with its caption, legend and the value under the pointer. It receives finished bitmaps. */
 
 import { make } from "../dom";
 import { VIEWS, type Painted, type Pixel, type Side, type ViewName } from "../engine/protocol";

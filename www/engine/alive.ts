@@ -1,7 +1,7 @@
 /**
  * Says when a worker is gone without a word. No event tells of one that the browser ends for want of memory, and whoever waits for its answer waits
  * for ever. So a worker holds a lock (Web Locks) for as long as it lives, and the page waits for that lock. Where there are no locks, as on pages
- * that are not served over https, nothing is told.
+ * that are not served over https, an end is not noticed.
  */
 
 /** What a worker says first: the name of its lock. */
@@ -11,7 +11,7 @@ export interface Holding {
 
 const isHolding = (data: unknown): data is Holding => typeof data === "object" && data !== null && "holds" in data;
 
-/** To be called before the worker has another listener; also told of an end by the page's own hand. */
+/** Must be called before the worker has another listener. It also learns when the page itself ends the worker. */
 export function onGone(worker: Worker, tell: () => void): void {
   worker.addEventListener("message", (event) => {
     if (!isHolding(event.data)) return;

@@ -1,4 +1,4 @@
-/** Paints one view: the module's layers by the module, what it has no layer for by the page. What is painted leaves the worker as a bitmap. */
+/** Draws one view: the module draws its layers, the page everything else. The result leaves the worker as a bitmap. */
 
 import type { DrawOptions, Estimator, Layer } from "../../pkg/index.js";
 import type { Painted, Surface } from "./protocol";
@@ -13,7 +13,7 @@ export function contextOf(width: number, height: number): OffscreenCanvasRenderi
 
 export class ViewCanvas {
   readonly #frame: Omit<Painted, "bitmap">;
-  /** The drawn part, and all of the view, for the module to paint. */
+  /** The drawn part, and the whole view, for the module to draw into. */
   readonly #part: OffscreenCanvasRenderingContext2D;
   #whole: OffscreenCanvasRenderingContext2D | undefined;
 

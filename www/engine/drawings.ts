@@ -52,9 +52,9 @@ export class ViewPainter {
   readonly #canvases: Record<Side, ViewCanvas>;
   readonly #picture: ImageData;
   readonly #errors: Errors | undefined;
-  /** Those that were painted last. */
+  /** The views that were drawn last. */
   errors: Partial<Record<ErrorName, Raster>> = {};
-  /** How the given depth was painted last: it is the same until its range changes. */
+  /** How the given depth was drawn last: it stays the same until its range changes. */
   #given: Range | undefined;
 
   /** `truth` is what a sample is measured against. */

@@ -30,9 +30,9 @@ interface Pending {
 }
 
 export interface EngineHooks {
-  /** Told how many bytes of the module have arrived. */
+  /** Called with the number of bytes of the module that have arrived. */
   onLoad(bytes: number): void;
-  /** Told what is done to a file that is being read. */
+  /** Called with a description of what is done to a file that is being read. */
   onDoing(words: string): void;
   /** The worker is gone, and with it the input that it held; calls under way are rejected with the same error. */
   onLost(error: EngineError): void;

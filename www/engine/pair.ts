@@ -20,7 +20,7 @@ export interface Pair {
   notes: Record<string, string>;
 }
 
-/** Told what is being done, as soon as it is known: a large file takes long. */
+/** Called with what is being done as soon as it is known, because a large file takes long. */
 type Say = (words: string) => void;
 
 export async function readPair(files: OwnFiles, say: Say): Promise<Pair> {

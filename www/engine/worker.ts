@@ -258,7 +258,7 @@ function answer(request: Request): Promise<Calls[Kind]["reply"]> | Calls[Kind]["
   }
 }
 
-/** Every array and picture of a reply is a copy of its own, so all of them may be transferred. */
+/** Every array and picture of a reply is a separate copy, so all of them may be transferred. */
 function belongings(value: unknown, found = new Set<Transferable>()): Set<Transferable> {
   if (value instanceof ImageBitmap) found.add(value);
   else if (ArrayBuffer.isView(value)) {

@@ -6,7 +6,7 @@ import type { Settings } from "./settings";
 import { lightText } from "./settings";
 
 export interface CoefficientHooks {
-  /** Told while a slider moves, and once more when it has come to rest; the same `gesture` until it is let go. */
+  /** Called while a slider moves, and once more when it stops; `gesture` stays the same until the slider is released. */
   onLight(patch: Settings, done: boolean, gesture: object): void;
 }
 
@@ -74,10 +74,10 @@ export class Coefficients {
     );
   }
 
-  /** Those of a known light; nothing where there is none. */
+  /** The coefficients of a known light, if any. */
   show(values: ArrayLike<number> | null): void {
     this.element.hidden = values === null;
-    // What a visitor is moving is ahead of what was painted.
+    // While the visitor moves a slider, it is ahead of the drawing.
     if (!values || this.#resting !== undefined) return;
     this.#values = Array.from(values);
     for (const [index, slider] of this.#sliders) slider.value = String(this.#values[index] ?? 0);

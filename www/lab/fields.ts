@@ -1,7 +1,7 @@
 /**
- * Everything the Lab can be told: the form, its errors, undo and the link are all made from this list. What is a member of
- * the library's options comes from the library's own rows, with its default and its words; here is what the Lab makes of
- * several, or of files. An empty number is absent, and so the library's default.
+ * All settings of the Lab. The form, its errors, undo and the link are made from this list. Members of the library's options come from the
+ * library's rows, with their defaults and words; this file adds what the Lab composes of several members or of files. An empty number is
+ * absent, so that the library's default applies.
  */
 
 import { OPTIONS, RENDERED_ALONE, SAMPLE, paths, type PageField, type Rows, type ShownRow } from "../../pkg/options.js";

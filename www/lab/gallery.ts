@@ -160,7 +160,7 @@ export class Gallery {
     });
   }
 
-  /** From now on what it asks for is answered. */
+  /** From now on its requests are answered. */
   serve(hooks: GalleryHooks): void {
     this.#hooks = hooks;
     void this.#loadCharts();
@@ -177,7 +177,7 @@ export class Gallery {
     return { ranges: Object.fromEntries(fixed) as Look["ranges"], texture: this.#texture };
   }
 
-  /** Has everything painted again; of what is asked for meanwhile the last counts. */
+  /** Has everything redrawn; of several requests in the meantime the last one counts. */
   async #look(): Promise<void> {
     this.#looksAgain = true;
     if (this.#isLooking) return;
@@ -318,7 +318,7 @@ export class Gallery {
     for (const chart of this.#charts) this.#painter.request(chart, () => chart.show(this.#history, this.#pinned));
   }
 
-  /** After the views are on the page, and each a task of its own: no press waits for all of them. */
+  /** After the views are on the page, each in a separate task, so that no click waits for all of them. */
   async #loadCharts(): Promise<void> {
     await nextTask();
     const { Chart } = await import("../draw/charts");

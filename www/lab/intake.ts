@@ -1,4 +1,4 @@
-/** Four slots for the visitor's own files: dropped anywhere, or picked. What is in a file is told by `own.ts`, which loads with the first. */
+/** Four slots for the visitor's own files: dropped anywhere, or picked. `own.ts`, loaded with the first file, recognises what a file holds. */
 
 import { freshId, make } from "../dom";
 import type { Look, Offer } from "./own";
@@ -70,7 +70,7 @@ export class Intake {
       this.remarks([]);
       this.#hooks.onForget();
     });
-    // Below the slots, which stay where they are whatever is said of them; what asks for an answer is in sight all the same.
+    // Below the slots, so that these do not move; a note that needs an answer is scrolled into view.
     this.element.append(
       make("div", { class: "said" }, this.#offer, this.#remarks),
       make("p", { class: "note keeping", role: "status" }, this.#keeping),

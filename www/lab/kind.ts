@@ -1,4 +1,4 @@
-/** What a file is for, told by its first bytes alone: depth maps have one channel of 16 bits or are arrays, masks one of 8. */
+/** What a file is for, recognised by its first bytes alone: depth maps have one channel of 16 bits or are arrays, masks one of 8. */
 
 const PNG = [0x89, 0x50, 0x4e, 0x47];
 const NPY = [0x93, 0x4e, 0x55, 0x4d];
@@ -14,7 +14,7 @@ const HEAD = 512;
 
 /** Whether the package's readers of a rig's files are needed for it: colours that nobody else knows, and all other depth maps and masks, which no browser decodes. */
 export async function isFurther(file: File, isColour: boolean): Promise<boolean> {
-  // One that is gone is told of where it is read.
+  // A file that has vanished is reported where it is read.
   const bytes = new Uint8Array(
     await file
       .slice(0, HEAD)

@@ -409,8 +409,8 @@ export class Lab {
   }
 
   /**
-   * What the worker held is lost. Whoever waited for its answer tells of that; where nobody did, as while the page rested, it is told here, once
-   * all rejections have been heard.
+   * What the worker held is lost. The caller that waited for its answer reports that. If none did, as while the page was idle, it is
+   * reported here, after all rejections have been handled.
    */
   #lose(error: EngineError): void {
     this.#held = undefined;

@@ -14,7 +14,10 @@ export interface Turn {
 export interface LightHooks {
   /** How the light is turned before a drag. */
   turn(): Turn;
-  /** Told what it changes in the settings while it is moved, and once more where it rests or has been let go; the same `gesture` for all of one drag. */
+  /**
+   * Called with the changed settings while the light is moved, and once more when it stops or is released; `gesture` is the same for the
+   * whole drag.
+   */
   onLight(patch: Settings, done: boolean, gesture: object): void;
 }
 

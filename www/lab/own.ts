@@ -1,6 +1,6 @@
 /**
- * The visitor's files, told apart by what is in them: each is read by the package's readers of a rig, in their own thread, shown at once,
- * and put where it belongs. Loaded with the first file.
+ * The visitor's files, recognised by their contents: each is read by the package's readers of rig files in a separate thread, shown at
+ * once, and put into its slot. Loaded with the first file.
  */
 
 import type { ColorImage, DepthMap, ErrorDetails, Pinhole } from "../../pkg/index.js";

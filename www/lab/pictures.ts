@@ -1,4 +1,4 @@
-/** What the page shows on canvases, as pictures to keep: whoever draws them, a thread of its own included. */
+/** The page's canvases as pictures to save, including those drawn in a separate thread. */
 
 import { ink, make } from "../dom";
 
@@ -64,7 +64,7 @@ export function pngOf(canvas: HTMLCanvasElement): Promise<Blob> {
   );
 }
 
-/** By way of a blob, which the browser packs in a thread of its own. */
+/** Through a blob, which the browser encodes in a separate thread. */
 export async function dataUrlOf(canvas: HTMLCanvasElement): Promise<string> {
   const blob = await pngOf(canvas);
   return new Promise((resolve, reject) => {

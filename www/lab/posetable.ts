@@ -7,7 +7,7 @@ import type { Explanations } from "./ask";
 import type { Term } from "./explain";
 import { BEFORE, angleBetween, dated, standing } from "./verdict";
 
-/** Rows, in the words of the run's messages; those without a unit of their own are lengths in the colour view's unit. */
+/** Rows, in the words of the run's messages; those without a unit are lengths in the colour view's unit. */
 const rows: readonly {
   words: string;
   name: string;
@@ -92,7 +92,7 @@ export class PoseTable {
     if (truth) {
       const degrees = angleBetween(pose.rotation, truth.rotation);
       this.#error.dataset.degrees = String(degrees);
-      // Beside a rival's the error that the verdict speaks of.
+      // Besides the error of the alternative pose, the error that the verdict refers to.
       const before = rival
         ? ` (best pose: ${decimals(angleBetween(report.pose.rotation, truth.rotation), 1)}°)`
         : start

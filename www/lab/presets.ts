@@ -40,7 +40,7 @@ export const presets: readonly Preset[] = [
     set: { size: "64", lighting: "known", start: "identity", registration: "icp", shading: "pixel" },
   },
   {
-    // Photographs whose terms let them be shipped are none of the project's; this one says what it is.
+    // The project has no photographs that it may ship, so this example states that it is synthetic.
     name: "Sensor-like",
     words:
       "Not a photograph: a synthetic scene as a cheap sensor would see it under an overcast sky, with noise, holes and a cropped edge.",
@@ -54,7 +54,7 @@ const settingsOf = ({ set }: Preset): Settings => ({ ...defaults, ...set });
 export class Presets {
   readonly #buttons: readonly { preset: Preset; button: HTMLButtonElement }[];
 
-  /** `onChoose` is told of another example, `onAgain` of a press of the one that is set. */
+  /** `onChoose` is called for another example, `onAgain` for a click on the one that is set. */
   constructor(parent: HTMLElement, onChoose: (settings: Settings) => void, onAgain: () => void) {
     this.#buttons = presets.map((preset) => {
       const button = make(

@@ -1,4 +1,4 @@
-/** Poses that explain the colours as well, over the surfaces that they lay: each can be looked at, and be where a new run starts. */
+/** Alternative poses that fit the image equally well, listed over the surfaces: each can be viewed, and a new run can start from it. */
 
 import type { Pose, StepReport } from "../../pkg/index.js";
 import { decimals } from "../draw/numbers";
@@ -11,7 +11,7 @@ export interface RivalHooks {
   onStart(pose: Pose): void;
 }
 
-/** More would not be told apart. */
+/** More could not be distinguished. */
 const MOST = 4;
 
 export class Rivals {

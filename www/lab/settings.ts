@@ -1,4 +1,4 @@
-/** What the fields say, as requests and options of the library, in words, and as a link; and fields as a saved run had been told them. */
+/** Converts the fields to requests and options of the library, to words and to a link, and the options of a saved run to fields. */
 
 import type { Options, Pinhole, SampleRequest } from "../../pkg/index.js";
 import type { LabOptions } from "../engine/protocol";
@@ -53,7 +53,7 @@ export function sampleRequest(settings: Settings): SampleRequest {
     surface: text(settings, "surface"),
     light: lightOf(text(settings, "light")),
     ...request,
-    // Each empty angle is zero; the library takes its own where it is told of none at all.
+    // Each empty angle is zero; the library's defaults apply only if no angle is given.
     angles: { ...request.angles },
     ...(rendered(settings) ? size(settings) : {}),
   };
@@ -120,7 +120,7 @@ const valueAt = (root: unknown, path: string): unknown =>
     .slice(1)
     .reduce<unknown>((inner, name) => (inner as Record<string, unknown> | undefined)?.[name], root);
 
-/** The fields as a saved run had been told them; of a start the angles alone, which is all that fields have. */
+/** The fields for the options of a saved run; of an initial pose only the angles, because the fields have no more. */
 export function settingsOf(options: Options): Settings {
   const own = optionFields.map((field): [string, Value] => {
     const value = valueAt(options, field.path);
@@ -151,7 +151,7 @@ const valueInWords = (field: Field, value: Value): string => {
   return field.kind === "number" && field.unit ? `${value} ${field.unit}` : String(value);
 };
 
-/** All that a run was told, as the form shows it. */
+/** All settings of a run, as the form shows them. */
 export function optionsInWords(settings: Settings, source: Origin): [name: string, value: string][] {
   const groups: Partial<Record<Group, string>> =
     source === "sample" ? { sample: "Sample: " } : { colour: "Colour camera: ", depth: "Depth camera: " };

@@ -14,7 +14,7 @@ export function rememberOrigin(origin: Origin): void {
     if (origin === "files") sessionStorage.setItem(OWN, "1");
     else sessionStorage.removeItem(OWN);
   } catch {
-    // A browser that keeps nothing asks for the files again.
+    // A browser that stores nothing needs the files again.
   }
 }
 

@@ -23,7 +23,7 @@ const glyphs: Readonly<Record<string, string>> = {
   lost: "×",
 };
 
-/** A tick is for what may be built on: one beside a pose that is off would speak against its own words. */
+/** A tick is for poses that can be trusted: beside a wrong pose it would contradict the words. */
 const markOf = (state: string, tone: Verdict["tone"]): string =>
   state !== "converged" || tone === "good" ? state : tone === "wrong" ? "lost" : "doubted";
 

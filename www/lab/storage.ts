@@ -29,7 +29,7 @@ async function change(work: (store: IDBObjectStore) => void): Promise<void> {
       transaction.onabort = transaction.onerror = () =>
         reject(transaction.error ?? new Error("the browser's storage failed"));
     });
-    end.catch(() => {}); // told once, whichever of both comes first
+    end.catch(() => {}); // reported once, whichever comes first
     work(transaction.objectStore(STORE));
     await end;
   } finally {
@@ -57,7 +57,7 @@ const namesOf = (files: Files): string =>
       .sort(),
   );
 
-/** Has it told what another tab has put there, or that it has put nothing there. */
+/** Calls back with what another tab has stored, or when it has removed everything. */
 export function hearOthers(here: () => Files, tell: (isEmpty: boolean) => void): void {
   if (!tabs) return;
   tabs.onmessage = ({ data }: MessageEvent<string>) => {

@@ -40,7 +40,7 @@ const made = (name: string, type: string, part: BlobPart, says?: string): Made =
   ...(says === undefined ? {} : { says }),
 });
 
-/** Made in a thread of its own. */
+/** Made in a separate thread. */
 function madeApart(kind: LargeKind, taken: Taken): Promise<Extract<FileAnswer, { bytes: Uint8Array }>> {
   const worker = new Worker(new URL("./files-thread.ts", import.meta.url), { type: "module" });
   const answer = new Promise<Extract<FileAnswer, { bytes: Uint8Array }>>((resolve, reject) => {

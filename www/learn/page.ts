@@ -70,7 +70,7 @@ export class LearnPage {
     parent.append(nav, this.#main, this.#slides.element);
   }
 
-  /** Shows the lesson that the address asks for, set as it says; without one, what was last seen. */
+  /** Shows the lesson named in the address with its settings; without one, the lesson shown last. */
   open(hash: string): void {
     this.#isOpen = true;
     const asked = new URLSearchParams(hash.replace(/^#/, ""));

@@ -79,7 +79,7 @@ export class Plot {
     this.#draw(panel);
   }
 
-  /** Draws anew for another width or type; its own height is none of these. */
+  /** Redraws for another width or type size, but not for a change of its height. */
   #fit(): void {
     const type = parseFloat(getComputedStyle(this.#drawing).fontSize) / TYPE;
     const width = Math.round(this.element.clientWidth / (type || 1));

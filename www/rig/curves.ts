@@ -45,7 +45,7 @@ export class SensitivityCharts {
     this.#build();
   }
 
-  /** A canvas has to be told the theme's colours anew. */
+  /** A canvas does not follow a change of theme by itself. */
   recolour(): void {
     this.#build();
   }

@@ -1,4 +1,4 @@
-/** What is doubtful about the input of a check: each doubt caps the verdict. */
+/** Warnings about the input of a check: each of them caps the verdict. */
 
 import type { Doubt, RigState, Side } from "./state";
 

@@ -171,7 +171,7 @@ export class FilesStep {
       if (isFolder) await this.#rig.addFolder(files);
       else await this.#rig.add(files);
       const added = this.#rig.items.filter((item) => !before.has(item) && item.recording === undefined);
-      // A recording has a card of its own.
+      // A recording has a separate card.
       if (added.length > 0 && added.every(({ summary }) => summary?.kind === "recording")) this.#filesCard.open = false;
     } catch (error) {
       this.#complain(messageOf(error));

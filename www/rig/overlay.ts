@@ -18,7 +18,7 @@ interface Stop {
 
 /** Steps of the slider from one calibration to the next. */
 const WAY = 20;
-/** Told apart from every colour of the depths, and from most things. */
+/** Distinct from every colour of the depths, and from most objects. */
 const EDGE = [255, 60, 190] as const;
 /** So much larger than their mean distance are points drawn, so that they close up where they lie farther apart. */
 const OVERLAP = 1.2;

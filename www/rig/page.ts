@@ -63,7 +63,7 @@ export class RigPage {
     rig.listen(() => this.#show());
   }
 
-  /** Shows the step that the address asks for, as far as there is something to show. */
+  /** Shows the step named in the address, if there is something to show. */
   open(hash: string): void {
     const asked = new URLSearchParams(hash.replace(/^#/, "")).get("step");
     this.#turnTo(isStep(asked) && this.#may(asked) ? asked : "files", false);
@@ -107,7 +107,7 @@ export class RigPage {
     void this.#steps.verdict.start();
   }
 
-  /** A step of its own in the history: the browser's back button goes back. */
+  /** A separate entry in the history, so that the browser's back button works. */
   #go(step: Step): void {
     if (!this.#may(step)) return;
     if (step !== this.#step) history.pushState(null, "", step === "files" ? "#rig" : `#rig&step=${step}`);

@@ -1,4 +1,4 @@
-/** Painting a mask: pixels that are used are 255, others 0. */
+/** Drawing a mask: pixels that are used are 255, others 0. */
 
 export interface Box {
   left: number;
@@ -19,7 +19,7 @@ export class Paint {
     this.data = data?.slice();
   }
 
-  /** The first stroke says what the rest is: outside of what is used nothing is, outside of what is left out everything. */
+  /** The first stroke decides about the rest: outside a stroke of used pixels nothing is used, outside a stroke of excluded pixels everything is. */
   #start(use: boolean): Uint8Array {
     this.data ??= new Uint8Array(this.width * this.height).fill(use ? 0 : 255);
     return this.data;

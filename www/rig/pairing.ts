@@ -1,4 +1,4 @@
-/** Which colour image and which depth map belong together, told by their names. */
+/** Which colour image and which depth map belong together, according to their names. */
 
 import type { Frame, Item, RigState } from "./state";
 

@@ -123,7 +123,7 @@ export const show = (input: HTMLInputElement, value: number): void => {
     input.value = Number.isFinite(value) ? String(Number(value.toPrecision(8))) : "";
 };
 
-/** Draws a picture into a canvas of its own size. */
+/** Draws a picture into a canvas of the same size. */
 export function draw(canvas: HTMLCanvasElement, bitmap: ImageBitmap): void {
   canvas.width = bitmap.width;
   canvas.height = bitmap.height;

@@ -43,7 +43,7 @@ export interface FramePlan {
   colour: number;
   depth: number;
   mask?: number;
-  /** Painted on the colour image, at its size; non-zero is used. */
+  /** Drawn on the colour image, at its size; non-zero pixels are used. */
   paint?: Uint8Array;
   /** Nearest and farthest depth that is used, metres. */
   range?: [number, number];

@@ -59,7 +59,7 @@ export class Recorded {
     return { name, topics, chosen };
   }
 
-  /** The robot that is connected; what asks too late is told so. */
+  /** The connected robot; a request after the connection has ended throws. */
   #connected(): Robot {
     if (!this.#robot) throw new Error("There is no connection to a robot.");
     return this.#robot;

@@ -26,10 +26,10 @@ interface Waiting {
   onProgress?: ((share: number, message: string) => void) | undefined;
 }
 
-/** What has the worker hold pixels: a new worker is told it again, but for what an old one ended of. */
+/** Requests after which the worker holds pixels: they are repeated for a new worker, except the one that ended the old worker. */
 const READS: readonly CallKind[] = ["read", "folder", "example", "take"];
 
-/** A file that came with others has a unit of its own; they are remembered under the first of them. */
+/** A file that came with others has a separate unit; they are remembered under the first of them. */
 function keyOf(kind: CallKind, ask: object): string {
   if ((kind === "unit" || kind === "take") && "file" in ask) return `${kind} ${ask.file}`;
   return "file" in ask ? `file ${ask.file}` : "first" in ask ? `files from ${ask.first}` : kind;
@@ -41,7 +41,7 @@ export class Session {
   #waiting = new Map<number, Waiting>();
   /** Is called where a worker is replaced: what came from a robot was in it alone. */
   onReplaced = (): void => {};
-  /** What a new worker is told first: everything that the old one had read. */
+  /** The first requests to a new worker: everything that the old one had read. */
   #known = new Map<string, { kind: CallKind; ask: object }>();
 
   call<K extends CallKind>(
@@ -132,7 +132,7 @@ export class Session {
     this.onReplaced();
     const left = [...this.#waiting.values()];
     this.#waiting.clear();
-    // What was being read may be what ended it: no other worker is told to.
+    // What was being read may have ended the worker, so no other worker reads it.
     for (const { kind, ask } of left) if (READS.includes(kind)) this.#known.delete(keyOf(kind, ask));
     for (const { reject } of left) reject(new RigError({ code: "internal", message, fatal: true }));
   }

@@ -92,13 +92,13 @@ export interface Run {
   estimateOnly: boolean;
   /** What had been guessed when it ran, in words. */
   guessed: string[];
-  /** What else is doubtful about files and cameras. */
+  /** Further warnings about files and cameras. */
   doubts: Doubt[];
 }
 
 export const messageOf = (error: unknown): string => (error instanceof Error ? error.message : String(error));
 
-/** A rig, as far as pairing, doubts and undoing look at it. */
+/** A rig, as far as pairing, warnings and undo use it. */
 export interface RigState {
   items: Item[];
   frames: Frame[];

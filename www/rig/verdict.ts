@@ -1,4 +1,4 @@
-/** What the check said, in words: the card, what to do next, the tables. */
+/** The result of the check in words: the card, what to do next, the tables. */
 
 import type { CandidateReport, CheckReport } from "../../pkg/index.js";
 import { decimals } from "../draw/numbers";
@@ -14,7 +14,7 @@ const SHAPES: Record<Tone, readonly string[]> = {
   open: ["M9 9.2a3 3 0 1 1 4.2 2.8c-.9.4-1.2 1-1.2 1.9", "M12 17v.2"],
 };
 
-/** Told apart by shape, not by colour alone. */
+/** Distinguished by shape, not by colour alone. */
 export function icon(tone: Tone): SVGElement {
   return svg(
     "svg",
@@ -83,7 +83,7 @@ const FOR_TURN = [
 const LITTLE = 0.3;
 
 const SWAPPED = "Check step 1: colour image and depth map seem to be swapped.";
-/** What a warning asks for, the most useful first. */
+/** The advice for each warning, the most useful first. */
 const ADVICE: readonly [code: string, advice: string][] = [
   ["fits-inverted", "Invert the calibration in step 2 and check again: it seems to be the inverse."],
   [

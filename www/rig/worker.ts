@@ -64,7 +64,7 @@ function readingOf<K extends RigReading["kind"]>(file: number, kind: K): Extract
   return reading as Extract<RigReading, { kind: K }>;
 }
 
-/** Keeps pairs that came together as files of their own; their cameras, which all have, are told once. */
+/** Stores pairs that came together as separate files; their cameras, which all of them share, are reported once. */
 function assemble(
   origin: string,
   first: number,
@@ -93,7 +93,7 @@ function assemble(
         guessed,
         depth,
       }),
-      // A file of its own, so that it is seen and can be left out: the background tells much.
+      // A separate file, so that it is visible and can be removed: the background is informative.
       ...(mask
         ? {
             mask: keep({

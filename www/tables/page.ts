@@ -47,7 +47,7 @@ export class TablesPage {
     parent.append(intro(), this.#side, this.#main, this.#detail.element);
   }
 
-  /** Shows what the address asks for, and where it asks for nothing, what was last seen. */
+  /** Shows the table named in the address; without one, the table shown last. */
   open(hash: string): void {
     const asked = new URLSearchParams(hash.replace(/^#/, ""));
     const panel = panels.find(({ name }) => name === asked.get("show"));

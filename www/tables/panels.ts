@@ -53,7 +53,7 @@ const byKey = (label: string, key: string, name = plain): Axis => ({
 const degrees = ({ degrees }: Result): number | undefined => degrees;
 const paperOfTable2 = ({ row }: Cell): number | undefined =>
   isNumber(row.paper) ? paperDegrees(row.paper) : undefined;
-/** A row of results that has more than one line of its own: its last. */
+/** The last line of a result that has more than one. */
 const atTheEnd = ({ iterations }: Result): number | undefined => {
   const last: unknown = Array.isArray(iterations) ? iterations.at(-1) : undefined;
   return typeof last === "object" && last !== null && "degrees" in last && isNumber(last.degrees)

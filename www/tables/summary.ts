@@ -28,7 +28,7 @@ function overview(panel: Panel, done: Done): HTMLElement {
   return make("p", {}, `${words.join("; ")}.`);
 }
 
-/** The aims speak of whole tables, so each says from how many rows its figure is. */
+/** The aims refer to whole tables, so each states from how many rows its figure comes. */
 function aims(panel: Panel, done: Done): HTMLElement[] {
   const list = aimsOf(panel.name, done).filter(({ rows }) => rows > 0);
   if (list.length === 0) return [];

@@ -71,7 +71,7 @@ interface Minimum {
   share: number;
 }
 
-/** Least share of the directions that makes a minimum worth a mark: single descents that stall are none. */
+/** The smallest share of the directions for which a minimum is marked: single descents that stall are not minima. */
 const LEAST_SHARE = 0.004;
 
 function minimaOf({ minima }: PixelLandscape): Minimum[] {
