@@ -191,7 +191,7 @@ test.describe("in Check a rig", () => {
     const run = page.getByRole("button", { name: /^(Run the check|Estimate a calibration)$/ });
     await run.first().click();
     await expect(page.locator("#rig").getByRole("alert")).toContainText(
-      "The check could not be done: the browser ended the computing thread",
+      "The check failed: the browser ended the computing thread",
     );
     await page.getByRole("button", { name: "Run the check" }).click();
     await expect(page.locator(".rig-bar").first()).toBeVisible();

@@ -230,7 +230,7 @@ test("where there is nothing to run the player's buttons are off, and say why", 
   await put(lab, "Colour image", colourPng());
   await areOff("waiting for a depth map");
   await put(lab, "Depth map", { ...depthPng("cut.png"), buffer: depthPng().buffer.subarray(0, 90) });
-  await areOff("Depth map: not possible");
+  await areOff("Depth map: invalid value");
   await put(lab, "Depth map", depthPng());
   await lab.reaches("ready");
   for (const button of buttons) {
@@ -281,7 +281,7 @@ test("while own files are read the page says so, asks for nothing that is there,
   await put(lab, "Colour image", { ...colourPng("wide.png"), buffer: wide });
   await expect
     .poll(() => page.evaluate(() => (window as unknown as { said: string[] }).said.join("|")))
-    .toMatch(/wide\.png: 4100 × 32 px is more than the library takes: scaled down by 2\./);
+    .toMatch(/wide\.png: 4100 × 32 px exceeds the library's limit; scaled down by 2\./);
 });
 
 test("of own files no true pose is known: none can be chosen, and what was chosen of a sample is not asked for", async ({
@@ -346,7 +346,7 @@ test("what can't be used is said: a recording, a second depth map, a pose; a fis
   const zip = { name: "all.zip", mimeType: "application/zip", buffer: Buffer.from("PK\x03\x04rest") };
   await drop(page, "body", [colourPng(), depthPng("one.png"), depthPng("two.png"), fisheye, pose, zip]);
   const remarks = page.locator(".remarks");
-  await expect(remarks).toContainText("two.png: another depth map; the Lab takes one.");
+  await expect(remarks).toContainText("two.png looks like a second depth map; the Lab uses only one.");
   await expect(remarks).toContainText(
     "eye.json: the colour camera, which is that of both images. Its numbers are in the fields below",
   );

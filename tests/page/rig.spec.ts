@@ -37,7 +37,7 @@ test("the example loads with one press: frames, cameras and a calibration", asyn
   await page.getByRole("button", { name: "Next: your calibration" }).click();
   await expect(page.locator(".rig-candidate")).toHaveCount(2);
   await expect(page.locator(".rig-words").first()).toHaveText(
-    /^The depth camera sits [\d.]+ mm .+ the colour camera, turned by [\d.]+°\.$/,
+    /^The depth camera sits [\d.]+ mm .+ the colour camera, rotated by [\d.]+°\.$/,
   );
   expect(lab.complaints).toEqual([]);
 });
@@ -70,7 +70,7 @@ test("calibrations from a file, pasted and typed in; inverted twice they are wha
   await expect(page.getByText("No calibration given")).toBeVisible();
   await page.locator("#rig .rig-step:not([hidden]) input[type=file]").setInputFiles(matrixFile("factory.txt", 0.025));
   const words = page.locator(".rig-words");
-  await expect(words).toHaveText("The depth camera sits 25.0 mm to the right of the colour camera, turned by 0.00°.");
+  await expect(words).toHaveText("The depth camera sits 25.0 mm to the right of the colour camera, rotated by 0.00°.");
   await page.getByRole("button", { name: "Invert factory" }).click();
   await expect(words).toContainText("25.0 mm to the left of");
   await expect(page.locator(".rig-candidate")).toContainText("inverted");
@@ -97,7 +97,7 @@ test("calibrations from a file, pasted and typed in; inverted twice they are wha
   await expect(page.getByText("Some numbers are missing.").last()).toBeVisible();
   await page.getByLabel("qw", { exact: true }).fill("1");
   await page.getByRole("button", { name: "Add these numbers" }).click();
-  await expect(words.nth(2)).toHaveText("The depth camera sits 100.0 mm behind the colour camera, turned by 90.00°.");
+  await expect(words.nth(2)).toHaveText("The depth camera sits 100.0 mm behind the colour camera, rotated by 90.00°.");
   await page.locator(".rig-candidate").nth(2).getByRole("button", { name: "Put first" }).click();
   await expect(words.first()).toContainText("100.0 mm behind");
   expect(lab.complaints).toEqual([]);
@@ -116,7 +116,7 @@ test("a verdict comes with its numbers, curves, shares and advice", async ({ lab
   await expect(page.locator(".rig-calibrations")).toContainText("1.2 mm");
   await expect(page.locator(".rig-calibrations")).toContainText("10.70 px");
   await expect(page.locator(".rig-curves figure")).toHaveCount(6);
-  await expect(page.locator(".rig-curves")).toContainText(/Least at −?\d+\.\d+°; ± \d+\.\d+° \(95 %\)/);
+  await expect(page.locator(".rig-curves")).toContainText(/Minimum at −?\d+\.\d+°; ± \d+\.\d+° \(95 %\)/);
   await expect(page.getByRole("row", { name: /frame 1 50 %/ })).toBeVisible();
   expect(lab.complaints).toEqual([]);
 });
@@ -322,7 +322,7 @@ test("what a reader warned of caps the verdict, and is what to do next", async (
   const card = page.locator(".rig-verdict");
   await expect(card).toContainText("depth_0001.png: Depths of 8 bits");
   await expect(card).toContainText("frame 2: its depth map is 80×60 px, not 160×120 px");
-  await expect(card).toContainText("The colour camera's numbers: the centre is far from the middle of 160×120 px");
+  await expect(card).toContainText("The colour camera's parameters: the principal point is far from the centre of the 160×120 px");
   await expect(page.locator(".rig-next")).toContainText("with 16 bits");
   expect(lab.complaints).toEqual([]);
 });

@@ -322,9 +322,9 @@ test(
     await expect(page.locator("#score-words")).toHaveText(
       / of \d{3} trial rotations \(white ring: best; orange: true\)/,
     );
-    const canvas = page.getByRole("img", { name: /^Scores of \d+ rotations; the best turns by/ });
+    const canvas = page.getByRole("img", { name: /^Scores of \d+ rotations\. The best one is/ });
     const [, about] =
-      /by (−?\d+) degrees about the vertical/.exec((await canvas.getAttribute("aria-label")) ?? "") ?? [];
+      /is (−?\d+) degrees about the vertical/.exec((await canvas.getAttribute("aria-label")) ?? "") ?? [];
     // Rotations lie 16 degrees apart.
     expect(Math.abs(Number(about?.replace("−", "-")) - 30)).toBeLessThanOrEqual(16);
     // At the true turn the map is yellow, at its corner nothing was tried.

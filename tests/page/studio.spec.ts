@@ -70,7 +70,7 @@ test("a pose that was held and is off has no tick", async ({ lab, page }) => {
 test("a link that asks for what can't be says which field is wrong, and how", async ({ lab, page }) => {
   await page.goto("./#size=32&overlap=7");
   await lab.reaches("error");
-  await expect(page.locator("#status")).toHaveText("Overlap: not possible");
+  await expect(page.locator("#status")).toHaveText("Overlap: invalid value");
   await expect(page.locator("#verdict")).toHaveText(/^Must be .*\d.*\. The field is marked\.$/);
   const field = page.locator("#fields-sample").getByRole("spinbutton", { name: "Overlap" });
   await expect(field).toHaveAttribute("aria-invalid");
