@@ -248,7 +248,7 @@ export class Rig implements RigState {
     this.live.stop();
     this.session.cancel();
     if (this.items.length + this.frames.length + this.candidates.length > 0)
-      this.undo.keep("clearing everything", { isWhole: true });
+      this.undo.keep("starting over", { isWhole: true });
     this.items = [];
     this.frames = [];
     this.candidates = [];
