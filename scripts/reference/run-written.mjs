@@ -40,12 +40,12 @@ export const NORMALS = Float32Array.from({ length: 3 * width * height }, (_, i) 
 });
 export const CLOUDS = [
   {
-    name: "shape from the image",
+    name: "shape from the picture",
     points: new Float32Array([0, 0.1, 1, NaN, NaN, NaN, -0.2, 1 / 3, 2.5]),
     colours: new Uint8Array([199, 100, 26, 0, 0, 0, 199, 100, 26]),
   },
   {
-    name: "depth map in the estimated pose",
+    name: "depth map, moved by the pose",
     points: new Float32Array([1e-7, -4, 8]),
     colours: new Uint8Array([11, 98, 184]),
   },

@@ -104,9 +104,7 @@ test("what is used of a frame can be restricted, with the pointer and with numbe
   await expect(share).toHaveText("30 % of the image is used.");
   await dialog.getByLabel("Farthest depth, m").fill("1.2");
   await dialog.getByRole("button", { name: "Done" }).click();
-  await expect(page.locator(".rig-frame")).toContainText(
-    "used: 30 % of the image, as painted, depths from 0 to 1.2 m.",
-  );
+  await expect(page.locator(".rig-frame")).toContainText("used: 30 % of the image, as drawn, depths from 0 to 1.2 m.");
   expect(lab.complaints).toEqual([]);
 });
 

@@ -322,7 +322,9 @@ test("what a reader warned of caps the verdict, and is what to do next", async (
   const card = page.locator(".rig-verdict");
   await expect(card).toContainText("depth_0001.png: Depths of 8 bits");
   await expect(card).toContainText("frame 2: its depth map is 80×60 px, not 160×120 px");
-  await expect(card).toContainText("The colour camera's parameters: the principal point is far from the centre of the 160×120 px");
+  await expect(card).toContainText(
+    "The colour camera's parameters: the principal point is far from the centre of the 160×120 px",
+  );
   await expect(page.locator(".rig-next")).toContainText("with 16 bits");
   expect(lab.complaints).toEqual([]);
 });

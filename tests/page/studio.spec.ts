@@ -372,10 +372,10 @@ test(
     await expect(page.locator("#pose-extra")).toContainText(/Rotation change\??\s*0°/);
     await expect(page.locator("#rotation-chart")).toHaveAttribute(
       "aria-label",
-      /change, deg: from \S+ to 0, zero in \d of \d+ iterations, which a logarithmic axis leaves out\./,
+      /change, deg: from \S+ to 0, zero in \d of \d+ iterations \(not shown on a logarithmic axis\)\./,
     );
     await expect(page.locator("#rotation-chart .still")).toHaveText(
-      /^Zero in \d of \d+ iterations: a logarithmic axis leaves those out\.$/,
+      /^Zero in \d of \d+ iterations \(not shown on a logarithmic axis\)\.$/,
     );
   },
 );

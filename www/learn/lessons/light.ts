@@ -154,7 +154,7 @@ export const colours: Lesson = {
       digits: 2,
       ink: "normal",
     },
-    { key: "off", label: "Colour mismatch at the best normal", unit: "%", digits: 1, ink: "minimum" },
+    { key: "off", label: "Mismatch at best normal", unit: "%", digits: 1, ink: "minimum" },
     { key: "good", label: "Equally good minima", digits: 0, ink: "minimum" },
   ],
   drags: { picture: { x: "px", y: "py" } },

@@ -106,7 +106,7 @@ function path({ points }: Curve, x: (offset: number) => string, y: (height: numb
 function says({ points, best, from, to }: Curve, unit: string): string {
   const [first = NaN, last = NaN] = [points[0]?.offset, points.at(-1)?.offset];
   if (from === undefined && to === undefined)
-    return `cannot tell from ${brief(first)} to ${brief(last)}${unit === "°" ? unit : ` ${unit}`}`;
+    return `not constrained from ${brief(first)} to ${brief(last)}${unit === "°" ? unit : ` ${unit}`}`;
   const least = from === undefined ? `below ${brief(first)}` : digits(from, 2);
   const most = to === undefined ? `above ${brief(last)}` : digits(to, 2);
   return `${measure(best, unit, 2)} (${least} to ${most})`;
