@@ -38,7 +38,7 @@ const CHANNELS = ["red", "green", "blue"] as const;
 /** Largest absolute value of a slider: a factor of e² either way, beyond all lights that the module knows; and its step. */
 const MOST = 2;
 const STEP = 0.01;
-/** How long, in milliseconds, a slider rests before what it says is done. */
+/** How long, in milliseconds, a slider rests before its value takes effect. */
 const REST = 200;
 
 export class Coefficients {
@@ -112,7 +112,7 @@ export class Coefficients {
     this.#readout.textContent = `${name}: ${decimals(this.#values[index], 2)}`;
   }
 
-  /** The numbers are those of the light as it is turned, so that no turn is left. */
+  /** The numbers are those of the rotated light, so that the rotation itself is reset. */
   #patch(): Settings {
     return { light: lightText(this.#values), lightTurn: 0, lightTilt: 0 };
   }

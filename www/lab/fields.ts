@@ -15,7 +15,7 @@ interface Common {
   label: string;
   /** One sentence that explains the label. */
   hint?: string;
-  /** What the present choice entails, always in sight. */
+  /** A remark on the present choice, always visible. */
   remark?: (value: Value, source: Origin) => string;
   group: Group;
   /** Path in the library's errors that belongs to this field. */
@@ -36,14 +36,14 @@ export interface ChoiceField extends Common {
   initial: string;
   /** Without choices they come from the library's catalogue. */
   choices?: readonly (readonly [value: string, label: string])[];
-  /** Those that mean something for one origin alone; of the other they are the initial one. */
+  /** Choices that apply to one origin only; for the other the initial choice is used. */
   only?: Readonly<Record<string, Origin>>;
 }
 export interface FlagField extends Common {
   kind: "flag";
   initial: boolean;
 }
-/** Numbers as one line of text, as they are copied from elsewhere. */
+/** Numbers as one line of text, so that they can be pasted. */
 export interface ListField extends Common {
   kind: "list";
   initial: string;
@@ -54,7 +54,7 @@ export type Group = PageField["group"] | "colour" | "depth";
 export type Settings = Readonly<Record<string, Value>>;
 
 export const near = (settings: Settings) => settings.start === "near";
-/** The bare grid is taken as it is: its size follows from the surface, and nothing is rendered that noise could be added to. */
+/** The bare grid has no options of rendering: its size follows from the surface, and it has no noise. */
 export const rendered = (settings: Settings) => settings.protocol !== "grid";
 
 /** The field of a row. */
@@ -275,7 +275,7 @@ if (Object.keys(defaults).length < fields.length)
 export const isOff = ({ only }: ChoiceField, value: Value, source: Origin): boolean =>
   (only?.[String(value)] ?? source) !== source;
 
-/** What a field comes to: of own files there is no true pose to start from. */
+/** The effective value of a field: own files have no true pose to start from. */
 export const valueOf = (field: Field, settings: Settings, source: Origin): Value =>
   field.kind === "choice" && isOff(field, settings[field.key] ?? null, source)
     ? field.initial

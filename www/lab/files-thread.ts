@@ -1,4 +1,4 @@
-/** The thread that makes large files: while it writes a cloud a page answers no press. One request and it is done. */
+/** The thread that makes large files, because writing a cloud would block the page. It serves one request and ends. */
 
 import "../engine/hold";
 import { faultOf } from "../engine/fault";

@@ -23,7 +23,7 @@ import {
   type ViewName,
 } from "../engine/protocol";
 
-/** What the pictures need of the worker; nothing comes of it where there is nothing to be seen. */
+/** What the pictures request from the worker; hidden pictures request nothing. */
 export interface GalleryHooks {
   look(look: Look): Promise<Drawings | undefined>;
   probe(asked: Asked): Promise<Probed | undefined>;
@@ -33,7 +33,7 @@ export class Gallery {
   #hooks: GalleryHooks = { look: () => Promise.resolve(undefined), probe: () => Promise.resolve(undefined) };
   readonly #painter = new Painter();
   readonly #box = byId("lab", HTMLElement);
-  /** Share of the width that is the pinned run's; the style sheet begins with as much. */
+  /** The pinned run's share of the width; the style sheet has the same initial value. */
   #wipe = 0.5;
   readonly #figures: HTMLElement[] = [];
   readonly #probe = new Probe((asked) => this.#hooks.probe(asked));
@@ -46,7 +46,7 @@ export class Gallery {
   #charts: readonly Chart[] = [];
   #history: readonly StepReport[] = [];
   #pinned: readonly StepReport[] = [];
-  /** Where the page stood before one view was alone. */
+  /** The scroll position of the page before one view was enlarged. */
   #top = 0;
   #isLooking = false;
   #looksAgain = false;
@@ -171,7 +171,7 @@ export class Gallery {
     this.#clouds.lookAnew();
   }
 
-  /** How a visitor wants to see what there is. */
+  /** The visitor's choices for drawing the surfaces. */
   get look(): Look {
     const fixed = SCALES.flatMap((name) => (this.#scales[name].fixed ? [[name, this.#scales[name].fixed]] : []));
     return { ranges: Object.fromEntries(fixed) as Look["ranges"], texture: this.#texture };
@@ -194,7 +194,7 @@ export class Gallery {
   open({ units, measured, frame }: Opened, fresh: boolean): Promise<void> {
     this.#units = this.#card.units = units;
     if (fresh) this.#clouds.lookAnew();
-    // Its pixels are others.
+    // Its pixels have changed.
     if (fresh) this.#probe.point(null);
     byId("errors", HTMLElement).hidden = !measured;
     return this.show(frame, []);
@@ -210,7 +210,7 @@ export class Gallery {
     this.#clouds.pretend(pose);
   }
 
-  /** Resolves when the frame is on the screen, which is when the next one may be asked for. */
+  /** Resolves when the frame is on the screen; only then the next one may be requested. */
   show(frame: Frame, history: readonly StepReport[]): Promise<void> {
     this.#history = history;
     this.#see(frame);
@@ -253,13 +253,13 @@ export class Gallery {
 
   /** Share of each picture's width that is the pinned run's. */
   wipe(share: number): void {
-    // Where it stands already all of the page would get its styles anew.
+    // Setting the same value again would recompute the styles of the whole page.
     if (share !== this.#wipe) this.#box.style.setProperty("--wipe", `${100 * share}%`);
     this.#wipe = share;
     this.#clouds.wipe(share);
   }
 
-  /** The charts once the page has its other colours: both at once would be a long task. */
+  /** The charts follow after the page has changed its colours: both at once would be a long task. */
   async recolour(): Promise<void> {
     this.#clouds.recolour();
     await nextFrame();
@@ -279,7 +279,7 @@ export class Gallery {
       button?.setAttribute("aria-pressed", String(figure.hasAttribute("data-large")));
     }
     if (wasOpen || !chosen) {
-      // All others are there again, and the page stands as it did before one of them made it shorter.
+      // All other views are visible again, and the scroll position is restored.
       if (wasSingle) scrollTo({ top: this.#top, behavior: "instant" });
       return;
     }

@@ -124,7 +124,7 @@ export class Intake {
     );
   }
 
-  /** Where the files are while the page is closed, in words, and whether there is something to forget. */
+  /** Where the files are stored while the page is closed, in words, and whether there are any to remove. */
   keeping(words: string, canForget: boolean): void {
     this.#keeping.textContent = words;
     this.#forget.hidden = !canForget;
@@ -218,7 +218,7 @@ export class Intake {
     this.#hooks.onChange();
   }
 
-  /** By hand: what was said of the files that came before is over. */
+  /** By hand: remarks about earlier files are removed. */
   #put(slot: Slot, file: File | undefined): void {
     this.remarks([]);
     this.#set(slot, file);

@@ -12,7 +12,7 @@ const FURTHER = /^(?:II[*+]\0|MM\0[*+]|\x76\x2f\x31\x01|P[Ff1-7]\s|ply\s|(?:#[^\
 /** Enough for a PCD's comments. */
 const HEAD = 512;
 
-/** Whether the package's readers of a rig's files are needed for it: colours that nobody else knows, and all other depth maps and masks, which no browser decodes. */
+/** Whether the package's readers of rig files are needed: for colour formats that browsers do not decode, and for all other depth maps and masks. */
 export async function isFurther(file: File, isColour: boolean): Promise<boolean> {
   // A file that has vanished is reported where it is read.
   const bytes = new Uint8Array(

@@ -1,4 +1,4 @@
-/** The light as a ball that it falls on: found, true, and what differs. The true one of a sample can be dragged, and its numbers set. */
+/** The light, shown on a ball: estimated, true, and their ratio. The true light of a sample can be dragged, and its coefficients can be set. */
 
 import { byId, make } from "../dom";
 import type { Frame, KnownLight } from "../engine/protocol";
@@ -37,7 +37,7 @@ export class LightPanel {
   readonly #coefficients: Coefficients;
   readonly #box = byId("light", HTMLElement);
   #resting: ReturnType<typeof setTimeout> | undefined;
-  /** Turned as the pointer says, and not yet as the settings do. */
+  /** Rotated by the pointer, before the settings have changed. */
   #turn: Turn | undefined;
   #gesture = {};
   #standing = "found";
@@ -137,7 +137,7 @@ class Ball {
   readonly canvas: HTMLCanvasElement;
   readonly element: HTMLElement;
   readonly #title: HTMLElement;
-  /** As those of the views, asked for before it is on the page. */
+  /** Like those of the views, requested before it is on the page. */
   readonly #context: CanvasRenderingContext2D | null;
 
   constructor(title: string, description: string) {

@@ -22,7 +22,7 @@ export interface OwnFilesHooks {
 export class OwnFiles {
   readonly intake = new Intake({ onChange: () => this.#changed(), onForget: () => void this.#forget() });
   readonly #hooks: OwnFilesHooks;
-  /** Whether the files of last time have been asked for. */
+  /** Whether the stored files have been requested. */
   #restored = false;
   #doubt = "";
   /** How often files have come by hand: those of last time come too late after the first. */
@@ -32,7 +32,7 @@ export class OwnFiles {
     this.#hooks = hooks;
   }
 
-  /** What of them seems to be in the wrong place, and where that is mended; empty where all is well. */
+  /** What seems to be in the wrong place, and how to correct it; empty if all is well. */
   get doubt(): string {
     return this.#doubt;
   }

@@ -1,11 +1,11 @@
-/** Examples at a press: each says all that differs from the defaults, so that what comes out does not depend on what was set before. */
+/** Examples behind buttons. Each lists all differences from the defaults, so that the result does not depend on earlier settings. */
 
 import { make } from "../dom";
 import { defaults, type Settings, type Value } from "./settings";
 
 interface Preset {
   name: string;
-  /** What one is to see there. */
+  /** What the example shows. */
   words: string;
   set: Readonly<Record<string, Value>>;
 }
@@ -50,7 +50,7 @@ export const presets: readonly Preset[] = [
 
 const settingsOf = ({ set }: Preset): Settings => ({ ...defaults, ...set });
 
-/** Buttons, of which the one that says what is set is pressed. */
+/** Buttons; the one that matches the settings is pressed. */
 export class Presets {
   readonly #buttons: readonly { preset: Preset; button: HTMLButtonElement }[];
 

@@ -6,7 +6,7 @@ import { byId, make } from "../dom";
 import { angleBetween } from "./verdict";
 
 export interface RivalHooks {
-  /** Another one of them is looked at, or the pose found again. */
+  /** An alternative pose is selected, or the best pose again. */
   onLook(pose: Pose | undefined): void;
   onStart(pose: Pose): void;
 }
@@ -24,7 +24,7 @@ export class Rivals {
     this.#hooks = hooks;
   }
 
-  /** The one that is looked at in place of the pose found. */
+  /** The alternative pose that is shown instead of the best one. */
   get looked(): Pose | undefined {
     return this.#looked;
   }

@@ -1,4 +1,4 @@
-/** How rotations score while the search goes on: across, the turn about the vertical axis; up and down, that about the level one. */
+/** The scores of rotations during the search: across, the rotation about the vertical axis; up and down, that about the horizontal one. */
 
 import type { Pose } from "../../pkg/index.js";
 import { colourAt } from "../draw/colours";
@@ -15,7 +15,7 @@ export class ScoreMap {
   readonly #canvas = byId("score-canvas", HTMLCanvasElement);
   readonly #words = byId("score-words", HTMLElement);
 
-  /** Alpha, beta, gamma and score of each rotation so far; of those that differ in gamma alone the best is seen. */
+  /** Alpha, beta, gamma and score of each rotation so far; of rotations that differ only in gamma, the best is visible. */
   show(scores: Float32Array, truth: Pose | null): void {
     const context = this.#canvas.getContext("2d");
     const count = scores.length / 4;

@@ -171,7 +171,7 @@ export function optionsInWords(settings: Settings, source: Origin): [name: strin
 
 const lensKeys = ["fx", "fy", "cx", "cy"] as const;
 
-/** A camera once all of its four numbers are given; none where none is; the name of what is missing in between. */
+/** A camera if all four numbers are given, nothing if none is, otherwise the names of the missing ones. */
 export function camera(settings: Settings, side: "colour" | "depth"): Pinhole | undefined | string {
   const [fx, fy, cx, cy] = lensKeys.map((key) => number(settings, `${side}.${key}`));
   const distortion = listed(settings, `${side}.distortion`);
@@ -189,7 +189,7 @@ export function toLink(settings: Settings): string {
   return new URLSearchParams(changed.map(({ key }) => [key, String(settings[key] ?? "")])).toString();
 }
 
-/** Reads such an address; what it does not understand stays at its default. */
+/** Reads such an address; unknown parts stay at their defaults. */
 export function fromLink(hash: string): Settings {
   const given = new URLSearchParams(hash.replace(/^#/, ""));
   const read = fields.map((field): [string, Value] => {

@@ -19,7 +19,7 @@ function opened(): Promise<IDBDatabase> {
   return done(request);
 }
 
-/** One change, whole or not at all. */
+/** One transaction. */
 async function change(work: (store: IDBObjectStore) => void): Promise<void> {
   const database = await opened();
   try {
@@ -37,7 +37,7 @@ async function change(work: (store: IDBObjectStore) => void): Promise<void> {
   }
 }
 
-/** All tabs of the page keep files in the same place, and tell each other what lies there now. */
+/** All tabs of the page store files in the same place and notify each other of changes. */
 const tabs = channel();
 
 function channel(): BroadcastChannel | undefined {
@@ -49,7 +49,7 @@ function channel(): BroadcastChannel | undefined {
   }
 }
 
-/** What tells files from others without reading them. */
+/** Identifies files without reading them. */
 const namesOf = (files: Files): string =>
   JSON.stringify(
     Object.entries(files)
@@ -89,7 +89,7 @@ export async function kept(): Promise<Map<string, File>> {
   }
 }
 
-/** Why files are not kept, in words. */
+/** Why files could not be stored, in words. */
 export function reasonOf(error: unknown): string {
   const name = error instanceof DOMException ? error.name : "";
   return name === "QuotaExceededError" ? "its storage is full" : "its storage is closed to this page";

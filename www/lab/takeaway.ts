@@ -1,4 +1,4 @@
-/** Results as files of common formats. Loaded when the first is asked for. */
+/** Results as files of common formats. Loaded with the first download. */
 
 import type { Pose, StepReport } from "../../pkg/index.js";
 import { byId } from "../dom";
@@ -30,7 +30,7 @@ export interface Run {
 export interface Made {
   name: string;
   blob: Blob;
-  /** What one has to know to read it, such as the unit. */
+  /** What a reader of the file needs to know, such as the unit. */
   says?: string;
 }
 

@@ -9,7 +9,7 @@ const kinds: readonly { value: Kind; label: string }[] = [
   { value: "colour", label: "colour image" },
   { value: "depth", label: "depth map" },
   { value: "mask", label: "mask" },
-  { value: "cameras", label: "camera numbers" },
+  { value: "cameras", label: "camera parameters" },
   { value: "poses", label: "calibration" },
 ];
 const units = [

@@ -175,7 +175,7 @@ function figures({ report, estimateOnly }: Run): HTMLElement {
       `${decimals(first.offDegrees, 2)}° and ${decimals(first.offMillimetres, 1)} mm`,
       "from the best fit; shift at the centre of the scene",
     ),
-    figure(px(first.pixels), `expected error of yours (95 %: ${interval(first.interval)})`),
+    figure(px(first.pixels), `expected error of your calibration (95 %: ${interval(first.interval)})`),
     found,
   );
 }
