@@ -1,4 +1,4 @@
-/** What makes a good scene, said before anything is measured, with two drawings. */
+/** Advice on a good scene, given before anything is measured, with two drawings. */
 
 import { make } from "../dom";
 import { svg } from "./parts";

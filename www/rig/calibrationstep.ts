@@ -1,4 +1,4 @@
-/** Step 2: the calibration in question, and others to compare it with. */
+/** Step 2: the calibration to check, and others to compare it with. */
 
 import { make } from "../dom";
 import { decimals } from "../draw/numbers";
@@ -15,7 +15,7 @@ const TURNS: Record<By, readonly string[]> = {
   xyz: ["about x", "about y", "about z"],
 };
 
-/** Metres between two cameras from which on a wrong unit, or a place in a room, is likelier than a rig. */
+/** Above this distance of two cameras, metres, a wrong unit or a pose in the world is likelier than a rig. */
 const FAR = 0.5;
 
 export class CalibrationStep {

@@ -1,4 +1,4 @@
-/** How sharply each cue tells each axis: the log likelihood that is lost when the calibration found is moved. Loaded with the first verdict. */
+/** How well each cue constrains each axis: the loss of log likelihood when the calibration found is moved. Loaded with the first verdict. */
 
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
@@ -24,7 +24,7 @@ const tokens: Record<string, string> = {
   information: "series-2",
   silhouette: "series-4",
 };
-/** A curve that loses less than this is shown as flat as it is. */
+/** Curves that lose less than this are not scaled up to fill the height. */
 const FLAT = 4;
 /** Sigmas to each side of a 95 % interval. */
 const WITHIN = 1.96;
@@ -126,7 +126,7 @@ export class SensitivityCharts {
   }
 }
 
-/** All cues at the offsets of the first; what is lost against the best of each. */
+/** All cues at the offsets of the first, as the loss relative to the best of each. */
 function lossesOf(curves: readonly Sensitivity[]): {
   xs: number[];
   lines: { cue: string; losses: number[] }[];
@@ -142,7 +142,7 @@ function lossesOf(curves: readonly Sensitivity[]): {
   return { xs, lines: same.map(({ cue, values }) => ({ cue, losses: lost(values) })), total: lost(sum) };
 }
 
-/** How far to each side of the estimate 95 % reach, in degrees or millimetres: of the covariance, which knows what the cues share. */
+/** Half width of the 95 % interval, in degrees or millimetres, from the covariance, which accounts for what the cues share. */
 function certainty(covariance: readonly number[], axis: Axis): number {
   const index = (Object.keys(axes) as Axis[]).indexOf(axis);
   const sigma = Math.sqrt(Math.max(0, covariance[7 * index] ?? 0));

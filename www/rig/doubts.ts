@@ -5,7 +5,7 @@ import type { Doubt, RigState, Side } from "./state";
 /** A principal point farther from the middle than this share of the picture's side is likelier another size's. */
 const OFF_CENTRE = 0.2;
 
-/** Numbers for another size of image are the second commonest mistake. */
+/** Parameters for another image size are the second most common mistake. */
 export function cameraDoubt(rig: RigState, side: Side): string {
   const file = rig.given.find(({ source }) => source === rig.cameras[side].source)?.camera;
   const size = rig.sizeOf(side);
@@ -20,8 +20,8 @@ export function cameraDoubt(rig: RigState, side: Side): string {
 }
 
 /**
- * The warnings of the readers, once for all files that have the same, and those about the cameras' numbers. A guessed unit is not among
- * them: the visitor can confirm it.
+ * The warnings of the readers, once for all files that have the same, and those about the cameras' parameters. A guessed unit is not among
+ * them, because the visitor can confirm it.
  */
 export function doubtsOf(rig: RigState): Doubt[] {
   const used = new Set(rig.complete.flatMap(({ colour, depth }) => [colour, depth]));

@@ -1,4 +1,4 @@
-/** The files as they were read, in plain words, with what can be corrected. */
+/** The files with a description of how each was read, and controls to correct it. */
 
 import { make } from "../dom";
 import { choose, draw, fill, Keyed, press, THUMB } from "./parts";

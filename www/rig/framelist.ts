@@ -1,4 +1,4 @@
-/** Frames: which colour image and which depth map were taken at the same moment, and what of them is used. */
+/** Frames: which colour image and which depth map were taken at the same moment, and which part of them is used. */
 
 import { make } from "../dom";
 import { choose, draw, fill, Keyed, press, THUMB } from "./parts";

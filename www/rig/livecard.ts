@@ -1,4 +1,4 @@
-/** Connecting to a robot, and the verdict that sharpens while it looks around. */
+/** Connects to a robot and shows how the verdict improves with each view. */
 
 import "../style/rig-recordings.css";
 import { make } from "../dom";

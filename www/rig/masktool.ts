@@ -1,4 +1,4 @@
-/** A dialog that restricts what of a frame is used: a rectangle, a brush, a range of depths, growing and shrinking. */
+/** A dialog that restricts which part of a frame is used: rectangle, brush, range of depths, growing and shrinking. */
 
 import "../style/rig-mask.css";
 import { make } from "../dom";
@@ -8,7 +8,7 @@ import type { Frame, Rig } from "./rig";
 
 type Tool = "rectangle" | "brush";
 
-/** Strokes that can be taken back, and what they may hold in memory together, bytes. */
+/** The number of strokes that can be undone, and their memory limit, bytes. */
 const MOST_STROKES = 30;
 const MOST_BYTES = 128e6;
 
@@ -263,7 +263,7 @@ export class MaskTool {
     this.#showShare();
   }
 
-  /** What is not used is darkened. */
+  /** Unused parts are darkened. */
   #showPart(part: Box, all = false): void {
     const { width, height, data } = this.#paint;
     const box = all ? { left: 0, top: 0, width, height } : part;

@@ -69,7 +69,7 @@ export class RigPage {
     this.#turnTo(isStep(asked) && this.#may(asked) ? asked : "files", false);
   }
 
-  /** Nothing is computed for a page that is not shown; what was brought stays. */
+  /** Nothing is computed for a hidden page; its files stay. */
   leave(): void {
     this.#steps.verdict.leave();
   }

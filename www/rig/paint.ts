@@ -10,7 +10,7 @@ export interface Box {
 export class Paint {
   readonly width: number;
   readonly height: number;
-  /** Nothing as long as all of the image is used. */
+  /** Absent as long as the whole image is used. */
   data: Uint8Array | undefined;
 
   constructor(width: number, height: number, data?: Uint8Array) {

@@ -19,7 +19,7 @@ export function svg(
   return element;
 }
 
-/** Rows of a list that are kept while their things change, so that focus and open parts stay. */
+/** Rows of a list that are kept while their items change, so that focus and open details stay. */
 export class Keyed<T extends { id: number }> {
   #rows = new Map<number, { element: HTMLElement; show(thing: T): void }>();
   readonly #parent: HTMLElement;

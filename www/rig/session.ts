@@ -39,7 +39,7 @@ export class Session {
   #worker: Worker | undefined;
   #next = 1;
   #waiting = new Map<number, Waiting>();
-  /** Is called where a worker is replaced: what came from a robot was in it alone. */
+  /** Called when a worker is replaced, because frames from a robot were only in the old one. */
   onReplaced = (): void => {};
   /** The first requests to a new worker: everything that the old one had read. */
   #known = new Map<string, { kind: CallKind; ask: object }>();
@@ -58,7 +58,7 @@ export class Session {
     });
   }
 
-  /** Ends the check that runs. A worker that does not listen is replaced, and reads its files again. */
+  /** Ends the running check. A worker that does not respond is replaced, and the new one reads its files again. */
   cancel(): void {
     const checks = [...this.#waiting].filter(([, { kind }]) => kind === "check");
     if (checks.length === 0) return;
@@ -68,7 +68,7 @@ export class Session {
     }
     const worker = this.#worker;
     worker?.postMessage({ kind: "cancel" } satisfies Request);
-    // It answers whatever it is asked once the check has ended.
+    // It answers any request once the check has ended.
     const id = this.#next++;
     const late = setTimeout(() => worker === this.#worker && this.#replace(), PATIENCE);
     const ended = () => clearTimeout(late);
@@ -83,7 +83,7 @@ export class Session {
       return void this.#known.delete(key);
     }
     if (!READS.includes(kind) && kind !== "unit" && kind !== "frames") return;
-    // What is said again comes last, after the files that it may be about.
+    // Repeated requests come last, after the files to which they may refer.
     this.#known.delete(key);
     this.#known.set(key, { kind, ask });
   }
@@ -113,11 +113,11 @@ export class Session {
     this.#waiting.delete(data.id);
     if ("answer" in data) return waiting.resolve(data.answer as never);
     waiting.reject(new RigError(data.fault));
-    // Numerics that broke off are suspect from then on.
+    // After a panic the numerics are suspect.
     if (data.fault.fatal) this.#restart(data.fault.message);
   }
 
-  /** Another worker takes over what the old one was asked. */
+  /** Another worker takes over the requests of the old one. */
   #replace(): void {
     this.#worker?.terminate();
     this.#worker = undefined;

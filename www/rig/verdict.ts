@@ -46,7 +46,7 @@ const WORDS: Record<CheckReport["verdict"], { word: Word; tone: Tone }> = {
 const px = (value: number): string => `${decimals(value, 2)} px`;
 const interval = ([low, high]: [number, number]): string => `${decimals(low, 2)} to ${decimals(high, 2)} px`;
 
-/** Whatever was guessed keeps a verdict from being better than the files are. */
+/** Anything guessed prevents a better verdict than the files justify. */
 function headline({ report, estimateOnly, guessed, doubts }: Run): { word: Word; tone: Tone; sentence: string } {
   const { pixels, interval: range } = report.health;
   if (estimateOnly)
@@ -65,7 +65,7 @@ function headline({ report, estimateOnly, guessed, doubts }: Run): { word: Word;
   return { word, tone, sentence: report.reason };
 }
 
-/** The word alone reads like the state of a switch where it stands beside the controls: there it is a sentence. */
+/** A whole sentence for use beside the controls, where a single word would read like the state of a switch. */
 export const ending = (run: Run): string => `The check is done: ${ENDS[headline(run).word]}.`;
 
 const AXES = ["left or right", "up or down", "forwards or backwards"];
@@ -125,7 +125,7 @@ export function advise({ report, plans, estimateOnly, guessed, doubts, candidate
     : list;
 }
 
-/** The least certain turn and shift, one sigma, and what would tell them. */
+/** The least certain rotation or shift, one sigma, and what would determine it better. */
 function weakest({ covariance }: CheckReport): string {
   const sigma = (i: number) => Math.sqrt(Math.max(0, covariance[7 * i] ?? 0));
   const turns = [0, 1, 2].map((i) => (180 / Math.PI) * sigma(i));
@@ -161,7 +161,7 @@ export function card(run: Run): HTMLElement {
   );
 }
 
-/** The numbers of the one in question, to be seen at a glance. */
+/** The main numbers of the calibration being checked. */
 function figures({ report, estimateOnly }: Run): HTMLElement {
   const { health } = report;
   const [first] = Object.values(report.candidates);

@@ -1,4 +1,4 @@
-/** Step 3: the check runs, and says what it found. */
+/** Step 3: runs the check and shows its result. */
 
 import type { CheckCue } from "../../pkg/index.js";
 import { make } from "../dom";
@@ -44,7 +44,7 @@ export class VerdictStep {
   readonly #curvesBox = make("section", { class: "rig-card" });
   #curves: SensitivityCharts | undefined;
   #shown: Run | undefined;
-  /** What the visitor has chosen to write stays chosen, run by run. */
+  /** The visitor's choice of what to write is kept between runs. */
   #wish: { format: PoseFormat; pose?: string; frame?: string } = { format: "matrix" };
   #busy = false;
 
@@ -165,7 +165,7 @@ export class VerdictStep {
         const on = [...this.element.querySelectorAll<HTMLInputElement>(".rig-cues input:checked")].map(
           ({ value }) => value as CheckCue,
         );
-        // Of no cue at all nothing can be said.
+        // A check needs at least one cue.
         if (on.length === 0) box.checked = true;
         else this.#rig.cues = on.length === Object.keys(CUES).length ? [] : on;
       });
@@ -192,7 +192,7 @@ export class VerdictStep {
       { value: "", label: "found" },
       ...Object.keys(run.candidates).map((name) => ({ value: name, label: name })),
     ];
-    // Who was right keeps what is there.
+    // A consistent calibration is the default choice.
     const isKept = !run.estimateOnly && Object.values(run.report.candidates)[0]?.verdict === "consistent";
     const wish = this.#wish;
     const wished = poses.find(({ value }) => value === wish.pose)?.value;
@@ -271,7 +271,7 @@ export class VerdictStep {
   }
 }
 
-/** The report with what the page knows to be guessed. */
+/** The report with the page's guesses. */
 const whole = ({ report, guessed, doubts }: Run): WholeReport => ({
   ...report,
   warnings: [
@@ -281,7 +281,7 @@ const whole = ({ report, guessed, doubts }: Run): WholeReport => ({
   ],
 });
 
-/** Whether the verdict is of what there is now. */
+/** Whether the verdict refers to the present state. */
 function isSame(run: Run, rig: Rig): boolean {
   const now = rig.plans();
   const plain = (plans: Run["plans"]) => JSON.stringify(plans.map(({ paint: _, ...rest }) => rest));

@@ -18,7 +18,7 @@ let recorded: Promise<Recorded> | undefined;
 const recordedOf = () => (recorded ??= import("./recorded").then(({ Recorded }) => new Recorded()));
 /** Bytes of a file by which recordings are known. */
 const HEAD = 16;
-/** As they were last checked: the overlay and the files out are of these. */
+/** The frames as they were last checked; the overlay and the exported files refer to these. */
 let frames: CheckFrame[] = [];
 let running: AbortController | undefined;
 
@@ -244,7 +244,7 @@ const handlers: Handlers = {
   },
 };
 
-/** What may go over without a copy; everything else stays the worker's own. */
+/** What may be transferred without a copy; everything else stays with the worker. */
 function transferable(answer: unknown): Transferable[] {
   if (answer instanceof ImageBitmap) return [answer];
   if (answer instanceof Uint8Array) return [answer.buffer as ArrayBuffer];
@@ -255,7 +255,7 @@ function transferable(answer: unknown): Transferable[] {
   return [];
 }
 
-/** What is read at the moment: whatever is asked later may be about it. */
+/** The present reading: later requests may refer to it. */
 let reads: Promise<unknown> = Promise.resolve();
 
 self.onmessage = async ({ data }: MessageEvent<Request>) => {

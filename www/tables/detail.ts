@@ -1,4 +1,4 @@
-/** Everything that is known of one cell, and the way into the Lab. */
+/** All results of one cell, with a link to the Lab. */
 
 import { decimals, short } from "../draw/numbers";
 import { make } from "../dom";

@@ -7,7 +7,7 @@ import { isConfidentlyWrong, isFound, type Cell } from "./protocol";
 import { colourOf, wantsBlack } from "./ramp";
 import type { State } from "./runner";
 
-/** What a result says of itself: a shape to see, and the same in words. */
+/** The status of a result: a shape, and the same in words. */
 export interface Mark {
   kind: "ambiguous" | "doubted" | "lost" | "stopped" | "wrong";
   glyph: string;
@@ -26,7 +26,7 @@ export const marks: readonly Mark[] = [
 export function markOf(state: State | undefined): Mark | undefined {
   if (state?.kind !== "done") return undefined;
   const { result } = state;
-  // Where no pose was looked for, it is neither right nor wrong, and a loop without an aim always ends at its cap.
+  // If no pose was estimated, it is neither right nor wrong, and a loop without a stopping rule always ends at its maximum.
   if (!("rivals" in result)) return undefined;
   const kind = isConfidentlyWrong(result)
     ? "wrong"
