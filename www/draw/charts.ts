@@ -79,7 +79,7 @@ export class Chart {
     );
   }
 
-  /** Where a single curve has gaps, and why. */
+  /** Notes where a single curve has gaps, and why. */
   #sayZeros(values: readonly (number | null)[], pinned: readonly (number | null)[]): void {
     const isDrawn = [...values, ...pinned].some((value) => value !== null && value > 0);
     const zeros = zerosIn(values);
@@ -105,13 +105,13 @@ export class Chart {
 const optional = <T>(given: T | undefined, value: (given: T) => number): number | null =>
   given === undefined ? null : value(given);
 
-/** Of how many iterations a value is zero, in words; empty where it is in none. */
+/** In how many iterations a value is zero, in words; empty if in none. */
 function zerosIn(values: readonly (number | null)[]): string {
   const [known, zeros] = [values.filter((value) => value !== null), values.filter((value) => value === 0)];
   return zeros.length > 0 ? `zero in ${zeros.length} of ${known.length} iterations` : "";
 }
 
-/** A chart for those who cannot see it: where each curve began and where it is, zeros included, of which a logarithm shows none. */
+/** A description of a chart for screen readers: the first and the last value of each curve, including zeros, which a logarithmic axis cannot show. */
 function inWords(name: string, lines: readonly Line[], curves: readonly (readonly (number | null)[])[]): string {
   const said = lines.map(({ label }, i) => {
     const all = curves[i] ?? [];
@@ -188,7 +188,7 @@ export class Plot {
       : 0;
     this.#newest = ys.map((values) => values.findLast((value) => value !== null) ?? null);
     this.#data = [xs.slice(first), ...curves.map((values) => values.slice(first))];
-    // At once: what uPlot puts off to the end of the task is drawing that no painter can see the time of.
+    // Immediately: uPlot would otherwise draw at the end of the task, where the painter cannot measure the time.
     this.#plot?.batch(() => this.#plot?.setData(this.#data));
   }
 

@@ -11,7 +11,7 @@ export interface Renderer {
 }
 
 export interface CloudsHooks {
-  /** WebGL was taken away, or is back. */
+  /** WebGL was suspended, or has returned. */
   onLost(lost: boolean): void;
   /** Nothing will be drawn any more. */
   onGone(): void;
@@ -20,7 +20,7 @@ export interface CloudsHooks {
 /** Rejects where the browser has no WebGL. */
 export async function rendererFor(canvas: HTMLCanvasElement, hooks: CloudsHooks): Promise<Renderer> {
   if (!("transferControlToOffscreen" in canvas)) return here(canvas, hooks);
-  // The page stands still while a thread is made: in a task with nothing else.
+  // Creating a thread blocks the page, so it is a separate task.
   await nextTask();
   const thread = new Thread(hooks);
   // The thread tries, not the page: a request for WebGL waits for the browser's graphics process.
@@ -36,7 +36,7 @@ async function elsewhere(thread: Thread, canvas: HTMLCanvasElement): Promise<Ren
   throw new Error("no WebGL in a thread");
 }
 
-/** It answers whatever it is sent; once it is over nothing is drawn, and nobody is kept waiting for it. */
+/** It answers every message; once it has ended nothing is drawn, and all waiting callers are released. */
 class Thread implements Renderer {
   readonly #worker = new Worker(new URL("./stage-thread.ts", import.meta.url), { type: "module" });
   #isOver = false;

@@ -35,7 +35,7 @@ export interface Sight {
   projection: number[];
 }
 
-/** What is drawn anew; the rest stays as it was. */
+/** The parts that change; the others stay. */
 export interface Change {
   surfaces?: Record<Side, Surface>;
   sight?: Sight;
@@ -43,7 +43,7 @@ export interface Change {
   style?: "points" | "surfaces";
   /** Where the depth map's surface stands beside its own pose, column by column. */
   swing?: number[];
-  /** Another run's surfaces, which are seen left of the wipe; nothing takes them away. */
+  /** The surfaces of the pinned run, shown left of the wipe. */
   pinned?: PinnedSurfaces | null;
   /** How they are brought to where those of the present run stand. */
   pinnedPlace?: number[];
@@ -151,7 +151,7 @@ export class CloudStage {
     this.#camera.matrixWorldInverse.copy(this.#camera.matrixWorld).invert();
     this.#camera.projectionMatrix.fromArray(projection);
     this.#camera.projectionMatrixInverse.copy(this.#camera.projectionMatrix).invert();
-    // A lamp above the eye's left shoulder: shapes are read best by it.
+    // A lamp from the upper left, under which shape is perceived best.
     this.#lamp.position.set(-0.5, 0.7, 1).transformDirection(this.#camera.matrixWorld);
     this.#sight = sight;
   }

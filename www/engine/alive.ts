@@ -1,10 +1,11 @@
 /**
- * Says when a worker is gone without a word. No event tells of one that the browser ends for want of memory, and whoever waits for its answer waits
- * for ever. So a worker holds a lock (Web Locks) for as long as it lives, and the page waits for that lock. Where there are no locks, as on pages
+ * Detects a worker that has ended silently. No event is fired when the browser ends a worker for lack of memory, and a caller would wait
+ * for its answer forever. So a worker holds a lock (Web Locks) for as long as it lives, and the page waits for that lock. Where there are
+ * no locks, as on pages
  * that are not served over https, an end is not noticed.
  */
 
-/** What a worker says first: the name of its lock. */
+/** The first message of a worker: the name of its lock. */
 export interface Holding {
   holds: string;
 }

@@ -3,7 +3,7 @@
 import { GONE, onGone } from "./alive";
 import type { Answer, Calls, Fault, Kind } from "./protocol";
 
-/** A refusal or failure of the library, as the page sees it. */
+/** An error of the library as the page receives it. */
 export class EngineError extends Error {
   readonly code: string;
   readonly field: string | undefined;
@@ -21,7 +21,7 @@ export class EngineError extends Error {
 /** How long, in milliseconds, a new request waits for the reply to an old one before the worker is replaced. */
 const LONGEST_WAIT = 400;
 
-/** The code of a worker that has ended without a word. */
+/** The code of a worker that has ended silently. */
 export const LOST = "lost";
 
 interface Pending {
@@ -61,7 +61,7 @@ export class Engine {
     });
   }
 
-  /** Resolves when nothing is under way any more. What takes too long is broken off, and its promise rejected. */
+  /** Resolves when nothing is under way any more. A request that takes too long is cancelled, and its promise rejected. */
   async interrupt(): Promise<void> {
     if (this.#pending.size === 0) return;
     const rest = new Promise<void>((resolve) => this.#resting.push(resolve));

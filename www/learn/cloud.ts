@@ -1,4 +1,4 @@
-/** Points of both surfaces, seen from a side that a slider sets. */
+/** Points of both surfaces, seen from an angle set by a slider. */
 
 import { freshId, ink, make } from "../dom";
 import type { CloudPanel, Panel } from "./protocol";
@@ -6,7 +6,7 @@ import type { CloudPanel, Panel } from "./protocol";
 const SIDE = 320;
 /** Side of a point on the canvas, which is shown at half its size: smaller ones are hardly seen on a dark ground. */
 const POINT = 3.5;
-/** Where the view starts: half way between front and side, so that depth shows. */
+/** The initial viewpoint: half way between front and side, so that depth is visible. */
 const FIRST_TURN = 50;
 
 export class Cloud {

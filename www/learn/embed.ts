@@ -1,4 +1,4 @@
-/** The line that shows a lesson's figure, as it is set now, in a page elsewhere; and in such a frame the way back to the lesson. */
+/** The HTML that shows a lesson's figure with its present settings in another page; in such a frame, a link to the lesson. */
 
 import { make } from "../dom";
 

@@ -25,7 +25,7 @@ export const frac = (up: Element, down: Element): Element => math("mfrac", {}, u
 export const sum = (below: Element): Element => math("munder", {}, mo("∑"), below);
 export const norm = (inside: Element): Element => sup(row(mo("‖"), inside, mo("‖")), mn("2"));
 
-/** Apart from what precedes and follows, as in print; browsers set it close. */
+/** With space before and after, as in print; browsers set none. */
 const space = (width: string): Element => math("mspace", { width });
 export const log = (of: Element): Element => row(mi("log"), space("0.1667em"), of);
 export const comma = (): Element => row(mo(","), space("0.6em"));
@@ -33,7 +33,7 @@ export const comma = (): Element => row(mo(","), space("0.6em"));
 interface Symbol {
   make(): Element;
   ink: Ink;
-  /** What it stands for, said where the pointer rests on it. */
+  /** Its meaning, shown when the pointer rests on it. */
   name: string;
 }
 

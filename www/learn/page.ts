@@ -81,7 +81,7 @@ export class LearnPage {
     const values = isTold ? valuesFrom(lesson, asked) : (this.#kept.get(lesson.id) ?? initialValues(lesson));
     this.#show(lesson, values);
     if (asked.has("slides")) this.#startSlides();
-    // Back from a slide to the lesson that it was begun at.
+    // Back from the slides to the lesson at which they were opened.
     else this.#slides.close();
     this.#writeAddress();
   }
@@ -98,7 +98,7 @@ export class LearnPage {
     if (this.#shown?.drawing) this.#shown.figure.show(this.#shown.drawing);
   }
 
-  /** What the figure shows in numbers, with the values that made it. */
+  /** The numbers of the figure, with the values of its controls. */
   download(): void {
     if (!this.#shown) return;
     const { lesson, controls, drawing } = this.#shown;

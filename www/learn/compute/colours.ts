@@ -1,4 +1,4 @@
-/** Three colours: each cuts a curve out of the hemisphere, and where the curves meet are the normals that are left. */
+/** Three colours: each selects a curve on the hemisphere, and the remaining normals are where the curves meet. */
 
 import type { Drawing, Values } from "../protocol";
 import { atPixel, normalsOf, pictureOf } from "./draw";

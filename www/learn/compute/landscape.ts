@@ -14,7 +14,7 @@ export interface Landscape {
   panel: ImagePanel;
   /** Share of the hemisphere's picture whose colour is the pixel's up to noise, percent. */
   explained: number;
-  /** How far the colour of the lowest minimum is off the pixel's, percent of brightness (rms of the three). */
+  /** Difference of the lowest minimum's colour from the pixel's, percent of brightness (rms of the three). */
   off: number;
   /** Minima as good as the best, within the noise. */
   good: number;

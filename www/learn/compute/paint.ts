@@ -1,4 +1,4 @@
-/** Shadows, paint, and what the model does about them. */
+/** Shadows, paint, and how the model handles them. */
 
 import type { Sample } from "../../../pkg/index.js";
 import type { Drawing, Values } from "../protocol";

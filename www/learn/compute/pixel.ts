@@ -1,4 +1,4 @@
-/** What a pixel knows: normal, albedo and a light of order 2 make one colour. */
+/** What a pixel shows: normal, albedo and a second-order light determine its colour. */
 
 import { shadeNormals, turnLight } from "../../../pkg/index.js";
 import type { Drawing, Ink, Values } from "../protocol";

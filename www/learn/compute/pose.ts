@@ -1,4 +1,4 @@
-/** Finding the pose: the residual tells a wrong one, registration and search find the right one, a pixel's prior follows it. */
+/** Finding the pose: the residual reveals a wrong pose, registration and search find the right one, and a pixel's prior follows it. */
 
 import type { Estimator, Options, Sample } from "../../../pkg/index.js";
 import type { CloudPanel, Drawing, Values } from "../protocol";
@@ -9,7 +9,7 @@ import { aboutY, angleBetween, degreesBetween, meanOf, product, turned } from ".
 import { afterStages, isOn, logAt, numberOf, pixelAt, scene, vectorAt, watched } from "./scenes";
 
 const SIZE = 64;
-/** The pose to be found. */
+/** The true pose. */
 const BETA = 20;
 const OFFSETS = [-40, -30, -20, -14, -8, -4, 0, 4, 8, 14, 20, 30, 40];
 const ENDS = [Math.min(...OFFSETS), Math.max(...OFFSETS)] as const;

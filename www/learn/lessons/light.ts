@@ -1,4 +1,4 @@
-/** Lessons 1 to 3: what the colours of a pixel say about its normal. */
+/** Lessons 1 to 3: what the colours of a pixel reveal about its normal. */
 
 import type { Lesson } from "../lesson";
 import { LIGHTS } from "../lesson";

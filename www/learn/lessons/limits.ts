@@ -1,4 +1,4 @@
-/** Lessons 8 and 9: what the image model leaves out, and when the method fails. */
+/** Lessons 8 and 9: what the image model ignores, and when the method fails. */
 
 import type { Lesson } from "../lesson";
 import { LIGHTS } from "../lesson";

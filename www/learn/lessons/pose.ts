@@ -1,4 +1,4 @@
-/** Lessons 6 and 7: the pose between the cameras, and what the sensor gets back. */
+/** Lessons 6 and 7: the pose between the cameras, and the refinement of the sensor's depth. */
 
 import type { Lesson } from "../lesson";
 import { LIGHTS } from "../lesson";
