@@ -33,7 +33,7 @@ test("dark and light follow the system, and the visitor", async ({ lab, page }) 
   expect(await lightness()).toBeLessThan(64);
   await page.emulateMedia({ colorScheme: "light" });
   expect(await lightness()).toBeGreaterThan(192);
-  await page.getByRole("button", { name: "Switch to dark colours" }).click();
+  await page.getByRole("button", { name: "Switch to the dark theme" }).click();
   expect(await lightness()).toBeLessThan(64);
   await page.reload();
   expect(await lightness()).toBeLessThan(64);

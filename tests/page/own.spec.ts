@@ -179,7 +179,7 @@ test("swapped files are offered to be swapped, and then run", async ({ lab, page
   await lab.reaches("error");
   // Where the eye is, too: the settings may be closed.
   await expect(page.locator("#verdict")).toContainText("second.png: a depth map has one value for each pixel");
-  await expect(page.locator("#next")).toHaveText("Colour and depth seem to be swapped: Settings, Swap them.");
+  await expect(page.locator("#next")).toHaveText("Colour and depth seem to be swapped: Settings, Swap.");
   // With the samples nothing is swapped.
   await page.getByRole("button", { name: "Sample", exact: true }).click();
   await lab.reaches("ready");
@@ -195,7 +195,7 @@ test("swapped files are offered to be swapped, and then run", async ({ lab, page
   // A grey picture may be a depth map, a coloured one can't.
   await put(lab, "Colour image", greyPng("grey.png"));
   await put(lab, "Depth map", colourPng("third.png"));
-  await expect(page.locator("#next")).toHaveText("Colour and depth seem to be swapped: Settings, Swap them.");
+  await expect(page.locator("#next")).toHaveText("Colour and depth seem to be swapped: Settings, Swap.");
 });
 
 test("a run of files that seem to be in each other's places says so beside its verdict", async ({ lab, page }) => {
@@ -348,7 +348,7 @@ test("what can't be used is said: a recording, a second depth map, a pose; a fis
   const remarks = page.locator(".remarks");
   await expect(remarks).toContainText("two.png looks like a second depth map; the Lab uses only one.");
   await expect(remarks).toContainText(
-    "eye.json: the colour camera, which is that of both images. Its numbers are in the fields below",
+    "eye.json: the colour camera, used for both images. Its numbers are in the fields below",
   );
   await expect(page.locator("#fields-colour").getByLabel("lens model")).toHaveValue("fisheye");
   await expect(remarks).toContainText("T.txt: a pose");

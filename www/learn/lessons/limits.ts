@@ -95,7 +95,7 @@ export const failure: Lesson = {
     { key: "status", label: "Status" },
     { key: "error", label: "True error of the rotation", unit: "°", digits: 2, ink: "error" },
     { key: "sigma", label: "Reported sigma", unit: "°", digits: 2, ink: "pose" },
-    { key: "rivals", label: "Alternative poses that fit equally well", digits: 0, ink: "pose" },
+    { key: "rivals", label: "Alternative poses", digits: 0, ink: "pose" },
     { key: "residual", label: "Residual of the colours", digits: 3, ink: "error" },
   ],
   drags: {},

@@ -13,7 +13,7 @@ const colourTerm = () =>
 export const pose: Lesson = {
   id: "pose",
   title: "Finding the pose",
-  gist: "Under the right pose, the normals of the depth map explain the colours. This is how the pose is found.",
+  gist: "Under the right pose the normals of the depth map explain the colours. This is how the pose is found.",
   formula: () =>
     block(colourTerm(), mo("+"), symbol("lambda"), norm(row(symbol("n"), mo("−"), symbol("R"), symbol("m")))),
   formulaWords:
@@ -71,9 +71,9 @@ export const pose: Lesson = {
   readouts: [
     { key: "error", label: "Error of the rotation", unit: "°", digits: 2, ink: "pose" },
     { key: "residual", label: "Residual of the colours", digits: 3, ink: "error" },
-    { key: "minima", label: "Minima of the pixel's cost", digits: 0, ink: "minimum" },
-    { key: "off", label: "Error of the prior at the pixel", unit: "°", digits: 1, ink: "prior" },
-    { key: "end", label: "Error of the solver's result", unit: "°", digits: 1, ink: "normal" },
+    { key: "minima", label: "Minima of the pixel", digits: 0, ink: "minimum" },
+    { key: "off", label: "Error of the prior", unit: "°", digits: 1, ink: "prior" },
+    { key: "end", label: "Error of the solver", unit: "°", digits: 1, ink: "normal" },
     { key: "status", label: "Status" },
   ],
   drags: { picture: { x: "px", y: "py" } },
