@@ -168,7 +168,7 @@ export const object =
       const given = brief(key);
       const path = `${field}.${given}`;
       if (!check) {
-        throw new BimodalError("option", `${path}: there is no such key${hint(given, Object.keys(shape))}`, path);
+        throw new BimodalError("option", `${path}: unknown key${hint(given, Object.keys(shape))}`, path);
       }
       if (member !== undefined) check(member, path);
     }

@@ -17,7 +17,7 @@ export type ErrorCode =
   | "poisoned"
   | "internal";
 
-/** Everything that goes wrong here for a reason the caller can name. */
+/** An error with a cause that the caller can identify. */
 export class BimodalError extends Error {
   /** Always "BimodalError". */
   override readonly name = "BimodalError";
@@ -30,7 +30,7 @@ export class BimodalError extends Error {
   /** The number at fault, where a single one is. */
   declare readonly value?: number;
 
-  /** The values in the message; of a file's error `file`, `reason` and, where it matters, `problem`. */
+  /** The values in the message; for a file `file`, `reason` and, where it matters, `problem`. */
   declare readonly details?: ErrorDetails;
 
   constructor(code: ErrorCode, message: string, field?: string, options?: BimodalErrorOptions) {
@@ -51,20 +51,20 @@ interface BimodalErrorOptions extends ErrorOptions {
   details?: ErrorDetails;
 }
 
-/** What programs can ask of an error beyond its code. */
+/** What programs can read from an error besides its code. */
 export interface ErrorDetails {
   /** The file that could not be read. */
   readonly file?: string;
   /** What is wrong with it, without its name. */
   readonly reason?: string;
   /**
-   * "too-large": it holds more than is read here; "picture": a picture of a format that browsers read and these readers do not;
+   * "too-large": it exceeds a limit of the readers; "picture": an image in a format that browsers read and these readers do not;
    * "disparity": by its name it holds disparities or inverse depths, which the option `inverse` reads.
    */
   readonly problem?: "too-large" | "picture" | "disparity";
-  /** Its columns, where its size is the problem. */
+  /** Its columns, if its size is the problem. */
   readonly width?: number;
-  /** Its rows, where its size is the problem. */
+  /** Its rows, if its size is the problem. */
   readonly height?: number;
 }
 

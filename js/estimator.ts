@@ -40,7 +40,7 @@ function checked<T, Plain>(check: (value: unknown) => void, plain: (input: T) =>
   return own;
 }
 
-/** What an estimator was given. */
+/** The input of an estimator. */
 export interface Given {
   /** The colour image, its camera as members. */
   image: ColorImage;
@@ -51,17 +51,16 @@ export interface Given {
 }
 
 /**
- * Shape, light and pose from one colour image and one depth map, one iteration after the other.
- *
- * Every array that comes out is a copy of its own. An estimator owns memory that a garbage collector frees too late or never:
- * `free()` it, or declare it with `using`.
+ * Shape, light and pose from one colour image and one depth map, one iteration after the other. Every returned array is a copy. An
+ * estimator owns memory that the garbage collector frees too late or never, so call
+ * `free()` or declare it with `using`.
  */
 export class Estimator {
   #raw: Raw | undefined;
   #broken = false;
   /** Those of the loop that is under way. */
   #options: PlainOptions;
-  /** Copies: their owner may change the pair before it is saved or a worker asks for it. */
+  /** Copies: the caller may change the pair before it is saved or sent to a worker. */
   readonly #pair: Views;
   #warnings: EstimatorWarning[] = [];
   /** Whether anything has been run since the start, and how many slices of the search this thread has done. */
@@ -99,20 +98,20 @@ export class Estimator {
     }
   }
 
-  /** One iteration, or one slice of the search while the loop is still there. A search around an initial pose belongs to the first iteration. */
+  /** Runs one iteration, or one slice of the search while the search lasts. A search around an initial pose belongs to the first iteration. */
   step(): StepReport {
     const answer = this.#refinementWorker?.answer;
     if (answer) this.#call((raw) => raw.stepHalfway());
     return this.#finish(answer);
   }
 
-  /** One stage of an iteration, or one slice of the search; the report says which. */
+  /** Runs one stage of an iteration, or one slice of the search; the report names the stage. */
   stepStage(): StepReport {
     this.#take(this.#refinementWorker?.answer);
     return this.#after(this.#call((raw) => raw.stepStage()));
   }
 
-  /** As many steps as fit into the time, at least one. Of a search around an initial pose a step is one slice here, as in `run`. */
+  /** Runs as many steps as fit into the time, at least one. In a search around an initial pose a step is one slice, as in `run`. */
   stepFor(milliseconds: number): StepReport {
     if (typeof milliseconds !== "number" || Number.isNaN(milliseconds)) {
       throw new BimodalError("type", "milliseconds: must be a number", "milliseconds", refused(milliseconds));
@@ -124,7 +123,7 @@ export class Estimator {
   }
 
   /**
-   * Steps until the loop ends, at most `maxIterations` times, leaving room for events between the steps. When `signal`
+   * Steps until the loop ends, at most `maxIterations` times, and lets events pass between the steps. When `signal`
    * aborts, the promise is rejected with its reason and the estimator stays as the last step left it.
    */
   async run(options: RunOptions = {}): Promise<StepReport> {
@@ -142,8 +141,8 @@ export class Estimator {
   }
 
   /**
-   * The reports of the steps that are left, one a step, the last one with the status that the loop ends with; events pass between them.
-   * Leaving the iteration early keeps what has been found: another one, or `run`, goes on from there.
+   * Yields one report for each remaining step; the last one has the final status. Events pass between the steps. Leaving the iteration
+   * early keeps the result so far; another iteration, or `run`, continues from there.
    */
   async *[Symbol.asyncIterator](): AsyncGenerator<StepReport, void, undefined> {
     for (let { status } = this.report; status === "running"; ) {
@@ -154,12 +153,13 @@ export class Estimator {
     }
   }
 
-  /** Back to the start, with the same views and, if given, other options. */
+  /** Returns to the initial state with the same views and, if given, new options. */
   reset(options?: Options): void {
     const own = options === undefined ? undefined : checked(checkOptions, plainOptions, options);
     const workers = this.#options.workers ?? 1;
     if ((own?.workers ?? workers) !== workers) {
-      const message = "options.workers: threads get the views when they are made; make a new estimator to change it";
+      const message =
+        "options.workers: threads receive the views when they are created; create a new estimator to change their number";
       throw new BimodalError("unsupported", message, "options.workers", refused(own?.workers));
     }
     this.#call((raw) => raw.reset(own));
@@ -168,7 +168,7 @@ export class Estimator {
     this.#begin();
   }
 
-  /** What this place lacks, for which the estimator does without: "workers-unavailable" where no other thread could be started. */
+  /** What the environment lacks and the estimator does without: "workers-unavailable" if no other thread could be started. */
   get warnings(): readonly EstimatorWarning[] {
     return this.#warnings;
   }
@@ -178,7 +178,10 @@ export class Estimator {
     return this.#call((raw) => raw.report());
   }
 
-  /** Normals of the image view, 3*w*h interleaved, NaN outside the mask, which black and saturated pixels leave: they tell no colour. */
+  /**
+   * Normals of the image view, 3*w*h interleaved, NaN outside the mask. Black and saturated pixels are removed from the mask, because their
+   * colour is unknown.
+   */
   imageNormals(): Float32Array {
     return this.#call((raw) => raw.imageNormals());
   }
@@ -209,24 +212,24 @@ export class Estimator {
   }
 
   /**
-   * Log paint of the image view (natural logarithm), 3*w*h interleaved, mean 0 over the mask in each channel, NaN outside it. Zero where
-   * one paint explains the colours, with `registration: "icp"`, and before the pose has come to rest.
+   * Log albedo of the image view (natural logarithm), 3*w*h interleaved, mean 0 over the mask in each channel, NaN outside it. Zero if a
+   * single albedo explains the colours, with `registration: "icp"`, and before the pose has converged.
    */
   albedo(): Float32Array {
     return this.#call((raw) => raw.albedo());
   }
 
   /**
-   * Log shading of the image view, 3*w*h interleaved, NaN outside the mask and where there is no normal yet. The light carries the
-   * exposure; log S - albedo - shading is noise and what the model leaves out.
+   * Log shading of the image view, 3*w*h interleaved, NaN outside the mask and where there is no normal yet. The light includes the
+   * exposure; log S - albedo - shading is noise and model error.
    */
   shading(): Float32Array {
     return this.#call((raw) => raw.shading());
   }
 
   /**
-   * Paints a layer into the top left corner of a canvas, a pixel for each of its view's; what has no value stays clear. Nothing but its
-   * colours leaves the module. The canvas keeps its size: give it the view's.
+   * Draws a layer into the top left corner of a canvas, one canvas pixel for each pixel of the view. Pixels without a value stay
+   * transparent. The canvas keeps its size, which should be that of the view.
    */
   draw(
     context: CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D,
@@ -254,8 +257,8 @@ export class Estimator {
   }
 
   /**
-   * What the search has tried so far, 4*n: alpha, beta, gamma in degrees of each rotation, and its score, which is higher where the pose
-   * explains more of the colours. Empty before the search and after it.
+   * The rotations that the search has tried so far, 4*n: alpha, beta and gamma in degrees, and the score, which is higher if the pose fits
+   * the image better. Empty before the search and after it.
    */
   searchScores(): Float32Array {
     return this.#call((raw) => raw.searchScores());
@@ -269,14 +272,13 @@ export class Estimator {
     return this.#call((raw) => raw.registeredBy());
   }
 
-  /** What it was given, as copies: both views, and the options of the last `reset`. */
+  /** The input, as copies: both views, and the options of the last `reset`. */
   get given(): Given {
     return structuredClone({ ...this.#pair, options: this.#options });
   }
 
   /**
-   * The run as bytes: both views, the options and how far it has come. A run is the same to the bit whenever it is run again, and that is
-   * how `restore` goes on with it.
+   * The run as bytes: both views, the options and the number of steps done. A repeated run is bit-identical, and `restore` relies on that.
    */
   save(): Uint8Array {
     const { stage, iteration, status } = this.report;
@@ -285,10 +287,11 @@ export class Estimator {
   }
 
   /**
-   * An estimator that stands where the saved one stood, to the bit, and goes on as that one would have. It takes as long as the run had
-   * taken. A search that was broken off may stand elsewhere, if threads shared it, and ends in the same pose.
+   * An estimator in the bit-identical state of the saved one. Restoring takes as long as the run had taken. A search that was interrupted
+   * may be at a different point if threads shared it; it ends in the same pose.
    *
-   * @throws BimodalError of code "state": no saved run, a damaged one, one of another format, or one whose numbers this build does not repeat.
+   * @throws BimodalError of code "state": the bytes are not a saved run, are damaged, have another format version, or hold numbers that
+   * this build does not reproduce.
    */
   static restore(state: Uint8Array): Estimator {
     const restoring = Estimator.#restoring(state);
@@ -297,7 +300,7 @@ export class Estimator {
     return next.value;
   }
 
-  /** As `restore`, with room for events while the run is repeated. When `signal` aborts, the promise is rejected with its reason. */
+  /** As `restore`, but lets events pass while the run is repeated. When `signal` aborts, the promise is rejected with its reason. */
   static async restoreAsync(state: Uint8Array, options: RestoreOptions = {}): Promise<Estimator> {
     checkRestore(options);
     const { signal } = options;
@@ -311,7 +314,7 @@ export class Estimator {
     return next.value;
   }
 
-  /** Repeats a saved run, stage by stage; what is broken off is freed. */
+  /** Repeats a saved run, stage by stage, and frees it if it is cancelled. */
   static *#restoring(state: Uint8Array): Generator<void, Estimator, undefined> {
     const { image, depth, options, reached, found } = opened(state);
     const estimator = unusable(() => new Estimator(image, depth, options));
@@ -327,7 +330,7 @@ export class Estimator {
     }
   }
 
-  /** Gives the memory back. The second call does nothing. */
+  /** Frees the memory. Further calls do nothing. */
   free(): void {
     const raw = this.#raw;
     this.#raw = undefined;
@@ -345,7 +348,7 @@ export class Estimator {
   /** Said once: an estimator without other threads takes longer and finds the same. */
   #warn(reason: unknown): void {
     if (this.#warnings.length > 0) return;
-    const message = `options.workers: no other thread could be started (${reason instanceof Error ? reason.message : String(reason)}); this one does all the work`;
+    const message = `options.workers: no other thread could be started (${reason instanceof Error ? reason.message : String(reason)}); this thread does all the work`;
     this.#warnings = [{ code: "workers-unavailable", message, field: "options.workers" }];
     console.warn(`bimodal-stereo: workers-unavailable: ${message}`);
   }
@@ -422,7 +425,7 @@ export class Estimator {
   #call<T>(method: (raw: Raw) => T): T {
     if (this.#raw === undefined) throw new BimodalError("freed", "this estimator has been freed");
     if (this.#broken) {
-      throw new BimodalError("poisoned", "this estimator broke off in an earlier call; free it and make another one");
+      throw new BimodalError("poisoned", "this estimator failed in an earlier call; free it and create another one");
     }
     try {
       return method(this.#raw);

@@ -1,6 +1,6 @@
 /**
  * Image and depth files without a canvas, which would throw away the lower byte of 16 bits and premultiply alpha: PNG of
- * 8 and 16 bits, and NumPy's .npy. A module of its own, to be loaded when the first file comes in.
+ * 8 and 16 bits, and NumPy's .npy. A separate module, loaded with the first file.
  */
 import { wrong } from "./check.js";
 import { BimodalError, badFile } from "./errors.js";
@@ -42,8 +42,8 @@ function read(file: Bytes): Raster<Pixels> {
 export const decodeColour = (file: Bytes): ColorImage => toColour(read(file));
 
 /**
- * A depth map: PNG, or .npy of rows x columns; a float .npy of rows x columns x 3 is an organised cloud. The unit is not
- * in the file: say it in `unit`.
+ * A depth map: PNG, or .npy of rows x columns; a float .npy of rows x columns x 3 is an organised cloud. The file does not state the unit;
+ * set `unit`.
  */
 export function decodeDepth(file: Bytes): DepthMap {
   const raster = read(file);
@@ -56,5 +56,5 @@ export function decodeDepth(file: Bytes): DepthMap {
   return { width, height, data: new Uint16Array(single(raster)) };
 }
 
-/** A mask: whatever is neither zero nor transparent belongs to the object. */
+/** A mask: pixels that are neither zero nor transparent belong to the object. */
 export const decodeMask = (file: Bytes): Mask => toMask(read(file));

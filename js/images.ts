@@ -46,7 +46,7 @@ async function located(address: string | URL, signal: AbortSignal | undefined): 
   }
 }
 
-/** The bytes of a source that is a file; nothing where it is none. */
+/** The bytes of a source that is a file; nothing for other sources. */
 async function bytesOf(source: ImageSource, signal: AbortSignal | undefined): Promise<Uint8Array | undefined> {
   if (source instanceof Uint8Array) return source;
   if (source instanceof ArrayBuffer) return new Uint8Array(source);
@@ -127,11 +127,11 @@ async function bitmapOf(source: ImageBitmapSource): Promise<ImageBitmap> {
  * A colour image from an element or a bitmap of a page, a canvas, a video frame, a file, its bytes, its address, or in Node its path.
  *
  * The image is upright, turned by the orientation that the file names. Integers are in sRGB, converted from the file's colour profile; PNG and
- * TIFF of 16 bits keep them, EXR, PFM and float .npy stay linear floats. What a page shows (elements, canvases, bitmaps, video frames) has
- * 8 bits in sRGB; a video gives its present frame. The image has no camera: add one by `{ ...image, camera }`.
+ * TIFF of 16 bits keep them, EXR, PFM and float .npy stay linear floats. Sources of a page (elements, canvases, bitmaps, video frames) have
+ * 8 bits in sRGB; a video gives its current frame. The image has no camera: add one by `{ ...image, camera }`.
  *
- * @throws BimodalError of code "file" where nothing can be read or decoded, "unsupported" where another origin does not permit its pixels
- * to be read, "type" where the source is nothing of these.
+ * @throws BimodalError of code "file" if nothing can be read or decoded, "unsupported" if another origin does not permit reading its
+ * pixels, "type" if the source is none of these.
  */
 export async function imageFrom(source: ImageSource, options: ImageOptions = {}): Promise<ColorImage> {
   checkOptions(options, "options");

@@ -11,7 +11,7 @@ export { sample, sampleBound, sampleLights, sampleSurfaces, shadeNormals, turnLi
 export type * from "./types/index.js";
 export { wasmUrl } from "./wasm.js";
 
-/** Loads the numerics; without an argument from the .wasm file beside this module that `wasmUrl` names, in Node from disk. */
+/** Loads the numerics. Without an argument the .wasm file beside this module is loaded, as named by `wasmUrl`; in Node it is read from disk. */
 export default function init(wasm?: WasmSource): Promise<void> {
   return load(() => wasm ?? wasmUrl());
 }

@@ -59,7 +59,7 @@ function checkOf(row: Row): Check {
 const shapeOf = (rows: Rows): Shape =>
   Object.fromEntries(Object.entries(rows).map(([name, row]) => [name, checkOf(row)]));
 
-/** A name, which the numerics judge, or something that is none. */
+/** A name, which the numerics check, or a value of another kind. */
 const nameOr =
   (other: Check): Check =>
   (value, field) => {

@@ -1,4 +1,4 @@
-/** Single parts of the method, to look at: what lessons are made of. */
+/** Single parts of the method, for inspection; the lessons use them. */
 import { type Check, array, flag, numbers, object, ranged } from "./check.js";
 import { across } from "./border.js";
 import { bindings } from "./engine.js";
@@ -35,8 +35,8 @@ function planes(interleaved: Float32Array): Float32Array {
 }
 
 /**
- * Depth, in pixels, of the surface that has these normals (3*w*h interleaved, NaN where there is none) before an orthographic camera:
- * in the least-squares sense, or `robust`, with what crosses a discontinuity cut. Mean zero in each connected part.
+ * Depth, in pixels, of the surface with these normals (3*w*h interleaved, NaN where missing) seen by an orthographic camera: the
+ * least-squares solution, or with `robust` one in which slopes across a discontinuity are ignored. Mean zero in each connected part.
  */
 export function integrateNormals(
   unitNormals: Float32Array,

@@ -1,5 +1,5 @@
 /**
- * What may be chosen, one row for each member of `Options` and of `SampleRequest`: type, range, default, unit, and the
+ * The options, one row for each member of `Options` and of `SampleRequest`: type, range, default, unit, and the
  * page's words. The checks of this facade, its plain copies and the page's fields are all made from these rows, in their
  * order. Defaults and ranges are those of `src/options.rs` and `src/scenes/sample.rs`, which judge what native callers
  * give; `tests/contract/options.test.mjs` holds that they agree.
@@ -67,7 +67,7 @@ export const OPTIONS: RowsOf<PlainOptions> = {
     page: {
       group: "method",
       label: "Registration",
-      hint: "Joint: pose and light straight from the colours. ICP and RANSAC: as in the paper. Or keep the start.",
+      hint: "Joint: pose and light from the image residuals. ICP and RANSAC: as in the paper. Or keep the initial pose.",
     },
   },
   shading: {
@@ -77,7 +77,7 @@ export const OPTIONS: RowsOf<PlainOptions> = {
     page: {
       group: "method",
       label: "Shading",
-      hint: "The surface as a whole, or each pixel on its own as in the paper.",
+      hint: "The surface as a whole, or independent pixels as in the paper.",
     },
   },
   scale: {
@@ -85,7 +85,7 @@ export const OPTIONS: RowsOf<PlainOptions> = {
     above: 0,
     words: { free: "free" },
     default: "free",
-    page: { group: "method", label: "Scale", hint: "A number holds it." },
+    page: { group: "method", label: "Scale", hint: "Enter a number to fix the scale." },
   },
   trim: {
     kind: "flag",
@@ -103,7 +103,7 @@ export const OPTIONS: RowsOf<PlainOptions> = {
         page: {
           group: "weights",
           label: "λ shape prior",
-          hint: "How strongly a normal follows the other view's.",
+          hint: "Weight of the other view's normal as a prior.",
           slider: { min: -4, max: 2, step: 0.1, log: true },
         },
       },
@@ -115,7 +115,7 @@ export const OPTIONS: RowsOf<PlainOptions> = {
           group: "weights",
           label: "λ light",
           link: "lightPrior",
-          hint: "How strongly the light follows natural lights.",
+          hint: "Weight of the prior over natural lights.",
           slider: { min: -8, max: 0, step: 0.2, log: true },
         },
       },
@@ -131,7 +131,12 @@ export const OPTIONS: RowsOf<PlainOptions> = {
     above: 0,
     unit: "deg",
     default: 0.01,
-    page: { group: "loop", label: "Stop below", link: "stop", hint: "Change of the rotation that counts as settled." },
+    page: {
+      group: "loop",
+      label: "Stop below",
+      link: "stop",
+      hint: "The loop converges once the rotation changes by less than this.",
+    },
   },
   tolerance: {
     kind: "number",
@@ -141,7 +146,7 @@ export const OPTIONS: RowsOf<PlainOptions> = {
     page: {
       group: "loop",
       label: "Tolerance",
-      hint: "A rotation less certain than this (one sigma) is ambiguous.",
+      hint: "A run whose rotation is less certain than this (one sigma) ends as ambiguous.",
     },
   },
   /** More are taken for a typing error. */
@@ -150,7 +155,7 @@ export const OPTIONS: RowsOf<PlainOptions> = {
     min: 1,
     max: 100_000,
     default: 60,
-    page: { group: "loop", label: "Iterations", link: "iterations", hint: "At most so many." },
+    page: { group: "loop", label: "Iterations", link: "iterations", hint: "Maximum number of iterations." },
   },
   correspondenceDistance: {
     kind: "number",
@@ -180,7 +185,7 @@ export const SAMPLE: RowsOf<Omit<SampleRequest, "surface" | "light">> = {
     page: {
       group: "sample",
       label: "Protocol",
-      hint: "Rendered: as cameras see the surface. Bare grid: every eighth sample of it, the same points in both views, as the paper may have done.",
+      hint: "Rendered: as cameras see the surface. Bare grid: every eighth sample of it, with the same points in both views, as the paper may have done.",
     },
   },
   angles: {
@@ -193,7 +198,7 @@ export const SAMPLE: RowsOf<Omit<SampleRequest, "surface" | "light">> = {
         page: {
           group: "sample",
           label: "Rotation β",
-          hint: "About the vertical axis: the angle to find.",
+          hint: "The true rotation about the vertical axis.",
           initial: 20,
           slider: { min: -90, max: 90, step: 1 },
         },
@@ -210,7 +215,7 @@ export const SAMPLE: RowsOf<Omit<SampleRequest, "surface" | "light">> = {
       group: "sample",
       label: "True scale",
       link: "trueScale",
-      hint: "Of the pose to find: the depth view is smaller by it.",
+      hint: "Scale to be found: the depth view is smaller by this factor.",
     },
   },
   noise: {
@@ -250,7 +255,7 @@ export const SAMPLE: RowsOf<Omit<SampleRequest, "surface" | "light">> = {
       group: "sample",
       label: "Noise seed",
       link: "draw",
-      hint: "Another number draws other noise and other holes.",
+      hint: "A different number gives different noise and holes.",
     },
   },
 };

@@ -76,7 +76,7 @@ export function plainOptions(options: Options): PlainOptions {
 /** What the contract takes; Node's Buffer is one of them by inheritance, and its slices are views. */
 const ARRAYS = [Uint8ClampedArray, Uint8Array, Uint16Array, Float32Array] as const;
 
-/** A copy for another thread, whose arrays may be `transfer`red: each has a buffer of its own. */
+/** A copy for another thread, whose arrays may be `transfer`red, so each has a separate buffer. */
 export function copyOf<T extends object>(input: T, transfer: ArrayBuffer[]): T {
   const copied = Object.entries(input).map(([key, value]: [string, unknown]) => {
     const type = ARRAYS.find((type) => value instanceof type);

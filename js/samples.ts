@@ -1,10 +1,10 @@
-/** Made scenes with a known answer, for tests, pages and first steps. */
+/** Rendered scenes with a known answer, for tests, pages and first steps. */
 import { across } from "./border.js";
 import { bindings } from "./engine.js";
 import { checkAngles, checkLight, checkLightIsKnown, checkNormals, checkSample } from "./inputs.js";
 import type { Pose, Sample, SampleRequest } from "./types/index.js";
 
-/** Renders a colour image and a depth map of a built-in (or your own) surface. */
+/** Renders a colour image and a depth map of a built-in surface or of a given height map. */
 export function sample(request: SampleRequest): Sample {
   checkSample(request);
   const { sample: render } = bindings();
@@ -12,8 +12,8 @@ export function sample(request: SampleRequest): Sample {
 }
 
 /**
- * The least error of the rotation that any estimator can have on that scene: its Cramer-Rao bound, one sigma, degrees. `null`
- * where there is none: without noise, and where the scene determines no rotation.
+ * The Cramer-Rao bound of the rotation in that scene, one sigma, degrees: no unbiased estimator has a smaller error. `null` without noise
+ * and for scenes that do not determine the rotation.
  */
 export function sampleBound(request: SampleRequest, lightIsKnown: boolean): number | null {
   checkSample(request);
@@ -28,7 +28,7 @@ export const sampleSurfaces = (): string[] => bindings().sampleSurfaces();
 /** Names of the built-in lights. */
 export const sampleLights = (): string[] => bindings().sampleLights();
 
-/** The 27 coefficients of a light, built in or given, turned by angles: what fell on a normal n falls on R n. */
+/** The 27 coefficients of a light, built in or given, rotated by angles: light that fell on a normal n falls on R n. */
 export function turnLight(light: SampleRequest["light"], angles: Partial<Pose["angles"]> = {}): Float64Array {
   checkLight(light);
   checkAngles(angles);
@@ -36,7 +36,7 @@ export function turnLight(light: SampleRequest["light"], angles: Partial<Pose["a
   return across(() => turn(light, angles));
 }
 
-/** log S of each of some unit normals under a light: three numbers for three, R, G, B for x, y, z. */
+/** log S of unit normals under a light: for each x, y, z the three values R, G, B. */
 export function shadeNormals(light: SampleRequest["light"], normals: Float32Array): Float32Array {
   checkLight(light);
   checkNormals(normals);

@@ -13,7 +13,7 @@ import type { ColorImage, DepthMap, Options, Stage, StepReport } from "./types/i
 
 /** How far a run has come. */
 export interface Reached {
-  /** Whether anything has been run; before that the report has no stage of its own. */
+  /** Whether anything has been run; before that the report names no stage of this run. */
   begun: boolean;
   stage: Stage;
   iteration: number;
@@ -159,7 +159,7 @@ const HEADER = {
 /** What a file holds, once it is known to be one of ours and whole; what the views and options are worth, the estimator judges. */
 export function opened(state: unknown): Saved {
   array(Uint8Array)(state, "state");
-  // Of its own kind: `slice` of a Node Buffer is a view.
+  // A plain Uint8Array, because `slice` of a Node Buffer is a view.
   const bytes = bytesOf(state as Uint8Array);
   const { header, end } = readHeader(bytes);
   const { image, depth, arrays, ...run } = header;

@@ -21,8 +21,8 @@ import { themeToggle, wearTheme } from "./theme";
 const button = (id: string, action: () => void): void => byId(id, HTMLButtonElement).addEventListener("click", action);
 
 wearTheme();
-// The Lab, the controls around it and the first picture are tasks of their own, and what they put on the page is laid out by one after the
-// other: no press waits for all of the start. First what the layout that loads the fonts has left out.
+// The Lab, the controls around it and the first picture are separate tasks, laid out one after the other, so that no click waits for the
+// whole start. First comes what the layout that loads the fonts has left out.
 await nextFrame();
 document.body.removeAttribute("data-opening");
 await nextFrame();
@@ -144,9 +144,9 @@ async function copyLink(): Promise<void> {
   const target = byId("link", HTMLButtonElement);
   try {
     await navigator.clipboard.writeText(location.href);
-    target.textContent = placeOf(location.hash) === "lab" && !isSample() ? "Copied, no files" : "Copied";
+    target.textContent = placeOf(location.hash) === "lab" && !isSample() ? "Copied without files" : "Copied";
   } catch {
-    target.textContent = "See address bar";
+    target.textContent = "Copy the address bar";
   }
   setTimeout(() => (target.textContent = "Link"), 2000);
 }

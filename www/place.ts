@@ -1,4 +1,4 @@
-/** Which place of the page an address asks for. The Lab's own settings need no name: they have the address to themselves. */
+/** Which place of the page an address refers to. An address without a place holds settings of the Lab. */
 
 export type Place = "lab" | "learn" | "tables" | "rig";
 

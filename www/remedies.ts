@@ -6,7 +6,7 @@ import { runs } from "../src/codes.json";
 const RUNS: Readonly<Record<ReasonCode, { remedy: string; lab?: string }>> = runs;
 
 /** Where a run has no reason to give. */
-const GENERAL = "Another start may find it: Settings, Start, near.";
+const GENERAL = "Another initial pose may find it: Settings, Start, near.";
 
 export function remedyOf(code: ReasonCode | undefined): string {
   if (code === undefined) return GENERAL;

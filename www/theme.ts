@@ -30,7 +30,8 @@ export function wearTheme(): void {
 export function themeToggle(button: HTMLButtonElement, onChange: () => void): void {
   const dark = matchMedia("(prefers-color-scheme: dark)");
   const current = () => document.documentElement.dataset.theme ?? (dark.matches ? "dark" : "light");
-  const label = () => button.setAttribute("aria-label", `Switch to ${current() === "dark" ? "light" : "dark"} colours`);
+  const label = () =>
+    button.setAttribute("aria-label", `Switch to the ${current() === "dark" ? "light" : "dark"} theme`);
   const change = () => {
     label();
     forgetInks();

@@ -1,4 +1,4 @@
-/** The check of a calibration and the rigs that it is tested on: a .wasm file of its own for each, loaded with the first call. */
+/** The check of a calibration and the rigs that it is tested on: a separate .wasm file for each, loaded with the first call. */
 import type {
   CheckFrameInput,
   CheckOptions,
@@ -10,8 +10,8 @@ import type {
 } from "../types/index.js";
 
 /**
- * Whether the frames agree with some candidates for the extrinsics of a rig, P_colour = R P_depth + t in metres; the first
- * candidate is the one in question. Needs no `init()`. Runs in slices, so that events and drawing go on, or call it in a worker.
+ * Checks whether the frames agree with candidates for the extrinsics of a rig, P_colour = R P_depth + t in metres; the first candidate is
+ * the one being checked. Does not need `init()`. Runs in slices, so that events and drawing continue; it can also run in a worker.
  */
 export async function checkCalibration(
   frames: CheckFrameInput[],
@@ -22,7 +22,7 @@ export async function checkCalibration(
   return check(frames, candidates, options);
 }
 
-/** Where a pose puts the depth points and depth edges of a frame on its image. */
+/** Projects the depth points and depth edges of a frame into its image with a pose. */
 export async function projectFrame(frame: CheckFrameInput, pose: PoseInput): Promise<FrameOverlay> {
   const { project } = await import("./run.js");
   return project(frame, pose);

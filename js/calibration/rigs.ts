@@ -1,4 +1,4 @@
-/** Rendered rigs with a known answer: a .wasm file of their own, which a check does not load. */
+/** Rendered rigs with a known answer, in a separate .wasm file that a check does not load. */
 import start, { sampleRig } from "../../target/rigs/wasm-bindgen/bimodal_stereo_rigs.js";
 import { across, compile, lazily } from "../border.js";
 import { object, ranged, word } from "../check.js";

@@ -14,7 +14,7 @@ import type {
   PoseInput,
 } from "../types/index.js";
 
-/** Milliseconds between two breaths: a page stays responsive, and a message costs a hundredth of it. */
+/** Milliseconds between two pauses for events: the page stays responsive, and a message costs a hundredth of it. */
 const SLICE = 30;
 
 // In one piece: bundlers look for exactly this to carry the file along.
@@ -52,7 +52,7 @@ export async function check(
     }
     const report = run.report();
     if (!report) throw new BimodalError("internal", "checkCalibration: ended without a report", "checkCalibration");
-    // Maps of names come out in alphabetical order; the first candidate is the one in question.
+    // Maps of names come out in alphabetical order; the first candidate is the one being checked.
     return {
       ...report,
       candidates: Object.fromEntries(names.map((name) => [name, report.candidates[name]])) as CheckReport["candidates"],

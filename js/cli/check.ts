@@ -13,7 +13,7 @@ import { type Judged, type Whole, capped, ofReader, textOf } from "./report.js";
 const CODES: Record<string, number> = { consistent: 0, off: 1, undecided: 2 };
 export const BAD = 3;
 
-/** As they are needed: who asks for the manual loads none of them. */
+/** Loaded when needed: printing the manual loads none of them. */
 async function modules() {
   const [main, rig, write] = await Promise.all([
     import("../index.js"),

@@ -10,7 +10,7 @@ export interface Warning {
   field?: string;
 }
 
-/** Those that do not make what was read doubtful leave the verdict as it is. */
+/** Warnings that do not put the values in question leave the verdict as it is. */
 export type Judged = Warning & { isDoubt?: boolean };
 
 export const ofReader = ({ code, message, isDoubt, file }: ReaderWarning): Judged => ({

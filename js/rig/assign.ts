@@ -2,8 +2,8 @@
  * Which of the cameras that were read took which pictures: by what their file says, by their names, by the size of their images, and last by
  * their order.
  *
- * A file may hold a camera many times, once for each size of its pictures: the one of this size is taken. Where there is none, one of the
- * same view is scaled, with a warning.
+ * A file may hold a camera many times, once for each size of its pictures: the one of this size is taken. If no camera has this size, one
+ * of the same view is scaled, with a warning.
  */
 import { isLidar, linked } from "./formats/frames.js";
 import { poseOf } from "./formats/poses.js";
@@ -298,7 +298,7 @@ export interface Hints {
   cameraOf?: (frame: CheckFrame) => NamedCamera | undefined;
 }
 
-/** Phones give each picture a camera of its own, as their lens focuses; depth maps are registered to it. */
+/** Phones give each picture a separate camera, because the lens focuses; depth maps are registered to it. */
 function addOwn(folder: RigFolder, cameraOf: NonNullable<Hints["cameraOf"]>): boolean {
   const { frames, warnings } = folder;
   const own = frames.map(cameraOf);

@@ -37,7 +37,7 @@ type Depth = Unnamed<DepthReading>;
 
 /** Share of missing pixels from which on there is a warning. */
 const MANY_HOLES = 0.4;
-/** Share of the depths that may be out of range without a warning: a few stray depths do not make the unit doubtful. */
+/** Share of the depths that may be out of range without a warning: a few stray depths do not put the unit in question. */
 const STRAY = 0.01;
 /** Share of SUN RGB-D's values that are multiples of 8; depths beyond 8.19 m wrap into the low bits. */
 const MOSTLY = 0.9;
@@ -224,7 +224,7 @@ function ofInverse(
   return { ...found, guessed: ["unit"], warnings: [...warnings, warning("unit-guessed", RELATIVE)] };
 }
 
-/** An organised cloud; its points are converted to metres in place, NaN where there is none. */
+/** An organised cloud; its points are converted to metres in place, NaN where missing. */
 export function cloudDepth(cloud: Cloud, { unit: given }: ReadOptions): Depth {
   const { points, width, height } = cloud;
   if (!isOptical(points)) return turnedCloud(cloud, given);

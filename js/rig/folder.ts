@@ -142,7 +142,7 @@ class FolderReader {
     return frame;
   }
 
-  /** TUM's unit is believed where the values are those of TUM's sensor, whose millimetres are all multiples of 5 in it. */
+  /** TUM's unit is trusted if the values are those of TUM's sensor, whose millimetres are all multiples of 5 in it. */
   #checkSupposed({ name, depth }: Extract<RigReading, { kind: "depth" }>, unit: number): void {
     if (!(depth.data instanceof Uint16Array)) return;
     const sample = sampled(depth.data);

@@ -1,6 +1,5 @@
 /**
- * The files of a rig: frames, cameras and calibrations of the kinds that tools and cameras write. A module of its own, to be loaded when
- * the first file comes in.
+ * Readers for the files of a rig: frames, cameras and calibrations as tools and cameras write them. A separate module, loaded with the first file.
  */
 export { BimodalError } from "../errors.js";
 export { cameraFromFieldOfView } from "./camera.js";

@@ -1,7 +1,7 @@
 /**
  * Which pictures of a folder are one frame: by like names, by time stamps as names, or in their order.
  *
- * What a picture holds is told by its name and those of its folders (roles.ts). Pictures that are neither colours nor depths nor masks
+ * The role of a picture follows from its name and those of its folders (roles.ts). Pictures that are neither colours nor depths nor masks
  * (confidences, labels, normals, renderings) are no frame's, and infrared images are where there are no colours.
  */
 import { badFile } from "../errors.js";
@@ -30,7 +30,7 @@ function roleIn(file: NamedFile): Role | "unknown" {
   return MAPS.has(rasterKind(file.bytes) ?? "") ? "depth" : (role ?? "unknown");
 }
 
-/** Pictures by what they hold, with a word on those that no frame needs. */
+/** Pictures by what they hold, with a warning for those that no frame needs. */
 function sorted(pictures: NamedFile[], warnings: ReaderWarning[]): Sorted {
   const roles = new Map<Role | "unknown", NamedFile[]>();
   for (const file of pictures) {
@@ -191,7 +191,7 @@ function byNames({ colours, depths, masks }: Sorted, warnings: ReaderWarning[], 
 /** Frames that are farther apart than so many times their distance in time from each other are one. */
 const CLEARLY = 4;
 
-/** By time stamps as names, which seldom are the same of two cameras; nothing where names are none. */
+/** By time stamps as names, which are seldom the same for two cameras; nothing for names without a time. */
 function byStamps({ colours, depths }: Sorted, warnings: ReaderWarning[]): Pairs | undefined {
   const stamped = (files: NamedFile[]) =>
     files.flatMap(({ name }) => {

@@ -184,7 +184,7 @@ const checkOptions = object({
   signal,
 });
 
-/** Reads one file. Guesses and doubts are in `warnings`. */
+/** Reads one file. `warnings` has what was guessed or looks wrong. */
 export async function readRigFile(file: NamedFile, options: ReadOptions = {}): Promise<RigReading> {
   checkNamed(file, "file");
   checkOptions(options, "options");

@@ -1,5 +1,5 @@
 /**
- * What the name of a picture says that it holds: of its own name, and of the folders around it, the innermost first.
+ * What a picture holds according to its file name and the folders around it, the innermost first.
  *
  * Limits: names are English and those of common tools; a name that says nothing leaves it to the content.
  */

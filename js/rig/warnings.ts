@@ -84,7 +84,7 @@ export interface ReaderWarning {
   [detail: string]: unknown;
 }
 
-/** Codes of what was left out or left as it is, which does not make the values doubtful. */
+/** Codes of what was left out or left as it is, which does not put the values in question. */
 const HARMLESS: ReadonlySet<ReaderCode> = new Set([
   "file-left-out",
   "file-alone",

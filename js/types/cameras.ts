@@ -1,8 +1,8 @@
-/** Cameras, and the matrices that cameras and poses may be given as. */
+/** Cameras, and the matrices in which cameras and poses may be given. */
 
 /**
- * A pinhole camera behind a lens. Distortion as OpenCV has it: of the model "brown" (the default) 4, 5 or 8 numbers,
- * k1 k2 p1 p2 [k3 [k4 k5 k6]]; of the model "fisheye" (Kannala-Brandt) the 4 numbers k1 k2 k3 k4. Units: pixels; pixel centres are whole
+ * A pinhole camera behind a lens. Distortion follows OpenCV: for the model "brown" (the default) 4, 5 or 8 numbers,
+ * k1 k2 p1 p2 [k3 [k4 k5 k6]]; for the model "fisheye" (Kannala-Brandt) the 4 numbers k1 k2 k3 k4. Units: pixels; pixel centres are whole
  * numbers.
  */
 export interface Pinhole {
@@ -14,7 +14,7 @@ export interface Pinhole {
   cx: number;
   /** Row of the principal point, pixels; the centre of the first pixel is 0. */
   cy: number;
-  /** Coefficients in OpenCV's order. Default: none; of a fisheye zeros. */
+  /** Coefficients in OpenCV's order. Default: no distortion; for a fisheye, zeros. */
   distortion?: ArrayLike<number>;
   /** The lens model. Default "brown". */
   model?: "brown" | "fisheye";

@@ -4,7 +4,7 @@ import type { CheckCode, WarningCode } from "./codes.js";
 import type { ColorImage, DepthMap } from "./images.js";
 import type { Pose } from "./poses.js";
 
-/** One pair of a rig whose calibration is in question: the whole frames; masks are optional. Depth is metric. */
+/** One pair from a rig whose calibration is to be checked. It holds the whole frames; masks are optional. Depth is metric. */
 export interface CheckFrame {
   /** Without a camera the focal length is estimated, the principal point being the middle of the image. */
   image: Omit<ColorImage, "camera"> & {
@@ -16,7 +16,7 @@ export interface CheckFrame {
     /** The depth camera, which a depth map needs. */
     camera?: Pinhole;
   };
-  /** How the report calls it; "frame 1" and so on without it. */
+  /** Its name in the report. Default: "frame 1" and so on. */
   name?: string;
 }
 
@@ -34,12 +34,12 @@ export interface CheckFrameInput extends Omit<CheckFrame, "image" | "depth"> {
   };
 }
 
-/** What of a frame bears on the calibration. */
+/** The kinds of evidence in a frame. */
 export type CheckCue = "shading" | "edges" | "information" | "silhouette";
 
 /** How `checkCalibration` checks. */
 export interface CheckOptions {
-  /** The cues to use; all without it. */
+  /** The cues to use. Default: all. */
   cues?: CheckCue[];
   /** Threads that may be used, 1 to 16; one is used so far. The result does not depend on it. */
   workers?: number;
@@ -49,10 +49,10 @@ export interface CheckOptions {
   onProgress?: (share: number, message: string) => void;
 }
 
-/** "consistent": the candidate agrees with the frames; "off": it does not; "undecided": the frames do not tell. */
+/** "consistent": the candidate agrees with the frames; "off": it does not; "undecided": the frames do not decide it. */
 export type CheckVerdict = "consistent" | "off" | "undecided";
 
-/** What was guessed, looks wrong or is missing, and stops nothing; beside these members the numbers of the code. */
+/** Something that was guessed, looks wrong or is missing, but does not stop the check. Further members are the numbers that belong to the code. */
 export interface Warning {
   /** Stable, for programs. */
   code: WarningCode;
@@ -63,7 +63,7 @@ export interface Warning {
   [detail: string]: unknown;
 }
 
-/** What a check found of one candidate. */
+/** The result for one candidate. */
 export interface CandidateReport {
   /** Of this candidate. */
   verdict: CheckVerdict;
@@ -71,19 +71,19 @@ export interface CandidateReport {
   code: CheckCode;
   /** The verdict in a sentence with its numbers. */
   reason: string;
-  /** How far the candidate is from the estimate: turn in degrees, and shift at the scene's middle in millimetres. */
+  /** Angle between the candidate's rotation and the estimate's, degrees. */
   offDegrees: number;
-  /** Shift of the scene's middle between the candidate and the estimate, millimetres. */
+  /** Shift of the scene's centre between the candidate and the estimate, millimetres. */
   offMillimetres: number;
   /** Expected reprojection error of the candidate at the scene's depth, pixels of the colour image, and its 95 % interval. */
   pixels: number;
   /** 95 % interval of `pixels`. */
   interval: [number, number];
-  /** Probability of a distance from the estimate as large as this, were the candidate right. */
+  /** Probability of a distance from the estimate at least this large if the candidate were right. */
   probability: number;
 }
 
-/** What a check of a calibration found. The first candidate is the one in question (JavaScript puts names like "7" before all others). */
+/** The result of checking a calibration. The first candidate is the one being checked (JavaScript puts names like "7" before all others). */
 export interface CheckReport {
   /** Of the first candidate. */
   verdict: CheckVerdict;
@@ -91,15 +91,15 @@ export interface CheckReport {
   code: CheckCode;
   /** The verdict in a sentence with its numbers. */
   reason: string;
-  /** What was guessed or looks wrong; any of it keeps the verdict from being better than the files are. */
+  /** What was guessed or looks wrong. With any of them the verdict is not "consistent". */
   warnings: Warning[];
   /** The extrinsics that fit best, scale 1: P_colour = R P_depth + t, metres. */
   estimate: Pose;
-  /** The scene's middle in the colour frame, metres. */
+  /** The centre of the scene in the colour frame, metres. */
   middle: [number, number, number];
-  /** 36 numbers, row-major: a rotation vector in rad about the scene's middle, then a translation in m, in the colour frame. */
+  /** 36 numbers, row-major: a rotation vector in rad about the scene's centre, then a translation in m, in the colour frame. */
   covariance: number[];
-  /** Factor of the assumed focal length and the logarithm's sigma, where the colour camera was not given. */
+  /** Factor to the assumed focal length, and the sigma of its logarithm, if the colour camera was not given. */
   focal?: [number, number];
   /** Expected reprojection error of the estimate at the scene's depth, pixels of the colour image, and its 95 % interval. */
   health: {
@@ -108,9 +108,9 @@ export interface CheckReport {
     /** 95 % interval of `pixels`. */
     interval: [number, number];
   };
-  /** By name, the one in question first. */
+  /** By name; the one being checked comes first. */
   candidates: Record<string, CandidateReport>;
-  /** Each cue's share of the answer, 0 .. 1, and how sharp it is: one over its sigma in pixels of the colour image. */
+  /** Each cue's share of the evidence, 0 to 1, and its sharpness: the inverse of its sigma in pixels of the colour image. */
   cues: Record<
     string,
     {

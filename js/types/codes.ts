@@ -1,6 +1,6 @@
 /** The codes of ends, verdicts and warnings; docs/codes.md has cause and remedy of each. */
 
-/** Why a run ended as it did, or what the last step of one that goes on came to; docs/codes.md has cause and remedy of each. */
+/** Why a run ended as it did, or the outcome of the last step of a run that continues; docs/codes.md has cause and remedy of each. */
 export type ReasonCode =
   | "searching"
   | "search-done"
@@ -42,7 +42,7 @@ export type CheckCode =
   | "no-candidate"
   | "doubtful";
 
-/** What looks wrong about the input. */
+/** Codes for what looks wrong about the input. */
 export type WarningCode =
   | "blank-image"
   | "intrinsics-guessed"
@@ -54,5 +54,5 @@ export type WarningCode =
   | "fits-inverted"
   | "lens-left-out";
 
-/** What an estimator does without. */
+/** Codes for what an estimator does without. */
 export type EstimatorWarningCode = "workers-unavailable";

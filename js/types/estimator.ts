@@ -1,13 +1,16 @@
-/** How an estimator is loaded, run, restored and drawn, and what it warns of. */
+/** Options for loading, running, restoring and drawing an estimator, and its warnings. */
 import type { EstimatorWarningCode } from "./codes.js";
 import type { StepReport } from "./report.js";
 
-/** What `init` takes: where the .wasm is, or the .wasm itself; `bimodal_stereo_scalar_bg.wasm` needs no SIMD. Node also takes `file:` addresses. */
+/**
+ * The argument of `init`: the address of the .wasm, or the .wasm itself. `bimodal_stereo_scalar_bg.wasm` works without SIMD. Node also
+ * takes `file:` addresses.
+ */
 export type WasmSource = string | URL | Request | Response | BufferSource | WebAssembly.Module;
 
-/** How `Estimator.run` runs. */
+/** Options of `Estimator.run`. */
 export interface RunOptions {
-  /** At most so many steps in this call, slices of the search included; `Options.maxIterations` counts iterations. */
+  /** The largest number of steps in this call, slices of the search included; `Options.maxIterations` counts iterations. */
   maxIterations?: number;
   /** Ends the run between two steps; the promise is rejected with its reason. */
   signal?: AbortSignal;
@@ -15,13 +18,13 @@ export interface RunOptions {
   onStep?: (report: StepReport) => void;
 }
 
-/** How `Estimator.restoreAsync` restores. */
+/** Options of `Estimator.restoreAsync`. */
 export interface RestoreOptions {
-  /** Breaks the repetition off; the promise is rejected with its reason. */
+  /** Stops the repetition; the promise is rejected with the signal's reason. */
   signal?: AbortSignal;
 }
 
-/** What the place where an estimator runs lacks, and what the estimator does without. */
+/** Something that the environment lacks and that the estimator does without. */
 export interface EstimatorWarning {
   /** Stable, for programs. */
   code: EstimatorWarningCode;
@@ -31,12 +34,12 @@ export interface EstimatorWarning {
   field?: string;
 }
 
-/** What `Estimator.draw` can show: of the image view its normals, depth and residual, of the depth view what was refined. */
+/** The layers that `Estimator.draw` can show: normals, depth and residual of the image view, and the refinement of the depth view. */
 export type Layer = "normals" | "depth" | "residual" | "refined" | "refinedNormals";
 
-/** How `Estimator.draw` turns numbers into colours; normals have theirs. */
+/** How `Estimator.draw` maps numbers to colours. Normals have a fixed mapping. */
 export interface DrawOptions {
-  /** The numbers at the map's ends; default: all of the layer's but a hundredth at either end. */
+  /** The numbers at the ends of the map. Default: the range of the layer without the lowest and the highest hundredth. */
   range?: readonly [number, number];
   /** Default "viridis". */
   map?: "viridis" | "magma";

@@ -1,9 +1,10 @@
-/** Colour images, depth maps and masks, and what colour images are read from. */
+/** Colour images, depth maps and masks, and the sources from which colour images are read. */
 import type { Pinhole, PinholeInput } from "./cameras.js";
 
 /**
- * One colour image of the object, up to 4096 pixels on a side. One that is finer than the depth map, by a quarter or more, is worked on at the depth
- * map's resolution; arrays, poses and options are in its own pixels all the same, and memory is asked for the working size.
+ * One colour image of the object, up to 4096 pixels on a side. An image that is finer than the depth map by a quarter or more is processed
+ * at the resolution of the depth map. Arrays, poses and options still refer to the pixels of the image; memory is allocated for the working
+ * size.
  */
 export interface ColorImage {
   /** Columns, 1 to 4096. */
@@ -38,11 +39,11 @@ export interface DepthMap {
   camera?: Pinhole;
   /** Metres (or pixels, orthographic) per stored unit; default 1, and 0.001 for a Uint16Array with a camera. */
   unit?: number;
-  /** Depth along z. Zero, negative, NaN, and 1e12 or more are holes: a depth that is relative has to be moved above zero. */
+  /** Depth along z. Zero, negative, NaN, and 1e12 or more are holes: shift a relative depth above zero. */
   data?: Float32Array | Uint16Array;
   /** An organised cloud, 3*w*h interleaved, NaN where missing; 1e12 or more is missing, too. */
   points?: Float32Array;
-  /** Unit normals, 3*w*h interleaved; they override our own. */
+  /** Unit normals, 3*w*h interleaved; they replace those computed from the depth. */
   normals?: Float32Array;
 }
 
@@ -63,13 +64,13 @@ export interface Mask {
 }
 
 /**
- * Whatever holds a colour image: a file (`Blob`), its bytes, its address or in Node its path; an element, a canvas, a bitmap or a frame of a
+ * A source of a colour image: a file (`Blob`), its bytes, its address or in Node its path; an element, a canvas, a bitmap or a frame of a
  * video in a browser.
  */
 export type ImageSource = string | URL | Uint8Array | ArrayBuffer | ImageBitmapSource;
 
-/** How `imageFrom` reads. */
+/** Options of `imageFrom`. */
 export interface ImageOptions {
-  /** Breaks off the download or the reading; the promise is rejected with its reason. */
+  /** Cancels the download or the reading; the promise is rejected with the signal's reason. */
   signal?: AbortSignal;
 }

@@ -1,16 +1,16 @@
-/** Single parts of the method, to look at. */
+/** Single parts of the method, for inspection. */
 
-/** One pixel whose objective is to be looked at. */
+/** One pixel whose objective is evaluated. */
 export interface PixelLandscapeRequest {
   /** Natural logarithms of its linear R, G, B. */
   log: ArrayLike<number>;
   /** 27 coefficients, exposure included. */
   light: ArrayLike<number>;
-  /** A unit normal that a depth map has there. */
+  /** The unit normal of a depth map at this pixel. */
   prior?: ArrayLike<number>;
   /** Weight of the prior, `lambda.prior` of `Options`. Default 0. */
   weight?: number;
-  /** Whether a prior that is far off loses its weight, as in the loop; default true. False is Eq. 9 as the paper prints it. */
+  /** Whether a prior that is far off loses its weight, as in the loop. Default true; false gives Eq. 9 as printed in the paper. */
   robust?: boolean;
   /** The unit normal at which the descent of `path` starts. Default: toward the camera. */
   start?: ArrayLike<number>;

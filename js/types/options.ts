@@ -1,4 +1,4 @@
-/** What may be chosen for a run. The lines on ranges and defaults follow from the rows of js/options.ts. */
+/** The options of a run. The lines on ranges and defaults are generated from the rows of js/options.ts. */
 import type { Matrix4 } from "./cameras.js";
 import type { PoseMembers } from "./poses.js";
 
@@ -10,7 +10,7 @@ export interface LightGaussian {
   covariance: ArrayLike<number> | ArrayLike<ArrayLike<number>>;
 }
 
-/** What may be chosen for a run. */
+/** The options of a run. */
 export interface Options {
   /**
    * The light: "estimate", or 27 known coefficients, R1..9, G1..9, B1..9, in the colour view's frame.
@@ -18,7 +18,7 @@ export interface Options {
    * @default "estimate"
    */
   light?: "estimate" | ArrayLike<number>;
-  /** The lights to expect where the light is estimated. By default natural lights, indoors and outdoors. */
+  /** The prior over lights if the light is estimated. Default: natural lights, indoors and outdoors. */
   prior?: LightGaussian;
   /**
    * The initial pose: "search" over all poses, "identity", or an approximate pose from which the registration starts.
@@ -26,8 +26,8 @@ export interface Options {
    */
   start?: "search" | "identity" | Partial<PoseMembers> | Matrix4;
   /**
-   * How far from a given initial pose the photometric registration may end: the rotation, and, where a translation is given, the object's
-   * middle. Where no pose within fits the image better, the initial pose is kept and the status is "ambiguous".
+   * How far from a given initial pose the photometric registration may end: the rotation and, if a translation is given, the object's
+   * centre. If no pose within this tolerance fits the image better, the initial pose is kept and the status is "ambiguous".
    */
   startTolerance?: {
     /**
@@ -37,13 +37,13 @@ export interface Options {
      */
     degrees?: number;
     /**
-     * How far the object's middle may end from where the initial pose puts it, in the colour view's unit. Default: the object's own width.
+     * How far the object's centre may end from its place in the initial pose, in the colour view's unit. Default: the object's own width.
      * Range: a number above zero.
      */
     distance?: number;
   };
   /**
-   * "free", or the scale to hold. With both cameras known it is 1 in any case.
+   * "free", or a fixed scale. With both cameras known it is always 1.
    * Range: a number above zero.
    * @default "free"
    */
@@ -54,39 +54,39 @@ export interface Options {
    */
   registration?: "joint" | "icp" | "fixed";
   /**
-   * "surface": heights of the whole surface, which are integrable; "pixel": the normal of each pixel by itself, as in the paper.
+   * "surface": heights of the whole surface, so that the normals are integrable; "pixel": independent normals for the pixels, as in the paper.
    * @default "surface"
    */
   shading?: "surface" | "pixel";
   /** Weights of the terms of the objective. */
   lambda?: {
     /**
-     * How strongly a normal follows that of the other view.
+     * Weight of the other view's normal as a prior.
      * Range: a number from zero to 1,000,000.
      * @default 0.05
      */
     prior?: number;
     /**
-     * How strongly normals keep their unit length, with `shading: "pixel"`.
+     * Weight of the unit length of normals, with `shading: "pixel"`.
      * Range: a number from zero to 1,000,000.
      * @default 1
      */
     unit?: number;
     /**
-     * How strongly the light follows the prior over natural lights.
+     * Weight of the prior over natural lights.
      * Range: a number from zero to 1,000,000.
      * @default 0.000001
      */
     light?: number;
     /**
-     * How strongly the refined depth follows the measured one.
+     * Weight of the measured depth in the refined one.
      * Range: a number from zero to 1,000,000.
      * @default 0.01
      */
     refinement?: number;
   };
   /**
-   * Whether the photometric registration starts tolerant and becomes strict; false shows what that is good for.
+   * Whether the photometric registration starts with a tolerant robust scale and tightens it. Set to false to see the effect.
    * @default true
    */
   annealing?: boolean;
@@ -97,7 +97,7 @@ export interface Options {
    */
   stopDegrees?: number;
   /**
-   * The largest one sigma of the rotation about any axis of a run that ends "converged"; above it the run ends "ambiguous".
+   * The largest sigma of the rotation about any axis with which a run ends "converged"; above it the run ends "ambiguous".
    * Range: a number above zero, in degrees.
    * @default 1.5
    */
@@ -114,20 +114,21 @@ export interface Options {
    */
   maxIterations?: number;
   /**
-   * Of the random generator; the same seed gives the same result.
+   * Seed of the random generator; the same seed gives the same result.
    * Range: a whole number from zero to 9,007,199,254,740,991.
    * @default 1
    */
   seed?: number;
   /**
-   * Whether flying pixels and background inside the mask are trimmed. Where it leaves out over 15 % of the depths of a map without a mask, the end is at best "ambiguous".
+   * Whether flying pixels and background inside the mask are trimmed. If more than 15 % of the depths of a map without a mask are trimmed,
+   * the status is at best "ambiguous".
    * @default true
    */
   trim?: boolean;
   /**
-   * Threads, this one included. All of them share the search, and two the iterations of larger
-   * views. The result is the same to the bit for any number of them. Messages pass while this one lets events through, as
-   * `run` does, which also waits for answers; a copy of the pair is kept for the others.
+   * Number of threads, this one included. All of them share the search, and two share the iterations of larger views. The result is
+   * bit-identical for any number. Messages are exchanged while this thread lets events pass, as `run` does, which also waits for answers. A
+   * copy of the pair is kept for the other threads.
    * Range: a whole number from 1 to 16.
    * @default 1
    */

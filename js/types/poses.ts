@@ -1,4 +1,4 @@
-/** Poses, as they are reported and as they may be given. */
+/** Poses in reports and as input. */
 import type { Matrix4 } from "./cameras.js";
 
 /**

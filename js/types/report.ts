@@ -1,11 +1,11 @@
-/** What a run reports after each step. */
+/** The report of a run after each step. */
 import type { ReasonCode } from "./codes.js";
 import type { Pose } from "./poses.js";
 
 /** A stage of an iteration. */
 export type Stage = "search" | "light" | "shading" | "surface" | "registration" | "refinement";
 
-/** How a run stands: only "converged" ends with a pose to be trusted; "ambiguous" has rivals, "lost" a reason. */
+/** The status of a run. Only "converged" means that the pose can be trusted; "ambiguous" comes with `rivals`, "lost" with a reason. */
 export type Status = "running" | "converged" | "max-iterations" | "ambiguous" | "lost";
 
 /** One sigma of the pose: the truth is (a small turn) times the estimate, about the axes of the colour view. */
@@ -14,7 +14,7 @@ export interface Uncertainty {
   rotationDegrees: number[];
   /** Along x, y and z of the colour view, in its units; `null` where the views cannot see it. */
   translation: (number | null)[];
-  /** Of the scale itself; `null` where it is held. */
+  /** Sigma of the scale itself; `null` if the scale is fixed. */
   scale: number | null;
   /** The least certain direction in words. */
   weakest: string;
@@ -27,11 +27,11 @@ export interface Reason {
   [detail: string]: unknown;
 }
 
-/** How a run stands after a step. */
+/** The state of a run after a step. */
 export interface StepReport {
   /** Iterations that are complete, from 0. */
   iteration: number;
-  /** The one that ran last. */
+  /** The stage that ran last. */
   stage: Stage;
   /** The present pose. */
   pose: Pose;
@@ -64,7 +64,7 @@ export interface StepReport {
   reason?: Reason;
   /** Other poses that fit the data as well, best first; only where the status is "ambiguous". */
   rivals?: Pose[];
-  /** Once the loop has ended with a pose. */
+  /** Present once the loop has ended with a pose. */
   uncertainty?: Uncertainty;
   /** Wall time of each stage in the last step. */
   milliseconds: Record<string, number>;

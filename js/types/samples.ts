@@ -3,7 +3,7 @@ import type { CheckFrame } from "./check.js";
 import type { ColorImage, DepthMap } from "./images.js";
 import type { Pose } from "./poses.js";
 
-/** A height map to make a sample from: larger is nearer, zero or NaN is background; 64x64 .. 512x512. */
+/** A height map from which a sample is rendered: larger is nearer, zero or NaN is background; 64x64 .. 512x512. */
 export interface Relief {
   /** Columns, 64 to 512. */
   width: number;
@@ -13,9 +13,9 @@ export interface Relief {
   heights: Float32Array;
 }
 
-/** A made scene with a known answer. */
+/** A rendered scene with a known answer. */
 export interface SampleRequest {
-  /** "bust", "vase", "ripples", or heights of your own. */
+  /** "bust", "vase", "ripples", or a height map. */
   surface: string | Relief;
   /** "colourful", "window" or "overcast" (see `sampleLights`), or 27 numbers. */
   light: string | ArrayLike<number>;
@@ -26,18 +26,18 @@ export interface SampleRequest {
    */
   size?: number;
   /**
-   * Height of both views where it differs from `size`.
+   * Height of both views if it differs from `size`.
    * Range: a whole number from 16 to 1,024, in pixels.
    */
   height?: number;
   /**
    * "rendered", the default: both views as cameras see them. "grid": samples 0, 8, 16, .. of the surface, without occlusion,
-   * resampling and noise; the depth view is the image's own points, turned, as an organised cloud with its normals. Its size
-   * follows from the surface; of the members below it takes `angles` and `overlap`.
+   * resampling and noise; the depth view holds the rotated points of the image as an organised cloud with normals. Its size follows from
+   * the surface; of the members below, only `angles` and `overlap` apply.
    * @default "rendered"
    */
   protocol?: "rendered" | "grid";
-  /** The pose to find. Default: beta = 20, the others 0. */
+  /** The true rotation. Default: beta = 20, the others 0. */
   angles?: {
     /**
      * About x.
@@ -46,7 +46,7 @@ export interface SampleRequest {
      */
     alpha?: number;
     /**
-     * About y. Default 20 where no angles are given.
+     * About y. Default 20 if no angles are given.
      * Range: a number from -360 to 360, in degrees.
      * @default 0
      */
@@ -59,7 +59,7 @@ export interface SampleRequest {
     gamma?: number;
   };
   /**
-   * Scale of the pose to find: the depth view is 1 / scale times as large.
+   * The true scale: the depth view is 1 / scale times as large.
    * Range: a number above zero.
    * @default 1
    */
@@ -89,7 +89,7 @@ export interface SampleRequest {
    */
   holes?: number;
   /**
-   * Of noise and holes.
+   * Seed of noise and holes.
    * Range: a whole number from zero to 9,007,199,254,740,991.
    * @default 1
    */
@@ -104,7 +104,7 @@ export interface Sample {
   depth: DepthMap;
   /** The 27 coefficients that it was rendered with. */
   light: Float64Array;
-  /** The pose to find. */
+  /** The true pose. */
   pose: Pose;
   /** The truth to measure against, NaN outside the masks. */
   truth: {
@@ -119,22 +119,22 @@ export interface Sample {
   };
 }
 
-/** Which frame of which rendered rig to make: two cameras with lenses, sensors' noise, and a known answer. */
+/** Selects a frame of a rendered rig: two cameras with lenses, sensor noise, and a known answer. */
 export interface RigRequest {
   /** What is in front of the cameras. */
   kind: "objects" | "sheet" | "boxes" | "room";
-  /** Of the rig: cameras, lenses, extrinsics; default 0. */
+  /** Seed of the rig: cameras, lenses, extrinsics. Default 0. */
   seed?: number;
-  /** Frames of one seed share the rig, and show other things; default 0. */
+  /** Frames with the same seed share the rig and show different objects. Default 0. */
   frame?: number;
-  /** Factor of both sensors' noise; default 1. */
+  /** Factor for the noise of both sensors. Default 1. */
   noise?: number;
 }
 
 /** A rendered frame of a rig, with the answer. */
 export interface RigSample extends CheckFrame {
-  /** Says kind, seed and frame. */
+  /** Its kind, seed and frame. */
   name: string;
-  /** The extrinsics to be found. */
+  /** The true extrinsics. */
   pose: Pose;
 }

@@ -16,8 +16,8 @@ export interface Refinement {
 const LONGEST_WAIT = 2000;
 
 /**
- * The worker changes how long an iteration takes, and nothing else: where there is none, or it fails or is late, the
- * estimator refines alone, to the end of the loop. The worker lasts as long as the loop.
+ * The worker affects only how long an iteration takes: without one, or if it fails or is late, the estimator refines alone to the end of
+ * the loop. The worker lasts as long as the loop.
  */
 export class RefinementWorker {
   readonly #pair: Views;
@@ -53,7 +53,7 @@ export class RefinementWorker {
     });
   }
 
-  /** Asks for the next refinement, unless one is still under way; `take` makes its task for a worker that holds a shape. */
+  /** Requests the next refinement, unless one is still under way; `take` makes its task for a worker that holds a shape. */
   ask(take: (held: number | undefined) => RefinementTask | undefined): void {
     this.#answer = undefined;
     if (!this.#worker || !this.#ready || this.isBusy) return;

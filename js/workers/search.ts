@@ -19,8 +19,8 @@ interface SearchWorker {
 }
 
 /**
- * Workers change how long a search takes, and nothing else: where none can be had, or one fails, the estimator does all
- * of it. Messages pass whenever the estimator's thread lets events through. The workers last as long as the search.
+ * Workers affect only how long a search takes: if none can be started, or one fails, the estimator does all of it. Messages pass whenever
+ * the estimator's thread lets events through. The workers last as long as the search.
  */
 export class SearchWorkers {
   #workers: SearchWorker[] = [];
@@ -37,7 +37,7 @@ export class SearchWorkers {
     this.#unavailable = unavailable;
   }
 
-  /** A search begins, with workers of its own. */
+  /** A search begins and starts its workers. */
   begin(options: PlainOptions): void {
     this.end();
     this.#isBegun = true;
@@ -53,7 +53,7 @@ export class SearchWorkers {
     handle.onFailure(() => this.#drop(worker));
   }
 
-  /** Gives out tasks until there are none or every queue is full; a search around an initial pose begins here. */
+  /** Gives out tasks until all are given or every queue is full; a search around an initial pose begins here. */
   feed(options: PlainOptions): void {
     if (!this.#isBegun) this.begin(options);
     this.#give();

@@ -7,8 +7,8 @@ import { wasmUrl } from "../wasm.js";
 import type { Views, WorkerHandle } from "./messages.js";
 
 /**
- * A worker with a copy of the pair, where this place has any. A page may forbid workers, a system may be out of threads or
- * of memory for them: that is told to `unavailable`, with the reason.
+ * A worker with a copy of the pair, if workers are available. A page may forbid workers, and a system may be out of threads or of memory
+ * for them; `unavailable` is then called with the reason.
  */
 export function startWorker(
   { image, depth }: Views,
@@ -49,8 +49,8 @@ function spawn(): WorkerHandle {
 }
 
 /**
- * A page may import modules from other origins, and start workers from its own alone. A worker of its own that imports the module is both;
- * it needs thread.js beside the .wasm, as where no bundler has renamed it.
+ * A page may import modules from other origins but start workers only from its origin. A local worker that imports the module satisfies
+ * both; it needs thread.js beside the .wasm, as where no bundler has renamed it.
  */
 function foreignWorker(thread: URL): Worker {
   const text = `import ${JSON.stringify(thread.href)};`;

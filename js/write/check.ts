@@ -1,4 +1,4 @@
-/** What the writers of a run are given: names, types and numbers, checked before anything is written. */
+/** Checks the names, types and numbers that the writers of a run are given, before anything is written. */
 import { type ArrayType, type Check, array, isObject, number, numbers, ranged, side, word, wrong } from "../check.js";
 import { BimodalError, refused } from "../errors.js";
 import type { Raster } from "../npy.js";

@@ -1,4 +1,4 @@
-/** What a run found as files: a module of its own, to be loaded when something is saved. */
+/** Writes the results of a run to files. A separate module, loaded when something is saved. */
 export { BimodalError } from "../errors.js";
 export { type Cloud, writeClouds } from "../rig/write/clouds.js";
 export { type NpyData, writeNpy } from "./npy.js";

@@ -1,4 +1,4 @@
-/** A run on a pair as one HTML file that asks for nothing else: pictures, numbers, options and the inputs' hashes, to be kept and printed. */
+/** The report of a run as one self-contained HTML file: pictures, numbers, options and the hashes of the inputs, to be kept and printed. */
 import { word } from "../check.js";
 import type { Pose, PoseInput } from "../types/index.js";
 import { type Example, like } from "../rig/write/built.js";
@@ -17,15 +17,15 @@ export type Entry = readonly [name: string, value: string];
 
 /** What the report of a run shows. */
 export interface RunReport {
-  /** How the outcome is to be taken: "open" where nothing speaks for or against it. */
+  /** How to judge the outcome; "open" if the evidence neither supports nor contradicts it. */
   tone: "good" | "open" | "wrong";
   /** In a word or two: "converged". */
   status: string;
   /** In a sentence or some. */
   words: readonly string[];
-  /** The pose that was found. */
+  /** The estimated pose. */
   pose: PoseInput;
-  /** Where it is known. */
+  /** The true pose, if known. */
   truth?: PoseInput | null | undefined;
   /** Of the colour view's lengths. */
   unit: Unit;

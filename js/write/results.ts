@@ -1,4 +1,4 @@
-/** What an estimator found, in files that other programs read: pose, light, depth and normals. */
+/** Writes the results of an estimator to files that other programs read: pose, light, depth and normals. */
 import { isObject, wrong } from "../check.js";
 import { BimodalError, refused } from "../errors.js";
 import type { PoseInput, Reason, StepReport, Uncertainty } from "../types/index.js";
@@ -23,7 +23,7 @@ export interface FloatRaster extends Extent {
   data: Float32Array;
 }
 
-/** The 4x4 matrix that carries the depth map's points into the colour view, scale included; `numpy.loadtxt` reads it. */
+/** The 4x4 matrix that transforms the depth map's points into the colour view, scale included; `numpy.loadtxt` reads it. */
 export function matrixText(given: PoseInput): string {
   const pose = checkedPose(given, "pose");
   const { scale } = pose;
@@ -33,7 +33,7 @@ export function matrixText(given: PoseInput): string {
   return rows.map((values) => `${values.map(real).join(" ")}\n`).join("");
 }
 
-/** How far a pose is to be trusted, as a report says it. */
+/** How far to trust a pose, as in a report. */
 export type PoseStanding = Pick<StepReport, "status" | "reason" | "message" | "uncertainty">;
 
 const sigmasOf = ({ rotationDegrees, translation, scale, weakest }: Uncertainty): Uncertainty => ({
@@ -134,8 +134,8 @@ const MISSING = Math.fround(1e12);
 const isThere = (value: number): boolean => value > 0 && value < MISSING;
 
 /**
- * Checks that no depth is lost. In pixels, which are counted from anywhere, one below zero is a depth as well, but of a hole there would be
- * nothing to tell it by; behind a camera there is none.
+ * Checks that no depth is lost. Depths in pixels have an arbitrary origin, so a depth below zero is valid but could not be distinguished
+ * from a hole; behind a camera no depth is valid.
  */
 function checkDepths(data: Float32Array, unit: Unit): void {
   // The coarsest step of either unit is 1.
@@ -152,8 +152,8 @@ function checkDepths(data: Float32Array, unit: Unit): void {
 }
 
 /**
- * Depth as a PNG of 16 bits; 0 is no depth. The step is told here and in the file's remark "Unit". Depths in pixels below zero, as
- * `imageDepth()` of a view without a camera has them, and those beyond 65535 are refused: they have to be shifted, or go to `writeNpy`.
+ * Depth as a 16-bit PNG; 0 marks missing depth. The step is returned and also stored in the file's text chunk "Unit". Depths in pixels
+ * below zero, as in `imageDepth()` of a view without a camera, and depths beyond 65535 are refused; shift them or use `writeNpy`.
  */
 export async function depthPng(depth: FloatRaster, unit: Unit): Promise<DepthPng> {
   if (!isObject(depth)) throw wrong("depth", "an object", depth);
@@ -177,7 +177,7 @@ export async function depthPng(depth: FloatRaster, unit: Unit): Promise<DepthPng
 
 /**
  * Normals as a PNG of 16 bits: red, green and blue are (n + 1) / 2 of full white, for x to the right, y up and z towards the viewer, as
- * normal maps have them; black is no normal.
+ * normal maps have them; black marks a missing normal.
  */
 export async function normalsPng(normals: FloatRaster): Promise<Uint8Array<ArrayBuffer>> {
   if (!isObject(normals)) throw wrong("normals", "an object", normals);

@@ -1,7 +1,7 @@
-"""Shape, light and camera pose from one colour image and one depth map of the same object, taken from different places.
+"""Shape, light and camera pose from one colour image and one depth map of the same object, taken from different viewpoints.
 
 One frame everywhere: x right, y down, z forward; normals face the camera; depth is along z. Without intrinsics a view is
-orthographic, its unit is the pixel, and x and y are counted from the raster's middle; with them it is metric. The pose carries
+orthographic, its unit is the pixel, and x and y are counted from the centre of the raster; with them it is metric. The pose transforms
 depth points into the colour view: P_colour = scale * rotation @ P_depth + translation. Arrays are row by row, (h, w) or
 (h, w, 3), and come out as copies.
 

@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class CheckFrame:
-    """One pair of a rig whose calibration is in question: the whole frames; masks are optional.
+    """One pair from a rig whose calibration is to be checked. It holds the whole frames; masks are optional.
 
-    Without a camera of the image its focal length is estimated. ``depth`` is a depth map with its camera, or an organised cloud
-    in metres. ``name``: how the report calls it.
+    Without a camera for the image its focal length is estimated. ``depth`` is a depth map with its camera, or an organised cloud
+    in metres. ``name``: its name in the report.
     """
 
     image: Union[ColorImage, Pixels]
@@ -30,17 +30,18 @@ class CheckFrame:
 
 @dataclass(frozen=True, eq=False)
 class RigSample(CheckFrame):
-    """A frame of a rendered rig with the extrinsics to be found."""
+    """A frame of a rendered rig with the true extrinsics."""
 
     pose: Optional[Pose] = None
 
 
 @dataclass(frozen=True)
 class CandidateReport:
-    """What is said of one candidate: "consistent", "off" or "undecided", and the reason with its numbers; ``code`` names it for programs.
+    """The verdict on one candidate, "consistent", "off" or "undecided", and the reason with its numbers; ``code`` names it for programs.
 
-    ``off_degrees``, ``off_millimetres``: turn from the estimate, and shift at the scene's middle. ``pixels``, ``interval``: expected reprojection
-    error at the scene's depth, pixels of the colour image, and its 95 % interval. ``probability``: of a distance as large, were it right.
+    ``off_degrees``, ``off_millimetres``: rotation from the estimate, and shift at the centre of the scene. ``pixels``, ``interval``:
+    expected reprojection error at the scene's depth, pixels of the colour image, and its 95 % interval. ``probability``: of a distance at least this large if it
+    were right.
     """
 
     verdict: str
@@ -54,14 +55,14 @@ class CandidateReport:
 
 
 class CueReport(NamedTuple):
-    """A cue's share of the answer, 0 .. 1, and how sharp it is: one over its sigma in pixels of the colour image."""
+    """A cue's share of the evidence, 0 .. 1, and its sharpness: the inverse of its sigma in pixels of the colour image."""
 
     share: float
     sharpness: float
 
 
 class FrameReport(NamedTuple):
-    """A frame's share of the answer, 0 .. 1, and what should be known about it."""
+    """A frame's share of the evidence, 0 .. 1, and a note."""
 
     name: str
     share: float
@@ -79,7 +80,7 @@ class Sensitivity(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class CheckReport:
-    """What a check found. The first candidate is the one in question: ``verdict`` and ``reason`` are its own.
+    """The result of a check. ``verdict`` and ``reason`` are those of the first candidate, which is the one being checked.
 
     ``code`` names the reason for programs. ``warnings``: what was guessed or looks wrong, each a ``code``, a ``message``, the ``field`` and its
     numbers. ``estimate``: the extrinsics that fit best, P_colour = rotation @ P_depth + translation,
@@ -111,10 +112,10 @@ def check_calibration(
     cues: Optional[Sequence[str]] = None,
     on_progress: Optional[Callable[[float, str], Any]] = None,
 ) -> CheckReport:
-    """Whether frames agree with some candidates for the extrinsics of a rig, P_colour = rotation @ P_depth + translation in metres.
+    """Checks whether frames agree with candidates for the extrinsics of a rig, P_colour = rotation @ P_depth + translation in metres.
 
-    candidates: poses by name, each a 4x4 matrix, or ``rotation`` (3, 3) and ``translation`` (3,); the first one is in question. cues: of "shading", "edges",
-    "information" and "silhouette"; all without it. on_progress: called with the share of the work done, 0 .. 1, and what is being done.
+    candidates: poses by name, each a 4x4 matrix, or ``rotation`` (3, 3) and ``translation`` (3,); the first one is checked. cues: of
+    "shading", "edges", "information" and "silhouette"; default: all. on_progress: called with the share of the work done, 0 .. 1, and what is being done.
     """
     if not isinstance(candidates, Mapping):
         raise BimodalError("type", "candidates: must be a dictionary of poses by name", "candidates")
@@ -149,7 +150,7 @@ def check_calibration(
 
 @dataclass(frozen=True, eq=False)
 class FrameOverlay:
-    """A frame as a pose lays it over its image, float32.
+    """The projection of a frame into its image, float32.
 
     ``points``: (n, 3), column, row in pixels and depth in metres of each visible depth point. ``positions``: (n, 3), the same points in the
     colour camera's frame, metres. ``edges``: (m, 2), column and row of each point of a depth edge.
@@ -161,7 +162,7 @@ class FrameOverlay:
 
 
 def project_frame(frame: CheckFrame, pose: PoseInput) -> FrameOverlay:
-    """Where a pose puts the depth points and depth edges of a frame on its image.
+    """Projects the depth points and depth edges of a frame into its image with a pose.
 
     pose: extrinsics, P_colour = rotation @ P_depth + translation in metres: a 4x4 matrix, or ``rotation`` and ``translation``.
     """

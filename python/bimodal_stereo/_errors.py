@@ -1,4 +1,4 @@
-"""What goes wrong for a reason that the caller can name."""
+"""Errors with a cause that the caller can identify."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Optional
 
 
 class BimodalError(ValueError):
-    """An input that can't be worked on, or a failure of the numerics.
+    """An invalid input, or a failure of the numerics.
 
     ``code`` is stable, for programs: "size", "range", "missing", "empty", "degenerate", "memory", "option", "type",
     "file", "unsupported", "state", "panic", "poisoned". ``field`` is the argument at fault as a path, such as "depth.camera.fx" or "stop_degrees",
@@ -35,7 +35,7 @@ class BimodalError(ValueError):
 
 
 class BimodalWarning(UserWarning):
-    """What a reader of files has guessed, or what looks wrong about a file: ``code`` is stable, ``field`` is the file."""
+    """What a file reader guessed, or what looks wrong about a file: ``code`` is stable, ``field`` is the file."""
 
     code: str
     field: Optional[str]

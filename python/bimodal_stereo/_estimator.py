@@ -24,7 +24,7 @@ class Estimator:
 
     ``image`` is a ``ColorImage``, or what its ``data`` may be: an array (h, w), (h, w, 3) or (h, w, 4), a picture, a file. ``depth`` is a
     ``DepthMap``, an array, (h, w) of depths or (h, w, 3) of an organised cloud, a picture, or a file. ``options`` are those of ``Options``,
-    each with a default: nothing needs to be known. Every array that comes out is a copy. Other threads of Python run while a step does;
+    each with a default; nothing needs to be known. Every returned array is a copy. Other threads of Python run while a step does;
     threads that share an estimator wait for each other. ``for report in estimator`` steps until the loop ends.
     """
 
@@ -41,11 +41,11 @@ class Estimator:
         self._lock = Lock()
 
     def step(self) -> StepReport:
-        """One iteration, or one slice of the search while the loop is still there."""
+        """Runs one iteration, or one slice of the search while the search lasts."""
         return StepReport._of(self._own.step())
 
     def step_stage(self) -> StepReport:
-        """One stage of an iteration, or one slice of the search; the report says which."""
+        """Runs one stage of an iteration, or one slice of the search; the report names the stage."""
         return StepReport._of(self._own.step_stage())
 
     def run(
@@ -67,12 +67,12 @@ class Estimator:
         return report
 
     def __iter__(self) -> Iterator[StepReport]:
-        """Steps until the loop ends, and gives the report of each; whoever leaves the iteration may go on with another one."""
+        """Steps until the loop ends and yields the report of each step. Another iteration continues where this one was left."""
         while self.report.status == "running":
             yield self.step()
 
     def reset(self, **options: Unpack[Options]) -> None:
-        """Back to the start with the same views, and with these options, if any are given, in place of all earlier ones.
+        """Returns to the initial state with the same views. If options are given, they replace all earlier ones.
 
         ``workers`` stay as they are.
         """
@@ -112,9 +112,9 @@ class Estimator:
         return self._own.residual()
 
     def albedo(self) -> Singles:
-        """Log paint of the image view (natural logarithm), (h, w, 3) float32, mean 0 over the mask in each channel, NaN outside it.
+        """Log albedo of the image view (natural logarithm), (h, w, 3) float32, mean 0 over the mask in each channel, NaN outside it.
 
-        Zero where one paint explains the colours, with ``registration="icp"``, and before the pose has come to rest.
+        Zero if a single albedo explains the colours, with ``registration="icp"``, and before the pose has converged.
         """
         return self._own.albedo()
 
@@ -133,9 +133,9 @@ class Estimator:
         return self._own.points(view == "depth")
 
     def save(self) -> bytes:
-        """The run as bytes: both views, the options and how far it has come.
+        """The run as bytes: both views, the options and the number of steps done.
 
-        A run is the same to the bit whenever it is run again, and that is how ``restore`` goes on with it.
+        A repeated run is bit-identical, and ``restore`` relies on that.
         """
         with self._lock:
             reached, found = self._own.reached()
@@ -143,10 +143,10 @@ class Estimator:
 
     @classmethod
     def restore(cls, state: Union[bytes, bytearray, memoryview]) -> Estimator:
-        """An estimator that stands where the saved one stood, to the bit, and goes on as that one would have.
+        """An estimator in the bit-identical state of the saved one.
 
-        It takes as long as the run had taken. Raises a ``BimodalError`` of code "state": no saved run, a damaged one, one of another
-        format or of the JavaScript package, or one whose numbers this build does not repeat.
+        Restoring takes as long as the run had taken. Raises a ``BimodalError`` of code "state": the bytes are not a saved run, are damaged,
+        have another format version, come from the JavaScript package, or hold numbers that this build does not reproduce.
         """
         own = _saved.opened(state)
         estimator = cls.__new__(cls)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class ReaderWarning:
-    """What a reader guessed or what looks wrong: a stable code, a sentence, and the file that it is about."""
+    """Something that a reader guessed or that looks wrong: a stable code, a sentence, and the file."""
 
     code: str
     message: str
@@ -45,7 +45,7 @@ class NamedPose:
 
 @dataclass(frozen=True, eq=False)
 class Calibration:
-    """The cameras and poses of one file. ``says``: what was read, in words."""
+    """The cameras and poses of one file. ``says``: a description of what was read."""
 
     cameras: Sequence[NamedCamera]
     poses: Sequence[NamedPose]
@@ -68,7 +68,7 @@ def read_image(
 ) -> ColorImage:
     """Reads a PNG, JPEG or .npy file as a colour image: uint8 or uint16 (h, w, 4), or float32 (h, w, 3), which is linear.
 
-    The image is upright, in sRGB where the file has a colour profile. ``transfer``: in place of what the file states. Grey is accepted.
+    The image is upright, in sRGB where the file has a colour profile. ``transfer`` overrides what the file states. Grey is accepted.
     """
     data, known = _sources.colours(os.fspath(path), transfer)
     return ColorImage(data, mask, camera, known)
@@ -95,10 +95,10 @@ def read_calibration(path: FilePath) -> Calibration:
 def read_rig_folder(
     path: FilePath, *, unit: Optional[float] = None, frames: Optional[int] = None, cameras: Sequence[FilePath] = ()
 ) -> RigFolder:
-    """Reads a folder of frames: pairs of a colour image and a depth map with like names, or as TUM RGB-D or Redwood have them.
+    """Reads a folder of frames: pairs of a colour image and a depth map with matching names, or as TUM RGB-D or Redwood have them.
 
     unit: metres of a stored number of all depth maps; guessed without it, with a warning. frames: at most so many pairs, evenly spread; 20.
-    cameras: files of intrinsics that lie elsewhere, which go before those in the folder.
+    cameras: files of intrinsics outside the folder, which take precedence over those in it.
     """
     raw = _native.read_rig_folder(os.fspath(path), unit, frames, [os.fspath(each) for each in cameras])
     return RigFolder([_frame(each) for each in raw["frames"]], _cameras(raw), _poses(raw), _warnings(raw))

@@ -33,9 +33,9 @@ class LightGaussian(TypedDict):
 
 
 class StartTolerance(TypedDict, total=False):
-    """How far from a told start the answer may lie.
+    """How far from a given initial pose the result may lie.
 
-    degrees: of the rotation; default 30. distance: of the object's middle in units of the colour view; default: the object's own width.
+    degrees: of the rotation; default 30. distance: of the object's centre in units of the colour view; default: the width of the object.
     """
 
     degrees: float
@@ -55,16 +55,16 @@ class Weights(TypedDict, total=False):
 
 
 class Options(TypedDict, total=False):
-    """What may be chosen; all of it may be left out.
+    """The options of a run; each has a default.
 
-    light: "estimate", or 27 coefficients, (3, 9) or flat. prior: the lights to expect where the light is estimated; natural lights.
-    start: "search", "identity", or a pose: a 4x4 matrix that carries depth points into the colour view, or the parts that are known.
-    start_tolerance: how far from a told start the answer may lie. registration: "joint", "icp" or "fixed". shading: "surface" or "pixel".
-    scale: "free", or the number to hold. trim: whether flying pixels and background inside the mask are left out; True. annealing:
-    whether the registration starts tolerant; True. lambda\\_: weights. stop_degrees: change of the rotation that counts as
-    settled; 0.01. tolerance: largest sigma of the rotation of a run that converges, degrees; 1.5. max_iterations: 1 .. 100000; 60.
-    correspondence_distance: accepted distance in image pixels; follows the data. seed: of everything random; 1.
-    workers: threads that share the work, 1 .. 16, with the same result to the bit; 1.
+    light: "estimate", or 27 coefficients, (3, 9) or flat. prior: the prior over lights if the light is estimated; natural lights.
+    start: "search", "identity", or a pose: a 4x4 matrix that transforms depth points into the colour view, or the known parts.
+    start_tolerance: how far from a given initial pose the result may lie. registration: "joint", "icp" or "fixed". shading: "surface" or "pixel".
+    scale: "free", or a fixed number. trim: whether flying pixels and background inside the mask are left out; True. annealing:
+    whether the registration starts tolerant; True. lambda\\_: weights. stop_degrees: the loop converges once the rotation changes by less;
+    0.01. tolerance: largest sigma of the rotation of a run that converges, degrees; 1.5. max_iterations: 1 .. 100000; 60.
+    correspondence_distance: accepted distance in image pixels; follows the data. seed: of the random generator; 1.
+    workers: threads that share the work, 1 .. 16, with bit-identical results; 1.
     """
 
     light: Union[str, ArrayLike]

@@ -1,4 +1,4 @@
-"""Single parts of the method, to look at."""
+"""Single parts of the method, for inspection."""
 
 from __future__ import annotations
 
@@ -37,10 +37,10 @@ class PixelLandscape:
 
 
 def integrate_normals(normals: ArrayLike, *, robust: bool = True) -> Singles:
-    """Depth, (h, w) float32, in pixels, of the surface that has these normals before an orthographic camera.
+    """Depth, (h, w) float32, in pixels, of the surface with these normals, seen by an orthographic camera.
 
-    normals: (h, w, 3), unit normals, NaN where there is none. robust: what crosses a discontinuity is cut; without it the depth is the one of
-    least squares. Mean zero in each connected part, NaN where there is no normal.
+    normals: (h, w, 3), unit normals, NaN where missing. robust: slopes across a discontinuity are ignored; without it the depth is the
+    least-squares solution. Mean zero in each connected part, NaN where there is no normal.
     """
     made = _inputs.shaped(array(normals, "normals", "float32"), "normals", (None, None, 3))
     planes = _inputs.singles(np.moveaxis(made, 2, 0))
@@ -48,7 +48,7 @@ def integrate_normals(normals: ArrayLike, *, robust: bool = True) -> Singles:
 
 
 def turn_light(light: Union[str, ArrayLike], angles: Union[None, Angles, Mapping[str, float]] = None) -> Floats:
-    """The coefficients of a light, (3, 9), turned by angles in degrees: what fell on a normal n falls on R n.
+    """The coefficients of a light, (3, 9), rotated by angles in degrees: light that fell on a normal n falls on R n.
 
     light: a name of ``sample_lights()``, or 27 coefficients, (3, 9) or flat.
     """
@@ -79,8 +79,8 @@ def pixel_landscape(
 ) -> PixelLandscape:
     """The objective of one pixel over all normals that a camera can see, its minima, and the steps of one descent.
 
-    log: natural logarithms of its linear R, G, B. light: a name of ``sample_lights()``, or 27 coefficients, exposure included. prior: a unit
-    normal that a depth map has there. weight: of the prior, as ``lambda_["prior"]`` of ``Options``. robust: whether a prior that is far off
+    log: natural logarithms of its linear R, G, B. light: a name of ``sample_lights()``, or 27 coefficients, exposure included. prior: the
+    unit normal of a depth map at this pixel. weight: of the prior, as ``lambda_["prior"]`` of ``Options``. robust: whether a prior that is far off
     loses its weight, as in the loop; without it the objective is Eq. 9 as printed in the paper. start: the unit normal at which the descent
     starts; towards the camera. side: rows and columns of ``objective``, 0 .. 512.
     """

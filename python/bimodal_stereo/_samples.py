@@ -1,4 +1,4 @@
-"""Made scenes with a known answer."""
+"""Rendered scenes with a known answer."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Truth:
 
 @dataclass(frozen=True, eq=False)
 class Sample:
-    """Two views of one surface, its ``light`` (3, 9) and the ``pose`` to find."""
+    """Two views of one surface, its ``light`` (3, 9) and the true ``pose``."""
 
     image: ColorImage
     depth: DepthMap
@@ -56,8 +56,8 @@ def sample(
 
     surface: a name of ``sample_surfaces()``, or heights (h, w), 64 .. 512 on a side: larger is nearer, zero or NaN is background.
     light: a name of ``sample_lights()``, or 27 coefficients. size: side of both views in pixels, 16 .. 1024; 64. height: where it
-    differs from that. protocol: "rendered", or "grid", the paper's bare grid. angles: the pose to find, degrees; beta = 20.
-    scale: of the pose to find; 1. overlap: share of the depth map's columns that is kept; 1. noise: sigma on the logarithm of the
+    differs from that. protocol: "rendered", or "grid", the paper's bare grid. angles: of the true pose, degrees; beta = 20. scale: of the
+    true pose; 1. overlap: share of the depth map's columns that is kept; 1. noise: sigma on the logarithm of the
     colours; 0. depth_noise: sigma in pixels; 0. holes: share of the depth pixels that is lost; 0. seed: 1.
     """
     options = {
@@ -100,9 +100,9 @@ class SampleOptions(TypedDict, total=False):
 def sample_bound(
     surface: Union[str, ArrayLike], light: Union[str, ArrayLike], *, light_is_known: bool, **options: Unpack[SampleOptions]
 ) -> Optional[float]:
-    """The least error of the rotation that any estimator can have on that scene: its Cramer-Rao bound, one sigma, degrees.
+    """The Cramer-Rao bound of the rotation in that scene, one sigma, degrees: no unbiased estimator has a smaller error.
 
-    The arguments are those of ``sample``. ``None`` where there is none: without noise, and where the scene determines no rotation.
+    The arguments are those of ``sample``. ``None`` without noise and for scenes that do not determine the rotation.
     """
     return _native.sample_bound(requested(surface, light, options), light_is_known)
 

@@ -59,7 +59,7 @@ def bad(what: str) -> BimodalError:
 
 
 def copied(view: Mapping[str, Any]) -> View:
-    """With arrays of its own: their owner may change the caller's before the run is saved."""
+    """With copies of the arrays, because the caller may change the originals before the run is saved."""
     return {name: value.copy() if isinstance(value, np.ndarray) else value for name, value in view.items()}
 
 

@@ -1,4 +1,4 @@
-"""What goes in and what comes out, as plain objects."""
+"""Input and output as plain objects."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Made = TypeVar("Made")
 
 
 def renamed(raw: Mapping[str, Any]) -> dict[str, Any]:
-    """Members of the JavaScript contract by the names that they have here."""
+    """Members of the JavaScript contract by their Python names."""
     return {spelled(name): value for name, value in raw.items()}
 
 
@@ -40,8 +40,8 @@ def made(kind: type[Made], raw: Mapping[str, Any], **parts: Any) -> Made:
 class Pinhole:
     """A pinhole camera behind a lens, in pixels; pixel centres are whole numbers.
 
-    ``distortion`` as OpenCV has it: of the model "brown" 4, 5 or 8 numbers, k1 k2 p1 p2 [k3 [k4 k5 k6]]; of the model "fisheye"
-    (Kannala-Brandt) the 4 numbers k1 k2 k3 k4. Without any there is no distortion, and of a fisheye they are zero.
+    ``distortion`` follows OpenCV: for the model "brown" 4, 5 or 8 numbers, k1 k2 p1 p2 [k3 [k4 k5 k6]]; for the model "fisheye"
+    (Kannala-Brandt) the 4 numbers k1 k2 k3 k4. The default is no distortion; for a fisheye, zeros.
     """
 
     fx: float
@@ -62,8 +62,8 @@ class ColorImage:
     """One colour image of the object, up to 4096 pixels on a side.
 
     ``data``: (h, w, 3) or (h, w, 4), R G B and perhaps A, (h, w) grey, an image of Pillow or Open3D, or the path of a PNG, JPEG or .npy
-    file. uint8 and uint16 are encoded by ``transfer``, "srgb" or "linear": 8 bits default to "srgb", of 16 bits it is guessed where the
-    file does not state it. Floats are linear intensities above 0. Black, saturated and transparent pixels are left out. ``mask``: (h, w),
+    file. uint8 and uint16 are encoded by ``transfer``, "srgb" or "linear": 8 bits default to "srgb"; for 16 bits it is guessed unless the
+    file states it. Floats are linear intensities above 0. Black, saturated and transparent pixels are left out. ``mask``: (h, w),
     non-zero where the object is, or a picture or a file of that; all pixels without it. ``camera``: a ``Pinhole``, its matrix (3, 3), a
     dictionary with ``K``, ``distortion`` and ``model``, or Open3D's PinholeCameraIntrinsic, in pixels; without it the view is orthographic.
     """
@@ -81,7 +81,8 @@ class DepthMap:
     ``data``: (h, w), depth along z, an image of Pillow or Open3D, or the path of a PNG or .npy file. Zero, negative, NaN, and 1e12 or more
     are holes. ``points``: (h, w, 3), an organised cloud in the depth camera's frame, NaN where missing. ``unit``: metres (or pixels,
     orthographic) of a stored unit; default 1, and 0.001 for integers with a camera; of a file with a camera it is guessed, with a
-    ``BimodalWarning``. ``mask`` and ``camera`` as those of ``ColorImage``. ``normals``: (h, w, 3), unit normals that override our own.
+    ``BimodalWarning``. ``mask`` and ``camera`` as those of ``ColorImage``. ``normals``: (h, w, 3), unit normals that replace those computed
+    from the depth.
     """
 
     data: Optional[Pixels] = None
@@ -105,8 +106,8 @@ class Angles:
 class Pose:
     """P_colour = scale * rotation @ P_depth + translation, in units of the colour view.
 
-    ``rotation`` is (3, 3), ``translation`` (3,), ``matrix`` (4, 4), scale and rotation in one beside the translation. As a start any part may
-    be left out, and ``angles`` may stand for the rotation.
+    ``rotation`` is (3, 3), ``translation`` (3,), ``matrix`` (4, 4), [scale * rotation, translation; 0 0 0 1]. As an initial pose any part
+    may be left out, and ``angles`` may stand for the rotation.
     """
 
     scale: float
@@ -143,7 +144,7 @@ class Uncertainty:
     """One sigma of the pose: the truth is (a small turn) times the estimate, about the axes of the colour view.
 
     ``rotation_degrees``: (3,), about x, y, z, degrees. ``translation``: (3,), along them in the view's units, NaN where the views cannot
-    see it. ``scale``: of the scale itself, ``None`` where it is held. ``weakest``: the least certain direction in words.
+    see it. ``scale``: of the scale itself, ``None`` if it is fixed. ``weakest``: the least certain direction in words.
     """
 
     rotation_degrees: Floats
@@ -162,9 +163,9 @@ class Uncertainty:
 class StepReport:
     """State of the loop after a step.
 
-    ``stage``: "search", "light", "shading", "surface", "registration" or "refinement", the one that ran last. ``status``: "running",
+    ``stage``: "search", "light", "shading", "surface", "registration" or "refinement"; the last one that ran. ``status``: "running",
     "converged", "max-iterations", "ambiguous" or "lost". ``reason``: why, as a ``code`` for programs and its numbers; ``message``: the same
-    in words. ``rivals``: other poses that fit the image as well.
+    in words. ``rivals``: other poses that fit the image equally well.
     ``rotation_change``: degrees. ``overlap``: share of valid depth pixels with a correspondence, ``inliers``: share of those within the
     robust scale. ``residual``: robust mean of the log-colour residual. ``milliseconds``: wall time of each stage in the last step; with
     ``workers``, whose stages overlap, of the whole "iteration".

@@ -1,4 +1,4 @@
-"""What a run has found, as files that other programs read."""
+"""Writes the results of a run to files that other programs read."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ PLY = {"<f4": "float", "u1": "uchar"}
 
 
 def write_results(estimator: Estimator, folder: FilePath) -> list[str]:
-    """Writes what an estimator has found into a folder, as the command line does; the files' paths and contents in words.
+    """Writes the results of an estimator into a folder, as the command line does. Returns the files' paths and descriptions of their contents.
 
     clouds.ply: both surfaces in the colour view's frame. refined-depth.png (16 bits) and refined-depth.npy: depth of the depth view.
     pose.json and depth_to_colour.txt: the pose and its 4x4 matrix. light.csv: the coefficients.
@@ -40,9 +40,9 @@ def write_pose(path: FilePath, pose: PoseInput) -> None:
 
 
 def write_depth(path: FilePath, depth: ArrayLike, unit: str = "m") -> str:
-    """Writes depths, (h, w), as a PNG of 16 bits, 0 where there is none; the step of the stored numbers in words, such as "0.1 mm".
+    """Writes depths, (h, w), as a 16-bit PNG, 0 where missing. Returns the step of the stored numbers in words, such as "0.1 mm".
 
-    unit: of the depths, "m" or "px". The step is the finest that reaches the farthest depth; the file's remark "Unit" has it as well.
+    unit: of the depths, "m" or "px". The step is the finest that reaches the farthest depth; the file's text chunk "Unit" states it as well.
     """
     made = _inputs.singles(_inputs.shaped(array(depth, "depth", "depths"), "depth", (None, None)))
     if unit not in ("m", "px"):

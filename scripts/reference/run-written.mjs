@@ -1,4 +1,4 @@
-// The files that the Lab's "Take away" hands over, of a made run, for readers that were not written here (run-written.py) and for
+// The files that the Lab's "Download" hands over, of a made run, for readers that were not written here (run-written.py) and for
 // tests/contract/write.test.mjs.
 //
 // npm run build && node scripts/reference/run-written.mjs     writes tests/fixtures/run/

@@ -6,7 +6,7 @@ numpy, Pillow, OpenCV and Open3D (pip install numpy pillow opencv-python-headles
 and the pose's matrix by numpy, the pose also by json, and applied to points by Open3D. Writes tests/fixtures/run/read.json with what was
 found, and columns-*.npy there, whose numbers in row order it holds, too. Fails where two readers disagree.
 
-With a folder of files that the Lab's "Take away" has saved, all of them, it reads those and says what is in them:
+With a folder of files that the Lab's "Download" has saved, all of them, it reads those and says what is in them:
 
 python3 scripts/reference/run-written.py FOLDER
 """

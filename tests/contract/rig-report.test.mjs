@@ -61,11 +61,11 @@ describe("the page", () => {
       ],
       ...["last week", "Consistent", "0.110°", "0.610", "by hand", "Undecided", "below 0.001"],
       ...report().warnings.map((warning) => warning.message ?? warning),
-      ...["55 %", "to 0.435 px", "not at all", "0003.png", "13 %", "a bare wall"],
+      ...["55 %", "± 0.435 px", "no information", "0003.png", "13 %", "a bare wall"],
       ...[
         "0.115° about x, 0.143° about y, 0.229° about z",
         "1.10 mm along x, 1.30 mm along y, 4.80 mm along z",
-        "the turn about z and the shift along z",
+        "The rotation about z and the shift along z",
       ],
       ...["0.9997474559344951", "4.00e\u22126", "\u221225.0 mm", "depth/0001.png", sha256],
     ];
@@ -134,8 +134,8 @@ describe("curves", () => {
   test("an interval that ends beyond the range is said to", () => {
     assert.equal(words(parabola(4, 1)), "4.0° (2.0 to above 5)");
     assert.equal(words(parabola(-4, 1), "tx"), "\u22124.0 mm (below \u22125 to \u22122.0)");
-    assert.equal(words(parabola(1, 100)), "cannot tell from \u22125 to 5°");
-    assert.equal(words(offsets.map(() => 7)), "cannot tell from \u22125 to 5°");
+    assert.equal(words(parabola(1, 100)), "not constrained from \u22125 to 5°");
+    assert.equal(words(offsets.map(() => 7)), "not constrained from \u22125 to 5°");
   });
 
   test("the order of offsets does not matter, nor what is missing between", () => {

@@ -146,7 +146,7 @@ test("points are as large on a dense screen", LONG, async ({ browser, baseURL })
     await expect(page.locator("#status")).toHaveAttribute("data-state", "ready");
     await goToClouds(page);
     const clouds = page.locator("#clouds-canvas");
-    await page.getByLabel("Drawn as").selectOption("points");
+    await page.getByLabel("Draw as").selectOption("points");
     await expect(page.locator("#clouds-note")).toBeHidden();
     // Before the first step there is the depth map's cloud alone, so that no other can come late.
     await expect.poll(() => covered(clouds)).toBeGreaterThan(DRAWN);
@@ -181,11 +181,11 @@ test("surfaces and points, and the colours on them, are a choice", async ({ lab,
   await expect(page.locator("#clouds-note")).toBeHidden();
   const seen: Buffer[] = [];
   for (const [name, value] of [
-    ["Drawn as", "points"],
-    ["Drawn as", "surfaces"],
-    ["Coloured by", "picture"],
-    ["Coloured by", "normals"],
-    ["Coloured by", "residual"],
+    ["Draw as", "points"],
+    ["Draw as", "surfaces"],
+    ["Colour by", "picture"],
+    ["Colour by", "normals"],
+    ["Colour by", "residual"],
   ] as const) {
     await page.getByLabel(name).selectOption(value);
     await expect

@@ -88,13 +88,13 @@ test.describe("by touch", () => {
 test("single keys are switched off for good, where that is asked for", async ({ lab, page }) => {
   await lab.open("size=32");
   await page.locator("#help-button").click();
-  await page.getByLabel("Single keys are on").uncheck();
+  await page.getByLabel("Keyboard shortcuts on").uncheck();
   await page.reload();
   await lab.reaches("ready");
   await page.keyboard.press("?");
   await expect(page.getByRole("dialog")).toBeHidden();
   await page.locator("#help-button").click();
-  await expect(page.getByLabel("Single keys are on")).not.toBeChecked();
+  await expect(page.getByLabel("Keyboard shortcuts on")).not.toBeChecked();
 });
 
 test("the tab key goes through the page as it is used: places, examples, settings, inputs, surfaces, outcome, numbers, player", async ({

@@ -37,7 +37,7 @@ test.describe("in the Lab", () => {
     await lab.reaches("ready");
     await endAt(page, { kind: "advance" }, 3);
     await play(lab);
-    await expect(alert(page)).toContainText("The run broke off: the thread that computed was ended");
+    await expect(alert(page)).toContainText("The run stopped: the browser ended the computing thread");
     await expect(alert(page)).toContainText("The input is kept");
     await lab.reaches("converged");
     await expect(alert(page)).toBeVisible();
@@ -68,7 +68,7 @@ test.describe("in the Lab", () => {
     await lab.open(FAST);
     await endAt(page, { kind: "advance" });
     await page.keyboard.press("s");
-    await expect(alert(page)).toContainText(/broke off.*broke off/);
+    await expect(alert(page)).toContainText(/stopped.*stopped/);
     await page.keyboard.press("s");
     await expect(lab.iteration).toHaveText("1");
   });
@@ -76,7 +76,7 @@ test.describe("in the Lab", () => {
   test("one that is ended while the page rests is told of at once, and the next step works", async ({ lab, page }) => {
     await lab.open(FAST);
     await endAll(page, "/worker-");
-    await expect(alert(page)).toContainText("was ended");
+    await expect(alert(page)).toContainText("browser ended the computing thread");
     await page.keyboard.press("s");
     await expect(lab.iteration).toHaveText("1");
   });
@@ -111,7 +111,7 @@ test.describe("in the Lab", () => {
     await lab.open(FAST);
     await page.keyboard.press("t");
     await lab.reaches("error");
-    await expect(alert(page)).toContainText("The input is kept, and the run begins anew.");
+    await expect(alert(page)).toContainText("The input is kept; the run restarts.");
     await page.keyboard.press("s");
     await expect(lab.iteration).toHaveText("1");
   });
@@ -119,9 +119,9 @@ test.describe("in the Lab", () => {
   test("the thread that makes a file: said, nothing saved, and the next press saves", async ({ lab, page }) => {
     await endSoon(page, /files-thread[^/]*\.js$/, 1);
     await lab.open(FAST);
-    const clouds = page.getByRole("group", { name: "Take away" }).getByRole("button", { name: "Clouds, PLY" });
+    const clouds = page.getByRole("group", { name: "Download" }).getByRole("button", { name: "Clouds, PLY" });
     await clouds.click();
-    await expect(page.locator("#taken")).toContainText("Nothing saved: the thread that computed was ended");
+    await expect(page.locator("#taken")).toContainText("Nothing saved: the browser ended the computing thread");
     const download = page.waitForEvent("download");
     await clouds.click();
     expect((await download).suggestedFilename()).toBe("clouds.ply");
@@ -136,9 +136,9 @@ test("in Learn: said, the values stay, and the figure is computed again", async 
   await endAt(page, { lesson: "pixel" });
   const beta = page.locator('.learn-controls input[name="beta"]');
   await beta.fill("55");
-  await expect(figure.getByRole("alert")).toContainText("This figure broke off: the thread that computed was ended");
+  await expect(figure.getByRole("alert")).toContainText("This figure stopped: the browser ended the computing thread");
   await expect(beta).toHaveValue("55");
-  await page.getByRole("button", { name: "Compute again" }).click();
+  await page.getByRole("button", { name: "Recompute" }).click();
   await expect(figure).toHaveAttribute("aria-busy", "false");
   await expect(figure.getByRole("alert")).toBeHidden();
   expect(lab.complaints).toEqual([]);
@@ -166,7 +166,7 @@ test(
       buttons.slice(0, 3).forEach((button) => (button as HTMLButtonElement).click()),
     );
     await expect(cells.nth(0)).toHaveAttribute("data-value");
-    await expect(cells.nth(2)).toHaveAttribute("title", /failed: the thread that computed was ended/);
+    await expect(cells.nth(2)).toHaveAttribute("title", /failed: the browser ended the computing thread/);
     await expect(cells.nth(1)).toHaveAttribute("data-value");
     await cells.nth(2).click();
     await expect(cells.nth(2)).toHaveAttribute("data-value");
@@ -191,7 +191,7 @@ test.describe("in Check a rig", () => {
     const run = page.getByRole("button", { name: /^(Run the check|Estimate a calibration)$/ });
     await run.first().click();
     await expect(page.locator("#rig").getByRole("alert")).toContainText(
-      "The check could not be done: the thread that computed was ended",
+      "The check failed: the browser ended the computing thread",
     );
     await page.getByRole("button", { name: "Run the check" }).click();
     await expect(page.locator(".rig-bar").first()).toBeVisible();
@@ -207,7 +207,7 @@ test.describe("in Check a rig", () => {
     if (!deadly) throw new Error("a pair has files");
     await endAt(page, { name: deadly.name }, 1, 9);
     await put(page, [deadly]);
-    await expect(page.locator("#rig")).toContainText("the thread that computed was ended");
+    await expect(page.locator("#rig")).toContainText("the browser ended the computing thread");
     await put(page, pair("second"));
     await expect(page.locator(".rig-frame")).toHaveCount(2);
     expect(lab.complaints).toEqual([]);

@@ -267,7 +267,7 @@ test("a camera waits for its four numbers, and its distortion for as many as its
   };
   await type("fx", "100");
   await expect(page.locator("#status")).toHaveText("colour camera: waiting for fy, cx, cy");
-  await expect(page.locator("#verdict")).toContainText("leave all of that camera's numbers empty");
+  await expect(page.locator("#verdict")).toContainText("leave all fields of that camera empty");
   for (const [name, value] of [
     ["fy", "100"],
     ["cx", "31.5"],

@@ -165,7 +165,7 @@ test("the Lab alone loads nothing of Learn, and Learn leaves the Lab alone", asy
   await lab.open();
   const before = asked.filter((path) => /\.(js|css)$/.test(path)).length;
   await page.getByRole("link", { name: "Learn", exact: true }).click();
-  await expect(page.getByRole("heading", { name: "1. What a pixel knows" })).toBeVisible();
+  await expect(page.getByRole("heading", { name: "1. What a pixel shows" })).toBeVisible();
   await settled(page);
   expect(asked.filter((path) => /\.(js|css)$/.test(path)).length).toBeGreaterThan(before);
   await expect(page.getByRole("button", { name: "Play" })).toBeHidden();
@@ -271,7 +271,7 @@ test("6: a wrong pose leaves a residual, valleys merge, and registration comes h
   await slide(page, "offset", 20);
   expect(await number(page, "residual")).toBeGreaterThan(3 * right);
   expect(await number(page, "error")).toBeCloseTo(20, 3);
-  await page.getByLabel("What happens").selectOption("register");
+  await page.getByLabel("Action").selectOption("register");
   expect(await number(page, "error")).toBeLessThan(1);
   await expect(page.locator('[data-number="status"]')).toHaveText("converged");
   // From too far away the given pose is kept, as the text says, and the page has words for what the library calls by an option's name.
@@ -279,7 +279,7 @@ test("6: a wrong pose leaves a residual, valleys merge, and registration comes h
   await settled(page);
   await expect(page.locator('[data-number="status"]')).toHaveText(/^ambiguous: no pose within/);
   expect(await number(page, "error")).toBeCloseTo(40, 3);
-  await page.getByLabel("What happens").selectOption("search");
+  await page.getByLabel("Action").selectOption("search");
   await expect(page.locator('[data-number="status"]')).toHaveText(/^search/);
   expect(await number(page, "error")).toBeLessThan(1);
   expect(lab.complaints).toEqual([]);
@@ -428,11 +428,11 @@ test("slides turn by keys, leave the sliders theirs, and end by escape", async (
   await expect(slides.getByRole("heading", { name: "2. One grey light is not enough" })).toBeVisible();
   await page.keyboard.press("ArrowLeft");
   await page.keyboard.press("ArrowLeft");
-  await expect(slides.getByRole("heading", { name: "1. What a pixel knows" })).toBeVisible();
+  await expect(slides.getByRole("heading", { name: "1. What a pixel shows" })).toBeVisible();
   await page.keyboard.press("Escape");
   await expect(slides).toBeHidden();
-  await expect(page.getByRole("heading", { name: "1. What a pixel knows" })).toBeVisible();
-  await expect(page.getByText("The surface is matte")).toBeVisible();
+  await expect(page.getByRole("heading", { name: "1. What a pixel shows" })).toBeVisible();
+  await expect(page.getByText("Assume a matte surface")).toBeVisible();
   await expect(page).not.toHaveURL(/slides/);
   expect(lab.complaints).toEqual([]);
 });

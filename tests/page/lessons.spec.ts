@@ -197,8 +197,8 @@ test("numbers that the text states of the method are the method's own", LONG, as
       tolerance: { default: number };
     };
   };
-  await answers(page, `ambiguous once it passes ${OPTIONS.tolerance.default}°`);
-  await answers(page, `the module's ${OPTIONS.lambda.members.prior.default} against`);
+  await answers(page, `ambiguous once sigma exceeds ${OPTIONS.tolerance.default}°`);
+  await answers(page, `the program uses ${OPTIONS.lambda.members.prior.default} against`);
   await open(page, "at=pose");
   await expect(page.locator(".learn-text")).toContainText(
     `within ${OPTIONS.startTolerance.members.degrees.default}° of it`,

@@ -33,7 +33,7 @@ test("dark and light follow the system, and the visitor", async ({ lab, page }) 
   expect(await lightness()).toBeLessThan(64);
   await page.emulateMedia({ colorScheme: "light" });
   expect(await lightness()).toBeGreaterThan(192);
-  await page.getByRole("button", { name: "Switch to dark colours" }).click();
+  await page.getByRole("button", { name: "Switch to the dark theme" }).click();
   expect(await lightness()).toBeLessThan(64);
   await page.reload();
   expect(await lightness()).toBeLessThan(64);
@@ -100,7 +100,7 @@ test("a view without values has no range of earlier ones, and the surfaces' lege
   page,
 }) => {
   await lab.open();
-  const shape = page.getByText("shape from the picture", { exact: true });
+  const shape = page.getByText("shape from the image", { exact: true });
   await expect(shape).toBeHidden();
   await page.keyboard.press("s");
   await expect(lab.iteration).toHaveText("1");

@@ -49,7 +49,7 @@ test("a reload keeps the files, until they are forgotten; a link alone does not 
   await put(lab, "Colour image", colourPng("mine.png"));
   await put(lab, "Depth map", depthPng("deep.png"));
   await lab.reaches("ready");
-  await expect(page.locator(".keeping")).toContainText("kept in this browser");
+  await expect(page.locator(".keeping")).toContainText("stay in this browser");
   const shown = await lab.fingerprint("Colour");
   await page.reload();
   await lab.reaches("ready");
@@ -65,9 +65,9 @@ test("a reload keeps the files, until they are forgotten; a link alone does not 
   await other.close();
 
   await lab.unfold();
-  await page.getByRole("button", { name: "Forget my files" }).click();
+  await page.getByRole("button", { name: "Remove my files" }).click();
   await lab.reaches("waiting");
-  await expect(page.locator(".keeping")).toContainText("Nothing is kept");
+  await expect(page.locator(".keeping")).toContainText("No files are stored");
   await expect(slot(lab, 0)).not.toContainText("mine.png");
   await page.reload();
   await lab.reaches("waiting");
@@ -98,7 +98,7 @@ test(
     await expect(slot(lab, 1)).toContainText("five.png");
     await expect(slot(lab, 2)).not.toContainText("three.png");
     await lab.reaches("ready");
-    await expect(page.locator(".keeping")).toContainText("kept in this browser");
+    await expect(page.locator(".keeping")).toContainText("stay in this browser");
     await page.getByRole("button", { name: "Sample", exact: true }).click();
     await lab.reaches("ready");
     await page.reload();
@@ -117,7 +117,7 @@ test("where storage is full, older files do not come back in the place of those 
   await own(lab);
   await put(lab, "Colour image", colourPng("old.png"));
   await put(lab, "Depth map", depthPng("old-depth.png"));
-  await expect(page.locator(".keeping")).toContainText("kept in this browser");
+  await expect(page.locator(".keeping")).toContainText("stay in this browser");
   await page.evaluate(() => {
     IDBObjectStore.prototype.put = () => {
       throw new DOMException("no", "QuotaExceededError");
@@ -145,8 +145,8 @@ for (const [name, words] of [
     await put(lab, "Depth map", depthPng());
     await lab.reaches("ready");
     await expect(page.locator(".keeping")).toContainText(words);
-    await page.getByRole("button", { name: "Forget my files" }).click();
+    await page.getByRole("button", { name: "Remove my files" }).click();
     await lab.reaches("waiting");
-    await expect(page.locator(".keeping")).toContainText("storage does not answer");
+    await expect(page.locator(".keeping")).toContainText("storage does not respond");
   });
 }

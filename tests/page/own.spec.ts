@@ -181,14 +181,14 @@ test("swapped files are offered to be swapped, and then run", async ({ lab, page
   await expect(page.locator("#verdict")).toContainText(
     "second.png: it is a colour picture where a depth map was expected",
   );
-  await expect(page.locator("#next")).toHaveText("Colour and depth seem to be swapped: Settings, Swap them.");
+  await expect(page.locator("#next")).toHaveText("Colour and depth seem to be swapped: Settings, Swap.");
   // With the samples nothing is swapped.
   await page.getByRole("button", { name: "Sample", exact: true }).click();
   await lab.reaches("ready");
   await expect(page.locator("#next")).not.toContainText("swapped");
   await page.getByRole("button", { name: "Own files" }).click();
   await lab.reaches("error");
-  await page.getByRole("button", { name: "Swap them" }).click();
+  await page.getByRole("button", { name: "Swap" }).click();
   await expect(slot(lab, 0)).toContainText("second.png");
   await expect(slot(lab, 1)).toContainText("first.png");
   await lab.reaches("ready");
@@ -197,7 +197,7 @@ test("swapped files are offered to be swapped, and then run", async ({ lab, page
   // A grey picture may be a depth map, a coloured one can't.
   await put(lab, "Colour image", greyPng("grey.png"));
   await put(lab, "Depth map", colourPng("third.png"));
-  await expect(page.locator("#next")).toHaveText("Colour and depth seem to be swapped: Settings, Swap them.");
+  await expect(page.locator("#next")).toHaveText("Colour and depth seem to be swapped: Settings, Swap.");
 });
 
 test("a run of files that seem to be in each other's places says so beside its verdict", async ({ lab, page }) => {
@@ -232,7 +232,7 @@ test("where there is nothing to run the player's buttons are off, and say why", 
   await put(lab, "Colour image", colourPng());
   await areOff("waiting for a depth map");
   await put(lab, "Depth map", { ...depthPng("cut.png"), buffer: depthPng().buffer.subarray(0, 90) });
-  await areOff("Depth map: not possible");
+  await areOff("Depth map: invalid value");
   await put(lab, "Depth map", depthPng());
   await lab.reaches("ready");
   for (const button of buttons) {
@@ -283,7 +283,7 @@ test("while own files are read the page says so, asks for nothing that is there,
   await put(lab, "Colour image", { ...colourPng("wide.png"), buffer: wide });
   await expect
     .poll(() => page.evaluate(() => (window as unknown as { said: string[] }).said.join("|")))
-    .toMatch(/wide\.png: 4100 × 32 px is more than the library takes: scaled down by 2\./);
+    .toMatch(/wide\.png: 4100 × 32 px exceeds the library's limit; scaled down by 2\./);
 });
 
 test("of own files no true pose is known: none can be chosen, and what was chosen of a sample is not asked for", async ({
@@ -348,9 +348,9 @@ test("what can't be used is said: a recording, a second depth map, a pose; a fis
   const zip = { name: "all.zip", mimeType: "application/zip", buffer: Buffer.from("PK\x03\x04rest") };
   await drop(page, "body", [colourPng(), depthPng("one.png"), depthPng("two.png"), fisheye, pose, zip]);
   const remarks = page.locator(".remarks");
-  await expect(remarks).toContainText("two.png: another depth map; the Lab takes one.");
+  await expect(remarks).toContainText("two.png looks like a second depth map; the Lab uses only one.");
   await expect(remarks).toContainText(
-    "eye.json: the colour camera, which is that of both images. Its numbers are in the fields below",
+    "eye.json: the colour camera, used for both images. Its numbers are in the fields below",
   );
   await expect(page.locator("#fields-colour").getByLabel("lens model")).toHaveValue("fisheye");
   await expect(remarks).toContainText("T.txt: a pose");

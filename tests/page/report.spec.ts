@@ -29,7 +29,7 @@ for (const colorScheme of ["light", "dark"] as const) {
     const background = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
     expect(await background()).toBe(colorScheme === "light" ? "rgb(245, 246, 247)" : "rgb(20, 23, 26)");
     await expect(page.getByRole("img", { name: "Overlay" })).toHaveJSProperty("naturalWidth", 1);
-    await expect(page.getByRole("img", { name: /^Turn about x/ })).toBeVisible();
+    await expect(page.getByRole("img", { name: /^Rotation about x/ })).toBeVisible();
     for (const width of [390, 1280]) {
       await page.setViewportSize({ width, height: 800 });
       expect(await overflow(page)).toBe(0);

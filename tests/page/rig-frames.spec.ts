@@ -38,7 +38,7 @@ test("frames come one by one, and kind and unit can be corrected", async ({ lab,
   await expect(page.locator(".rig-frame")).toContainText("Colour 160×120 px, depth 160×120 px");
   await put(page, pair("0002"));
   await expect(page.locator(".rig-frame")).toHaveCount(2);
-  await expect(page.locator(".rig-missing")).toContainText("the depth camera's numbers");
+  await expect(page.locator(".rig-missing")).toContainText("the depth camera's parameters");
 
   const depth = page.locator(".rig-file").filter({ hasText: "depth_0002.png" });
   await expect(depth.getByLabel("Unit")).toHaveValue("");
@@ -104,9 +104,7 @@ test("what is used of a frame can be restricted, with the pointer and with numbe
   await expect(share).toHaveText("30 % of the image is used.");
   await dialog.getByLabel("Farthest depth, m").fill("1.2");
   await dialog.getByRole("button", { name: "Done" }).click();
-  await expect(page.locator(".rig-frame")).toContainText(
-    "used: 30 % of the image, as painted, depths from 0 to 1.2 m.",
-  );
+  await expect(page.locator(".rig-frame")).toContainText("used: 30 % of the image, as drawn, depths from 0 to 1.2 m.");
   expect(lab.complaints).toEqual([]);
 });
 
@@ -116,7 +114,7 @@ test("a guessed unit is confirmed at one press, for all depth maps", async ({ la
   await expect(page.locator(".rig-frame")).toHaveCount(2);
   const guess = page.getByRole("group", { name: "Units" });
   await expect(guess).toContainText("The unit of 2 depth maps was guessed: millimetres.");
-  await guess.getByRole("button", { name: "Yes, that is right" }).click();
+  await guess.getByRole("button", { name: "Confirm" }).click();
   await expect(guess).toBeHidden();
   await expect(page.locator(".rig-files")).not.toContainText("was guessed");
   for (const name of ["depth_0001.png", "depth_0002.png"])
@@ -146,7 +144,7 @@ test("a folder comes in order, with its masks to be seen and left out, and its g
   await page.locator("#rig input[webkitdirectory]").first().setInputFiles(folder);
   const frames = page.locator(".rig-frame");
   await expect(frames).toHaveCount(2);
-  await expect(frames.first()).toContainText("used: the mask's file.");
+  await expect(frames.first()).toContainText("used: mask file.");
   await frames.first().getByLabel("Mask").selectOption("");
   await expect(frames.first()).toContainText("all of it is used.");
   await expect(page.locator(".rig-notes").first()).toContainText("Only one camera's intrinsics were found");
@@ -154,10 +152,10 @@ test("a folder comes in order, with its masks to be seen and left out, and its g
   await expect(page.getByRole("group", { name: "Units" })).toBeHidden();
   await expect(page.locator(".rig-notes").first()).not.toContainText("unit");
   await page.getByRole("button", { name: "Next: your calibration" }).click();
-  await page.getByLabel("Or paste it, in any of these forms").fill("1 0 0 0.02\n0 1 0 0\n0 0 1 0\n0 0 0 1");
+  await page.getByLabel("Or paste it in any of these formats").fill("1 0 0 0.02\n0 1 0 0\n0 0 1 0\n0 0 0 1");
   await page.getByRole("button", { name: "Add what I pasted" }).click();
   await page.getByRole("button", { name: "Run the check" }).locator("visible=true").click();
-  await expect(page.locator(".rig-word")).toHaveText("Settled, but check");
+  await expect(page.locator(".rig-word")).toHaveText("Looks right, see warnings");
   await expect(page.locator(".rig-verdict")).toContainText("they are used for both pictures");
   await expect(page.locator(".rig-verdict")).not.toContainText("Guessed");
   rmSync(folder, { recursive: true });

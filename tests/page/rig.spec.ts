@@ -37,7 +37,7 @@ test("the example loads with one press: frames, cameras and a calibration", asyn
   await page.getByRole("button", { name: "Next: your calibration" }).click();
   await expect(page.locator(".rig-candidate")).toHaveCount(2);
   await expect(page.locator(".rig-words").first()).toHaveText(
-    /^The depth camera sits [\d.]+ mm .+ the colour camera, turned by [\d.]+°\.$/,
+    /^The depth camera sits [\d.]+ mm .+ the colour camera, rotated by [\d.]+°\.$/,
   );
   expect(lab.complaints).toEqual([]);
 });
@@ -70,17 +70,17 @@ test("calibrations from a file, pasted and typed in; inverted twice they are wha
   await expect(page.getByText("No calibration given")).toBeVisible();
   await page.locator("#rig .rig-step:not([hidden]) input[type=file]").setInputFiles(matrixFile("factory.txt", 0.025));
   const words = page.locator(".rig-words");
-  await expect(words).toHaveText("The depth camera sits 25.0 mm to the right of the colour camera, turned by 0.00°.");
+  await expect(words).toHaveText("The depth camera sits 25.0 mm to the right of the colour camera, rotated by 0.00°.");
   await page.getByRole("button", { name: "Invert factory" }).click();
   await expect(words).toContainText("25.0 mm to the left of");
   await expect(page.locator(".rig-candidate")).toContainText("inverted");
   await page.getByRole("button", { name: "Invert factory" }).click();
   await expect(words).toContainText("25.0 mm to the right of");
 
-  await page.getByLabel("Or paste it, in any of these forms").fill("1 0 0 0\n0 1 0 0.01\n0 0 1 0\n0 0 0 1");
+  await page.getByLabel("Or paste it in any of these formats").fill("1 0 0 0\n0 1 0 0.01\n0 0 1 0\n0 0 0 1");
   await page.getByRole("button", { name: "Add what I pasted" }).click();
   await expect(words.nth(1)).toContainText("10.0 mm below");
-  await page.getByLabel("Or paste it, in any of these forms").fill("what is this");
+  await page.getByLabel("Or paste it in any of these formats").fill("what is this");
   await page.getByRole("button", { name: "Add what I pasted" }).click();
   await expect(page.locator(".rig-step:not([hidden]) .rig-error[role=alert]").first()).toContainText("pasted text");
 
@@ -97,7 +97,7 @@ test("calibrations from a file, pasted and typed in; inverted twice they are wha
   await expect(page.getByText("Some numbers are missing.").last()).toBeVisible();
   await page.getByLabel("qw", { exact: true }).fill("1");
   await page.getByRole("button", { name: "Add these numbers" }).click();
-  await expect(words.nth(2)).toHaveText("The depth camera sits 100.0 mm behind the colour camera, turned by 90.00°.");
+  await expect(words.nth(2)).toHaveText("The depth camera sits 100.0 mm behind the colour camera, rotated by 90.00°.");
   await page.locator(".rig-candidate").nth(2).getByRole("button", { name: "Put first" }).click();
   await expect(words.first()).toContainText("100.0 mm behind");
   expect(lab.complaints).toEqual([]);
@@ -116,7 +116,7 @@ test("a verdict comes with its numbers, curves, shares and advice", async ({ lab
   await expect(page.locator(".rig-calibrations")).toContainText("1.2 mm");
   await expect(page.locator(".rig-calibrations")).toContainText("10.70 px");
   await expect(page.locator(".rig-curves figure")).toHaveCount(6);
-  await expect(page.locator(".rig-curves")).toContainText(/Least at −?\d+\.\d+°; ± \d+\.\d+° \(95 %\)/);
+  await expect(page.locator(".rig-curves")).toContainText(/Minimum at −?\d+\.\d+°; ± \d+\.\d+° \(95 %\)/);
   await expect(page.getByRole("row", { name: /frame 1 50 %/ })).toBeVisible();
   expect(lab.complaints).toEqual([]);
 });
@@ -158,12 +158,12 @@ test("without a calibration there is an estimate only, and what was guessed is s
   await expect(page.locator(".rig-word")).toHaveText("Estimated");
   await expect(page.locator(".rig-verdict")).toContainText("Guessed: the unit of depth_0001.png.");
   await page.getByRole("button", { name: "Back" }).click();
-  await page.getByLabel("Or paste it, in any of these forms").fill("1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1");
+  await page.getByLabel("Or paste it in any of these formats").fill("1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1");
   await page.getByRole("button", { name: "Add what I pasted" }).click();
   await step(page, "Verdict").click();
   await expect(page.getByText("have changed since this verdict")).toBeVisible();
   await page.getByRole("button", { name: "Run again" }).click();
-  await expect(page.locator(".rig-word")).toHaveText("Settled, but check");
+  await expect(page.locator(".rig-word")).toHaveText("Looks right, see warnings");
   // Who was right keeps what is there.
   await expect(page.getByLabel("Calibration", { exact: true })).toHaveValue("pasted");
   const download = page.waitForEvent("download");
@@ -181,7 +181,7 @@ test("what is chosen to be written stays chosen when the check runs again", asyn
   await answerChecks(page, "consistent");
   await openFrames(page);
   await run(page);
-  const out = page.locator(".rig-card", { hasText: "Files out" });
+  const out = page.locator(".rig-card", { hasText: "Export" });
   const [which, format] = [out.getByLabel("Calibration"), out.getByLabel("Format")];
   // Who was right keeps what is there, until the visitor says otherwise.
   await expect(which).not.toHaveValue("");
@@ -223,14 +223,14 @@ test("a check can be cancelled, and run again", async ({ lab, page }) => {
   await expect(status).toHaveText("aligning depth edges");
   await expect(page.getByRole("progressbar")).toHaveJSProperty("value", 0.4);
   await page.getByRole("button", { name: "Cancel" }).click();
-  await expect(status).toHaveText("Cancelled. Nothing was lost.");
+  await expect(status).toHaveText("Cancelled. Files and calibrations are kept.");
   await expect(page.getByRole("button", { name: "Cancel" })).toBeDisabled();
   await page.getByRole("button", { name: "Run the check" }).last().click();
   await expect(status).toHaveText("aligning depth edges");
   // Leaving the place ends it as well, however soon one comes back.
   await page.getByRole("link", { name: "Tables" }).click();
   await page.goBack();
-  await expect(status).toHaveText("Cancelled. Nothing was lost.");
+  await expect(status).toHaveText("Cancelled. Files and calibrations are kept.");
   expect(lab.complaints).toEqual([]);
 });
 
@@ -242,7 +242,9 @@ test(
     await openPair(page);
     await run(page);
     await page.getByRole("button", { name: "Cancel" }).click();
-    await expect(page.locator(".rig-run").getByRole("status")).toHaveText("Cancelled. Nothing was lost.");
+    await expect(page.locator(".rig-run").getByRole("status")).toHaveText(
+      "Cancelled. Files and calibrations are kept.",
+    );
     await step(page, "Files and cameras").click();
     const dialog = page.getByRole("dialog");
     // Asked of the old worker, answered by the new one.
@@ -271,7 +273,7 @@ test("starting over ends the check that runs, and undone it brings everything ba
   await expect(page.locator(".rig-frame")).toHaveCount(3);
   await expect(page.getByRole("group", { name: "Depth camera" }).locator(".rig-camera-numbers")).toHaveText(/^fx/);
   await step(page, "Verdict").click();
-  await expect(page.locator(".rig-run").getByRole("status")).toHaveText("Cancelled. Nothing was lost.");
+  await expect(page.locator(".rig-run").getByRole("status")).toHaveText("Cancelled. Files and calibrations are kept.");
   await step(page, "Your calibration").click();
   await expect(page.locator(".rig-candidate")).toHaveCount(2);
   expect(lab.complaints).toEqual([]);
@@ -300,11 +302,11 @@ test("what a reader warned of caps the verdict, and is what to do next", async (
   await expect(page.locator(".rig-frame")).toHaveCount(2);
   const colour = page.getByRole("group", { name: "Colour camera" });
   const depth = page.getByRole("group", { name: "Depth camera" });
-  await depth.getByLabel("Where its numbers come from").selectOption("same");
+  await depth.getByLabel("Source of its parameters").selectOption("same");
   await expect(page.locator(".rig-missing")).toContainText(
-    "the colour camera's numbers, which the depth camera shares",
+    "the colour camera's parameters, which the depth camera shares",
   );
-  await colour.getByLabel("Where its numbers come from").selectOption("typed");
+  await colour.getByLabel("Source of its parameters").selectOption("typed");
   for (const [label, value] of [
     ["fx, px", "150"],
     ["fy, px", "150"],
@@ -313,14 +315,16 @@ test("what a reader warned of caps the verdict, and is what to do next", async (
   ] as const)
     await colour.getByLabel(label).fill(value);
   await page.getByRole("button", { name: "Next: your calibration" }).click();
-  await page.getByLabel("Or paste it, in any of these forms").fill("1 0 0 0.02\n0 1 0 0\n0 0 1 0\n0 0 0 1");
+  await page.getByLabel("Or paste it in any of these formats").fill("1 0 0 0.02\n0 1 0 0\n0 0 1 0\n0 0 0 1");
   await page.getByRole("button", { name: "Add what I pasted" }).click();
   await page.getByRole("button", { name: "Run the check" }).locator("visible=true").click();
-  await expect(page.locator(".rig-word")).toHaveText("Settled, but check");
+  await expect(page.locator(".rig-word")).toHaveText("Looks right, see warnings");
   const card = page.locator(".rig-verdict");
   await expect(card).toContainText("depth_0001.png: Depths of 8 bits");
   await expect(card).toContainText("frame 2: its depth map is 80×60 px, not 160×120 px");
-  await expect(card).toContainText("The colour camera's numbers: the centre is far from the middle of 160×120 px");
+  await expect(card).toContainText(
+    "The colour camera's parameters: the principal point is far from the centre of the 160×120 px",
+  );
   await expect(page.locator(".rig-next")).toContainText("with 16 bits");
   expect(lab.complaints).toEqual([]);
 });
@@ -345,7 +349,7 @@ test("nothing of it sticks out from 320 to 2560 px, and targets are large enough
   await page.getByRole("button", { name: "Next: your calibration" }).click();
   await isFine("calibrations");
   await page.getByRole("button", { name: "Run the check" }).click();
-  await expect(page.locator(".rig-word")).toHaveText("This scene can't tell");
+  await expect(page.locator(".rig-word")).toHaveText("Undecided");
   await expect(page.locator(".rig-curves figure")).toHaveCount(6);
   await isFine("verdict");
   expect(lab.complaints).toEqual([]);

@@ -41,7 +41,7 @@ export async function giveFiles(
     .setInputFiles([...files]);
   await expect(page.locator(".rig-frame")).toHaveCount(frames);
   const depth = page.getByRole("group", { name: "Depth camera" });
-  await depth.getByLabel("Where its numbers come from").selectOption("typed");
+  await depth.getByLabel("Source of its parameters").selectOption("typed");
   await depth.getByLabel("Given as").selectOption("view");
   await depth.getByLabel("Horizontal field of view, °").fill("60");
 }

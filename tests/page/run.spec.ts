@@ -224,7 +224,7 @@ test("a run that misses the pose does not look like a success", async ({ lab, pa
 test("a hint unfolds at a tap", async ({ lab, page }) => {
   await lab.open();
   await lab.unfold();
-  const hint = page.getByText("Of both views: a side, or a camera's whole frame.");
+  const hint = page.getByText("Side length of both views, or a full camera frame.");
   await expect(hint).toBeHidden();
   await page.getByRole("button", { name: 'What is "Size"?' }).click();
   await expect(hint).toBeVisible();
@@ -282,7 +282,7 @@ test("a pose that was held is not said to have been sought", async ({ lab, page 
   await lab.visit("size=64&start=identity&registration=fixed");
   await page.locator("#pace").selectOption({ label: "fastest" });
   await page.keyboard.press(" ");
-  await expect(page.locator("#verdict")).toContainText("kept where it started");
+  await expect(page.locator("#verdict")).toContainText("stayed at its initial value");
   await expect(page.locator("#next")).toContainText("Registration, joint");
   // It is 20 degrees off, and in red: a tick would say the contrary.
   await expect(page.locator("#status")).toHaveAttribute("data-tone", "wrong");
@@ -319,10 +319,12 @@ test(
     await page.getByRole("button", { name: "Play" }).click();
     await expect(map).toBeVisible();
     await lab.reaches("converged");
-    await expect(page.locator("#score-words")).toHaveText(/: \d{3} tried; white: best, orange: true/);
-    const canvas = page.getByRole("img", { name: /^Scores of \d+ rotations; the best turns by/ });
+    await expect(page.locator("#score-words")).toHaveText(
+      / of \d{3} trial rotations \(white ring: best; orange: true\)/,
+    );
+    const canvas = page.getByRole("img", { name: /^Scores of \d+ rotations\. The best one is/ });
     const [, about] =
-      /by (−?\d+) degrees about the vertical/.exec((await canvas.getAttribute("aria-label")) ?? "") ?? [];
+      /is (−?\d+) degrees about the vertical/.exec((await canvas.getAttribute("aria-label")) ?? "") ?? [];
     // Rotations lie 16 degrees apart.
     expect(Math.abs(Number(about?.replace("−", "-")) - 30)).toBeLessThanOrEqual(16);
     // At the true turn the map is yellow, at its corner nothing was tried.

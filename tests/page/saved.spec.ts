@@ -11,10 +11,10 @@ test("a run that was taken away goes on where it stood, with the options that it
   await expect(lab.iteration).toHaveText("2");
   const pose = await page.locator("#pose").innerText();
   const waiting = page.waitForEvent("download");
-  await page.getByRole("button", { name: "Run, to go on later" }).click();
+  await page.getByRole("button", { name: "Save run to resume later" }).click();
   const download = await waiting;
   expect(download.suggestedFilename()).toBe("run.bimodal");
-  await expect(page.locator("#taken")).toContainText("drop it on this page to go on from here");
+  await expect(page.locator("#taken")).toContainText("drop it on this page to resume from here");
   const chunks: Buffer[] = [];
   for await (const chunk of await download.createReadStream()) chunks.push(Buffer.from(chunk as Uint8Array));
   const run = { name: "evening.bimodal", mimeType: "application/octet-stream", buffer: Buffer.concat(chunks) };

@@ -30,7 +30,7 @@ test("hostile files stay text in the Lab, in what it takes away, and in its repo
   await page.keyboard.press("s");
   await expectHarmless(page);
   // A reload brings them back from the browser's storage.
-  await expect(page.locator(".keeping")).toContainText("kept in this browser");
+  await expect(page.locator(".keeping")).toContainText("stay in this browser");
   await page.reload();
   await lab.reaches("ready");
   await expect(page.locator(".slot").first()).toContainText(`${EVIL}colour.png`);

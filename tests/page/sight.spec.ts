@@ -21,7 +21,7 @@ for (const [where, script] of [
     await expect.poll(() => covered(clouds)).toBeGreaterThan(DRAWN);
     await graphics(page, "lose");
     await expect(note).toBeVisible();
-    await expect(note).toContainText("the clouds stand still until it gives them back");
+    await expect(note).toContainText("The surfaces stand still until it returns");
     // All else goes on.
     await page.keyboard.press("s");
     await expect(lab.iteration).toHaveText("1");
@@ -48,7 +48,7 @@ test("the thread that draws is ended: another draws, once", async ({ lab, page }
   await expect.poll(() => covered(clouds)).toBeGreaterThan(DRAWN);
   await expect(page.locator("#clouds-box .dot")).toHaveCount(2);
   await endAll(page, "stage-thread");
-  await expect(note).toContainText("was ended twice");
+  await expect(note).toContainText("ended the drawing thread twice");
   await page.keyboard.press("s");
   await expect(lab.iteration).toHaveText("1");
 });

@@ -29,7 +29,7 @@ test("before the first slide and after the last there is none, and the buttons s
   await page.goto("./#learn&at=pixel&slides");
   const previous = page.getByRole("button", { name: "Previous lesson" });
   const next = page.getByRole("button", { name: "Next lesson" });
-  await expect(page.getByRole("heading", { name: "1. What a pixel knows" })).toBeVisible();
+  await expect(page.getByRole("heading", { name: "1. What a pixel shows" })).toBeVisible();
   await expect(previous).toBeDisabled();
   await next.click();
   await expect(page.getByRole("heading", { name: "2. One grey light is not enough" })).toBeVisible();
@@ -43,7 +43,7 @@ test("before the first slide and after the last there is none, and the buttons s
 
 test("the browser's Back turns a slide back, then leads to the lesson, and Forward again", async ({ lab, page }) => {
   await page.goto("./#learn&at=pose");
-  await page.getByRole("navigation", { name: "Lessons" }).getByRole("link", { name: "What a pixel knows" }).click();
+  await page.getByRole("navigation", { name: "Lessons" }).getByRole("link", { name: "What a pixel shows" }).click();
   const heading = (title: string) => page.getByRole("heading", { name: title });
   const slides = page.locator("dialog.learn-slides");
   await page.getByRole("button", { name: "Slides" }).click();
@@ -59,20 +59,20 @@ test("the browser's Back turns a slide back, then leads to the lesson, and Forwa
   await expect(heading("2. One grey light is not enough")).toBeVisible();
   await expect(slides.locator('input[name="turn"]')).toHaveValue("90");
   await page.goBack();
-  await expect(heading("1. What a pixel knows")).toBeVisible();
+  await expect(heading("1. What a pixel shows")).toBeVisible();
   await expect(slides).toBeVisible();
   await page.goBack();
   await expect(slides).toBeHidden();
-  await expect(heading("1. What a pixel knows")).toBeVisible();
+  await expect(heading("1. What a pixel shows")).toBeVisible();
   await expect(page).toHaveURL(/at=pixel$/);
   await page.goForward();
   await expect(slides).toBeVisible();
-  await expect(heading("1. What a pixel knows")).toBeVisible();
+  await expect(heading("1. What a pixel shows")).toBeVisible();
   // Away from the slides to the Lab, and back to the lesson in its place.
   await page.goto("./#size=32");
   await lab.reaches("ready");
   await page.getByRole("link", { name: "Learn", exact: true }).click();
   await expect(slides).toBeHidden();
-  await expect(page.locator(".learn-main").getByRole("heading", { name: "1. What a pixel knows" })).toBeVisible();
+  await expect(page.locator(".learn-main").getByRole("heading", { name: "1. What a pixel shows" })).toBeVisible();
   expect(lab.complaints).toEqual([]);
 });

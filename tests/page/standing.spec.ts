@@ -113,7 +113,7 @@ test("the keyboard alone leads from the load to a pose", async ({ lab, page }) =
 test("single keys can be switched off", async ({ lab, page }) => {
   await lab.open("size=32");
   await page.keyboard.press("?");
-  await page.getByLabel("Single keys are on").uncheck();
+  await page.getByLabel("Keyboard shortcuts on").uncheck();
   await page.getByRole("button", { name: "Close" }).click();
   await page.locator("#clouds-canvas").focus();
   await page.keyboard.press("s");

@@ -28,7 +28,7 @@ test.describe("the page's own files", () => {
   test("are not said to be kept where there is no room for them", async ({ lab, page, baseURL }) => {
     await fill(page, baseURL);
     await lab.open("size=32");
-    await expect(page.locator("#offline")).toContainText("keeps no copy of the page");
+    await expect(page.locator("#offline")).toContainText("could not store a copy of the page");
     await page.keyboard.press("s");
     await expect(lab.iteration).toHaveText("1");
   });
@@ -95,16 +95,16 @@ test("two Labs in two tabs run at once, each as if it were alone", async ({ lab,
 test("a tab says when another one keeps its files in the place of these", async ({ lab, page, context }) => {
   await lab.open("size=32");
   await drop(page, "body", [colourPng("mine.png"), depthPng("depth.png")]);
-  await expect(keeping(page)).toContainText("kept in this browser");
+  await expect(keeping(page)).toContainText("stay in this browser");
   const other = new Lab(await context.newPage());
   await other.open("size=32");
   await drop(other.page, "body", [colourPng("theirs.png"), depthPng("depth.png")]);
-  await expect(keeping(other.page)).toContainText("kept in this browser");
-  await expect(keeping(page)).toContainText("Another tab of this page keeps its files now");
+  await expect(keeping(other.page)).toContainText("stay in this browser");
+  await expect(keeping(page)).toContainText("Another tab of this page has stored its own files");
   await expect(name(page, 0)).toContainText("mine.png");
   await other.unfold();
-  await other.page.getByRole("button", { name: "Forget my files" }).click();
-  await expect(keeping(page)).toContainText("has had the kept files forgotten");
+  await other.page.getByRole("button", { name: "Remove my files" }).click();
+  await expect(keeping(page)).toContainText("were removed in another tab of this page");
   expect(other.complaints).toEqual([]);
 });
 

@@ -70,7 +70,7 @@ test("a pose that was held and is off has no tick", async ({ lab, page }) => {
 test("a link that asks for what can't be says which field is wrong, and how", async ({ lab, page }) => {
   await page.goto("./#size=32&overlap=7");
   await lab.reaches("error");
-  await expect(page.locator("#status")).toHaveText("Overlap: not possible");
+  await expect(page.locator("#status")).toHaveText("Overlap: invalid value");
   await expect(page.locator("#verdict")).toHaveText(/^Must be .*\d.*\. The field is marked\.$/);
   const field = page.locator("#fields-sample").getByRole("spinbutton", { name: "Overlap" });
   await expect(field).toHaveAttribute("aria-invalid");
@@ -257,8 +257,8 @@ test("a pose with a rival says so, and the rival can be seen and chosen", LONG, 
   await expect(page.locator("#next")).toContainText("poses on the surfaces");
   expect(await panelHeight(lab)).toBe(height);
   const rivals = page.locator("#rivals");
-  await expect(rivals.getByRole("button", { name: "the one found" })).toHaveAttribute("aria-pressed", "true");
-  const rival = rivals.getByRole("button", { name: /^rival, \d+° away$/ });
+  await expect(rivals.getByRole("button", { name: "best pose" })).toHaveAttribute("aria-pressed", "true");
+  const rival = rivals.getByRole("button", { name: /^alternative, \d+° away$/ });
   const away = Number(/\d+/.exec((await rival.textContent()) ?? "")?.[0]);
   const beta = page.locator("#pose tbody tr").nth(2).locator("td").first();
   const [foundBeta, foundOff] = [await beta.textContent(), await lab.errorDegrees()];
@@ -266,23 +266,23 @@ test("a pose with a rival says so, and the rival can be seen and chosen", LONG, 
   await rival.click();
   await expect(rival).toHaveAttribute("aria-pressed", "true");
   // The table is the rival's, and nothing has made room for what can be done with it.
-  await expect(page.locator("#pose-found")).toHaveText("rival");
+  await expect(page.locator("#pose-found")).toHaveText("alternative");
   await expect(beta).not.toHaveText(String(foundBeta));
   expect(await lab.errorDegrees()).toBeGreaterThan(away - 5);
-  await expect(rivals.getByRole("button", { name: "Start from it" })).toBeVisible();
+  await expect(rivals.getByRole("button", { name: "Restart from here" })).toBeVisible();
   // Verdict and light are those of the pose found, and say so.
   await expect(page.locator("#status")).toHaveText(/^found: ambiguous, /);
-  await expect(page.locator("#pose-error")).toHaveText(/° off the true rotation; \d\.\d° the one found/);
-  await expect(page.locator("#light figcaption").first()).toHaveText("the one found");
+  await expect(page.locator("#pose-error")).toHaveText(/° from the true rotation \(best pose: \d\.\d°\)/);
+  await expect(page.locator("#light figcaption").first()).toHaveText("best pose");
   expect(await places()).toEqual(before);
-  await rivals.getByRole("button", { name: "the one found" }).click();
+  await rivals.getByRole("button", { name: "best pose" }).click();
   await expect(page.locator("#pose-found")).toHaveText("found");
   await expect(page.locator("#status")).toHaveText(/^ambiguous, /);
   await expect(page.locator("#light figcaption").first()).toHaveText("found");
   await expect(beta).toHaveText(String(foundBeta));
   expect(await lab.errorDegrees()).toBe(foundOff);
   await rival.click();
-  await rivals.getByRole("button", { name: "Start from it" }).click();
+  await rivals.getByRole("button", { name: "Restart from here" }).click();
   await expect(page).toHaveURL(/start=near/);
 });
 
@@ -303,11 +303,11 @@ test("a stage explains the method that runs", async ({ lab, page }) => {
   for (const [settings, stage, words] of [
     ["", "registration", "Equations 12 to 16"],
     ["registration=joint", "registration", "until its normals predict the colours"],
-    ["registration=fixed", "registration", "The pose is kept as it was at the start"],
-    ["", "surface", "Normals are slopes"],
+    ["registration=fixed", "registration", "The pose stays at its initial value"],
+    ["", "surface", "Normals give slopes"],
     ["shading=surface", "surface", "The unknowns are the heights themselves"],
-    ["lighting=estimate", "light", "fitted by robust least squares"],
-    ["", "light", "only the exposure of the picture"],
+    ["lighting=estimate", "light", "Robust least squares fits them"],
+    ["", "light", "Only the exposure of the image"],
   ] as const) {
     // Another address alone: the page hears of it a moment later, so that the first press may come too early.
     await lab.open(`size=32${settings && "&"}${settings}`);
@@ -372,10 +372,10 @@ test(
     await expect(page.locator("#pose-extra")).toContainText(/Rotation change\??\s*0°/);
     await expect(page.locator("#rotation-chart")).toHaveAttribute(
       "aria-label",
-      /change, deg: from \S+ to 0, zero in \d of \d+ iterations, which a logarithmic axis leaves out\./,
+      /change, deg: from \S+ to 0, zero in \d of \d+ iterations \(not shown on a logarithmic axis\)\./,
     );
     await expect(page.locator("#rotation-chart .still")).toHaveText(
-      /^Zero in \d of \d+ iterations: a logarithmic axis leaves those out\.$/,
+      /^Zero in \d of \d+ iterations \(not shown on a logarithmic axis\)\.$/,
     );
   },
 );

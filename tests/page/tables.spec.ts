@@ -24,7 +24,7 @@ test("the navigation leads to the Tables and back, and the Lab keeps its setting
   await lab.open("surface=vase");
   await page.getByRole("link", { name: "Tables" }).click();
   await expect(page.getByRole("heading", { name: "The paper's tables, computed here" })).toBeVisible();
-  await expect(page.getByText("here the built-in bust stands in")).toBeVisible();
+  await expect(page.getByText("our built-in bust stands in for it")).toBeVisible();
   await expect(page.getByRole("button", { name: "Play" })).toBeHidden();
   await expect(page).toHaveURL(/#tables&show=table1/);
   // The Lab's keys rest.

@@ -9,7 +9,7 @@ import { colourPng, depthPng } from "./uploads";
 
 async function press(lab: Lab, name: string): Promise<Download> {
   const waiting = lab.page.waitForEvent("download");
-  await lab.page.getByRole("group", { name: "Take away" }).getByRole("button", { name, exact: true }).click();
+  await lab.page.getByRole("group", { name: "Download" }).getByRole("button", { name, exact: true }).click();
   return waiting;
 }
 
@@ -133,7 +133,7 @@ test("any picture of the page, the clouds and the curves among them", LONG, asyn
     "Normals",
     "Refined depth",
     "Colour residual",
-    "Both surfaces, one laid onto the other",
+    "The two surfaces, overlaid",
     "Objective",
     "Rotation change",
   ])
@@ -194,7 +194,7 @@ test("the report opens by itself, offline, with the numbers, options, pictures a
   expect(Math.abs(said - Number(beta?.replace("−", "-")))).toBeLessThan(0.0051);
   for (const words of [
     "Iterations",
-    "not over: iteration 1",
+    "not finished: iteration 1",
     "Colour camera: Encoding",
     "Start",
     "identity",
@@ -249,12 +249,12 @@ test("a line puts one figure, as it is set, into another page", async ({ page, c
   await page.goto("./#learn&at=pixel&beta=40");
   await expect(page.locator(".learn-figure")).toHaveAttribute("aria-busy", "false");
   await page.getByRole("button", { name: "Embed" }).click();
-  const line = await page.getByLabel("Line for another page").inputValue();
+  const line = await page.getByLabel("HTML that shows the figure").inputValue();
   expect(line).toMatch(
-    /^<iframe src="[^"<>]+" title="1\. What a pixel knows" width="\d+" height="\d+" loading="lazy"><\/iframe>$/,
+    /^<iframe src="[^"<>]+" title="1\. What a pixel shows" width="\d+" height="\d+" loading="lazy"><\/iframe>$/,
   );
   await page.locator('.learn-controls input[name="beta"]').fill("55");
-  await expect(page.getByLabel("Line for another page")).toHaveValue(/beta=55/);
+  await expect(page.getByLabel("HTML that shows the figure")).toHaveValue(/beta=55/);
 
   const elsewhere = await context.newPage();
   await elsewhere.route("**/elsewhere.html", (route) =>

@@ -21,7 +21,7 @@ test(
     await expect(page.locator("#clouds-note")).toBeHidden();
     const canvas = page.locator("#clouds-canvas");
     // What tilts them is said where they are.
-    await expect(page.getByText("one finger turns, two tilt")).toBeVisible();
+    await expect(page.getByText("one finger rotates, two tilt")).toBeVisible();
     const hand = await context.newCDPSession(page);
     const scrolled = () => page.evaluate(() => scrollY);
 

@@ -1,4 +1,4 @@
-/** What is known of the pixel that is looked at, in a card of one size that lies over the page, away from the pointer. */
+/** The values at the selected pixel, in a card of fixed size over the page, away from the pointer. */
 
 import { byId, make } from "../dom";
 import type { Opened, Probed } from "../engine/protocol";
@@ -46,7 +46,7 @@ export class Card {
     );
     this.#element.append(this.#where, make("table", {}, make("tbody", {}, ...rows)));
     probe.listen(() => this.#show());
-    // Away from what is looked at, so that it never lies over it.
+    // Away from the selected pixel, so that the card never covers it.
     document.addEventListener("pointermove", ({ clientX, clientY }) => this.#moveAway(clientX, clientY));
     // Fingers leave nothing when they go, and scroll where they have begun on a picture.
     document.addEventListener("pointercancel", () => probe.point(null));

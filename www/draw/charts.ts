@@ -79,24 +79,24 @@ export class Chart {
     );
   }
 
-  /** Where a single curve has gaps, and why. */
+  /** Notes where a single curve has gaps, and why. */
   #sayZeros(values: readonly (number | null)[], pinned: readonly (number | null)[]): void {
     const isDrawn = [...values, ...pinned].some((value) => value !== null && value > 0);
     const zeros = zerosIn(values);
     this.#still.hidden = this.#lines.length > 1 || (isDrawn ? !zeros : !values.includes(0) && !pinned.includes(0));
     this.#still.toggleAttribute("data-some", isDrawn);
     this.#still.textContent = isDrawn
-      ? `${zeros.charAt(0).toUpperCase()}${zeros.slice(1)}: a logarithmic axis leaves those out.`
-      : "No change in any iteration: a logarithmic axis has no zero.";
+      ? `${zeros.charAt(0).toUpperCase()}${zeros.slice(1)} (not shown on a logarithmic axis).`
+      : "No change in any iteration (a logarithmic axis cannot show zero).";
   }
 
-  /** uPlot draws on a canvas and has to be told the theme's colours anew. */
+  /** uPlot draws on a canvas, which does not follow a change of theme by itself. */
   recolour(): void {
     this.#plot.build();
     this.#plot.begin();
   }
 
-  /** Its first drawing, a task of its own: by then the browser has styled and laid out what was built. */
+  /** Its first drawing, as a separate task: by then the browser has styled and laid out what was built. */
   begin(): void {
     this.#plot.begin();
   }
@@ -105,13 +105,13 @@ export class Chart {
 const optional = <T>(given: T | undefined, value: (given: T) => number): number | null =>
   given === undefined ? null : value(given);
 
-/** Of how many iterations a value is zero, in words; empty where it is in none. */
+/** In how many iterations a value is zero, in words; empty if in none. */
 function zerosIn(values: readonly (number | null)[]): string {
   const [known, zeros] = [values.filter((value) => value !== null), values.filter((value) => value === 0)];
   return zeros.length > 0 ? `zero in ${zeros.length} of ${known.length} iterations` : "";
 }
 
-/** A chart for those who cannot see it: where each curve began and where it is, zeros included, of which a logarithm shows none. */
+/** A description of a chart for screen readers: the first and the last value of each curve, including zeros, which a logarithmic axis cannot show. */
 function inWords(name: string, lines: readonly Line[], curves: readonly (readonly (number | null)[])[]): string {
   const said = lines.map(({ label }, i) => {
     const all = curves[i] ?? [];
@@ -120,7 +120,7 @@ function inWords(name: string, lines: readonly Line[], curves: readonly (readonl
     if (first === undefined || last === undefined) return `${label}: none yet`;
     if (!values.some((value) => value > 0)) return `${label}: zero throughout`;
     const zeros = zerosIn(values);
-    return `${label}: from ${short(first)} to ${short(last)}${zeros && `, ${zeros}, which a logarithmic axis leaves out`}`;
+    return `${label}: from ${short(first)} to ${short(last)}${zeros && `, ${zeros} (not shown on a logarithmic axis)`}`;
   });
   return `${name} over the iterations. ${said.join("; ")}.`;
 }
@@ -140,7 +140,7 @@ export interface PlotOptions {
   curves: readonly Curve[];
   /** Whether x counts something: then it begins at one and has no ticks in between. */
   whole: boolean;
-  /** Draws nothing before it is told to begin. */
+  /** Draws nothing before `begin` is called. */
   waits?: boolean;
 }
 
@@ -162,7 +162,7 @@ export class Plot {
     if (!options.waits) this.begin();
     this.#observer = new ResizeObserver(() => {
       const size = this.#size();
-      // The first time it is told what it was built with.
+      // The first size it reports is the one it was built with.
       if (!this.#begin && size.width !== this.#plot?.width) this.#plot?.setSize(size);
     });
     this.#observer.observe(box);
@@ -188,7 +188,7 @@ export class Plot {
       : 0;
     this.#newest = ys.map((values) => values.findLast((value) => value !== null) ?? null);
     this.#data = [xs.slice(first), ...curves.map((values) => values.slice(first))];
-    // At once: what uPlot puts off to the end of the task is drawing that no painter can see the time of.
+    // Immediately: uPlot would otherwise draw at the end of the task, where the painter cannot measure the time.
     this.#plot?.batch(() => this.#plot?.setData(this.#data));
   }
 
@@ -231,7 +231,7 @@ export class Plot {
             spanGaps: !whole,
             // Where there are few, each was measured and deserves a dot; a line alone needs two.
             points: { show: ({ data }: uPlot) => !whole || data[0].length < FEW },
-            // The newest value, until the pointer asks for another.
+            // The newest value, unless the pointer selects another.
             value: (_: uPlot, value: number | null | undefined, index: number, at: number | null) => {
               const shown = at === null ? this.#newest[index - 1] : value;
               return typeof shown === "number" ? short(shown) : "–";

@@ -1,4 +1,7 @@
-/** Both surfaces in the colour view's frame, to be turned by hand. Loaded when first seen: three.js outweighs all the rest. */
+/**
+ * Both surfaces in the colour view's frame, which the visitor can rotate. Loaded when first visible, because three.js is larger than
+ * everything else.
+ */
 
 import { Matrix4, OrthographicCamera, Quaternion, Sphere, TOUCH, Vector3 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
@@ -13,7 +16,7 @@ import type { Change, PinnedSurfaces } from "./stage";
 const SWING = 220;
 
 const SIDES = ["image", "depth"] as const;
-/** How near, in CSS pixels, a point has to be to be pointed at. */
+/** The largest distance, in CSS pixels, at which the pointer selects a point. */
 const REACH = 10;
 /** What is nearer by a tenth of the depth that is drawn is taken before what is nearer on the screen. */
 const IN_FRONT = 5;
@@ -26,7 +29,7 @@ const OTHER_SIZE = 1.5;
 /** How far, in half windows, what is drawn may reach, and how much room is then made: what grows at every step is not to be followed at each. */
 const EDGE = 0.98;
 const ROOM = 1.08;
-/** The image's surface can be anything before the loop has settled: no more room is made than for so many times the depth map's. */
+/** Before the loop has converged the image's surface may be far off, so the view makes room for at most this multiple of the depth map's size. */
 const MOST_ROOM = 1.8;
 const NOWHERE = new Matrix4();
 
@@ -41,7 +44,7 @@ export class Clouds {
   readonly #camera = new OrthographicCamera();
   readonly #controls: OrbitControls;
   readonly #renderer: Renderer;
-  /** Of the box, as the browser tells it after a layout: to ask for it in between would have the page laid out twice a frame. */
+  /** The size of the box as reported after a layout: reading it in between would force a second layout in each frame. */
   #size = { width: 0, height: 0 };
   readonly #resized = new ResizeObserver((entries) => {
     const { width, height } = entries.at(-1)?.contentRect ?? this.#size;
@@ -52,7 +55,7 @@ export class Clouds {
   #next: Change | undefined;
   #drawing = false;
   #shown: Change["surfaces"];
-  /** How much room they take up. */
+  /** Their extent. */
   #extent: Sphere | undefined;
   /** The pose that the depth map's points come with, and where they stand now. */
   #pose: Matrix4 | undefined;
@@ -321,7 +324,7 @@ export class Clouds {
     this.#placeMarks();
   }
 
-  /** Draws one thing after the other; what comes faster than it can be drawn is passed over. */
+  /** Draws one state after the other; states that arrive faster than they can be drawn are skipped. */
   #change(change: Change): void {
     this.#next = { ...this.#next, ...change };
     if (!this.#drawing) void this.#drawAll();
@@ -329,7 +332,7 @@ export class Clouds {
 
   async #drawAll(): Promise<void> {
     this.#drawing = true;
-    // To hand the surfaces over is a task of its own, as long as that of looking at them.
+    // Handing the surfaces over is a separate task; it takes as long as reading them.
     await nextTask();
     while (this.#next) {
       const next = this.#next;
@@ -352,7 +355,7 @@ function partsOf(matrix: Matrix4): Parts {
   return parts;
 }
 
-/** The depth map was measured; the image's surface stands in where there is none. */
+/** The depth map was measured; the image's surface is used where it has no value. */
 const boundsOf = ({ depth, image }: Record<Side, Surface>): Sphere | undefined =>
   extent(depth.points) ?? extent(image.points);
 

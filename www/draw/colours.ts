@@ -1,10 +1,10 @@
-/** From numbers to pixels, for what `Estimator.draw` has no layer for: inputs, colours, errors, the lessons' own fields. */
+/** From numbers to pixels, for views without a layer in `Estimator.draw`: inputs, colours, errors, the lessons' own fields. */
 
 import type { Picture, Range, Raster } from "../engine/protocol";
 
 export type MapName = "viridis" | "magma";
 
-/** Every fifteenth of the 256 colours that the module paints with (matplotlib's maps); straight lines in between are within five levels. */
+/** Every fifteenth of the 256 colours that the library uses (matplotlib's maps); linear interpolation in between is accurate to five levels. */
 const STOPS: Record<MapName, readonly string[]> = {
   viridis:
     "440154 481769 472a7a 433d84 3d4e8a 355e8d 2e6d8e 297b8e 23898e 1f978b 21a585 2eb37c 46c06f 65cb5e 89d548 b0dd2f d8e219 fde725".split(

@@ -1,4 +1,4 @@
-/** Numbers for people: few digits, and always the same number of them in one place. */
+/** Numbers for display: few digits, and always the same number of them in one place. */
 
 /** About four significant digits, without an exponent where a reader would not want one. */
 export function short(value: number): string {

@@ -1,4 +1,4 @@
-/** What a view showed in the pinned run, over what it shows now: the style sheet cuts it where the wipe stands. */
+/** The picture of the pinned run over the present one; the style sheet cuts it at the position of the wipe. */
 
 import { make } from "../dom";
 import type { Painted } from "../engine/protocol";

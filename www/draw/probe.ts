@@ -1,4 +1,4 @@
-/** The pixel that is being looked at, and its counterpart in the other view. Shared by all pictures and the surfaces. */
+/** The selected pixel and its counterpart in the other view. Shared by all pictures and the surfaces. */
 
 import type { Pixel, Probed, Side } from "../engine/protocol";
 
@@ -7,7 +7,7 @@ export interface Asked {
   pixel: Pixel;
 }
 
-/** Answers, or nothing where there is none to be had. */
+/** Answers, or nothing if no answer is available. */
 type Ask = (asked: Asked) => Promise<Probed | undefined>;
 
 const isSame = (a: Asked | null, b: Asked | null): boolean =>
@@ -25,12 +25,12 @@ export class Probe {
     this.#ask = ask;
   }
 
-  /** What the answer says is of a moment ago while the next is under way. */
+  /** While the next answer is under way, the present one may be out of date. */
   get answer(): Probed | null {
     return this.#answer;
   }
 
-  /** Where it stands in a view: where it is asked for at once, in the other one as the answer says. */
+  /** Its position in a view: in the selecting view immediately, in the other one once the answer has come. */
   at(side: Side): Pixel | null {
     if (!this.#asked) return null;
     return this.#asked.side === side ? this.#asked.pixel : (this.#answer?.pixels[side] ?? null);
@@ -53,7 +53,7 @@ export class Probe {
     if (this.#asked) void this.#follow();
   }
 
-  /** One question at a time; of those that come meanwhile the last counts. */
+  /** One request at a time; of later ones only the last counts. */
   async #follow(): Promise<void> {
     this.#isStale = true;
     if (this.#isBusy) return;

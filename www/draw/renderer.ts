@@ -1,4 +1,4 @@
-/** What draws the clouds: a thread of its own where the browser lets one, or else the page. */
+/** Draws the clouds in a separate thread if the browser supports it, otherwise on the page. */
 
 import { onGone } from "../engine/alive";
 import { nextTask } from "../dom";
@@ -11,7 +11,7 @@ export interface Renderer {
 }
 
 export interface CloudsHooks {
-  /** WebGL was taken away, or is back. */
+  /** WebGL was suspended, or has returned. */
   onLost(lost: boolean): void;
   /** Nothing will be drawn any more. */
   onGone(): void;
@@ -20,10 +20,10 @@ export interface CloudsHooks {
 /** Rejects where the browser has no WebGL. */
 export async function rendererFor(canvas: HTMLCanvasElement, hooks: CloudsHooks): Promise<Renderer> {
   if (!("transferControlToOffscreen" in canvas)) return here(canvas, hooks);
-  // The page stands still while a thread is made: in a task with nothing else.
+  // Creating a thread blocks the page, so it is a separate task.
   await nextTask();
   const thread = new Thread(hooks);
-  // The thread tries, not the page: whoever asks for WebGL waits for the browser's process that draws.
+  // The thread tries, not the page: a request for WebGL waits for the browser's graphics process.
   if (await thread.ask("can you draw?")) return elsewhere(thread, canvas);
   thread.end();
   return here(canvas, hooks);
@@ -36,7 +36,7 @@ async function elsewhere(thread: Thread, canvas: HTMLCanvasElement): Promise<Ren
   throw new Error("no WebGL in a thread");
 }
 
-/** It answers whatever it is sent; once it is over nothing is drawn, and nobody is kept waiting for it. */
+/** It answers every message; once it has ended nothing is drawn, and all waiting callers are released. */
 class Thread implements Renderer {
   readonly #worker = new Worker(new URL("./stage-thread.ts", import.meta.url), { type: "module" });
   #isOver = false;

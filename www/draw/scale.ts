@@ -12,7 +12,7 @@ export class Scale {
   readonly #onChange: () => void;
   #legends: { min: HTMLInputElement; max: HTMLInputElement; auto: HTMLButtonElement; unit: HTMLElement }[] = [];
 
-  /** `onChange` is called when every view on this scale has to be painted again. */
+  /** `onChange` is called when every view on this scale has to be redrawn. */
   constructor(map: MapName, onChange: () => void) {
     this.#map = map;
     this.#onChange = onChange;
@@ -23,7 +23,7 @@ export class Scale {
     return this.#isFixed ? this.#range : undefined;
   }
 
-  /** The range that was painted with. */
+  /** The range of the last drawing. */
   follow(range: Range): void {
     if (this.#isFixed) return;
     this.#range = range;

@@ -1,4 +1,4 @@
-/** The thread that draws the clouds: a page that waits for its own WebGL drawing answers no press meanwhile. */
+/** The thread that draws the clouds, because WebGL drawing on the page would block it. */
 
 import "../engine/hold";
 import { CloudStage, type Asked, type Told } from "./stage";

@@ -1,4 +1,4 @@
-/** Draws both surfaces, as points or shaded. It needs no page, so that a thread of its own can do it. */
+/** Draws both surfaces, as points or shaded. It does not use the page, so that it can run in a separate thread. */
 
 import {
   AmbientLight,
@@ -35,7 +35,7 @@ export interface Sight {
   projection: number[];
 }
 
-/** What is drawn anew; the rest stays as it was. */
+/** The parts that change; the others stay. */
 export interface Change {
   surfaces?: Record<Side, Surface>;
   sight?: Sight;
@@ -43,7 +43,7 @@ export interface Change {
   style?: "points" | "surfaces";
   /** Where the depth map's surface stands beside its own pose, column by column. */
   swing?: number[];
-  /** Another run's surfaces, which are seen left of the wipe; nothing takes them away. */
+  /** The surfaces of the pinned run, shown left of the wipe. */
   pinned?: PinnedSurfaces | null;
   /** How they are brought to where those of the present run stand. */
   pinnedPlace?: number[];
@@ -76,11 +76,11 @@ export class CloudStage {
   #wipe = 0;
   #sight: Sight | undefined;
 
-  /** Throws where the browser has no WebGL. A browser may take it away for a while, which is told; what there was is drawn again afterwards. */
+  /** Throws if the browser has no WebGL. A browser may suspend WebGL for a while; that is reported, and the scene is drawn again afterwards. */
   constructor(canvas: NonNullable<WebGLRendererParameters["canvas"]>, onLost: (lost: boolean) => void) {
     // Points are squares: smoothing their edges costs a browser without a graphics card half of its time.
     this.#renderer = new WebGLRenderer({ canvas, alpha: true });
-    // Heard after the renderer, which asks for the context back and makes itself anew.
+    // Runs after the renderer's listener, which requests the context again and rebuilds its state.
     canvas.addEventListener("webglcontextlost", () => onLost(true));
     canvas.addEventListener("webglcontextrestored", () => {
       this.show({});
@@ -151,7 +151,7 @@ export class CloudStage {
     this.#camera.matrixWorldInverse.copy(this.#camera.matrixWorld).invert();
     this.#camera.projectionMatrix.fromArray(projection);
     this.#camera.projectionMatrixInverse.copy(this.#camera.projectionMatrix).invert();
-    // A lamp above the eye's left shoulder: shapes are read best by it.
+    // A lamp from the upper left, under which shape is perceived best.
     this.#lamp.position.set(-0.5, 0.7, 1).transformDirection(this.#camera.matrixWorld);
     this.#sight = sight;
   }

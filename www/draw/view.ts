@@ -1,4 +1,4 @@
-/** One canvas with its caption, legend and the value under the pointer. What it shows comes painted. */
+/** One canvas with its caption, legend and the value under the pointer. It receives finished bitmaps. */
 
 import { make } from "../dom";
 import { VIEWS, type Painted, type Pixel, type Side, type ViewName } from "../engine/protocol";
@@ -14,7 +14,7 @@ export type Content = { kind: "picture"; legend: string } | { kind: "normals" } 
 export interface ViewOptions {
   name: ViewName;
   title: string;
-  /** What the picture shows, for those who cannot see it. */
+  /** A description of the picture for screen readers. */
   description: string;
   content: Content;
   probe: Probe;
@@ -26,7 +26,7 @@ export class View {
   readonly #options: ViewOptions;
   readonly #side: Side;
   readonly #canvas: HTMLCanvasElement;
-  /** Asked for before the canvas is on the page: later the browser would style the whole page first, in the midst of a frame. */
+  /** Requested before the canvas is on the page: later the browser would first restyle the whole page, in the middle of a frame. */
   readonly #context: CanvasRenderingContext2D | null;
   readonly #readout = make("span", { class: "readout" });
   readonly #dot = make("span", { class: "dot", hidden: true });
@@ -66,7 +66,7 @@ export class View {
       // A finger has to leave for what it has touched to be read.
       if (pointerType !== "touch") this.#point(null);
     });
-    // Whoever moves it by keys hears what it says; a pointer would make it talk without end.
+    // Announced when moved by keys; with a pointer the announcements would never end.
     this.#canvas.addEventListener("focus", () => this.#readout.setAttribute("role", "status"));
     this.#canvas.addEventListener("blur", () => {
       this.#readout.removeAttribute("role");
@@ -76,7 +76,7 @@ export class View {
   }
 
   show(painted: Painted, unit?: string): void {
-    // One that was overtaken before it could be drawn.
+    // A frame that was superseded before it could be drawn.
     this.#painted?.bitmap.close();
     this.#painted = painted;
     if (unit !== undefined) {
@@ -99,7 +99,7 @@ export class View {
     this.#showProbe();
   }
 
-  /** Keeps what is shown, to be wiped over what comes. */
+  /** Keeps the present picture, for the wipe over later ones. */
   pin(): void {
     if (this.#painted) this.#pinned.keep(this.#painted);
   }

@@ -1,17 +1,18 @@
 /**
- * Says when a worker is gone without a word. No event tells of one that the browser ends for want of memory, and whoever waits for its answer waits
- * for ever. So a worker holds a lock (Web Locks) for as long as it lives, and the page waits for that lock. Where there are no locks, as on pages
- * that are not served over https, nothing is told.
+ * Detects a worker that has ended silently. No event is fired when the browser ends a worker for lack of memory, and a caller would wait
+ * for its answer forever. So a worker holds a lock (Web Locks) for as long as it lives, and the page waits for that lock. Where there are
+ * no locks, as on pages
+ * that are not served over https, an end is not noticed.
  */
 
-/** What a worker says first: the name of its lock. */
+/** The first message of a worker: the name of its lock. */
 export interface Holding {
   holds: string;
 }
 
 const isHolding = (data: unknown): data is Holding => typeof data === "object" && data !== null && "holds" in data;
 
-/** To be called before the worker has another listener; also told of an end by the page's own hand. */
+/** Must be called before the worker has another listener. It also learns when the page itself ends the worker. */
 export function onGone(worker: Worker, tell: () => void): void {
   worker.addEventListener("message", (event) => {
     if (!isHolding(event.data)) return;
@@ -21,4 +22,4 @@ export function onGone(worker: Worker, tell: () => void): void {
 }
 
 /** The words for it. */
-export const GONE = "the thread that computed was ended, as browsers do where memory is short";
+export const GONE = "the browser ended the computing thread, probably because memory ran short";

@@ -1,19 +1,19 @@
-/** Paints one view: the module's layers by the module, what it has no layer for by the page. What is painted leaves the worker as a bitmap. */
+/** Draws one view: the module draws its layers, the page everything else. The result leaves the worker as a bitmap. */
 
 import type { DrawOptions, Estimator, Layer } from "../../pkg/index.js";
 import type { Painted, Surface } from "./protocol";
 import { gridOf, type Cut } from "./rasters";
 
 export function contextOf(width: number, height: number): OffscreenCanvasRenderingContext2D {
-  // It is written to and read from pixel by pixel, which a graphics card is bad at.
+  // It is written and read pixel by pixel, which is slow on a graphics card.
   const context = new OffscreenCanvas(width, height).getContext("2d", { willReadFrequently: true });
-  if (!context) throw new Error("This browser draws nothing in a worker.");
+  if (!context) throw new Error("This browser cannot draw in a worker.");
   return context;
 }
 
 export class ViewCanvas {
   readonly #frame: Omit<Painted, "bitmap">;
-  /** The drawn part, and all of the view, for the module to paint. */
+  /** The drawn part, and the whole view, for the module to draw into. */
   readonly #part: OffscreenCanvasRenderingContext2D;
   #whole: OffscreenCanvasRenderingContext2D | undefined;
 

@@ -1,4 +1,4 @@
-/** All that is seen of one experiment: its pictures and its surfaces. Runs in the worker. */
+/** All drawings of one experiment: its pictures and its surfaces. Runs in the worker. */
 
 import type { ColorImage, DepthMap, Estimator, Layer, Pose, Sample } from "../../pkg/index.js";
 import { automaticRange, paintLog, paintPicture, paintScalar, type MapName } from "../draw/colours";
@@ -38,7 +38,7 @@ const TEXTURE_OF: Record<Texture, Partial<Record<Side, ViewName>>> = {
   residual: { image: "residual" },
 };
 
-/** The input of a run, and what comes out of it. */
+/** The input of a run and its results. */
 export interface Run {
   image: ColorImage;
   depth: DepthMap;
@@ -52,12 +52,12 @@ export class ViewPainter {
   readonly #canvases: Record<Side, ViewCanvas>;
   readonly #picture: ImageData;
   readonly #errors: Errors | undefined;
-  /** Those that were painted last. */
+  /** The views that were drawn last. */
   errors: Partial<Record<ErrorName, Raster>> = {};
-  /** How the given depth was painted last: it is the same until its range changes. */
+  /** How the given depth was drawn last: it stays the same until its range changes. */
   #given: Range | undefined;
 
-  /** `truth` is what a sample is measured against. */
+  /** `truth` is the ground truth of a sample. */
   constructor({ image, depth }: Pick<Run, "image" | "depth">, truth?: Sample["truth"]) {
     this.#cuts = { image: cutOfImage(image), depth: cutOfDepth(depth) };
     this.#canvases = { image: new ViewCanvas(this.#cuts.image), depth: new ViewCanvas(this.#cuts.depth) };
@@ -70,7 +70,7 @@ export class ViewPainter {
     return this.#canvases.image.picture(this.#picture).take();
   }
 
-  /** Everything, but for what stays as it was unless it is asked for `anew`. */
+  /** Everything, except views that have not changed, unless `anew` is set. */
   show(run: Run, look: Look, poses: { points: Pose; seen: Pose }, anew: boolean): Drawings {
     const { estimator, numbers, depth } = run;
     const [imageDepth, refined] = [numbers.of("imageDepth"), numbers.of("refinedDepth")];

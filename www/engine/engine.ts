@@ -3,7 +3,7 @@
 import { GONE, onGone } from "./alive";
 import type { Answer, Calls, Fault, Kind } from "./protocol";
 
-/** A refusal or failure of the library, as the page sees it. */
+/** An error of the library as the page receives it. */
 export class EngineError extends Error {
   readonly code: string;
   readonly field: string | undefined;
@@ -21,7 +21,7 @@ export class EngineError extends Error {
 /** How long, in milliseconds, a new request waits for the reply to an old one before the worker is replaced. */
 const LONGEST_WAIT = 400;
 
-/** The code of a worker that has ended without a word. */
+/** The code of a worker that has ended silently. */
 export const LOST = "lost";
 
 interface Pending {
@@ -30,7 +30,7 @@ interface Pending {
 }
 
 export interface EngineHooks {
-  /** Told how many bytes of the module have arrived. */
+  /** Called with the number of bytes of the module that have arrived. */
   onLoad(bytes: number): void;
   /** The worker is gone, and with it the input that it held; calls under way are rejected with the same error. */
   onLost(error: EngineError): void;
@@ -64,12 +64,12 @@ export class Engine {
     });
   }
 
-  /** Resolves when nothing is under way any more. What takes too long is broken off, and its promise rejected. */
+  /** Resolves when nothing is under way any more. A request that takes too long is cancelled, and its promise rejected. */
   async interrupt(): Promise<void> {
     if (this.#pending.size === 0) return;
     const rest = new Promise<void>((resolve) => this.#resting.push(resolve));
     const late = setTimeout(() => {
-      if (this.#loaded) this.#drop({ code: "interrupted", message: "broken off for something newer", fatal: false });
+      if (this.#loaded) this.#drop({ code: "interrupted", message: "cancelled by a newer request", fatal: false });
     }, LONGEST_WAIT);
     await rest;
     clearTimeout(late);
@@ -78,7 +78,7 @@ export class Engine {
   #spawn(): Worker {
     const worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
     onGone(worker, () => {
-      if (worker === this.#worker) this.#drop({ code: LOST, message: `The run broke off: ${GONE}.`, fatal: true });
+      if (worker === this.#worker) this.#drop({ code: LOST, message: `The run stopped: ${GONE}.`, fatal: true });
     });
     // What a worker said before its end may arrive after it.
     worker.onmessage = (event: MessageEvent<Answer>) => {

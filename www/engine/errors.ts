@@ -1,4 +1,4 @@
-/** How far what was found is from the truth of a sample, pixel by pixel. Runs in the worker. */
+/** Errors of the results against the ground truth of a sample, pixel by pixel. Runs in the worker. */
 
 import type { Sample } from "../../pkg/index.js";
 import { quantile, someSorted } from "../draw/colours";
@@ -33,7 +33,7 @@ function distances(found: Float32Array, truth: Float32Array, isFree: boolean): F
   return apart;
 }
 
-/** A sample's truth where it is drawn, and what was found beside it. */
+/** The ground truth of a sample in the drawn region, and the results. */
 export class Errors {
   readonly #cuts: Record<Side, Cut>;
   readonly #truth: Record<ErrorName, Raster>;

@@ -5,7 +5,7 @@ import type { Holding } from "./alive";
 /** Another one for each worker of all tabs. */
 const name = `bimodal-stereo ${performance.timeOrigin} ${Math.random()}`;
 
-// Where there are none the page does without.
+// The page works without locks, too.
 navigator.locks
   ?.request(name, () => {
     self.postMessage({ holds: name } satisfies Holding);

@@ -62,7 +62,10 @@ export interface Picture extends Raster {
   encoded: boolean;
 }
 
-/** Points of one view where its pixels are: every `stride`-th of the full grid from `left`, `top` on, NaN where there is none. Without a width they are a mere list. */
+/**
+ * Points of one view where its pixels are: every `stride`-th of the full grid from `left`, `top` on, NaN where missing. Without a width
+ * they are an unordered list.
+ */
 export interface Surface {
   left: number;
   top: number;
@@ -164,7 +167,7 @@ export interface Opened {
   trueLight: KnownLight | null;
   /** Whether there is a truth to compare shapes with. */
   measured: boolean;
-  /** What a saved run had been told. */
+  /** The options of a saved run. */
   options: Options | null;
   frame: Frame;
 }
@@ -237,7 +240,7 @@ export interface Fault {
   message: string;
   field?: string;
   details?: ErrorDetails;
-  /** After a panic the instance is suspect, and without its module it is none: the worker has to be replaced. */
+  /** After a panic the instance is suspect, and without its module it cannot work: the worker has to be replaced. */
   fatal: boolean;
 }
 

@@ -4,7 +4,7 @@ import type { ColorImage, DepthMap } from "../../pkg/index.js";
 import { quantile, someSorted } from "../draw/colours";
 import type { Picture, Raster, Surface } from "./protocol";
 
-/** Longest side of a drawn view in pixels: all canvases together are painted within one frame. */
+/** Longest side of a drawn view in pixels: all canvases together are drawn within one frame. */
 const LONGEST = 512;
 
 /** Most points of a drawn cloud. */
@@ -116,7 +116,7 @@ export function picture(image: ColorImage, cut: Cut): Picture {
   return { ...drawn, white, encoded };
 }
 
-/** How far white is above the middle of log colours, at least: those of one paint, zero everywhere, are a middle grey. */
+/** The least distance of white from the middle of log colours: a single albedo, zero everywhere, is shown as middle grey. */
 const LEAST_WHITE = Math.LN2;
 /** Share of the numbers that are no brighter than white: single ones must not darken everything else. */
 const UP_TO_WHITE = 0.99;
@@ -137,7 +137,7 @@ export function depthAt({ data, points, mask, unit, camera }: DepthMap): (index:
   };
 }
 
-/** The mask, because refinement fills holes within it; where there is none, what was measured. */
+/** The mask, because refinement fills holes within it; without a mask, the measured pixels. */
 export function cutOfDepth(depth: DepthMap): Cut {
   const { width, height, mask } = depth;
   const at = depthAt(depth);

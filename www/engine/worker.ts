@@ -71,7 +71,7 @@ const MOST_WORKERS = 4;
 
 function resolve({ light, start, ...rest }: LabOptions, input: Input): Options {
   if (start === "truth" && !input.truth) {
-    throw new BimodalError("option", "options.start: the true pose is known of a sample alone", "options.start");
+    throw new BimodalError("option", "options.start: the true pose is known only for a sample", "options.start");
   }
   return {
     ...rest,
@@ -250,7 +250,7 @@ function answer(request: Request): Promise<Calls[Kind]["reply"]> | Calls[Kind]["
   }
 }
 
-/** Every array and picture of a reply is a copy of its own, so all of them may be transferred. */
+/** Every array and picture of a reply is a separate copy, so all of them may be transferred. */
 function belongings(value: unknown, found = new Set<Transferable>()): Set<Transferable> {
   if (value instanceof ImageBitmap) found.add(value);
   else if (ArrayBuffer.isView(value)) {

@@ -1,4 +1,4 @@
-/** The panel of both surfaces: what draws them is loaded when they are first seen; where it can't draw, the panel says why. */
+/** The panel of both surfaces. The code that draws them is loaded when they are first visible; if it cannot draw, the panel says why. */
 
 import type { Pose } from "../../pkg/index.js";
 import type { Clouds } from "../draw/clouds";
@@ -7,10 +7,10 @@ import type { Probe } from "../draw/probe";
 import { byId, make } from "../dom";
 import type { Drawings } from "../engine/protocol";
 
-const NONE = "This browser offers no WebGL, so the clouds cannot be turned here.";
-const LOST =
-  "The browser has taken the graphics away (WebGL), so the clouds stand still until it gives them back. All else goes on.";
-const GONE = "What draws the clouds was ended twice; a reload of the page brings them back. All else goes on.";
+const NONE = "This browser has no WebGL, so the surfaces cannot be rotated here.";
+const LOST = "The browser has suspended WebGL. The surfaces stand still until it returns; everything else continues.";
+const GONE =
+  "The browser ended the drawing thread twice. Reload the page to see the surfaces again; everything else continues.";
 
 export class CloudPanel {
   readonly #box = byId("clouds-box", HTMLElement);
@@ -20,10 +20,10 @@ export class CloudPanel {
   readonly #probe: Probe;
   #clouds: Clouds | undefined;
   #drawings: Drawings | undefined;
-  /** What a pinned run had come to, and how much of the width is its. */
+  /** The surfaces of a pinned run, and its share of the width. */
   #pinned: Drawings | undefined;
   #wipe = 0;
-  /** Whether the surfaces are to be looked at anew. */
+  /** Whether the view is to be reset for the next surfaces. */
   #fresh = true;
   #opened = 0;
 
@@ -55,7 +55,7 @@ export class CloudPanel {
     this.#showAll();
   }
 
-  /** Keeps what is shown, to be seen left of the wipe. */
+  /** Keeps the present surfaces, to be shown left of the wipe. */
   pin(): void {
     this.#pinned = this.#drawings;
     this.#box.toggleAttribute("data-pinned", true);
@@ -74,7 +74,7 @@ export class CloudPanel {
     this.#clouds?.wipe(share);
   }
 
-  /** The depth map's surface under another pose than its own, or its own again. */
+  /** Shows the depth map's surface in another pose, or in the estimated one again. */
   pretend(pose: Pose | undefined): void {
     this.#clouds?.pretend(pose);
   }
@@ -83,7 +83,7 @@ export class CloudPanel {
     this.#clouds?.recolour();
   }
 
-  /** The legend names what is drawn: before the first iteration there is no shape from the picture. */
+  /** The legend names what is drawn: before the first iteration there is no shape from the image. */
   #name(): void {
     const isDrawn = [this.#drawings, this.#pinned].some((drawings) =>
       drawings?.surfaces.image.points.some(Number.isFinite),
@@ -149,7 +149,7 @@ export class CloudPanel {
     });
   }
 
-  /** A canvas that a thread has drawn on is that thread's for ever: another one takes its place, once. */
+  /** A canvas cannot be taken back from the thread that has drawn on it, so a new canvas replaces it, once. */
   #reopen(): void {
     const clouds = this.#clouds;
     if (!clouds) return;

@@ -6,7 +6,7 @@ import type { Settings } from "./settings";
 import { lightText } from "./settings";
 
 export interface CoefficientHooks {
-  /** Told while a slider moves, and once more when it has come to rest; the same `gesture` until it is let go. */
+  /** Called while a slider moves, and once more when it stops; `gesture` stays the same until the slider is released. */
   onLight(patch: Settings, done: boolean, gesture: object): void;
 }
 
@@ -23,7 +23,7 @@ const ORDERS = [
     ],
   },
   {
-    name: "Order 2: opposite sides alike",
+    name: "Order 2: equal on opposite sides",
     of: [
       [4, "xy"],
       [5, "yz"],
@@ -38,7 +38,7 @@ const CHANNELS = ["red", "green", "blue"] as const;
 /** Largest absolute value of a slider: a factor of e² either way, beyond all lights that the module knows; and its step. */
 const MOST = 2;
 const STEP = 0.01;
-/** How long, in milliseconds, a slider rests before what it says is done. */
+/** How long, in milliseconds, a slider rests before its value takes effect. */
 const REST = 200;
 
 export class Coefficients {
@@ -74,10 +74,10 @@ export class Coefficients {
     );
   }
 
-  /** Those of a known light; nothing where there is none. */
+  /** The coefficients of a known light, if any. */
   show(values: ArrayLike<number> | null): void {
     this.element.hidden = values === null;
-    // What a visitor is moving is ahead of what was painted.
+    // While the visitor moves a slider, it is ahead of the drawing.
     if (!values || this.#resting !== undefined) return;
     this.#values = Array.from(values);
     for (const [index, slider] of this.#sliders) slider.value = String(this.#values[index] ?? 0);
@@ -112,7 +112,7 @@ export class Coefficients {
     this.#readout.textContent = `${name}: ${decimals(this.#values[index], 2)}`;
   }
 
-  /** The numbers are those of the light as it is turned, so that no turn is left. */
+  /** The numbers are those of the rotated light, so that the rotation itself is reset. */
   #patch(): Settings {
     return { light: lightText(this.#values), lightTurn: 0, lightTilt: 0 };
   }

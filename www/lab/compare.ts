@@ -1,11 +1,11 @@
-/** A run that is pinned, beside those that come after it: its curves are dashed, its pictures and surfaces lie left of the wipe. */
+/** A pinned run, compared with later runs: its curves are dashed, its pictures and surfaces are left of the wipe. */
 
 import { byId } from "../dom";
 
 export interface CompareHooks {
   onPin(): void;
   onUnpin(): void;
-  /** Share of the width that is the pinned run's. */
+  /** The pinned run's share of the width. */
   onWipe(share: number): void;
 }
 
@@ -25,7 +25,7 @@ export class Compare {
     this.#show();
   }
 
-  /** Lets go of what is pinned. */
+  /** Removes the pinned run. */
   release(): void {
     if (this.#isPinned) this.#pin(false);
   }
@@ -37,7 +37,7 @@ export class Compare {
     this.#show();
   }
 
-  /** What the pinned run had come to. */
+  /** The state of the pinned run. */
   say(words: string): void {
     this.#words.textContent = words;
     this.#words.title = words && `pinned: ${words}`;

@@ -57,7 +57,7 @@ const SEARCH: Text = {
     "<mfrac><mtext>spread of log S</mtext><mtext>noise left</mtext></mfrac>",
   ),
   words:
-    "Where nothing is known of the pose, rotations from all over are tried on a coarse grid, every shift of each at once by a Fourier transform; V counts the points that both views see. The best candidates are registered by their colours; the loop starts from the one that leaves the least noise, and those that explain nearly as much are reported as its rivals. The surface moves to the best candidate so far.",
+    "If nothing is known about the pose, a coarse grid over all rotations is tried; a Fourier transform evaluates every shift of each at once. V counts the points that both views see. Photometric registration refines the best candidates. The loop starts from the one with the smallest residual; those that fit almost as well are listed as alternatives. The surface moves to the best candidate so far.",
   source: "Before Algorithm 1; not in the paper",
 };
 
@@ -68,7 +68,7 @@ function light({ lightIsKnown }: Method): Text {
       title: "Light, known",
       formula,
       words:
-        "The 27 numbers L were told and stay as they are; only the exposure of the picture, one offset of its logarithm, is found, along with the normals.",
+        "The 27 numbers L are given and stay fixed. Only the exposure of the image, one offset of its logarithm, is estimated along with the normals.",
       source: "Equations 3 and 5",
     };
   }
@@ -76,7 +76,7 @@ function light({ lightIsKnown }: Method): Text {
     title: "Light",
     formula,
     words:
-      "With the normals held, the logarithm of every colour is linear in 27 numbers L, nine spherical harmonics for each channel. They are fitted by robust least squares; a Gaussian learned from natural lights says which are likely.",
+      "With the normals held, the logarithm of every colour is linear in 27 numbers L, nine spherical harmonics for each channel. Robust least squares fits them, with a Gaussian prior learned from natural lights.",
     source: "Equations 2, 3 and 5",
   };
 }
@@ -94,7 +94,7 @@ function shading({ shading }: Method): Text {
       title: "Shading, pixel by pixel",
       formula: pixel,
       words:
-        "With light and pose held, each pixel of the image looks for the normal that explains its three colours, stays close to the normal that the depth map has at the corresponding point, and has length one. Nothing ties it to its neighbours.",
+        "With light and pose held fixed, the solver finds for each pixel of the image the unit normal that explains its three colours and stays close to the depth map's normal at the corresponding point. Pixels are solved independently of their neighbours.",
       source: "Equations 6 to 9",
     };
   }
@@ -102,7 +102,7 @@ function shading({ shading }: Method): Text {
     title: "Shading, each pixel first",
     formula: pixel,
     words:
-      "With light and pose held, each pixel looks for the normal that explains its three colours and is close to the depth map's. Under nearly white light that leaves many normals open: the surface of the next stage decides between them.",
+      "With light and pose held fixed, the solver finds for each pixel the normal that explains its three colours and is close to the depth map's. Under nearly white light many normals remain possible; the surface of the next stage decides between them.",
     source: "Equations 6 to 9; the surface is not in the paper",
   };
 }
@@ -120,7 +120,7 @@ function surface({ shading }: Method): Text {
       title: "Surface from normals",
       formula: math(slope("x"), o(","), "<mspace width='1em'></mspace>", slope("y")),
       words:
-        "Normals are slopes. The depth whose slopes fit them best, in least squares over the object's pixels, turns the normals of the image into a surface that can be compared with the depth map.",
+        "Normals give slopes. The depth whose slopes fit them best, in least squares over the object's pixels, is a surface that can be compared with the depth map.",
       source: "Equations 4, 10 and 11",
     };
   }
@@ -135,16 +135,16 @@ function surface({ shading }: Method): Text {
       sup(row(o("("), sub(i("z"), i("k")), o("−"), sub(i("z"), i("i")), o("−"), i("g"), o(")")), "<mn>2</mn>"),
     ),
     words:
-      "The unknowns are the heights themselves, so that every normal belongs to one surface. They explain the colours, and follow the slopes g that the pixels' own normals give, each by how well its colours determine it.",
-    source: "In the place of Equations 4, 10 and 11; not in the paper",
+      "The unknowns are the heights themselves, so that every normal belongs to one surface. They are fitted to the colours and to the slopes g of the single pixels' normals, each slope weighted by how well its colours determine it.",
+    source: "Replaces Equations 4, 10 and 11; not in the paper",
   };
 }
 
 function registration({ registration }: Method): Text {
   if (registration === "fixed")
     return {
-      title: "Registration, none",
-      words: "The pose is kept as it was at the start. Shapes and light are found under it.",
+      title: "No registration",
+      words: "The pose stays at its initial value. Shapes and light are estimated for this pose.",
     };
   if (registration === "icp") {
     const P = sub(bold("P"), i("R"));
@@ -155,12 +155,12 @@ function registration({ registration }: Method): Text {
         term(3, sum, squared(bold("P"), o("−"), o("("), i("s"), R, P, o("+"), bold("t"), o(")"))),
       ),
       words:
-        "As in the paper, the depth map's points are moved onto the image's surface: nearest neighbours first, then a robust fit of twelve linear parameters, from which the scale s, the rotation R and the shift t are taken apart.",
+        "As in the paper, the depth map's points are moved onto the image's surface. Nearest neighbours are matched first; then a robust fit of twelve linear parameters is decomposed into the scale s, the rotation R and the translation t.",
       source: "Equations 12 to 16",
     };
   }
   return {
-    title: "Registration by colours",
+    title: "Photometric registration",
     formula: math(
       least(row(i("T"), o(","), i("L"))),
       term(
@@ -184,8 +184,8 @@ function registration({ registration }: Method): Text {
       ),
     ),
     words:
-      "The image's own surface is not asked: the depth map is turned until its normals predict the colours at the places where its points fall, the light following along. ρ discards what disagrees; it starts tolerant and becomes strict. A painted object is compared by the contrast around each place and by its outline instead; then the paint that is found under the pose is taken off, and the pose follows.",
-    source: "In the place of Equations 12 to 14; not in the paper",
+      "The surface recovered from the image is not used here. The depth map is rotated until its normals predict the colours where its points project; the light is re-estimated along the way. ρ rejects outliers; it starts tolerant and becomes strict. An object with varying albedo is compared by local contrast and by its silhouette instead; then the estimated albedo is divided out and the pose is refined again.",
+    source: "Replaces Equations 12 to 14; not in the paper",
   };
 }
 
@@ -200,7 +200,7 @@ const REFINEMENT: Text = {
     o("…"),
   ),
   words:
-    "Where both views overlap, the colours correct the depth map's own normals, and the normals its depth, which is anchored where it was measured: noise goes down and holes are filled. The next iteration starts from the better map.",
+    "Where both views overlap, the colours correct the depth map's normals, and the normals correct its depth, which stays anchored to the measurements. Noise decreases and holes are filled. The next iteration starts from the refined map.",
   source: "Equations 17 to 19",
 };
 
@@ -208,32 +208,32 @@ const terms: Readonly<Record<Term, (method: Method) => Text>> = {
   overlap: () => ({
     title: "Overlap",
     words:
-      "Share of the depth map's pixels that the colour camera sees under this pose. Below 5 % nothing can be said.",
+      "Share of the depth map's pixels that the colour camera sees under this pose. Below 5 % no pose can be judged.",
   }),
   inliers: () => ({
     title: "Inliers",
     words:
-      "Share of these whose colours or distances agree with the pose, as far as the noise explains. Below 40 % the pose is not trusted.",
+      "Share of these pixels whose colours or distances agree with the pose within the noise. Below 40 % the pose is not trusted.",
   }),
   residual: () => ({
     title: "Colour residual",
     formula: math(o("‖"), logS, o("−"), model(n), o("‖")),
     words:
-      "How far the predicted colours are from the image, in natural logarithms: 0.01 is one percent. A robust mean; the view of the same name shows it pixel by pixel.",
+      "Robust mean of the difference between predicted and observed colours, in natural logarithms: 0.01 is one percent. The view of the same name shows it pixel by pixel.",
   }),
   change: ({ registration }) => ({
     title: "Rotation change",
-    words: `By how much the last iteration turned the depth map. ${registration === "icp" ? "ICP ends once it proposes less than the setting Stop below." : "It falls to zero once the registration by colours has settled."}`,
+    words: `The angle by which the last iteration rotated the depth map. ${registration === "icp" ? "ICP ends once the proposed change is smaller than the setting “Stop below”." : "It falls to zero once the photometric registration has converged."}`,
   }),
   sigma: () => ({
     title: "σ, the uncertainty",
     words:
-      "One standard deviation of each part of the pose, from how sharply the colours (or surfaces) determine it. It knows noise, not what the model leaves out: shadows, paint, or a rival pose elsewhere. So a lost pose has none.",
+      "One standard deviation of each part of the pose, from how sharply the colours (or surfaces) determine it. It covers noise, not what the model leaves out: shadows, varying albedo, or an alternative pose far away. A lost pose therefore has none.",
   }),
   weakest: () => ({
     title: "The weakest direction",
     words:
-      "The turn that changes the picture least. More noise, or a rounder object, and it is the first that can't be seen.",
+      "The rotation that changes the image least. With more noise or a rounder object it is the first that can no longer be determined.",
   }),
   objective: () => ({
     title: "The objective",
@@ -249,7 +249,7 @@ const terms: Readonly<Record<Term, (method: Method) => Text>> = {
       term(4, i("g")),
     ),
     words:
-      "ℓ₁: colours against the image's normals. ℓ₂: these against the depth map's. f: distance of both surfaces. g: colours against the depth map's normals as measured. Each is a robust mean; the sum decides whether an iteration is kept.",
+      "ℓ₁: colours against the image's normals. ℓ₂: the image's normals against the depth map's. f: distance between the two surfaces. g: colours against the measured normals of the depth map. Each is a robust mean; the sum decides whether an iteration is kept.",
     source: "Equation 1",
   }),
 };

@@ -1,7 +1,7 @@
 /**
- * Everything the Lab can be told: the form, its errors, undo and the link are all made from this list. What is a member of
- * the library's options comes from the library's own rows, with its default and its words; here is what the Lab makes of
- * several, or of files. An empty number is absent, and so the library's default.
+ * All settings of the Lab. The form, its errors, undo and the link are made from this list. Members of the library's options come from the
+ * library's rows, with their defaults and words; this file adds what the Lab composes of several members or of files. An empty number is
+ * absent, so that the library's default applies.
  */
 
 import { OPTIONS, RENDERED_ALONE, SAMPLE, paths, type PageField, type Rows, type ShownRow } from "../../pkg/options.js";
@@ -15,7 +15,7 @@ interface Common {
   label: string;
   /** One sentence that explains the label. */
   hint?: string;
-  /** What the present choice entails, always in sight. */
+  /** A remark on the present choice, always visible. */
   remark?: (value: Value, source: Origin) => string;
   group: Group;
   /** Path in the library's errors that belongs to this field. */
@@ -36,14 +36,14 @@ export interface ChoiceField extends Common {
   initial: string;
   /** Without choices they come from the library's catalogue. */
   choices?: readonly (readonly [value: string, label: string])[];
-  /** Those that mean something for one origin alone; of the other they are the initial one. */
+  /** Choices that apply to one origin only; for the other the initial choice is used. */
   only?: Readonly<Record<string, Origin>>;
 }
 export interface FlagField extends Common {
   kind: "flag";
   initial: boolean;
 }
-/** Numbers as one line of text, as they are copied from elsewhere. */
+/** Numbers as one line of text, so that they can be pasted. */
 export interface ListField extends Common {
   kind: "list";
   initial: string;
@@ -54,7 +54,7 @@ export type Group = PageField["group"] | "colour" | "depth";
 export type Settings = Readonly<Record<string, Value>>;
 
 export const near = (settings: Settings) => settings.start === "near";
-/** The bare grid is taken as it is: its size follows from the surface, and nothing is rendered that noise could be added to. */
+/** The bare grid has no options of rendering: its size follows from the surface, and it has no noise. */
 export const rendered = (settings: Settings) => settings.protocol !== "grid";
 
 /** The field of a row. */
@@ -164,7 +164,7 @@ export const startField: ChoiceField = {
   initial: "search",
   group: "method",
   path: "options.start",
-  hint: "Search: everywhere. Identity: both views coincide. Near: the angles below. True pose: a sample's own.",
+  hint: "Search: all rotations. Identity: the views coincide. Near: the angles below. True pose: that of the sample.",
   choices: [...Object.entries(OPTIONS.start.words), ["near", "near"], ["truth", "true pose"]],
   only: { truth: "sample" },
 };
@@ -172,13 +172,13 @@ export const startField: ChoiceField = {
 export const fields: readonly Field[] = [
   { kind: "choice", key: "surface", label: "Surface", initial: "bust", group: "sample", path: "sample.surface" },
   { kind: "choice", key: "light", label: "Light", initial: "colourful", group: "sample", path: "sample.light" },
-  lightTurn("lightTurn", "beta", "Light turned", "About the vertical axis, as dragging the ball under the light does."),
+  lightTurn("lightTurn", "beta", "Light turned", "About the vertical axis; dragging the light ball does the same."),
   lightTurn("lightTilt", "alpha", "Light tilted", "About the horizontal axis."),
   {
     kind: "choice",
     key: "size",
     label: "Size",
-    hint: "Of both views: a side, or a camera's whole frame.",
+    hint: "Side length of both views, or a full camera frame.",
     initial: "128",
     group: "sample",
     path: "sample.size",
@@ -198,7 +198,7 @@ export const fields: readonly Field[] = [
     kind: "choice",
     key: "transfer",
     label: "Encoding",
-    hint: "How the file's numbers stand for intensity.",
+    hint: "How the file encodes intensity.",
     initial: "guess",
     group: "colour",
     path: "image.transfer",
@@ -218,7 +218,7 @@ export const fields: readonly Field[] = [
     kind: "number",
     key: "unit",
     label: "Unit",
-    hint: "Metres per stored number; pixels without a camera.",
+    hint: "Metres per stored number; in pixels if there is no camera.",
     initial: null,
     empty: "default",
     group: "depth",
@@ -263,15 +263,14 @@ export const fields: readonly Field[] = [
     group: "method",
     path: "options.light",
     when: (_, source) => source === "sample",
-    remark: (value) =>
-      value === "known" ? "The method is told the sample's own light, up to its exposure." : ESTIMATED,
+    remark: (value) => (value === "known" ? "The sample's light is given, up to its exposure." : ESTIMATED),
     choices: [["known", "known"], ...Object.entries(OPTIONS.light.words)],
   },
   {
     kind: "list",
     key: "coefficients",
     label: "Light",
-    hint: "27 numbers where the light is known: nine for red, for green, for blue.",
+    hint: "27 numbers if the light is known: nine each for red, green and blue.",
     initial: "",
     empty: "estimated",
     group: "method",
@@ -300,7 +299,7 @@ if (Object.keys(defaults).length < fields.length)
 export const isOff = ({ only }: ChoiceField, value: Value, source: Origin): boolean =>
   (only?.[String(value)] ?? source) !== source;
 
-/** What a field comes to: of own files there is no true pose to start from. */
+/** The effective value of a field: own files have no true pose to start from. */
 export const valueOf = (field: Field, settings: Settings, source: Origin): Value =>
   field.kind === "choice" && isOff(field, settings[field.key] ?? null, source)
     ? field.initial

@@ -1,4 +1,4 @@
-/** The thread that makes large files: while it writes a cloud a page answers no press. One request and it is done. */
+/** The thread that makes large files, because writing a cloud would block the page. It serves one request and ends. */
 
 import "../engine/hold";
 import { faultOf } from "../engine/fault";
@@ -42,8 +42,8 @@ async function pack({ kind, taken }: FileRequest): Promise<{ bytes: Uint8Array<A
   switch (kind) {
     case "clouds": {
       const clouds = [
-        tinted("shape from the picture", imagePoints, ORANGE),
-        tinted("depth map, moved by the pose", depthPoints, BLUE),
+        tinted("shape from the image", imagePoints, ORANGE),
+        tinted("depth map in the estimated pose", depthPoints, BLUE),
       ];
       return { bytes: writeClouds(clouds, lengthOf(unit)), says: lengthOf(unit) };
     }

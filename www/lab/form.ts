@@ -48,7 +48,7 @@ export class Form {
     }
   }
 
-  /** Shows only the fields that mean something for this source, and what their present values entail. */
+  /** Shows only the fields that apply to this source, with remarks on their present values. */
   adapt(settings: Settings, source: Origin): void {
     for (const { field, row, remark, inputs, show } of this.#controls.values()) {
       const select = inputs[0];
@@ -120,7 +120,7 @@ export class Form {
   }
 }
 
-/** A title would be out of reach for fingers, so the hint unfolds below its field. */
+/** A title attribute is not accessible by touch, so the hint unfolds below its field. */
 function hintButton(label: string, hint: HTMLElement): HTMLButtonElement {
   const button = make(
     "button",
@@ -147,7 +147,7 @@ function mark({ note, inputs }: Control, message: string, tone: "error" | "note"
   for (const input of inputs) input.toggleAttribute("aria-invalid", tone === "error" && message !== "");
 }
 
-/** Tells of a value; `live` where it comes from a control on the move, and the same `gesture` until that is let go. */
+/** Reports a value; `live` while its control is being moved, with the same `gesture` until the control is released. */
 type Change = (value: Value, live?: boolean, gesture?: object) => void;
 type Built = Pick<Control, "inputs" | "show">;
 
@@ -164,13 +164,13 @@ function build(field: Field, id: string, change: Change): Built {
   }
 }
 
-/** How long, in milliseconds, a slider has to rest before what it says is done. */
+/** How long, in milliseconds, a slider has to rest before its value takes effect. */
 const REST = 200;
 
 function numbers(field: NumberField, id: string, change: Change): Built {
-  // The library judges the numbers, in words that a browser's bubble does not have; so no limits here.
+  // The library checks the numbers and has better messages than the browser, so the inputs have no limits.
   const exact = make("input", { id, type: "number", step: "any", inputmode: "decimal", placeholder: field.empty });
-  // As a slider that has come to rest: what had been played plays again.
+  // Like a slider that has stopped: a run that had been played plays again.
   const read = (input: HTMLInputElement) => change(input.value === "" ? null : input.valueAsNumber, true);
   exact.addEventListener("change", () => read(exact));
   if (!field.slider) return { inputs: [exact], show: (value) => (exact.value = value === null ? "" : String(value)) };

@@ -23,7 +23,7 @@ import {
   type ViewName,
 } from "../engine/protocol";
 
-/** What the pictures need of the worker; nothing comes of it where there is nothing to be seen. */
+/** What the pictures request from the worker; hidden pictures request nothing. */
 export interface GalleryHooks {
   look(look: Look): Promise<Drawings | undefined>;
   probe(asked: Asked): Promise<Probed | undefined>;
@@ -33,7 +33,7 @@ export class Gallery {
   #hooks: GalleryHooks = { look: () => Promise.resolve(undefined), probe: () => Promise.resolve(undefined) };
   readonly #painter = new Painter();
   readonly #box = byId("lab", HTMLElement);
-  /** Share of the width that is the pinned run's; the style sheet begins with as much. */
+  /** The pinned run's share of the width; the style sheet has the same initial value. */
   #wipe = 0.5;
   readonly #figures: HTMLElement[] = [];
   readonly #probe = new Probe((asked) => this.#hooks.probe(asked));
@@ -46,7 +46,7 @@ export class Gallery {
   #charts: readonly Chart[] = [];
   #history: readonly StepReport[] = [];
   #pinned: readonly StepReport[] = [];
-  /** Where the page stood before one view was alone. */
+  /** The scroll position of the page before one view was enlarged. */
   #top = 0;
   #isLooking = false;
   #looksAgain = false;
@@ -62,15 +62,15 @@ export class Gallery {
       return built;
     };
     const scalar = (scale: ScaleName): Content => ({ kind: "scalar", scale: this.#scales[scale] });
-    const picture = view("inputs-views", "picture", "Colour", "the colour image as it was given", {
+    const picture = view("inputs-views", "picture", "Colour", "the colour image as supplied", {
       kind: "picture",
-      legend: "as it was given",
+      legend: "as supplied",
     });
     const imageNormals = view(
       "image-views",
       "imageNormals",
       "Normals",
-      "normals found from shading in the colour image",
+      "normals estimated from the shading of the colour image",
       { kind: "normals" },
     );
     const imageDepth = view(
@@ -84,17 +84,17 @@ export class Gallery {
       "image-views",
       "albedo",
       "Albedo",
-      "paint of the object, the colours without light and shadow",
-      { kind: "picture", legend: "grey if all is one paint" },
+      "albedo of the object: its colours without light and shadow",
+      { kind: "picture", legend: "uniform grey if the object has one colour" },
     );
     const shading = view(
       "image-views",
       "shading",
       "Shading",
-      "what the light makes of the shape, the colours without paint",
-      { kind: "picture", legend: "light on shape" },
+      "the effect of the light on the shape: the colours without albedo",
+      { kind: "picture", legend: "lighting only" },
     );
-    const given = view("inputs-views", "given", "Given depth", "the depth map as it was given", scalar("refinedDepth"));
+    const given = view("inputs-views", "given", "Given depth", "the depth map as supplied", scalar("refinedDepth"));
     const refinedDepth = view(
       "depth-views",
       "refinedDepth",
@@ -114,7 +114,7 @@ export class Gallery {
       "image-views",
       "residual",
       "Colour residual",
-      "how far the predicted colours are from the image",
+      "difference between the predicted colours and the image",
       scalar("residual"),
     );
     const normalError = view(
@@ -128,14 +128,14 @@ export class Gallery {
       "error-views",
       "depthError",
       "Error of depth",
-      "distance of the colour view's depth from the true one, both about their middles",
+      "difference between the colour view's depth and the true one, each relative to its mean",
       scalar("depthError"),
     );
     const refinementError = view(
       "error-views",
       "refinementError",
       "Refinement error",
-      "distance of the refined depth from the true one",
+      "difference between the refined depth and the true one",
       scalar("refinementError"),
     );
     this.#views = {
@@ -160,7 +160,7 @@ export class Gallery {
     });
   }
 
-  /** From now on what it asks for is answered. */
+  /** From now on its requests are answered. */
   serve(hooks: GalleryHooks): void {
     this.#hooks = hooks;
     void this.#loadCharts();
@@ -171,13 +171,13 @@ export class Gallery {
     this.#clouds.lookAnew();
   }
 
-  /** How a visitor wants to see what there is. */
+  /** The visitor's choices for drawing the surfaces. */
   get look(): Look {
     const fixed = SCALES.flatMap((name) => (this.#scales[name].fixed ? [[name, this.#scales[name].fixed]] : []));
     return { ranges: Object.fromEntries(fixed) as Look["ranges"], texture: this.#texture };
   }
 
-  /** Has everything painted again; of what is asked for meanwhile the last counts. */
+  /** Has everything redrawn; of several requests in the meantime the last one counts. */
   async #look(): Promise<void> {
     this.#looksAgain = true;
     if (this.#isLooking) return;
@@ -194,7 +194,7 @@ export class Gallery {
   open({ units, measured, frame }: Opened, fresh: boolean): Promise<void> {
     this.#units = this.#card.units = units;
     if (fresh) this.#clouds.lookAnew();
-    // Its pixels are others.
+    // Its pixels have changed.
     if (fresh) this.#probe.point(null);
     byId("errors", HTMLElement).hidden = !measured;
     return this.show(frame, []);
@@ -210,7 +210,7 @@ export class Gallery {
     this.#clouds.pretend(pose);
   }
 
-  /** Resolves when the frame is on the screen, which is when the next one may be asked for. */
+  /** Resolves when the frame is on the screen; only then the next one may be requested. */
   show(frame: Frame, history: readonly StepReport[]): Promise<void> {
     this.#history = history;
     this.#see(frame);
@@ -253,13 +253,13 @@ export class Gallery {
 
   /** Share of each picture's width that is the pinned run's. */
   wipe(share: number): void {
-    // Where it stands already all of the page would get its styles anew.
+    // Setting the same value again would recompute the styles of the whole page.
     if (share !== this.#wipe) this.#box.style.setProperty("--wipe", `${100 * share}%`);
     this.#wipe = share;
     this.#clouds.wipe(share);
   }
 
-  /** The charts once the page has its other colours: both at once would be a long task. */
+  /** The charts follow after the page has changed its colours: both at once would be a long task. */
   async recolour(): Promise<void> {
     this.#clouds.recolour();
     await nextFrame();
@@ -279,7 +279,7 @@ export class Gallery {
       button?.setAttribute("aria-pressed", String(figure.hasAttribute("data-large")));
     }
     if (wasOpen || !chosen) {
-      // All others are there again, and the page stands as it did before one of them made it shorter.
+      // All other views are visible again, and the scroll position is restored.
       if (wasSingle) scrollTo({ top: this.#top, behavior: "instant" });
       return;
     }
@@ -318,7 +318,7 @@ export class Gallery {
     for (const chart of this.#charts) this.#painter.request(chart, () => chart.show(this.#history, this.#pinned));
   }
 
-  /** After the views are on the page, and each a task of its own: no press waits for all of them. */
+  /** After the views are on the page, each in a separate task, so that no click waits for all of them. */
   async #loadCharts(): Promise<void> {
     await nextTask();
     const { Chart } = await import("../draw/charts");

@@ -23,7 +23,7 @@ function refuse(error: unknown): void {
 /** A run as the Lab holds it. */
 type Held = Omit<Run, "taken" | "origin" | "link"> & { source: Source };
 
-/** One of the results, in full. What the worker fails at is thrown, but for what was broken off by whatever was asked for next. */
+/** One of the results at full resolution. Failures of the worker are thrown, except a cancellation by a later request. */
 export async function handOver(kind: Kind, engine: Engine, { source, ...run }: Held): Promise<void> {
   try {
     const { fileOfKind, fileOfRun } = await import("./takeaway");

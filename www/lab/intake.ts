@@ -1,4 +1,4 @@
-/** Four slots for the visitor's own files: dropped anywhere, or picked. What is in a file is told by `look.ts`, which loads with the first. */
+/** Four slots for the visitor's own files: dropped anywhere, or picked. `look.ts`, loaded with the first file, recognises what a file holds. */
 
 import { freshId, make } from "../dom";
 import type { Look } from "./look";
@@ -72,7 +72,7 @@ export class Intake {
   readonly #offer = make("p", { class: "offer", role: "status" });
   readonly #remarks = make("ul", { class: "remarks", hidden: true });
   readonly #keeping = make("span", {});
-  readonly #forget = make("button", { type: "button", hidden: true }, "Forget my files");
+  readonly #forget = make("button", { type: "button", hidden: true }, "Remove my files");
 
   constructor(hooks: IntakeHooks) {
     this.#hooks = hooks;
@@ -83,7 +83,7 @@ export class Intake {
       this.silence();
       this.#hooks.onForget();
     });
-    // Below the slots, which stay where they are whatever is said of them; what asks for an answer is in sight all the same.
+    // Below the slots, so that these do not move; a note that needs an answer is scrolled into view.
     this.element.append(
       make("div", { class: "said" }, this.#offer, this.#remarks),
       make("p", { class: "note keeping", role: "status" }, this.#keeping),
@@ -148,12 +148,12 @@ export class Intake {
     );
   }
 
-  /** Nothing is left to be said. */
+  /** Removes all remarks. */
   silence(): void {
     for (const topic of TOPICS) this.remarks(topic, []);
   }
 
-  /** Where the files are while the page is closed, in words, and whether there is something to forget. */
+  /** Where the files are stored while the page is closed, in words, and whether there are any to remove. */
   keeping(words: string, canForget: boolean): void {
     this.#keeping.textContent = words;
     this.#forget.hidden = !canForget;
@@ -247,7 +247,7 @@ export class Intake {
     this.#hooks.onChange();
   }
 
-  /** By hand: what was said of the files that came before is over. */
+  /** By hand: remarks about earlier files are removed. */
   put(slot: Slot, file: File | undefined): void {
     this.remarks("files", []);
     this.#set(slot, file);

@@ -1,4 +1,4 @@
-/** What a file is for, told by its first bytes alone: depth maps have one channel of 16 bits or are arrays, masks one of 8. */
+/** What a file is for, recognised by its first bytes alone: depth maps have one channel of 16 bits or are arrays, masks one of 8. */
 
 const PNG = [0x89, 0x50, 0x4e, 0x47];
 const NPY = [0x93, 0x4e, 0x55, 0x4d];

@@ -1,4 +1,4 @@
-/** What can be taken away, by the names of its buttons. */
+/** The kinds of downloads, by the names of their buttons. */
 
 export const kinds = [
   "pose",

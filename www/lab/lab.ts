@@ -56,7 +56,7 @@ export class Lab {
     onDoubt: () => this.#showState(),
     onLooking: (names) => typeof this.#wanted === "string" && this.#notices.lack(this.#wanted, names),
   });
-  /** The saved run that has come in place of a pair of files, until a pair comes. */
+  /** A saved run that replaces a pair of files, until a pair is given. */
   #saved: Source | undefined;
   /** The files of what is on the screen; none of a sample. */
   #pair: readonly (File | undefined)[] = [];
@@ -68,22 +68,22 @@ export class Lab {
   readonly #messages: Messages;
   #origin: Origin = "sample";
   readonly #record = new RunRecord();
-  /** The input that was asked for last, accepted or not, or what it lacked. */
+  /** The input that was requested last, accepted or not, or what it lacked. */
   #wanted: Source | string = "";
-  /** What is on the screen: to be opened again where the worker has lost it. */
+  /** What is on the screen, to be opened again if the worker has lost it. */
   #good: { source: Source; settings: Settings } | undefined;
-  /** What the worker holds, which may be an input that was overtaken before it could be shown. */
+  /** What the worker holds; this may be an input that was superseded before it was shown. */
   #held: Source | undefined;
-  /** Counts beginnings, so that the answer to an overtaken one is dropped. */
+  /** Counts beginnings, so that the answer to a superseded one is dropped. */
   #turn = 0;
   /** The beginning under way, which steps wait for. */
   #beginning: Promise<void> = Promise.resolve();
   /** The object that the surfaces on the screen are of. */
   #seen = "";
   #offered = false;
-  /** Whether what is being opened is played once it is there. */
+  /** Whether the input is played once it has been opened. */
   #willPlay = false;
-  /** Whether the run has been played again because its worker was gone. */
+  /** Whether the run has been replayed because its worker had ended. */
   #resumed = false;
   /** Whether the run goes on when its visitor comes back from another place of the page. */
   #goesOn = false;
@@ -189,7 +189,7 @@ export class Lab {
     this.player.pause();
     this.#saved = { kind: "saved", file };
     this.#own.intake.remarks("files", [
-      { words: `${file.name}: a saved run, from where it stood; its options are in the fields.`, wrong: false },
+      { words: `${file.name}: a saved run, resumed where it stopped. Its options are in the fields.`, wrong: false },
     ]);
     this.#vacate();
     void this.#start(this.#saved);
@@ -200,7 +200,7 @@ export class Lab {
     return this.#own.drop(files);
   }
 
-  /** Nothing of a pair that is not the one asked for stays on the screen: neither its pictures nor its true values. */
+  /** Pictures and true values of a superseded pair do not stay on the screen. */
   #vacate(): void {
     this.#good = undefined;
     this.#record.clear();
@@ -218,7 +218,7 @@ export class Lab {
     // Those of a run that is there already.
     if (changed.length === 0) return;
     this.#panels.date(true);
-    // A slider shows what it does: what was playing, or will be, or had been played to its end, plays again.
+    // A slider shows its effect: a run that was playing, is about to play or had ended is played again.
     const again = live && (this.player.playing || this.#willPlay || this.#record.isFinished);
     const begun = areOfInput(changed) ? this.#reopen() : this.restart();
     if (again) void this.#playOnce(begun);
@@ -271,7 +271,7 @@ export class Lab {
     const options = runOptions(settings, originOf(source));
     this.#notices.announce(
       "loading",
-      source === this.#good?.source ? "starting over" : "reading the input",
+      source === this.#good?.source ? "restarting" : "reading the input",
       source === this.#good?.source ? "" : namesIn(source),
     );
     try {
@@ -297,7 +297,7 @@ export class Lab {
   async #offerChoices(): Promise<void> {
     if (this.#offered) return;
     await this.#notices.loading("loading the numerics", async () => {
-      // The page stands still while the worker's thread is made: in a task with nothing else.
+      // Creating the worker's thread blocks the page, so it is a separate task.
       await nextTask();
       const { surfaces, lights } = await this.#engine.call("catalogue", {});
       this.#form.offer("surface", surfaces);
@@ -321,7 +321,7 @@ export class Lab {
     return true;
   }
 
-  /** Pictures in one frame, numbers in the next: no press waits for the layout of both. */
+  /** Pictures in one frame, numbers in the next, so that no click waits for the layout of both. */
   async #present(opened: Opened): Promise<void> {
     const turn = this.#turn;
     fill();
@@ -343,7 +343,7 @@ export class Lab {
 
   async #advance(request: Advance): Promise<boolean> {
     await this.#beginning;
-    // While files are awaited, the pair on the screen is not the one asked for.
+    // While files are awaited, the pair on the screen is not the requested one.
     if (typeof this.#wanted === "string") return false;
     if (!this.#good) await this.#start(this.#wanted);
     if (!this.#good || this.#record.isFinished) return false;
@@ -397,14 +397,14 @@ export class Lab {
     this.#transport.show(playing, isIdle && notice?.cause ? notice.words : "");
   }
 
-  /** Says what is wrong beside the field it concerns; what was on the screen stays, and stays usable. */
+  /** Shows what is wrong beside the field it concerns; what was on the screen stays usable. */
   async #fail(error: unknown): Promise<void> {
     this.player.pause();
     const placed = this.#messages.fail(error);
     if (placed)
       this.#notices.announce(
         "error",
-        `${placed.field}: not possible`,
+        `${placed.field}: invalid value`,
         `${sentence(placed.words)} The field is marked.`,
       );
     else this.#notices.announce("error", "see the message");
@@ -412,8 +412,8 @@ export class Lab {
   }
 
   /**
-   * What the worker held is lost. Whoever waited for its answer tells of that; where nobody did, as while the page rested, it is told here, once
-   * all rejections have been heard.
+   * What the worker held is lost. The caller that waited for its answer reports that. If none did, as while the page was idle, it is
+   * reported here, after all rejections have been handled.
    */
   #lose(error: EngineError): void {
     this.#held = undefined;
@@ -439,7 +439,7 @@ export class Lab {
     try {
       if (!(await this.#open(source, runOptions(settings, originOf(source)), turn))) return;
       this.#good = { source, settings };
-      this.#messages.add("The input is kept, and the run begins anew.");
+      this.#messages.add("The input is kept; the run restarts.");
     } catch (error) {
       if (turn !== this.#turn) return;
       this.#good = undefined; // the page waits for another input

@@ -1,4 +1,4 @@
-/** The light as a ball that it falls on: found, true, and what differs. The true one of a sample can be dragged, and its numbers set. */
+/** The light, shown on a ball: estimated, true, and their ratio. The true light of a sample can be dragged, and its coefficients can be set. */
 
 import { byId, make } from "../dom";
 import type { Frame, KnownLight } from "../engine/protocol";
@@ -14,7 +14,10 @@ export interface Turn {
 export interface LightHooks {
   /** How the light is turned before a drag. */
   turn(): Turn;
-  /** Told what it changes in the settings while it is moved, and once more where it rests or has been let go; the same `gesture` for all of one drag. */
+  /**
+   * Called with the changed settings while the light is moved, and once more when it stops or is released; `gesture` is the same for the
+   * whole drag.
+   */
   onLight(patch: Settings, done: boolean, gesture: object): void;
 }
 
@@ -34,7 +37,7 @@ export class LightPanel {
   readonly #coefficients: Coefficients;
   readonly #box = byId("light", HTMLElement);
   #resting: ReturnType<typeof setTimeout> | undefined;
-  /** Turned as the pointer says, and not yet as the settings do. */
+  /** Rotated by the pointer, before the settings have changed. */
   #turn: Turn | undefined;
   #gesture = {};
   #standing = "found";
@@ -44,12 +47,12 @@ export class LightPanel {
 
   constructor(hooks: LightHooks) {
     this.#hooks = hooks;
-    this.#found = new Ball("found", "A ball under the light that was found");
+    this.#found = new Ball("found", "A ball under the estimated light");
     this.#truth = new Ball(
-      "true: drag it",
+      "true light (drag to turn)",
       "A ball under the true light. Drag it or use the arrow keys to turn the light.",
     );
-    this.#difference = new Ball("difference", "The light that was found over the true one: grey where both are equal");
+    this.#difference = new Ball("difference", "The estimated light divided by the true one: grey where they are equal");
     this.#coefficients = new Coefficients(hooks);
     this.#box.append(this.#found.element, this.#truth.element, this.#difference.element);
     this.#box.after(this.#coefficients.element);
@@ -59,7 +62,7 @@ export class LightPanel {
   /** Whether the light that is shown as found is of the run before. */
   date(isBefore: boolean): void {
     this.#isBefore = isBefore;
-    this.#found.say(dated(this.#isBesideRival ? "the one found" : this.#standing, isBefore));
+    this.#found.say(dated(this.#isBesideRival ? "best pose" : this.#standing, isBefore));
   }
 
   /** Beside a rival's surfaces and numbers the light stays that of the pose found, in the words of the button that shows it. */
@@ -134,7 +137,7 @@ class Ball {
   readonly canvas: HTMLCanvasElement;
   readonly element: HTMLElement;
   readonly #title: HTMLElement;
-  /** As those of the views, asked for before it is on the page. */
+  /** Like those of the views, requested before it is on the page. */
   readonly #context: CanvasRenderingContext2D | null;
 
   constructor(title: string, description: string) {

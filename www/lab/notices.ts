@@ -38,7 +38,7 @@ export class Notices {
     if (before && this.#now?.state === "loading") this.announce(before.state, before.words, before.cause);
   }
 
-  /** A new frame is on the screen: the loop speaks for itself again. */
+  /** A new frame is on the screen: the loop's status is shown again. */
   settle(): void {
     this.#now = undefined;
     this.#onChange();

@@ -25,7 +25,7 @@ export interface OwnFilesHooks {
 export class OwnFiles {
   readonly intake = new Intake({ onChange: () => this.#changed(), onForget: () => void this.#forget() });
   readonly #hooks: OwnFilesHooks;
-  /** Whether the files of last time have been asked for. */
+  /** Whether the stored files have been requested. */
   #restored = false;
   #doubt = "";
   /** How often files have come by hand: those of last time come too late after the first. */
@@ -37,7 +37,7 @@ export class OwnFiles {
     this.#hooks = hooks;
   }
 
-  /** What of them seems to be in the wrong place, and where that is mended; empty where all is well. */
+  /** What seems to be in the wrong place, and how to correct it; empty if all is well. */
   get doubt(): string {
     return this.#doubt;
   }
@@ -151,15 +151,12 @@ export class OwnFiles {
     );
     try {
       await keep(files);
-      this.intake.keeping(
-        "These files are kept in this browser, on this machine, until you forget them; a reload brings them back.",
-        true,
-      );
+      this.intake.keeping("These files stay in this browser, also after a reload, until you remove them.", true);
     } catch (error) {
       // Those of another time must not come back in their place.
       await forget().catch(() => {});
       this.intake.keeping(
-        `This browser does not keep the files (${reasonOf(error)}): they work all the same, and are gone with a reload.`,
+        `This browser could not store the files (${reasonOf(error)}). They work, but a reload removes them.`,
         true,
       );
     }
@@ -169,8 +166,8 @@ export class OwnFiles {
   #overtaken(isEmpty: boolean): void {
     if (Object.keys(this.intake.files).length === 0) return;
     const words = isEmpty
-      ? "Another tab of this page has had the kept files forgotten: these are gone with a reload."
-      : "Another tab of this page keeps its files now: a reload brings those, not these.";
+      ? "The stored files were removed in another tab of this page. A reload removes them here, too."
+      : "Another tab of this page has stored its own files. A reload brings those, not these.";
     this.intake.keeping(words, true);
   }
 
@@ -185,8 +182,8 @@ export class OwnFiles {
     if (Object.keys(this.intake.files).length > 0) return;
     this.intake.keeping(
       isDone
-        ? "Nothing is kept in this browser."
-        : "The browser's storage does not answer: what it may hold of this page, its own settings clear.",
+        ? "No files are stored in this browser."
+        : "The browser's storage does not respond. To remove files of this page, clear its site data in the browser's settings.",
       false,
     );
   }

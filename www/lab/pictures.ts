@@ -1,4 +1,4 @@
-/** What the page shows on canvases, as pictures to keep: whoever draws them, a thread of its own included. */
+/** The page's canvases as pictures to save, including those drawn in a separate thread. */
 
 import { ink, make } from "../dom";
 
@@ -48,7 +48,7 @@ function flat(canvas: HTMLCanvasElement): HTMLCanvasElement {
   copy.width = canvas.width;
   copy.height = canvas.height;
   const context = copy.getContext("2d");
-  if (!context) throw new Error("This browser gives no canvas to make the picture with.");
+  if (!context) throw new Error("This browser provides no canvas to draw the picture.");
   context.fillStyle = ink("card");
   context.fillRect(0, 0, copy.width, copy.height);
   context.drawImage(canvas, 0, 0, copy.width, copy.height);
@@ -64,7 +64,7 @@ export function pngOf(canvas: HTMLCanvasElement): Promise<Blob> {
   );
 }
 
-/** By way of a blob, which the browser packs in a thread of its own. */
+/** Through a blob, which the browser encodes in a separate thread. */
 export async function dataUrlOf(canvas: HTMLCanvasElement): Promise<string> {
   const blob = await pngOf(canvas);
   return new Promise((resolve, reject) => {

@@ -1,4 +1,4 @@
-/** Play, pause and step: asks the worker for the next frame when the last one has been drawn, and never earlier. */
+/** Play, pause and step: requests the next frame from the worker only when the last one has been drawn. */
 
 import type { Calls } from "../engine/protocol";
 
@@ -53,7 +53,7 @@ export class Player {
     this.#hooks.onChange();
   }
 
-  /** One press waits for the frame under way; more than one, as from a key held down, are too many. */
+  /** One key press waits for the frame under way; further ones, as from a key held down, are ignored. */
   async step(by: Advance["by"]): Promise<void> {
     this.pause();
     if (this.#waiting) return;

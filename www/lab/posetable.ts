@@ -7,7 +7,7 @@ import type { Explanations } from "./ask";
 import type { Term } from "./explain";
 import { BEFORE, angleBetween, dated, standing } from "./verdict";
 
-/** Rows, in the words of the run's messages; those without a unit of their own are lengths in the colour view's unit. */
+/** Rows, in the words of the run's messages; those without a unit are lengths in the colour view's unit. */
 const rows: readonly {
   words: string;
   name: string;
@@ -75,8 +75,8 @@ export class PoseTable {
     length: "px" | "m",
   ): void {
     const pose = rival ?? report.pose;
-    // A search only tries poses: none is found before it is over.
-    this.#standing = rival ? "rival" : standing(report);
+    // A search only tries poses; none is final before it ends.
+    this.#standing = rival ? "alternative" : standing(report);
     this.#head();
     rows.forEach(({ index, decimals: count, read, unit = length }, i) => {
       const cells = this.#cells[i];
@@ -92,16 +92,16 @@ export class PoseTable {
     if (truth) {
       const degrees = angleBetween(pose.rotation, truth.rotation);
       this.#error.dataset.degrees = String(degrees);
-      // Beside a rival's the error that the verdict speaks of.
+      // Besides the error of the alternative pose, the error that the verdict refers to.
       const before = rival
-        ? `; ${decimals(angleBetween(report.pose.rotation, truth.rotation), 1)}° the one found`
+        ? ` (best pose: ${decimals(angleBetween(report.pose.rotation, truth.rotation), 1)}°)`
         : start
-          ? `; ${decimals(angleBetween(start.rotation, truth.rotation), 1)}° at the start`
+          ? ` (${decimals(angleBetween(start.rotation, truth.rotation), 1)}° at the start)`
           : "";
-      this.#error.replaceChildren(make("strong", {}, `${decimals(degrees, 2)}° off`), ` the true rotation${before}`);
-      // By the truth, so that nothing moves while the search looks around.
+      this.#error.replaceChildren(make("strong", {}, `${decimals(degrees, 2)}°`), ` from the true rotation${before}`);
+      // Decided by the true pose, so that the text does not change during the search.
       if (Math.abs(truth.angles.beta) > POLE)
-        this.#error.append(". So near β = 90° only α and γ together tell the rotation.");
+        this.#error.append(". This close to β = 90°, only α and γ together determine the rotation.");
     }
     this.#extras.forEach(({ dt, dd, read }) => {
       const value = read(report, length);
@@ -126,11 +126,11 @@ export function numbersOf(report: StepReport, length: string): [name: string, va
   });
 }
 
-/** Zero is said as zero alone, as the chart's words have it. */
+/** Only an exact zero is shown as zero, as in the words of the chart. */
 const change = (degrees: number): string =>
   degrees === 0 ? "0°" : degrees < 0.0001 ? "below 0.0001°" : `${decimals(degrees, 4)}°`;
 
-/** A sigma says how sharp a pose is, not whether it is the right one: beside a lost one it would mislead. */
+/** A sigma measures precision, not correctness: beside a lost pose it would mislead. */
 const sure = ({ status, uncertainty }: StepReport): StepReport["uncertainty"] =>
   status === "lost" ? undefined : uncertainty;
 
@@ -166,7 +166,7 @@ const extras: readonly Extra[] = [
 const optional = <T>(value: T | undefined, show: (value: T) => string): string | undefined =>
   value === undefined ? undefined : show(value);
 
-/** Half a turn of uncertainty is no knowledge at all. */
+/** An uncertainty of half a turn means that the angle is unknown. */
 const sigmas = (degrees: readonly number[]): string =>
   degrees.every((value) => value >= 180)
     ? "unknown"

@@ -1,59 +1,60 @@
-/** Examples at a press: each says all that differs from the defaults, so that what comes out does not depend on what was set before. */
+/** Examples behind buttons. Each lists all differences from the defaults, so that the result does not depend on earlier settings. */
 
 import { make } from "../dom";
 import { defaults, type Settings, type Value } from "./settings";
 
 interface Preset {
   name: string;
-  /** What one is to see there. */
+  /** What the example shows. */
   words: string;
   set: Readonly<Record<string, Value>>;
 }
 
 export const presets: readonly Preset[] = [
-  { name: "Easy bust", words: "Three coloured lamps, 20 degrees apart, no noise.", set: {} },
+  { name: "Easy bust", words: "Three coloured lamps, views 20 degrees apart, no noise.", set: {} },
   {
     name: "Window light",
-    words: "Nearly one colour of light, as in a room, and 40 degrees.",
+    words: "Light of nearly one colour, as in a room; views 40 degrees apart.",
     set: { light: "window", beta: 40, noise: 0.01 },
   },
   {
     name: "Noise",
-    words: "5 % of noise in the colours, and a noisy depth map; the pose is found all the same.",
+    words: "5 % noise in the colours and a noisy depth map; the pose is still found.",
     set: { noise: 0.05, depthNoise: 0.5 },
   },
   {
     name: "Half hidden",
-    words: "The depth map shows the middle half of the object alone; the pose is found all the same.",
+    words: "The depth map covers only the middle half of the object; the pose is still found.",
     set: { overlap: 0.5, beta: 30, noise: 0.01 },
   },
   {
     name: "Too hard",
     words:
-      "A third of the object, nearly one colour of light, and 30 % of noise: no pose can be told from that, and the verdict says so.",
+      "A third of the object, light of nearly one colour and 30 % noise. No pose can be recovered from that, and the verdict says so.",
     set: { size: "64", light: "window", beta: 40, noise: 0.3, overlap: 0.3 },
   },
   {
     name: "The paper's loop",
-    words: "Equations 1 to 19 as published: the light told, each pixel on its own, ICP from where both views coincide.",
+    words:
+      "Equations 1 to 19 as published: light given, pixels solved independently, ICP starting with the views aligned.",
     set: { size: "64", lighting: "known", start: "identity", registration: "icp", shading: "pixel" },
   },
   {
-    // Photographs whose terms let them be shipped are none of the project's; this one says what it is.
+    // The project has no photographs that it may ship, so this example states that it is synthetic.
     name: "Sensor-like",
     words:
-      "No photograph: a made scene as cheap sensors see it, under clouds, with noise in both views, holes and an edge cut off.",
+      "Not a photograph: a synthetic scene as a cheap sensor would see it under an overcast sky, with noise, holes and a cropped edge.",
     set: { light: "overcast", beta: 25, alpha: 6, noise: 0.02, depthNoise: 0.7, holes: 0.05, overlap: 0.85 },
   },
 ];
 
 const settingsOf = ({ set }: Preset): Settings => ({ ...defaults, ...set });
 
-/** Buttons, of which the one that says what is set is pressed. */
+/** Buttons; the one that matches the settings is pressed. */
 export class Presets {
   readonly #buttons: readonly { preset: Preset; button: HTMLButtonElement }[];
 
-  /** `onChoose` is told of another example, `onAgain` of a press of the one that is set. */
+  /** `onChoose` is called for another example, `onAgain` for a click on the one that is set. */
   constructor(parent: HTMLElement, onChoose: (settings: Settings) => void, onAgain: () => void) {
     this.#buttons = presets.map((preset) => {
       const button = make(

@@ -1,4 +1,4 @@
-/** Poses that explain the colours as well, over the surfaces that they lay: each can be looked at, and be where a new run starts. */
+/** Alternative poses that fit the image equally well, listed over the surfaces: each can be viewed, and a new run can start from it. */
 
 import type { Pose, StepReport } from "../../pkg/index.js";
 import { decimals } from "../draw/numbers";
@@ -6,12 +6,12 @@ import { byId, make } from "../dom";
 import { angleBetween } from "./verdict";
 
 export interface RivalHooks {
-  /** Another one of them is looked at, or the pose found again. */
+  /** An alternative pose is selected, or the best pose again. */
   onLook(pose: Pose | undefined): void;
   onStart(pose: Pose): void;
 }
 
-/** More would not be told apart. */
+/** More could not be distinguished. */
 const MOST = 4;
 
 export class Rivals {
@@ -24,7 +24,7 @@ export class Rivals {
     this.#hooks = hooks;
   }
 
-  /** The one that is looked at in place of the pose found. */
+  /** The alternative pose that is shown instead of the best one. */
   get looked(): Pose | undefined {
     return this.#looked;
   }
@@ -36,13 +36,13 @@ export class Rivals {
     this.#shown = key;
     this.#looked = undefined;
     this.#box.hidden = poses.length === 0;
-    const start = make("button", { type: "button", hidden: true }, "Start from it");
+    const start = make("button", { type: "button", hidden: true }, "Restart from here");
     const choices = [undefined, ...poses].map((rival) => {
       const away = rival && decimals(angleBetween(rival.rotation, pose.rotation), 0);
       const button = make(
         "button",
         { type: "button", "aria-pressed": String(!rival) },
-        rival ? `rival, ${away}° away` : "the one found",
+        rival ? `alternative, ${away}° away` : "best pose",
       );
       button.addEventListener("click", () => {
         for (const choice of choices) choice.setAttribute("aria-pressed", String(choice === button));

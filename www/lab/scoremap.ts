@@ -1,4 +1,4 @@
-/** How rotations score while the search goes on: across, the turn about the vertical axis; up and down, that about the level one. */
+/** The scores of rotations during the search: across, the rotation about the vertical axis; up and down, that about the horizontal one. */
 
 import type { Pose } from "../../pkg/index.js";
 import { colourAt } from "../draw/colours";
@@ -15,7 +15,7 @@ export class ScoreMap {
   readonly #canvas = byId("score-canvas", HTMLCanvasElement);
   readonly #words = byId("score-words", HTMLElement);
 
-  /** Alpha, beta, gamma and score of each rotation so far; of those that differ in gamma alone the best is seen. */
+  /** Alpha, beta, gamma and score of each rotation so far; of rotations that differ only in gamma, the best is visible. */
   show(scores: Float32Array, truth: Pose | null): void {
     const context = this.#canvas.getContext("2d");
     const count = scores.length / 4;
@@ -45,10 +45,10 @@ export class ScoreMap {
     mark(best[0] ?? 0, best[1] ?? 0, ["#000", "#fff"]);
     if (truth) mark(truth.angles.alpha, truth.angles.beta, ["#fff", "#d55e00"]);
     this.#figure.hidden = false;
-    this.#words.textContent = `: ${count} tried; white: best${truth ? ", orange: true" : ""}`;
+    this.#words.textContent = ` of ${count} trial rotations (white ring: best${truth ? "; orange: true" : ""})`;
     this.#canvas.setAttribute(
       "aria-label",
-      `Scores of ${count} rotations; the best turns by ${decimals(best[1], 0)} degrees about the vertical axis and ${decimals(best[0], 0)} about the level one.`,
+      `Scores of ${count} rotations. The best one is ${decimals(best[1], 0)} degrees about the vertical axis and ${decimals(best[0], 0)} about the horizontal one.`,
     );
   }
 

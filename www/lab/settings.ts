@@ -1,4 +1,4 @@
-/** What the fields say, as requests and options of the library, in words, and as a link; and fields as a saved run had been told them. */
+/** Converts the fields to requests and options of the library, to words and to a link, and the options of a saved run to fields. */
 
 import type { Options, Pinhole, SampleRequest } from "../../pkg/index.js";
 import type { LabOptions } from "../engine/protocol";
@@ -66,7 +66,7 @@ export function sampleRequest(settings: Settings): SampleRequest {
     surface: text(settings, "surface"),
     light: lightOf(text(settings, "light")),
     ...request,
-    // Each empty angle is zero; the library takes its own where it is told of none at all.
+    // Each empty angle is zero; the library's defaults apply only if no angle is given.
     angles: { ...request.angles },
     ...(rendered(settings) ? size(settings) : {}),
   };
@@ -133,7 +133,7 @@ const valueAt = (root: unknown, path: string): unknown =>
     .slice(1)
     .reduce<unknown>((inner, name) => (inner as Record<string, unknown> | undefined)?.[name], root);
 
-/** The fields as a saved run had been told them; of a start the angles alone, which is all that fields have. */
+/** The fields for the options of a saved run; of an initial pose only the angles, because the fields have no more. */
 export function settingsOf(options: Options): Settings {
   const own = optionFields.map((field): [string, Value] => {
     const value = valueAt(options, field.path);
@@ -164,7 +164,7 @@ const valueInWords = (field: Field, value: Value): string => {
   return field.kind === "number" && field.unit ? `${value} ${field.unit}` : String(value);
 };
 
-/** All that a run was told, as the form shows it. */
+/** All settings of a run, as the form shows them. */
 export function optionsInWords(settings: Settings, source: Origin): [name: string, value: string][] {
   const groups: Partial<Record<Group, string>> =
     source === "sample" ? { sample: "Sample: " } : { colour: "Colour camera: ", depth: "Depth camera: " };
@@ -184,7 +184,7 @@ export function optionsInWords(settings: Settings, source: Origin): [name: strin
 
 const lensKeys = ["fx", "fy", "cx", "cy"] as const;
 
-/** A camera once all of its four numbers are given; none where none is; the name of what is missing in between. */
+/** A camera if all four numbers are given, nothing if none is, otherwise the names of the missing ones. */
 export function camera(settings: Settings, side: "colour" | "depth"): Pinhole | undefined | string {
   const [fx, fy, cx, cy] = lensKeys.map((key) => number(settings, `${side}.${key}`));
   const distortion = listed(settings, `${side}.distortion`);
@@ -202,7 +202,7 @@ export function toLink(settings: Settings): string {
   return new URLSearchParams(changed.map(({ key }) => [key, String(settings[key] ?? "")])).toString();
 }
 
-/** Reads such an address; what it does not understand stays at its default. */
+/** Reads such an address; unknown parts stay at their defaults. */
 export function fromLink(hash: string): Settings {
   const given = new URLSearchParams(hash.replace(/^#/, ""));
   const read = fields.map((field): [string, Value] => {

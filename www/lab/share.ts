@@ -1,4 +1,4 @@
-/** What can be taken away: a link that brings the same experiment back, and the report as a file. */
+/** Sharing: a link that restores the experiment, and the report as a file. */
 
 import type { Pose, StepReport } from "../../pkg/index.js";
 import { byId } from "../dom";
@@ -6,7 +6,7 @@ import { saveJson } from "../save";
 import { toLink, type Origin, type Settings } from "./settings";
 import { angleBetween } from "./verdict";
 
-/** What is seen, not what is computed: choices of the page by their ids, with what they are at first. */
+/** Choices that affect only the display, by their ids, with their initial values. */
 const looks = { "clouds-style": "surfaces", "clouds-texture": "view", pace: "1" } as const;
 
 const selects = () =>
@@ -28,7 +28,7 @@ export function onLook(act: () => void): void {
   for (const { select } of selects()) select.addEventListener("change", act);
 }
 
-/** Settings and looks; of the visitor's files nothing. */
+/** Settings and display choices; none of the visitor's files. */
 export function linkTo(settings: Settings): string {
   const url = new URL(location.href);
   const other = selects().filter(({ initial, select }) => select.value !== initial);
@@ -38,7 +38,7 @@ export function linkTo(settings: Settings): string {
   return url.href;
 }
 
-/** Keeps the address in step with the settings without filling the browser's history. */
+/** Updates the address with the settings without filling the browser's history. */
 export function writeAddress(settings: Settings): void {
   history.replaceState(null, "", linkTo(settings));
 }
@@ -51,7 +51,7 @@ export interface Experiment {
   history: readonly StepReport[];
 }
 
-/** Saves everything there is to say about a run as JSON. */
+/** Saves the full report of a run as JSON. */
 export function download({ source, settings, truth, report, history }: Experiment): void {
   const rotationErrorDegrees = truth ? angleBetween(report.pose.rotation, truth.rotation) : null;
   saveJson("bimodal-stereo-report.json", {

@@ -13,7 +13,7 @@ export function rememberOrigin(origin: Origin): void {
     if (origin === "files") sessionStorage.setItem(OWN, "1");
     else sessionStorage.removeItem(OWN);
   } catch {
-    // A browser that keeps nothing asks for the files again.
+    // A browser that stores nothing needs the files again.
   }
 }
 
@@ -57,9 +57,9 @@ export function belongings(input: Input): ArrayBuffer[] {
 /** What can be done about what is lacking. */
 export function wayOut(lacking: string): string {
   if (lacking.includes(FACTOR))
-    return "Inverse depths are known up to a factor. Type it in the settings (Depth camera), or leave all of that camera's numbers empty.";
+    return "Inverse depths are known up to a factor. Enter it in the settings (Depth camera), or leave all fields of that camera empty.";
   return lacking.includes("camera:")
-    ? "Type them in the settings, or leave all of that camera's numbers empty."
+    ? "Enter them in the settings, or leave all fields of that camera empty."
     : "Drop files anywhere on this page, or choose them in the settings.";
 }
 const FACTOR = "focal length × baseline";

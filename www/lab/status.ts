@@ -1,14 +1,14 @@
-/** How the run stands, in a panel that never changes its height: a mark, a word, one cause, and what may help. */
+/** The status of the run, in a panel of fixed height: a mark, a word, one cause, and what may help. */
 
 import type { StepReport } from "../../pkg/index.js";
 import { byId } from "../dom";
 import type { Origin } from "./settings";
 import type { Verdict } from "./verdict";
 
-/** What else than the loop the status can tell of. */
+/** States of the page other than those of the loop. */
 export type Notice = "loading" | "waiting" | "error";
 
-/** The marks of the Tables, and those of what is not over. */
+/** The marks of the Tables, and those of unfinished states. */
 const glyphs: Readonly<Record<string, string>> = {
   ready: "○",
   paused: "‖",
@@ -23,7 +23,7 @@ const glyphs: Readonly<Record<string, string>> = {
   lost: "×",
 };
 
-/** A tick is for what may be built on: one beside a pose that is off would speak against its own words. */
+/** A tick is for poses that can be trusted: beside a wrong pose it would contradict the words. */
 const markOf = (state: string, tone: Verdict["tone"]): string =>
   state !== "converged" || tone === "good" ? state : tone === "wrong" ? "lost" : "doubted";
 
@@ -37,13 +37,13 @@ export class Status {
   #doubt = "";
   #isOwn = false;
 
-  /** `doubt` is what seems to be wrong with own files, and the way out: of all that may help it comes first. */
+  /** `doubt` describes what seems wrong with own files and how to correct it; it takes precedence over other advice. */
   about(origin: Origin, doubt: string): void {
     this.#isOwn = origin === "files";
     this.#doubt = this.#isOwn ? doubt : "";
   }
 
-  /** `idle` is what the page itself does while the loop rests; the verdict is of the pose found, also where the surfaces show a rival. */
+  /** `idle` is the state of the page while the loop is paused. The verdict is that of the best pose, even while an alternative pose is shown. */
   show(report: StepReport, idle: "ready" | "paused" | "playing", end: Verdict | undefined, isRival: boolean): void {
     this.#say(end ? report.status : idle, end?.tone ?? "open", end ? `${isRival ? "found: " : ""}${end.status}` : idle);
     this.#put(this.#cause, end?.words ?? "");
@@ -59,7 +59,7 @@ export class Status {
     this.#put(this.#message, "");
   }
 
-  /** What to do with what is there. */
+  /** The first advice for the present input. */
   get #first(): string {
     return this.#isOwn
       ? "Press play; masks, cameras and the method are in the settings."

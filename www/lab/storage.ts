@@ -19,7 +19,7 @@ function opened(): Promise<IDBDatabase> {
   return done(request);
 }
 
-/** One change, whole or not at all. */
+/** One transaction. */
 async function change(work: (store: IDBObjectStore) => void): Promise<void> {
   const database = await opened();
   try {
@@ -29,7 +29,7 @@ async function change(work: (store: IDBObjectStore) => void): Promise<void> {
       transaction.onabort = transaction.onerror = () =>
         reject(transaction.error ?? new Error("the browser's storage failed"));
     });
-    end.catch(() => {}); // told once, whichever of both comes first
+    end.catch(() => {}); // reported once, whichever comes first
     work(transaction.objectStore(STORE));
     await end;
   } finally {
@@ -37,7 +37,7 @@ async function change(work: (store: IDBObjectStore) => void): Promise<void> {
   }
 }
 
-/** All tabs of the page keep files in the same place, and tell each other what lies there now. */
+/** All tabs of the page store files in the same place and notify each other of changes. */
 const tabs = channel();
 
 function channel(): BroadcastChannel | undefined {
@@ -49,7 +49,7 @@ function channel(): BroadcastChannel | undefined {
   }
 }
 
-/** What tells files from others without reading them. */
+/** Identifies files without reading them. */
 const namesOf = (files: Files): string =>
   JSON.stringify(
     Object.entries(files)
@@ -57,7 +57,7 @@ const namesOf = (files: Files): string =>
       .sort(),
   );
 
-/** Has it told what another tab has put there, or that it has put nothing there. */
+/** Calls back with what another tab has stored, or when it has removed everything. */
 export function hearOthers(here: () => Files, tell: (isEmpty: boolean) => void): void {
   if (!tabs) return;
   tabs.onmessage = ({ data }: MessageEvent<string>) => {
@@ -89,7 +89,7 @@ export async function kept(): Promise<Map<string, File>> {
   }
 }
 
-/** Why files are not kept, in words. */
+/** Why files could not be stored, in words. */
 export function reasonOf(error: unknown): string {
   const name = error instanceof DOMException ? error.name : "";
   return name === "QuotaExceededError" ? "its storage is full" : "its storage is closed to this page";

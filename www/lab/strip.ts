@@ -1,4 +1,4 @@
-/** The stages as the spine of the page: the one that ran last is lit, its time is shown below, a press explains it. */
+/** The stages of an iteration: the one that ran last is highlighted, its time is shown below, and a click explains it. */
 
 import type { Stage, StepReport } from "../../pkg/index.js";
 import { decimals } from "../draw/numbers";
@@ -9,7 +9,7 @@ import type { Explanations } from "./ask";
 /** The search, and the five stages of one iteration. */
 const stages: readonly Stage[] = ["search", "light", "shading", "surface", "registration", "refinement"];
 
-/** Milliseconds that would be written as none. */
+/** Milliseconds that would round to zero. */
 const LEAST = 0.05;
 
 export class Strip {
@@ -41,7 +41,7 @@ export class Strip {
       if (name === "search" && report.stage === name) time.textContent = searched(report);
       // The last slice that was drawn is seldom the last one that ran.
       else if (name === "search" && begun && time.textContent?.endsWith("%")) time.textContent = "100 %";
-      // What has come to rest is not computed again, and a clock of tenths sees no time in it.
+      // A converged stage is not computed again, so its time rounds to zero.
       else if (spent !== undefined && spent < LEAST) time.textContent = "";
       else if (spent !== undefined) time.textContent = `${decimals(spent, spent < 10 ? 1 : 0)} ms`;
       else if (!begun) time.textContent = "";

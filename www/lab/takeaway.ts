@@ -1,4 +1,4 @@
-/** Results as files of common formats. Loaded when the first is asked for. */
+/** Results as files of common formats. Loaded with the first download. */
 
 import type { Pose, StepReport } from "../../pkg/index.js";
 import { byId } from "../dom";
@@ -30,7 +30,7 @@ export interface Run {
 export interface Made {
   name: string;
   blob: Blob;
-  /** What one has to know to read it, such as the unit. */
+  /** What a reader of the file needs to know, such as the unit. */
   says?: string;
 }
 
@@ -40,7 +40,7 @@ const made = (name: string, type: string, part: BlobPart, says?: string): Made =
   ...(says === undefined ? {} : { says }),
 });
 
-/** Made in a thread of its own. */
+/** Made in a separate thread. */
 function madeApart(kind: LargeKind, taken: Taken): Promise<Extract<FileAnswer, { bytes: Uint8Array }>> {
   const worker = new Worker(new URL("./files-thread.ts", import.meta.url), { type: "module" });
   const answer = new Promise<Extract<FileAnswer, { bytes: Uint8Array }>>((resolve, reject) => {
@@ -49,7 +49,7 @@ function madeApart(kind: LargeKind, taken: Taken): Promise<Extract<FileAnswer, {
       "fault" in data ? reject(new Error(data.fault.message)) : resolve(data);
     worker.onerror = (event) => {
       event.preventDefault();
-      reject(new Error(event.message || "what makes the file could not be loaded."));
+      reject(new Error(event.message || "the code that writes the file could not be loaded."));
     };
   });
   const { imagePoints, depthPoints, image, depth } = taken;
@@ -96,7 +96,7 @@ async function report(run: Run): Promise<Made> {
   );
   const words = [end?.words ?? report.message ?? "", end?.next ?? ""].filter(Boolean);
   const html = runReportHtml({
-    ...{ tone: end?.tone ?? "open", status: end?.status ?? `not over: iteration ${report.iteration}`, words },
+    ...{ tone: end?.tone ?? "open", status: end?.status ?? `not finished: iteration ${report.iteration}`, words },
     ...{ pose: taken.pose, truth, unit: taken.unit, light: taken.light },
     numbers: [["Iterations", String(report.iteration)], ...numbersOf(report, taken.unit)],
     options: optionsInWords(settings, origin),
@@ -112,7 +112,7 @@ export const fileOfRun = (bytes: Uint8Array): Made =>
     "run.bimodal",
     "",
     bytes as Uint8Array<ArrayBuffer>,
-    "drop it on this page to go on from here; it holds both views and the options",
+    "drop it on this page to resume from here; it holds both views and the options",
   );
 
 export async function fileOfKind(kind: Exclude<Kind, "run">, run: Run): Promise<Made> {

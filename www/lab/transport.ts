@@ -1,4 +1,4 @@
-/** The buttons that run the loop, as they stand; where there is nothing to run they can still be reached, and say why. */
+/** The buttons that run the loop. If there is nothing to run they stay focusable and state the reason. */
 
 import { byId } from "../dom";
 
@@ -32,7 +32,7 @@ export class Transport {
     if (focused instanceof HTMLElement) focused.focus();
   }
 
-  /** `lacking` is what there has to be before anything can run, in words. */
+  /** `lacking` describes the missing input, in words. */
   show(playing: boolean, lacking: string): void {
     this.#play.setAttribute("aria-pressed", String(playing));
     this.#play.setAttribute("aria-label", playing ? "Pause" : "Play");

@@ -1,4 +1,4 @@
-/** What a control looks like while it is still moved: one look at a time, and of what was asked for meanwhile the newest. */
+/** Previews the effect of a control while it is being moved: one preview at a time, and of later requests only the newest. */
 
 import type { Engine } from "../engine/engine";
 import type { Gallery } from "./gallery";

@@ -1,4 +1,4 @@
-/** What stands in the place of the surfaces while those of another pair are awaited: what to bring, or what is being done. */
+/** A placeholder for the surfaces while those of another pair are awaited: what to add, or what is being done. */
 
 import { byId } from "../dom";
 import type { Source } from "../engine/protocol";
@@ -18,7 +18,7 @@ export function fill(): void {
 
 const BOTH = "Drop a colour image and a depth map of one object anywhere on this page.";
 
-/** `wanted` is the input asked for, or what it lacks; `notice` what the status says of it. What is there is not asked for. */
+/** `wanted` is the requested input, or what it lacks; `notice` is the status message. Files that are present are not requested. */
 export function sayVacant(wanted: Source | string, notice: { state: string; words: string } | undefined): void {
   const lacking = typeof wanted === "string" ? /^waiting for (a .+)$/.exec(wanted)?.[1] : undefined;
   const { state = "", words = "" } = notice ?? {};
@@ -26,6 +26,6 @@ export function sayVacant(wanted: Source | string, notice: { state: string; word
   const drop = lacking ? `Drop ${lacking} of the same object anywhere on this page.` : BOTH;
   const says = isThere && words ? sentence(words) : drop;
   const hero = byId("hero", HTMLElement);
-  // Asked of every frame.
+  // Checked for every frame.
   if (hero.dataset.says !== says) hero.dataset.says = says;
 }

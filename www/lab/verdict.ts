@@ -53,13 +53,13 @@ const ends: Record<Exclude<StepReport["status"], "running">, string> = {
 };
 
 /** Where all went well there is more to try. */
-const HARDER = "Turn the surfaces, drag the light, or try Too hard, which can't be found.";
+const HARDER = "Rotate the surfaces, drag the light, or try “Too hard”, where no pose can be recovered.";
 /** The right pose, but for what noise does to it. */
-const FINER = "Less noise, or a larger image, brings it closer.";
+const FINER = "Less noise or a larger image would bring it closer.";
 
 /** Where the pose is not sought at all. */
-const HELD = "The pose was kept where it started, as the settings ask.";
-const FREE = "Settings, Registration, joint lets it move.";
+const HELD = "The pose stayed at its initial value, as set under Registration.";
+const FREE = "To let it move, choose Settings, Registration, joint.";
 
 /** How a finished loop is to be taken; nothing while it runs. */
 export function verdict(
@@ -82,7 +82,7 @@ export function verdict(
         : tone === "good" && !message
           ? ["The true pose was found."]
           : isNear
-            ? ["The true pose was found, though not within a degree."]
+            ? ["The true pose was found, but not to within one degree."]
             : [];
     const next =
       tone === "good"
@@ -90,7 +90,7 @@ export function verdict(
         : isNear
           ? FINER
           : off <= FOUND && status === "lost"
-            ? `The pose is right all the same. ${help}`
+            ? `The pose is nevertheless right. ${help}`
             : help;
     return {
       tone,
@@ -103,15 +103,15 @@ export function verdict(
     return {
       tone: "good",
       status: ends[status],
-      words: [...said, "The pose has settled; there is no true one to compare it with."].join(" "),
+      words: [...said, "The pose has converged. There is no ground truth to compare it with."].join(" "),
       next: "",
     };
   }
   if (status === "ambiguous") return { tone: "open", status: ends[status], words: said.join(" "), next: help };
   const stayed = start !== undefined && angleBetween(pose.rotation, start.rotation) < STAYED;
   const caution = stayed
-    ? "The rotation is still that of the start, which does not confirm it."
-    : "The pose has not settled: do not build on it.";
+    ? "The rotation is still the initial one; that does not confirm it."
+    : "The pose has not converged; don't rely on it.";
   return {
     tone: "wrong",
     status: stayed ? "start kept" : ends[status],

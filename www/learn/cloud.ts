@@ -1,4 +1,4 @@
-/** Points of both surfaces, seen from a side that a slider sets. */
+/** Points of both surfaces, seen from an angle set by a slider. */
 
 import { freshId, ink, make } from "../dom";
 import type { CloudPanel, Panel } from "./protocol";
@@ -6,7 +6,7 @@ import type { CloudPanel, Panel } from "./protocol";
 const SIDE = 320;
 /** Side of a point on the canvas, which is shown at half its size: smaller ones are hardly seen on a dark ground. */
 const POINT = 3.5;
-/** Where the view starts: half way between front and side, so that depth shows. */
+/** The initial viewpoint: half way between front and side, so that depth is visible. */
 const FIRST_TURN = 50;
 
 export class Cloud {
@@ -21,7 +21,7 @@ export class Cloud {
     const id = freshId("learn-turn");
     this.#turn = make("input", { id, type: "range", min: -90, max: 90, step: 5, value: FIRST_TURN });
     this.#turn.addEventListener("input", () => this.#draw());
-    const turn = make("div", { class: "learn-turn" }, make("label", { for: id }, "Turn the view"), this.#turn);
+    const turn = make("div", { class: "learn-turn" }, make("label", { for: id }, "Rotate the view"), this.#turn);
     this.element = make(
       "figure",
       { class: "learn-panel" },

@@ -1,4 +1,4 @@
-/** The line that shows a lesson's figure, as it is set now, in a page elsewhere; and in such a frame the way back to the lesson. */
+/** The HTML that shows a lesson's figure with its present settings in another page; in such a frame, a link to the lesson. */
 
 import { make } from "../dom";
 
@@ -22,7 +22,7 @@ export class Embed {
     this.element = make(
       "div",
       { class: "learn-embed", hidden: true },
-      make("label", {}, "Line for another page, which shows the figure as it is set now", this.#line),
+      make("label", {}, "HTML that shows the figure with its present settings in another page", this.#line),
       copy,
     );
     this.button.addEventListener("click", () => {

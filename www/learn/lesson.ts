@@ -1,4 +1,4 @@
-/** What a lesson is made of. */
+/** The parts of a lesson. */
 
 import { make } from "../dom";
 import { decimals } from "../draw/numbers";
@@ -49,10 +49,10 @@ export interface Lesson {
   /** The lesson in one sentence, which the slides show. */
   gist: string;
   formula(): Element;
-  /** What the formula says, in words. */
+  /** The formula in words. */
   formulaWords: string;
   text: readonly string[];
-  /** What to do with the figure. */
+  /** Things to try with the figure. */
   tasks: readonly string[];
   controls: readonly Control[];
   readouts: readonly Readout[];
@@ -97,7 +97,7 @@ export function shown(control: SliderControl, value: number): string {
   return `${decimals(number, digits)}${unit}`;
 }
 
-/** Takes over what an address says, as far as it is something the control can be. */
+/** Takes over the values of an address that are valid for their controls. */
 export function valuesFrom(lesson: Lesson, asked: URLSearchParams): Values {
   const values: Record<string, number | string> = { ...initialValues(lesson) };
   for (const control of lesson.controls) {

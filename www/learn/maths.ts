@@ -25,7 +25,7 @@ export const frac = (up: Element, down: Element): Element => math("mfrac", {}, u
 export const sum = (below: Element): Element => math("munder", {}, mo("∑"), below);
 export const norm = (inside: Element): Element => sup(row(mo("‖"), inside, mo("‖")), mn("2"));
 
-/** Apart from what precedes and follows, as in print; browsers set it close. */
+/** With space before and after, as in print; browsers set none. */
 const space = (width: string): Element => math("mspace", { width });
 export const log = (of: Element): Element => row(mi("log"), space("0.1667em"), of);
 export const comma = (): Element => row(mo(","), space("0.6em"));
@@ -33,7 +33,7 @@ export const comma = (): Element => row(mo(","), space("0.6em"));
 interface Symbol {
   make(): Element;
   ink: Ink;
-  /** What it stands for, said where the pointer rests on it. */
+  /** Its meaning, shown when the pointer rests on it. */
   name: string;
 }
 
@@ -42,7 +42,7 @@ const bold = (letter: string) => math("mi", { mathvariant: "bold", class: "learn
 /** Every symbol of the lessons, once. */
 const SYMBOLS = {
   n: { make: () => bold("n"), ink: "normal", name: "unit normal of the surface" },
-  m: { make: () => bold("m"), ink: "prior", name: "normal that the depth map has there" },
+  m: { make: () => bold("m"), ink: "prior", name: "normal of the depth map at that point" },
   M: { make: () => sub(bold("M"), mi("j")), ink: "light", name: "light of colour j, a 4 by 4 matrix of 9 numbers" },
   L: { make: () => mi("L"), ink: "light", name: "light, 27 numbers" },
   a: { make: () => mi("a"), ink: "albedo", name: "logarithm of the albedo" },
@@ -50,8 +50,8 @@ const SYMBOLS = {
   lambda: { make: () => mi("λ"), ink: "prior", name: "weight of the prior" },
   R: { make: () => bold("R"), ink: "pose", name: "rotation of the pose" },
   z: { make: () => mi("z"), ink: "truth", name: "depth" },
-  d: { make: () => mi("d"), ink: "sensor", name: "depth that the sensor measured" },
-  e: { make: () => mi("e"), ink: "error", name: "what the model leaves over" },
+  d: { make: () => mi("d"), ink: "sensor", name: "depth measured by the sensor" },
+  e: { make: () => mi("e"), ink: "error", name: "remainder that the model does not explain" },
 } as const satisfies Record<string, Symbol>;
 
 export type SymbolName = keyof typeof SYMBOLS;

@@ -70,7 +70,7 @@ export class LearnPage {
     parent.append(nav, this.#main, this.#slides.element);
   }
 
-  /** Shows the lesson that the address asks for, set as it says; without one, what was last seen. */
+  /** Shows the lesson named in the address with its settings; without one, the lesson shown last. */
   open(hash: string): void {
     this.#isOpen = true;
     const asked = new URLSearchParams(hash.replace(/^#/, ""));
@@ -81,7 +81,7 @@ export class LearnPage {
     const values = isTold ? valuesFrom(lesson, asked) : (this.#kept.get(lesson.id) ?? initialValues(lesson));
     this.#show(lesson, values);
     if (asked.has("slides")) this.#startSlides();
-    // Back from a slide to the lesson that it was begun at.
+    // Back from the slides to the lesson at which they were opened.
     else this.#slides.close();
     this.#writeAddress();
   }
@@ -98,7 +98,7 @@ export class LearnPage {
     if (this.#shown?.drawing) this.#shown.figure.show(this.#shown.drawing);
   }
 
-  /** What the figure shows in numbers, with the values that made it. */
+  /** The numbers of the figure, with the values of its controls. */
   download(): void {
     if (!this.#shown) return;
     const { lesson, controls, drawing } = this.#shown;
@@ -246,7 +246,7 @@ export class LearnPage {
   #complain(message: string): void {
     const shown = this.#shown;
     if (!shown) return;
-    const again = make("button", { type: "button" }, "Compute again");
+    const again = make("button", { type: "button" }, "Recompute");
     again.addEventListener("click", () => this.#ask());
     shown.alert.replaceChildren(message, " ", again);
     shown.alert.hidden = false;

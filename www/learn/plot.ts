@@ -7,7 +7,7 @@ import { svg } from "./svg";
 
 /** Of the drawing, which is as wide as its place: one that is scaled has type too small to read where it is narrow. */
 const WIDTH = 320;
-/** Lower than it is wide where there is room, no lower than it can be read, and no higher than a screen shows. */
+/** A landscape format if there is room, no lower than is legible and no higher than a screen. */
 const heightOf = (width: number): number => Math.round(Math.max(Math.min(width, 200), Math.min(0.5 * width, 280)));
 /** From the axes to the edges. */
 const MARGIN = { left: 40, top: 8, right: 14, bottom: 36 };
@@ -28,7 +28,7 @@ function spanOf(values: number[], range?: readonly [number, number]): Span {
   return most > least ? { least, most } : { least: least - 0.5, most: most + 0.5 };
 }
 
-/** Round numbers within a span, about as many as asked for and two at least: one alone tells no scale. */
+/** Round numbers within a span, about as many as requested and at least two, because a single one gives no scale. */
 function ticks({ least, most }: Span, count: number): number[] {
   const rough = (most - least) / count;
   const power = 10 ** Math.floor(Math.log10(rough));
@@ -79,7 +79,7 @@ export class Plot {
     this.#draw(panel);
   }
 
-  /** Draws anew for another width or type; its own height is none of these. */
+  /** Redraws for another width or type size, but not for a change of its height. */
   #fit(): void {
     const type = parseFloat(getComputedStyle(this.#drawing).fontSize) / TYPE;
     const width = Math.round(this.element.clientWidth / (type || 1));

@@ -1,4 +1,4 @@
-/** What the lessons and their worker say to each other. Both sides import this file and nothing else of one another. */
+/** The messages between the lessons and their worker. Both sides import this file and nothing else of each other. */
 
 import type { Fault } from "../engine/protocol";
 
@@ -39,7 +39,7 @@ interface Common {
   /** Stays the same while values change. */
   key: string;
   title: string;
-  /** What it shows, for those who cannot see it. */
+  /** A description for screen readers. */
   alt: string;
 }
 
@@ -49,7 +49,7 @@ export interface ImagePanel extends Common {
   height: number;
   pixels: Uint8ClampedArray;
   marks?: Mark[];
-  /** What the colours mean, in a line. */
+  /** The meaning of the colours, in one line. */
   legend?: string;
 }
 

@@ -1,4 +1,4 @@
-/** Where a lesson's method is written down, as links out of the page: nothing is asked for before one is pressed. */
+/** Where a lesson's method is written down, as links out of the page: nothing is requested before a click. */
 
 import { make } from "../dom";
 
@@ -6,7 +6,7 @@ import { make } from "../dom";
 const PAPER = "https://arxiv.org/abs/1905.06499";
 const DOCS = "https://github.com/bimodal-stereo/bimodal-stereo/blob/main/docs";
 
-/** The parts of the method that lessons name: their file in `docs/`, and their heading in it. */
+/** The sections of the method that lessons refer to: their file in `docs/` and their heading. */
 const SECTIONS = {
   imageModel: ["method/image-model.md", "The image model"],
   light: ["method/image-model.md", "The light and its prior"],
@@ -24,7 +24,7 @@ export interface References {
   sections: readonly (keyof typeof SECTIONS)[];
   /** What of the paper. */
   paper?: string;
-  /** What others wrote on it first, by its DOI. */
+  /** The original publication on the subject, by its DOI. */
   others?: readonly (readonly [doi: string, words: string])[];
 }
 

@@ -1,4 +1,4 @@
-/** The page's side of the worker: only the newest request counts, and a worker that broke off is replaced. */
+/** The page's side of the worker: only the newest request counts, and a worker that has ended is replaced. */
 
 import { GONE, onGone } from "../engine/alive";
 import type { Fault } from "../engine/protocol";
@@ -24,7 +24,7 @@ export class Session {
     this.#worker.postMessage(request);
   }
 
-  /** What is under way is of no use any more. */
+  /** The request under way is obsolete. */
   end(): void {
     this.#worker?.terminate();
     this.#worker = undefined;
@@ -33,11 +33,10 @@ export class Session {
   #spawn(): Worker {
     const worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
     onGone(worker, () => {
-      if (worker === this.#worker)
-        this.#fail({ code: "lost", message: `This figure broke off: ${GONE}.`, fatal: true });
+      if (worker === this.#worker) this.#fail({ code: "lost", message: `This figure stopped: ${GONE}.`, fatal: true });
     });
     worker.onmessage = (event: MessageEvent<Answer>) => {
-      // What was asked before the newest request is out of date.
+      // Earlier requests are obsolete.
       if (worker === this.#worker && event.data.id === this.#next) this.#receive(event.data);
     };
     worker.onerror = (event) => {

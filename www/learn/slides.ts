@@ -1,8 +1,8 @@
-/** One figure at a time in large type, turned by the arrow keys, for those who stand before a class. */
+/** One figure at a time in large type for presenting to a class; the arrow keys change slides. */
 
 import { make } from "../dom";
 
-/** What the arrow keys already mean something to. */
+/** Elements that use the arrow keys themselves. */
 const MOVED_BY_ARROWS = "input, select, textarea";
 
 export interface Slide {
@@ -56,7 +56,7 @@ export class Slides {
     for (const { by, button } of this.#turns) button.disabled = !hasBeside(by);
     this.#holder.replaceChildren(article);
     this.#holder.scrollTop = 0;
-    // A control that is gone takes the focus with it, and the keys would reach nobody.
+    // A removed control loses the focus, and then the keys would have no target.
     article.querySelector("h2")?.focus();
   }
 

@@ -9,7 +9,7 @@ export async function keepForOffline(line: HTMLElement): Promise<void> {
     const registration = await navigator.serviceWorker.register("./sw.js");
     const tell = (): void => {
       if (registration.waiting)
-        line.textContent = "A newer version is ready: close every tab of this page, and open it again.";
+        line.textContent = "A newer version is ready. To use it, close every tab of this page and open it again.";
       else if (registration.active) line.textContent = "It works offline.";
     };
     const follow = (worker: ServiceWorker | null): void =>
@@ -17,7 +17,8 @@ export async function keepForOffline(line: HTMLElement): Promise<void> {
         tell();
         const isRefused = worker.state === "redundant" && !registration.active && !registration.waiting;
         if (isRefused)
-          line.textContent = "This browser keeps no copy of the page (its storage may be full): it needs its network.";
+          line.textContent =
+            "This browser could not store a copy of the page (its storage may be full), so the page needs a network connection.";
       });
     follow(registration.installing);
     registration.addEventListener("updatefound", () => follow(registration.installing));

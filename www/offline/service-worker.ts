@@ -24,7 +24,7 @@ const OTHER = hasSimd() ? /bimodal_stereo_scalar_bg/ : /bimodal_stereo_bg/;
 /** Names in here hold a hash of the content: what an earlier version has fetched under one of them serves again. */
 const NAMED_BY_CONTENT = /^assets\//;
 
-/** The document has the folder's own address: some servers send whoever asks for index.html there. */
+/** The document has the folder's own address: some servers redirect requests for index.html there. */
 const addressOf = (path: string): string => new URL(path === "index.html" ? "./" : path, scope).href;
 
 self.addEventListener("install", (event) => event.waitUntil(keepAll()));
@@ -58,7 +58,7 @@ function plain(response: Response): Response {
 async function takeOver(): Promise<void> {
   const others = (await caches.keys()).filter((name) => name.startsWith(OURS) && name !== NAME);
   for (const name of others) await caches.delete(name);
-  // The page that brought it here asks for more later on: other places, their workers.
+  // The page requests more later on: other places and their workers.
   await self.clients.claim();
 }
 

@@ -1,4 +1,4 @@
-/** What makes a good scene, said before anything is measured, with two drawings. */
+/** Advice on a good scene, given before anything is measured, with two drawings. */
 
 import { make } from "../dom";
 import { svg } from "./parts";
@@ -52,24 +52,19 @@ export function advice(): HTMLElement {
     make(
       "div",
       { class: "rig-figures" },
-      figure(
-        good(),
-        "good",
-        make("strong", {}, "Tells much: "),
-        "something with edges and folds, and free space behind it",
-      ),
-      figure(poor(), "poor", make("strong", {}, "Tells little: "), "a wall alone looks the same from a little aside"),
+      figure(good(), "good", make("strong", {}, "Good: "), "an object with edges and folds, and free space behind it"),
+      figure(poor(), "poor", make("strong", {}, "Poor: "), "a bare wall looks the same after a small sideways shift"),
     ),
     make(
       "ul",
       {},
-      make("li", {}, "A matte thing of one colour: crumpled paper, or a sheet draped over a chair."),
-      make("li", {}, "A background about 0.3 m behind it, so that its outline shows in both cameras."),
-      make("li", {}, "Nothing that shines, mirrors or lets light through; nothing that moves."),
+      make("li", {}, "A matte object of one colour, such as crumpled paper or a sheet draped over a chair."),
+      make("li", {}, "A background about 0.3 m behind it, so that its silhouette is visible to both cameras."),
+      make("li", {}, "Nothing shiny, mirrored or transparent; nothing that moves."),
       make(
         "li",
         {},
-        "Three frames with the thing turned by some 30° tell more than one. Both cameras at the same moment.",
+        "Three frames with the object turned by about 30° are better than one. Record both cameras at the same moment.",
       ),
     ),
   );

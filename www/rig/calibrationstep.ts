@@ -1,4 +1,4 @@
-/** Step 2: the calibration in question, and others to compare it with. */
+/** Step 2: the calibration to check, and others to compare it with. */
 
 import { make } from "../dom";
 import { decimals } from "../draw/numbers";
@@ -15,7 +15,7 @@ const TURNS: Record<By, readonly string[]> = {
   xyz: ["about x", "about y", "about z"],
 };
 
-/** Metres between two cameras from which on a wrong unit, or a place in a room, is likelier than a rig. */
+/** Above this distance of two cameras, metres, a wrong unit or a pose in the world is likelier than a rig. */
 const FAR = 0.5;
 
 export class CalibrationStep {
@@ -26,8 +26,8 @@ export class CalibrationStep {
   readonly #none = make(
     "p",
     { class: "rig-none" },
-    make("strong", {}, "No calibration given: "),
-    "the check only estimates one. Add yours to have it judged.",
+    make("strong", {}, "No calibration given. "),
+    "The check only estimates one; add yours to have it checked.",
   );
   readonly #alert = make("p", { class: "rig-error", role: "alert", hidden: true });
   readonly #next: HTMLButtonElement;
@@ -44,11 +44,11 @@ export class CalibrationStep {
         make(
           "p",
           { class: "soft" },
-          "A calibration (extrinsics) carries points from the depth camera to the colour camera: P",
+          "A calibration (extrinsics) transforms points from the depth camera to the colour camera: P",
           make("sub", {}, "colour"),
           " = R P",
           make("sub", {}, "depth"),
-          " + t, in metres. The first one is in question; the others are compared with it.",
+          " + t, in metres. The first one is checked; the others are compared with it.",
         ),
         this.#none,
         this.#list,
@@ -74,7 +74,7 @@ export class CalibrationStep {
     name.addEventListener("change", () => {
       const wanted = name.value.trim();
       const isTaken = rig.candidates.some((each) => each !== candidate && each.name === wanted);
-      note.textContent = isTaken ? "Another one has this name." : "";
+      note.textContent = isTaken ? "Another calibration has this name." : "";
       if (wanted && !isTaken) candidate.name = wanted;
       else name.value = candidate.name;
       rig.changed();
@@ -119,7 +119,7 @@ export class CalibrationStep {
       make(
         "p",
         { class: "soft rig-hint" },
-        "Does that fit the rig on your desk? If left and right are the wrong way round, invert it: the wrong direction is the commonest mistake.",
+        "Does this match your rig? If left and right are swapped, invert it; the wrong direction is the most common mistake.",
       ),
     );
     return {
@@ -134,7 +134,7 @@ export class CalibrationStep {
                 make(
                   "li",
                   {},
-                  `${decimals(apart, apart > 10 ? 0 : 2)} m apart is a lot for one rig. Is it in metres, and does it lead from one camera to the other?`,
+                  `${decimals(apart, apart > 10 ? 0 : 2)} m apart is far for one rig. Is the translation in metres, and does the pose relate the two cameras?`,
                 ),
               ]
             : []),
@@ -142,7 +142,7 @@ export class CalibrationStep {
         origin.textContent = `From ${candidate.origin}.`;
         matrix.textContent = matrixText(candidate.pose);
         const isFirst = rig.candidates[0] === candidate;
-        rank.textContent = isFirst ? "in question" : "to compare";
+        rank.textContent = isFirst ? "being checked" : "for comparison";
         first.hidden = isFirst;
         invert.setAttribute("aria-label", `Invert ${candidate.name}`);
         remove.setAttribute("aria-label", `Remove ${candidate.name}`);
@@ -167,7 +167,7 @@ export class CalibrationStep {
     const failed = added.find(({ state }) => state === "failed");
     if (failed) this.#complain(failed.error ?? "");
     else if (this.#rig.candidates.length === before)
-      this.#complain(`There is no calibration in ${files.map(({ name }) => name).join(", ")}.`);
+      this.#complain(`No calibration was found in ${files.map(({ name }) => name).join(", ")}.`);
   }
 
   #fromText(): HTMLElement {
@@ -177,7 +177,7 @@ export class CalibrationStep {
       placeholder: "1 0 0 0.025\n0 1 0 0\n0 0 1 0\n0 0 0 1",
     });
     const add = press("Add what I pasted", () => void this.#paste(text.value));
-    return make("section", { class: "rig-card" }, labelled("Or paste it, in any of these forms", text), add);
+    return make("section", { class: "rig-card" }, labelled("Or paste it in any of these formats", text), add);
   }
 
   async #paste(text: string): Promise<void> {
@@ -186,10 +186,10 @@ export class CalibrationStep {
     const name = "pasted text";
     try {
       const { poses } = await this.#rig.session.call("read", { file: id, name, blob: new Blob([text]), as: "poses" });
-      if (poses.length === 0) throw new Error("There is no calibration in it.");
+      if (poses.length === 0) throw new Error("No calibration was found in the text.");
       if (poses.every(isOfWorld))
         throw new Error(
-          "It says where a camera stood in the world (camera to world). A calibration leads from the depth camera into the colour camera.",
+          "This is the pose of a camera in the world (camera to world). A calibration transforms points from the depth camera to the colour camera.",
         );
       for (const pose of poses.filter((each) => !isOfWorld(each)))
         this.#rig.addPose({ ...pose, name: pose.name ?? "pasted" }, name);
@@ -235,7 +235,7 @@ export class CalibrationStep {
       note.textContent = rotation
         ? ""
         : isWhole
-          ? "A quaternion of length zero is no rotation."
+          ? "The quaternion has length zero, so it is not a rotation."
           : "Some numbers are missing.";
       if (rotation) this.#rig.addPose({ name: "typed in", pose: poseOf(rotation, shift) }, "what was typed in");
     });
@@ -245,7 +245,7 @@ export class CalibrationStep {
       make(
         "fieldset",
         {},
-        make("legend", {}, "Or type it in, from depth to colour"),
+        make("legend", {}, "Or enter it, from depth to colour"),
         make("div", { class: "rig-four" }, ...shifts),
         labelled("Rotation as", kind),
         make("div", { class: "rig-four" }, ...turns.map(({ element }) => element)),

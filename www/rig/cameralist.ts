@@ -68,7 +68,7 @@ export class CameraForm {
       mine.typed.distortion = numbers;
       rig.changed();
     });
-    this.#edit = press("Edit these numbers", () => {
+    this.#edit = press("Edit these parameters", () => {
       const camera = rig.cameraOf(side);
       if (!camera) return;
       mine.typed = typedFrom(camera);
@@ -97,7 +97,7 @@ export class CameraForm {
       "fieldset",
       { class: "rig-camera" },
       make("legend", {}, title),
-      labelled("Where its numbers come from", this.#source),
+      labelled("Source of its parameters", this.#source),
       this.#numbers,
       this.#edit,
       this.#form,
@@ -116,7 +116,7 @@ export class CameraForm {
         { value: "", label: unknown },
         ...same,
         ...given.map((each) => ({ value: each.source, label: each.label })),
-        { value: "typed", label: "Type them in" },
+        { value: "typed", label: "Enter them" },
       ],
       source,
     );
@@ -159,5 +159,5 @@ function words(
     distortion && distortion.length > 0
       ? `${model === "brown" ? "Brown" : "fisheye"} distortion ${Array.from(distortion, (value) => decimals(value, 4)).join(" ")}`
       : "no distortion";
-  return `fx ${px(fx)}, fy ${px(fy)}, cx ${px(cx)}, cy ${px(cy)} px; ${lens}.${remark && ` Mind: ${remark}`}`;
+  return `fx ${px(fx)}, fy ${px(fy)}, cx ${px(cx)}, cy ${px(cy)} px; ${lens}.${remark && ` Note: ${remark}`}`;
 }

@@ -1,4 +1,4 @@
-/** How sharply each cue tells each axis: the log likelihood that is lost when the calibration found is moved. Loaded with the first verdict. */
+/** How well each cue constrains each axis: the loss of log likelihood when the calibration found is moved. Loaded with the first verdict. */
 
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
@@ -11,12 +11,12 @@ type Sensitivity = CheckReport["sensitivity"][number];
 type Axis = Sensitivity["axis"];
 
 const axes: Record<Axis, { title: string; unit: string }> = {
-  rx: { title: "Turn about x (up and down)", unit: "°" },
-  ry: { title: "Turn about y (left and right)", unit: "°" },
-  rz: { title: "Turn about z (in the picture)", unit: "°" },
+  rx: { title: "Rotation about x (up and down)", unit: "°" },
+  ry: { title: "Rotation about y (left and right)", unit: "°" },
+  rz: { title: "Rotation about z (in the image plane)", unit: "°" },
   tx: { title: "Shift along x (sideways)", unit: "mm" },
   ty: { title: "Shift along y (up and down)", unit: "mm" },
-  tz: { title: "Shift along z (to and fro)", unit: "mm" },
+  tz: { title: "Shift along z (forwards and backwards)", unit: "mm" },
 };
 const tokens: Record<string, string> = {
   shading: "series-1",
@@ -24,7 +24,7 @@ const tokens: Record<string, string> = {
   information: "series-2",
   silhouette: "series-4",
 };
-/** A curve that loses less than this is shown as flat as it is. */
+/** Curves that lose less than this are not scaled up to fill the height. */
 const FLAT = 4;
 /** Sigmas to each side of a 95 % interval. */
 const WITHIN = 1.96;
@@ -45,7 +45,7 @@ export class SensitivityCharts {
     this.#build();
   }
 
-  /** A canvas has to be told the theme's colours anew. */
+  /** A canvas does not follow a change of theme by itself. */
   recolour(): void {
     this.#build();
   }
@@ -77,7 +77,7 @@ export class SensitivityCharts {
     const inside: [number, number] = [Math.max(xs[0] ?? 0, -reach), Math.min(xs.at(-1) ?? 0, reach)];
     const [digits, gap] = unit === "mm" ? [1, " "] : [2, ""];
     const box = make("div", { class: "chart" });
-    const words = `Least at ${decimals(place, digits)}${gap}${unit}; ± ${decimals(reach, digits)}${gap}${unit} (95 %)`;
+    const words = `Minimum at ${decimals(place, digits)}${gap}${unit}; ± ${decimals(reach, digits)}${gap}${unit} (95 %)`;
     this.#figures.append(
       make(
         "figure",
@@ -126,7 +126,7 @@ export class SensitivityCharts {
   }
 }
 
-/** All cues at the offsets of the first; what is lost against the best of each. */
+/** All cues at the offsets of the first, as the loss relative to the best of each. */
 function lossesOf(curves: readonly Sensitivity[]): {
   xs: number[];
   lines: { cue: string; losses: number[] }[];
@@ -142,7 +142,7 @@ function lossesOf(curves: readonly Sensitivity[]): {
   return { xs, lines: same.map(({ cue, values }) => ({ cue, losses: lost(values) })), total: lost(sum) };
 }
 
-/** How far to each side of the estimate 95 % reach, in degrees or millimetres: of the covariance, which knows what the cues share. */
+/** Half width of the 95 % interval, in degrees or millimetres, from the covariance, which accounts for what the cues share. */
 function certainty(covariance: readonly number[], axis: Axis): number {
   const index = (Object.keys(axes) as Axis[]).indexOf(axis);
   const sigma = Math.sqrt(Math.max(0, covariance[7 * index] ?? 0));

@@ -1,27 +1,27 @@
-/** What is doubtful about the input of a check: each doubt caps the verdict. */
+/** Warnings about the input of a check: each of them caps the verdict. */
 
 import type { Doubt, RigState, Side } from "./state";
 
 /** A principal point farther from the middle than this share of the picture's side is likelier another size's. */
 const OFF_CENTRE = 0.2;
 
-/** Numbers for another size of image are the second commonest mistake. */
+/** Parameters for another image size are the second most common mistake. */
 export function cameraDoubt(rig: RigState, side: Side): string {
   const file = rig.given.find(({ source }) => source === rig.cameras[side].source)?.camera;
   const size = rig.sizeOf(side);
   if (!size) return "";
   if (file?.width && file.height && (file.width !== size.width || file.height !== size.height))
-    return `these are for ${file.width}×${file.height} px, the files have ${size.width}×${size.height} px.`;
+    return `these are for ${file.width}×${file.height} px, but the files have ${size.width}×${size.height} px.`;
   const camera = rig.cameraOf(side);
   const isOff = (centre: number, length: number) => Math.abs(centre / length - 0.5) > OFF_CENTRE;
   return camera && (isOff(camera.cx, size.width) || isOff(camera.cy, size.height))
-    ? `the centre is far from the middle of ${size.width}×${size.height} px; are these for another size?`
+    ? `the principal point is far from the centre of the ${size.width}×${size.height} px image; are these for another size?`
     : "";
 }
 
 /**
- * The warnings of the readers, once for all files that have the same, and those about the cameras' numbers. A guessed unit is not among
- * them: the visitor can confirm it.
+ * The warnings of the readers, once for all files that have the same, and those about the cameras' parameters. A guessed unit is not among
+ * them, because the visitor can confirm it.
  */
 export function doubtsOf(rig: RigState): Doubt[] {
   const used = new Set(rig.complete.flatMap(({ colour, depth }) => [colour, depth]));
@@ -47,7 +47,7 @@ export function doubtsOf(rig: RigState): Doubt[] {
         ? []
         : [
             ofSize(
-              `${frame.name}: its ${side === "colour" ? "colour image" : "depth map"} is ${own.width}×${own.height} px, not ${usual.width}×${usual.height} px as the first frame's, and the camera's numbers are for one size.`,
+              `${frame.name}: its ${side === "colour" ? "colour image" : "depth map"} is ${own.width}×${own.height} px, not ${usual.width}×${usual.height} px as in the first frame, and the camera's parameters are valid for one size only.`,
             ),
           ];
     }),
@@ -55,7 +55,7 @@ export function doubtsOf(rig: RigState): Doubt[] {
   const sides = rig.cameras.depth.source === "same" ? (["colour"] as const) : (["colour", "depth"] as const);
   const ofCameras = sides.flatMap((side) => {
     const words = cameraDoubt(rig, side);
-    return words ? [ofSize(`The ${side} camera's numbers: ${words}`)] : [];
+    return words ? [ofSize(`The ${side} camera's parameters: ${words}`)] : [];
   });
   return [
     ...ofFiles,

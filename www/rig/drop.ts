@@ -7,7 +7,7 @@ export interface Named {
   blob: Blob;
 }
 
-/** More files than anyone checks a rig with: the rest of a recording is left out, and said. */
+/** A limit far above what a check needs: further files are left out, with a message. */
 const MOST_FILES = 4000;
 
 async function walk(entry: FileSystemEntry, path: string, found: Named[]): Promise<void> {
@@ -19,14 +19,14 @@ async function walk(entry: FileSystemEntry, path: string, found: Named[]): Promi
   }
   const reader = (entry as FileSystemDirectoryEntry).createReader();
   for (;;) {
-    // A reader hands out a hundred at a time, and nothing at the end.
+    // A reader returns a hundred entries at a time, and none at the end.
     const entries = await new Promise<FileSystemEntry[]>((resolve, reject) => reader.readEntries(resolve, reject));
     if (entries.length === 0) return;
     for (const each of entries) if (!each.name.startsWith(".")) await walk(each, `${path}${entry.name}/`, found);
   }
 }
 
-/** What was dropped; entries must be asked for before anything is awaited. */
+/** The dropped files; entries must be read before anything is awaited. */
 async function dropped(data: DataTransfer): Promise<{ files: Named[]; isFolder: boolean }> {
   const entries = [...data.items].map((item) => item.webkitGetAsEntry()).filter((entry) => entry !== null);
   if (entries.every((entry) => entry.isFile))
@@ -81,7 +81,7 @@ export function dropTarget(
       if (files.length > 0) onFiles(files, isFolder);
     });
   }
-  // What is dropped beside the target is meant for it, too.
+  // Files dropped beside the target are accepted, too.
   const all = area ?? zone;
   all.addEventListener("dragover", (event) => {
     event.preventDefault();

@@ -9,7 +9,7 @@ export interface Example {
   poses: NamedPose[];
 }
 
-/** Degrees about y, the axis from top to bottom, by which the calibration in question is off. */
+/** Degrees about y, the axis from top to bottom, by which the example's calibration is off. */
 const OFF = 2;
 const FRAMES = 3;
 const SEED = 1;

@@ -1,4 +1,4 @@
-/** The files as they were read, in plain words, with what can be corrected. */
+/** The files with a description of how each was read, and controls to correct it. */
 
 import { make } from "../dom";
 import { choose, draw, fill, Keyed, press, THUMB } from "./parts";
@@ -9,7 +9,7 @@ const kinds: readonly { value: Kind; label: string }[] = [
   { value: "colour", label: "colour image" },
   { value: "depth", label: "depth map" },
   { value: "mask", label: "mask" },
-  { value: "cameras", label: "camera numbers" },
+  { value: "cameras", label: "camera parameters" },
   { value: "poses", label: "calibration" },
 ];
 const units = [
@@ -72,7 +72,7 @@ export class FileList {
         const warnings = summary?.warnings ?? [];
         const isSaid = warnings.some(({ code }) => code === "unit-guessed");
         const guessed = (isSaid ? [] : (summary?.guessed ?? [])).map(
-          (what) => `The ${what} was guessed: correct it here if it is wrong, or choose it to confirm it.`,
+          (what) => `The ${what} was guessed. Correct it here, or select it to confirm it.`,
         );
         notes.replaceChildren(
           ...[...warnings.map(({ message }) => message), ...guessed].map((words) => make("li", {}, words)),

@@ -47,7 +47,7 @@ export class FilesStep {
     const drop = dropTarget(
       {
         title: "Drop files or a folder here",
-        hint: "Colour images, depth maps, masks, camera numbers, a calibration, or a recording: they are told apart by what is in them. Nothing leaves this machine.",
+        hint: "Colour images, depth maps, masks, camera parameters, a calibration, or a recording. File types are detected from the contents. Nothing leaves your device.",
         files: "Choose files",
         folder: "Choose a folder",
       },
@@ -56,7 +56,7 @@ export class FilesStep {
     );
     this.#guess.append(
       this.#guessWords,
-      press("Yes, that is right", () => void this.#rig.confirmUnits()),
+      press("Confirm", () => void this.#rig.confirmUnits()),
     );
     this.#filesCard = make(
       "details",
@@ -71,7 +71,7 @@ export class FilesStep {
       make(
         "p",
         { class: "soft" },
-        "Each frame is a colour image and a depth map of the same moment. Add more one by one: the answer sharpens.",
+        "Each frame is a colour image and a depth map taken at the same moment. Each further frame makes the result more precise.",
       ),
       this.#frames.element,
     );
@@ -131,7 +131,7 @@ export class FilesStep {
         ? ""
         : reading > 0
           ? `Reading ${reading} of ${files.length} files`
-          : `${files.length} ${files.length === 1 ? "file" : "files"} read${failed > 0 ? `, ${failed} of them not understood` : ""}`;
+          : `${files.length} ${files.length === 1 ? "file" : "files"} read${failed > 0 ? `, ${failed} not understood` : ""}`;
     this.#missing.textContent = missing.length === 0 ? "" : `Still missing: ${missing.join("; ")}.`;
     this.#next.disabled = missing.length > 0;
   }
@@ -162,7 +162,7 @@ export class FilesStep {
     });
   }
 
-  /** A folder is read as a whole, since its frames may be matched by time; what came one by one is there to be looked over. */
+  /** A folder is read as a whole, since its frames may be matched by time; files that came one by one are listed for review. */
   async #take(files: Named[], isFolder: boolean): Promise<void> {
     this.#complain("");
     this.#filesCard.open ||= !isFolder;
@@ -171,7 +171,7 @@ export class FilesStep {
       if (isFolder) await this.#rig.addFolder(files);
       else await this.#rig.add(files);
       const added = this.#rig.items.filter((item) => !before.has(item) && item.recording === undefined);
-      // A recording has a card of its own.
+      // A recording has a separate card.
       if (added.length > 0 && added.every(({ summary }) => summary?.kind === "recording")) this.#filesCard.open = false;
     } catch (error) {
       this.#complain(messageOf(error));
@@ -181,11 +181,11 @@ export class FilesStep {
   async #loadExample(): Promise<void> {
     this.#complain("");
     this.#example.disabled = true;
-    this.#status.textContent = "Making the example";
+    this.#status.textContent = "Rendering the example";
     try {
       await this.#rig.loadExample();
     } catch (error) {
-      this.#complain(`The example could not be made: ${messageOf(error)}`);
+      this.#complain(`The example could not be rendered: ${messageOf(error)}`);
     } finally {
       this.#example.disabled = false;
       this.show();
@@ -201,20 +201,17 @@ export class FilesStep {
 const known: readonly [string, string][] = [
   ["Depth", "16-bit PNG (mm, TUM, SUN, any unit), PFM, PGM, TIFF, .npy, organised PLY and PCD"],
   ["Colour", "PNG, JPEG, WebP, PPM; 8 and 16 bit"],
-  ["Cameras", "ROS camera_info, OpenCV YAML or XML, Open3D, Kalibr, RealSense, COLMAP, K.txt; or type them in"],
-  ["Calibration", "4x4 text, Kalibr, ROS tf, Open3D, OpenCV R and T, RealSense; or type it in"],
-  ["Folders", "TUM RGB-D, Redwood, or pairs with like names"],
-  [
-    "Recordings",
-    "MCAP, bags of ROS 1 and of RealSense, an Azure Kinect's .mkv: images, depth, clouds, camera_info, tf",
-  ],
+  ["Cameras", "ROS camera_info, OpenCV YAML or XML, Open3D, Kalibr, RealSense, COLMAP, K.txt; or enter them by hand"],
+  ["Calibration", "4x4 text, Kalibr, ROS tf, Open3D, OpenCV R and T, RealSense; or enter it by hand"],
+  ["Folders", "TUM RGB-D, Redwood, or pairs with matching names"],
+  ["Recordings", "MCAP, ROS 1 and RealSense bags, Azure Kinect .mkv: images, depth, clouds, camera_info, tf"],
 ];
 
 const formats = (): HTMLElement =>
   make(
     "details",
     { class: "rig-card" },
-    make("summary", {}, "Which files are understood"),
+    make("summary", {}, "Supported files"),
     make(
       "dl",
       { class: "rig-formats" },

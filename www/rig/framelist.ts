@@ -1,4 +1,4 @@
-/** Frames: which colour image and which depth map were taken at the same moment, and what of them is used. */
+/** Frames: which colour image and which depth map were taken at the same moment, and which part of them is used. */
 
 import { make } from "../dom";
 import { choose, draw, fill, Keyed, press, THUMB } from "./parts";
@@ -118,10 +118,10 @@ function describe(rig: Rig, { colour, depth, mask, paint, range }: Frame): strin
     return `${summary?.width}×${summary?.height} px`;
   };
   const limits = [
-    ...(mask === undefined ? [] : ["the mask's file"]),
+    ...(mask === undefined ? [] : ["mask file"]),
     ...(paint
       ? [
-          `${((100 * paint.reduce((sum, value) => sum + (value ? 1 : 0), 0)) / paint.length).toFixed(0)} % of the image, as painted`,
+          `${((100 * paint.reduce((sum, value) => sum + (value ? 1 : 0), 0)) / paint.length).toFixed(0)} % of the image, as drawn`,
         ]
       : []),
     ...(range ? [`depths from ${range[0]} to ${range[1]} m`] : []),

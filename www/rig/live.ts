@@ -1,11 +1,11 @@
-/** A robot that is being looked at: connects, takes a frame of each new view, and checks after each. */
+/** A live connection to a robot: connects, takes a frame of each new view, and checks after each. */
 
 import type { Topic } from "./recordings";
 import type { Assembly } from "./protocol";
 import { type Session, wasCancelled } from "./session";
 import { type Item, type RigState, messageOf } from "./state";
 
-/** Views that are taken; more of one rig tell little more. */
+/** Number of views taken; more of one rig add little. */
 const MOST = 10;
 
 export type LiveState = "off" | "connecting" | "connected" | "looking" | "checking" | "done" | "lost";
@@ -18,7 +18,7 @@ interface Watched extends RigState {
   check(onProgress: (share: number, message: string) => void): Promise<void>;
 }
 
-/** How sharp the answer was after so many views. */
+/** The precision of the result after each number of views. */
 export interface Step {
   views: number;
   verdict: string;
@@ -29,7 +29,7 @@ export interface Step {
 export class Live {
   state: LiveState = "off";
   address = "";
-  /** What the server calls itself. */
+  /** The name of the server. */
   name = "";
   topics: Topic[] = [];
   chosen = { colour: "", depth: "" };
@@ -38,9 +38,9 @@ export class Live {
   progress = "";
   steps: Step[] = [];
   readonly #rig: Watched;
-  /** What the frames belong to: they go with it. */
+  /** The item that the frames belong to; they are removed with it. */
   #item: Item | undefined;
-  /** Counts connections and runs: what an older one still answers is nobody's any more. */
+  /** Counts connections and runs, so that late answers of older ones are ignored. */
   #turn = 0;
   #isStopping = false;
 
@@ -82,7 +82,7 @@ export class Live {
     if (turn === this.#turn) this.#lose(reason);
   }
 
-  /** What was taken stays, and is checked as it is. */
+  /** The views taken so far stay and are checked. */
   #lose(reason: string): void {
     this.#turn++;
     this.#become("lost", `The connection to ${this.address} was lost: ${reason}.`);

@@ -1,4 +1,4 @@
-/** Connecting to a robot, and the verdict that sharpens while it looks around. */
+/** Connects to a robot and shows how the verdict improves with each view. */
 
 import "../style/rig-recordings.css";
 import { make } from "../dom";
@@ -11,7 +11,7 @@ const USUAL = "ws://localhost:8765";
 const VERDICTS: Record<string, string> = {
   consistent: "consistent",
   off: "off",
-  undecided: "cannot tell yet",
+  undecided: "undecided so far",
   estimated: "estimated, no calibration given",
 };
 
@@ -19,11 +19,14 @@ function says({ state, views, progress, name }: Live): string {
   const taken = `${views} ${views === 1 ? "view" : "views"} taken`;
   const words: Record<LiveState, string> = {
     off: "",
-    connecting: "Connecting, and looking into the topics",
+    connecting: "Connecting and reading the topics",
     connected: views > 0 ? `Connected; ${taken}.` : `Connected to ${name || "the bridge"}.`,
-    looking: views > 0 ? `${taken}. Turn the robot, or the thing before it, and rest.` : "Waiting for the first view",
+    looking:
+      views > 0
+        ? `${taken}. Turn the robot or the object in front of it, then keep still.`
+        : "Waiting for the first view",
     checking: `${taken}, checking${progress ? `: ${progress}` : ""}`,
-    done: `${taken}. That is enough.`,
+    done: `${taken}; no more are needed.`,
     lost: "",
   };
   return words[state];
@@ -72,7 +75,7 @@ export class LiveCard {
       make(
         "p",
         { class: "soft" },
-        "The page opens a WebSocket to the address that you name here, and to no other: a foxglove_bridge that runs on the robot or on this machine. Pictures come from there; nothing is sent but which topics are wanted.",
+        "The page opens a WebSocket to the address entered here and to no other: a foxglove_bridge that runs on the robot or on your computer. It receives images from there and sends only the names of the requested topics.",
       ),
       make(
         "div",

@@ -1,6 +1,6 @@
 /**
- * A dialog that restricts what of a picture is used: a rectangle, a brush, growing and shrinking, and where there is a depth map a range of
- * depths. The Lab draws its masks with it, too.
+ * A dialog that restricts which part of a picture is used: rectangle, brush, growing and shrinking, and with a depth map a range of depths.
+ * The Lab draws its masks with it, too.
  */
 
 import "../style/rig-mask.css";
@@ -26,7 +26,7 @@ export interface Subject {
 
 type Tool = "rectangle" | "brush";
 
-/** Strokes that can be taken back, and what they may hold in memory together, bytes. */
+/** The number of strokes that can be undone, and their memory limit, bytes. */
 const MOST_STROKES = 30;
 const MOST_BYTES = 128e6;
 
@@ -38,13 +38,13 @@ export class MaskTool {
   readonly #layer = make("canvas", {
     class: "rig-mask-layer",
     role: "img",
-    "aria-label": "What is used of the colour image. Draw with the pointer, or type a rectangle's numbers.",
+    "aria-label": "The used part of the colour image. Draw with the pointer, or enter the numbers of a rectangle.",
   });
   readonly #frameBox = make("div", { class: "rig-mask-band", hidden: true });
   readonly #depth = make("canvas", {
     class: "rig-mask-depth",
     role: "img",
-    "aria-label": "Depth map; grey depths are not used.",
+    "aria-label": "Depth map; depths shown in grey are not used.",
   });
   readonly #share = make("p", { role: "status", class: "soft" });
   readonly #depths: HTMLElement;
@@ -144,7 +144,7 @@ export class MaskTool {
       {},
       make("legend", {}, "Draw"),
       labelled("Tool", tool),
-      labelled("It means", use),
+      labelled("Effect", use),
       radius.element,
     );
   }
@@ -267,7 +267,7 @@ export class MaskTool {
     this.#showShare();
   }
 
-  /** What is not used is darkened. */
+  /** Unused parts are darkened. */
   #showPart(part: Box, all = false): void {
     const { width, height, data } = this.#paint;
     const box = all ? { left: 0, top: 0, width, height } : part;

@@ -1,4 +1,4 @@
-/** The depth map laid over the colour image at full resolution, under one calibration or on the way to another. */
+/** The depth map projected onto the colour image at full resolution, with one calibration or an interpolation between two. */
 
 import type { Pose } from "../../pkg/index.js";
 import { colourAt, gradient } from "../draw/colours";
@@ -18,9 +18,9 @@ interface Stop {
 
 /** Steps of the slider from one calibration to the next. */
 const WAY = 20;
-/** Told apart from every colour of the depths, and from most things. */
+/** Distinct from every colour of the depths, and from most objects. */
 const EDGE = [255, 60, 190] as const;
-/** So much larger than their mean distance are points drawn, so that they close up where they lie farther apart. */
+/** Factor of the point size to the mean distance of points, so that sparse regions are covered. */
 const OVERLAP = 1.2;
 /** Pictures of the report are at most so wide, px. */
 const REPORT_WIDTH = 1280;
@@ -119,7 +119,7 @@ export class Overlay {
     void this.#chooseFrame(0);
   }
 
-  /** Known before the picture is: what stands below has its place at once. */
+  /** The size is known before the picture, so that the layout below does not move. */
   #ratioOf({ plans }: Run): string {
     const { width = 4, height = 3 } = this.#rig.item(plans[0]?.colour)?.summary ?? {};
     return `${width} / ${height}`;
@@ -149,13 +149,13 @@ export class Overlay {
     await this.#project();
   }
 
-  /** Where the slider stands: the pose there, and in words. */
+  /** The pose at the slider's position, and its description. */
   #place(): { pose: Pose; words: string; stop: number } {
     const value = Number(this.#slider.value);
     const i = Math.min(Math.floor(value / WAY), this.#stops.length - 1);
     const [a, b] = [this.#stops[i], this.#stops[i + 1]];
     const share = value / WAY - i;
-    if (!a) throw new Error("There is nothing to show.");
+    if (!a) throw new Error("No frame to show.");
     if (!b || share === 0) return { pose: a.pose, words: a.name, stop: i };
     return {
       pose: between(a.pose, b.pose, share),
@@ -164,7 +164,7 @@ export class Overlay {
     };
   }
 
-  /** The newest place wins; those passed while the worker was busy are left out. */
+  /** Only the newest position is drawn; those passed while the worker was busy are skipped. */
   async #project(): Promise<void> {
     if (this.#stops.length === 0) return;
     const { words, stop } = this.#place();
@@ -203,11 +203,18 @@ export class Overlay {
         : []),
       ...(this.#what === "points"
         ? []
-        : [make("span", { class: "rig-legend-edge" }, key, "depth edges: they should lie on the image's outlines")]),
+        : [
+            make(
+              "span",
+              { class: "rig-legend-edge" },
+              key,
+              "depth edges; they should coincide with the silhouettes in the image",
+            ),
+          ]),
     );
   }
 
-  /** Every frame under the calibration in question and the one found, for the report. */
+  /** Every frame with the calibration being checked and with the one found, for the report. */
   async pictures(): Promise<{ title: string; dataUrl: string }[]> {
     const run = this.#run;
     if (!run) return [];
@@ -268,7 +275,7 @@ function paint(layer: HTMLCanvasElement, { points, edges }: Projection, what: Wh
   return { min, max };
 }
 
-/** As a canvas has its pixels in memory: red first, opaque. */
+/** In the memory layout of a canvas: red first, opaque. */
 const packed = ([r, g, b]: readonly [number, number, number]): number =>
   new Uint32Array(new Uint8Array([r, g, b, 255]).buffer)[0] ?? 0;
 

@@ -53,7 +53,7 @@ export class RigPage {
         make(
           "p",
           {},
-          "A colour camera and a depth camera, and extrinsics that a tool or a factory gave: are they right? Drop a few frames and get an answer with its evidence.",
+          "Are the extrinsics between your colour and depth cameras right? Drop a few frames and get a verdict, with evidence.",
         ),
         this.#stepper(),
       ),
@@ -63,13 +63,13 @@ export class RigPage {
     rig.listen(() => this.#show());
   }
 
-  /** Shows the step that the address asks for, as far as there is something to show. */
+  /** Shows the step named in the address, if there is something to show. */
   open(hash: string): void {
     const asked = new URLSearchParams(hash.replace(/^#/, "")).get("step");
     this.#turnTo(isStep(asked) && this.#may(asked) ? asked : "files", false);
   }
 
-  /** Nothing is computed for a page that is not shown; what was brought stays. */
+  /** Nothing is computed for a hidden page; its files stay. */
   leave(): void {
     this.#steps.verdict.leave();
   }
@@ -107,7 +107,7 @@ export class RigPage {
     void this.#steps.verdict.start();
   }
 
-  /** A step of its own in the history: the browser's back button goes back. */
+  /** A separate entry in the history, so that the browser's back button works. */
   #go(step: Step): void {
     if (!this.#may(step)) return;
     if (step !== this.#step) history.pushState(null, "", step === "files" ? "#rig" : `#rig&step=${step}`);

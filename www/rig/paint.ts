@@ -1,4 +1,4 @@
-/** Painting a mask: pixels that are used are 255, others 0. */
+/** Drawing a mask: pixels that are used are 255, others 0. */
 
 export interface Box {
   left: number;
@@ -10,7 +10,7 @@ export interface Box {
 export class Paint {
   readonly width: number;
   readonly height: number;
-  /** Nothing as long as all of the image is used. */
+  /** Absent as long as the whole image is used. */
   data: Uint8Array | undefined;
 
   constructor(width: number, height: number, data?: Uint8Array) {
@@ -19,7 +19,7 @@ export class Paint {
     this.data = data?.slice();
   }
 
-  /** The first stroke says what the rest is: outside of what is used nothing is, outside of what is left out everything. */
+  /** The first stroke decides about the rest: outside a stroke of used pixels nothing is used, outside a stroke of excluded pixels everything is. */
   #start(use: boolean): Uint8Array {
     this.data ??= new Uint8Array(this.width * this.height).fill(use ? 0 : 255);
     return this.data;

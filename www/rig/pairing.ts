@@ -1,8 +1,8 @@
-/** Which colour image and which depth map belong together, told by their names. */
+/** Which colour image and which depth map belong together, according to their names. */
 
 import type { Frame, Item, RigState } from "./state";
 
-/** What a name says beside its role: "depth/0001.png" and "rgb/0001.jpg" are both "0001". */
+/** The part of a name that does not state its role: "depth/0001.png" and "rgb/0001.jpg" are both "0001". */
 export function keyOf(name: string): string {
   return name
     .toLowerCase()
@@ -13,7 +13,7 @@ export function keyOf(name: string): string {
     .join(" ");
 }
 
-/** Frames as they are, with what is new put together: by like names first, else in the order of their names. */
+/** The existing frames with new files paired: by matching names first, otherwise in the order of their names. */
 export function pairUp(rig: RigState): Frame[] {
   const frames = rig.frames.map((frame) => frame);
   const used = (role: "colour" | "depth" | "mask") => new Set(frames.map((frame) => frame[role]));

@@ -19,7 +19,7 @@ export function svg(
   return element;
 }
 
-/** Rows of a list that are kept while their things change, so that focus and open parts stay. */
+/** Rows of a list that are kept while their items change, so that focus and open details stay. */
 export class Keyed<T extends { id: number }> {
   #rows = new Map<number, { element: HTMLElement; show(thing: T): void }>();
   readonly #parent: HTMLElement;
@@ -123,7 +123,7 @@ export const show = (input: HTMLInputElement, value: number): void => {
     input.value = Number.isFinite(value) ? String(Number(value.toPrecision(8))) : "";
 };
 
-/** Draws a picture into a canvas of its own size. */
+/** Draws a picture into a canvas of the same size. */
 export function draw(canvas: HTMLCanvasElement, bitmap: ImageBitmap): void {
   canvas.width = bitmap.width;
   canvas.height = bitmap.height;

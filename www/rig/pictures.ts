@@ -98,6 +98,6 @@ function pixels(
     case "mask":
       return mask(reading.mask.data, gridOf(reading.mask, width));
     default:
-      throw new Error(`${reading.name} is no picture.`);
+      throw new Error(`${reading.name} is not an image.`);
   }
 }

@@ -1,4 +1,4 @@
-/** Extrinsics as people write them, and in words. P_colour = R P_depth + t, metres. */
+/** Extrinsics in the notations in use, and in words. P_colour = R P_depth + t, metres. */
 
 import type { Pose } from "../../pkg/index.js";
 import { decimals } from "../draw/numbers";
@@ -36,7 +36,7 @@ const transposed = (a: readonly number[]): number[] =>
 const turned = (a: readonly number[], v: readonly number[]): number[] =>
   [0, 1, 2].map((row) => [0, 1, 2].reduce((sum, k) => sum + at(a, 3 * row + k) * at(v, k), 0));
 
-/** Whether a pose says where a camera stood in the world: it relates no two cameras. Open3D calls the depth camera's frame a world. */
+/** Whether a pose is that of a camera in the world, which does not relate two cameras. Open3D calls the depth camera's frame a world. */
 export const isOfWorld = ({ to }: { to?: string }): boolean => to === "world";
 
 /** The other direction. */
@@ -89,7 +89,7 @@ const angleOf = (r: readonly number[]): number =>
 
 export const degreesOf = ({ rotation }: Pose): number => angleOf(rotation) / DEGREE;
 
-/** A share of the way from one to the other, for the overlay's slider: a picture's motion, no result. */
+/** Interpolates between two poses for the overlay's slider; only for display. */
 export function between(a: Pose, b: Pose, share: number): Pose {
   if (share <= 0) return a;
   if (share >= 1) return b;
@@ -112,7 +112,7 @@ const SIDES = [
   ["in front of", "behind"],
 ] as const;
 
-/** Where the depth camera sits, seen from the colour camera: what a look at the rig can confirm. */
+/** Where the depth camera sits relative to the colour camera, so that the visitor can compare it with the rig. */
 export function inWords(pose: Pose): string {
   const parts = pose.translation
     .map((metres, axis) => ({ mm: 1000 * metres, words: SIDES[axis]?.[metres < 0 ? 1 : 0] ?? "" }))
@@ -121,12 +121,14 @@ export function inWords(pose: Pose): string {
     .map(({ mm, words }) => `${decimals(Math.abs(mm), 1)} mm ${words}`);
   const place =
     parts.length === 0
-      ? "in the place of"
+      ? "in the same position as"
       : parts.length === 1
         ? parts[0]
         : `${parts.slice(0, -1).join(", ")} and ${parts.at(-1)}`;
   const degrees = degreesOf(pose);
-  return `The depth camera sits ${place} the colour camera, turned by ${decimals(degrees, 2)}°.`;
+  return degrees < 0.005 && parts.length === 0
+    ? "The two cameras coincide: no offset, no rotation."
+    : `The depth camera sits ${place} the colour camera, rotated by ${decimals(degrees, 2)}°.`;
 }
 
 /** Four rows, as a text file has them. */

@@ -1,11 +1,11 @@
-/** What the page and its worker say to each other. The worker keeps all pixels; what crosses is summaries, pictures and numbers. */
+/** The messages between the page and its worker. The worker keeps all pixels; only summaries, pictures and numbers are exchanged. */
 
 import type { CheckCue, CheckReport, Pinhole, Pose, Warning } from "../../pkg/index.js";
 import type { Fault, Pair } from "../engine/protocol";
 import type { InverseDepth, NamedPose, ReaderWarning, Reading, RigReading } from "./files";
 import type { Topic } from "./recordings";
 
-/** What the check found, with what the page knows to be guessed among its warnings. */
+/** The result of the check, with the page's guesses among its warnings. */
 export interface WholeReport extends Omit<CheckReport, "warnings"> {
   warnings: (string | Pick<Warning, "message">)[];
 }
@@ -22,7 +22,7 @@ export type NamedCamera = {
 /** A file as read, without its pixels. */
 export interface Summary extends Omit<Reading, "name"> {
   kind: Kind | "recording" | "robot";
-  /** Of a recording: what it holds, and what was chosen of it. */
+  /** For a recording: its topics, and those chosen. */
   topics?: Topic[];
   chosen?: { colour?: string; depth?: string };
   /** What the reader had to guess, such as the unit of a depth map. */
@@ -37,13 +37,13 @@ export interface Summary extends Omit<Reading, "name"> {
   poses: NamedPose[];
 }
 
-/** One pair to check: files by their numbers, and what restricts them. */
+/** One pair to check: files by their numbers, and their restrictions. */
 export interface FramePlan {
   name: string;
   colour: number;
   depth: number;
   mask?: number;
-  /** Painted on the colour image, at its size; non-zero is used. */
+  /** Drawn on the colour image, at its size; non-zero pixels are used. */
   paint?: Uint8Array;
   /** Nearest and farthest depth that is used, metres. */
   range?: [number, number];
@@ -128,15 +128,15 @@ export interface Calls {
   };
   /** The next view of the robot that differs from those before; `fresh` forgets these. */
   observe: { ask: { first: number; colour: string; depth: string; fresh: boolean }; answer: Assembly };
-  /** Ends what observes. */
+  /** Ends the observation. */
   rest: { ask: object; answer: null };
   /** Is answered with the reason once the connection has ended. */
   closed: { ask: object; answer: string };
   disconnect: { ask: object; answer: null };
   forget: { ask: { file: number }; answer: null };
-  /** As a whole, or at most so wide; depths outside the range are grey. */
+  /** In full, or scaled to a maximum width; depths outside the range are grey. */
   picture: { ask: { file: number; range?: [number, number]; width?: number }; answer: ImageBitmap };
-  /** The frames that what follows is about. */
+  /** The frames to which the following requests refer. */
   frames: { ask: { frames: FramePlan[] }; answer: null };
   check: { ask: { candidates: Record<string, Pose>; cues: CheckCue[] }; answer: CheckReport };
   overlay: { ask: { frame: number; pose: Pose }; answer: Projection };

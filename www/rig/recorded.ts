@@ -21,7 +21,7 @@ const takenOf = (origin: string, { frames, cameras, poses, warnings }: RigFolder
   origin,
   frames: frames.map(withoutCameras),
   cameras,
-  // The direction is the reader's: names of frames here are a robot's, and say nothing of colour and depth.
+  // The direction is that of the reader: names of frames here are those of a robot and do not state colour and depth.
   poses: poses.map(({ name = "tf", pose }) => ({ name, pose })),
   warnings,
 });
@@ -31,7 +31,7 @@ type Ask<K extends keyof Calls> = Omit<Calls[K]["ask"], "first">;
 export class Recorded {
   readonly #recordings = new Map<number, Recording>();
   #robot: Robot | undefined;
-  /** What observes it. */
+  /** The observer of the connection. */
   #looking: AbortController | undefined;
 
   async open(file: number, name: string, blob: Blob): Promise<Summary> {
@@ -59,7 +59,7 @@ export class Recorded {
     return { name, topics, chosen };
   }
 
-  /** The robot that is connected; what asks too late is told so. */
+  /** The connected robot; a request after the connection has ended throws. */
   #connected(): Robot {
     if (!this.#robot) throw new Error("There is no connection to a robot.");
     return this.#robot;

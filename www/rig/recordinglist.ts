@@ -1,4 +1,4 @@
-/** Recordings that were brought: their topics, what frames are taken of, and how that goes. */
+/** The visitor's recordings: their topics, the topics to take frames from, and the progress. */
 
 import "../style/rig-recordings.css";
 import { make } from "../dom";

@@ -1,4 +1,4 @@
-/** What of a frame is used: masks of the colour image together, and a range of depths. */
+/** Which part of a frame is used: the combined masks of the colour image, and a range of depths. */
 
 import type { CheckFrame } from "../../pkg/index.js";
 

@@ -1,4 +1,4 @@
-/** What the visitor has brought and chosen: files, frames, cameras, candidates, and what the check said of them. */
+/** The visitor's files and choices: files, frames, cameras, candidates, and the result of the check. */
 
 import type { CheckCue, Pinhole } from "../../pkg/index.js";
 import { Live } from "./live";
@@ -48,12 +48,12 @@ export class Rig implements RigState {
   readonly cameras: Record<Side, CameraChoice> = { colour: choice(), depth: choice() };
   candidates: Candidate[] = [];
   cues: CheckCue[] = [];
-  /** What the readers of folders warned of. */
+  /** The warnings of the readers of folders. */
   notes: ReaderWarning[] = [];
-  /** What is being read as a whole, in words. */
+  /** A description of what is being read as a whole. */
   busy = "";
   run: Run | undefined;
-  /** How sharp the answer has been, run by run, with how many frames. */
+  /** The precision of each run, with its number of frames. */
   history: { frames: number; pixels: number; interval: [number, number] }[] = [];
   #last = 0;
 
@@ -76,7 +76,7 @@ export class Rig implements RigState {
     this.#listeners.push(listener);
   }
 
-  /** Tells those who show it, once for however much has changed. */
+  /** Notifies the views, once for any number of changes. */
   changed(): void {
     if (this.#told) return;
     this.#told = true;
@@ -124,7 +124,7 @@ export class Rig implements RigState {
     await this.#giveUnits(new Map([item, ...together, ...this.unitsGuessed].map((each) => [each, unit])));
   }
 
-  /** All guesses were right. */
+  /** Confirms all guesses. */
   async confirmUnits(): Promise<void> {
     await this.#giveUnits(new Map(this.unitsGuessed.map((item) => [item, item.summary?.unit ?? 1])));
   }
@@ -172,11 +172,11 @@ export class Rig implements RigState {
     this.#chooseCameras();
   }
 
-  /** A pose that says it leads from colour to depth is turned round. */
+  /** A pose that is stated to lead from colour to depth is inverted. */
   addPose({ name, pose, from, to }: Summary["poses"][number], origin: string, file?: number): void {
     const isBackward = (from !== undefined && COLOUR.test(from)) || (to !== undefined && DEPTH.test(to));
     const direction = isBackward
-      ? ", given from colour to depth and inverted here"
+      ? ", given from colour to depth and inverted"
       : from && to
         ? `, from ${from} to ${to}`
         : "";
@@ -224,13 +224,13 @@ export class Rig implements RigState {
     this.#chooseCameras();
   }
 
-  /** Files that are gone, and what was made of them. */
+  /** Removed files, and everything derived from them. */
   leave(items: readonly Item[]): void {
     this.items = this.items.filter((each) => !items.includes(each));
     for (const item of items) this.#unlink(item);
   }
 
-  /** Frames forget a file that is gone, or is something else now. */
+  /** Frames drop a file that was removed or has changed its kind. */
   #unlink({ id }: Item): void {
     for (const frame of this.frames) {
       for (const role of ["colour", "depth", "mask"] as const) {
@@ -243,7 +243,7 @@ export class Rig implements RigState {
     this.frames = this.frames.filter(({ colour, depth }) => colour !== undefined || depth !== undefined);
   }
 
-  /** A check that runs is of what is gone then. */
+  /** A running check refers to files that are removed. */
   clear(): void {
     this.live.stop();
     this.session.cancel();
@@ -252,7 +252,7 @@ export class Rig implements RigState {
     this.items = [];
     this.frames = [];
     this.candidates = [];
-    // The forms of the page are about these objects.
+    // The forms of the page refer to these objects.
     for (const side of ["colour", "depth"] as const) {
       Object.assign(this.cameras[side], { source: "", chosen: false });
       Object.assign(this.cameras[side].typed, emptyCamera());
@@ -368,26 +368,26 @@ export class Rig implements RigState {
     return this.frames.filter(({ colour, depth }) => colour !== undefined && depth !== undefined);
   }
 
-  /** What stands in the way of a check, in words; nothing where it can run. */
+  /** What is missing for a check, in words; empty if it can run. */
   get missing(): string[] {
     const missing: string[] = [];
-    if (this.complete.length === 0) missing.push("a colour image and a depth map of the same moment");
+    if (this.complete.length === 0) missing.push("a colour image and a depth map taken at the same moment");
     const depths = this.complete.map(({ depth }) => this.item(depth)?.summary);
     const isShared = this.cameras.depth.source === "same";
     if (depths.some((summary) => summary?.organised === false) && !this.cameraOf("depth"))
       missing.push(
         isShared
-          ? "the colour camera's numbers, which the depth camera shares"
-          : "the depth camera's numbers (or its field of view)",
+          ? "the colour camera's parameters, which the depth camera shares"
+          : "the depth camera's parameters (or its field of view)",
       );
     if (this.cameras.colour.source === "typed" && !this.cameraOf("colour"))
-      missing.push("all numbers of the colour camera, or “Unknown”");
+      missing.push("all parameters of the colour camera, or “Unknown”");
     return missing;
   }
 
   get guessed(): string[] {
     const files = new Set(this.complete.map(({ depth }) => depth));
-    // Of a colour camera that is not known the check itself warns.
+    // The check itself warns about an unknown colour camera.
     const units = this.items
       .filter(({ id, summary }) => files.has(id) && summary?.guessed.includes("unit"))
       .map(({ name }) => name);

@@ -26,10 +26,10 @@ interface Waiting {
   onProgress?: ((share: number, message: string) => void) | undefined;
 }
 
-/** What has the worker hold pixels: a new worker is told it again, but for what an old one ended of. */
+/** Requests after which the worker holds pixels: they are repeated for a new worker, except the one that ended the old worker. */
 const READS: readonly CallKind[] = ["read", "folder", "example", "take"];
 
-/** A file that came with others has a unit of its own; they are remembered under the first of them. */
+/** A file that came with others has a separate unit; they are remembered under the first of them. */
 function keyOf(kind: CallKind, ask: object): string {
   if ((kind === "unit" || kind === "take") && "file" in ask) return `${kind} ${ask.file}`;
   return "file" in ask ? `file ${ask.file}` : "first" in ask ? `files from ${ask.first}` : kind;
@@ -39,9 +39,9 @@ export class Session {
   #worker: Worker | undefined;
   #next = 1;
   #waiting = new Map<number, Waiting>();
-  /** Is called where a worker is replaced: what came from a robot was in it alone. */
+  /** Called when a worker is replaced, because frames from a robot were only in the old one. */
   onReplaced = (): void => {};
-  /** What a new worker is told first: everything that the old one had read. */
+  /** The first requests to a new worker: everything that the old one had read. */
   #known = new Map<string, { kind: CallKind; ask: object }>();
 
   call<K extends CallKind>(
@@ -59,7 +59,7 @@ export class Session {
     });
   }
 
-  /** Ends the check that runs. A worker that does not listen is replaced, and reads its files again. */
+  /** Ends the running check. A worker that does not respond is replaced, and the new one reads its files again. */
   cancel(): void {
     const checks = [...this.#waiting].filter(([, { kind }]) => kind === "check");
     if (checks.length === 0) return;
@@ -69,7 +69,7 @@ export class Session {
     }
     const worker = this.#worker;
     worker?.postMessage({ kind: "cancel" } satisfies Request);
-    // It answers whatever it is asked once the check has ended.
+    // It answers any request once the check has ended.
     const id = this.#next++;
     const late = setTimeout(() => worker === this.#worker && this.#replace(), PATIENCE);
     const ended = () => clearTimeout(late);
@@ -84,7 +84,7 @@ export class Session {
       return void this.#known.delete(key);
     }
     if (!READS.includes(kind) && kind !== "unit" && kind !== "frames") return;
-    // What is said again comes last, after the files that it may be about.
+    // Repeated requests come last, after the files to which they may refer.
     this.#known.delete(key);
     this.#known.set(key, { kind, ask });
   }
@@ -114,11 +114,11 @@ export class Session {
     this.#waiting.delete(data.id);
     if ("answer" in data) return waiting.resolve(data.answer as never);
     waiting.reject(new RigError(data.fault));
-    // Numerics that broke off are suspect from then on.
+    // After a panic the numerics are suspect.
     if (data.fault.fatal) this.#restart(data.fault.message);
   }
 
-  /** Another worker takes over what the old one was asked. */
+  /** Another worker takes over the requests of the old one. */
   #replace(): void {
     this.#worker?.terminate();
     this.#worker = undefined;
@@ -133,7 +133,7 @@ export class Session {
     this.onReplaced();
     const left = [...this.#waiting.values()];
     this.#waiting.clear();
-    // What was being read may be what ended it: no other worker is told to.
+    // What was being read may have ended the worker, so no other worker reads it.
     for (const { kind, ask } of left) if (READS.includes(kind)) this.#known.delete(keyOf(kind, ask));
     for (const { reject } of left) reject(new RigError({ code: "internal", message, fatal: true }));
   }

@@ -1,4 +1,4 @@
-/** What the visitor has brought and chosen, and how the parts beside `rig.ts` see the whole of it. */
+/** The visitor's files and choices, and the interface through which the parts beside `rig.ts` use them. */
 
 import type { CheckReport, Pinhole, Pose } from "../../pkg/index.js";
 import type { ReaderWarning } from "./files";
@@ -90,24 +90,24 @@ export interface Run {
   candidates: Record<string, Pose>;
   /** Whether no calibration was given and the identity stood in. */
   estimateOnly: boolean;
-  /** What had been guessed when it ran, in words. */
+  /** The guesses at the time of the run, in words. */
   guessed: string[];
-  /** What else is doubtful about files and cameras. */
+  /** Further warnings about files and cameras. */
   doubts: Doubt[];
 }
 
 export const messageOf = (error: unknown): string => (error instanceof Error ? error.message : String(error));
 
-/** A rig, as far as pairing, doubts and undoing look at it. */
+/** A rig, as far as pairing, warnings and undo use it. */
 export interface RigState {
   items: Item[];
   frames: Frame[];
   readonly cameras: Record<Side, CameraChoice>;
   candidates: Candidate[];
-  /** What the readers of folders warned of. */
+  /** The warnings of the readers of folders. */
   notes: ReaderWarning[];
   run: Run | undefined;
-  /** How sharp the answer has been, run by run, with how many frames. */
+  /** The precision of each run, with its number of frames. */
   history: { frames: number; pixels: number; interval: [number, number] }[];
   readonly session: Session;
   /** The cameras of the files, by their places among them. */
@@ -115,7 +115,7 @@ export interface RigState {
   /** The frames that have both pictures. */
   readonly complete: Frame[];
   freshId(): number;
-  /** Tells those who show it. */
+  /** Notifies the views. */
   changed(): void;
   item(id: number | undefined): Item | undefined;
   of(kind: Kind): Item[];

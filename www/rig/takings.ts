@@ -1,11 +1,11 @@
-/** Frames out of recordings: what is taken of each, again where something else is chosen. */
+/** Frames from recordings, taken again when other topics are chosen. */
 
 import { type Item, type Taking, messageOf } from "./state";
 import type { Assembly } from "./protocol";
 import type { Session } from "./session";
 import type { RigState } from "./state";
 
-/** Frames that are taken of a recording; more of one rig tell little more. */
+/** Number of frames taken from a recording; more of one rig add little. */
 const FRAMES = 10;
 
 interface Taker extends RigState {
@@ -39,7 +39,7 @@ export class Takings {
         this.#rig.changed();
       };
       const assembly = await this.#rig.session.call("take", { file: item.id, first, ...topics, frames }, onProgress);
-      // What was chosen since then is on its way.
+      // A later choice is already under way.
       if (item.taking !== taking || !this.#rig.items.includes(item)) return;
       Object.assign(taking, { state: "read", notes: assembly.warnings });
       this.#rig.join(assembly, item);

@@ -52,7 +52,7 @@ export class TopicTable {
       colour: choose([], "", (colour) => onChoice({ colour })),
       depth: choose([], "", (depth) => onChoice({ depth })),
     };
-    const heads = ["Topic", "Type", "Size", "Messages", "Rate", "Used as"];
+    const heads = ["Topic", "Type", "Size", "Messages", "Rate", "Use"];
     this.element.append(
       make(
         "div",

@@ -1,8 +1,8 @@
-/** Steps back: what there was before something was taken away or changed at one press. */
+/** Undo: the state before something was removed or changed with one click. */
 
 import type { RigState } from "./state";
 
-/** More steps than anyone goes back; what they hold is kept in memory. */
+/** The number of undo steps; their contents stay in memory. */
 const MOST_STEPS = 20;
 
 /** An object as it was; lists hold the objects themselves, which rows of the page are about. */
@@ -11,17 +11,17 @@ interface Kept {
   copy: object;
 }
 
-/** The step of the page where what was taken away was to be seen. */
+/** The step of the page on which the removed item was visible. */
 export type Where = "files" | "calibration";
 
 interface Step {
   words: string;
   where: Where;
-  /** Whether what was taken away is there again by other means. */
+  /** Whether the removed item has been restored in another way. */
   isMoot(): boolean;
   /** What came later has higher numbers. */
   last: number;
-  /** Everything went: whatever came later is another rig's. */
+  /** Everything was removed: later items belong to another rig. */
   isWhole: boolean;
   lists: Pick<RigState, "items" | "frames" | "candidates">;
   rest: Pick<RigState, "notes" | "history" | "run">;
@@ -38,7 +38,7 @@ export class Undo {
     this.#rig = rig;
   }
 
-  /** What the next step back takes back, in words; nothing where there is none, or where nobody would see it done. */
+  /** What the next undo takes back, in words; nothing if there is no step, or if its effect would not be visible. */
   wordsAt(where: string): string | undefined {
     if (this.#steps.at(-1)?.isMoot()) {
       this.#steps = this.#steps.slice(0, this.#steps.findLastIndex((step) => !step.isMoot()) + 1);
@@ -102,7 +102,7 @@ export class Undo {
     this.#rig.changed();
   }
 
-  /** Files are forgotten once no step leads back to them. */
+  /** Files are released once no undo step refers to them. */
   #forget(): void {
     const needed = new Set(
       [...this.#rig.items, ...this.#steps.flatMap(({ lists }) => lists.items)].map(({ id }) => id),

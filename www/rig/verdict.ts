@@ -1,4 +1,4 @@
-/** What the check said, in words: the card, what to do next, the tables. */
+/** The result of the check in words: the card, what to do next, the tables. */
 
 import type { CandidateReport, CheckReport } from "../../pkg/index.js";
 import { decimals } from "../draw/numbers";
@@ -14,7 +14,7 @@ const SHAPES: Record<Tone, readonly string[]> = {
   open: ["M9 9.2a3 3 0 1 1 4.2 2.8c-.9.4-1.2 1-1.2 1.9", "M12 17v.2"],
 };
 
-/** Told apart by shape, not by colour alone. */
+/** Distinguished by shape, not by colour alone. */
 export function icon(tone: Tone): SVGElement {
   return svg(
     "svg",
@@ -30,23 +30,23 @@ export function icon(tone: Tone): SVGElement {
 const ENDS = {
   Estimated: "a calibration was estimated",
   Consistent: "your calibration is consistent",
-  "Settled, but check": "your calibration is consistent, but see the notes below",
+  "Looks right, see warnings": "your calibration is consistent, but see the warnings below",
   Off: "your calibration is off",
-  "Off, but check": "your calibration is off, but see the notes below",
-  "This scene can't tell": "this scene can't tell",
+  "Off, see warnings": "your calibration is off, but see the warnings below",
+  Undecided: "this scene does not decide it",
 } as const;
 type Word = keyof typeof ENDS;
 
 const WORDS: Record<CheckReport["verdict"], { word: Word; tone: Tone }> = {
   consistent: { word: "Consistent", tone: "good" },
   off: { word: "Off", tone: "wrong" },
-  undecided: { word: "This scene can't tell", tone: "open" },
+  undecided: { word: "Undecided", tone: "open" },
 };
 
 const px = (value: number): string => `${decimals(value, 2)} px`;
 const interval = ([low, high]: [number, number]): string => `${decimals(low, 2)} to ${decimals(high, 2)} px`;
 
-/** Whatever was guessed keeps a verdict from being better than the files are. */
+/** Anything guessed prevents a better verdict than the files justify. */
 function headline({ report, estimateOnly, guessed, doubts }: Run): { word: Word; tone: Tone; sentence: string } {
   const { pixels, interval: range } = report.health;
   if (estimateOnly)
@@ -60,36 +60,39 @@ function headline({ report, estimateOnly, guessed, doubts }: Run): { word: Word;
   const isOpen = guessed.length + doubts.length + report.warnings.length > 0;
   // The check itself calls a consistent candidate undecided where it warns.
   if (isOpen && own?.verdict === "consistent")
-    return { word: "Settled, but check", tone: "open", sentence: own.reason };
-  if (isOpen && report.verdict === "off") return { word: "Off, but check", tone, sentence: report.reason };
+    return { word: "Looks right, see warnings", tone: "open", sentence: own.reason };
+  if (isOpen && report.verdict === "off") return { word: "Off, see warnings", tone, sentence: report.reason };
   return { word, tone, sentence: report.reason };
 }
 
-/** The word alone reads like the state of a switch where it stands beside the controls: there it is a sentence. */
+/** A whole sentence for use beside the controls, where a single word would read like the state of a switch. */
 export const ending = (run: Run): string => `The check is done: ${ENDS[headline(run).word]}.`;
 
-const AXES = ["left or right", "up or down", "to or fro"];
+const AXES = ["left or right", "up or down", "forwards or backwards"];
 const FOR_SHIFT = [
-  "show upright edges with free space behind them, such as the sides of a box or a chair's legs",
-  "show level edges with free space behind them, such as the top of a box",
-  "put things at different distances, one of them near, in front of the wall",
+  "show vertical edges with free space behind them, such as the sides of a box or a chair's legs",
+  "show horizontal edges with free space behind them, such as the top of a box",
+  "put objects at different distances in front of the wall, one of them near",
 ];
 const FOR_TURN = [
-  "show more of the picture's top and bottom",
-  "show more of the picture's left and right",
-  "show outlines far from the picture's middle",
+  "show objects near the top and bottom of the image",
+  "show objects near the left and right of the image",
+  "show silhouettes far from the centre of the image",
 ];
 /** A share below this adds little, of the frames' mean share. */
 const LITTLE = 0.3;
 
-const SWAPPED = "Look at step 1 again: colour image and depth map seem to be swapped.";
-/** What a warning asks for, the most useful first. */
+const SWAPPED = "Check step 1: colour image and depth map seem to be swapped.";
+/** The advice for each warning, the most useful first. */
 const ADVICE: readonly [code: string, advice: string][] = [
-  ["fits-inverted", "Invert the calibration in step 2 and check again: it seems to lead the other way."],
-  ["eight-bits", "Record the depth map itself, with 16 bits: a picture of the depth is too coarse for a calibration."],
+  ["fits-inverted", "Invert the calibration in step 2 and check again: it seems to be the inverse."],
+  [
+    "eight-bits",
+    "Record the depth map itself with 16 bits: a colour-coded or 8-bit picture of it is too coarse for a calibration.",
+  ],
   ["files-swapped", SWAPPED],
   ["rough-depth", SWAPPED],
-  ["camera-size", "Use the cameras' numbers for the size that the files have."],
+  ["camera-size", "Use camera parameters that belong to the size of the files."],
 ];
 
 /** What to do next, the most useful first. */
@@ -99,30 +102,30 @@ export function advise({ report, plans, estimateOnly, guessed, doubts, candidate
   const name = Object.keys(candidates)[0] ?? "";
   for (const [code, advice] of ADVICE) if (codes.has(code)) list.push(advice);
   const isOpen = report.verdict === "undecided" && Object.values(report.candidates)[0]?.verdict === "undecided";
-  const confirm = guessed.length > 0 ? [`Say in step 1 what was guessed: ${guessed.join("; ")}.`] : [];
+  const confirm = guessed.length > 0 ? [`Confirm the guess in step 1: ${guessed.join("; ")}.`] : [];
   if (!isOpen) list.push(...confirm);
   if (!estimateOnly && report.verdict === "off")
-    list.push("Save the calibration found here, use it in place of yours, and check it against fresh frames.");
-  if (estimateOnly) list.push("Save what was found, or add your own calibration in step 2 to have it judged.");
+    list.push("Save the calibration found here, use it instead of yours, and check it with new frames.");
+  if (estimateOnly) list.push("Save the calibration found here, or add your own in step 2 to have it checked.");
   if (plans.length < 3)
     list.push(
       plans.length === 1
-        ? "Add two more frames, with the thing turned by about 30° each time."
-        : "Add another frame, with the thing turned by about 30°.",
+        ? "Add two more frames, with the object turned by about 30° each time."
+        : "Add another frame, with the object turned by about 30°.",
     );
   list.push(weakest(report), ...(isOpen ? confirm : []));
   const mean = 1 / Math.max(1, report.frames.length);
   for (const { name, share, note } of report.frames)
     if (report.frames.length > 1 && share < LITTLE * mean)
-      list.push(`Take ${name} anew: it adds little (${(100 * share).toFixed(0)} %)${note ? `, ${note}` : ""}.`);
+      list.push(`Retake ${name}: it contributes little (${(100 * share).toFixed(0)} %)${note ? `, ${note}` : ""}.`);
   if (!estimateOnly && report.verdict === "consistent")
-    list.push(`Keep “${name}”, and check again after the rig was moved, knocked or heated.`);
+    list.push(`Keep “${name}”, and check again after the rig has been moved, knocked or heated.`);
   return report.verdict === "consistent" && !estimateOnly && guessed.length + doubts.length === 0
     ? [...list.slice(-1), ...list.slice(0, -1)]
     : list;
 }
 
-/** The least certain turn and shift, one sigma, and what would tell them. */
+/** The least certain rotation or shift, one sigma, and what would determine it better. */
 function weakest({ covariance }: CheckReport): string {
   const sigma = (i: number) => Math.sqrt(Math.max(0, covariance[7 * i] ?? 0));
   const turns = [0, 1, 2].map((i) => (180 / Math.PI) * sigma(i));
@@ -131,8 +134,8 @@ function weakest({ covariance }: CheckReport): string {
   const [turn, shift] = [most(turns), most(shifts)];
   const isTurn = (turns[turn] ?? 0) * 15 > (shifts[shift] ?? 0);
   return isTurn
-    ? `Least certain is the turn about ${"xyz"[turn]} (± ${decimals(turns[turn], 2)}°, one sigma): ${FOR_TURN[turn]}.`
-    : `Least certain is how far it is shifted ${AXES[shift]} (± ${decimals(shifts[shift], 1)} mm, one sigma): ${FOR_SHIFT[shift]}.`;
+    ? `The rotation about ${"xyz"[turn]} is the least certain (± ${decimals(turns[turn], 2)}°, one sigma): ${FOR_TURN[turn]}.`
+    : `The shift ${AXES[shift]} is the least certain (± ${decimals(shifts[shift], 1)} mm, one sigma): ${FOR_SHIFT[shift]}.`;
 }
 
 export function card(run: Run): HTMLElement {
@@ -158,7 +161,7 @@ export function card(run: Run): HTMLElement {
   );
 }
 
-/** The numbers of the one in question, to be seen at a glance. */
+/** The main numbers of the calibration being checked. */
 function figures({ report, estimateOnly }: Run): HTMLElement {
   const { health } = report;
   const [first] = Object.values(report.candidates);
@@ -170,9 +173,9 @@ function figures({ report, estimateOnly }: Run): HTMLElement {
     { class: "rig-figures-row" },
     figure(
       `${decimals(first.offDegrees, 2)}° and ${decimals(first.offMillimetres, 1)} mm`,
-      "from the best fit, the shift at the scene's middle",
+      "from the best fit; shift at the centre of the scene",
     ),
-    figure(px(first.pixels), `expected error of yours (95 %: ${interval(first.interval)})`),
+    figure(px(first.pixels), `expected error of your calibration (95 %: ${interval(first.interval)})`),
     found,
   );
 }
@@ -206,8 +209,8 @@ export function candidatesTable({ report, estimateOnly }: Run): HTMLElement {
       {},
       make("th", { scope: "row" }, name),
       make("td", {}, ...words),
-      make("td", { "data-label": "turned by" }, off),
-      make("td", { "data-label": "shifted by" }, shift),
+      make("td", { "data-label": "rotation" }, off),
+      make("td", { "data-label": "shift" }, shift),
       make(
         "td",
         { class: "rig-pixels" },
@@ -223,7 +226,7 @@ export function candidatesTable({ report, estimateOnly }: Run): HTMLElement {
     CandidateReport,
   ]) => {
     const { word, tone } = WORDS[verdict];
-    const chance = `Were it right, one this far from the estimate would come up in ${probability < 0.001 ? "less than 0.1" : decimals(100 * probability, 1)} % of checks.`;
+    const chance = `If it were right, a result this far off would occur in ${probability < 0.001 ? "fewer than 0.1" : decimals(100 * probability, 1)} % of checks.`;
     return row(
       name,
       [icon(tone) as unknown as HTMLElement, word],
@@ -234,7 +237,7 @@ export function candidatesTable({ report, estimateOnly }: Run): HTMLElement {
       `${reason} ${chance}`,
     );
   };
-  const head = ["Calibration", "Verdict", "Turned by", "Shifted by", "Reprojection error, 95 %"].map((words) =>
+  const head = ["Calibration", "Verdict", "Rotation", "Shift", "Reprojection error, 95 %"].map((words) =>
     make("th", { scope: "col" }, words),
   );
   return make(
@@ -244,7 +247,7 @@ export function candidatesTable({ report, estimateOnly }: Run): HTMLElement {
     make(
       "p",
       { class: "soft" },
-      "Turn and shift are measured from the calibration found, at the scene's middle; the error is what to expect at the scene's depth, in pixels of the colour image.",
+      "Rotation and shift are relative to the calibration found, at the centre of the scene. The error is the expected error at the scene's depth, in pixels of the colour image.",
     ),
     make(
       "div",
@@ -292,7 +295,7 @@ export function sharesCard(
       make("th", { scope: "row" }, CUES[name] ?? name),
       make("td", {}, bar(share)),
       make("td", {}, percent(share)),
-      make("td", {}, sharpness > 0 ? `± ${decimals(1 / sharpness, 2)} px` : "tells nothing"),
+      make("td", {}, sharpness > 0 ? `± ${decimals(1 / sharpness, 2)} px` : "no information"),
     );
   const table = (caption: string, last: string, rows: HTMLElement[]) =>
     make(
@@ -312,11 +315,11 @@ export function sharesCard(
   return make(
     "section",
     { class: "rig-card" },
-    make("h3", {}, "What told it"),
-    table("Each frame's share of the answer", "Note", report.frames.map(frame)),
+    make("h3", {}, "What the verdict rests on"),
+    table("Each frame's share of the evidence", "Note", report.frames.map(frame)),
     table("Each cue's share, and its sigma", "Sigma", Object.entries(report.cues).map(cue)),
     ...(runs.length > 1
-      ? [make("h4", {}, "Checks so far, with the expected error"), make("ol", { class: "rig-history" }, ...runs)]
+      ? [make("h4", {}, "Checks so far, with their expected error"), make("ol", { class: "rig-history" }, ...runs)]
       : []),
   );
 }

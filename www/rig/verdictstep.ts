@@ -1,4 +1,4 @@
-/** Step 3: the check runs, and says what it found. */
+/** Step 3: runs the check and shows its result. */
 
 import type { CheckCue } from "../../pkg/index.js";
 import { make } from "../dom";
@@ -33,7 +33,7 @@ export class VerdictStep {
   readonly #stale = make(
     "p",
     { class: "rig-stale", hidden: true },
-    "Files, cameras or calibrations have changed since this verdict: run the check again.",
+    "Files, cameras or calibrations have changed since this verdict. Run the check again.",
   );
   readonly #card = make("div", { class: "rig-card rig-verdict-box", hidden: true });
   readonly #results = make("div", { class: "rig-results", hidden: true });
@@ -44,7 +44,7 @@ export class VerdictStep {
   readonly #curvesBox = make("section", { class: "rig-card" });
   #curves: SensitivityCharts | undefined;
   #shown: Run | undefined;
-  /** What the visitor has chosen to write stays chosen, run by run. */
+  /** The visitor's choice of what to write is kept between runs. */
   #wish: { format: PoseFormat; pose?: string; frame?: string } = { format: "matrix" };
   #busy = false;
 
@@ -54,11 +54,11 @@ export class VerdictStep {
     this.#run = press("Run the check", () => void this.start(), { class: "primary" });
     this.#cancel = press("Cancel", () => rig.session.cancel());
     this.#curvesBox.append(
-      make("h3", {}, "How sharply this scene tells each axis"),
+      make("h3", {}, "How well this scene constrains each axis"),
       make(
         "p",
         { class: "soft" },
-        "Log likelihood lost when the calibration found is moved: a narrow valley is a sure answer, a flat one says that this scene can't tell. The dot is the least of all cues together, the band what the answer is certain to (95 %).",
+        "Loss of log likelihood when the calibration found is moved. A narrow valley means a certain result; a flat one means that this scene does not constrain the axis. The dot marks the minimum of all cues together, the band the 95 % interval of the result.",
       ),
     );
     this.#results.append(
@@ -123,8 +123,8 @@ export class VerdictStep {
       this.#status.textContent = run ? ending(run) : "";
       this.#card.querySelector<HTMLElement>(".rig-word")?.focus({ preventScroll: true });
     } catch (error) {
-      this.#status.textContent = wasCancelled(error) ? "Cancelled. Nothing was lost." : "";
-      if (!wasCancelled(error)) this.#complain(`The check could not be done: ${messageOf(error)}`);
+      this.#status.textContent = wasCancelled(error) ? "Cancelled. Files and calibrations are kept." : "";
+      if (!wasCancelled(error)) this.#complain(`The check failed: ${messageOf(error)}`);
     } finally {
       this.#busy = false;
       this.show();
@@ -165,7 +165,7 @@ export class VerdictStep {
         const on = [...this.element.querySelectorAll<HTMLInputElement>(".rig-cues input:checked")].map(
           ({ value }) => value as CheckCue,
         );
-        // Of no cue at all nothing can be said.
+        // A check needs at least one cue.
         if (on.length === 0) box.checked = true;
         else this.#rig.cues = on.length === Object.keys(CUES).length ? [] : on;
       });
@@ -184,13 +184,15 @@ export class VerdictStep {
     const remark = make("p", { class: "soft", role: "status" });
     const attempt = (action: () => Promise<void>) => async () => {
       note.textContent = remark.textContent = "";
-      await action().catch((error: unknown) => (note.textContent = `It could not be written: ${messageOf(error)}`));
+      await action().catch(
+        (error: unknown) => (note.textContent = `The file could not be written: ${messageOf(error)}`),
+      );
     };
     const poses = [
       { value: "", label: "found" },
       ...Object.keys(run.candidates).map((name) => ({ value: name, label: name })),
     ];
-    // Who was right keeps what is there.
+    // A consistent calibration is the default choice.
     const isKept = !run.estimateOnly && Object.values(run.report.candidates)[0]?.verdict === "consistent";
     const wish = this.#wish;
     const wished = poses.find(({ value }) => value === wish.pose)?.value;
@@ -213,7 +215,7 @@ export class VerdictStep {
       attempt(async () => {
         const { name, text, notes } = await session.call("pose", { pose: pose(), format: format.value as PoseFormat });
         saveFile(name, text, "text/plain");
-        remark.textContent = notes.length > 0 ? `Mind: ${notes.join("; ")}.` : `Saved as ${name}.`;
+        remark.textContent = notes.length > 0 ? `Note: ${notes.join("; ")}.` : `Saved as ${name}.`;
       }),
       { class: "primary" },
     );
@@ -248,7 +250,7 @@ export class VerdictStep {
     return make(
       "section",
       { class: "rig-card" },
-      make("h3", {}, "Files out"),
+      make("h3", {}, "Export"),
       make("div", { class: "rig-row rig-bottom" }, labelled("Calibration", which), labelled("Format", format), save),
       make(
         "div",
@@ -269,7 +271,7 @@ export class VerdictStep {
   }
 }
 
-/** The report with what the page knows to be guessed. */
+/** The report with the page's guesses. */
 const whole = ({ report, guessed, doubts }: Run): WholeReport => ({
   ...report,
   warnings: [
@@ -279,7 +281,7 @@ const whole = ({ report, guessed, doubts }: Run): WholeReport => ({
   ],
 });
 
-/** Whether the verdict is of what there is now. */
+/** Whether the verdict refers to the present state. */
 function isSame(run: Run, rig: Rig): boolean {
   const now = rig.plans();
   const plain = (plans: Run["plans"]) => JSON.stringify(plans.map(({ paint: _, ...rest }) => rest));

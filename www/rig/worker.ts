@@ -22,7 +22,7 @@ const loadPairs = () => import("./pairs");
 const pairs = () => (paired ??= loadPairs());
 /** Bytes of a file by which recordings are known. */
 const HEAD = 16;
-/** As they were last checked: the overlay and the files out are of these. */
+/** The frames as they were last checked; the overlay and the exported files refer to these. */
 let frames: CheckFrame[] = [];
 let running: AbortController | undefined;
 
@@ -69,11 +69,11 @@ function read(file: number): RigReading {
 
 function readingOf<K extends RigReading["kind"]>(file: number, kind: K): Extract<RigReading, { kind: K }> {
   const reading = readings.get(file);
-  if (reading?.kind !== kind) throw new Error(`File ${file} is no ${kind}.`);
+  if (reading?.kind !== kind) throw new Error(`File ${file} is not a ${kind}.`);
   return reading as Extract<RigReading, { kind: K }>;
 }
 
-/** Keeps pairs that came together as files of their own; their cameras, which all have, are told once. */
+/** Stores pairs that came together as separate files; their cameras, which all of them share, are reported once. */
 function assemble(
   origin: string,
   first: number,
@@ -102,7 +102,7 @@ function assemble(
         guessed,
         depth,
       }),
-      // A file of its own, so that it is seen and can be left out: the background tells much.
+      // A separate file, so that it is visible and can be removed: the background is informative.
       ...(mask
         ? {
             mask: keep({
@@ -258,7 +258,7 @@ const handlers: Handlers = {
   },
 };
 
-/** What may go over without a copy; everything else stays the worker's own. */
+/** What may be transferred without a copy; everything else stays with the worker. */
 function transferable(answer: unknown): Transferable[] {
   if (answer instanceof ImageBitmap) return [answer];
   if (answer instanceof Uint8Array) return [answer.buffer as ArrayBuffer];
@@ -269,7 +269,7 @@ function transferable(answer: unknown): Transferable[] {
   return [];
 }
 
-/** What is read at the moment: whatever is asked later may be about it. */
+/** The present reading: later requests may refer to it. */
 let reads: Promise<unknown> = Promise.resolve();
 
 self.onmessage = async ({ data }: MessageEvent<Request>) => {

@@ -93,7 +93,7 @@ export class Curves {
     }
   }
 
-  /** The canvas has to be told the theme's colours anew. */
+  /** The canvas does not follow a change of theme by itself. */
   recolour(): void {
     for (const plot of this.#plots) plot.build();
   }

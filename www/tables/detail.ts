@@ -1,4 +1,4 @@
-/** Everything that is known of one cell, and the way into the Lab. */
+/** All results of one cell, with a link to the Lab. */
 
 import { decimals, short } from "../draw/numbers";
 import { make } from "../dom";
@@ -30,7 +30,7 @@ const lines: readonly Fact[] = [
   { term: "α", read: ({ alpha }) => alpha, show: (value) => `${decimals(value, 3)}°` },
   { term: "β", read: ({ beta }) => beta, show: (value) => `${decimals(value, 3)}°` },
   { term: "γ", read: ({ gamma }) => gamma, show: (value) => `${decimals(value, 3)}°` },
-  { term: "Rivals", read: ({ rivals }) => rivals || undefined, show: String },
+  { term: "Alternative poses", read: ({ rivals }) => rivals || undefined, show: String },
   {
     term: "Iterations",
     read: ({ iterations }) => (Array.isArray(iterations) ? iterations.length : iterations),
@@ -42,7 +42,7 @@ const lines: readonly Fact[] = [
 const pair = (term: string, value: string): HTMLElement[] => [make("dt", {}, term), make("dd", {}, value)];
 
 export class Detail {
-  readonly element = make("section", { class: "panel detail", "aria-label": "The chosen cell" });
+  readonly element = make("section", { class: "panel detail", "aria-label": "Selected cell" });
   readonly #title = make("h3");
   readonly #quantity = make("p", { class: "soft" });
   readonly #outcome = make("p", { class: "outcome" });
@@ -92,10 +92,10 @@ export class Detail {
   }
 
   #showCell(panel: Panel, cell: Cell | undefined): void {
-    this.#title.textContent = cell ? whereIs(panel, cell) : "No cell chosen";
+    this.#title.textContent = cell ? whereIs(panel, cell) : "No cell selected";
     this.#quantity.textContent = cell
       ? sentence(panel.quantity)
-      : "Press one: it runs here, and can then be watched in the Lab.";
+      : "Click a cell to run it; you can then replay it in the Lab.";
     this.#scene.textContent = cell ? `${sentence(described(cell))}.` : "";
     this.element.toggleAttribute("data-empty", cell === undefined);
     const link = cell && watchLink(cell);
@@ -112,7 +112,7 @@ export class Detail {
       return typeof found === "number" && Number.isFinite(found) ? pair(term, show(found)) : [];
     });
     this.#facts.replaceChildren(
-      ...(paper === undefined ? [] : pair("The paper, its bust", `${short(paper)}${panel.unit}`)),
+      ...(paper === undefined ? [] : pair("In the paper, on its bust", `${short(paper)}${panel.unit}`)),
       ...(result?.status ? pair("Status", result.status) : []),
       ...facts,
     );

@@ -7,7 +7,7 @@ import { isConfidentlyWrong, isFound, type Cell } from "./protocol";
 import { colourOf, wantsBlack } from "./ramp";
 import type { State } from "./runner";
 
-/** What a result says of itself: a shape to see, and the same in words. */
+/** The status of a result: a shape, and the same in words. */
 export interface Mark {
   kind: "ambiguous" | "doubted" | "lost" | "stopped" | "wrong";
   glyph: string;
@@ -15,18 +15,18 @@ export interface Mark {
 }
 
 export const marks: readonly Mark[] = [
-  { kind: "ambiguous", glyph: "?", words: "ambiguous: other poses explain it as well" },
-  { kind: "doubted", glyph: "~", words: "within 3°, though the run does not trust it" },
+  { kind: "ambiguous", glyph: "?", words: "ambiguous: other poses fit equally well" },
+  { kind: "doubted", glyph: "~", words: "correct (within 3°) but flagged as uncertain" },
   { kind: "lost", glyph: "×", words: "lost, and flagged as such" },
-  { kind: "stopped", glyph: "=", words: "stopped at the cap of iterations" },
-  { kind: "wrong", glyph: "!", words: "over 3° off, and not flagged" },
+  { kind: "stopped", glyph: "=", words: "stopped at the maximum number of iterations" },
+  { kind: "wrong", glyph: "!", words: "more than 3° off and not flagged" },
 ];
 
 /** A wrong pose that is not flagged is worse than any that is, so its mark comes first. */
 export function markOf(state: State | undefined): Mark | undefined {
   if (state?.kind !== "done") return undefined;
   const { result } = state;
-  // Where no pose was looked for, it is neither right nor wrong, and a loop without an aim always ends at its cap.
+  // If no pose was estimated, it is neither right nor wrong, and a loop without a stopping rule always ends at its maximum.
   if (!("rivals" in result)) return undefined;
   const kind = isConfidentlyWrong(result)
     ? "wrong"

@@ -47,7 +47,7 @@ export class TablesPage {
     parent.append(intro(), this.#side, this.#main, this.#detail.element);
   }
 
-  /** Shows what the address asks for, and where it asks for nothing, what was last seen. */
+  /** Shows the table named in the address; without one, the table shown last. */
   open(hash: string): void {
     const asked = new URLSearchParams(hash.replace(/^#/, ""));
     const panel = panels.find(({ name }) => name === asked.get("show"));
@@ -241,20 +241,20 @@ function intro(): HTMLElement {
     make(
       "p",
       {},
-      "Each cell is a scene with a known answer, made and solved in this browser. The paper's surface, a bust of Mozart, is no part of this project: ",
-      make("strong", {}, "here the built-in bust stands in"),
-      ", under built-in lights, and the paper's figures, small below ours, are a reference.",
+      "Each cell is a scene with a known answer, rendered and solved in your browser. The paper's surface, a bust of Mozart, is not part of this project: ",
+      make("strong", {}, "our built-in bust stands in for it"),
+      " under built-in lights. The paper's figures, small below ours, are for reference.",
     ),
     make(
       "details",
       {},
-      make("summary", {}, "What is not here"),
+      make("summary", {}, "Not available in the browser"),
       make(
         "p",
         {},
         "The same protocols run on the command line, ",
         make("code", {}, "npm run tables"),
-        ". There alone, where other people's recordings are at hand:",
+        ". These need recordings that are not ours to ship:",
       ),
       make("ul", {}, ...elsewhere.map((title) => make("li", {}, title))),
     ),

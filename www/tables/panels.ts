@@ -53,7 +53,7 @@ const byKey = (label: string, key: string, name = plain): Axis => ({
 const degrees = ({ degrees }: Result): number | undefined => degrees;
 const paperOfTable2 = ({ row }: Cell): number | undefined =>
   isNumber(row.paper) ? paperDegrees(row.paper) : undefined;
-/** A row of results that has more than one line of its own: its last. */
+/** The last line of a result that has more than one. */
 const atTheEnd = ({ iterations }: Result): number | undefined => {
   const last: unknown = Array.isArray(iterations) ? iterations.at(-1) : undefined;
   return typeof last === "object" && last !== null && "degrees" in last && isNumber(last.degrees)
@@ -89,7 +89,7 @@ export const panels: readonly Panel[] = [
     name: "table1",
     tab: "Table 1",
     words:
-      "The paper turns its bust by 20 degrees and solves for scale and angles. Both signs, because conventions differ; as the paper reads its protocol (2A) and as a camera sees it (2B).",
+      "The paper rotates its bust by 20 degrees and solves for scale and angles. Shown for both signs, because conventions differ, and both for exact points (2A) and for views rendered as a camera sees them (2B).",
     down: byKey("protocol", "protocol"),
     across: byKey("β", "sign", (sign) => (Number(sign) > 0 ? "+20°" : "−20°")),
     paper: ({ row }) =>
@@ -101,7 +101,7 @@ export const panels: readonly Panel[] = [
     name: "table2A",
     tab: "Table 2A",
     words:
-      "The same points in both views (the overlap is the paper's P_w), without occlusion, resampling or noise: an exact answer exists, and what is left should be rounding.",
+      "The same points in both views (the overlap is the paper's P_w), without occlusion, resampling or noise. An exact answer exists, and the remaining error should be rounding.",
     down: beta,
     across: overlap,
     paper: paperOfTable2,
@@ -110,7 +110,7 @@ export const panels: readonly Panel[] = [
     name: "table2B",
     tab: "Table 2B",
     words:
-      "Both views rendered as cameras see them, with one per cent of noise on the colours. The start is unknown, and the light is told or not.",
+      "Both views rendered as cameras see them, with one per cent noise on the colours. The initial pose is unknown; the light is given or estimated.",
     choices: [side, { key: "light", label: "Light is", name: plain }, light],
     down: beta,
     across: overlap,
@@ -120,7 +120,7 @@ export const panels: readonly Panel[] = [
     name: "figure4",
     tab: "Figure 4",
     words:
-      "Table 1's run, iteration by iteration: by the search over poses, and by the paper's own stages from the paper's own start.",
+      "The runs of Table 1, iteration by iteration: with the search over poses, and with the paper's stages from the paper's initial pose.",
     down: byKey("run", "run"),
     across: byKey("protocol", "protocol"),
     value: atTheEnd,
@@ -131,7 +131,7 @@ export const panels: readonly Panel[] = [
     name: "figure5",
     tab: "Figure 5",
     words:
-      "How good the normals from shading get when a share P_er of the pixels is told the true ones. Pose and light are known. Single pixels, as in the paper, or the surface as a whole.",
+      "Error of the normals from shading when the true normal is given for a share P_er of the pixels. Pose and light are known. Solved pixel by pixel, as in the paper, or for the whole surface.",
     choices: [side, light],
     down: byKey("shading", "shading"),
     across: byKey("share", "fraction"),
@@ -142,7 +142,7 @@ export const panels: readonly Panel[] = [
     name: "figure6",
     tab: "Figure 6",
     words:
-      "One row of Table 2: how the error falls as both views share more. These are the cells of Tables 2A and 2B (128 × 128, colourful light, known); what has run there is here.",
+      "One row of Table 2: the error falls as the views overlap more. The cells are those of Tables 2A and 2B (128 × 128, colourful light, known); a cell that has run there is also done here.",
     down: { label: "protocol", of: ({ id }) => (id.startsWith("table2A/") ? "2A" : "2B"), name: plain },
     across: overlap,
     paper: paperOfTable2,
@@ -152,19 +152,19 @@ export const panels: readonly Panel[] = [
     name: "refinement",
     tab: "Refinement",
     words:
-      "A depth map with half a pixel of noise and holes, mended by the colours. Five draws of the noise for each light, with the pose given and with the pose to be found.",
+      "A depth map with half a pixel of noise and with holes, refined by the colours. Five draws of the noise for each light, with the pose given and with the pose estimated.",
     down: { label: "light, pose", of: ({ row }) => `${row.lightName}, ${row.pose}`, name: plain },
     across: byKey("draw", "seed"),
     where: ({ row }) => `${row.lightName} light, pose ${row.pose}, draw ${row.seed}`,
     value: ({ after }) => (isNumber(after) ? after : undefined),
     unit: " px",
-    quantity: "error of the depth that is left",
+    quantity: "remaining error of the depth",
   }),
   panel({
     name: "random",
     tab: "Random",
     words:
-      "Any surface, light, pose and scale, drawn by chance, and nothing known. All 300 take a good quarter of an hour; a row of ten says much already.",
+      "Surface, light, pose and scale drawn at random, with nothing known. All 300 take about 15 minutes; a single row of ten is already informative.",
     down: {
       label: "scenes",
       of: ({ row }) => COLUMNS * Math.floor((Number(row.scene) - 1) / COLUMNS) + 1,
@@ -177,14 +177,14 @@ export const panels: readonly Panel[] = [
     name: "exposure",
     tab: "Exposure",
     words:
-      "The exposure is the photographer's choice and must not matter: random scenes with all their colours darker and brighter.",
+      "The exposure is the photographer's choice and must not affect the result. Random scenes with all colours made darker or brighter.",
     down: byKey("scene", "scene"),
     across: { label: "colours", of: ({ exposure = 1 }) => exposure, name: (factor) => `× ${factor}` },
   }),
   panel({
     name: "ablation",
     tab: "Ablation",
-    words: "What each part of the method is worth: the first random scenes without it.",
+    words: "What each part of the method contributes: the first random scenes, solved without it.",
     down: byKey("scene", "scene"),
     across: { label: "without", of: ({ row }) => String(row.without ?? "nothing"), name: plain },
   }),

@@ -42,7 +42,7 @@ export interface Result extends Row {
 /** Cells that have come to an end, each with its result. */
 export type Done = readonly { cell: Cell; result: Result }[];
 
-/** Where a result lacks what is asked for, the protocol's answer is no. */
+/** If a result lacks the requested number, the protocol's answer is no. */
 const judgement = (judge: (result: never) => boolean) => judge as (result: Result) => boolean;
 export const isFound = judgement(counts.isFound);
 export const isFlagged = judgement(counts.isFlagged);

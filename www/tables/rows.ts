@@ -34,7 +34,7 @@ const columns: Record<string, readonly Column[]> = {
   ],
   random: [
     ...share,
-    ["flaggedThoughFound", "found, but flagged"],
+    ["flaggedThoughFound", "found but flagged"],
     ["confidentlyWrong", "wrong, not flagged"],
     ["medianDegrees", "median degrees"],
     ["coverage1", "within 1 σ"],

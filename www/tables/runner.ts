@@ -1,4 +1,4 @@
-/** Runs cells one after the other in a worker of its own, and keeps what came out for as long as the page lives. */
+/** Runs cells one after the other in a separate worker, and keeps the results for as long as the page is open. */
 
 import { GONE, onGone } from "../engine/alive";
 import type { CellAnswer, Task } from "./messages";

@@ -8,13 +8,14 @@ import { sceneOf, type Cell } from "./protocol";
 /** Why the Lab can't show a cell, in words; nothing where it can. */
 export function obstacle({ kind, exposure, alternations }: Cell): string | undefined {
   if (kind === "shading")
-    return "This run is given true normals in a share of the pixels, which the Lab has no setting for.";
-  if (exposure !== undefined) return "The colours of this run are multiplied, which the Lab has no setting for.";
-  if (alternations !== undefined) return "This cell is many short runs in turn; the Lab shows one.";
+    return "This run uses true normals in a share of the pixels; the Lab has no setting for that.";
+  if (exposure !== undefined)
+    return "The colours of this run are multiplied by a factor; the Lab has no setting for that.";
+  if (alternations !== undefined) return "This cell consists of many short runs; the Lab shows only one.";
   return undefined;
 }
 
-/** What is seen and what is told, in a line. */
+/** The scene and what is given, in one line. */
 export function described(cell: Cell): string {
   const scene = sceneOf(cell);
   if (!scene) return "";
@@ -22,10 +23,10 @@ export function described(cell: Cell): string {
   const turns = (["alpha", "beta", "gamma"] as const)
     .filter((axis) => angles[axis])
     .map((axis) => `${axis} ${short(angles[axis] ?? 0).replace("-", "−")}°`);
-  const { light: told, start } = cell.options;
+  const { light: given, start } = cell.options;
   return [
     surface,
-    `${light} light, ${told === "known" ? "told" : "not told"}`,
+    `${light} light, ${given === "known" ? "given" : "estimated"}`,
     protocol === "grid" ? "bare grid" : `${size} px`,
     ...turns,
     ...(scale === undefined ? [] : [`scale ${short(scale)}`]),

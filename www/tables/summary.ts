@@ -28,7 +28,7 @@ function overview(panel: Panel, done: Done): HTMLElement {
   return make("p", {}, `${words.join("; ")}.`);
 }
 
-/** The aims speak of whole tables, so each says from how many rows its figure is. */
+/** The aims refer to whole tables, so each states from how many rows its figure comes. */
 function aims(panel: Panel, done: Done): HTMLElement[] {
   const list = aimsOf(panel.name, done).filter(({ rows }) => rows > 0);
   if (list.length === 0) return [];
@@ -51,7 +51,7 @@ function aims(panel: Panel, done: Done): HTMLElement[] {
       make(
         "p",
         { class: "soft" },
-        "Set for the paper's surface and for whole tables; here they are computed from the cells that are done, on the built-in bust.",
+        "The aims are set for the paper's surface and for complete tables. Here they are computed from the finished cells, on the built-in bust.",
       ),
       make(
         "div",

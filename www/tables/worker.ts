@@ -29,7 +29,7 @@ function tell(report: StepReport): void {
   post({ id: current, progress: share ? `search ${share}` : `iteration ${iteration}`, share });
 }
 
-/** The protocol's own run, told of while it lasts. */
+/** The run of the protocol, with reports while it lasts. */
 class Watched extends Estimator {
   override run(options: RunOptions = {}): Promise<StepReport> {
     return super.run({ ...options, onStep: tell });

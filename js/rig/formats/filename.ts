@@ -12,7 +12,7 @@ const AROUND =
   /^(?:calib(?:ration)?|extrinsics?|transform|tf|pose|rt)[_-]+|[_-]+(?:calib(?:ration)?|extrinsics?|transform|tf|pose|rt)$/gi;
 const LONGEST = 100;
 
-/** The frames in the name of a file; undefined where there are none. */
+/** The frames in the name of a file; undefined if it names none. */
 export function endsOf(path: string): { from: string; to: string } | undefined {
   const name = path.replace(/^.*[/\\]/, "").replace(/\.[a-z]{1,5}$/i, "");
   if (name.length > LONGEST) return undefined;

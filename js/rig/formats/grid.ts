@@ -36,7 +36,7 @@ export function checkPoints(count: number): void {
 /** Whether so many points are a whole image of a depth camera. */
 export const isImage = (count: number): boolean => SIZES.some(([width, height]) => width * height === count);
 
-/** The image size that has this number of points, with a warning; throws where there is none. */
+/** The image size that has this number of points, with a warning; throws if no such size is known. */
 export function sizeOfCount(count: number, warnings: ReaderWarning[]): { width: number; height: number } {
   const size = SIZES.find(([width, height]) => width * height === count);
   if (size === undefined)

@@ -45,7 +45,7 @@ function frame(body: Uint8Array, kind: number, length: number): { width: number;
     );
   const factors = Array.from({ length: channels }, (_, index) => body[7 + 3 * index] ?? 0);
   if (factors.some((factor) => factor >> 4 < 1 || factor >> 4 > 4 || (factor & 15) < 1 || (factor & 15) > 4))
-    throw badFile("this JPEG is damaged: its sampling factors are none");
+    throw badFile("this JPEG is damaged: its sampling factors are invalid");
   const full = Math.max(...factors.map((factor) => (factor >> 4) * (factor & 15)));
   const share = factors.reduce((sum, factor) => sum + ((factor >> 4) * (factor & 15)) / full, 0);
   const least = ((width * height * share) / 64) * (kind === 0xc2 ? 1 : BITS_OF_BLOCK);

@@ -101,7 +101,7 @@ interface Layout {
   /** How LERC is compressed once more. */
   again: number;
   predictor: number;
-  /** Whether each channel has strips or tiles of its own. */
+  /** Whether each channel has separate strips or tiles. */
   isApart: boolean;
   isTiled: boolean;
   /** Of a tile; a strip is one as wide as the picture. */

@@ -288,7 +288,7 @@ function valleysOf(smooth: Float64Array, least: number): number[] {
   return valleys;
 }
 
-/** The rows with each doubtful point moved to the nearest of its own row and the two on either side. */
+/** The rows with each uncertain point moved to the nearest of its row and the two on either side. */
 function refined(rows: Rows, isDoubtful: (index: number) => boolean): Rows | undefined {
   const { radius, height } = rows.polar;
   const group = rows.row.map((own, index) => {

@@ -85,7 +85,7 @@ export function compressedDepth(format: string, bytes: Uint8Array): Picture {
   return /32FC1/i.test(format) ? inverted(found, view.getFloat32(4, true), view.getFloat32(8, true)) : found;
 }
 
-/** The picture, told by its content: the format string differs between versions of image_transport. */
+/** The picture, recognised by its content: the format string differs between versions of image_transport. */
 export async function compressed(bytes: Uint8Array, format: string): Promise<Picture> {
   const kind = kindOf(bytes);
   if (kind === "jpeg") return readJpeg(bytes);

@@ -115,7 +115,7 @@ function ros2(definition: string): Decoder {
   return (bytes) => reader.readMessage(bytes);
 }
 
-/** The decoder of messages of an encoding ("ros1", "cdr"), or why there is none. */
+/** The decoder of messages of an encoding ("ros1", "cdr"), or the reason why it is not supported. */
 export function decoderOf(
   encoding: string,
   schema: { encoding: string; definition: string },

@@ -12,7 +12,7 @@ export interface RosTopic {
   name: string;
   type: string;
   count: number;
-  /** The decoder of its messages, or why there is none. */
+  /** The decoder of its messages, or the reason why they are not supported. */
   by: { decoder: Decoder } | { unread: string };
 }
 

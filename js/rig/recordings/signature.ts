@@ -9,7 +9,7 @@ const SAMPLES = 6;
 export interface Signature {
   /** Brightness of each cell relative to the brightest, 0 to 1. */
   light: Float32Array;
-  /** Mean depth of each cell, metres; NaN where there is none. */
+  /** Mean depth of each cell, metres; NaN for an empty cell. */
   depth: Float32Array;
   /** Share of cells with a depth. */
   valid: number;

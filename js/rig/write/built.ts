@@ -1,4 +1,4 @@
-/** What writers are given, checked by name: whoever reads a file of something else would believe it. */
+/** Checks the input of writers by name, because the reader of a file would trust wrong contents. */
 import { BimodalError, type ErrorCode, refused } from "../../errors.js";
 
 /** `value` is what was refused, and `index` the entry that it is. */

@@ -7,7 +7,7 @@ export interface Cloud {
   points: Float32Array;
   /** Red, green and blue of each point, 0 .. 255; grey without it. */
   colours?: Uint8Array | Uint8ClampedArray | undefined;
-  /** What the file calls it. */
+  /** Its name in the file. */
   name?: string | undefined;
 }
 
@@ -52,8 +52,8 @@ function header(clouds: readonly Cloud[], count: number, unit: string): string {
 }
 
 /**
- * One file that holds all clouds, which are in one frame; where there are several, the property `label` tells them apart, 0 for the first.
- * The unit is told in a comment.
+ * One file that holds all clouds, which are in one frame; if there are several, the property `label` distinguishes them, 0 for the first. A
+ * comment states the unit.
  */
 export function writeClouds(clouds: readonly Cloud[], unit: "metres" | "pixels" = "metres"): Uint8Array<ArrayBuffer> {
   if (!Array.isArray(clouds)) throw fault("type", "clouds", "must be a list of clouds");

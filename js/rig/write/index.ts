@@ -1,4 +1,4 @@
-/** What comes out of a check of a rig as files: a module of its own, to be loaded when something is saved. */
+/** Writes the results of a check of a rig to files. A separate module, loaded when something is saved. */
 export { BimodalError } from "../../errors.js";
 export { type Cloud, writeClouds } from "./clouds.js";
 export { type PoseFormat, type RigContext, type Size, type WrittenPose, poseFormats, writePose } from "./pose.js";

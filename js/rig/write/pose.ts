@@ -1,6 +1,6 @@
 /**
- * Extrinsics in the files of those who use them. All hold P_colour = R P_depth + t in metres, each in its format's own
- * words, and every number reads back as the very same one.
+ * Extrinsics in the formats of other programs. All hold P_colour = R P_depth + t in metres in the convention of the format, and every
+ * number reads back exactly.
  */
 import type { PoseInput } from "../../types/index.js";
 import { oneOf } from "./built.js";
@@ -16,11 +16,11 @@ export type PoseFormat = "matrix" | "opencv" | "kalibr" | "ros2" | "open3d" | "r
 
 /** A file to be saved. */
 export interface WrittenPose {
-  /** A file name that says the direction. */
+  /** A file name that states the direction. */
   name: string;
   /** The content of the file. */
   text: string;
-  /** In words, what of the cameras the format has no place for, or what it wants and is not known. */
+  /** Notes on camera parameters that the format cannot hold, or that it requires and that are unknown. */
   notes: string[];
 }
 

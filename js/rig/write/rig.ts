@@ -1,6 +1,5 @@
 /**
- * What the writers of extrinsics take, checked: a file that holds a number which is none, a sheared rotation or a scale
- * would be believed by whoever reads it.
+ * Checks the input of the writers of extrinsics: the reader of a file would trust an invalid number, a sheared rotation or a scale in it.
  */
 import { cameraOf, determinant, poseOf } from "../../matrices.js";
 import type { Pinhole, PinholeInput, Pose, PoseInput } from "../../types/index.js";
@@ -9,7 +8,7 @@ import { fault, like, oneOf } from "./built.js";
 /** Width and height in pixels. */
 export type Size = readonly [width: number, height: number];
 
-/** What is known of the rig beside the pose; a format that has a place for it holds it. */
+/** What is known of the rig besides the pose; it is written if the format has a place for it. */
 export interface RigContext {
   /** The colour camera. */
   colour?: PinholeInput | undefined;

@@ -14,8 +14,8 @@ function thinned(points: Float32Array): Float32Array {
 export const cloudsOf = (estimator: Estimator): CloudPanel => ({
   kind: "cloud",
   key: "clouds",
-  title: "Both surfaces in the camera's frame",
-  alt: "Points of the depth map moved by the pose, and points of the surface found in the picture. Under the right pose they lie on each other.",
+  title: "The two surfaces in the camera frame",
+  alt: "Points of the depth map in the estimated pose, and points of the surface recovered from the picture. Under the right pose they coincide.",
   sets: [
     { name: "picture", ink: "normal", points: thinned(estimator.points("image")) },
     { name: "depth map", ink: "pose", points: thinned(estimator.points("depth")) },

@@ -1,4 +1,4 @@
-/** Three colours: each cuts a curve out of the hemisphere, and where the curves meet are the normals that are left. */
+/** Three colours: each selects a curve on the hemisphere, and the remaining normals are where the curves meet. */
 
 import type { Drawing, Values } from "../protocol";
 import { atPixel, normalsOf, pictureOf } from "./draw";
@@ -28,7 +28,7 @@ export function* colours(values: Values): Generator<Drawing> {
         {
           key: "picture",
           title: "The picture",
-          alt: "A bust under the light of the slider.",
+          alt: "A bust under the light set by the slider.",
           legend: "drag to choose a pixel",
         },
         grid,
@@ -37,7 +37,11 @@ export function* colours(values: Values): Generator<Drawing> {
       ),
       landscape.panel,
       normalsOf(
-        { key: "found", title: "Normals, each pixel alone", alt: "Normals that single pixels find without any prior." },
+        {
+          key: "found",
+          title: "Normals, pixel by pixel",
+          alt: "Normals estimated from single pixels, without a prior.",
+        },
         grid,
         found,
         ring,

@@ -1,4 +1,4 @@
-/** When it fails: symmetry, little overlap, texture, a quarter turn; and what the module says then. */
+/** When it fails: symmetry, little overlap, texture, a quarter turn; and what the program reports then. */
 
 import type { Relief, Sample } from "../../../pkg/index.js";
 import type { Drawing, Values } from "../protocol";
@@ -14,7 +14,7 @@ const DISC = 128;
 const LEAST_OVERLAP = 0.08;
 const NARROW = 0.2;
 
-/** A disc of rings, round but for a nose. */
+/** A disc of rings, round except for a nose. */
 function disc(nose: number): Relief {
   const heights = new Float32Array(DISC * DISC);
   for (let index = 0; index < heights.length; index++) {
@@ -53,7 +53,7 @@ function sceneOf(what: string, amount: number): { made: Sample; pair: Pick<Sampl
   }
 }
 
-/** Print that changes from pixel to pixel, in each colour on its own. */
+/** Print that changes from pixel to pixel, independently in each colour. */
 function textured(made: Sample, strength: number): Pick<Sample, "image" | "depth"> {
   const { width, height } = made.image;
   const every = new Uint8Array(width * height).fill(1);
@@ -84,7 +84,7 @@ export function* failure(values: Values): Generator<Drawing> {
           {
             key: "depth",
             title: "The depth map",
-            alt: "The depth map from the other side.",
+            alt: "The depth map from the other viewpoint.",
             legend: "dark near, bright far; hatched: none",
           },
           made.depth,
@@ -95,7 +95,7 @@ export function* failure(values: Values): Generator<Drawing> {
         scalarOf(
           {
             key: "residual",
-            title: "Colours left unexplained",
+            title: "Unexplained colour",
             alt: "Residual of every pixel.",
             legend: "dark: explained; bright: off by 0.5 and more",
           },

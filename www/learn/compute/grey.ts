@@ -31,7 +31,7 @@ function plate(height: number, light: Float64Array): Sample {
 /** The lamp of this lesson stands on the left and a little above; its light is grey. */
 const lamp = (): Float64Array => saturated(lightNamed("window"), 0);
 
-/** Heights over the rim of the plate, which both have. */
+/** Heights above the edge of the plate, which both have. */
 function level({ truth, image }: Sample): Float32Array {
   const row = Math.floor(image.height / 2) * image.width;
   const rim = truth.imageDepth.subarray(row, row + image.width).find(Number.isFinite) ?? 0;
@@ -78,7 +78,11 @@ export function* grey(values: Values): Generator<Drawing> {
         white,
       ),
       plot(
-        { key: "profile", title: "Both from the side", alt: "Cross-sections: one goes up where the other goes down." },
+        {
+          key: "profile",
+          title: "Cross-sections",
+          alt: "Cross-sections of bump and dent: one goes up where the other goes down.",
+        },
         "column, px",
         "height, px",
         [

@@ -14,7 +14,7 @@ export interface Landscape {
   panel: ImagePanel;
   /** Share of the hemisphere's picture whose colour is the pixel's up to noise, percent. */
   explained: number;
-  /** How far the colour of the lowest minimum is off the pixel's, percent of brightness (rms of the three). */
+  /** Difference of the lowest minimum's colour from the pixel's, percent of brightness (rms of the three). */
   off: number;
   /** Minima as good as the best, within the noise. */
   good: number;
@@ -44,9 +44,9 @@ export function landscapeOf(
   const panel = scalarOf(
     {
       key: words.key ?? "landscape",
-      title: words.title ?? "Cost of every normal of that pixel",
+      title: words.title ?? "Cost of every normal at that pixel",
       alt: `The hemisphere of all visible normals seen from the front; dark is cheap. It has ${minima.length} minima.`,
-      legend: "dark: explains the pixel; dots: valleys; cross: truth; line: solver",
+      legend: "dark: explains the pixel; dots: minima; cross: truth; line: solver",
     },
     { width: SIDE, height: SIDE },
     distances,
@@ -71,7 +71,7 @@ interface Minimum {
   share: number;
 }
 
-/** Least share of the directions that makes a minimum worth a mark: single descents that stall are none. */
+/** The smallest share of the directions for which a minimum is marked: single descents that stall are not minima. */
 const LEAST_SHARE = 0.004;
 
 function minimaOf({ minima }: PixelLandscape): Minimum[] {

@@ -1,4 +1,4 @@
-/** Errors against the truth of a made scene: those of the tables, measured by the same modules. */
+/** Errors against the truth of a rendered scene, measured by the same modules as in the tables. */
 
 import {
   chosenPixels as chosen,

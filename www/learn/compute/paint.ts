@@ -1,4 +1,4 @@
-/** Shadows, paint, and what the model does about them. */
+/** Shadows, paint, and how the model handles them. */
 
 import type { Sample } from "../../../pkg/index.js";
 import type { Drawing, Values } from "../protocol";
@@ -64,8 +64,8 @@ export function* paint(values: Values): Generator<Drawing> {
         pictureOf(
           {
             key: "albedo",
-            title: "Albedo: the paint found",
-            alt: "The paint that the module tells apart from the light.",
+            title: "Albedo: the estimated paint",
+            alt: "The albedo that the program separates from the lighting.",
           },
           grid,
           exp(albedo),
@@ -73,7 +73,11 @@ export function* paint(values: Values): Generator<Drawing> {
           1.6,
         ),
         pictureOf(
-          { key: "shading", title: "Shading: what the light does", alt: "The picture without its paint." },
+          {
+            key: "shading",
+            title: "Shading: the effect of the light",
+            alt: "The picture with the albedo divided out.",
+          },
           grid,
           exp(shading),
         ),
@@ -81,7 +85,7 @@ export function* paint(values: Values): Generator<Drawing> {
           {
             key: "residual",
             title: "Left over",
-            alt: "What neither paint nor shading explains.",
+            alt: "The part that neither albedo nor shading explains.",
             legend: "dark: explained; bright: off by 1 and more",
           },
           grid,

@@ -1,4 +1,4 @@
-/** What a pixel knows: normal, albedo and a light of order 2 make one colour. */
+/** What a pixel shows: normal, albedo and a second-order light determine its colour. */
 
 import { shadeNormals, turnLight } from "../../../pkg/index.js";
 import type { Drawing, Ink, Values } from "../protocol";
@@ -40,7 +40,7 @@ export function* pixel(values: Values): Generator<Drawing> {
         {
           key: "ball",
           title: "A ball under this light",
-          alt: "A ball: every visible normal once. The ring is the chosen normal.",
+          alt: "A ball, which shows every visible normal once. The ring marks the chosen normal.",
           legend: "drag on the ball to choose a normal",
         },
         BALL,
@@ -63,7 +63,7 @@ export function* pixel(values: Values): Generator<Drawing> {
         {
           key: "bust",
           title: "A bust under the same light",
-          alt: "A bust, coloured by the image model from its true normals.",
+          alt: "A bust, rendered with the image model from its true normals.",
           legend: "drag here to turn the light",
         },
         bust.image,

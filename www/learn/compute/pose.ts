@@ -1,4 +1,4 @@
-/** Finding the pose: the residual tells a wrong one, registration and search find the right one, a pixel's prior follows it. */
+/** Finding the pose: the residual reveals a wrong pose, registration and search find the right one, and a pixel's prior follows it. */
 
 import type { Estimator, Options, Sample } from "../../../pkg/index.js";
 import type { CloudPanel, Drawing, Values } from "../protocol";
@@ -9,7 +9,7 @@ import { aboutY, angleBetween, degreesBetween, meanOf, product, turned } from ".
 import { afterStages, isOn, logAt, numberOf, pixelAt, scene, vectorAt, watched } from "./scenes";
 
 const SIZE = 64;
-/** The pose to be found. */
+/** The true pose. */
 const BETA = 20;
 const OFFSETS = [-40, -30, -20, -14, -8, -4, 0, 4, 8, 14, 20, 30, 40];
 const ENDS = [Math.min(...OFFSETS), Math.max(...OFFSETS)] as const;
@@ -80,7 +80,7 @@ export function* pose(values: Values): Generator<Drawing> {
   const offset = numberOf(values, "offset");
   const curve: number[] = [];
   let state = afterStages(made, told(made, offset, "fixed"), TO_SURFACE, (estimator) =>
-    stateOf(estimator, "held where you put it"),
+    stateOf(estimator, "fixed where you set it"),
   );
   const draw = (): Drawing => drawing(values, made, state, curve);
   yield draw();
@@ -128,7 +128,7 @@ function drawing(values: Values, made: Sample, state: State, curve: number[]): D
       {
         key: "picture",
         title: "The picture",
-        alt: "A bust; the ring is the pixel of the cost map.",
+        alt: "A bust; the ring marks the pixel of the cost map.",
         legend: "drag to choose a pixel",
       },
       grid,
@@ -139,7 +139,7 @@ function drawing(values: Values, made: Sample, state: State, curve: number[]): D
     scalarOf(
       {
         key: "residual",
-        title: "Colours left unexplained",
+        title: "Unexplained colour",
         alt: "Residual of every pixel under this pose: dark where the colours are explained.",
         legend: "dark: explained; bright: off by 0.5 and more",
       },
@@ -157,9 +157,9 @@ function drawing(values: Values, made: Sample, state: State, curve: number[]): D
         {
           key: "curve",
           title: "Residual against the error of the pose",
-          alt: "The residual is least where the pose is right.",
+          alt: "The residual is smallest where the pose is right.",
         },
-        "pose wrong by, °",
+        "error of the pose, °",
         "residual",
         [{ name: "residual", ink: "pose", points: [...curve], dots: true }],
         { at: numberOf(values, "offset"), domain: ENDS, range: [0, MOST_RESIDUAL[String(values.light)] ?? 1] },

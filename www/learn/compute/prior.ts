@@ -66,18 +66,22 @@ export function* prior(values: Values): Generator<Drawing> {
         {
           key: "given",
           title: "Normals from the depth map",
-          alt: `The prior: ${share} percent of the pixels have a normal from elsewhere.`,
+          alt: `The prior: ${share} percent of the pixels are given a normal.`,
           legend: "hatched: none given",
         },
         grid,
         given,
       ),
-      normalsOf({ key: "found", title: "Normals found", alt: "Normals from colours and prior." }, grid, normals),
+      normalsOf(
+        { key: "found", title: "Estimated normals", alt: "Normals estimated from colours and prior." },
+        grid,
+        normals,
+      ),
       scalarOf(
         {
           key: "depth",
           title: "Depth from these normals",
-          alt: "The surface that they integrate to.",
+          alt: "The surface obtained by integrating them.",
           legend: "dark near, bright far",
         },
         grid,
@@ -85,7 +89,7 @@ export function* prior(values: Values): Generator<Drawing> {
         { min: -14, max: 14 },
       ),
       plot(
-        { key: "profile", title: "A section through the face", alt: "Heights along one row: true and found." },
+        { key: "profile", title: "A section through the face", alt: "Heights along one row: true and estimated." },
         "column, px",
         "height, px",
         [

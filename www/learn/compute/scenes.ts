@@ -1,4 +1,4 @@
-/** Scenes of the lessons, made by the module and kept as long as they are looked at. */
+/** Scenes of the lessons, rendered by the library and kept while they are shown. */
 
 import { Estimator, sample, type Options, type Sample, type SampleRequest } from "../../../pkg/index.js";
 import type { Values } from "../protocol";
@@ -105,7 +105,7 @@ export function* running(
   }
 }
 
-/** What is asked of an estimator after so many stages of its first iteration. */
+/** A result of an estimator after a number of stages of its first iteration. */
 export function afterStages<T>(
   made: Pick<Sample, "image" | "depth">,
   options: Options,
@@ -121,7 +121,7 @@ export function afterStages<T>(
   }
 }
 
-/** What is asked of an estimator after so many steps. */
+/** A result of an estimator after a number of steps. */
 export function after<T>(
   made: Pick<Sample, "image" | "depth">,
   options: Options,
@@ -139,10 +139,10 @@ export function after<T>(
 
 /** Milliseconds between two pictures of a run: drawing must not slow the search down by much. */
 const PICTURE_EVERY = 150;
-/** Slices and iterations after which a run is broken off; the longest searches of such scenes take five thousand. */
+/** Slices and iterations after which a run is stopped; the longest searches of such scenes take five thousand. */
 const MOST_STEPS = 12_000;
 
-/** A whole run from search to verdict, shown now and then, and at its end with what it says of itself. */
+/** A whole run from search to verdict, drawn at intervals, and at its end with its status. */
 export function* watched(
   made: Pick<Sample, "image" | "depth">,
   options: Options,

@@ -1,4 +1,4 @@
-/** From normals to a surface: integration, what it cannot know of a step, and what noise does to slopes. */
+/** From normals to a surface: integration, why it misses a step, and the effect of noise on slopes. */
 
 import { integrateNormals, type Relief } from "../../../pkg/index.js";
 import type { Drawing, Values } from "../protocol";
@@ -20,7 +20,7 @@ function relief(step: number, through: boolean): Relief {
     const [x, y] = [(index % SIDE) / SIDE, Math.floor(index / SIDE) / SIDE];
     if (Math.min(x, y, 1 - x, 1 - y) < 0.08) continue;
     const dome = 0.12 - (x - 0.32) ** 2 - (y - 0.45) ** 2;
-    // The wall lies between two pixels, so that none sees it.
+    // The wall is between two pixels, so that no pixel shows it.
     const right = x >= WALL;
     // Slopes bring the raised part back down on all other sides, unless the step goes through.
     const ramp = through ? 1 : Math.exp(-(((y - ROW) / 0.16) ** 2)) * Math.max(0, 1 - (x - WALL) / (0.9 - WALL));
@@ -67,7 +67,7 @@ export function* surface(values: Values): Generator<Drawing> {
         {
           key: "normals",
           title: "Normals of the pixels",
-          alt: "Normals found from the colours: nearly the same on both sides of the step.",
+          alt: "Normals estimated from the colours: nearly the same on both sides of the step.",
         },
         grid,
         pixels,
@@ -76,7 +76,7 @@ export function* surface(values: Values): Generator<Drawing> {
         {
           key: "depth",
           title: "Depth after integration",
-          alt: "The depth that the normals integrate to.",
+          alt: "The depth obtained by integrating the normals.",
           legend: "dark near, bright far",
         },
         grid,
@@ -95,7 +95,7 @@ export function* surface(values: Values): Generator<Drawing> {
         { min: least, max: most },
       ),
       plot(
-        { key: "profile", title: "A section through dome and step", alt: "Heights along one row: true and found." },
+        { key: "profile", title: "A section through dome and step", alt: "Heights along one row: true and estimated." },
         "column, px",
         "height, px",
         [

@@ -1,4 +1,4 @@
-/** Lessons 1 to 3: what the colours of a pixel say about its normal. */
+/** Lessons 1 to 3: what the colours of a pixel reveal about its normal. */
 
 import type { Lesson } from "../lesson";
 import { LIGHTS } from "../lesson";
@@ -10,20 +10,20 @@ const logS = () => log(symbol("S"));
 
 export const pixel: Lesson = {
   id: "pixel",
-  title: "What a pixel knows",
-  gist: "A pixel's colour depends on three things only: the surface's normal, its albedo and the light.",
+  title: "What a pixel shows",
+  gist: "A pixel's colour depends on only three things: the surface normal, the albedo and the light.",
   formula: () => block(logS(), mo("="), symbol("a"), mo("+"), predicted()),
   formulaWords:
     "The logarithm of the intensity of colour j is the log albedo plus a quadratic form of the normal, whose matrix is the light of that colour.",
   text: [
-    "The surface is matte, and the light comes from far away. Then a pixel's intensity {S} in red, green and blue depends on the unit normal {n} of the surface there, on its albedo (how much light it reflects, here the logarithm {a}), and on the light {L}. It does not depend on where in the picture the pixel is.",
-    "The model writes the logarithm of the intensity as a polynomial of order 2 in the normal. That takes nine numbers for each colour, 27 in all, collected in the matrices {M}. The normal gets a fourth component 1, so that one product holds all orders.",
-    "Order 0 is the same for every normal. Order 1 is brighter toward one side. Order 2 makes two opposite sides alike. Their sum is what you see on the ball: it shows every normal that the camera can see, so it shows everything the model can say.",
+    "Assume a matte surface and distant light. Then a pixel's intensity {S} in red, green and blue depends on the unit normal {n} of the surface, on its albedo (how much light it reflects; {a} is its logarithm) and on the light {L}. It does not depend on the position of the pixel in the picture.",
+    "The model writes the logarithm of the intensity as a polynomial of degree 2 in the normal. It has nine coefficients for each colour, 27 in all, collected in the matrices {M}. The normal is extended by a fourth component 1, so that one product contains all orders.",
+    "The zeroth-order term is the same for every normal. First-order terms brighten one side. Second-order terms have the same value on opposite sides. The ball shows their sum for every normal that the camera can see, so it shows the whole model.",
   ],
   tasks: [
-    "Drag on the ball. The patch takes the colour of that normal.",
-    "Drag on the bust to turn the light. The same normal now has another colour.",
-    "Lower the albedo. All three curves move down by the same amount: in the logarithm, albedo is added.",
+    "Drag on the ball. The patch shows the colour of that normal.",
+    "Drag on the bust to rotate the light. The same normal now has a different colour.",
+    "Lower the albedo. All three curves move down by the same amount: in the logarithm, the albedo is an additive constant.",
   ],
   controls: [
     { kind: "slider", key: "nx", label: "Normal, to the right", min: -0.95, max: 0.95, step: 0.01, initial: 0.45 },
@@ -32,7 +32,7 @@ export const pixel: Lesson = {
     {
       kind: "slider",
       key: "beta",
-      label: "Turn the light sideways",
+      label: "Rotate the light sideways",
       min: -90,
       max: 90,
       step: 1,
@@ -66,24 +66,24 @@ export const pixel: Lesson = {
 export const grey: Lesson = {
   id: "grey",
   title: "One grey light is not enough",
-  gist: "Under one grey light a pixel fits a whole curve of normals, and a bump can look like a dent.",
+  gist: "Under a single grey light, a whole curve of normals explains each pixel, and a bump can look like a dent.",
   formula: () => block(logS(), mo("="), predicted(), comma(), mi("j"), mo("="), mn("1")),
-  formulaWords: "One equation for one colour. The unit normal has two unknowns.",
+  formulaWords: "One colour gives one equation. The unit normal has two unknowns.",
   text: [
-    "A normal has two degrees of freedom. Grey light gives one equation. So the normals that explain one pixel form a curve; in the map of costs it is the dark line. Nothing in the pixel says where on that line the true normal lies.",
-    "For a picture as a whole there is more trouble. Turn every normal by half a turn about the line of sight: a bump becomes a dent. Turn the lamp likewise, and every pixel keeps its brightness. This is why craters in photographs sometimes look like hills.",
-    "The rule behind it: lights of order 2 turned by any rotation are again lights of order 2. If the light is unknown, colour does not help against this; only a known light, or a depth map, does.",
+    "A normal has two degrees of freedom; grey light gives one equation. The normals that explain one pixel therefore form a curve, the dark line in the cost map. The pixel alone does not determine where on that line the true normal lies.",
+    "The picture as a whole is ambiguous, too. Rotate every normal by half a turn about the line of sight, and a bump becomes a dent. Rotate the lamp by the same angle, and every pixel keeps its brightness. This is why craters in photographs sometimes look like hills.",
+    "The reason is that rotating a second-order light gives another second-order light. If the light is unknown, colour does not resolve the ambiguity; only a known light or a depth map does.",
   ],
   tasks: [
     "Move the lamp of the dent from 0° to 180°. At 180° the two pictures are the same, and the difference falls to almost zero.",
-    "Make the bump flat. Then there is nothing to tell apart.",
+    "Flatten the bump. Then the two pictures cannot differ.",
     "Drag the pixel on the bump and watch how the dark curve moves.",
   ],
   controls: [
     {
       kind: "slider",
       key: "turn",
-      label: "Turn the lamp of the dent",
+      label: "Rotate the lamp of the dent",
       min: 0,
       max: 180,
       step: 1,
@@ -95,7 +95,7 @@ export const grey: Lesson = {
     { kind: "slider", key: "py", label: "Pixel, down", min: 0, max: 1, step: 0.01, initial: 0.42 },
   ],
   readouts: [
-    { key: "difference", label: "Difference of the two pictures (rms of log S)", digits: 4, ink: "error" },
+    { key: "difference", label: "Difference between the two pictures (rms of log S)", digits: 4, ink: "error" },
     {
       key: "explained",
       label: "Normals that explain the pixel within 2 %",
@@ -114,20 +114,20 @@ export const grey: Lesson = {
 export const colours: Lesson = {
   id: "colours",
   title: "Three colours",
-  gist: "Three coloured lights give three equations for two unknowns, and a few normals are left.",
+  gist: "Three coloured lights give three equations for two unknowns, and only a few normals remain.",
   formula: () =>
     block(sum(mi("j")), sup(row(mo("("), logS(), mo("−"), predicted(), mo(")")), mn("2")), mo("→"), mi("min")),
   formulaWords:
-    "The sum over the three colours of the squared difference between the measured and the predicted logarithm is made as small as possible.",
+    "Minimise the sum over the three colours of the squared difference between the measured and the predicted logarithm.",
   text: [
-    "Let the light be red from one side, green from another and blue from a third. Each colour leaves its own curve of normals. Where the three curves meet, all colours are explained. The cost of a normal is the squared distance between measured and predicted log colours; the solver looks for its lowest valley.",
-    "A quadratic form in three colours can still have several valleys. So the solver first compares 600 directions all over the hemisphere and then walks downhill from the best one. The white dots are all valleys, the larger the more starts end there.",
-    "Natural light is nearly white. Its three curves almost coincide, and the valley becomes long and flat: a little noise moves the lowest point by tens of degrees. Then a pixel alone is lost. Noise may also give the pixel a colour that no normal has: then no normal explains it within 2 %, and the lowest valley is only the nearest that there is.",
+    "Let the light be red from one side, green from another and blue from a third. Each colour leaves a different curve of normals. Where the three curves meet, all colours are explained. The cost of a normal is the squared distance between measured and predicted log colours; the solver looks for its global minimum.",
+    "A quadratic form in three colours can still have several minima. The solver therefore first compares 600 directions all over the hemisphere and then descends from the best one. White dots mark the local minima; the larger the dot, the more starting points end there.",
+    "Natural light is nearly white. Its three curves almost coincide, and the valley becomes long and flat: a little noise moves the lowest point by tens of degrees. A single pixel then determines almost nothing. Noise may also give the pixel a colour that no normal has. Then no normal explains it within 2 %, and the lowest minimum is merely the closest match.",
   ],
   tasks: [
-    "Drag the colour from 0 to 1. The dark curve shrinks to a few spots and the error of the normals falls.",
-    "Choose the window at full colour: the curve stays long.",
-    "Add noise and compare how much each light suffers.",
+    "Drag the colour from 0 to 1. The dark curve shrinks to a few spots, and the error of the normals falls.",
+    "Choose the window light at full colour: the curve stays long.",
+    "Add noise and compare how much the error grows under each light.",
   ],
   controls: [
     {
@@ -138,7 +138,7 @@ export const colours: Lesson = {
       max: 1,
       step: 0.02,
       initial: 0.3,
-      hint: "0: the mean of its three colours for all; 1: the light as it is",
+      hint: "0: all three colours replaced by their mean; 1: the light unchanged",
     },
     { kind: "choice", key: "light", label: "Light", choices: LIGHTS, initial: "colourful" },
     { kind: "slider", key: "noise", label: "Noise of the picture", min: 0, max: 0.1, step: 0.005, initial: 0.01 },
@@ -154,8 +154,8 @@ export const colours: Lesson = {
       digits: 2,
       ink: "normal",
     },
-    { key: "off", label: "Lowest valley off by", unit: "%", digits: 1, ink: "minimum" },
-    { key: "good", label: "Valleys as low as it", digits: 0, ink: "minimum" },
+    { key: "off", label: "Mismatch at best normal", unit: "%", digits: 1, ink: "minimum" },
+    { key: "good", label: "Equally good minima", digits: 0, ink: "minimum" },
   ],
   drags: { picture: { x: "px", y: "py" } },
   more: { paper: "Eq. 8", sections: ["normals"] },

@@ -1,4 +1,4 @@
-/** Lessons 8 and 9: what the image model leaves out, and when the method fails. */
+/** Lessons 8 and 9: what the image model ignores, and when the method fails. */
 
 import type { Lesson } from "../lesson";
 import { LIGHTS } from "../lesson";
@@ -7,7 +7,7 @@ import { block, frac, log, mi, mn, mo, row, sub, sup, symbol } from "../maths";
 export const paint: Lesson = {
   id: "paint",
   title: "Shadows and paint",
-  gist: "The image model knows no shadows and one albedo. Paint is told from shading by its hue; shadows are outliers.",
+  gist: "The image model ignores shadows and assumes a single albedo. Chromaticity separates paint from shading; shadows are treated as outliers.",
   formula: () =>
     block(
       log(symbol("S")),
@@ -20,16 +20,16 @@ export const paint: Lesson = {
       mo("+"),
       symbol("e"),
     ),
-  formulaWords: "Log intensity is log albedo plus shading plus what is left over.",
+  formulaWords: "Log intensity is log albedo plus shading plus a remainder.",
   text: [
-    "Print is not shape. A model with one albedo would read every painted edge as a fold. So once the pose has come to rest, the module asks whether a few paints explain the picture better: each pixel has the shading of its measured normal, plus one of a few offsets {a}. How many paints there are follows from the evidence.",
-    "Hue decides: coloured paint changes red, green and blue by different amounts, while shading under whitish light changes them nearly alike. Grey paint is much harder to tell, and so is any paint under light of all colours.",
-    "A cast shadow breaks the model: there the light is another one. Robust weights count such pixels less, so that they pull light and pose little. A hard shadow edge can still pass for paint, and its inside stays in the remainder {e}.",
+    "Print is not shape. A model with a single albedo would interpret every painted edge as a fold. So once the pose has converged, the program tests whether a few paints explain the picture better: each pixel has the shading of its measured normal plus one of a few offsets {a}. The number of paints is chosen by the evidence in the picture.",
+    "Chromaticity decides: coloured paint changes red, green and blue by different amounts, while shading under whitish light changes them almost equally. Grey paint is much harder to separate, and so is any paint under light of many colours.",
+    "A cast shadow violates the model, because the light there is different. Robust weights reduce the influence of such pixels on light and pose. A hard shadow edge can still be mistaken for paint, and the inside of the shadow stays in the remainder {e}.",
   ],
   tasks: [
-    "Raise the paint. It appears in the albedo and leaves the shading.",
-    "Remove the paint and raise the shadow. See where it goes: some into the albedo, the rest into what is left over.",
-    "Choose the coloured lamps: now hue says less, and the normals get worse.",
+    "Raise the strength of the paint. It appears in the albedo and disappears from the shading.",
+    "Remove the paint and deepen the shadow. Part of it appears in the albedo, the rest in the remainder.",
+    "Choose the coloured lamps: chromaticity is now less informative, and the normals get worse.",
   ],
   controls: [
     { kind: "slider", key: "paint", label: "Strength of the paint", min: 0, max: 1, step: 0.05, initial: 0.8 },
@@ -37,10 +37,10 @@ export const paint: Lesson = {
     { kind: "choice", key: "light", label: "Light", choices: LIGHTS, initial: "window" },
   ],
   readouts: [
-    { key: "likeness", label: "Albedo found against the paint (correlation)", digits: 3, ink: "albedo" },
+    { key: "likeness", label: "Correlation of estimated albedo and paint", digits: 3, ink: "albedo" },
     { key: "degrees", label: "Mean error of the normals", unit: "°", digits: 1, ink: "normal" },
-    { key: "lit", label: "Left over in the light", digits: 3, ink: "error" },
-    { key: "shaded", label: "Left over in the shadow", digits: 3, ink: "error" },
+    { key: "lit", label: "Remainder in the light", digits: 3, ink: "error" },
+    { key: "shaded", label: "Remainder in the shadow", digits: 3, ink: "error" },
     { key: "status", label: "Status" },
   ],
   drags: {},
@@ -55,7 +55,7 @@ export const paint: Lesson = {
 export const failure: Lesson = {
   id: "failure",
   title: "When it fails",
-  gist: "Some scenes do not hold the answer. Then the module should say so, and mostly it does.",
+  gist: "Some scenes do not contain the answer. A good program says so; this one usually does.",
   formula: () =>
     block(
       sup(sub(mi("σ"), symbol("R")), mn("2")),
@@ -63,18 +63,18 @@ export const failure: Lesson = {
       frac(sup(mi("σ"), mn("2")), row(mi("information"), mo("("), symbol("R"), mo(")"))),
     ),
   formulaWords:
-    "The variance of the rotation is about the variance of the noise over the information that the scene has on the rotation.",
+    "The variance of the rotation is about the variance of the noise divided by the information that the scene contains about the rotation.",
   text: [
-    "Here nothing is told: light and pose are unknown, and the search runs from nothing. What is reported at the end is more than a pose: a status, a reason, a sigma of the rotation, and other poses that explain the colours as well.",
-    "Symmetry: a round object looks the same when it is turned about its axis. No method can see that turn. Little overlap: if the depth map covers a narrow strip, few normals have to explain everything. Texture: fine print that changes from pixel to pixel hides the shading. A large turn: the cameras share less and less of the object, and what they share is seen at a slant.",
-    "Compare the true error, which is known here because the scene is made, with the reported sigma and status. A good method is allowed to fail. It should not be sure of it.",
-    "The reported sigma is that of the rotation about its least certain axis, and the degrees of a status are this one sigma, too. Above 1.5° the status is ambiguous: two sigmas are then more than the 3° within which a pose counts as found. Above 5° it is lost: so uncertain a rotation is no answer. Above 25° the rotation counts as not observable. A status can have other reasons as well: it is ambiguous if other poses explain the colours as well, and lost if too much of the colours is left unexplained.",
+    "Here nothing is given: light and pose are both unknown, and the search starts from scratch. The report at the end contains more than a pose: a status, a reason, a sigma of the rotation, and alternative poses that fit the image equally well.",
+    "Symmetry: a round object looks the same when it is rotated about its axis. No method can detect that rotation. Little overlap: if the depth map covers only a narrow strip, a few normals have to explain everything. Texture: fine print that changes from pixel to pixel hides the shading. A large turn: the cameras share less and less of the object, and they see the shared part at a grazing angle.",
+    "Compare the true error, which is known here because the scene is synthetic, with the reported sigma and status. A good method is allowed to fail. It should not be confident when it does.",
+    "The reported sigma is that of the rotation about its least certain axis; the degrees quoted in a status are also one sigma. Above 1.5° the status is ambiguous, because two sigmas then exceed the 3° within which a pose counts as found. Above 5° it is lost: a rotation this uncertain is useless. Above 25° the rotation counts as not observable. A status can have other reasons: it is ambiguous if other poses fit the image equally well, and lost if too much of the colours remains unexplained.",
   ],
   tasks: [
-    "Symmetry: remove the nose of the disc. At 100 % the turn can't be seen, and the report names the axis.",
+    "Symmetry: remove the nose of the disc. At 100 % the rotation cannot be seen, and the report names the axis.",
     "Overlap: find the share at which the status stops being converged.",
-    "Texture: with all of the print more of the colours is left than with none, and the rotation is so uncertain that the status is lost. It names the axis.",
-    "A quarter turn: at 90° with a narrow depth map little is left to compare.",
+    "Texture: with the print at 100 %, more of the colour stays unexplained than with none, and the rotation is so uncertain that the status is lost. It names the axis.",
+    "A quarter turn: at 90° and with a narrow depth map, little remains to compare.",
   ],
   controls: [
     {
@@ -89,13 +89,13 @@ export const failure: Lesson = {
       ],
       initial: "overlap",
     },
-    { kind: "slider", key: "amount", label: "How much of it", min: 0, max: 100, step: 5, initial: 0, unit: "%" },
+    { kind: "slider", key: "amount", label: "Amount", min: 0, max: 100, step: 5, initial: 0, unit: "%" },
   ],
   readouts: [
     { key: "status", label: "Status" },
     { key: "error", label: "True error of the rotation", unit: "°", digits: 2, ink: "error" },
     { key: "sigma", label: "Reported sigma", unit: "°", digits: 2, ink: "pose" },
-    { key: "rivals", label: "Other poses that fit as well", digits: 0, ink: "pose" },
+    { key: "rivals", label: "Alternative poses", digits: 0, ink: "pose" },
     { key: "residual", label: "Residual of the colours", digits: 3, ink: "error" },
   ],
   drags: {},

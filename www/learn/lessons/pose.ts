@@ -1,4 +1,4 @@
-/** Lessons 6 and 7: the pose between the cameras, and what the sensor gets back. */
+/** Lessons 6 and 7: the pose between the cameras, and the refinement of the sensor's depth. */
 
 import type { Lesson } from "../lesson";
 import { LIGHTS } from "../lesson";
@@ -13,28 +13,28 @@ const colourTerm = () =>
 export const pose: Lesson = {
   id: "pose",
   title: "Finding the pose",
-  gist: "Under the right pose the normals of the depth map explain the colours. That is how the pose is found.",
+  gist: "Under the right pose the normals of the depth map explain the colours. This is how the pose is found.",
   formula: () =>
     block(colourTerm(), mo("+"), symbol("lambda"), norm(row(symbol("n"), mo("−"), symbol("R"), symbol("m")))),
   formulaWords:
-    "The cost of the colours plus lambda times the squared distance between the normal and the depth map's normal turned by the pose.",
+    "The cost of the colours plus lambda times the squared distance between the normal and the depth map's normal rotated by the pose.",
   text: [
-    "A photograph and a depth map look nothing alike, so there are no features to match. What links them is the image model: turn the depth map's normals {m} by the pose's rotation {R}, and they must explain the colours. Under a wrong pose they do not, and a residual is left. The curve shows it for wrong turns about the vertical axis.",
-    "Joint registration walks down this residual, and light and pose move together where the light is unknown. It needs a start within reach, some 20 to 30 degrees. If nothing is known, a search comes first: it scores rotations from all over the sphere coarsely and hands the best to the registration.",
-    "“Register from there” tells the registration a pose to start from. This told pose is believed up to a tolerance: the answer has to lie within 30° of it, and may move the object's middle by about the object's own width. If no pose within the tolerance explains the colours better, the told pose is kept and the status is ambiguous.",
-    "The last map is the cost of one pixel over all its normals, with the prior from the depth map under the present pose: a ring for the prior, dots for the valleys, a line for the steps of the solver from the prior. A small {lambda} leaves several valleys. Make it larger and they merge into one, near the prior. That is help if the pose is right, and harm if it is wrong. The robust prior is a compromise: one that is far off loses its hold.",
+    "A photograph and a depth map look nothing alike, so there are no features to match. The image model links them: the depth map's normals {m}, rotated by the pose's rotation {R}, must explain the colours. Under a wrong pose they do not, and a residual remains. The curve shows the residual for errors about the vertical axis.",
+    "Joint registration minimises this residual; if the light is unknown, light and pose are estimated together. It needs an initial pose within some 20 to 30 degrees. If nothing is known, a search comes first: it scores a coarse grid over all rotations and passes the best ones to the registration.",
+    "“Register from there” gives the registration an initial pose. The given pose is trusted within a tolerance: the result has to lie within 30° of it and may move the centre of the object by about the object's width. If no pose within the tolerance explains the colours better, the given pose is kept and the status is ambiguous.",
+    "The last map shows the cost of one pixel over all its normals, with the prior from the depth map under the present pose: a ring for the prior, dots for the minima, a line for the steps of the solver from the prior. A small {lambda} leaves several minima. With a larger one they merge into one near the prior. This helps if the pose is right and hurts if it is wrong. The robust prior is a compromise: a prior that is far off is ignored.",
   ],
   tasks: [
-    "Turn the pose away from 0° and watch the residual rise and the two surfaces part.",
-    "Drag λ to the right until the valleys of the pixel have merged. Repeat with the pose 20° wrong.",
-    "Let it register from 20° away, then from 40°: the true pose lies beyond the tolerance, so the told pose is kept and the status is ambiguous.",
-    "Let it search from nothing.",
+    "Move the pose away from 0° and watch the residual rise and the two surfaces separate.",
+    "Drag λ to the right until the minima of the pixel have merged. Repeat with the pose 20° off.",
+    "Let it register from 20° away, then from 40°: the true pose lies beyond the tolerance, so the given pose is kept and the status is ambiguous.",
+    "Let it search from scratch.",
   ],
   controls: [
     {
       kind: "slider",
       key: "offset",
-      label: "Pose wrong by",
+      label: "Error of the pose",
       min: -40,
       max: 40,
       step: 1,
@@ -45,11 +45,11 @@ export const pose: Lesson = {
     {
       kind: "choice",
       key: "run",
-      label: "What happens",
+      label: "Action",
       choices: [
         ["hold", "hold it there"],
         ["register", "register from there"],
-        ["search", "search from nothing"],
+        ["search", "search from scratch"],
       ],
       initial: "hold",
     },
@@ -71,9 +71,9 @@ export const pose: Lesson = {
   readouts: [
     { key: "error", label: "Error of the rotation", unit: "°", digits: 2, ink: "pose" },
     { key: "residual", label: "Residual of the colours", digits: 3, ink: "error" },
-    { key: "minima", label: "Valleys of the pixel", digits: 0, ink: "minimum" },
-    { key: "off", label: "Prior of the pixel off by", unit: "°", digits: 1, ink: "prior" },
-    { key: "end", label: "Solver ends off by", unit: "°", digits: 1, ink: "normal" },
+    { key: "minima", label: "Minima of the pixel", digits: 0, ink: "minimum" },
+    { key: "off", label: "Error of the prior", unit: "°", digits: 1, ink: "prior" },
+    { key: "end", label: "Error of the solver", unit: "°", digits: 1, ink: "normal" },
     { key: "status", label: "Status" },
   ],
   drags: { picture: { x: "px", y: "py" } },
@@ -87,7 +87,7 @@ export const pose: Lesson = {
 export const sensor: Lesson = {
   id: "sensor",
   title: "Refining the sensor",
-  gist: "The picture sees fine shape that the sensor's noise hides. With the pose known, it cleans the depth map.",
+  gist: "The picture shows fine shape that the sensor's noise hides. Once the pose is known, the picture can refine the depth map.",
   formula: () =>
     lines(
       block(
@@ -118,14 +118,14 @@ export const sensor: Lesson = {
   formulaWords:
     "A weight mu times the squared distance between the refined and the measured depth, plus the cost of the colours for the normals of the refined depth. Mu is the variance of the shading over that of the sensor.",
   text: [
-    "A depth sensor is right on the large scale and noisy on the small one. Shading is the other way round: it tells slopes from pixel to pixel and drifts over long distances. The two fit together.",
-    "Once the pose is known, the refinement looks for a depth {z} that stays near the measured depth {d} and whose normals explain the colours. Nobody sets the weight μ between the two: it is the variance of the shading over that of the sensor, both measured from the data. Holes are filled where the colour camera sees the place. Normals gain with it: they are differences of neighbours, in which noise is largest.",
-    "What the picture does not see stays as it was measured: the side that is turned away, and what lies in shadow.",
+    "A depth sensor is right on the large scale and noisy on the small one. Shading is the opposite: it gives slopes from pixel to pixel and drifts over long distances. The two complement each other.",
+    "Once the pose is known, the refinement finds a depth {z} that stays near the measured depth {d} and whose normals explain the colours. The weight μ is not tuned by hand: it is the variance of the shading over that of the sensor, both measured from the data. Holes are filled where the colour camera sees the surface. Normals gain most, because differences between neighbouring pixels amplify noise.",
+    "Parts that the picture does not show stay as measured: the side facing away from the camera, and parts in shadow.",
   ],
   tasks: [
-    "Raise the noise of the sensor. The measured normals get rough; the refined ones hold.",
-    "Cut holes into the depth map and watch the share that is filled.",
-    "Raise the noise of the picture: it has less to give, and the refined depth gets worse.",
+    "Raise the noise of the sensor. The measured normals become rough; the refined ones stay smooth.",
+    "Cut holes into the depth map and watch what share is filled.",
+    "Raise the noise of the picture: it is less informative, and the refined depth gets worse.",
   ],
   controls: [
     {

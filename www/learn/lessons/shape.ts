@@ -10,7 +10,7 @@ const change = (axis: string) => frac(row(mi("∂"), symbol("z")), row(mi("∂")
 export const surface: Lesson = {
   id: "surface",
   title: "From normals to a surface",
-  gist: "Normals tell slopes. Adding slopes up gives a surface, but a step leaves no trace in them.",
+  gist: "Normals give slopes, and adding up slopes gives a surface. But slopes are blind to a step.",
   formula: () =>
     block(
       change("x"),
@@ -25,15 +25,15 @@ export const surface: Lesson = {
     ),
   formulaWords: "The slope of the depth z along x is minus n x over n z, and along y minus n y over n z.",
   text: [
-    "A normal {n} fixes the slope of the depth {z} in both directions. Integration looks for the surface whose differences from pixel to pixel fit these slopes best, in least squares. The depth as a whole stays free: adding a constant changes no slope.",
-    "Discontinuities: at a step the depth jumps between two pixels. Both have normals that know nothing of it. If the step ends somewhere, a way around it brings the height back, and the two contradict each other. Least squares spreads the contradiction over the neighbours; robust weights find the few pairs of pixels that do not fit and let go of them. If the step cuts the object in two, no way leads around it, and nothing can know its height.",
-    "Bias: noise tilts normals at random, but the result is not only noisy. A slope is the tangent of a tilt: a normal that noise tilts too far adds more slope than one that it tilts too little takes away. So the errors do not cancel, steep flanks come out too steep, and the dome is found with more than 100 % of its true relief. Normals that would turn away from the camera are cut off, which takes a part of it back.",
+    "A normal {n} fixes the slope of the depth {z} in both directions. Integration finds the surface whose differences from pixel to pixel fit these slopes best in the least-squares sense. The absolute depth stays undetermined: adding a constant changes no slope.",
+    "Discontinuities: at a step the depth jumps between two pixels. The normals of both are unaffected by it. If the step ends somewhere, a path around it gives its height, and the path across contradicts that. Least squares spreads the contradiction over the neighbours; robust weights identify the few pairs of pixels that do not fit and ignore them. If the step cuts the object in two, no path leads around it, and its height is undetermined.",
+    "Bias: noise tilts normals at random, but the result is not only noisy. A slope is the tangent of a tilt, so a normal tilted too far adds more slope than a normal tilted too little removes. The errors do not cancel: steep flanks come out too steep, and the dome has more than 100 % of its true relief. Normals that would face away from the camera are clipped, which offsets part of the bias.",
   ],
   tasks: [
-    "Raise the step. The height found across it lags behind the true one.",
+    "Raise the step. The estimated height across it falls short of the true one.",
     "Switch the robust weights off and on at a step of 6 px: the error of the depth falls with them.",
-    "Let the step cut the plate in two: robust or not, its height is wrong, since nothing tells it.",
-    "Set the step to 0 and raise the noise: the dome comes out higher than it is.",
+    "Let the step cut the plate in two: robust or not, its height is wrong, because nothing in the slopes determines it.",
+    "Set the step to 0 and raise the noise: the dome comes out too high.",
   ],
   controls: [
     { kind: "slider", key: "step", label: "Height of the step", min: 0, max: 12, step: 0.5, initial: 6, unit: "px" },
@@ -43,8 +43,8 @@ export const surface: Lesson = {
   ],
   readouts: [
     { key: "error", label: "Error of the depth (rms)", unit: "px", digits: 2, ink: "error" },
-    { key: "jump", label: "Height found across the step", unit: "px", digits: 2, ink: "normal" },
-    { key: "kept", label: "Relief of the dome, found over true", unit: "%", digits: 0, ink: "normal" },
+    { key: "jump", label: "Estimated height of the step", unit: "px", digits: 2, ink: "normal" },
+    { key: "kept", label: "Relief of the dome, estimated over true", unit: "%", digits: 0, ink: "normal" },
   ],
   drags: {},
   more: {
@@ -62,7 +62,7 @@ export const surface: Lesson = {
 export const prior: Lesson = {
   id: "prior",
   title: "A depth map from elsewhere",
-  gist: "Where a depth map gives a normal as well, the pixel prefers the explanation near it.",
+  gist: "Where a depth map gives a normal as well, the pixel prefers a normal near it.",
   formula: () =>
     block(
       sum(mi("j")),
@@ -77,14 +77,14 @@ export const prior: Lesson = {
   formulaWords:
     "The cost of the colours plus lambda times the squared distance between the normal and the one that the depth map gives.",
   text: [
-    "A second camera measures depth. If its pose is known, each of its points lands on a pixel and brings a normal {m}. It enters the cost as a prior with the weight {lambda}: of all normals that explain the colours, take one near {m}.",
-    "This is the paper's Figure 5. The light is known, the picture has 2 % noise, and a share of the pixels, chosen at random, is given the true normal. All others have their colours alone. With more of them the surface improves, at first more than in proportion: pixels without a prior gain, too, for all pixels share the exposure of the picture, and a few given normals fix it.",
-    "Too small a weight and the prior is ignored; a very large one copies the depth map and throws the picture away. Here the prior is perfect, so large does no harm. A real depth map is noisy and has no fine detail.",
+    "A second camera measures depth. If its pose is known, each of its points lands on a pixel and brings a normal {m}. That normal enters the cost as a prior with the weight {lambda}: of all normals that explain the colours, choose one near {m}.",
+    "This is the paper's Figure 5. The light is known, the picture has 2 % noise, and a share of the pixels, chosen at random, is given the true normal. All other pixels have only their colours. The surface improves with the share, at first more than proportionally. Pixels without a prior gain, too, because all pixels share the exposure of the picture, and a few given normals determine it.",
+    "With too small a weight the prior is ignored; with a very large one the result copies the depth map and ignores the picture. Here the prior is perfect, so a large weight does no harm. A real depth map is noisy and lacks fine detail.",
   ],
   tasks: [
-    "Move the share from 0 to 100 %. The curve is computed while you watch.",
+    "Move the share from 0 to 100 % and watch the curve being computed.",
     "Choose the coloured lamps: the prior is hardly needed.",
-    "Set λ to its least: the given normals are there and hardly count.",
+    "Set λ to its minimum: the given normals hardly count.",
   ],
   controls: [
     { kind: "slider", key: "share", label: "Pixels with a prior", min: 0, max: 100, step: 1, initial: 20, unit: "%" },

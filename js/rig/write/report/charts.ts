@@ -7,9 +7,9 @@ import { brief, digits, measure } from "./numbers.js";
 type Axis = CheckReport["sensitivity"][number]["axis"];
 
 const AXES: readonly { axis: Axis; title: string; unit: string }[] = [
-  { axis: "rx", title: "Turn about x", unit: "°" },
-  { axis: "ry", title: "Turn about y", unit: "°" },
-  { axis: "rz", title: "Turn about z", unit: "°" },
+  { axis: "rx", title: "Rotation about x", unit: "°" },
+  { axis: "ry", title: "Rotation about y", unit: "°" },
+  { axis: "rz", title: "Rotation about z", unit: "°" },
   { axis: "tx", title: "Shift along x", unit: "mm" },
   { axis: "ty", title: "Shift along y", unit: "mm" },
   { axis: "tz", title: "Shift along z", unit: "mm" },
@@ -18,7 +18,7 @@ const AXES: readonly { axis: Axis; title: string; unit: string }[] = [
 /** Sigmas that a panel shows: what is further off is ruled out, whatever its height. */
 export const MOST_SIGMAS = 8;
 
-/** Kinds of lines that the style sheet tells apart. */
+/** Line styles that the style sheet distinguishes. */
 const SERIES = 5;
 
 /** A share of a whole, 0 .. 1. */
@@ -106,7 +106,7 @@ function path({ points }: Curve, x: (offset: number) => string, y: (height: numb
 function says({ points, best, from, to }: Curve, unit: string): string {
   const [first = NaN, last = NaN] = [points[0]?.offset, points.at(-1)?.offset];
   if (from === undefined && to === undefined)
-    return `cannot tell from ${brief(first)} to ${brief(last)}${unit === "°" ? unit : ` ${unit}`}`;
+    return `not constrained from ${brief(first)} to ${brief(last)}${unit === "°" ? unit : ` ${unit}`}`;
   const least = from === undefined ? `below ${brief(first)}` : digits(from, 2);
   const most = to === undefined ? `above ${brief(last)}` : digits(to, 2);
   return `${measure(best, unit, 2)} (${least} to ${most})`;

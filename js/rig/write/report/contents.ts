@@ -1,7 +1,7 @@
-/** What a report holds: what the check found, and beside it what its caller adds. */
+/** The contents of a report: the result of the check, and what the caller adds. */
 import type { CheckReport, Warning } from "../../../types/index.js";
 
-/** What a check found; its warnings may have words of the caller's among them. */
+/** The result of a check; its warnings may include messages of the caller. */
 export interface Checked extends Omit<CheckReport, "warnings"> {
   warnings: readonly (string | Pick<Warning, "message">)[];
 }
@@ -18,13 +18,13 @@ export interface Picture {
 export interface ReportInput {
   /** Of the file. */
   name: string;
-  /** What was read in it, in words. */
+  /** A description of what was read from it. */
   says?: string | undefined;
   /** Of its bytes, in hexadecimal. */
   sha256?: string | undefined;
 }
 
-/** What a report says beside the result. */
+/** What a report states besides the result. */
 export interface ReportOptions {
   /** "Check of a calibration" without it. */
   title?: string | undefined;

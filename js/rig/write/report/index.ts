@@ -1,6 +1,6 @@
 /**
- * A check of a rig as one HTML file that asks for nothing else: it can be kept, mailed and printed. It has no script, its policy
- * allows none, and whatever comes from files is escaped.
+ * The report of a check of a rig as one self-contained HTML file that can be kept, mailed and printed. It contains no script, its content
+ * security policy allows none, and text from files is escaped.
  */
 import { type Example, like } from "../built.js";
 import type { Checked, Picture, ReportOptions } from "./contents.js";
@@ -18,7 +18,7 @@ import {
 
 export type { Checked, Picture, ReportInput, ReportOptions } from "./contents.js";
 
-/** What the sections look into; a word or a number that is none is said to be "not known". */
+/** The members that the sections read; a missing word or an invalid number is shown as "not known". */
 const REPORT: Example = {
   warnings: [{}],
   estimate: { rotation: [], translation: [], angles: {} },

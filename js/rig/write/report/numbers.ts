@@ -1,4 +1,4 @@
-/** Numbers for people: three digits, a true minus, a thin space before the unit, and a word where there is none. */
+/** Numbers for people: three digits, a true minus, a thin space before the unit, and a word in place of an invalid number. */
 
 const NONE = "not known";
 const [MOST_PLAIN, LEAST_PLAIN] = [1e5, 1e-3];

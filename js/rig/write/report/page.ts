@@ -24,7 +24,7 @@ export function reportPage(title: string, made: Date | undefined, field: string,
 <main>
 ${body}
 </main>
-<footer>Made by bimodal-stereo. This file holds everything it shows.</footer>
+<footer>Made by bimodal-stereo. This file is self-contained.</footer>
 </body>
 </html>
 `;

@@ -4,7 +4,7 @@ import { fault } from "../built.js";
 import type { Picture, ReportInput } from "./contents.js";
 import { type Markup, type Part, html } from "./markup.js";
 
-/** A tick, a cross or a question mark: colour alone tells nobody anything on paper. */
+/** A tick, a cross or a question mark, since colour alone is lost in print. */
 const SIGNS: Readonly<Record<CheckVerdict, string>> = {
   consistent: "M9 20.5l7 7 15-16",
   off: "M12 12l16 16M28 12l-16 16",
@@ -25,7 +25,7 @@ export const cell = (column: string, value: Part): Markup => html`<td data-colum
 export const table = (kind: string, columns: readonly string[], rows: Part): Markup =>
   html`<table class="${kind}"><thead><tr>${columns.map((column) => html`<th scope="col">${column}</th>`)}</tr></thead><tbody>${rows}</tbody></table>`;
 
-/** Pixels in the file itself; SVG may ask for other files. */
+/** Pixels in the file itself; SVG may load other files. */
 const PICTURE = /^data:image\/(?:png|jpeg|webp|avif|gif);base64,[A-Za-z0-9+/]+={0,2}$/;
 
 export function pictureSection(pictures: readonly Picture[]): Markup | undefined {

@@ -20,12 +20,12 @@ export function verdictCard({ verdict: given, reason, candidates, health }: Chec
 <p>${reason}</p><dl class="facts">${
     candidate && [
       fact(
-        "Off from the best fit, at the middle of the scene",
+        "Offset from the best fit, at the centre of the scene",
         `${measure(candidate.offDegrees, "°")}, ${measure(candidate.offMillimetres, "mm")}`,
       ),
-      fact("Its expected reprojection error", measure(candidate.pixels, "px"), within(candidate.interval)),
+      fact("Expected reprojection error", measure(candidate.pixels, "px"), within(candidate.interval)),
     ]
-  }${fact("That of the best fit", measure(health.pixels, "px"), within(health.interval))}</dl></div></section>`;
+  }${fact("Expected error of the best fit", measure(health.pixels, "px"), within(health.interval))}</dl></div></section>`;
 }
 
 export const warningList = ({ warnings }: Checked): Markup =>
@@ -39,8 +39,8 @@ export const warningList = ({ warnings }: Checked): Markup =>
 const CANDIDATE_COLUMNS = [
   "Calibration",
   "Verdict",
-  "Turned by",
-  "Shifted by",
+  "Rotation",
+  "Shift",
   "Expected error",
   "95\u202f% interval",
   "Probability",
@@ -74,9 +74,9 @@ export function candidateTable({ candidates, health }: Checked): Markup {
         )
       : undefined,
     intervals(drawn),
-    html`<p class="soft">Turned and shifted: from the best fit, the shift at the scene's middle. Expected error: the distance in the colour
-image between where a point of the scene falls and where it belongs, at the scene's depth. Probability: that of being as far from the best fit,
-were the calibration right.</p>`,
+    html`<p class="soft">Rotation and shift: relative to the best fit, the shift at the centre of the scene. Expected error: the distance in the
+colour image between the projection of a scene point and its true place, at the scene's depth. Probability: that of a result at least this far
+from the best fit if the calibration were right.</p>`,
   );
 }
 
@@ -100,14 +100,14 @@ function worst(values: readonly number[]): string | undefined {
 /** All digits, to be copied. */
 const exact = (value: number): string => (Number.isFinite(value) ? String(value) : "?");
 
-const COVARIANCE = ["turn x", "turn y", "turn z", "shift x", "shift y", "shift z"];
+const COVARIANCE = ["rotation x", "rotation y", "rotation z", "shift x", "shift y", "shift z"];
 
 export function estimateSection({ estimate, covariance }: Checked): Markup {
   const { rotation: r, translation: t, angles } = estimate;
   const known = sigmas(covariance);
   const [turn, shift] = [known.slice(0, 3), known.slice(3)];
   const [axis, along] = [worst(turn), worst(shift)];
-  const weakest = axis && along ? `Least certain: the turn about ${axis} and the shift along ${along}.` : "";
+  const weakest = axis && along ? `The rotation about ${axis} and the shift along ${along} are the least certain.` : "";
   const rows = [0, 1, 2].map((i) => [...r.slice(3 * i, 3 * i + 3), t[i] ?? NaN].map(exact).join("  "));
   return section(
     "The best fit",
@@ -115,7 +115,7 @@ export function estimateSection({ estimate, covariance }: Checked): Markup {
       "Angles of R = Rx Ry Rz",
       [angles.alpha, angles.beta, angles.gamma].map((angle) => measure(angle, "°")).join(", "),
     )}</dl>`,
-    html`<p>Known to one sigma of ${named(turn, "°", "about")}; and of ${named(shift, "mm", "along")}. ${weakest}</p>`,
+    html`<p>One sigma: ${named(turn, "°", "about")}; ${named(shift, "mm", "along")}. ${weakest}</p>`,
     html`<pre tabindex="0">${[...rows, "0  0  0  1"].join("\n")}</pre>`,
     html`<p class="soft">P_colour = R P_depth + t, metres; x right, y down, z forward.</p>`,
     html`<h3>Covariance</h3><div class="scroll" tabindex="0">${table(
@@ -125,31 +125,31 @@ export function estimateSection({ estimate, covariance }: Checked): Markup {
         (name, i) =>
           html`<tr><th scope="row">${name}</th>${COVARIANCE.map((_, j) => html`<td>${digits(covariance[6 * i + j] ?? NaN)}</td>`)}</tr>`,
       ),
-    )}</div><p class="soft">Of a rotation vector in rad about the scene's middle, then a translation in m, in the colour camera's frame.</p>`,
+    )}</div><p class="soft">For a rotation vector in rad about the scene's centre, then a translation in m, in the colour camera's frame.</p>`,
   );
 }
 
 /** What the cues are called, and what they are. */
 const CUES: Readonly<Record<string, readonly [name: string, more: string]>> = {
-  shading: ["Shading", "light on the surface's slopes"],
+  shading: ["Shading", "lighting of the surface's slopes"],
   edges: ["Edges", "depth edges on image edges"],
-  information: ["Information", "shared by colour and shape"],
-  silhouette: ["Silhouettes", "outlines in both views"],
+  information: ["Information", "mutual information of colour and shape"],
+  silhouette: ["Silhouettes", "object contours in both views"],
 };
 
 const about = (cue: string): readonly [name: string, more: string] =>
   (Object.hasOwn(CUES, cue) ? CUES[cue] : undefined) ?? [cue, ""];
 
-const sharpness = (value: number): string => (value > 0 ? `to ${measure(1 / value, "px")}` : "not at all");
+const sharpness = (value: number): string => (value > 0 ? `± ${measure(1 / value, "px")}` : "no information");
 
 export function cueTable({ cues }: Checked): Markup | undefined {
   const rows = Object.entries(cues).map(
     ([cue, { share, sharpness: sharp }]) =>
-      html`<tr><th scope="row">${about(cue)[0]} <span class="soft">${about(cue)[1]}</span></th><td class="number">${percent(share)}</td><td class="bars">${bar(share)}</td>${cell("Tells the pose", sharpness(sharp))}</tr>`,
+      html`<tr><th scope="row">${about(cue)[0]} <span class="soft">${about(cue)[1]}</span></th><td class="number">${percent(share)}</td><td class="bars">${bar(share)}</td>${cell("Precision", sharpness(sharp))}</tr>`,
   );
   return rows.length === 0
     ? undefined
-    : section("What the answer rests on", table("shares", ["Cue", "Share", "", "Tells the pose"], rows));
+    : section("What the verdict rests on", table("shares", ["Cue", "Share", "", "Precision"], rows));
 }
 
 export function frameTable({ frames }: Checked): Markup | undefined {
@@ -165,8 +165,8 @@ export function sensitivitySection({ sensitivity }: Checked): Markup | undefined
   if (panels.length === 0) return undefined;
   return section(
     "Sensitivity",
-    html`<p class="soft">How much worse each cue finds the best fit when it is moved along one axis and held along the others. Height: sigmas, the square
-root of twice the fall of the log likelihood, drawn up to 8. Triangles mark where a cue is best, bars under the axis its 95 % interval,
+    html`<p class="soft">Loss of likelihood of each cue when the best fit is moved along one axis, with the other axes fixed. Height: sigmas, the square
+root of twice the fall of the log likelihood, drawn up to 8. Triangles mark the optimum of a cue, bars under the axis its 95 % interval,
 where its curve is below the dashed line.</p><div class="panels">${panels}</div>`,
   );
 }
