@@ -10,6 +10,7 @@ use super::distortion;
 use super::guessed;
 use super::health::Health;
 use super::input::RigView;
+use super::optima::{self, Optimum};
 use super::planes::Planes;
 use super::reason::{CheckReason, Warning, WarningKind};
 use super::registration::{
@@ -49,8 +50,8 @@ fn told(scene: &Scene, candidates: &[(String, State)]) -> State {
 enum Stage {
     Starting,
     Approaching { level: usize, index: usize, planes: Vec<Planes> },
-    Settling { done: usize, planes: Vec<Planes> },
-    Judging { planes: Vec<Planes> },
+    Settling { rounds: Vec<Round>, at: usize, done: usize, planes: Vec<Planes> },
+    Judging { rounds: Vec<Round>, planes: Vec<Planes> },
     Curves { planes: Vec<Planes>, findings: Box<Findings>, done: usize },
     Done,
 }
@@ -129,8 +130,9 @@ impl CalibrationCheck {
                 let share = (*level as f64 + of_level) / SIGMAS.len() as f64;
                 (0.1 + 0.6 * share, "bringing depth edges onto image edges")
             }
-            Stage::Settling { done, .. } => {
-                (0.7 + 0.15 * *done as f64 / MOST_SETTLING as f64, "refining with all cues")
+            Stage::Settling { rounds, at, done, .. } => {
+                let share = (*at as f64 + *done as f64 / MOST_SETTLING as f64) / rounds.len() as f64;
+                (0.7 + 0.15 * share, "refining with all cues")
             }
             Stage::Judging { .. } => (0.85, "judging the candidates"),
             Stage::Curves { done, .. } => {
@@ -154,18 +156,14 @@ impl CalibrationCheck {
                 Stage::Approaching { level: 0, index: 0, planes: self.planes_of(0) }
             }
             Stage::Approaching { level, index, planes } => self.approach(level, index, planes),
-            Stage::Settling { done, planes } => {
-                let moved = self.scene.settle(&mut self.best, &planes);
-                if moved < ARRIVED || done + 1 >= MOST_SETTLING {
-                    Stage::Judging { planes }
-                } else {
-                    Stage::Settling { done: done + 1, planes }
-                }
-            }
-            Stage::Judging { planes } => {
+            Stage::Settling { rounds, at, done, planes } => self.settle(rounds, at, done, planes),
+            Stage::Judging { rounds, planes } => {
+                let mut optima = optima::ranked(&self.scene, &rounds, &planes);
+                if std::env::var("DBG").is_ok() { for o in &optima { eprintln!("OPT behind {:.1} apart {:.1}", o.behind, optima[0].findings.units.between(&optima[0].round.state, &o.round.state).norm()); } }
+                self.best = optima[0].round;
                 self.lens = distortion::left_out(&mut self.scene, &self.best);
-                let findings = self.scene.findings(&self.best, &planes);
-                self.report = Some(self.judge(&findings));
+                self.report = Some(self.judge(&optima));
+                let findings = optima.swap_remove(0).findings;
                 Stage::Curves { planes, findings: Box::new(findings), done: 0 }
             }
             Stage::Curves { planes, findings, done } => {
@@ -241,8 +239,15 @@ impl CalibrationCheck {
         if level + 1 < SIGMAS.len() {
             return Stage::Approaching { level: level + 1, index: 0, planes: self.planes_of(level + 1) };
         }
-        self.best = self.starts[0].round;
-        Stage::Settling { done: 0, planes }
+        let mut rounds: Vec<Round> = self.starts.iter().map(|start| start.round).collect();
+        let units = self.scene.units(&rounds[0].state);
+        for (_, state) in &self.candidates {
+            let is_near = |round: &Round| units.between(&round.state, state).norm() <= SAME_START * self.scene.scale;
+            if !rounds.iter().any(is_near) {
+                rounds.push(Round { state: *state, ..rounds[0] });
+            }
+        }
+        Stage::Settling { rounds, at: 0, done: 0, planes }
     }
 
     /// The best starts that are not one place, at most so many.
@@ -260,15 +265,36 @@ impl CalibrationCheck {
         self.starts = kept;
     }
 
-    fn judge(&self, findings: &Findings) -> CheckReport {
-        let (units, state) = (findings.units, self.best.state);
+    /// One round of one of the states; after the last of all the verdict.
+    fn settle(&mut self, mut rounds: Vec<Round>, at: usize, done: usize, planes: Vec<Planes>) -> Stage {
+        let moved = self.scene.settle(&mut rounds[at], &planes);
+        if moved >= ARRIVED && done + 1 < MOST_SETTLING {
+            Stage::Settling { rounds, at, done: done + 1, planes }
+        } else if at + 1 < rounds.len() {
+            Stage::Settling { rounds, at: at + 1, done: 0, planes }
+        } else {
+            Stage::Judging { rounds, planes }
+        }
+    }
+
+    /// The distribution about an optimum, and its covariance in its units.
+    fn judge_of(&self, Optimum { round, findings, .. }: &Optimum) -> (Judge, Matrix) {
+        let state = round.state;
         let frame = &self.scene.frames[0];
         let cloud = self.scene.cloud(&state);
         let scale = self.scale(findings, &state, &cloud);
-        let covariance = scale * Judge::VARIANCE;
-        let judge = Judge::new(units, &state.camera(&frame.camera), &cloud, &scale, frame.pixel, self.width)
+        let judge = Judge::new(findings.units, &state.camera(&frame.camera), &cloud, &scale, frame.pixel, self.width)
             .explaining(if self.scene.focal_is_free { guessed::explains(self.width) } else { 0.0 });
-        let candidates = self.candidate_reports(&judge, findings, &covariance);
+        (judge, scale * Judge::VARIANCE)
+    }
+
+    fn judge(&self, optima: &[Optimum]) -> CheckReport {
+        let Optimum { findings, .. } = &optima[0];
+        let (units, state) = (findings.units, self.best.state);
+        let frame = &self.scene.frames[0];
+        let (judge, covariance) = self.judge_of(&optima[0]);
+        let mut candidates = self.candidate_reports(&judge, findings, &covariance);
+        self.allow_other_optima(&mut candidates, &judge, &optima[1..]);
         let warnings = self.all_warnings(&judge);
         let health = if self.scene.is_seen(&state) { judge.estimate() } else { Judge::blind(self.width) };
         let (verdict, reason) = first_verdict(&candidates, &warnings, health);
@@ -287,6 +313,19 @@ impl CalibrationCheck {
             cues: CueReport::all(findings, frame.pixel),
             frames: FrameReport::all(&self.scene, findings),
             sensitivity: vec![],
+        }
+    }
+
+    /// A candidate that another optimum explains is not off if that optimum is as likely as the best one's own distribution is wide.
+    fn allow_other_optima(&self, reports: &mut [CandidateReport], judge: &Judge, others: &[Optimum]) {
+        for other in others.iter().filter(|other| other.behind <= judge.likely() && self.scene.is_seen(&other.round.state)) {
+            let (judge, _) = self.judge_of(other);
+            for (report, (name, candidate)) in reports.iter_mut().zip(&self.candidates) {
+                let own = judge.judge(name, &other.round.state, candidate, None);
+                if report.verdict == CheckVerdict::Off && own.verdict != CheckVerdict::Off {
+                    report.verdict = CheckVerdict::Undecided;
+                }
+            }
         }
     }
 

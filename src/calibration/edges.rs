@@ -20,6 +20,8 @@ use super::unknowns::{LOSS, State, Units, Vector, add_square};
 const MISSING: f64 = 0.3;
 /// L at the least, pixels of an image 640 wide.
 const WIDEST: f64 = 14.0;
+/// Width of an even distribution over its standard deviation, the root of twelve.
+const EVEN: f64 = 3.464_101_615_137_754_6;
 /// L in sigmas.
 const WINDOW: f64 = 3.0;
 /// Edges of a profile, the strongest ones.
@@ -36,6 +38,9 @@ const LEAST_BLUR: f64 = 0.7;
 struct Profile {
     /// d u / d unknowns.
     row: Vector,
+    /// Standard deviation of where the near surface ends, pixels.
+    sigma: f64,
+    window: f64,
     tile: u32,
     edges: Vec<(f64, f64)>,
 }
@@ -43,7 +48,6 @@ struct Profile {
 /// Rims of one frame with their profiles, for one state.
 pub(super) struct EdgeField {
     profiles: Vec<Profile>,
-    window: f64,
 }
 
 /// Blur, pixels, of the planes on which edges known within `sigma` pixels are looked for.
@@ -77,7 +81,7 @@ impl EdgeField {
     pub fn new(Sight { frame, planes }: Sight<'_>, rims: &[Rim], state: &State, units: &Units, sigma: f64) -> Self {
         let blur = blur(sigma);
         let camera = state.camera(&frame.camera);
-        let window = (WINDOW * sigma).max(WIDEST * planes.size.width as f64 / 640.0);
+        let widest = WIDEST * planes.size.width as f64 / 640.0;
         let tiles = Tiles::new(planes.size);
         let profile = |rim: &Rim| {
             let point = state.pose.apply(frame.point(rim.index)?);
@@ -85,19 +89,23 @@ impl EdgeField {
             let mut row = rows[0] * rim.normal[0] + rows[1] * rim.normal[1];
             row[LOSS] = 1.0;
             let start = [0, 1].map(|k| rim.pixel[k] + state.loss * rim.normal[k]);
+            // An even distribution over the gap, as a normal one.
+            let sigma = sigma.hypot(rim.gap / EVEN);
+            let window = (WINDOW * sigma).max(widest);
             let edges = edges(planes, start, rim.normal, window, blur)?;
-            Some(Profile { row, tile: tiles.of(rim.pixel), edges })
+            Some(Profile { row, sigma, window, tile: tiles.of(rim.pixel), edges })
         };
-        Self { profiles: rims.iter().filter_map(profile).collect(), window }
+        Self { profiles: rims.iter().filter_map(profile).collect() }
     }
 
     /// Log likelihood with its gradient at the state of the field, tile by tile; the curvature is that of expectation
     /// maximisation's bound, which is never negative, times how much of it is left once rims may change their edges.
-    pub fn evidence(&self, sigma: f64, shares: &mut [Share]) {
-        let background = MISSING / (2.0 * self.window);
-        let peak = (1.0 - MISSING) / (sigma * std::f64::consts::TAU.sqrt());
+    pub fn evidence(&self, shares: &mut [Share]) {
         let (mut bounds, mut own) = (0.0, 0.0);
         for profile in &self.profiles {
+            let sigma = profile.sigma;
+            let background = MISSING / (2.0 * profile.window);
+            let peak = (1.0 - MISSING) / (sigma * std::f64::consts::TAU.sqrt());
             let (mut total, mut first, mut second) = (0.0, 0.0, 0.0);
             for &(offset, share) in &profile.edges {
                 let error = offset / sigma;

@@ -3,6 +3,7 @@
 use super::ahead::Ahead;
 use super::frame::Frame;
 use super::planes::Planes;
+use super::sampling::gathered;
 use super::reason::{Warning, WarningKind};
 use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
@@ -100,6 +101,7 @@ impl RigView {
             Pinhole { fx: focal, fy: focal, cx, cy, lens: Lens::None }
         });
         validate(&camera, size, "image.camera")?;
+        let (grid, points) = gathered(grid, points);
         let mut frame = Frame::new(self.name, planes, camera, grid, points);
         let mask = self.image_mask.map(|mask| mask.into_iter().map(|value| value != 0).collect::<Vec<bool>>());
         if let Some(mask) = &mask {

@@ -31,6 +31,7 @@ mod guessed;
 mod health;
 mod information;
 mod input;
+mod optima;
 mod overlay;
 mod patches;
 mod planes;
@@ -38,6 +39,7 @@ mod reason;
 mod registration;
 mod report;
 mod rims;
+mod sampling;
 mod search;
 mod sensitivity;
 #[cfg(feature = "serde")]

@@ -261,7 +261,7 @@ const SCORE_PRIOR: f64 = 0.01;
 fn add_edges(sight: Sight<'_>, rims: &[Rim], round: &Round, units: &Units, evidence: &mut Evidence) -> usize {
     let mut shares = vec![Share::none(); Tiles::new(sight.planes.size).count()];
     let field = EdgeField::new(sight, rims, &round.state, units, round.sigma);
-    field.evidence(round.sigma, &mut shares);
+    field.evidence(&mut shares);
     evidence.shares.extend(shares);
     field.len()
 }

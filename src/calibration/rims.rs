@@ -24,6 +24,8 @@ pub(super) struct Rim {
     pub pixel: [f64; 2],
     /// Unit normal of the rim on the image, away from the near surface.
     pub normal: [f64; 2],
+    /// Distance along the normal from the near pixel to the next on the raster: the near surface ends anywhere in between.
+    pub gap: f64,
 }
 
 /// All rims that the colour camera sees.
@@ -147,5 +149,5 @@ fn rim(frame: &Frame, projection: &Projection, index: usize) -> Option<Rim> {
         return None;
     }
     let pixel = [0, 1].map(|k| f64::from(centre[k]) + 0.5 * outwards * normal[k]);
-    Some(Rim { index, pixel, normal })
+    Some(Rim { index, pixel, normal, gap: outwards })
 }

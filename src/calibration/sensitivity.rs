@@ -86,7 +86,7 @@ fn edges_along(sight: Sight<'_>, round: &Round, units: &Units, states: &[State])
         let moved = EdgeField::moved(frame, &rims, &round.state, state);
         let field = EdgeField::new(Sight { frame, planes }, &moved, state, units, round.sigma);
         let mut shares = vec![Share::none(); Tiles::new(planes.size).count()];
-        field.evidence(round.sigma, &mut shares);
+        field.evidence(&mut shares);
         shares.iter().map(|share| share.value).sum::<f64>() * rims.len() as f64 / field.len().max(1) as f64
     };
     states.iter().map(value).collect()

@@ -189,6 +189,13 @@ impl Judge {
         (worst(k) > 1.0).then_some(ORDER[k])
     }
 
+    /// How far the log posterior may fall within the distribution: half the squared distance of all but the farthest draws.
+    pub fn likely(&self) -> f64 {
+        let squared = |draw: &PoseVector| draw.dot(&(self.inverse * draw)) as f32;
+        let mut distances: Vec<f32> = self.draws.iter().map(squared).collect();
+        0.5 * f64::from(quantile(&mut distances, INSIDE))
+    }
+
     /// Nothing is known of a pose that puts hardly any point onto the image.
     pub fn blind(width: f64) -> Health {
         Health { pixels: width, interval: [0.0, width] }
