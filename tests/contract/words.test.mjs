@@ -63,7 +63,8 @@ const LATER = [
   "protocols",
   "CONTRIBUTING.md",
   "docs/guide",
-  "docs/method.md",
+  "docs/method",
+  "docs/lab",
   "docs/accuracy.md",
   "docs/performance.md",
   "docs/robustness.md",
@@ -73,8 +74,6 @@ const LATER = [
 
 /** Phrases that stay as they are, each in one file, with the reason. */
 const EXCEPTIONS = [
-  // The title of a section of docs/method.md, to which the page links.
-  ["www/learn/references.ts", "Registration by colours"],
   // The same words as in the command of `files/`.
   ["js/cli/files.ts", "into a folder of their own"],
   // A text in written files, which tests/fixtures hold.
