@@ -59,6 +59,7 @@ const COVERED = [
   "docs/dev",
   "docs/accuracy.md",
   "docs/performance.md",
+  "docs/robustness.md",
 ];
 
 /** Not covered yet: these still use words of the table above. An area moves up once its words are those of the field. */
@@ -75,7 +76,6 @@ const LATER = [
   "docs/guide",
   "docs/method",
   "docs/lab",
-  "docs/robustness.md",
   "docs/check.md",
   "docs/codes.md",
 ];
@@ -86,6 +86,13 @@ const EXCEPTIONS = [
   ["js/cli/files.ts", "into a folder of their own"],
   // A text in written files, which tests/fixtures hold.
   ["js/write/results.ts", "black is none"],
+  // Titles of tests.
+  ["docs/robustness.md", "is doubted by no other unit"],
+  ["docs/robustness.md", "files of one's own"],
+  ["docs/robustness.md", "speaks against nobody"],
+  ["docs/robustness.md", "arrays that are none or lie about their length"],
+  ["docs/robustness.md", "is told of, and the clouds are drawn again once it is back"],
+  ["docs/robustness.md", "a link that asks for what can't be says which field is wrong"],
 ];
 
 const KINDS = new Set([".ts", ".css", ".html", ".py", ".md"]);
