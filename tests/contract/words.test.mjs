@@ -63,6 +63,7 @@ const COVERED = [
   "docs/check.md",
   "docs/hosting.md",
   "docs/guide",
+  "docs/method",
 ];
 
 /** Not covered yet: these still use words of the table above. An area moves up once its words are those of the field. */
@@ -76,7 +77,6 @@ const LATER = [
   "examples",
   "benches",
   "protocols",
-  "docs/method",
   "docs/lab",
   "docs/codes.md",
 ];
