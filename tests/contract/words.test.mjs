@@ -64,6 +64,7 @@ const COVERED = [
   "docs/hosting.md",
   "docs/guide",
   "docs/method",
+  "docs/lab",
 ];
 
 /** Not covered yet: these still use words of the table above. An area moves up once its words are those of the field. */
@@ -77,7 +78,6 @@ const LATER = [
   "examples",
   "benches",
   "protocols",
-  "docs/lab",
   "docs/codes.md",
 ];
 
