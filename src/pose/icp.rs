@@ -45,7 +45,7 @@ const SETTLED: f64 = 1e-5;
 const LARGEST_GROWTH: f64 = 4.0;
 /// Cap on the correlation of neighbouring residuals, at which 40000 pixels count as one.
 const LARGEST_CORRELATION: f64 = 0.99;
-/// Maximum number of depth points, evenly spread: more of them take time but no longer improve the accuracy.
+/// Maximum number of depth points, evenly spread: more of them take time but do not improve the accuracy.
 const MOST_POINTS: usize = 5_000;
 
 /// The two surfaces and the initial pose. Points and normals are NaN where missing; normals are unit vectors.

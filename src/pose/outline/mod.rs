@@ -11,7 +11,7 @@
 //! Here sd is the signed distance to the silhouette, positive outside, p(q) the nearest discontinuity, n the normal of
 //! a discontinuity in the image, m the strongest gradient along that normal, and s how clear it is.
 //!
-//! A depth sensor shrinks or grows every outline by an edge bias d that is the same all around. Left out, it would
+//! A depth sensor shrinks or grows every object by an edge bias d that is the same all around. Left out, it would
 //! shift the distance, so it is an unknown.
 //!
 //! The object turns about its centre c: x = R (X - c) + c + t. Method: rounds of damped Gauss-Newton. Visible points,
@@ -20,7 +20,7 @@
 //! | file | content |
 //! |---|---|
 //! | `edges` | edges of the image across a line |
-//! | `rims` | points of the depth map that lie on its outline under a pose |
+//! | `rims` | depth discontinuities: points of the depth map on the object's silhouette under a pose |
 //! | `problem` | input and output |
 //! | `registration` | the rounds: [`Outline`] |
 //!

@@ -1,10 +1,10 @@
-//! Points of the depth map on the object's outline under a pose.
+//! Depth discontinuities (`Rim`): the points of the depth map on the object's silhouette under a pose.
 //!
-//! Method: draws the points on a raster of cells as wide as the spacing of the points, nearest first. Depth
-//! discontinuities (`Rim`) are the points of covered cells next to bare or much farther ones. The end of the data is
-//! not always the end of the object. A sharp edge of the depth map, where the surface faces the sensor and then stops,
-//! is an outline in every view. An occluding contour, where the surface turns away, is one only in the view from which
-//! it turns away.
+//! Method: draws the points on a raster of cells as wide as the spacing of the points, nearest first. Discontinuities
+//! are the points of covered cells next to empty or much farther ones. The end of the data is not always the end of the
+//! object. A sharp edge of the depth map, where the surface faces the sensor and then stops, lies on the silhouette in
+//! every view. An occluding contour, where the surface turns away, lies on it only in the view from which it turns
+//! away.
 
 use nalgebra::Vector3;
 
@@ -22,7 +22,7 @@ const SHARP: [f64; 2] = [0.35, 0.7];
 const LIMB: f64 = 0.45;
 const LIMB_WEIGHT: f64 = 0.5;
 
-/// A point of the depth map on the outline.
+/// A depth discontinuity: a point of the depth map on the object's silhouette.
 #[derive(Clone, Copy)]
 pub struct Rim {
     pub index: u32,
@@ -46,7 +46,7 @@ pub struct Rims {
     pub rims: Vec<Rim>,
 }
 
-/// Reach, in cells, of the neighbourhood that determines the normal at an outline.
+/// Reach, in cells, of the neighbourhood that determines the normal of a discontinuity.
 const AROUND: usize = 5;
 /// Marks a cell without a point.
 const BARE: u32 = u32::MAX;
@@ -84,12 +84,12 @@ impl Rims {
         }
     }
 
-    /// Whether the other cell is bare or much farther away.
+    /// Whether the other cell is empty or much farther away.
     fn is_beyond(&self, cell: usize, other: usize) -> bool {
         f64::from(self.depths[other]) > (1.0 + JUMP) * f64::from(self.depths[cell])
     }
 
-    /// Direction towards the cells beyond a cell, and whether most of them are bare.
+    /// Direction towards the cells beyond a cell, and whether most of them are empty.
     fn outward(&self, cell: usize) -> Option<([f64; 2], bool)> {
         let (column, row) = self.raster.position(cell);
         let (mut sum, mut bare, mut count) = ([0.0; 2], 0, 0);

@@ -14,8 +14,8 @@ use crate::view::{Size, extent};
 /// Distance from the border of the mask within which points are left out, image pixels: they would enter and leave with
 /// every step, and the spline is only a continuation there.
 const MARGIN: usize = 1;
-/// Minimum number of points for a coarse level: about 15 for each unknown of the pose, or 30 if the 27 unknowns of the
-/// light are added, which may fit the image under a wrong pose (docs/lab/thresholds.md).
+/// Minimum number of points for a coarse level: about 15 for each unknown of the pose, and 30 for each unknown
+/// if the 27 of the light are added, which may fit the image under a wrong pose (docs/lab/thresholds.md).
 const ENOUGH_KNOWN: usize = 100;
 const ENOUGH_UNKNOWN: usize = 1000;
 /// (5^(1/2) - 1) / 2.

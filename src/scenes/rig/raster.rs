@@ -282,7 +282,7 @@ mod tests {
         }
     }
 
-    /// Compares with every ray against every triangle.
+    /// Compares with the intersections of every ray with every triangle.
     #[test]
     fn the_nearest_triangle_is_met() {
         let (camera, mut stage, placement) = wall();
