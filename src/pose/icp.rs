@@ -179,8 +179,8 @@ impl Icp {
 
     /// The pose that registers the depth points to the image surface, from a roughly correct initial pose.
     ///
-    /// A plane, a sphere or another surface that slides onto itself gives a report whose information [is
-    /// degenerate](Information::is_degenerate) and whose uncertainty is wide.
+    /// A plane, a sphere or another surface that slides onto itself gives a report whose information
+    /// [is degenerate](Information::is_degenerate) and whose uncertainty is wide.
     ///
     /// # Errors
     /// [`ErrorKind::Size`] if lengths disagree, [`ErrorKind::Range`] if the initial pose or a distance is invalid,
