@@ -76,8 +76,8 @@ impl PaintFitter {
     }
 
     /// Fits albedos to pixels with these `normals` (colour view's frame) and `log` colours, NaN where missing. `known`
-    /// is the light if it is known up to its exposure. `None` if a single albedo, which means none, explains the
-    /// colours as well.
+    /// is the light if it is known up to its exposure. `None` if a single albedo, which means none, fits the image
+    /// equally well.
     pub fn fit(
         &mut self,
         normals: &Normals,

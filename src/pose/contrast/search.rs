@@ -58,7 +58,7 @@ type End = (f64, Similarity);
 pub struct ContrastOutcome {
     /// The best end.
     pub best: ContrastReport,
-    /// Poses that explain the contrast as well.
+    /// Poses that fit the contrast equally well.
     pub rivals: Vec<Similarity>,
 }
 
@@ -140,7 +140,7 @@ impl ContrastSearch {
         }
     }
 
-    /// Whether another pose explains the contrast as well as the best end.
+    /// Whether another pose fits the contrast as well as the best end.
     pub fn is_explained_by(&mut self, problem: &ContrastProblem<'_>, pose: &Similarity) -> bool {
         let value = self.registration.rank(problem, pose, RANKING_NOISE);
         self.ends.first().is_some_and(|(best, _)| value.is_some_and(|value| value <= best + RIVAL_MARGIN))
@@ -181,7 +181,7 @@ fn best_apart(mut ends: Vec<End>, stage: &Stage) -> Vec<End> {
     kept
 }
 
-/// Ends that explain the contrast as well as the first one and do not belong to its optimum.
+/// Ends that fit the contrast as well as the first one and do not belong to its optimum.
 fn rivals(ends: &[End]) -> Vec<Similarity> {
     let Some((&(value, pose), others)) = ends.split_first() else { return Vec::new() };
     let is_rival = |end: &&End| end.0 <= value + RIVAL_MARGIN && end.1.degrees_to(&pose) >= RIVAL_APART;

@@ -137,8 +137,7 @@ impl Evaluation<'_> {
         equations
     }
 
-    /// Visits the points side by side with their indices and weights, the products of their own weights and the robust
-    /// ones.
+    /// Visits the points side by side with their indices and weights: each point's weight times its robust weight.
     #[inline(always)]
     pub fn for_each_linearised(&self, frame: &Frame, mut visit: impl FnMut(&Indices, &LinearisedPoints, Doubles)) {
         let (problem, pose) = (self.problem, &self.state.pose);
