@@ -9,7 +9,7 @@
 //! | status | meaning |
 //! |---|---|
 //! | [`Converged`](crate::Status::Converged) | the rotation has settled, and no check contradicts it |
-//! | [`Ambiguous`](crate::Status::Ambiguous) | for instance, other poses fit the image equally well and are listed in `rivals`; `reason` says why |
+//! | [`Ambiguous`](crate::Status::Ambiguous) | other poses fit equally well (`rivals`), or the rotation is uncertain; `reason` says why |
 //! | [`Lost`](crate::Status::Lost) | the answer cannot be trusted; `reason` says why |
 //! | [`MaxIterations`](crate::Status::MaxIterations) | the loop ended before it settled |
 //!

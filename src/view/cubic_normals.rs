@@ -152,7 +152,7 @@ fn noise_of(size: Size, points: &Points) -> f64 {
     noise::of_fourth_differences(&mut fourths, 2 * size.len())
 }
 
-/// Median of the finite values; infinite if there are none.
+/// Median of the finite values; infinite without any.
 fn median(values: impl Iterator<Item = f32>) -> f32 {
     let mut values: Vec<f32> = values.filter(|value| value.is_finite()).collect();
     if values.is_empty() { f32::INFINITY } else { quantile(&mut values, 0.5) }
@@ -232,7 +232,7 @@ impl Band {
         [Doubles::load(x, start), Doubles::load(y, start), Doubles::load(z, start)]
     }
 
-    /// The normals of the cubics at `column` and its right neighbour, and their errors; NaN if there are none.
+    /// The normals of the cubics at `column` and its right neighbour, and their errors; NaN where missing.
     fn fit(&self, column: usize, first: [Doubles; 3], rounds: usize) -> ([Doubles; 3], Doubles) {
         let middle = column + self.window.radius * (self.stride + 1);
         let centre = self.points(middle);

@@ -39,7 +39,7 @@ pub fn is_hollow(size: Size, depths: &[f32], normals: &Normals) -> bool {
     inward >= FEWEST && inward as f64 > HOLLOW * outward as f64
 }
 
-/// Outward direction from a border pixel; zero if there is none. Pixels outside the frame are unknown and do not count.
+/// Outward direction from a border pixel; zero for other pixels. Pixels outside the frame are unknown and do not count.
 fn out(size: Size, depths: &[f32], index: usize) -> [f32; 2] {
     let (column, row) = size.position(index);
     let mut sum = [0.0; 2];

@@ -23,7 +23,7 @@ const HUE_STEP: f32 = 0.06;
 const LOG_STEP: f32 = 0.22;
 /// Fewest pixels of a region.
 const SMALLEST_REGION: usize = 6;
-/// Most regions; the smallest of any more leave the mask.
+/// Most regions; beyond these, the smallest leave the mask.
 const MOST_REGIONS: usize = 240;
 /// Fewest pairs of pixels along a border.
 const FEWEST_PAIRS: usize = 3;

@@ -13,8 +13,7 @@ use crate::estimator::finder::TrustRegion;
 use crate::estimator::pair::ViewPair;
 use crate::pose::{ContrastReport, Similarity, register_again};
 
-/// Most rounds. Set on photographs of 20 and 60 degrees, most of which stop after the first, since E rises in the
-/// second.
+/// Most rounds. Set on photographs at 20 and 60 degrees (docs/lab/thresholds.md).
 const ROUNDS: usize = 3;
 
 /// A pose from contrast, and how many rounds it may still follow the albedo.

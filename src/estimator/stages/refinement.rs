@@ -4,7 +4,7 @@
 //! of the image surface, and the positions of the depth pixels in the image. It then needs nothing from the other
 //! stages of the iteration, and a [`Worker`](crate::Worker) may run it beside them with the same result to the bit.
 //! Both surfaces settle all the same; one of them merely sees the other an iteration late. If the registration may
-//! still move the pose, the refinement follows it and uses the results of its own iteration.
+//! still move the pose, the refinement follows it and uses the results of the same iteration.
 
 use nalgebra::Matrix3;
 
@@ -32,7 +32,7 @@ pub struct RefinementTask<'a> {
 /// Refines the depth view; owns what persists between iterations.
 pub struct RefinementStage {
     refiner: Refiner,
-    /// Terms of the next refinement, if known before its iteration; `None` if it uses the results of its own iteration.
+    /// Terms of the next refinement, if known before its iteration; `None` if it uses the results of the same iteration.
     terms: Option<RefinementTerms>,
     /// Image column and row of each depth pixel, also known in advance.
     position: [Vec<f32>; 2],
@@ -76,7 +76,7 @@ impl RefinementStage {
         self.terms = Some(terms(inputs, solution));
     }
 
-    /// Makes the next refinement use the results of its own iteration.
+    /// Makes the next refinement use the results of the same iteration.
     pub const fn discard_prepared(&mut self) {
         self.terms = None;
     }

@@ -7,12 +7,12 @@ use super::normals_to_gradients::find_slopes;
 use crate::error::Result;
 use crate::view::{Camera, Normals, Size};
 
-/// Depth in pixels of the surface with these normals in the least-squares sense, NaN where there is none; `robust` cuts
+/// Depth in pixels of the surface with these normals in the least-squares sense, NaN where missing; `robust` cuts
 /// edges across a discontinuity, as the loop does.
 ///
 /// # Errors
 /// [`ErrorKind::Size`](crate::ErrorKind::Size) if there are not as many normals as pixels,
-/// [`ErrorKind::Empty`](crate::ErrorKind::Empty) if there are none.
+/// [`ErrorKind::Empty`](crate::ErrorKind::Empty) if no normal is valid.
 pub fn surface_of_normals(size: Size, normals: &Normals, robust: bool) -> Result<Vec<f32>> {
     let mask: Vec<bool> = (0..normals.len()).map(|index| normals.is_valid(index)).collect();
     let mut slopes = [(); 2].map(|()| vec![f32::NAN; size.len()]);
