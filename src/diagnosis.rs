@@ -31,7 +31,7 @@ const PURE_SHARE: f64 = 0.15;
 const MODEL_COVARIANCE: f64 = 0.007;
 /// [`MODEL_COVARIANCE`] behind a pinhole, where dark print spreads the colours so far that the noise counts for little.
 const PINHOLE_COVARIANCE: f64 = 0.03;
-/// [`MODEL_COVARIANCE`] for another unit of depth: up to this value none is tried.
+/// `MODEL_COVARIANCE` for another unit of depth: up to this value, no other unit is tried.
 pub const UNIT_COVARIANCE: f64 = 0.0015;
 /// Residuals up to this multiple of the image's own noise count as noise.
 const NOISE_OF_IMAGE: f64 = 1.5;

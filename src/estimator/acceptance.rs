@@ -13,7 +13,7 @@ use crate::reason::Reason;
 use crate::report::{Objective, Status};
 
 impl Estimator {
-    /// Compares the new solution with the accepted one, keeps the better, and decides whether the loop goes on.
+    /// Compares the new solution with the accepted one, keeps the better, and decides whether the loop continues.
     pub(super) fn finish_iteration(&mut self) {
         self.report.iteration += 1;
         let is_first = self.report.iteration == 1;

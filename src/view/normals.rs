@@ -1,8 +1,8 @@
 //! n = (dP/drow x dP/dcolumn) / |...|: normals of a depth map or an organised cloud P(column, row) (docs/method/views.md).
 //!
 //! Method: central differences of the points along both axes, which include camera and distortion, and one-sided
-//! differences at holes and borders. For noisy depth, alternatively the slopes of the weighted least-squares plane P =
-//! c + a column + b row over a window. The winding of the grid orients the normal. For a depth map it then faces the
+//! differences at holes and borders. For noisy depth, alternatively the slopes of the weighted least-squares plane
+//! P = c + a column + b row over a window. The winding of the grid orients the normal. For a depth map it then faces the
 //! camera; for a rotated organised cloud it may rightly face away from it.
 //!
 //! Discontinuities: a step between neighbours is not used if it is longer than four times the median of the (up to)

@@ -4,7 +4,7 @@ use crate::error::{Error, ErrorKind, Result};
 
 /// Smallest side of a view: below it, neither a normal nor a light is determined.
 pub const SMALLEST_SIDE: usize = 4;
-/// Largest side of a view: the buffers of two such views still fit a 32-bit memory.
+/// Largest side of a view: the samples of two such views fit a 32-bit memory.
 pub const LARGEST_SIDE: usize = 4096;
 
 /// Width and height of a raster in pixels; row-major, pixel (0, 0) top left.

@@ -39,7 +39,7 @@ impl Contrasted {
     }
 
     /// One round: the pose from the image without the albedo found under the current one. `None` if the pose has
-    /// settled or would leave the trust region of an initial pose.
+    /// settled, if E does not fall, or if the pose would leave the trust region of an initial one.
     pub fn follow(
         &mut self,
         pair: &ViewPair,

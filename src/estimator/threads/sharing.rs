@@ -16,7 +16,7 @@ const TASKS: usize = 32;
 
 impl Estimator {
     /// The same estimator with this many threads to share its work: all of them in the search, two in the loop. The
-    /// outcome is the same to the bit for any number; one thread equals none.
+    /// outcome is the same to the bit for any number. With one, the estimator works alone.
     ///
     /// Large views get fewer threads ([`workers_afforded`](Self::workers_afforded)), because each needs separate
     /// memory. If the system grants no threads, the estimator works alone. [`step`](Self::step) and

@@ -48,8 +48,8 @@ pub struct Worker {
 impl Worker {
     /// A worker for one pair.
     ///
+    /// # Errors
     /// The errors of [`Estimator::new`](crate::Estimator::new).
-    /// Those of [`Estimator::new`](crate::Estimator::new).
     pub fn new(image: ColourImage, depth: &DepthMap, options: Options) -> Result<Self> {
         Ok(Self::of(ViewPair::new(image, depth, options)?))
     }

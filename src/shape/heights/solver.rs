@@ -3,8 +3,8 @@
 //! + sum_i kappa_i (second differences of z)^2 (docs/method/heights.md).
 //!
 //! The unknown is the surface, so every normal is integrable by construction: under natural light, where three colours
-//! hardly distinguish one normal from another, this is what a single pixel lacks. n is the unit vector of N = a + p b +
-//! q c at the centre of a cell of four pixels, with p, q the slopes of z there and (a, b, c) fixed vectors of the
+//! hardly distinguish one normal from another, this is what a single pixel lacks. n is the unit vector of
+//! N = a + p b + q c at the centre of a cell of four pixels, with p, q the slopes of z there and (a, b, c) fixed vectors of the
 //! pixel's ray (`ray_frames`); rho is Geman-McClure. The edges hold the slopes of the pixels' own normals (trapezoidal
 //! rule, as in the integration), weighted by how well the colours of a single pixel determine its normal: under
 //! colourful light they decide, up to the border of the mask; under natural light they hardly weigh.

@@ -1,9 +1,9 @@
 //! min over z of sum_e w_e (z_j - z_i - (g_i + g_j)/2)^2 + sum_i a_i (z_i - anchor_i)^2: a surface from its gradients
 //! (docs/method/normals.md; the paper's "integration", which follows Harker & O'Leary).
 //!
-//! Method: an edge e joins neighbours i and j (right or below) inside the mask. The trapezoidal rule on the gradients g
-//! = p (along a row) or q (down a column) predicts its height difference, exactly for quadratics and otherwise with an
-//! error of z'''/12. Harker & O'Leary minimise the same functional on the full rectangle with wider differences, as a
+//! Method: an edge e joins neighbours i and j (right or below) inside the mask. The trapezoidal rule on the gradients
+//! g = p (along a row) or q (down a column) predicts its height difference, exactly for quadratics and otherwise with
+//! an error of z'''/12. Harker & O'Leary minimise the same functional on the full rectangle with wider differences, as a
 //! Sylvester equation. On a mask their equation is not separable, so this solver iterates (see `poisson`). Robust
 //! weights (iteratively reweighted least squares after Geman & McClure, w = (1 + (r/s)^2)^-2) cut the edges that cross
 //! a discontinuity. The scale s follows the noise, estimated from the gradients' curl, and is never below a share of

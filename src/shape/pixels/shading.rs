@@ -1,8 +1,9 @@
 //! Shape from shading with a shape prior, one normal for each pixel (Eq. 6 to 9; docs/method/normals.md).
 //!
-//! For each pixel: min over n of sum_j (log S_j - [n;1]^T M_j [n;1])^2 + lambda_2 rho(|n - m|^2) + lambda_3 (n^T n -
-//! 1)^2, where m is the other view's normal there, and rho is the identity or Geman-McClure. The paper writes the two
-//! prior terms without a square and lambda_3 linear; a least-squares solver squares them, as this one does.
+//! For each pixel: min over n of
+//! sum_j (log S_j - [n;1]^T M_j [n;1])^2 + lambda_2 rho(|n - m|^2) + lambda_3 (n^T n - 1)^2,
+//! where m is the other view's normal there, and rho is the identity or Geman-McClure. The paper writes the two prior
+//! terms without a square and lambda_3 linear; a least-squares solver squares them, as this one does.
 //!
 //! Three colours give up to eight solutions. Each pixel therefore first compares directions over the whole visible
 //! hemisphere, then descends by damped Gauss-Newton, [`LANES`] pixels side by side. The same code refines the depth
