@@ -109,7 +109,7 @@ impl Default for Weights {
     }
 }
 
-/// Configuration of the estimator. `Options::default()` suits most pairs.
+/// Configuration of the estimator. `Options::default()` is a sensible starting point.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
