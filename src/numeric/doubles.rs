@@ -2,8 +2,8 @@
 //!
 //! For sums whose small differences matter, because solving normal equations loses half of the digits.
 //!
-//! Why not the crate `wide` (1.7): its exponential is several times slower because it returns all digits, and seven
-//! suffice here.
+//! Why not the crate `wide` (1.7): its exponential takes 4.5 times as long with simd128 and 3.6 times without (Node 20),
+//! because it returns all digits. Seven suffice here.
 
 use std::ops::{Add, BitAnd, Div, Mul, Sub};
 
