@@ -3,7 +3,7 @@
 //   --quick          two photographs, a painted and a plain render
 //   --known          what was measured so far, "-" where nothing was; builds and runs nothing
 //   --json FILE      the rows as JSON
-//   --docs           the table into the marked region of docs/accuracy.md
+//   --docs           the table into the marked region of docs/lab/results.md
 //   --workers N      processes; the results do not depend on it
 // Each part takes a build of a minute or two and some forty runs. Broken off, it goes on where it was: builds are kept in
 // target/ablation, rows beside those of the tables.
@@ -102,6 +102,6 @@ await script(async () => {
     );
     say(`wrote ${given.json}`);
   }
-  if (given.docs) fill("docs/accuracy.md", "ablation", markdown(chosen, variants));
+  if (given.docs) fill("docs/lab/results.md", "ablation", markdown(chosen, variants));
   say(`${variants.length - 1} parts in ${seconds(start)}`);
 });

@@ -19,12 +19,13 @@ export async function loaded(source) {
 export const catalogue = async () =>
   (await loaded('export { CATALOGUE } from "./rig/formats/catalogue/index.js";')).CATALOGUE;
 
-const INTRODUCTION = `Files are recognised by their content; their names say what the content leaves open. Whatever is guessed has a warning with a code
-([codes](../codes.md)), and a warning keeps a verdict from being better than "settled, but check". A file that is not read is refused with
-an error that names its format and the way out. The option \`as\` gives the kind, and \`unit\` the metres per stored unit.
+const INTRODUCTION = `The readers recognise files by their content, and names decide what the content leaves open. Every guess has a warning with a code. A
+warning caps the verdict of a check at "undecided", unless its row in [codes](../codes.md#warnings-of-the-readers-of-files) says otherwise.
+A file that is not read is refused with an error that names its format and what to do. The option \`as\` gives the kind, and \`unit\` the
+metres per stored unit.
 
-This page is made by \`node scripts/files.mjs\` from \`js/rig/formats/catalogue/\`. A test reads a file of each row and compares the kind and
-the warnings. What the Rust command line and the Python package read of these is in [check.md](../check.md#what-is-read).`;
+\`node scripts/files.mjs\` makes this page from \`js/rig/formats/catalogue/\`. A test reads a file of each row and compares the kind and the
+warnings. [check.md](../check.md#what-is-read) says what the Rust command line and the Python package read of these.`;
 
 const HEAD = ["| product | file | what is taken | what is guessed | how to export it |", "|---|---|---|---|---|"];
 

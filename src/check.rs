@@ -1,4 +1,4 @@
-//! Checks of single numbers, which every input shares.
+//! Checks of single numbers, shared by all inputs.
 
 use crate::error::{Error, ErrorKind, Result};
 

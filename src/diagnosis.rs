@@ -1,15 +1,17 @@
-//! Whether a single albedo explains an image, or what is left of it is an error of the model or an albedo that varies.
+//! Diagnoses whether a single albedo explains an image, or whether its residuals show an error of the model or a
+//! varying albedo.
 //!
-//! Nothing else in the crate decides this from residuals. [`Residuals::diagnose`] gives the diagnosis for each method that could take over,
-//! because each has its own threshold; [`excess`] and [`share_of_model`] grade the residuals where a weight depends on them. A method may
-//! still decline: local contrast also needs clean normals or edges of the albedo (`estimator/finder/local_contrast`).
+//! Nothing else in the crate decides this from residuals. [`Residuals::diagnose`] gives the diagnosis for each method
+//! that could take over, because each has its own threshold; [`excess`] and [`share_of_model`] grade the residuals for
+//! weights that depend on them. A method may still decline: local contrast also needs clean normals or edges of albedo
+//! (`estimator/finder/local_contrast`).
 //!
 //! | threshold | value | set on | held out |
 //! |---|---|---|---|
 //! | [`PURE_NOISE`] | 0.035 log units | renders leave 0.010 to 0.018, anything real 0.041 or more | 54 renders of the built-in surfaces |
-//! | [`MIXED_NOISE`] | twice that | photographs of painted objects leave 0.04 to 0.34 | five objects and the cow, for the refinement alone |
+//! | [`MIXED_NOISE`] | twice that | photographs of objects with varying albedo leave 0.04 to 0.34 | five objects and the cow, for the refinement alone |
 //! | `PURE_SHARE` | 0.15 of the spread | pinhole renders leave 0.01 to 0.10, registered captures 0.14 to 0.54 | none |
-//! | `MODEL_COVARIANCE` | 0.007 log units | 155 renders leave up to 0.0043, pictures of shading 0.0084 or more | shading of five objects, painted renders |
+//! | `MODEL_COVARIANCE` | 0.007 log units | 155 renders leave up to 0.0043, pictures of shading 0.0084 or more | shading of five objects, renders with varying albedo |
 //! | `PINHOLE_COVARIANCE` | 0.03 log units | twelve pinhole renders leave up to 0.006, four captures 0.14 to 0.39 | none |
 //! | `UNIT_COVARIANCE` | 0.0015 log units | all but two of 110 random renders in the right unit stay below | none |
 //! | `NOISE_OF_IMAGE`, `SHARE_OF_SPREAD` | 1.5, 0.05 | renders leave 0.75 to 1 times the image's noise | none |
@@ -18,37 +20,39 @@
 //! | [`LARGEST_UNEXPLAINED`] | 0.3 of the spread | renders leave 0.01 to 0.1 | none |
 //! | [`LARGEST_UNEXPLAINED_CONTRAST`] | 0.56 | photographs whose pose is found leave 0.13 to 0.51 | none |
 
-/// Standard deviation of residuals in a channel, log units, up to which they may be nothing but noise and errors of normals.
+/// Standard deviation of residuals in a channel, log units, up to which noise and errors of normals may explain them.
 pub const PURE_NOISE: f64 = 0.035;
-/// The same from which on light, noise and errors of normals do not suffice.
+/// Standard deviation of residuals in a channel, log units, above which light, noise and errors of normals do not
+/// explain them.
 pub const MIXED_NOISE: f64 = 2.0 * PURE_NOISE;
-/// [`PURE_NOISE`] as a share of the spread of the colours: noisy normals under a strong light leave as much.
+/// [`PURE_NOISE`] as a share of the spread of the log image: noisy normals under a strong light leave as much.
 const PURE_SHARE: f64 = 0.15;
 /// Largest spatial covariance of residuals (as a standard deviation, log units) for which a single albedo is an adequate model.
 const MODEL_COVARIANCE: f64 = 0.007;
-/// The same behind a pinhole, where print may be so dark that little of its noise is left beside the spread of the colours.
+/// [`MODEL_COVARIANCE`] behind a pinhole, where dark print spreads the colours so far that the noise counts for little.
 const PINHOLE_COVARIANCE: f64 = 0.03;
-/// The same up to which no other unit of depth is tried.
+/// `MODEL_COVARIANCE` for another unit of depth: up to this value, no other unit is tried.
 pub const UNIT_COVARIANCE: f64 = 0.0015;
 /// Residuals up to this multiple of the image's own noise count as noise.
 const NOISE_OF_IMAGE: f64 = 1.5;
-/// Residuals up to this share of the spread of the colours count as noise, too.
+/// Residuals up to this share of the spread of the log image also count as noise.
 const SHARE_OF_SPREAD: f64 = 0.05;
-/// [`NOISE_OF_IMAGE`] where another unit of depth is in question.
+/// [`NOISE_OF_IMAGE`] for another unit of depth.
 pub const UNIT_NOISE: f64 = 1.25;
-/// Residuals beyond this multiple of the image's own noise are errors of the model: shadows, print, a lamp too sharp for nine harmonics.
+/// Residuals beyond this multiple of the image's own noise are errors of the model: shadows, print, a lamp too sharp
+/// for nine harmonics.
 const MODEL_NOISE: f64 = 2.0;
-/// Share of the spread of the colours that a trusted pose may leave unexplained.
+/// Largest share of the spread of the log image that a trusted pose may leave unexplained.
 pub const LARGEST_UNEXPLAINED: f64 = 0.3;
-/// Share of the local contrast that a trusted pose may leave unexplained.
+/// Largest share of the local contrast that a trusted pose may leave unexplained.
 pub const LARGEST_UNEXPLAINED_CONTRAST: f64 = 0.56;
 
-/// What a registration with a single albedo leaves of an image, in log units.
+/// The residuals of an image after registration with a single albedo, in log units.
 #[derive(Clone, Copy, Debug)]
 pub struct Residuals {
     /// Robust standard deviation of a channel.
     pub noise: f64,
-    /// What residuals of neighbours have in common, as a standard deviation; none where only the noise was measured.
+    /// Spatial covariance of the residuals, as a standard deviation; `None` if only the noise was measured.
     pub covariance: Option<f64>,
     /// Standard deviation of the image's own noise.
     pub image_noise: f64,
@@ -56,10 +60,10 @@ pub struct Residuals {
     pub spread: f64,
 }
 
-/// What would be tried where a single albedo does not explain the image.
+/// The method that would be tried if a single albedo does not explain the image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Alternative {
-    /// Registration by local contrast, before an orthographic image.
+    /// Registration by local contrast, for an orthographic image.
     LocalContrast,
     /// Registration by silhouettes, behind a pinhole.
     Silhouettes,
@@ -67,14 +71,14 @@ pub enum Alternative {
     DepthUnit,
 }
 
-/// What is left of an image.
+/// The cause of an image's residuals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Diagnosis {
     /// Noise.
     Explained,
     /// More than noise, but nothing that the alternative would explain.
     ModelError,
-    /// An albedo that varies, or what looks like one: cast shadows, light from other parts of the object.
+    /// A varying albedo, or something that looks like it: cast shadows, light from other parts of the object.
     VaryingAlbedo,
 }
 
@@ -99,25 +103,26 @@ impl Residuals {
         }
     }
 
-    /// Whether hardly more than the image's own noise is left, however much of it neighbours share.
+    /// Whether the residuals hardly exceed the image's own noise, whatever their spatial covariance.
     #[must_use]
     pub fn is_noise(&self) -> bool {
         self.noise <= (NOISE_OF_IMAGE * self.image_noise).max(SHARE_OF_SPREAD * self.spread)
     }
 
-    /// Whether more of the spread is left than a trusted pose may leave.
+    /// Whether the residuals exceed the share of the spread that a trusted pose may leave.
     #[must_use]
     pub fn is_unexplained(&self) -> bool {
         self.noise.is_nan() || self.noise > LARGEST_UNEXPLAINED * self.spread
     }
 
-    /// Whether next to nothing of the spread is left.
+    /// Whether the residuals are a negligible share of the spread.
     #[must_use]
     pub fn is_next_to_nothing(&self) -> bool {
         self.noise < SHARE_OF_SPREAD * self.spread
     }
 
-    /// Whether neighbours share less of these residuals than of others, and little enough for a single albedo.
+    /// Whether these residuals have less spatial covariance than `share` of the others', and little enough for a single
+    /// albedo.
     #[must_use]
     pub fn is_less_common(&self, share: f64, others: &Self) -> bool {
         let limit = others.covariance.map_or(MODEL_COVARIANCE, |covariance| MODEL_COVARIANCE.min(share * covariance));
@@ -144,23 +149,23 @@ mod tests {
     use Alternative::{DepthUnit, LocalContrast, Silhouettes};
     use Diagnosis::{Explained, ModelError, VaryingAlbedo};
 
-    /// Noise, covariance, the image's own noise, spread; what each alternative makes of it.
+    /// Noise, covariance, the image's own noise and spread; the diagnosis for each alternative.
     const TABLE: [([f64; 4], [Diagnosis; 3]); 9] = [
-        // Renders: with noise, with none, with 3 % of it.
+        // Renders with noise, without, and with 3 % of it.
         ([0.010, 0.0005, 0.011, 0.4], [Explained, Explained, Explained]),
         ([0.004, 0.0015, 0.000, 0.4], [Explained, Explained, ModelError]),
         ([0.030, 0.0043, 0.031, 0.3], [Explained, Explained, ModelError]),
-        // Noisy normals: more than noise, nothing common.
+        // Noisy normals: more than noise, without spatial covariance.
         ([0.034, 0.0040, 0.010, 0.3], [ModelError, ModelError, ModelError]),
         // The same under a strong light.
         ([0.100, 0.0040, 0.010, 0.9], [ModelError, ModelError, ModelError]),
         // Cast shadows in a picture of shading.
         ([0.030, 0.0100, 0.010, 0.3], [VaryingAlbedo, ModelError, ModelError]),
-        // Dark print, which spreads so far that the noise is small beside it.
+        // Dark print, which spreads the colours so far that the noise is small in comparison.
         ([0.200, 0.1400, 0.010, 2.1], [VaryingAlbedo, VaryingAlbedo, ModelError]),
-        // A painted object.
+        // An object with varying albedo.
         ([0.150, 0.1000, 0.010, 0.4], [VaryingAlbedo, VaryingAlbedo, ModelError]),
-        // Fine print, of which neighbours share nothing.
+        // Fine print, without spatial covariance.
         ([0.150, 0.0010, 0.010, 0.4], [ModelError, VaryingAlbedo, ModelError]),
     ];
 

@@ -1,11 +1,11 @@
-//! What can be wrong with an input, said as a value.
+//! Errors of an input, as values.
 
 use std::borrow::Cow;
 use std::fmt;
 
 use crate::text::Brief;
 
-/// The family an [`Error`] belongs to. Its [`code`](ErrorKind::code) is stable and is what JavaScript sees.
+/// The family of an [`Error`]. Its [`code`](ErrorKind::code) is stable and appears in JavaScript.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, strum::IntoStaticStr, strum::VariantNames)]
 #[strum(serialize_all = "kebab-case")]
 #[non_exhaustive]
@@ -14,13 +14,13 @@ pub enum ErrorKind {
     Size,
     /// A number lies outside its allowed range or is not finite.
     Range,
-    /// Something required is absent, or two exclusive things are both present.
+    /// A required value is absent, or two exclusive ones are both present.
     Missing,
-    /// The input is well formed but holds nothing to work on (no usable pixel, no valid depth).
+    /// The input is well formed but contains nothing usable (no usable pixel, no valid depth).
     Empty,
     /// The geometry does not determine the answer (a plane, a sphere, fewer than four pairs).
     Degenerate,
-    /// The input would take more memory than a page is granted.
+    /// The input would take more memory than a page may use.
     Memory,
     /// A documented feature that this build does not offer.
     Unsupported,
@@ -37,7 +37,7 @@ impl ErrorKind {
     }
 }
 
-/// An error that names the field, and where it helps the index and the value, that caused it.
+/// An error with the field that caused it and, if helpful, the index and the value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Error {
     kind: ErrorKind,
@@ -69,7 +69,7 @@ impl Error {
         self
     }
 
-    /// The same error with its field named as a member of `parent`.
+    /// The same error, with its field as a member of `parent`.
     pub(crate) fn below(mut self, parent: &str) -> Self {
         self.field = format!("{parent}.{}", self.field).into();
         self
@@ -87,13 +87,13 @@ impl Error {
         &self.field
     }
 
-    /// Index into the field's array, where one element is at fault.
+    /// Index into the field's array, if a single element is invalid.
     #[must_use]
     pub const fn index(&self) -> Option<usize> {
         self.index
     }
 
-    /// The value at fault, where it is a number.
+    /// The invalid value, if it is a number.
     #[must_use]
     pub const fn bad_value(&self) -> Option<f64> {
         self.value
@@ -116,7 +116,7 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// As the JavaScript contract has it: code, message, field, and where they help index and value.
+/// Serialised as in the JavaScript contract: code, message, field and, if helpful, index and value.
 #[cfg(feature = "serde")]
 impl serde::Serialize for Error {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {

@@ -1,9 +1,9 @@
 //! Camera pose, shape and light from one colour image and one depth map of the same object, taken from different places.
 //!
-//! Nothing else is needed: no calibration target, no matched features, no initial pose. The colours of a surface depend
-//! on its normals, and a depth map has normals: the pose is right where the one explains the other. The method is that of
-//! Zhang, Liu, Wu, Zhang and Wang, "Bimodal Stereo: Joint Shape and Pose Estimation from Color-Depth Image Pair" (Machine
-//! Vision and Applications), with a search, a photometric registration and a verdict of this project's own.
+//! Nothing else is required: no calibration target, no matched features, no initial pose. The colours of a surface
+//! depend on its normals, and a depth map has normals: under the right pose, the normals explain the colours. The
+//! method is that of Zhang, Liu, Wu, Zhang and Wang, "Bimodal Stereo: Joint Shape and Pose Estimation from Color-Depth
+//! Image Pair" (Machine Vision and Applications), extended by a search, a photometric registration and a verdict.
 //!
 //! # Example
 //!
@@ -15,7 +15,7 @@
 //! # let (colours, object) = (sample.image.colours.clone(), sample.image.mask.iter().map(|&it| u8::from(it)).collect());
 //! # let DepthSamples::Float(depths) = sample.depth_map().samples else { unreachable!() };
 //!
-//! // Linear R, G, B of each pixel, row by row; there are 8 and 16 bits, too.
+//! // Linear R, G, B of each pixel, row by row; 8 and 16 bits are possible as well.
 //! let samples = ColourSamples::RgbLinear(colours);
 //! let image = ColourImage { width, height, samples, transfer: None, mask: Some(object), camera: None };
 //! // Depths along z; zero and NaN are holes.
@@ -34,58 +34,58 @@
 //! # Ok::<(), bimodal_stereo::Error>(())
 //! ```
 //!
-//! # In and out
+//! # Input and output
 //!
-//! | in | |
+//! | input | |
 //! |---|---|
 //! | [`ColourImage`] | samples, and if known a mask and the intrinsics ([`Pinhole`]) |
 //! | [`DepthMap`] | samples or an organised cloud, and if known a mask, the unit, the intrinsics and normals |
 //! | [`Options`] | the initial pose or a search, a known light or scale, how to register, when to end; the defaults assume nothing |
 //!
-//! | out | |
+//! | output | |
 //! |---|---|
-//! | [`StepReport`] | the [pose](Similarity), its [uncertainty](Uncertainty), other poses that fit as well, the [status](Status) and its reason |
+//! | [`StepReport`] | the [pose](Similarity), its [uncertainty](Uncertainty), other poses that fit equally well, the [status](Status) and its reason |
 //! | [`Estimator`] | [the light](Estimator::light), [refined depth](Estimator::refined_depth), [the image's depth](Estimator::image_depth), normals, albedo, residuals |
 //!
-//! A run ends with [`Status::Converged`], or it says that the data allow other poses ([`Status::Ambiguous`]) or that the
-//! answer cannot be trusted ([`Status::Lost`]). Whatever is wrong with an input is an [`Error`] that names the field, the
-//! index and the value. The same input gives the same output, to the bit.
+//! A run ends with [`Status::Converged`], or reports that the data allow other poses ([`Status::Ambiguous`]) or that
+//! the answer cannot be trusted ([`Status::Lost`]). An invalid input gives an [`Error`] with the field, the index and
+//! the value. The same input gives the same output, to the bit.
 //!
-//! Further entry points: [`CalibrationCheck`] tests whether the stored calibration of a colour and depth rig still holds,
-//! [`scenes`] renders views with a known answer, and each stage can be used by itself ([`Search`], [`Photometric`],
-//! [`Icp`], [`ransac`], [`LightFitter`], [`ShadingSolver`], [`Integrator`], [`Correspondences`]).
+//! Further entry points: [`CalibrationCheck`] tests whether the stored calibration of a colour and depth rig still
+//! holds, [`scenes`] renders views with a known answer, and each stage can be used separately ([`Search`],
+//! [`Photometric`], [`Icp`], [`ransac`], [`LightFitter`], [`ShadingSolver`], [`Integrator`], [`Correspondences`]).
 //!
 //! # Tutorial
 //!
-//! The module [`tutorial`] explains the method in eight short chapters, each with its equation and an example that runs.
+//! The module [`tutorial`] explains the method in eight short chapters, each with its equation and a runnable example.
 //! The formulas, solvers, costs and limits of each stage are in `docs/method/` of the repository.
 //!
 //! # Frames and units
 //!
-//! One frame everywhere: x right, y down, z forward; depth is along z, and normals face the camera (n_z < 0). A view
-//! without intrinsics is orthographic and its unit is the pixel; with intrinsics it is metric, in metres. A pose carries
-//! points of the depth view into the frame of the colour view,
+//! One frame is used everywhere: x right, y down, z forward; depth is along z, and normals face the camera (n_z < 0). A
+//! view without intrinsics is orthographic and its unit is the pixel; with intrinsics it is metric, in metres. A pose
+//! maps points of the depth view into the frame of the colour view,
 //!
 //! > P_colour = s R P_depth + t,  R = Rx(alpha) Ry(beta) Rz(gamma)
 //!
 //! It converts from and into nalgebra's `Isometry3`, `Similarity3` and `Matrix4` ([`Similarity`]); [`nalgebra`] is
-//! exported, so that its release is always the right one.
+//! re-exported, so that its version always matches.
 //!
 //! # Features
 //!
 //! | feature | adds |
 //! |---|---|
 //! | `image` | `TryFrom<&DynamicImage>` of the crate [image](https://docs.rs/image) for [`ColourImage`] and [`DepthMap`] |
-//! | `serde` | `Serialize` of reports, `Deserialize` of [`Options`], by the names of the JavaScript contract |
+//! | `serde` | `Serialize` of reports, `Deserialize` of [`Options`], with the names of the JavaScript contract |
 //! | `rayon` | `Estimator::with_threads`: native threads share the work, with the same answer to the bit |
-//! | `bindings`, `bindings-check`, `bindings-rigs` | the exports of this project's npm package, in `wasm32-unknown-unknown` alone; nothing for other crates |
+//! | `bindings`, `bindings-check`, `bindings-rigs` | the exports of this project's npm package, only on `wasm32-unknown-unknown`; nothing for other crates |
 //!
-//! All are off by default. Compiled for WebAssembly the crate uses 128-bit SIMD where `target-feature=+simd128` is set, and
-//! exports nothing.
+//! All are off by default. Compiled for WebAssembly, the crate uses 128-bit SIMD if `target-feature=+simd128` is set,
+//! and exports nothing.
 
 #![deny(unsafe_code)]
 
-/// The README's Rust examples, compiled and run with the documentation's.
+/// The README's Rust examples, compiled and run with the documentation tests.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
@@ -93,37 +93,37 @@ struct Readme;
 /// Cause and remedy of every code, as JSON: by group ("runs", "checks", "warnings", "errors" ..) and code.
 pub const CODES: &str = include_str!("codes.json");
 
-// What each module holds. Data flows one way: a module uses only those before it, and no two files of a module import
-// each other. `tests/floors` holds both, and that this table is complete and in order.
+// The modules of the crate. Data flows one way: a module uses only those before it, and no two files of a module import
+// each other. `tests/floors` checks both, and that this table is complete and in order.
 //
-// | module | what it holds | the paper |
+// | module | content | the paper |
 // |---|---|---|
-// | `text`, `serial`, `error`, `check` | numbers in messages, shapes for serde, errors as values, checks of single numbers | |
+// | `text`, `serial`, `error`, `check` | numbers in messages, serialised forms, errors as values, checks of single numbers | |
 // | `numeric` | lanes, robust weights, conjugate gradients, cosine and Fourier transforms, ranks, noise | |
-// | `diagnosis` | whether a single albedo explains an image: all thresholds of that question | |
+// | `diagnosis` | whether a single albedo explains an image, with all thresholds for that question | |
 // | `view` | the input: sizes, masks, cameras, log colours, points, normals | input of Algorithm 1 |
-// | `light` | `harmonics` the image model, `prior` the natural lights, `fit` the light of known normals | Eq. 2, 3, 5 |
-// | `shape/pixels` | a normal for each pixel, with a prior; the exposure, which all share | Eq. 6 to 9 |
+// | `light` | `harmonics` the image model, `prior` the natural lights, `fit` the light from known normals | Eq. 2, 3, 5 |
+// | `shape/pixels` | a normal for each pixel, with a prior; the exposure, shared by all pixels | Eq. 6 to 9 |
 // | `shape/integration` | the surface from gradients of normals, on a mask | Harker and O'Leary's step |
-// | `shape/heights` | the surface from shading as a whole, for light that a pixel alone cannot read | beyond the paper |
+// | `shape/heights` | the surface from shading as a whole, for light under which single pixels are ambiguous | beyond the paper |
 // | `shape/refinement` | the depth view's own normals and depth, through `heights` | Eq. 17 to 19 |
-// | `pose/search` | where to start when nothing is known: all rotations, translations and scales, coarsely | before Algorithm 1 |
-// | `pose/photometric` | the pose straight from the colours, the light projected out | beyond the paper |
+// | `pose/search` | the initial pose if nothing is known: all rotations, translations and scales, on a coarse grid | before Algorithm 1 |
+// | `pose/photometric` | the pose directly from the image, with the light projected out | beyond the paper |
 // | `pose/contrast` | the pose of an object with varying albedo, by local contrast and its silhouette | beyond the paper |
 // | `pose/icp`, `pose/ransac` | the pose from both surfaces | Eq. 12 to 14 |
 // | `pose/similarity`, `pose/angles` | s, R, t and the angles, in closed form; the least-squares fit of Eq. 16 is a test, `tests/library/pose_angles.rs` | Eq. 15, 16, 20 |
-// | `pose/correspondence` | which depth point is which pixel, and what hides it | the 1-pixel rule |
-// | `calibration` | the cameras of a rig whose calibration is in question, and their lenses | |
+// | `pose/correspondence` | which depth point falls on which pixel, and what occludes it | the 1-pixel rule |
+// | `calibration` | the cameras of a rig whose calibration is checked, and their lenses | |
 // | `options`, `reason`, `report` | what a run can be given, what it reports and why | |
-// | `picture` | results as pixels of a screen | |
+// | `picture` | results as screen pixels | |
 // | `estimator` | Algorithm 1 stage by stage, its `objective`, its `verdict`; the `finder` of a pose; workers and threads | Eq. 1, Algorithm 1 |
 // | `scenes` | surfaces, lights and a renderer with a known answer; uses `view`, `light`, `pose`, `calibration` | the experiments |
-// | `tutorial` | the method in eight chapters, each with an example that runs; documentation alone | all of it |
+// | `tutorial` | the method in eight chapters, each with a runnable example; documentation only | all of it |
 // | `wasm` | bindings without mathematics, wasm32 only | |
 //
-// Where we read the paper differently: it writes the two prior terms of Eq. 6 without a square and lambda_3 linear; a
-// least-squares solver squares them, so do we. The norm of Eq. 20 is not named; its tables fit the spectral norm. Refined
-// normals explain any colour under any pose, so the objective of an iteration asks the measured ones.
+// Different readings of the paper. It writes the two prior terms of Eq. 6 without a square and lambda_3 linear; a
+// least-squares solver squares them, as this one does. The norm of Eq. 20 is not named; its tables fit the spectral
+// norm. Refined normals explain any colour under any pose, so the objective of an iteration uses the measured ones.
 
 mod calibration;
 mod check;
@@ -156,11 +156,11 @@ pub use calibration::{
 };
 pub use error::{Error, ErrorKind, Result};
 pub use estimator::{Estimator, Finding, RefinementTask, Surface, Task, Worker};
-/// The pictures that this crate's views can be made from.
+/// The pictures from which this crate's views can be made.
 #[cfg(feature = "image")]
 pub use image;
 pub use light::{COEFFICIENTS, CoefficientMatrix, Light, LightFit, LightFitter, LightGaussian, LightPrior};
-/// The linear algebra in this crate's public types, of the very release that they are made of.
+/// The linear algebra of this crate's public types, in the version that they use.
 pub use nalgebra;
 pub use options::{LightSource, Options, Registration, Shading, Start, StartTolerance, Weights};
 pub use picture::{ColourMap, Layer};

@@ -1,4 +1,4 @@
-//! What the caller may choose, with its defaults and its limits.
+//! Options of the caller, with their defaults and limits.
 
 #[cfg(feature = "serde")]
 mod serialised;
@@ -10,7 +10,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::light::{Light, LightGaussian, LightPrior};
 use crate::pose::Similarity;
 
-/// Where the light comes from.
+/// Source of the light.
 #[expect(clippy::large_enum_variant, reason = "one value for each loop; a box would only complicate it")]
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
@@ -25,7 +25,7 @@ pub enum LightSource {
     Known(Light),
 }
 
-/// Where the pose starts.
+/// Initial pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -33,11 +33,11 @@ pub enum LightSource {
     serde(from = "serialised::GivenStart", into = "serialised::GivenStart")
 )]
 pub enum Start {
-    /// Looked for everywhere.
+    /// Searched everywhere.
     Search,
     /// Both views coincide.
     Identity,
-    /// A pose given by the caller, as far as it is known.
+    /// A pose given by the caller, which may be partial.
     Pose {
         /// R.
         rotation: Matrix3<f64>,
@@ -48,19 +48,19 @@ pub enum Start {
     },
 }
 
-/// How far from a told start the answer may lie.
+/// How far from a given initial pose the answer may lie.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct StartTolerance {
     /// Rotation in degrees.
     pub degrees: f64,
-    /// Distance of the object's middle in units of the colour view; `None`: about the object's own width.
+    /// Distance of the object's centre in units of the colour view; `None`: about the object's own width.
     pub distance: Option<f64>,
 }
 
 impl Default for StartTolerance {
     fn default() -> Self {
-        // As far as registrations reach.
+        // As far as registrations converge.
         Self { degrees: 30.0, distance: None }
     }
 }
@@ -69,11 +69,11 @@ impl Default for StartTolerance {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Registration {
-    /// Straight from the colours: pose and light together, the light projected out.
+    /// Photometric registration: pose and light together, with the light projected out.
     Joint,
-    /// The paper's own stage: ICP, RANSAC on the linear model, similarity.
+    /// The paper's stage: ICP, RANSAC on the linear model, similarity.
     Icp,
-    /// The start is kept.
+    /// The initial pose is kept.
     Fixed,
 }
 
@@ -83,16 +83,16 @@ pub enum Registration {
 pub enum Shading {
     /// One normal for each pixel (Eq. 6), then integration.
     Pixel,
-    /// These, then the heights themselves: what poor light does not tell a pixel, the surface knows.
+    /// The same, then the heights themselves: the surface determines what poor light leaves open for single pixels.
     Surface,
 }
 
-/// Weights of the terms of the objective. Brightness residuals are differences of natural logarithms; normals have no
-/// unit.
+/// Weights of the terms of the objective. Brightness residuals are differences of natural logarithms; normals are
+/// dimensionless.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Weights {
-    /// lambda_2 of Eq. 6: how strongly a normal follows the normal of the other view.
+    /// lambda_2 of Eq. 6: how strongly a normal follows that of the other view.
     pub prior: f64,
     /// lambda_3 of Eq. 6: how strongly a normal is kept at unit length.
     pub unit: f64,
@@ -104,13 +104,12 @@ pub struct Weights {
 
 impl Default for Weights {
     fn default() -> Self {
-        // light: one part in a million lets colourful lights pass that no landscape has; it is noise^2 / pixels at
-        // 64x64.
+        // light: 1e-6 admits colourful lights that occur in no landscape; it is noise^2 / pixels at 64x64.
         Self { prior: 0.05, unit: 1.0, light: 1e-6, refinement: 0.01 }
     }
 }
 
-/// Everything the loop can be told. `Options::default()` is a sensible start.
+/// Configuration of the estimator. `Options::default()` is a sensible starting point.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -120,39 +119,39 @@ impl Default for Weights {
 pub struct Options {
     /// Known or estimated light.
     pub light: LightSource,
-    /// The lights to expect where the light is estimated; `None`: natural lights.
+    /// Prior over lights if the light is estimated; `None`: natural lights.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub prior: Option<LightGaussian>,
-    /// First pose.
+    /// Initial pose.
     pub start: Start,
-    /// How far from a told start the registration by colours may end.
+    /// How far from a given initial pose the photometric registration may end.
     pub start_tolerance: StartTolerance,
-    /// Scale of the pose: `None` is free, `Some(s)` holds it.
+    /// Scale of the pose: `None` is free, `Some(s)` is held.
     #[cfg_attr(feature = "serde", serde(with = "serialised::free_or_held"))]
     pub scale: Option<f64>,
-    /// Pose stage.
+    /// Method of the pose stage.
     pub registration: Registration,
-    /// Shape stage.
+    /// Method of the shape stage.
     pub shading: Shading,
     /// Weights of the terms of the objective.
     #[cfg_attr(feature = "serde", serde(rename = "lambda"))]
     pub weights: Weights,
     /// The loop converges when the rotation changes by less than this, in degrees.
     pub stop_degrees: f64,
-    /// The largest one sigma of the rotation about any axis at which a run ends "converged", in degrees; above it the run ends "ambiguous".
-    /// A pose by image or local contrast with a sigma above 5 degrees is "lost", whatever the tolerance.
+    /// The largest sigma of the rotation about any axis at which a run ends "converged", in degrees; above it, the run
+    /// ends "ambiguous". A pose from the image or local contrast with a sigma above 5 degrees is "lost", whatever the
+    /// tolerance.
     pub tolerance: f64,
-    /// Accepted distance of a correspondence in image pixels; `None` follows the data (never under one pixel, the
+    /// Largest distance of a correspondence in image pixels; `None` adapts to the data (never below one pixel, the
     /// paper's value).
     pub correspondence_distance: Option<f64>,
-    /// The loop ends after so many iterations.
+    /// Largest number of iterations.
     pub max_iterations: u32,
-    /// Seed of everything random.
+    /// Seed of all random numbers.
     pub seed: u64,
-    /// Whether the registration by colours starts tolerant and becomes strict by and by; `false` shows what that is
-    /// good for.
+    /// Whether the photometric registration anneals its robust scale from wide to narrow; `false` is for ablation.
     pub annealing: bool,
-    /// Whether flying pixels and background inside the mask are trimmed.
+    /// Whether flying pixels and background inside the mask are removed.
     pub trim: bool,
 }
 
@@ -178,22 +177,22 @@ impl Default for Options {
     }
 }
 
-/// A term that weighs a million times the colours leaves no more than rounding of them in a 32-bit sum.
+/// A term that weighs a million times as much as the colours leaves only their rounding in a 32-bit sum.
 const LARGEST_WEIGHT: f64 = 1e6;
-/// More iterations than anybody waits for; a cap against typing errors.
+/// More iterations than anyone would wait for; guards against typing errors.
 const MOST_ITERATIONS: u32 = 100_000;
 
 impl Options {
-    /// The paper's own loop: from identity, ICP and consensus for the pose, one normal for each pixel.
+    /// The paper's loop: from the identity, with ICP and consensus for the pose, and one normal for each pixel.
     #[must_use]
     pub fn paper() -> Self {
         Self { start: Start::Identity, registration: Registration::Icp, shading: Shading::Pixel, ..Self::default() }
     }
 
-    /// The prior over lights that these options choose.
+    /// The prior over lights of these options.
     ///
     /// # Errors
-    /// What [`LightPrior::from_slices`] refuses, below `options.prior`.
+    /// The errors of [`LightPrior::from_slices`], below `options.prior`.
     pub(crate) fn light_prior(&self) -> Result<LightPrior> {
         match &self.prior {
             None => Ok(LightPrior::natural()),
@@ -282,7 +281,7 @@ mod tests {
             trim: false,
         };
         for options in [options, Options::default(), Options::paper()] {
-            // Not by way of text, whose reader rounds the last digit.
+            // Not through text, because reading it rounds the last digit.
             let plain = serde_json::to_value(&options).unwrap();
             assert_eq!(serde_json::from_value::<Options>(plain).unwrap(), options);
         }
@@ -314,7 +313,7 @@ mod tests {
         assert!(serde_json::from_value::<Options>(json!({ "registration": "best" })).is_err());
     }
 
-    /// Threads are no option here, but `Estimator::with_threads`.
+    /// Threads are not an option here; use `Estimator::with_threads`.
     #[test]
     fn a_member_that_there_is_not_is_an_error_with_its_name() {
         for (path, given) in [

@@ -1,18 +1,18 @@
-//! Results as pixels of a screen: normals as colours, numbers through a colour map. Four bytes a pixel, red, green, blue and
-//! opacity; pixels without a value are clear.
+//! Results as screen pixels: normals as colours, numbers through a colour map. Four bytes a pixel: red, green, blue and
+//! opacity; pixels without a value are transparent.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::numeric::quantile;
 use crate::view::Normals;
 
-/// What [`Estimator::draw`](crate::Estimator::draw) can show.
+/// The layers of [`Estimator::draw`](crate::Estimator::draw).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layer {
     /// Normals of the image surface.
     Normals,
     /// Depth of the image surface.
     Depth,
-    /// What the shading model leaves of the image's log colours.
+    /// Residuals of the shading model in the image's log colours.
     Residual,
     /// Refined depth of the depth view.
     Refined,
@@ -21,7 +21,7 @@ pub enum Layer {
 }
 
 impl Layer {
-    /// In the order of the data's way through the method.
+    /// In the order of the data flow.
     pub const ALL: [Self; 5] = [Self::Normals, Self::Depth, Self::Residual, Self::Refined, Self::RefinedNormals];
 
     /// Its name in JavaScript.
@@ -37,18 +37,18 @@ impl Layer {
     }
 }
 
-/// Colours for numbers, even in steps that are seen and told apart without red and green (van der Walt, Smith and Firing 2015).
+/// Perceptually uniform colour maps, readable without red-green vision (van der Walt, Smith and Firing 2015).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ColourMap {
     /// From dark blue to yellow.
     #[default]
     Viridis,
-    /// From black to a light yellow: for what should be zero.
+    /// From black to light yellow: for values that should be zero.
     Magma,
 }
 
 impl ColourMap {
-    /// Both of them.
+    /// All maps.
     pub const ALL: [Self; 2] = [Self::Viridis, Self::Magma];
 
     /// Its name in JavaScript.
@@ -72,17 +72,17 @@ impl ColourMap {
     }
 }
 
-/// Colours of a map: as many as a channel has values.
+/// Number of colours of a map: as many as a channel has values.
 const STEPS: usize = 256;
 const LAST: f64 = (STEPS - 1) as f64;
 const OPAQUE: u8 = 255;
 const CLEAR: [u8; 4] = [0; 4];
-/// Values that an automatic range is made from at most.
+/// Most values from which an automatic range is derived.
 const MOST_SAMPLES: usize = 4096;
-/// Shares of the values below and above an automatic range: single outliers must not flatten everything else.
+/// Share of the values below and above an automatic range, so that single outliers do not flatten everything else.
 const OUTLIERS: f64 = 0.01;
 
-/// Right is red, up is green, toward the camera is blue: the frame's y points down and its z away.
+/// Right is red, up is green, towards the camera is blue: the frame's y points down and its z away.
 pub(crate) fn paint_normals(normals: &Normals, rgba: &mut Vec<u8>) {
     let Normals { x, y, z } = normals;
     let byte = |value: f32| (0.5 * LAST as f32 * (1.0 + value)).round() as u8;
@@ -95,10 +95,10 @@ pub(crate) fn paint_normals(normals: &Normals, rgba: &mut Vec<u8>) {
     rgba.extend(pixels);
 }
 
-/// Values outside `range` take its end colours; without one it holds all values but a hundredth at either end.
+/// Values outside `range` take its end colours. Without a range, it covers all values except a hundredth at either end.
 ///
 /// # Errors
-/// A range without a width, or not of finite numbers.
+/// A range that is empty or not finite.
 pub(crate) fn paint_numbers(values: &[f32], range: Option<[f64; 2]>, map: ColourMap, rgba: &mut Vec<u8>) -> Result<()> {
     let [from, to] = match range {
         Some(range) => checked(range)?,
@@ -107,7 +107,7 @@ pub(crate) fn paint_numbers(values: &[f32], range: Option<[f64; 2]>, map: Colour
     let table = map.table();
     let (from, factor) = (from as f32, (LAST / (to - from)) as f32);
     let pixels = values.iter().flat_map(|&value| {
-        // A number too large or too small becomes the nearest that there is.
+        // The cast to u8 saturates at both ends.
         if value.is_nan() { CLEAR } else { table[((value - from) * factor).round() as u8 as usize] }
     });
     rgba.clear();
@@ -127,7 +127,7 @@ fn checked(range: [f64; 2]) -> Result<[f64; 2]> {
     Ok(range)
 }
 
-/// Never without a width.
+/// The range is never empty.
 fn automatic(values: &[f32]) -> [f64; 2] {
     let every = values.len().div_ceil(MOST_SAMPLES).max(1);
     let mut some: Vec<f32> = values.iter().step_by(every).copied().filter(|value| value.is_finite()).collect();
@@ -144,7 +144,7 @@ mod tests {
 
     #[test]
     fn numbers_go_through_matplotlib_s_colours() {
-        // matplotlib 3.10: cm.viridis and cm.magma at 0, 128 and 255, bytes.
+        // Bytes of matplotlib 3.10: cm.viridis and cm.magma at 0, 128 and 255.
         let ends = [
             (ColourMap::Viridis, [[68, 1, 84], [33, 145, 140], [253, 231, 37]]),
             (ColourMap::Magma, [[0, 0, 4], [183, 55, 121], [252, 253, 191]]),

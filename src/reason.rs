@@ -1,4 +1,4 @@
-//! Why a run stands where it stands: a value with its numbers, whose words are made where it leaves the crate.
+//! The reason for a run's status: a value with its numbers, turned into words only on output.
 
 use std::fmt;
 
@@ -6,9 +6,9 @@ use crate::error::Error;
 use crate::pose::Direction;
 use crate::text::{Brief, Fixed};
 
-/// Why a run ended as it did, why its answer is not to be trusted, or what the last step of one that goes on came to.
+/// Why a run ended as it did, why its answer is not to be trusted, or the outcome of the last step of a running one.
 ///
-/// Its [`code`](Reason::code) is stable; its [`Display`](fmt::Display) is the message for people, in words that may change.
+/// Its [`code`](Reason::code) is stable; its [`Display`](fmt::Display) is the message for people, and may change.
 #[derive(Clone, Debug, PartialEq, strum::IntoStaticStr, strum::VariantNames)]
 #[strum(serialize_all = "kebab-case")]
 #[cfg_attr(
@@ -18,18 +18,18 @@ use crate::text::{Brief, Fixed};
 )]
 #[non_exhaustive]
 pub enum Reason {
-    /// The search over all poses goes on.
+    /// The search over all poses is running.
     Searching {
-        /// Of its work, 0 .. 100.
+        /// Share of its work done, 0 .. 100.
         percent: f64,
-        /// What is being done.
+        /// The current activity.
         activity: Activity,
     },
     /// The search is over.
     SearchDone {
-        /// What tells the pose.
+        /// The method that found the pose.
         by: FoundBy,
-        /// Other poses that fit the image as well.
+        /// Number of other poses that fit the image equally well.
         rivals: u32,
     },
     /// The last iteration was taken back.
@@ -42,11 +42,11 @@ pub enum Reason {
     /// The registration of the last iteration found no better pose.
     PoseStays,
 
-    /// With the pose held, another iteration would worsen the shapes.
+    /// With a fixed pose, another iteration would worsen the shapes.
     ShapesStay,
-    /// Iterations in a row found no better pose.
+    /// Successive iterations found no better pose.
     NoBetterPose {
-        /// How many.
+        /// Their number.
         iterations: u32,
     },
     /// The cap on iterations was reached.
@@ -57,96 +57,96 @@ pub enum Reason {
 
     /// Too few depth pixels have a counterpart in the image.
     LittleOverlap {
-        /// Of the valid depth pixels.
+        /// Share of the valid depth pixels that have one.
         percent: f64,
     },
     /// No pose within the tolerance of the initial one fits the image better.
     InitialPoseKept,
-    /// A rotation is as good as without effect on the image.
+    /// A rotation has practically no effect on the image.
     NotObservable {
         /// The least certain direction.
         weakest: Direction,
     },
-    /// The rotation is less certain than an answer may be.
+    /// The rotation is less certain than required.
     RotationUncertain {
-        /// One sigma about the least certain axis.
+        /// Sigma about the least certain axis.
         #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serial::finite"))]
         sigma_degrees: f64,
         /// The least certain direction.
         weakest: Direction,
     },
-    /// A single albedo does not fit the image; the pose is that of silhouettes, and they leave its rotation uncertain.
+    /// A single albedo does not fit the image; the pose is from silhouettes, which leave its rotation uncertain.
     AlbedoVaries {
-        /// One sigma about the least certain axis.
+        /// Sigma about the least certain axis.
         #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serial::finite"))]
         sigma_degrees: f64,
         /// The least certain direction.
         weakest: Direction,
     },
-    /// Likewise, and the silhouettes do not constrain a direction at all, which stays as it was given.
+    /// The same, and the silhouettes do not constrain a direction at all, which keeps its initial value.
     SilhouetteBlind {
         /// That direction.
         weakest: Direction,
     },
     /// A single albedo does not fit the image, and shading fits too little of its local contrast.
     ContrastUnexplained {
-        /// Of the local contrast.
+        /// Unexplained share of the local contrast.
         #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serial::finite"))]
         percent: f64,
     },
     /// Light and normals fit too little of the image.
     Unexplained {
-        /// Of the spread of the colours.
+        /// Unexplained share of the spread of the log image.
         #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serial::finite"))]
         percent: f64,
     },
     /// Too few points agree with the pose.
     FewInliers {
-        /// Of the points.
+        /// Share of the points that agree.
         percent: f64,
     },
-    /// The depth map shows a hollow, or its depths grow towards the camera.
+    /// The depth map is hollow, or its depths grow towards the camera.
     Hollow,
-    /// Other poses fit the image as well.
+    /// Other poses fit the image equally well.
     Rivals {
-        /// How many.
+        /// Their number.
         count: u32,
-        /// Rotation to the nearest.
+        /// Rotation to the nearest one.
         nearest_degrees: f64,
     },
-    /// Trimming left out much of a depth map without a mask.
+    /// Trimming removed much of a depth map without a mask.
     MissingDepthMask {
-        /// Of the depths.
+        /// Removed share of the depths.
         percent: f64,
     },
-    /// A pose was searched for a whole frame without a mask.
+    /// The pose was searched for in a whole frame without a mask.
     MissingImageMask,
-    /// Relief so many times as deep fits the image better.
+    /// The relief fits the image better in another unit.
     OtherUnit {
-        /// How many times as deep.
+        /// The factor by which it would be deeper.
         times: f64,
     },
 
     /// The search found no pose that fits the image.
     NoPose {
-        /// Whether the scale was held; else it was searched around the ratio of the units.
+        /// Whether the scale was held; otherwise it was searched around the ratio of the units.
         scale_is_held: bool,
     },
     /// The image pulls the apparent size of the object too far from that of the initial pose.
     SizeRunsAway {
-        /// By this factor.
+        /// The factor.
         times: f64,
     },
     /// The pose puts the object behind the colour camera.
     BehindCamera,
-    /// A stage of the loop could not do its work.
+    /// A stage of the loop failed.
     StageFailed {
-        /// Why.
+        /// The error.
         error: Error,
     },
 }
 
-/// What the search is doing.
+/// The current activity of the search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, strum::IntoStaticStr, strum::VariantNames)]
 #[strum(serialize_all = "kebab-case")]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
@@ -159,15 +159,15 @@ pub enum Activity {
     Registering,
     /// Comparing local contrast, because a single albedo does not fit the image.
     ComparingContrast,
-    /// Comparing silhouettes, likewise.
+    /// Comparing silhouettes, for the same reason.
     ComparingSilhouettes,
 }
 
-/// What tells a pose.
+/// The method that found a pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
 pub enum FoundBy {
-    /// The colours of the image, under one albedo.
+    /// The image, under a single albedo.
     Image,
     /// Local contrast.
     Contrast,
@@ -192,9 +192,9 @@ impl From<Error> for Reason {
     }
 }
 
-/// Sigmas from which on a decimal says nothing, degrees.
+/// Sigma from which on a decimal is meaningless, degrees.
 const COARSE: f64 = 5.0;
-/// What precedes every pose that does not come from the colours.
+/// Beginning of the message for every pose from silhouettes.
 const BY_SILHOUETTES: &str = "pose from silhouettes, because a single albedo does not fit the image";
 
 impl fmt::Display for Reason {

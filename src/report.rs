@@ -1,4 +1,4 @@
-//! What the loop says after each step.
+//! The report of the loop after each step.
 
 use crate::pose::{Similarity, Uncertainty};
 use crate::reason::Reason;
@@ -15,7 +15,7 @@ pub enum Stage {
     Shading,
     /// Heights from these normals.
     Surface,
-    /// Pose, by the colours or between both surfaces (Eq. 12 to 16).
+    /// Pose, photometric or between both surfaces (Eq. 12 to 16).
     Registration,
     /// Normals and depth of the depth view (Eq. 17 to 19).
     Refinement,
@@ -35,10 +35,10 @@ impl Stage {
         }
     }
 
-    /// The stages of an iteration in order; the search comes before the first iteration.
+    /// The stages of an iteration in order; the search precedes the first iteration.
     pub const ALL: [Self; 5] = [Self::Light, Self::Shading, Self::Surface, Self::Registration, Self::Refinement];
 
-    /// Lower-case name, as JavaScript sees it.
+    /// Lower-case name, as in JavaScript.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -52,11 +52,11 @@ impl Stage {
     }
 }
 
-/// Where the loop stands.
+/// State of the loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
 pub enum Status {
-    /// More steps will change something.
+    /// More steps will change the result.
     Running,
     /// The rotation has settled.
     Converged,
@@ -69,7 +69,7 @@ pub enum Status {
 }
 
 impl Status {
-    /// Lower-case name, as JavaScript sees it.
+    /// Lower-case name, as in JavaScript.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -82,7 +82,7 @@ impl Status {
     }
 }
 
-/// The terms of Eq. 1, each a robust mean, so that sizes of images do not matter.
+/// The terms of Eq. 1, each a robust mean, so that image sizes do not matter.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(into = "serialised::Energy"))]
 pub struct Objective {
@@ -97,7 +97,7 @@ pub struct Objective {
 }
 
 impl Objective {
-    /// Sum of all terms: the number by which an iteration is accepted or taken back.
+    /// Sum of all terms, by which an iteration is accepted or taken back.
     #[must_use]
     pub fn total(&self) -> f64 {
         self.shading + self.prior + self.registration + self.refinement
@@ -125,20 +125,20 @@ pub struct StepReport {
     pub inliers: f64,
     /// Robust mean of the log-colour residual.
     pub residual: f64,
-    /// Where the loop stands.
+    /// State of the loop.
     pub status: Status,
-    /// Why it stands there, where there is something to say.
+    /// The reason for the status, if there is one.
     #[cfg_attr(feature = "serde", serde(flatten, serialize_with = "serialised::with_message"))]
     pub reason: Option<Reason>,
-    /// Other poses that the data can't tell from this one, best first.
+    /// Other poses that the data cannot distinguish from this one, best first.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub rivals: Vec<Similarity>,
-    /// One sigma of the pose, where it could be computed.
+    /// One sigma of the pose, if it could be computed.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub uncertainty: Option<Uncertainty>,
 }
 
-/// Poses within so many sigmas of each other are one answer.
+/// Poses within this many sigmas of each other are the same answer.
 const NEAR_SIGMAS: f64 = 3.0;
 
 impl StepReport {
@@ -196,7 +196,7 @@ mod tests {
     }
 }
 
-/// What the contract has beside a field: sums and words, which are made where a report leaves the crate.
+/// Members of the contract that are no fields: sums and messages, made when a report leaves the crate.
 #[cfg(feature = "serde")]
 mod serialised {
     use serde::{Serialize, Serializer};

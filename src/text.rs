@@ -1,17 +1,17 @@
 //! Numbers in messages for people.
 //!
-//! The standard library writes any float exactly, to its 300th digit if asked to. Messages need three or eight, and a
-//! visitor downloads 10 kB less without the rest.
+//! The standard library can write any float exactly, up to its 300th digit. Messages need three or eight, and without
+//! the rest the download is 10 kB smaller.
 
 use std::fmt;
 
-/// Decimals of a [`Brief`] number between one and ten: eight digits tell one that is just too large from the limit, and
-/// leave out most of what f32 adds to 0.1.
+/// Decimals of a [`Brief`] number between one and ten: eight digits distinguish a number just above a limit from the
+/// limit, and omit most of what f32 adds to 0.1.
 const DECIMALS: i32 = 7;
-/// Powers of ten that a [`Brief`] number is written out for; others get an exponent.
+/// Powers of ten for which a [`Brief`] number is written out; others get an exponent.
 const WRITTEN_OUT: std::ops::Range<i32> = -4..15;
 
-/// A number with so many decimals, at most six.
+/// A number with this many decimals, at most six.
 pub struct Fixed(pub f64, pub u32);
 
 impl fmt::Display for Fixed {
@@ -40,7 +40,7 @@ impl fmt::Display for Brief {
 }
 
 /// The first digits of a magnitude as a whole number, and the power of ten of the first one; zeros unless it is a
-/// number above zero.
+/// finite number above zero.
 fn leading_digits(mut magnitude: f64) -> (u64, i32) {
     if magnitude == 0.0 || !magnitude.is_finite() {
         return (0, 0);
@@ -56,7 +56,7 @@ fn leading_digits(mut magnitude: f64) -> (u64, i32) {
     if digits == 10_u64.pow(DECIMALS as u32 + 1) { (digits / 10, power + 1) } else { (digits, power) }
 }
 
-/// Without zeros at the end of the decimals.
+/// Omits zeros at the end of the decimals.
 fn write_trimmed(f: &mut fmt::Formatter<'_>, value: f64, mut digits: u64, decimals: i32) -> fmt::Result {
     let mut decimals = decimals as u32;
     while decimals > 0 && digits.is_multiple_of(10) {
@@ -74,7 +74,7 @@ fn write(f: &mut fmt::Formatter<'_>, value: f64, digits: u64, decimals: u32) -> 
         f.write_str("-")?;
     }
     if value.is_infinite() {
-        // As JavaScript writes it.
+        // As in JavaScript.
         return f.write_str("Infinity");
     }
     let unit = 10_u64.pow(decimals);
@@ -94,7 +94,7 @@ mod tests {
         for value in [0.0, 0.04, 0.96, 1.5, -2.26, 12.345, 99.99, 1234.0, 1e12] {
             for decimals in 0..5_u32 {
                 let expected = format!("{value:.width$}", width = decimals as usize);
-                // A tie in binary digits is none in decimal ones.
+                // A tie in binary digits need not be one in decimal digits.
                 let found = Fixed(value, decimals).to_string();
                 let apart = (found.parse::<f64>().unwrap() - expected.parse::<f64>().unwrap()).abs();
                 assert!(

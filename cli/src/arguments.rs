@@ -1,4 +1,4 @@
-//! What may be asked for. Names and defaults are those of the library's options.
+//! The arguments of the command. Names and defaults are those of the library's options.
 
 use std::path::PathBuf;
 
@@ -34,7 +34,7 @@ pub struct Arguments {
     #[arg(required = true, num_args = 1..=2, value_names = ["IMAGE|FOLDER", "DEPTH"])]
     input: Vec<PathBuf>,
 
-    /// Writes clouds (PLY), refined depth (16-bit PNG and .npy), pose, light and report into FOLDER, which is made
+    /// Writes clouds (PLY), refined depth (16-bit PNG and .npy), pose, light and report into FOLDER, which is created
     #[arg(long, value_name = "FOLDER")]
     pub out: Option<PathBuf>,
 
@@ -42,7 +42,7 @@ pub struct Arguments {
     #[arg(long)]
     pub json: bool,
 
-    /// Intrinsics of the colour camera in pixels: fx,fy,cx,cy and if need be OpenCV's k1,k2,p1,p2,k3[,k4,k5,k6]
+    /// Intrinsics of the colour camera in pixels: fx,fy,cx,cy and, if needed, OpenCV's k1,k2,p1,p2,k3[,k4,k5,k6]
     #[arg(long, value_name = "FX,FY,CX,CY[,K1..]", value_parser = camera)]
     pub image_camera: Option<Pinhole>,
 
@@ -50,15 +50,17 @@ pub struct Arguments {
     #[arg(long, value_name = "FX,FY,CX,CY[,K1..]", value_parser = camera)]
     pub depth_camera: Option<Pinhole>,
 
-    /// Intrinsics of one camera or both in a file, as OpenCV, ROS, Kalibr, Open3D and others write them [default: those beside the images]
+    /// Intrinsics of one or both cameras in a file of OpenCV, ROS, Kalibr, Open3D and others [default: those beside the
+    /// images]
     #[arg(long, value_name = "FILE")]
     pub cameras: Vec<PathBuf>,
 
-    /// Metres for each stored number of the depth map, 0.001 for millimetres; pixels where it has no camera [default: guessed, 1]
+    /// Metres for each stored number of the depth map, 0.001 for millimetres; pixels if it has no camera [default:
+    /// guessed, 1]
     #[arg(long, value_name = "UNIT", value_parser = positive)]
     pub depth_unit: Option<f64>,
 
-    /// A picture of the image's size: what is neither black nor transparent is the object
+    /// A picture of the image's size: pixels that are neither black nor transparent belong to the object
     #[arg(long, value_name = "FILE")]
     image_mask: Option<PathBuf>,
 
@@ -66,11 +68,11 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE")]
     depth_mask: Option<PathBuf>,
 
-    /// How the image's numbers encode intensity: srgb or linear [default: as the file says, else guessed]
+    /// How the image's numbers encode intensity: srgb or linear [default: as the file states, else guessed]
     #[arg(long, value_name = "CURVE", value_parser = transfer)]
     pub transfer: Option<Transfer>,
 
-    /// Where the pose starts: search (everywhere), identity, or ALPHA,BETA,GAMMA in degrees
+    /// Initial pose: search (everywhere), identity, or ALPHA,BETA,GAMMA in degrees
     #[arg(long, value_name = "START", default_value = "search", value_parser = start, allow_hyphen_values = true)]
     start: Start,
 
@@ -78,28 +80,29 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE")]
     light: Option<PathBuf>,
 
-    /// The lights to expect where the light is estimated, in place of natural ones: JSON with "mean", 27 numbers, and
-    /// "covariance", 27x27 numbers
+    /// The prior over lights, replacing that over natural ones, if the light is estimated: JSON with "mean", 27
+    /// numbers, and "covariance", 27x27 numbers
     #[arg(long, value_name = "FILE", conflicts_with = "light")]
     light_prior: Option<PathBuf>,
 
-    /// Holds the scale s at this number [default: found]
+    /// Holds the scale s at this number [default: estimated]
     #[arg(long, value_name = "S", value_parser = positive)]
     scale: Option<f64>,
 
-    /// How the pose is refined: joint (straight from the colours), icp (as in the paper) or fixed (the start is kept)
+    /// How the pose is refined: joint (directly from the image), icp (as in the paper) or fixed (the initial pose is
+    /// kept)
     #[arg(long, value_name = "WAY", default_value = "joint", value_parser = registration)]
     registration: Registration,
 
-    /// How the shape of the image is found: surface (as a whole) or pixel (each on its own, as in the paper)
+    /// How the shape of the image is found: surface (as a whole) or pixel (each pixel alone, as in the paper)
     #[arg(long, value_name = "WAY", default_value = "surface", value_parser = shading)]
     shading: Shading,
 
-    /// The largest one sigma of the rotation of a run that converges, in degrees; above it the pose is ambiguous
+    /// The largest sigma of the rotation at which a run converges, in degrees; above it the pose is ambiguous
     #[arg(long, value_name = "DEGREES", default_value_t = Options::default().tolerance, value_parser = positive)]
     tolerance: f64,
 
-    /// Ends after so many iterations
+    /// Ends after this many iterations
     #[arg(long, value_name = "N", default_value_t = Options::default().max_iterations)]
     pub max_iterations: u32,
 
@@ -107,19 +110,19 @@ pub struct Arguments {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     workers: Option<u16>,
 
-    /// Of everything random
+    /// Seed of all random numbers
     #[arg(long, value_name = "N", default_value_t = Options::default().seed)]
     seed: u64,
 }
 
-/// What is to be read.
+/// What to read.
 pub enum Input {
     Pair(Files),
     Folder(PathBuf),
 }
 
 impl Arguments {
-    /// A pair or a folder; of a folder the masks lie in it.
+    /// A pair or a folder; the masks of a folder are in it.
     pub fn input(&self) -> Result<Input> {
         match self.input.as_slice() {
             [folder] if folder.is_dir() => {
@@ -147,13 +150,13 @@ impl Arguments {
         }
     }
 
-    /// How many threads share the work.
+    /// Number of threads that share the work.
     pub fn workers(&self) -> usize {
         let processors = || std::thread::available_parallelism().map_or(1, usize::from);
         self.workers.map_or_else(processors, usize::from)
     }
 
-    /// What the loop is told.
+    /// The options of the loop.
     pub fn options(&self) -> Result<Options> {
         let light = match &self.light {
             Some(path) => LightSource::Known(read::light(path)?),

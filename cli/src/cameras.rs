@@ -1,4 +1,4 @@
-//! The intrinsics of a pair from files: those that were named, and those that lie beside its images.
+//! The intrinsics of a pair from files: from given ones, or from those beside its images.
 
 use std::path::{Path, PathBuf};
 
@@ -13,19 +13,19 @@ pub struct Sizes {
     pub depth: [usize; 2],
 }
 
-/// Those of one pair.
+/// The cameras of one pair.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Found {
     pub image: Option<Pinhole>,
     pub depth: Option<Pinhole>,
 }
 
-/// The cameras of the files that were named.
+/// The cameras of the given files.
 #[derive(Debug, Default)]
 pub struct Cameras(Vec<(NamedCamera, PathBuf)>);
 
 impl Cameras {
-    /// Reads the files that were named; each has to hold a camera.
+    /// Reads the given files; each must hold a camera.
     pub fn named(files: &[PathBuf]) -> Result<Self> {
         let mut all = Vec::new();
         for path in files {
@@ -38,7 +38,7 @@ impl Cameras {
         Ok(Self(all))
     }
 
-    /// The cameras of a pair: of the files that were named, else of those beside its images.
+    /// The cameras of a pair: from the given files, else from those beside its images.
     pub fn of_pair(
         &self,
         files: &Files,
@@ -52,7 +52,7 @@ impl Cameras {
             return Ok(Found::default());
         }
         let [image_corner, depth_corner] = [read_corner(&files.image)?, read_corner(&files.depth)?];
-        // The cameras of crops are those of the whole frames, whose sizes nobody states.
+        // The cameras of crops are those of the whole frames, whose sizes are not stated.
         let is_crop = image_corner.is_some() || depth_corner.is_some();
         let cameras: Vec<NamedCamera> = all
             .iter()
@@ -83,13 +83,13 @@ impl Cameras {
     }
 }
 
-/// A camera without a name is called as its file.
+/// A camera without a name is named after its file.
 fn with_name(camera: NamedCamera, path: &Path) -> NamedCamera {
     let stem = || path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
     NamedCamera { name: camera.name.or_else(stem), ..camera }
 }
 
-/// The cameras in files whose names speak of cameras, in the folders of both images. A file beside them that is something else costs nothing.
+/// The cameras in files with camera-like names in the folders of both images. Other files beside them are ignored.
 fn beside(files: &Files) -> Result<Vec<(NamedCamera, PathBuf)>> {
     let mut all = Vec::new();
     for path in files_beside(files) {

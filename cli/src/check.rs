@@ -1,4 +1,4 @@
-//! The command `check` on a terminal, which an interrupt ends.
+//! The command `check` on a terminal, which an interrupt can end.
 
 use std::ffi::OsString;
 use std::io::{self, IsTerminal};
@@ -8,9 +8,9 @@ use bimodal_stereo_files::command::{self, Terminal};
 
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
-/// The exit code.
+/// Runs the command; returns the exit code.
 pub fn run(arguments: impl Iterator<Item = OsString>) -> u8 {
-    // Without a handler an interrupt ends the program as it ends any other.
+    // Without a handler, an interrupt ends the program as usual.
     let _ = ctrlc::set_handler(|| INTERRUPTED.store(true, Ordering::Relaxed));
     command::run(
         arguments,

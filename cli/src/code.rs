@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use bimodal_stereo::Status;
 
-/// From the best to the worst, so that the worst of a folder is the largest.
+/// From best to worst, so that the worst code of a folder is the largest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Code {
     Converged,

@@ -1,4 +1,4 @@
-//! One pair from its files to its answer.
+//! One pair, from its files to its answer.
 
 use bimodal_stereo::{Estimator, Status};
 use bimodal_stereo_files::pairs::Files;
@@ -10,17 +10,17 @@ use crate::code::Code;
 use crate::progress::Progress;
 use crate::views;
 
-/// What came out.
+/// The result of a pair.
 pub struct Outcome {
     pub files: Files,
     pub estimator: Estimator,
-    /// Of the colour view and the pose, of the depth view.
+    /// Units of the colour view and the pose, and of the depth view.
     pub image_length: Length,
     pub depth_length: Length,
     /// How the files were read.
     pub notes: Vec<String>,
     pub warnings: Vec<Warning>,
-    /// The files of results.
+    /// The files that were written.
     pub written: Vec<String>,
 }
 

@@ -1,8 +1,8 @@
-//! The pose between a colour image and a depth map, from their files, for a shell and for scripts.
+//! The pose between a colour image and a depth map from their files, for a shell and for scripts.
 //!
-//! `arguments` states what can be asked, `views` turns what the crate `files` reads into what the library takes, `estimate` runs the loop under
-//! a progress bar, `report` and `write` print and save what came out, and `check` hands over to the command of that name. Nothing here
-//! computes.
+//! `arguments` defines the arguments, `views` turns what the crate `files` reads into the library's input, `estimate`
+//! runs the loop with a progress bar, `report` and `write` print and save the result, and `check` hands over to the
+//! command of that name. Nothing here computes.
 
 mod arguments;
 mod cameras;
@@ -28,9 +28,9 @@ use code::Code;
 use estimate::estimate;
 use progress::Progress;
 
-/// A first word that names another command; an image or a folder of that name is reached as "./check".
+/// A first word that names another command; an image or a folder of that name can be given as "./check".
 const CHECK: &str = "check";
-/// .. and the usual one.
+/// A first word that names the default command.
 const ESTIMATE: &str = "estimate";
 
 fn main() -> ExitCode {
@@ -45,7 +45,7 @@ fn main() -> ExitCode {
             eprintln!("{problem}");
             Code::BadInput
         }),
-        // Help and the version are no mistakes, and clap's own code for these would say "undecided".
+        // Help and version are not errors, and clap's own code for errors would mean "undecided".
         Err(said) => {
             let code = if said.use_stderr() { Code::BadInput } else { Code::Converged };
             match said.print() {
@@ -57,7 +57,7 @@ fn main() -> ExitCode {
     code.into()
 }
 
-/// What was asked for.
+/// The arguments, once they are read.
 struct Task {
     arguments: Arguments,
     options: Options,
@@ -75,7 +75,7 @@ fn run(arguments: Arguments) -> Result<Code> {
     }
 }
 
-/// A problem that ends everything, after it was printed to the standard output where that is JSON.
+/// A problem that ends the program; also printed to the standard output if that is JSON.
 fn printed(problem: Problem, files: Option<&Files>, is_json: bool) -> Problem {
     let text = || report::json_of_problem(None, files, &problem, report::Layout::Lines);
     let said = if is_json { print(&text()) } else { Ok(()) };
@@ -83,7 +83,7 @@ fn printed(problem: Problem, files: Option<&Files>, is_json: bool) -> Problem {
 }
 
 impl Task {
-    /// One pair: everything that is known about it.
+    /// Runs one pair, and prints everything known about it.
     fn one(&self, files: &Files) -> Result<Code> {
         let arguments = &self.arguments;
         let outcome = self.finish(files, arguments.out.as_deref(), &Progress::new(None, arguments.max_iterations));
@@ -97,7 +97,7 @@ impl Task {
         }
     }
 
-    /// A folder: one line for each pair. A pair that cannot be read costs itself, not the others.
+    /// Runs a folder, with one line for each pair. A pair that cannot be read does not stop the others.
     fn many(&self, folder: &Path) -> Result<Code> {
         let arguments = &self.arguments;
         let found =
@@ -140,7 +140,7 @@ impl Task {
     }
 }
 
-/// To the standard output. A reader that has seen enough (`head`) is no fault.
+/// Prints to the standard output. A reader that closes the pipe early (`head`) is not an error.
 fn print(text: &str) -> Result<()> {
     let mut out = io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {

@@ -1,4 +1,5 @@
-//! A bar on a terminal: the search in percent, then the iterations. Nothing where the standard error is no terminal.
+//! A bar on a terminal: the search in percent, then the iterations. Nothing is shown if the standard error is not a
+//! terminal.
 
 use std::time::Duration;
 
@@ -6,10 +7,10 @@ use bimodal_stereo::{Reason, Stage, StepReport};
 use bimodal_stereo_files::plain;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-/// The bar: in thousandths, of which the search takes most.
+/// Length of the bar, and the share of the search, which takes most of the time.
 const LENGTH: u64 = 1000;
 const SEARCH: f64 = 0.7;
-/// The clock of the bar goes on while a long step is under way, seconds / 10.
+/// Interval at which the bar's clock advances during a long step.
 const TICK: Duration = Duration::from_millis(100);
 const STYLE: &str = "{prefix}[{bar:24}] {percent:>3} %  {elapsed}  {wide_msg}";
 
@@ -19,7 +20,7 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// Of a folder, the pair by number, of how many, and name.
+    /// In a folder, with the pair's index, the number of pairs, and its name.
     pub fn new(pair: Option<(usize, usize, &str)>, most_iterations: u32) -> Self {
         let bar = ProgressBar::with_draw_target(Some(LENGTH), ProgressDrawTarget::stderr());
         if let Ok(style) = ProgressStyle::with_template(STYLE) {
@@ -34,19 +35,19 @@ impl Progress {
 
     pub fn show(&self, report: &StepReport) {
         let (share, words) = share(report, self.most_iterations);
-        // What is known can move back, a bar should not.
+        // The estimated progress can decrease, but a bar should not.
         self.bar.set_position(self.bar.position().max((share * LENGTH as f64) as u64));
         self.bar.set_message(words);
     }
 
-    /// Wipes the bar away.
+    /// Erases the bar.
     pub fn end(&self) {
         self.bar.finish_and_clear();
     }
 }
 
-/// How far the run is, 0 to 1, and what it is at. The search reports its percent; of the iterations only their largest number is known, of
-/// which most runs need few.
+/// Progress of the run, 0 to 1, and its current activity. The search reports its percentage; for the iterations, only
+/// their largest number is known, of which most runs need few.
 fn share(report: &StepReport, most_iterations: u32) -> (f64, String) {
     if report.stage == Stage::Search {
         return match report.reason {

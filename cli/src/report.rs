@@ -1,4 +1,4 @@
-//! What came out: in words with units, as one line, and as JSON with the names of the JavaScript contract's `StepReport`.
+//! The result: in words with units, as one line, and as JSON with the names of the JavaScript contract's `StepReport`.
 
 use std::fmt::Write;
 
@@ -9,13 +9,13 @@ use serde::Serialize;
 
 use crate::estimate::Outcome;
 
-/// Digits of lengths, sigmas and shares.
+/// Significant digits of lengths, sigmas and shares.
 const DIGITS: i32 = 4;
 
-/// Powers of ten beyond which a number is written with an exponent: hundreds of zeros say nothing.
+/// Powers of ten beyond which a number gets an exponent, because hundreds of zeros are unreadable.
 const PLAIN: std::ops::RangeInclusive<i32> = -9..=14;
 
-/// A number with so many digits, without an exponent where that can be read.
+/// A number with this many significant digits, without an exponent if it is readable without.
 fn digits(value: f64, digits: i32) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();
@@ -32,14 +32,14 @@ fn list(values: impl IntoIterator<Item = String>) -> String {
     values.into_iter().collect::<Vec<_>>().join(", ")
 }
 
-/// Text that cannot fail to be written.
+/// Appends a line to a text, which cannot fail.
 macro_rules! line {
     ($text:expr, $($words:tt)*) => {
         let _ = writeln!($text, $($words)*);
     };
 }
 
-/// Everything, for people.
+/// The whole result in words.
 pub fn words(found: &Outcome) -> String {
     let report = found.estimator.report();
     let length = found.image_length.word();
@@ -80,7 +80,7 @@ pub fn words(found: &Outcome) -> String {
     text
 }
 
-/// What may help, from the table of codes.
+/// A remedy from the table of codes, if there is one.
 fn remedy(reason: &Reason) -> Option<String> {
     let table: serde_json::Value = serde_json::from_str(CODES).ok()?;
     Some(table["runs"][reason.code()]["remedy"].as_str()?.to_owned())
@@ -114,7 +114,7 @@ fn sigma_words(text: &mut String, sigma: &Uncertainty, length: &str) {
     line!(text, "  weakest: {}", sigma.weakest);
 }
 
-/// A pair of a folder.
+/// One line for a pair of a folder.
 pub fn line(name: &str, found: &Outcome) -> String {
     let report = found.estimator.report();
     let Similarity { scale, rotation, translation } = &report.pose;
@@ -133,14 +133,14 @@ pub fn line(name: &str, found: &Outcome) -> String {
     )
 }
 
-/// How JSON is laid out: for reading, or in one line.
+/// Layout of JSON: indented, or in one line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layout {
     Lines,
     OneLine,
 }
 
-/// The report as the crate writes it, and what a command line knows beside it.
+/// The report as the crate serialises it, with the additions of the command line.
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]
 struct Report<'a> {
@@ -150,7 +150,7 @@ struct Report<'a> {
     depth: String,
     #[serde(flatten)]
     report: &'a StepReport,
-    /// Of lengths: "px" or "m".
+    /// Unit of lengths: "px" or "m".
     unit: &'static str,
     depth_unit: &'static str,
     /// R1..9, G1..9, B1..9.
@@ -197,13 +197,13 @@ impl<'a> Report<'a> {
     }
 }
 
-/// Numbers that are none become null.
+/// Numbers that are not finite become null.
 fn text(value: &impl Serialize, layout: Layout) -> String {
     let made = match layout {
         Layout::Lines => serde_json::to_string_pretty(value),
         Layout::OneLine => serde_json::to_string(value),
     };
-    // Strings and numbers alone, whose keys are names.
+    // Cannot fail: it holds only strings and numbers, and its keys are names.
     made.expect("can be written") + "\n"
 }
 
@@ -212,12 +212,12 @@ pub fn json(found: &Outcome, layout: Layout) -> String {
     text(&Report::of(None, found), layout)
 }
 
-/// .. of one in a folder.
+/// The report of a pair in a folder, in one line.
 pub fn json_line(name: &str, found: &Outcome) -> String {
     text(&Report::of(Some(name), found), Layout::OneLine)
 }
 
-/// Why there is no report, of a pair or, without files, of any.
+/// Why there is no report, for a pair or, without files, for all.
 pub fn json_of_problem(name: Option<&str>, files: Option<&Files>, problem: &Problem, layout: Layout) -> String {
     let [image, depth] = [files.map(|files| shown(&files.image)), files.map(|files| shown(&files.depth))];
     let error = Fault { code: problem.code, field: &problem.field, message: problem.to_string() };

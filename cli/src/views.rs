@@ -1,4 +1,4 @@
-//! Rasters as the views that the library takes, by the conventions of js/raster.ts and js/rig/depth.ts.
+//! Rasters as the library's views, by the conventions of js/raster.ts and js/rig/depth.ts.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use bimodal_stereo_files::{Problem, Result, Warning, colour, shown};
 use crate::arguments::Arguments;
 use crate::cameras::{Cameras, Sizes};
 
-/// Both views, and what is to be said about how they were read.
+/// Both views, with notes and warnings on how they were read.
 pub struct Views {
     pub image: ColourImage,
     pub depth: DepthMap,
@@ -19,7 +19,7 @@ pub struct Views {
     pub warnings: Vec<Warning>,
 }
 
-/// What is said of one file.
+/// Notes and warnings about one file.
 struct Said<'a> {
     path: &'a Path,
     notes: &'a mut Vec<String>,
@@ -46,7 +46,7 @@ impl Said<'_> {
     }
 }
 
-/// Reads the files of a pair. Cameras that were given as numbers go before those of files.
+/// Reads the files of a pair. Cameras given as numbers take precedence over those of files.
 pub fn read(files: &Files, arguments: &Arguments, cameras: &Cameras) -> Result<Views> {
     let (mut notes, mut warnings) = (Vec::new(), Vec::new());
     let mut said = Said { path: &files.image, notes: &mut notes, warnings: &mut warnings };
@@ -105,7 +105,7 @@ fn depth(
     said: &mut Said,
 ) -> Result<DepthMap> {
     said.raster(&raster);
-    // Metres are nothing to a view that is measured in pixels.
+    // Metres have no meaning for a view measured in pixels.
     let given = arguments.depth_unit.or(camera.and(of_folder));
     if camera.is_none() && given.is_none() {
         said.note("depths are taken for pixels, as there is no camera of the depth map");
@@ -145,11 +145,11 @@ fn depth(
     Ok(of(&raster, DepthSamples::Integer(data), unit, camera))
 }
 
-/// What to do about depths that are no pixels.
+/// Message for depths that are not pixels.
 const METRIC: &str = "its depths look like those of a depth camera, in millimetres, and there are no intrinsics that make points of them: \
                       name these by --cameras FILE or --depth-camera, or take the numbers for pixels by --depth-unit 1";
 
-/// Whether whole numbers without a unit and without intrinsics are those of a depth camera, and no heights in pixels.
+/// Whether whole numbers without unit and intrinsics are those of a depth camera rather than heights in pixels.
 fn are_metric(raster: &Raster, data: &[u16], of_folder: Option<f64>) -> bool {
     let sample = Sample::of(data.iter().map(|&value| f64::from(value)));
     of_folder.is_some() || (raster.bits > 8 && sample.looks_like_millimetres())
@@ -163,7 +163,7 @@ fn of(raster: &Raster, samples: DepthSamples, unit: Option<f64>, camera: Option<
 /// Whole numbers of a depth camera in metres.
 fn integer_depths(mut data: Vec<u16>, given: Option<f64>, said: &mut Said) -> (Vec<u16>, Option<f64>) {
     if data.contains(&u16::MAX) {
-        // What a 16-bit sensor says where it is blind.
+        // 16-bit sensors store this where they see nothing.
         data.iter_mut().filter(|value| **value == u16::MAX).for_each(|value| *value = 0);
         said.note("65535 taken for holes");
     }
@@ -176,7 +176,7 @@ fn integer_depths(mut data: Vec<u16>, given: Option<f64>, said: &mut Said) -> (V
     (data, Some(unit))
 }
 
-/// Floats; renderers write 1e10 where they saw nothing.
+/// Floats; renderers write 1e10 where nothing was seen.
 fn float_depths(
     mut data: Vec<f32>,
     given: Option<f64>,
@@ -206,7 +206,7 @@ fn cloud(data: Vec<f32>, given: Option<f64>, has_unit: bool, said: &mut Said) ->
     Ok((DepthSamples::Cloud(data), unit))
 }
 
-/// The unit that was given, or guessed, with a note.
+/// The given or guessed unit, with a note if it was guessed.
 fn chosen(given: Option<f64>, guess: impl Fn() -> Unit, sample: &Sample, said: &mut Said) -> f64 {
     let unit = given.map_or_else(guess, Unit::given);
     if unit.is_guessed {
@@ -227,7 +227,7 @@ fn mask_of_size(path: &Path, size: (usize, usize)) -> Result<Vec<u8>> {
     }
 }
 
-/// Size and mask: whatever is neither zero nor transparent belongs to the object.
+/// Size and mask: pixels that are neither zero nor transparent belong to the object.
 fn mask(path: &Path) -> Result<((usize, usize), Vec<u8>)> {
     let raster = read::raster(path)?;
     let mask = colour::mask(&raster);

@@ -1,4 +1,5 @@
-//! Which of the cameras that were read took which pictures: by their names, by the size of their images, and last by their order.
+//! Assigns the cameras that were read to the pictures: by their names, by the size of their images, and last by their
+//! order.
 
 use bimodal_stereo::Pinhole;
 
@@ -10,8 +11,8 @@ use crate::warning::Warning;
 static COLOUR: Pattern = Pattern::new(|| pattern(r"(?i)colou?r|rgb|\bhr\b"));
 static DEPTH: Pattern = Pattern::new(|| pattern(r"(?i)depth|dpt|\bir\b|infra|tof|\blr\b"));
 
-/// The cameras of colour images and of depth maps of these sizes, by their places in the list, with a warning where that was a guess.
-/// `is_cloud`: depth maps need no camera.
+/// The cameras of colour images and of depth maps of these sizes, as indices into the list, with a warning if that was
+/// a guess. If `is_cloud`, depth maps need no camera.
 pub fn assigned(
     cameras: &[NamedCamera],
     [image, depth]: [[usize; 2]; 2],

@@ -4,7 +4,7 @@ use bimodal_stereo::{ColourSamples, Transfer};
 
 use crate::read::{Raster, Samples};
 
-/// Colours of the image's size; floats are linear.
+/// Colours at the image's size; floats are linear.
 pub fn colours(raster: &Raster) -> ColourSamples {
     let colour = |data: &[u16], channel: usize| data[if raster.has_colour() { channel } else { 0 }];
     let rgba = |opaque: u16| {
@@ -23,12 +23,12 @@ pub fn colours(raster: &Raster) -> ColourSamples {
     }
 }
 
-/// How the file states that its numbers encode intensity.
+/// The encoding of intensity that the file states.
 pub fn transfer(raster: &Raster) -> Option<Transfer> {
     raster.linear.map(|linear| if linear { Transfer::Linear } else { Transfer::Srgb })
 }
 
-/// One where a pixel is neither zero nor transparent.
+/// One for pixels that are neither zero nor transparent.
 pub fn mask(raster: &Raster) -> Vec<u8> {
     let half = if raster.bits == 8 { 0x80 } else { 0x8000 };
     let visible = if raster.has_colour() { 3 } else { 1 };
@@ -40,7 +40,7 @@ pub fn mask(raster: &Raster) -> Vec<u8> {
     })
 }
 
-/// Whether it is what depth cameras write: one channel of more than 8 bits.
+/// Whether the raster is typical of depth cameras: one channel of more than 8 bits.
 pub fn looks_like_depth(raster: &Raster) -> bool {
     raster.bits > 8 && raster.channels != 4 && raster.is_grey()
 }
@@ -49,12 +49,12 @@ pub fn looks_like_depth(raster: &Raster) -> bool {
 pub fn stored(raster: &Raster) -> String {
     const CHANNELS: [&str; 5] = ["", "grey", "grey with alpha", "RGB", "RGB with alpha"];
     let float = if matches!(raster.samples, Samples::F32(_)) { " float" } else { "" };
-    // Decoders make colours of a grey JPEG.
+    // Decoders turn a grey JPEG into colours.
     let channels = if raster.is_lossy { "RGB" } else { CHANNELS.get(raster.channels).unwrap_or(&"") };
     format!("{}x{}, {}-bit{float} {channels}", raster.width, raster.height, raster.bits)
 }
 
-/// .. with the notes on how it was read.
+/// Size and kind with the notes on how it was read.
 pub fn says(raster: &Raster) -> String {
     let notes = raster.encoding.into_iter().map(Into::into).chain(raster.notes.iter().cloned());
     [stored(raster)].into_iter().chain(notes).collect::<Vec<_>>().join(", ")

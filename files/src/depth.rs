@@ -1,5 +1,5 @@
-//! A raster as a depth map: its unit, given, in the file or guessed from the values; what of it is valid, and whether that looks like what a
-//! depth camera sees. By the rules of js/rig/depth.ts.
+//! A raster as a depth map: its unit (given, in the file or guessed from the values), its valid pixels, and whether it
+//! looks like the output of a depth camera. The rules are those of js/rig/depth.ts.
 
 use bimodal_stereo::DepthSamples;
 
@@ -8,27 +8,27 @@ use crate::text::numbers::{fixed, precise};
 use crate::unit::{FARTHEST, NEAREST, Sample, Unit, turned_back};
 use crate::warning::Warnings;
 
-/// More holes than this are worth a word.
+/// Share of holes that gives a warning.
 const MANY_HOLES: f64 = 0.4;
-/// Renderers write 1e10 where they saw nothing.
+/// Renderers write 1e10 where nothing was seen.
 const BEYOND: f32 = 1e9;
 /// Values from which on nothing was seen.
 const LARGEST: f64 = 1e12;
 
-/// A depth map as it was read.
+/// A depth map as read.
 #[derive(Clone, Debug)]
 pub struct Depth {
     pub samples: DepthSamples,
     /// Metres for each stored number.
     pub unit: f64,
-    /// What was read, in plain words.
+    /// A description of what was read.
     pub says: String,
     pub warnings: Warnings,
 }
 
 const NOTHING: &str = "no pixel of it holds a depth: all are zero, negative or not a number";
 
-/// The raster as a depth map or, of three channels of floats, as an organised cloud.
+/// The raster as a depth map or, with three channels of floats, as an organised cloud.
 pub fn depth_of(raster: Raster, given: Option<f64>) -> Result<Depth, String> {
     if raster.is_lossy {
         return Err(
@@ -55,7 +55,7 @@ fn of_integers(raster: &Raster, given: Option<f64>) -> Result<Depth, String> {
     let mut notes = raster.notes.clone();
     let mut data = raster.map_pixels(|pixel| pixel[0]);
     if data.contains(&u16::MAX) {
-        // What a 16-bit sensor stores where it is blind.
+        // 16-bit sensors store this where they see nothing.
         data.iter_mut().filter(|value| **value == u16::MAX).for_each(|value| *value = 0);
         notes.push("65535 taken for holes".into());
     }
@@ -138,7 +138,7 @@ fn metres_text(value: f64) -> String {
     if !(0.01..1000.0).contains(&value) { precise(value, 3) } else { fixed(value, 2) }
 }
 
-/// What is stated about any depth map, and what looks wrong about it.
+/// Describes any depth map, and adds the warnings about it.
 fn judged(
     raster: &Raster,
     stored: &str,

@@ -1,10 +1,11 @@
-//! Files of a colour camera and a depth camera, as [`bimodal_stereo`] takes what is in them.
+//! Readers for the files of a colour camera and a depth camera, as input of [`bimodal_stereo`].
 //!
-//! [`read_rig_folder`] reads a whole folder of frames with their cameras, [`read_calibration`] the cameras and poses of one text: matrices,
-//! JSON, YAML and XML by the names of their members (OpenCV, ROS, Kalibr, Open3D), and what RealSense's and COLMAP's programs write. Pictures
-//! are PNG, JPEG and `.npy`; whatever else there is, an error names it. What a reader guesses is a [`Warning`].
+//! [`read_rig_folder`] reads a whole folder of frames with their cameras, [`read_calibration`] the cameras and poses of
+//! one text: matrices, JSON, YAML and XML by the names of their members (OpenCV, ROS, Kalibr, Open3D), and the formats
+//! of RealSense and COLMAP. Pictures are PNG, JPEG and `.npy`; any other file gives an error that names it. A guess of
+//! a reader gives a [`Warning`].
 //!
-//! Every size that a file declares is checked before anything is made of it.
+//! Every size that a file declares is checked before memory is allocated for it.
 
 mod assign;
 pub mod colour;

@@ -1,6 +1,7 @@
-//! The pairs of a folder, found as js/rig/folder.ts finds them: by time stamps (TUM RGB-D), by like names, or in their order.
+//! Finds the pairs of a folder, like js/rig/folder.ts: by time stamps (TUM RGB-D), by similar names, or by their order.
 //!
-//! Limits: pictures whose names do not say which is which are not looked into, and at least one of a pair has to be called a depth map.
+//! Limits: pictures whose names do not say which is which are not opened, and at least one of a pair must be named as a
+//! depth map.
 
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -14,15 +15,15 @@ use crate::read;
 use crate::read::foreign::is_foreign_picture;
 use crate::warning::{Warning, Warnings};
 
-/// Time stamps farther apart than this, in seconds, are no pair; TUM's own tool has the same.
+/// Time stamps farther apart than this, in seconds, are not a pair; TUM's own tool uses the same value.
 const APART: f64 = 0.02;
 const TUM_UNIT: f64 = 1.0 / 5000.0;
-/// Folders below folders.
+/// Deepest level of nested folders.
 const DEEPEST: usize = 8;
 const MOST_FILES: usize = 200_000;
-/// First bytes, by which pictures are told.
+/// Number of first bytes, which identify pictures.
 const HEAD: u64 = 16;
-/// Bytes of a list of frames.
+/// Most bytes of a list of frames.
 const MOST_LIST: u64 = 64 << 20;
 
 fn pattern(text: &str) -> Regex {
@@ -33,7 +34,7 @@ static MASK: LazyLock<Regex> = LazyLock::new(|| pattern("(?i)mask|segm"));
 static COLOUR: LazyLock<Regex> = LazyLock::new(|| pattern("(?i)colou?r|rgb|image|img"));
 static KINDS: LazyLock<Regex> =
     LazyLock::new(|| pattern("(?i)depth|dpt|colou?r|rgb|image|img|mask|crop|registered|aligned"));
-/// Files that are to be pictures, whatever is in them: reading them says what is wrong.
+/// Names of pictures, whatever the files contain: reading them reports what is wrong.
 static PICTURE: LazyLock<Regex> = LazyLock::new(|| pattern(r"(?i)\.(png|jpe?g|npy)$"));
 static ENDING: LazyLock<Regex> = LazyLock::new(|| pattern(r"(?i)\.[a-z0-9]{1,5}$"));
 
@@ -44,23 +45,23 @@ pub struct Files {
     pub depth: PathBuf,
     pub image_mask: Option<PathBuf>,
     pub depth_mask: Option<PathBuf>,
-    /// Belongs to the view whose size it has.
+    /// Belongs to the view of the same size.
     pub any_mask: Option<PathBuf>,
-    /// Metres for each stored number, where the folder states it.
+    /// Metres for each stored number, if the folder states it.
     pub unit: Option<f64>,
 }
 
-/// One pair and what its files have in common.
+/// One pair, and the common part of its files' names.
 #[derive(Clone, Debug)]
 pub struct Pair {
     pub name: String,
-    /// What the names of its files have in common.
+    /// The common part of its files' names.
     pub key: String,
     pub files: Files,
 }
 
 impl Pair {
-    /// Of the folder for its results.
+    /// Name of the folder for its results.
     pub fn folder_name(&self) -> String {
         let safe = |letter: char| if letter.is_ascii_alphanumeric() || "-_.".contains(letter) { letter } else { '_' };
         let name: String = self.name.chars().map(safe).collect();
@@ -74,7 +75,7 @@ pub struct Pairs {
     pub warnings: Warnings,
 }
 
-/// All pairs in the order of their names; what lies below `except`, results of an earlier run, is none of them.
+/// All pairs in the order of their names, without anything below `except`, which holds the results of an earlier run.
 pub fn pairs(folder: &Path, except: Option<&Path>) -> Result<Pairs> {
     let mut files = below(folder, except.and_then(|path| path.canonicalize().ok()).as_deref())?;
     let Pairs { pairs, warnings } = among(folder, &mut files)?;
@@ -88,7 +89,7 @@ pub fn pairs(folder: &Path, except: Option<&Path>) -> Result<Pairs> {
     Ok(Pairs { pairs: unique(pairs), warnings })
 }
 
-/// The pairs among files of a folder, which are brought into the order of their names.
+/// The pairs among files of a folder; sorts the files by name.
 pub fn among(folder: &Path, files: &mut [PathBuf]) -> Result<Pairs> {
     files.sort_by_cached_key(|path| natural(&name_in(folder, path)));
     let mut warnings = Warnings::default();
@@ -104,7 +105,7 @@ pub fn files_of(folder: &Path) -> Result<Vec<PathBuf>> {
     below(folder, None)
 }
 
-/// The files below a folder, hidden ones and links to folders left out.
+/// The files below a folder, without hidden ones and links to folders.
 fn below(folder: &Path, except: Option<&Path>) -> Result<Vec<PathBuf>> {
     let is_hidden = |entry: &DirEntry| entry.depth() > 0 && entry.file_name().to_string_lossy().starts_with('.');
     let is_except = |entry: &DirEntry| {
@@ -117,7 +118,7 @@ fn below(folder: &Path, except: Option<&Path>) -> Result<Vec<PathBuf>> {
             let reason = error.io_error().map_or_else(|| error.to_string(), ToString::to_string);
             Problem::file(error.path().unwrap_or(folder), reason)
         })?;
-        // What a link leads to counts as what it is.
+        // A link counts as its target.
         if !entry.file_type().is_dir() && entry.path().is_file() {
             files.push(entry.into_path());
         }
@@ -128,7 +129,7 @@ fn below(folder: &Path, except: Option<&Path>) -> Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-/// Texts in the folders of both images, and above where these are two side by side, whose names speak of cameras.
+/// Text files with camera-like names in the folders of both images, and in their parent if these are side by side.
 pub fn files_beside(files: &Files) -> Vec<PathBuf> {
     static CAMERA: LazyLock<Regex> =
         LazyLock::new(|| pattern(r"(?i)(calib|camera|intrinsic|cam_?info|^k\b).*\.(json|ya?ml|xml|txt)$|^k\.txt$"));
@@ -150,22 +151,23 @@ pub fn files_beside(files: &Files) -> Vec<PathBuf> {
     found
 }
 
-/// The path below the folder.
+/// The path relative to the folder.
 pub fn name_in(folder: &Path, path: &Path) -> String {
     path.strip_prefix(folder).unwrap_or(path).to_string_lossy().replace('\\', "/")
 }
 
-/// The name itself.
+/// The last part of a path.
 pub fn base(name: &str) -> &str {
     name.rsplit('/').next().unwrap_or(name)
 }
 
-/// A name without its ending.
+/// A name without its extension.
 pub fn stem(name: &str) -> &str {
     ENDING.find(name).map_or(name, |ending| &name[..ending.start()])
 }
 
-/// Numbers in names by their value, and capitals beside their small letters: natord and alphanumeric-sort put all capitals first.
+/// Sorts numbers in names by value and capitals beside their small letters; natord and alphanumeric-sort put all
+/// capitals first.
 fn natural(name: &str) -> Vec<(String, u64, String)> {
     static PIECES: LazyLock<Regex> = LazyLock::new(|| pattern("[0-9]{1,18}|[^0-9]+"));
     let piece = |piece: &str| match piece.parse() {
@@ -175,12 +177,12 @@ fn natural(name: &str) -> Vec<(String, u64, String)> {
     PIECES.find_iter(name).map(|found| piece(found.as_str())).collect()
 }
 
-/// A name without what says which file of a frame it is.
+/// A name without the parts that say which file of a frame it is.
 fn common(name: &str) -> String {
     KINDS.replace_all(&ENDING.replace(name, ""), " ").into_owned()
 }
 
-/// What files of one frame have in common: letters of any script, in either case, and numbers without leading zeros.
+/// The common key of the files of one frame: letters of any script, in either case, and numbers without leading zeros.
 pub fn key(name: &str) -> String {
     let left = common(base(name)).to_lowercase();
     let words = left.split(|letter: char| !letter.is_alphanumeric() && letter != '.').map(|word| {
@@ -209,7 +211,7 @@ fn listed(path: &Path) -> Result<Vec<(f64, String)>> {
         .collect()
 }
 
-/// The pairs of rgb.txt and depth.txt, where both are there.
+/// The pairs of rgb.txt and depth.txt, if both exist.
 fn tum(folder: &Path, files: &[PathBuf], warnings: &mut Warnings) -> Result<Option<Vec<Pair>>> {
     let list = |name: &str| files.iter().find(|path| base(&name_in(folder, path)).eq_ignore_ascii_case(name));
     let (Some(colours), Some(depths)) = (list("rgb.txt"), list("depth.txt")) else { return Ok(None) };
@@ -237,7 +239,7 @@ fn tum(folder: &Path, files: &[PathBuf], warnings: &mut Warnings) -> Result<Opti
     Ok(Some(pairs))
 }
 
-/// Of two lists in order of time, those nearest to each other.
+/// The nearest pairs of two lists sorted by time.
 fn by_time(mut colours: Vec<(f64, String)>, mut depths: Vec<(f64, String)>) -> Vec<(f64, String, String)> {
     colours.sort_by(|a, b| a.0.total_cmp(&b.0));
     depths.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -256,7 +258,7 @@ fn by_time(mut colours: Vec<(f64, String)>, mut depths: Vec<(f64, String)>) -> V
     found
 }
 
-/// By like names; where those differ throughout, in their order.
+/// Pairs by similar names or, if these differ throughout, by their order.
 fn by_names(folder: &Path, files: &[PathBuf], warnings: &mut Warnings) -> Vec<Pair> {
     let is_picture = |path: &&PathBuf| {
         PICTURE.is_match(&path.to_string_lossy())
@@ -305,8 +307,8 @@ fn by_names(folder: &Path, files: &[PathBuf], warnings: &mut Warnings) -> Vec<Pa
     depths.iter().zip(&colours).map(|((name, depth), (_, colour))| of(key(name), colour, depth)).collect()
 }
 
-/// The colour image that belongs to each depth map: the one of like name, and where several names differ in case and signs alone the one
-/// whose whole path agrees but for what says which file of a frame it is.
+/// The colour image of each depth map: the one with a similar name or, if several names differ only in case and signs,
+/// the one whose whole path agrees except for the parts that say which file of a frame it is.
 fn partners(colours: &[(String, PathBuf)], depths: &[(String, PathBuf)]) -> Vec<Option<usize>> {
     let mut alike: HashMap<String, (Vec<usize>, usize)> = HashMap::new();
     for (index, (name, _)) in colours.iter().enumerate() {
@@ -330,7 +332,7 @@ fn pair(name: String, image: &Path, depth: &Path, any_mask: Option<PathBuf>, uni
     Pair { name: if name.is_empty() { stem() } else { name.clone() }, key: name, files }
 }
 
-/// Two pairs of one name get a number each, so that neither writes over the other's results.
+/// Numbers pairs of the same name, so that none overwrites another's results.
 fn unique(mut pairs: Vec<Pair>) -> Vec<Pair> {
     let mut seen: HashMap<String, usize> = HashMap::new();
     for pair in &mut pairs {
@@ -368,7 +370,7 @@ mod tests {
         let files = |kind: &str| names.map(|name| (format!("{name}_{kind}.png"), PathBuf::new()));
         let found = partners(&files("rgb"), &files("depth"));
         assert_eq!(found, (0..names.len()).map(Some).collect::<Vec<_>>());
-        // What may belong to several belongs to none.
+        // A file that may belong to several others belongs to none.
         let ambiguous = ["a_rgb.png", "A-rgb.png"].map(|name| (name.to_owned(), PathBuf::new()));
         assert_eq!(partners(&ambiguous, &[("a.depth.png".to_owned(), PathBuf::new())]), [None]);
     }

@@ -1,4 +1,4 @@
-//! What is wrong with an input: the file and the reason, as a value.
+//! An invalid input: the file and the reason, as a value.
 
 use std::fmt;
 use std::path::Path;
@@ -10,7 +10,7 @@ pub type Result<T> = std::result::Result<T, Problem>;
 pub struct Problem {
     pub code: &'static str,
     pub field: String,
-    /// Of the message, where it begins with a file's name, the rest.
+    /// Where the reason begins in the message, after a file's name.
     reason: usize,
     message: String,
 }
@@ -22,17 +22,17 @@ impl Problem {
         Self { code: "file", field: "file".into(), reason: name.len(), message: format!("{name}{reason}") }
     }
 
-    /// A depth map of a camera that is not given.
+    /// A depth map without its camera.
     pub fn camera(path: &Path, reason: impl fmt::Display) -> Self {
         Self { code: "missing", field: "depth.camera".into(), ..Self::file(path, reason) }
     }
 
-    /// An argument, or the arguments together.
+    /// An invalid argument, or a combination of them.
     pub fn option(field: &str, reason: impl fmt::Display) -> Self {
         Self { code: "option", field: field.into(), reason: 0, message: format!("{field}: {reason}") }
     }
 
-    /// What the library says about a pair, with the file of the view at fault.
+    /// An error of the library about a pair, with the file of the view that caused it.
     pub fn of_pair(error: &bimodal_stereo::Error, image: &Path, depth: &Path) -> Self {
         let path = match error.field() {
             field if field.starts_with("image") => Some(image),
@@ -43,7 +43,7 @@ impl Problem {
         Self { code: error.kind().code(), field: error.field().into(), reason: 0, message }
     }
 
-    /// What the library says about the inputs of a check.
+    /// An error of the library about the inputs of a check.
     pub fn of_check(error: &bimodal_stereo::Error) -> Self {
         Self { code: error.kind().code(), field: error.field().into(), reason: 0, message: error.to_string() }
     }
@@ -60,17 +60,17 @@ impl fmt::Display for Problem {
     }
 }
 
-/// A path for a terminal, which would obey control characters in a file's name.
+/// A path for a terminal, without the control characters that a file's name may hold.
 pub fn shown(path: &Path) -> String {
     plain(&path.display().to_string())
 }
 
-/// The same of any text.
+/// The same for any text.
 pub fn plain(text: &str) -> String {
     text.chars().map(|letter| if letter.is_control() { '\u{fffd}' } else { letter }).collect()
 }
 
-/// A file's own name, for a terminal.
+/// The last part of a path, for a terminal.
 pub fn own_name(path: &Path) -> String {
     path.file_name().map_or_else(|| shown(path), |name| plain(&name.to_string_lossy()))
 }

@@ -1,6 +1,7 @@
-//! Whole folders of a rig: frames with their cameras, and the poses that relate these, as js/rig/folder.ts reads them.
+//! Whole folders of a rig: frames with their cameras, and the poses between these, read like js/rig/folder.ts.
 //!
-//! A file that cannot be read costs its frame, not the folder: a warning names it. Limit: names have to say which pictures are depth maps.
+//! A file that cannot be read costs its frame, not the folder: a warning names it. Limit: names must say which pictures
+//! are depth maps.
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -18,11 +19,11 @@ use crate::text::numbers::shown as number;
 use crate::text::{self, Calibration, NamedCamera, NamedPose, words};
 use crate::warning::{Warning, Warnings};
 
-/// Pairs that are read where nothing else is asked for.
+/// Number of pairs that are read by default.
 const FRAMES: usize = 20;
-/// Bytes that a folder may hold, since much of it is read: some hundreds of pairs.
+/// Most bytes in a folder, since much of it is read: some hundreds of pairs.
 const MOST_BYTES: u64 = 2 << 30;
-/// First bytes, by which pictures are recognised.
+/// Number of first bytes, which identify pictures.
 const HEAD: u64 = 512;
 
 static IGNORED: Pattern = Pattern::new(|| {
@@ -35,36 +36,36 @@ static LISTS: Pattern = Pattern::new(|| {
 });
 static POSE: Pattern = Pattern::new(|| pattern("(?i)pose"));
 
-/// What was read of a file.
+/// Record of a file that was read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reading {
-    /// As it was given, or below its folder.
+    /// The name as given, or relative to the folder.
     pub name: String,
     pub path: PathBuf,
-    /// In plain words.
+    /// A description in words.
     pub says: String,
 }
 
-/// How a folder is read.
+/// Options for reading a folder.
 #[derive(Clone, Debug, Default)]
 pub struct FolderOptions {
     /// Metres for each stored number of all depth maps.
     pub unit: Option<f64>,
-    /// At most so many pairs, evenly spread; 20 without it.
+    /// Most pairs, evenly spread; `None`: 20.
     pub frames: Option<usize>,
-    /// Files of intrinsics, which go before those in the folder.
+    /// Files of intrinsics, which take precedence over those in the folder.
     pub cameras: Vec<PathBuf>,
     /// Files in the folder that are not read.
     pub except: Vec<PathBuf>,
 }
 
-/// The frames of a folder with what lies beside them. The cameras are those of the files, shared by all frames.
+/// The frames of a folder and the other content of its files. The cameras are those of the files, shared by all frames.
 #[derive(Clone, Debug)]
 pub struct RigFolder {
     pub frames: Vec<RigView>,
     pub cameras: Vec<NamedCamera>,
     pub poses: Vec<NamedPose>,
-    /// What was read of each file, in the folder's order.
+    /// Records of the files that were read, in the folder's order.
     pub readings: Vec<Reading>,
     pub warnings: Vec<Warning>,
 }
@@ -72,7 +73,7 @@ pub struct RigFolder {
 /// The cameras and poses of one file.
 ///
 /// # Errors
-/// Naming the file and the reason, of a file that is not a text or holds neither.
+/// With the file and the reason, if it is not a text or holds neither.
 pub fn read_calibration(path: &Path) -> Result<Calibration> {
     let bytes = read::whole(path)?;
     let found = match text::text_of(&bytes) {
@@ -83,11 +84,11 @@ pub fn read_calibration(path: &Path) -> Result<Calibration> {
     found.map_err(|reason| Problem::file(path, reason))
 }
 
-/// The columns and rows that a crop has lost at its left and top, of a file "NAME_loc.txt" beside "NAME_crop.png", as the RGB-D Object Dataset
-/// has them: "x,y" of the crop's first pixel in the whole frame, counted from one.
+/// The columns and rows cropped at the left and top of a picture, from a file "NAME_loc.txt" beside "NAME_crop.png", as
+/// in the RGB-D Object Dataset: "x,y" of the crop's first pixel in the whole frame, counted from one.
 ///
 /// # Errors
-/// Of such a file that does not hold two numbers.
+/// If such a file does not hold two numbers.
 pub fn read_corner(picture: &Path) -> Result<Option<[f64; 2]>> {
     static CROP: Pattern = Pattern::new(|| pattern("(?i)_(depth|mask)?crop$"));
     let stem = picture.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
@@ -105,13 +106,13 @@ pub fn read_corner(picture: &Path) -> Result<Option<[f64; 2]>> {
     }
 }
 
-/// What a file that was named is called in reports.
+/// Name in reports of a file given by its path.
 pub fn given_name(path: &Path) -> String {
     let name = shown(path).replace('\\', "/");
     name.strip_prefix("./").map_or_else(|| name.clone(), Into::into)
 }
 
-/// Gives the frames of a folder their cameras.
+/// Assigns cameras to the frames of a folder.
 fn add_cameras(folder: &mut RigFolder) {
     let Some(first) = folder.frames.first() else { return };
     if folder.cameras.is_empty() {
@@ -136,7 +137,7 @@ struct Reader {
 }
 
 impl Reader {
-    /// A file's content with its words and warnings, or nothing with a warning.
+    /// A file's content, recording its description and warnings; or `None`, with a warning.
     fn read<T>(
         &mut self,
         (name, path): (&str, &Path),
@@ -244,12 +245,12 @@ fn raster(path: &Path) -> std::result::Result<read::Raster, String> {
     read::decoded(&read::whole(path).map_err(|problem| problem.reason().to_owned())?)
 }
 
-/// What a text holds, with its format.
+/// A description of what a text holds, with its format.
 pub fn says(found: &Calibration) -> String {
     format!("{}: {}", found.format, words::in_words(found))
 }
 
-/// Evenly spread, the first and the last among them.
+/// Evenly spread, with the first and the last.
 fn spread(all: Vec<Pair>, most: usize) -> Vec<Pair> {
     if all.len() <= most {
         return all;
@@ -260,7 +261,7 @@ fn spread(all: Vec<Pair>, most: usize) -> Vec<Pair> {
     (0..most).map(|index| all[place(index)].clone()).collect()
 }
 
-/// One warning for all files that have it: a calibration of a hundred frames warns once, not a hundred times.
+/// Merges equal warnings of several files: a calibration of a hundred frames warns once, not a hundred times.
 fn grouped(warnings: Vec<Warning>) -> Vec<Warning> {
     let mut codes: Vec<&str> = Vec::new();
     for warning in &warnings {
@@ -279,7 +280,7 @@ fn grouped(warnings: Vec<Warning>) -> Vec<Warning> {
     codes.iter().flat_map(of_code).collect()
 }
 
-/// Guessed for each depth map by itself, units have to agree.
+/// Warns if the depth maps were read with different units, since each one's unit is guessed separately.
 fn check_units(frames: &[RigView], warnings: &mut Vec<Warning>) {
     let mut units: Vec<f64> = Vec::new();
     for unit in frames.iter().map(|frame| frame.unit.unwrap_or(1.0)) {
@@ -299,7 +300,7 @@ fn check_units(frames: &[RigView], warnings: &mut Vec<Warning>) {
     }
 }
 
-/// The files of a folder that may be read, by their names in it.
+/// The files of a folder that may be read, with their relative names.
 fn kept(folder: &Path, options: &FolderOptions) -> Result<Vec<(String, PathBuf)>> {
     let except: HashSet<PathBuf> =
         options.except.iter().chain(&options.cameras).filter_map(|path| path.canonicalize().ok()).collect();
@@ -320,10 +321,10 @@ fn kept(folder: &Path, options: &FolderOptions) -> Result<Vec<(String, PathBuf)>
     Ok(files)
 }
 
-/// Reads all files of a folder: frames with their cameras, and the poses that relate these.
+/// Reads all files of a folder: frames with their cameras, and the poses between these.
 ///
 /// # Errors
-/// Of a folder that cannot be read, or without anything that can, and of options beyond their range.
+/// If the folder cannot be read or holds nothing readable, or if an option is out of range.
 pub fn read_rig_folder(folder: &Path, options: &FolderOptions) -> Result<RigFolder> {
     if options.unit.is_some_and(|unit| !(unit > 0.0 && unit.is_finite())) {
         return Err(Problem::option("unit", "needs metres per stored number, above zero"));
@@ -350,7 +351,7 @@ pub fn read_rig_folder(folder: &Path, options: &FolderOptions) -> Result<RigFold
     let frames: Vec<RigView> = chosen.iter().filter_map(|pair| reader.frame(folder, pair, options.unit)).collect();
     let (mut cameras, mut poses) = (Vec::new(), Vec::new());
     for (name, path) in named.chain(texts.into_iter().filter(|(name, _)| !is_list(name))) {
-        // A pose that is called as a frame is where the camera stood then, and relates no two cameras.
+        // A pose named like a frame is the camera's position then, and does not relate two cameras.
         if POSE.is_match(&name) && keys.contains(&key(&POSE.replace_all(&name, ""))) {
             continue;
         }

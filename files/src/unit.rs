@@ -1,40 +1,41 @@
-//! The unit of a depth map in metres, guessed from its values by the rules of js/rig/depth.ts, and what looks wrong about it.
+//! The unit of a depth map in metres, guessed from its values by the rules of js/rig/depth.ts, and warnings about it.
 //!
-//! Limits: millimetres and fifths of them (TUM) cannot always be told apart by values alone, so that every guess is said.
+//! Limits: values alone cannot always distinguish millimetres from fifths of them (TUM), so every guess is reported.
 
 use std::collections::HashSet;
 
 use crate::text::numbers::brief;
 
-/// Depths of which a camera is expected to see, metres.
+/// Range of depths that a camera is expected to see, metres.
 pub const NEAREST: f64 = 0.1;
 pub const FARTHEST: f64 = 20.0;
-/// A few stray depths say nothing of the unit: of those beyond the range so many may be.
+/// Share of stray depths beyond the range up to which the unit is not questioned.
 const STRAY: f64 = 0.01;
-/// Half of what indoor sensors with integer depths see lies nearer, metres; beyond it the unit is not the millimetre.
+/// Indoor sensors with integer depths see half of their depths nearer than this, metres; beyond it, the unit is not the
+/// millimetre.
 const USUAL: f64 = 8.0;
-/// Share of values that a rule about their last digits has to hold for.
+/// Share of values for which a rule about their last digits must hold.
 const NEARLY_ALL: f64 = 0.99;
-/// .. and of SUN RGB-D's, where depths beyond 8.19 m wrap into the low bits.
+/// The same share for SUN RGB-D, whose depths beyond 8.19 m wrap into the low bits.
 const MOSTLY: f64 = 0.9;
-/// Fewer different depths are a scene made by hand, whose round numbers say nothing of the unit.
+/// With fewer distinct depths, the scene is made by hand, and its round numbers say nothing about the unit.
 const MANY_VALUES: usize = 16;
 /// Values from which on nothing was seen.
 const LARGEST: f64 = 1e12;
-/// Quantiles need no more values than these.
+/// Most values in a quantile.
 const SAMPLE: usize = 65_536;
 
-/// Metres for each stored number, and how that is known.
+/// Metres for each stored number, and how they are known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unit {
     pub metres: f64,
     pub is_guessed: bool,
-    /// What the values show, where the guess needs a reason.
+    /// What the values show, if the guess needs a reason.
     why: &'static str,
 }
 
 impl Unit {
-    /// One that was given.
+    /// A given unit.
     pub const fn given(metres: f64) -> Self {
         Self { metres, is_guessed: false, why: "" }
     }
@@ -43,10 +44,10 @@ impl Unit {
         Self { metres, is_guessed: true, why }
     }
 
-    /// What values that are turned by three bits are in, once they are turned back.
+    /// The unit of values rotated by three bits, once they are rotated back.
     pub const TURNED: Self = Self::guessed(0.001, "SUN RGB-D");
 
-    /// The unit by its name.
+    /// The name of the unit.
     pub fn name(&self) -> String {
         const NAMED: [(f64, &str); 5] = [
             (1.0, "metres"),
@@ -59,7 +60,7 @@ impl Unit {
         named.map_or_else(|| format!("units of {} mm", brief(1000.0 * self.metres, 4)), |(_, name)| name.into())
     }
 
-    /// .. with a word on the guess.
+    /// The name of the unit, with a remark if it was guessed.
     pub fn says(&self) -> String {
         match (*self == Self::TURNED, self.is_guessed, self.why) {
             (true, ..) => "millimetres with their bits turned by three (SUN RGB-D; guessed)".into(),
@@ -70,7 +71,7 @@ impl Unit {
     }
 }
 
-/// The valid values in order, at most [`SAMPLE`] of them.
+/// The valid values, sorted, at most [`SAMPLE`] of them.
 pub struct Sample(Vec<f64>);
 
 impl Sample {
@@ -93,12 +94,13 @@ impl Sample {
         self.0.iter().map(|value| value.to_bits()).collect::<HashSet<_>>().len() >= MANY_VALUES
     }
 
-    /// SUN RGB-D turns the bits of its millimetres by three, so that most values are multiples of 8.
+    /// SUN RGB-D rotates the bits of its millimetres by three, so most values are multiples of 8.
     pub fn is_turned(&self) -> bool {
         self.is_varied() && self.share(|value| value % 8.0 == 0.0) >= MOSTLY && self.median() > 1000.0
     }
 
-    /// The unit of whole numbers: of TUM's files all are multiples of 5, since they are fives of a Kinect's millimetres.
+    /// The unit of whole numbers. In TUM's files all are multiples of 5, because they are a Kinect's millimetres in
+    /// fifths.
     pub fn unit_of_integers(&self) -> Unit {
         let fives = self.is_varied()
             && self.share(|value| value % 5.0 == 0.0) >= NEARLY_ALL
@@ -112,12 +114,13 @@ impl Sample {
         Unit::guessed(0.001, "")
     }
 
-    /// The unit of floats: millimetres if half of them lay beyond what metres would reach.
+    /// The unit of floats: millimetres if, as metres, half of them would be out of range.
     pub fn unit_of_floats(&self) -> Unit {
         Unit::guessed(if self.median() > FARTHEST { 0.001 } else { 1.0 }, "")
     }
 
-    /// Whether half of whole numbers without a unit is so large that they are no pixels of an object but millimetres of a camera.
+    /// Whether half of some whole numbers without a unit are so large that they are a camera's millimetres rather than
+    /// pixels of an object.
     pub fn looks_like_millimetres(&self) -> bool {
         self.is_varied() && self.median() > 1000.0 * NEAREST
     }
@@ -126,26 +129,26 @@ impl Sample {
         self.0.is_empty()
     }
 
-    /// Whether the largest value is that with which a Kinect's raw disparity marks what it does not see, and common.
+    /// Whether the largest value is common and equals the mark of a Kinect's raw disparity for missing pixels.
     pub fn looks_like_disparity(&self) -> bool {
         const BLIND: f64 = 2047.0;
         self.0.last() == Some(&BLIND) && self.share(|value| value == BLIND) > STRAY
     }
 
-    /// The share of depths beyond what a rig's camera is expected to see, where that is more than some stray ones.
+    /// The share of depths outside the range that a rig's camera is expected to see, if it exceeds that of stray ones.
     pub fn beyond(&self, metres: f64) -> Option<f64> {
         let beyond = self.share(|value| value * metres < NEAREST || value * metres > FARTHEST);
         (beyond > STRAY).then_some(beyond)
     }
 
-    /// What is wrong with depths of that unit.
+    /// A warning about depths in that unit, if there is reason for one.
     pub fn warning(&self, metres: f64) -> Option<String> {
         let share = 100.0 * self.beyond(metres)?;
         Some(format!("{share:.1} % of the depths are outside {NEAREST} to {FARTHEST} m: is the unit right?"))
     }
 }
 
-/// SUN RGB-D's numbers as millimetres.
+/// Converts SUN RGB-D's numbers to millimetres.
 pub fn turned_back(data: &[u16]) -> Vec<u16> {
     data.iter().map(|value| value.rotate_right(3)).collect()
 }
@@ -164,7 +167,7 @@ mod tests {
         assert_eq!(unit(700..900), 0.001);
         assert_eq!(unit((700..900).map(|value| 5 * value)), 0.0002);
         assert_eq!(unit(9001..9300), 0.0002);
-        // Few values, made by hand: round numbers say nothing.
+        // A few values made by hand: their round numbers say nothing.
         assert_eq!(unit([1000, 1005, 1010].into_iter()), 0.001);
     }
 

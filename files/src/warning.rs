@@ -1,13 +1,13 @@
-//! What was guessed or looks wrong: a code, a sentence, and the file that it is about.
+//! Guesses and suspicious values: a code, a sentence, and the file concerned.
 
 use std::fmt;
 
-/// Something that a reader guessed or that looks wrong.
+/// A guess of a reader, or something that looks wrong.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Warning {
     pub code: &'static str,
     pub message: String,
-    /// The file or the input that it is about.
+    /// The file or input concerned.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub field: Option<String>,
 }
@@ -28,7 +28,7 @@ const HARMLESS: [&str; 11] = [
 ];
 
 impl Warning {
-    /// Whether it makes what was read doubtful, so that it caps the verdict of a check.
+    /// Whether it caps the verdict of a check, because the input may be wrong.
     pub fn is_doubt(&self) -> bool {
         !HARMLESS.contains(&self.code)
     }
@@ -37,7 +37,7 @@ impl Warning {
         Self { code, message: message.into(), field: None }
     }
 
-    /// The same with the file's name, in the message as well.
+    /// The same for a file, with its name in the message as well.
     #[must_use]
     pub fn of_file(&self, name: &str) -> Self {
         Self { code: self.code, message: format!("{name}: {}", self.message), field: Some(name.into()) }
@@ -50,7 +50,7 @@ impl fmt::Display for Warning {
     }
 }
 
-/// Warnings in the order in which they came up, each once.
+/// Warnings in the order in which they arose, each once.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Warnings(pub Vec<Warning>);
 

@@ -1,4 +1,4 @@
-//! Results as files that other programs read, as js/write has them.
+//! Results as files for other programs, like js/write.
 
 use std::fs;
 use std::path::Path;
@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::problem::{Problem, Result, shown};
 use crate::read::npy_bytes;
 
-/// Of lengths: metres where a view has a camera, pixels where it is orthographic.
+/// Unit of lengths: metres if a view has a camera, pixels if it is orthographic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Length {
     Metres,
@@ -29,7 +29,7 @@ impl Length {
         }
     }
 
-    /// As in the files of the page.
+    /// The symbol, as in the page's files.
     pub fn symbol(self) -> &'static str {
         match self {
             Self::Metres => "m",
@@ -38,18 +38,18 @@ impl Length {
     }
 }
 
-/// Steps of a stored depth, the finest first; the first that reaches the farthest depth is taken.
+/// Steps of a stored depth, the finest first; the first one whose range covers the farthest depth is used.
 const METRES: [(f64, &str); 4] = [(0.0001, "0.1 mm"), (0.001, "1 mm"), (0.01, "10 mm"), (1.0, "1 m")];
 const PIXELS: [(f64, &str); 4] = [(0.001, "0.001 px"), (0.01, "0.01 px"), (0.1, "0.1 px"), (1.0, "1 px")];
 const LARGEST: f64 = 65_535.0;
 
-/// The clouds' inks on the page: orange and blue.
+/// Colours of the clouds, as on the page: orange and blue.
 const INKS: [[u8; 3]; 2] = [[199, 100, 26], [11, 98, 184]];
 
-/// A file's name, its bytes, and what they are in words.
+/// A file's name, its bytes, and a description.
 pub type Entry = (&'static str, Vec<u8>, String);
 
-/// Writes what an estimator has found into a folder, and `more` beside it; the paths with what they hold.
+/// Writes the results of an estimator and the files `more` into a folder; returns their paths with descriptions.
 pub fn results(folder: &Path, estimator: &Estimator, more: Vec<Entry>) -> Result<Vec<String>> {
     fs::create_dir_all(folder).map_err(|error| Problem::file(folder, error))?;
     let image_length = Length::of(estimator.image().camera.pinhole().is_some());
@@ -78,7 +78,7 @@ pub fn results(folder: &Path, estimator: &Estimator, more: Vec<Entry>) -> Result
     Ok(written)
 }
 
-/// Depth as a PNG of 16 bits, and its step in words, which the file's remark "Unit" says too.
+/// Depth as a 16-bit PNG, and its step in words, which is also in the file's text chunk "Unit".
 pub fn depth_png(
     depth: &[f32],
     width: usize,
@@ -103,7 +103,8 @@ pub fn depth_png(
     Ok((bytes, says))
 }
 
-/// Both clouds in the colour view's frame as a binary PLY, with a colour and a label: 0 the picture's, 1 the depth map's.
+/// Both clouds in the colour view's frame as a binary PLY, with a colour and a label: 0 for the picture's, 1 for the
+/// depth map's.
 fn clouds(estimator: &Estimator, length: Length) -> Vec<u8> {
     let clouds = [Surface::Image, Surface::Depth].map(|surface| estimator.points(surface));
     let there = |points: &'_ [f32]| points.iter().all(|value| value.is_finite());
@@ -127,7 +128,7 @@ fn clouds(estimator: &Estimator, length: Length) -> Vec<u8> {
     file
 }
 
-/// The 4x4 matrix that carries depth points into the colour view; `numpy.loadtxt` reads it.
+/// The 4x4 matrix that maps depth points into the colour view; `numpy.loadtxt` reads it.
 pub fn matrix_text(pose: &Similarity) -> String {
     let line = |row: usize| {
         let values: Vec<String> = pose.matrix().row(row).iter().map(f64::to_string).collect();
@@ -136,7 +137,7 @@ pub fn matrix_text(pose: &Similarity) -> String {
     (0..4).map(line).collect()
 }
 
-/// Nine coefficients of red, of green and of blue, one channel a line.
+/// Nine coefficients each of red, green and blue, one channel a line.
 pub fn light_csv(light: &[f64]) -> String {
     let names: Vec<String> = (1..=9).map(|index| format!("L{index}")).collect();
     let line = |(channel, values): (&str, &[f64])| {
@@ -147,7 +148,7 @@ pub fn light_csv(light: &[f64]) -> String {
     format!("channel,{}\n{}", names.join(","), lines.collect::<String>())
 }
 
-/// The pose and how far it is to be trusted, for other programs: as in js/write/results.ts.
+/// The pose and how far it can be trusted, for other programs, as in js/write/results.ts.
 pub fn pose_json(report: &StepReport, length: Length) -> String {
     #[derive(Serialize)]
     struct Told<'a> {
@@ -173,6 +174,6 @@ pub fn pose_json(report: &StepReport, length: Length) -> String {
     );
     let message = reason.as_ref().map(Reason::to_string);
     let told = Told { about, unit: length.symbol(), pose, status: *status, message, reason, uncertainty };
-    // Strings and numbers alone, whose keys are names.
+    // Cannot fail: it holds only strings and numbers, and its keys are names.
     serde_json::to_string_pretty(&told).expect("can be written") + "\n"
 }

@@ -1,4 +1,4 @@
-/** Whether an image without a mask shows more than the object before black. */
+/** Whether an image without a mask shows more than an object in front of black. */
 import type { ColorImage } from "../types/index.js";
 
 /** Share of the pixels along the frame's sides that are not black, above which the background is taken to be visible. */

@@ -1,4 +1,4 @@
-/** Which cameras took the two pictures of a run, by the rules for the folders of a rig, and at the size of these pictures. */
+/** Assigns cameras to the two pictures of a run by the rules for folders of a rig, scaled to the size of these pictures. */
 import { chosen, forSize } from "../rig/assign.js";
 import { stem } from "../rig/names.js";
 import type { NamedCamera } from "../rig/types.js";
@@ -24,7 +24,7 @@ export interface PairCameras {
   warnings: ReaderWarning[];
 }
 
-/** A single camera of a file goes by the file's name where it has none of its own. */
+/** A single unnamed camera of a file gets the file's name. */
 function named(cameras: readonly GivenCamera[]): GivenCamera[] {
   const isOnly = (file: string) => cameras.filter((each) => each.file === file).length === 1;
   return cameras.map((each) =>
@@ -32,7 +32,7 @@ function named(cameras: readonly GivenCamera[]): GivenCamera[] {
   );
 }
 
-/** A camera whose picture has another aspect is left out: it cannot be scaled, and would be wrong as it is. */
+/** A camera whose picture has another aspect ratio is left out, because it cannot be scaled. */
 export function camerasFor(given: readonly GivenCamera[], colour: PictureSize, depth: PictureSize): PairCameras {
   const warnings: ReaderWarning[] = [];
   const frame = {
@@ -45,7 +45,9 @@ export function camerasFor(given: readonly GivenCamera[], colour: PictureSize, d
     if (found === undefined || found.width === undefined) return found as GivenCamera | undefined;
     if (found.width === size.width && found.height === size.height) return found as GivenCamera;
     const { file } = found as GivenCamera;
-    warnings.push(warning("camera-left-out", `${file}: not used for the ${what}, for it is of another size.`));
+    warnings.push(
+      warning("camera-left-out", `${file}: not used for the ${what}, because its image size has another aspect ratio.`),
+    );
     return undefined;
   };
   const found = [sized(some, colour, "colour images"), sized(other, depth, "depth maps")] as const;

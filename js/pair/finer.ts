@@ -1,9 +1,9 @@
-/** By which whole factor an image is finer than a run can use beside its depth map: the rule of src/view/working_size.rs, rounded down. */
+/** The whole factor by which an image is finer than a run can use beside its depth map: the rule of src/view/working_size.rs, rounded down. */
 import type { ColorImage, DepthMap } from "../types/index.js";
 
-/** Pixels from which an image is made smaller before the run: drawing and keeping the results of more takes longer than the run. */
+/** Images of more pixels are scaled down before the run: drawing and keeping results of that size takes longer than the run. */
 const LARGE = 2 ** 20;
-/** Ratios that are whole but for rounding. */
+/** Tolerance for rounding in ratios that are whole numbers. */
 const ROUNDING = 1e-6;
 
 const focalLength = ({ fx, fy }: { fx: number; fy: number }): number => Math.sqrt(fx * fy);
@@ -20,7 +20,7 @@ function measured({ width, height, data, points, mask }: DepthMap): number {
 
 const ratio = (fine: number, coarse: number): number => Math.sqrt(fine / Math.max(1, coarse));
 
-/** How many times as fine as the depth map an image is, at the object. */
+/** The ratio of the image's resolution to the depth map's, at the object. */
 export function finerBy(image: ColorImage, depth: DepthMap): number {
   const frames = ratio(image.width * image.height, depth.width * depth.height);
   if (image.camera && depth.camera) return Math.min(frames, focalLength(image.camera) / focalLength(depth.camera));
@@ -30,7 +30,7 @@ export function finerBy(image: ColorImage, depth: DepthMap): number {
   return Math.min(frames, ratio(inside, measured(depth)));
 }
 
-/** The factor by which a large image is made smaller before a run, where it is so many times as fine as the depth map; 1 leaves it. */
+/** The factor by which a large image of this ratio is scaled down before a run; 1 leaves it. */
 export function surplus({ width, height }: ColorImage, finer: number): number {
   return width * height <= LARGE ? 1 : Math.max(1, Math.floor(finer + ROUNDING));
 }

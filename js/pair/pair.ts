@@ -1,7 +1,4 @@
-/**
- * What was read of a visitor's files as the pair that a run takes, with what was guessed or changed on the way in words, by the field that
- * it concerns.
- */
+/** Makes the input of a run from the visitor's files, with notes about what was guessed or changed, by field. */
 import { BimodalError } from "../errors.js";
 import { nameOf } from "../rig/guess.js";
 import type { DepthReading, RigReading } from "../rig/types.js";
@@ -13,7 +10,7 @@ import { reducedDepth, reducedImage } from "./reduce.js";
 /** Longest side that a run takes. */
 const LONGEST = 4096;
 
-/** What was read, and what the owner of the files knows about them. */
+/** What was read, and what the visitor entered about the files. */
 export interface Parts {
   colour: Extract<RigReading, { kind: "colour" }>;
   depth: DepthReading & { name: string; measured?: { range: [number, number] } };
@@ -30,17 +27,17 @@ export interface Parts {
 export interface Pair {
   image: ColorImage;
   depth: DepthMap;
-  /** What was guessed or changed, in words, by the field that it concerns. */
+  /** What was guessed or changed, in words, by field. */
   notes: Record<string, string>;
-  /** The unit that the file gives or its values suggest, where none was given. */
+  /** The unit from the file or guessed from its values, if none was given. */
   unit?: number;
 }
 
-/** Says what is being done to a large picture. */
+/** Reports what is done to a large picture. */
 type Say = (words: string) => void;
 type Notes = Pair["notes"];
 
-/** 8 bits are made for screens, and so are 16 that only repeat 8. Finer levels come from sensors and renderers. */
+/** Images of 8 bits, also if stored with 16, are made for screens. Finer levels come from sensors and renderers. */
 function guessedTransfer(data: Exclude<ColorImage["data"], Float32Array>): "srgb" | "linear" {
   return data instanceof Uint16Array && !data.every((level) => level % 257 === 0) ? "linear" : "srgb";
 }
@@ -62,7 +59,7 @@ function wholeImage({ colour, colourMask, colourCamera, transfer }: Parts, notes
   return whole;
 }
 
-/** What the reader guessed of the unit, and whether the depths are in range; nothing where the file gives it. */
+/** The reader's guess of the unit and its warning about the range of depths; empty if the file gives the unit. */
 function guessInWords({ warnings, guessed }: Parts["depth"]): string {
   const doubt = guessed.length > 0 ? warnings.find(({ code }) => code === "unit-guessed") : undefined;
   const range = warnings.find(({ code }) => code === "depth-range");
@@ -73,7 +70,7 @@ const RELATIVE =
   "Inverse depths are known up to a factor only: the median depth was set to the longer side of the map, in pixels. Another unit makes the relief deeper or flatter.";
 const SAME = 1e-9;
 
-/** The unit of the map: given, or with a camera that of the file or its values. Without a camera a stored number is a pixel. */
+/** The unit of the map: given, or with a camera from the file or its values. Without a camera one stored unit is one pixel. */
 function unitOf(parts: Parts, notes: Notes): { unit?: number; found?: number } {
   const { depth, depthCamera, unit: given } = parts;
   const doubt = depth.warnings.find(({ code }) => code === "unit-guessed");
@@ -108,7 +105,7 @@ const inPixels = ({ width, height }: { width: number; height: number }): string 
 const least = ({ width, height }: { width: number; height: number }): number =>
   Math.ceil(Math.max(width, height) / LONGEST);
 
-/** The depth map at a size that the library takes, and the image at one that the run can use beside it. */
+/** The depth map at a size that the library accepts, and the image at one that the run can use with it. */
 export function pairOf(parts: Parts, say: Say): Pair {
   const notes: Notes = {};
   const [image, { depth: map, found }] = [wholeImage(parts, notes), wholeDepth(parts, notes)];

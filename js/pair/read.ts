@@ -1,6 +1,6 @@
 /**
- * The files of a run's pair, read as those of a rig. A run takes more than a rig does: larger pictures, which are scaled down, and colour
- * images of formats that only the browser knows.
+ * Reads the files of a pair with the readers of rigs. A run also accepts larger pictures, which are scaled down, and colour images in formats
+ * that only the browser knows.
  */
 import { BimodalError, badFile, badNamed, reasonOf } from "../errors.js";
 import { isNpy } from "../npy.js";
@@ -12,7 +12,7 @@ import { pngPicture } from "../rig/formats/png.js";
 import { ofPicture, readRigFile } from "../rig/read.js";
 import type { NamedFile, ReadOptions, RigReading } from "../rig/types.js";
 
-/** Pixels of a picture, at most: a photograph of 12000x9000 has 108 million, and a canvas of more takes all memory. */
+/** Most pixels of a picture: a photograph of 12000x9000 has 108 million, and a larger canvas exhausts memory. */
 const MOST_PIXELS = 2 ** 27;
 
 function checkPixels(width: number, height: number): void {
@@ -20,7 +20,7 @@ function checkPixels(width: number, height: number): void {
     throw badFile(`it is ${width}x${height} pixels large; up to ${MOST_PIXELS} pixels are read`);
 }
 
-/** A picture of any size that memory holds. */
+/** A picture of any size that fits into memory. */
 async function picture(bytes: Uint8Array, isColour: boolean): Promise<Picture> {
   if (isPng(bytes)) return pngPicture(bytes, checkPixels);
   if (isNpy(bytes)) return npyPicture(bytes, checkPixels);

@@ -1,6 +1,6 @@
 /**
- * Views made smaller by a whole factor. Colours are means of linear intensity over the usable pixels of a block, as the run's own working
- * size has them (src/view/working_size.rs); a depth is that of the block's middle, because a mean across an edge lies where nothing is.
+ * Scales views down by a whole factor. A colour is the mean linear intensity of the usable pixels of a block, as in src/view/working_size.rs;
+ * a depth is that of the block's middle, because the mean across an edge lies on neither surface.
  */
 import type { ColorImage, DepthMap, Pinhole } from "../types/index.js";
 
@@ -13,7 +13,7 @@ const COVERED = 0.5;
 const decoded = (value: number): number => (value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4);
 const encoded = (value: number): number => (value <= 0.0031308 ? 12.92 * value : 1.055 * value ** (1 / 2.4) - 0.055);
 
-/** Linear intensity of each level; NaN of those that are not usable. */
+/** Linear intensity of each level; NaN if it is not usable. */
 function linearLevels(bits: 8 | 16, isLinear: boolean): Float32Array {
   const most = 2 ** bits - 1;
   return Float32Array.from({ length: most + 1 }, (_, level) => {
@@ -31,12 +31,12 @@ interface Block {
   width: number;
 }
 
-/** What a block comes to: the sums of its usable pixels' intensities, their count, and how bright and opaque it is. */
+/** Sums over a block: intensities and number of its usable pixels, brightness and opacity. */
 class Sums {
   readonly linear = [0, 0, 0];
   usable = 0;
   inside = 0;
-  /** Sum of all levels of the red channel, which tells black from saturated. */
+  /** Sum of all levels of the red channel, which distinguishes black from saturated. */
   level = 0;
   opaque = 0;
 
@@ -93,7 +93,7 @@ function addFloats(
   }
 }
 
-/** The means of a block as levels of 16 bits, black or saturated where too little of it is usable. */
+/** The means of a block as 16-bit levels; black or saturated if too few of its pixels are usable. */
 function putLevels(to: Uint16Array, at: number, { linear, usable, level, opaque }: Sums, rules: Rules): void {
   const { area, isLinear, most } = rules;
   const unusable = level / area > most / 2 ? FULL : 0;
@@ -114,7 +114,7 @@ interface Rules {
   most: number;
 }
 
-/** A colour image, and its mask, by a whole factor smaller. Integers come out with 16 bits, in the same encoding. */
+/** A colour image and its mask, scaled down by a whole factor. Integers become 16-bit, in the same encoding. */
 export function reducedImage(image: ColorImage, factor: number): ColorImage {
   const { data, mask, camera, ...rest } = image;
   const size = smaller(image, factor);
@@ -147,7 +147,7 @@ export function reducedImage(image: ColorImage, factor: number): ColorImage {
   };
 }
 
-/** A depth map, and its mask, of which the middle pixel of each block is left. */
+/** A depth map and its mask, reduced to the middle pixel of each block. */
 export function reducedDepth(depth: DepthMap, factor: number): DepthMap {
   const { data, points, mask, camera, ...rest } = depth;
   const size = smaller(depth, factor);
@@ -177,7 +177,7 @@ const smaller = ({ width, height }: { width: number; height: number }, factor: n
   height: Math.floor(height / factor),
 });
 
-/** The camera of a view of which every `factor`-th pixel is left, the first of them `offset` pixels in. */
+/** The camera of a view reduced to every `factor`-th pixel, starting at pixel `offset`. */
 function reducedCamera(camera: Pinhole, factor: number, offset: number): Pinhole {
   const { fx, fy, cx, cy } = camera;
   return { ...camera, fx: fx / factor, fy: fy / factor, cx: (cx - offset) / factor, cy: (cy - offset) / factor };

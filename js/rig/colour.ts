@@ -76,7 +76,7 @@ export function looksLikeMask(picture: Picture): boolean {
 /** Share of the pixels of a mask with soft edges that are wholly inside or outside, and of either alone, at least. */
 const [HARD, EACH] = [0.95, 0.02];
 
-/** Whether nearly all pixels of a grey picture have one of two levels, zero and the largest of its bits or, where `ofName`, of its own. */
+/** Whether nearly all pixels of a grey picture have one of two levels, zero and the largest of its bit depth or, if `ofName`, its own largest. */
 export function looksLikeSoftMask(picture: Picture, ofName: boolean): boolean {
   const { data, channels, bits } = picture;
   if (data instanceof Float32Array || bits < 8 || !isGrey(picture)) return false;

@@ -1,8 +1,8 @@
 /**
- * Depths of stored numbers that are larger where a surface is nearer: disparities of a stereo pair, inverse depths, what networks estimate
- * from a single image.
+ * Depths from numbers that are larger for nearer surfaces: disparities of a stereo pair, inverse depths, estimates of a network from a single
+ * image.
  *
- * Limits: a network's inverse depths have an unknown offset as well as an unknown factor; an offset that is not given is taken to be zero.
+ * Limits: a network's inverse depths have an unknown offset as well as an unknown factor; the offset defaults to zero.
  */
 import { isThere } from "./guess.js";
 import { median } from "./statistics.js";
@@ -11,14 +11,14 @@ import { median } from "./statistics.js";
 export interface InverseDepth {
   /**
    * Metres times stored numbers: focal length (pixels) times baseline (metres) for disparities in pixels, 1 for inverse metres. Default: a
-   * factor at which the median depth is as far away, in pixels, as the longer side of the map is long, which suits orthographic views alone.
+   * factor that makes the median depth as many pixels as the longer side of the map, which suits orthographic views only.
    */
   numerator?: number;
   /** What is added to each stored number, such as the `doffs` of Middlebury's calibrations. Default 0. */
   offset?: number;
 }
 
-/** The depths of a map of stored numbers; zero is a hole, and so is a depth that is not positive and finite. */
+/** The depths of a map of stored numbers. Zero, and a depth that is not positive and finite, is a hole. */
 export function depthsOf(
   stored: ArrayLike<number>,
   { width, height }: { width: number; height: number },

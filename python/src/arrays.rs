@@ -1,15 +1,15 @@
-//! Numbers out, as arrays of their natural shapes.
+//! Numbers as arrays in their natural shapes.
 
 use numpy::ndarray::IntoDimension;
 use numpy::{Element, IntoPyArray, PyArrayMethods};
 use pyo3::prelude::*;
 
-/// An array of its own, row by row.
+/// A new array, row by row.
 pub fn array<T: Element>(py: Python<'_>, values: Vec<T>, shape: impl IntoDimension) -> PyResult<Bound<'_, PyAny>> {
     Ok(values.into_pyarray(py).reshape(shape)?.into_any())
 }
 
-/// Three numbers for each point, as many as there are.
+/// An array of three numbers for each point.
 pub fn triples<T: Element>(py: Python<'_>, values: Vec<T>) -> PyResult<Bound<'_, PyAny>> {
     let count = values.len() / 3;
     array(py, values, [count, 3])

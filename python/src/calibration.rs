@@ -1,4 +1,4 @@
-//! The check of a calibration for Python, and the rendered rigs that it is tried on.
+//! The check of a calibration for Python, and the rendered rigs on which it is tested.
 
 use bimodal_stereo::scenes::rig::{RigKind, RigRequest, render};
 use bimodal_stereo::{CalibrationCheck, Cue, RigView, Size, overlay};
@@ -15,7 +15,7 @@ use crate::report;
 
 type Dict<'py> = PyResult<Bound<'py, PyDict>>;
 
-/// Runs the check, calling `on_progress(share, message)` between its slices, where the interpreter's signals are seen as well.
+/// Runs the check. Between its slices it calls `on_progress(share, message)` and handles the interpreter's signals.
 #[pyfunction]
 pub fn check_calibration<'py>(
     py: Python<'py>,
@@ -46,7 +46,7 @@ pub fn check_calibration<'py>(
     report::plain(py, &report.ok_or_else(|| failure("internal", "check_calibration", "ended without a report"))?)
 }
 
-/// Where a pose puts the visible points and the depth edges of a frame on its image.
+/// Projects the visible points and the depth edges of a frame onto its image under a pose.
 #[pyfunction]
 pub fn project_frame<'py>(py: Python<'py>, frame: &Bound<'py, PyAny>, pose: &Bound<'py, PyAny>) -> Dict<'py> {
     let (view, pose) = (view(0, frame)?, extrinsics(pose, "pose")?);

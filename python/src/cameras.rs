@@ -1,4 +1,4 @@
-//! Cameras from the dictionaries of the package, and back.
+//! Cameras from and to the package's dictionaries.
 
 use bimodal_stereo::{Lens, Pinhole};
 use pyo3::prelude::*;
@@ -20,7 +20,7 @@ pub fn pinhole(raster: &Members<'_>) -> PyResult<Option<Pinhole>> {
     Ok(Some(Pinhole { fx, fy, cx, cy, lens }))
 }
 
-/// A camera as the package's `Pinhole` takes it.
+/// A camera as the package's `Pinhole` expects it.
 pub fn plain<'py>(py: Python<'py>, camera: &Pinhole) -> PyResult<Bound<'py, PyDict>> {
     let own = [("fx", camera.fx), ("fy", camera.fy), ("cx", camera.cx), ("cy", camera.cy)].into_py_dict(py)?;
     own.set_item("model", camera.lens.model())?;

@@ -1,4 +1,4 @@
-//! What goes wrong becomes the package's `BimodalError`, in Python's spelling.
+//! Errors as the package's `BimodalError`, with names in Python's spelling.
 
 use pyo3::{PyErr, PyResult, import_exception, pyfunction};
 
@@ -6,7 +6,7 @@ use crate::guard::BrokenOff;
 
 import_exception!(bimodal_stereo._errors, BimodalError);
 
-/// An error with its code and the field at fault, as a path.
+/// An error with its code and the path of the field that caused it.
 pub fn failure(code: &str, field: &str, message: &str) -> PyErr {
     BimodalError::new_err((code.to_owned(), format!("{field}: {message}"), field.to_owned()))
 }
@@ -14,7 +14,7 @@ pub fn failure(code: &str, field: &str, message: &str) -> PyErr {
 /// A name of the contract, or a path of names, in Python's spelling.
 #[pyfunction]
 pub fn spelled(name: &str) -> String {
-    // The names of candidates are the caller's.
+    // The names of candidates belong to the caller.
     if name.starts_with("candidates.") {
         return name.to_owned();
     }
@@ -27,7 +27,7 @@ pub fn spelled(name: &str) -> String {
         }
         own.push(letter.to_ascii_lowercase());
     }
-    // A word of the language.
+    // A keyword of Python.
     let segments = own.split('.').map(|name| if name == "lambda" { "lambda_" } else { name });
     segments.collect::<Vec<_>>().join(".")
 }
@@ -37,19 +37,19 @@ pub fn refused(error: &bimodal_stereo::Error) -> PyErr {
     refused_at(spelled(error.field()), error)
 }
 
-/// The same with another path of the field at fault.
+/// The same, with another path of the field.
 pub fn refused_at(field: String, error: &bimodal_stereo::Error) -> PyErr {
     let message = error.to_string();
     let message = message.strip_prefix(error.field()).map_or(message.clone(), |rest| format!("{field}{rest}"));
     BimodalError::new_err((error.kind().code(), message, field, error.index(), error.bad_value()))
 }
 
-/// What a guarded call of the crate came to.
+/// The result of a guarded call of the crate.
 pub fn outcome<R>(result: Result<bimodal_stereo::Result<R>, BrokenOff>) -> PyResult<R> {
     unbroken(result)?.map_err(|error| refused(&error))
 }
 
-/// The same of a call that can't be refused.
+/// The same for a call that cannot be refused.
 pub fn unbroken<R>(result: Result<R, BrokenOff>) -> PyResult<R> {
     let of = |code: &str, message: String| BimodalError::new_err((code.to_owned(), message, None::<String>));
     result.map_err(|broken| match broken {

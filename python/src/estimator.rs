@@ -13,14 +13,14 @@ use crate::error::{failure, outcome, unbroken};
 use crate::guard::{Guarded, guarded};
 use crate::{files, input, options, report};
 
-/// An estimator, the options a reset without options goes back to, and the wall time of the stages that ran last: the
+/// An estimator, the options for a reset without options, and the wall time of the stages that ran last, because the
 /// numerics have no clock.
 struct Loop {
     native: Native,
     options: Options,
     workers: usize,
     milliseconds: Vec<(&'static str, f64)>,
-    /// Whether anything has been run since the start, and how many slices of the search that was.
+    /// Whether anything has run since the start, and the number of slices of the search.
     begun: bool,
     slices: usize,
 }
@@ -29,7 +29,7 @@ impl Loop {
     fn step(&mut self) {
         self.milliseconds.clear();
         if self.workers > 1 && !self.native.is_searching() {
-            // Stages run beside each other in the threads.
+            // The stages run in parallel in the threads.
             return self.timed(Some("iteration"), Native::step);
         }
         let before = self.native.report().iteration;
@@ -48,13 +48,13 @@ impl Loop {
         self.timed_stage();
     }
 
-    /// A stage, or a step of the search: with several threads that is a round of theirs.
+    /// A stage, or a step of the search, which is a round of the threads if there are several.
     fn timed_stage(&mut self) {
         let work = if self.native.is_searching() { Native::step } else { Native::step_stage };
         self.timed(None, work);
     }
 
-    /// Measures some work under a name, or under that of the stage that it ends with.
+    /// Measures some work under a name, or under that of the stage at its end.
     fn timed(&mut self, name: Option<&'static str>, work: fn(&mut Native) -> &StepReport) {
         let start = Instant::now();
         let stage = work(&mut self.native).stage;
@@ -81,7 +81,7 @@ impl Loop {
         (self.native.report().clone(), self.milliseconds.clone())
     }
 
-    /// All that a run says and has found, but for the times: floats as text are the shortest that read back as the same bits.
+    /// All results of a run except the times. Floats as text are the shortest that read back as the same bits.
     fn found(&self) -> Vec<u8> {
         let mut bytes = format!("{:?}", self.native.report()).into_bytes();
         bytes.extend(self.native.light().flat().iter().flat_map(|value| value.to_le_bytes()));
@@ -91,7 +91,7 @@ impl Loop {
     }
 }
 
-/// The loop. Threads that call it at the same time wait for each other, none of them with the interpreter's lock.
+/// The loop. Threads that call it at the same time wait for each other, without holding the interpreter's lock.
 #[pyclass(frozen, module = "bimodal_stereo._native")]
 pub struct Estimator {
     own: Guarded<Loop>,
@@ -117,7 +117,7 @@ impl Estimator {
         report::step(py, &state, &milliseconds)
     }
 
-    /// A raster of one view, with so many numbers for each pixel.
+    /// A raster of one view, with one or three numbers for each pixel.
     fn raster<'py, T: numpy::Element + Send>(
         &self,
         py: Python<'py>,
@@ -174,7 +174,7 @@ impl Estimator {
         outcome(py.detach(|| self.own.call(|own| own.reset(options))))
     }
 
-    /// Writes what was found into a folder; the paths with what they hold.
+    /// Writes the results into a folder; returns their paths with descriptions.
     fn write_results(&self, py: Python<'_>, folder: PathBuf) -> PyResult<Vec<String>> {
         let written = self.call(py, |own| write::results(&folder, &own.native, Vec::new()))?;
         written.map_err(|problem| files::refused(&problem))
@@ -216,7 +216,7 @@ impl Estimator {
         array(py, self.call(py, |own| own.native.light().flat().to_vec())?, [3, 9])
     }
 
-    /// How far the run has come, and what `Loop::found` gives, of one moment.
+    /// How far the run has come, and the result of `Loop::found` at the same moment.
     fn reached<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyBytes>)> {
         let (report, begun, slices, found) =
             self.call(py, |own| (own.native.report().clone(), own.begun, own.slices, own.found()))?;
@@ -229,7 +229,7 @@ impl Estimator {
         Ok((dict, PyBytes::new(py, &found)))
     }
 
-    /// Of the depth view, or else of the image; the package has checked the word.
+    /// Points of the depth view or the image; the package has checked the word.
     fn points<'py>(&self, py: Python<'py>, of_depth: bool) -> Array<'py> {
         let surface = if of_depth { Surface::Depth } else { Surface::Image };
         triples(py, self.call(py, |own| own.native.points(surface))?)

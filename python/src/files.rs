@@ -1,4 +1,4 @@
-//! Files of a rig for Python: the command `check` as a whole, and the readers of calibrations and folders.
+//! Files of a rig for Python: the whole command `check`, and the readers of calibrations and folders.
 
 use std::ffi::OsString;
 use std::io::{self, Write};
@@ -19,7 +19,7 @@ use crate::report;
 
 type Dict<'py> = PyResult<Bound<'py, PyDict>>;
 
-/// A function of Python that takes text.
+/// A Python function that takes text.
 struct Text(Py<PyAny>);
 
 impl Write for Text {
@@ -29,7 +29,7 @@ impl Write for Text {
         written.map(|()| bytes.len()).map_err(|_| io::Error::from(io::ErrorKind::BrokenPipe))
     }
 
-    /// Texts arrive whole.
+    /// Writes each text in one call.
     fn write_fmt(&mut self, words: std::fmt::Arguments<'_>) -> io::Result<()> {
         self.write_all(words.to_string().as_bytes())
     }
@@ -39,7 +39,7 @@ impl Write for Text {
     }
 }
 
-/// Runs `check` with these arguments; the exit code.
+/// Runs `check` with these arguments; returns the exit code.
 #[pyfunction]
 pub fn check_command(
     py: Python<'_>,
@@ -62,7 +62,7 @@ pub fn check_command(
     unbroken(py.detach(|| guarded(run)))
 }
 
-/// A file that cannot be read or written.
+/// The error of a file that cannot be read or written.
 pub fn refused(problem: &Problem) -> PyErr {
     BimodalError::new_err((problem.code, problem.to_string(), problem.field.clone()))
 }
@@ -80,7 +80,7 @@ pub fn read_calibration(py: Python<'_>, path: PathBuf) -> Dict<'_> {
     Ok(dict)
 }
 
-/// The frames of a folder with what lies beside them.
+/// The frames of a folder, and the other content of its files.
 #[pyfunction]
 pub fn read_rig_folder(
     py: Python<'_>,
@@ -116,7 +116,8 @@ pub fn read_image(py: Python<'_>, path: PathBuf) -> Dict<'_> {
     Ok(dict)
 }
 
-/// A depth map or an organised cloud. `is_metric`: whether its unit is the metre, to be guessed where it is not given, and not the pixel.
+/// A depth map or an organised cloud. If `is_metric`, its unit is the metre and is guessed unless given; otherwise it
+/// is the pixel.
 #[pyfunction]
 pub fn read_depth(py: Python<'_>, path: PathBuf, unit: Option<f64>, is_metric: bool) -> Dict<'_> {
     let raster = raster(py, &path)?;
@@ -127,7 +128,7 @@ pub fn read_depth(py: Python<'_>, path: PathBuf, unit: Option<f64>, is_metric: b
     let found = read.map_err(|reason| refused(&Problem::file(&path, reason)))?;
     let dict = depths(py, found.samples, size)?;
     dict.set_item("unit", found.unit)?;
-    // What is said of metres means nothing of pixels, and around a single object most of a depth map is often empty.
+    // Warnings about metres do not apply to pixels, and around a single object most of a depth map is often empty.
     let mut told = if is_metric { found.warnings.0 } else { of_file };
     told.retain(|warning| warning.code != "many-holes");
     dict.set_item("warnings", warnings(py, &told)?)?;

@@ -1,21 +1,21 @@
-//! A value that a panic can't hurt twice. Needs nothing but the standard library, so that its tests run without Python.
+//! A value that cannot be used after a panic. Requires only the standard library, so that its tests run without Python.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Mutex;
 
-/// Why a call gave nothing back.
+/// Why a call returned nothing.
 #[derive(Debug, PartialEq)]
 pub enum BrokenOff {
-    /// It panicked, saying this.
+    /// It panicked with this message.
     Now(String),
-    /// An earlier call did: what it left is suspect.
+    /// An earlier call panicked, and the state that it left is suspect.
     Earlier,
 }
 
-/// Runs what should never panic.
+/// Runs work that should never panic.
 pub fn guarded<R>(work: impl FnOnce() -> R) -> Result<R, BrokenOff> {
-    // Nothing that the work has touched is looked at afterwards: it is dropped, or behind a lock that is poisoned.
+    // Nothing that the work touched is used afterwards: it is dropped, or behind a poisoned lock.
     catch_unwind(AssertUnwindSafe(work)).map_err(|payload| BrokenOff::Now(text(&*payload)))
 }
 
@@ -24,7 +24,7 @@ fn text(payload: &(dyn Any + Send)) -> String {
     literal.or_else(|| payload.downcast_ref().cloned()).unwrap_or_default()
 }
 
-/// One value for several threads, which wait for each other.
+/// One value shared by several threads, which wait for each other.
 pub struct Guarded<T>(Mutex<T>);
 
 impl<T> Guarded<T> {

@@ -1,4 +1,4 @@
-//! From the dictionaries of the package to the views of the crate.
+//! Conversion of the package's dictionaries to the crate's views.
 
 use bimodal_stereo::nalgebra::{Matrix3, Matrix4, Vector3};
 use bimodal_stereo::{Angles, ColourImage, ColourSamples, DepthMap, DepthSamples, Similarity, Transfer};
@@ -11,7 +11,7 @@ use crate::members::Members;
 const IMAGE: [&str; 6] = ["width", "height", "data", "mask", "camera", "transfer"];
 const DEPTH: [&str; 8] = ["width", "height", "data", "points", "mask", "camera", "unit", "normals"];
 
-/// What image and depth map have in common, with a camera of one kind or another.
+/// The common part of images and depth maps, with either kind of camera.
 pub struct Raster<'py> {
     pub members: Members<'py>,
     pub size: [usize; 2],
@@ -86,14 +86,15 @@ pub fn depth(value: &Bound<'_, PyAny>) -> PyResult<DepthMap> {
 
 pub const POSE: [&str; 5] = ["scale", "rotation", "translation", "angles", "matrix"];
 
-/// The parts of a pose that are given.
+/// The given parts of a pose.
 pub struct GivenPose {
     pub scale: Option<f64>,
     pub rotation: Option<Matrix3<f64>>,
     pub translation: Option<Vector3<f64>>,
 }
 
-/// A pose by its members; without a rotation a 4x4 matrix gives all of them, and without either angles give the rotation.
+/// A pose from its members. Without a rotation, a 4x4 matrix gives all of them; without either, angles give the
+/// rotation.
 pub fn pose(pose: &Members<'_>) -> PyResult<GivenPose> {
     let rows = pose.numbers::<9>("rotation")?;
     if let (None, Some(entries)) = (rows, pose.numbers::<16>("matrix")?) {
@@ -110,7 +111,7 @@ pub fn pose(pose: &Members<'_>) -> PyResult<GivenPose> {
     })
 }
 
-/// More is a mistake, no turn; far beyond, a sine means nothing.
+/// A larger angle is a mistake, and far beyond this a sine is meaningless.
 const FULL_TURN: f64 = 360.0;
 
 /// Missing angles are zero.
@@ -126,9 +127,9 @@ pub fn angles(parent: &Members<'_>) -> PyResult<Option<Angles>> {
     Ok(Some(Angles { alpha: angle("alpha")?, beta: angle("beta")?, gamma: angle("gamma")? }))
 }
 
-/// Of a candidate for extrinsics, whose scale is one.
+/// A candidate for extrinsics, whose scale is one.
 pub fn extrinsics(value: &Bound<'_, PyAny>, path: &str) -> PyResult<Similarity> {
-    /// What a product of rotations with rounding leaves of a scale of one.
+    /// Deviation from a scale of one that rounding leaves in a product of rotations.
     const SCALE_TOLERANCE: f64 = 0.01;
     let members = Members::new(value, path, &POSE)?;
     let given = pose(&members)?;

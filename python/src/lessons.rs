@@ -1,4 +1,4 @@
-//! Single parts of the method, to look at.
+//! Single parts of the method, for lessons.
 
 use bimodal_stereo::scenes::lights;
 use bimodal_stereo::{Light, Minimum, Normals, PixelLandscape, ShadingWeights, Size, surface_of_normals};
@@ -13,7 +13,7 @@ use crate::members::Members;
 
 type Array<'py> = PyResult<Bound<'py, PyAny>>;
 
-/// Depth of the surface with these normals, of which all x come first, then all y, then all z.
+/// Depth of the surface with these normals, given as all x, then all y, then all z.
 #[pyfunction]
 pub fn integrate_normals<'py>(py: Python<'py>, keywords: &Bound<'py, PyAny>) -> Array<'py> {
     let given = Members::new(keywords, "", &["normals", "height", "width", "robust"])?;
@@ -28,7 +28,7 @@ pub fn integrate_normals<'py>(py: Python<'py>, keywords: &Bound<'py, PyAny>) -> 
     array(py, depth, [height, width])
 }
 
-/// A light that is named or given.
+/// A named or given light.
 pub fn light(given: &Members<'_>) -> PyResult<Light> {
     let value = given.needed("light", given.get("light")?)?;
     let made = match value.extract::<String>() {
@@ -49,7 +49,7 @@ pub fn turn_light<'py>(py: Python<'py>, keywords: &Bound<'py, PyAny>) -> Array<'
     array(py, turned.flat().to_vec(), [3, 9])
 }
 
-/// log S of each of some normals, three numbers after three.
+/// log S of each normal; normals and results are sequences of three numbers.
 #[pyfunction]
 pub fn shade_normals<'py>(py: Python<'py>, keywords: &Bound<'py, PyAny>) -> Array<'py> {
     let given = Members::new(keywords, "", &["light", "normals"])?;

@@ -1,8 +1,8 @@
 //! Bindings for Python: thin, without mathematics, private to the package `bimodal_stereo` beside them.
 //!
-//! The package has turned arrays into contiguous ones of the types asked for here, and objects into dictionaries; names and
-//! types of single members are checked here ([`members`]), values by the crate, as for every other caller. Arrays are copied
-//! both ways. Whatever takes time runs without the interpreter's lock, and a panic comes back as an error ([`guard`]).
+//! The package has made arrays contiguous and of the required types, and turned objects into dictionaries. Names and
+//! types of single members are checked here ([`members`]), values by the crate, as for every other caller. Arrays are
+//! copied both ways. Long calls run without the interpreter's lock, and a panic becomes an error ([`guard`]).
 
 mod arrays;
 mod calibration;
@@ -40,7 +40,7 @@ mod _native {
     #[pymodule_export]
     const CODES: &str = bimodal_stereo::CODES;
 
-    /// Version of the bindings, which is the package's.
+    /// Version of the bindings, equal to the package's.
     #[pymodule_export]
     const VERSION: &str = env!("CARGO_PKG_VERSION");
 }

@@ -1,4 +1,4 @@
-//! The members of a dictionary, with the names and types that the contract gives them.
+//! The members of a dictionary, with the names and types of the contract.
 
 use std::fmt::Display;
 
@@ -9,14 +9,14 @@ use pyo3::types::PyDict;
 
 use crate::error::failure;
 
-/// A dictionary and where it is in the contract. A member that is `None` is absent.
+/// A dictionary and its path in the contract. A member that is `None` counts as absent.
 pub struct Members<'py> {
     own: Bound<'py, PyDict>,
     path: String,
 }
 
 impl<'py> Members<'py> {
-    /// Refuses every name but these. The path of arguments is empty.
+    /// Refuses all names but these. The path of arguments is empty.
     pub fn new(value: &Bound<'py, PyAny>, path: &str, names: &[&str]) -> PyResult<Self> {
         let own = value.cast::<PyDict>().map_err(|_| wrong(path, "a dictionary or the object made for it", value))?;
         let members = Self { own: own.clone(), path: path.to_owned() };
@@ -39,7 +39,7 @@ impl<'py> Members<'py> {
         Ok(self.own.get_item(name)?.filter(|value| !value.is_none()))
     }
 
-    /// A member that has to be there.
+    /// A required member.
     pub fn needed<T>(&self, name: &str, value: Option<T>) -> PyResult<T> {
         value.ok_or_else(|| failure("missing", &self.at(name), "is required"))
     }
@@ -70,21 +70,21 @@ impl<'py> Members<'py> {
         self.typed(name, "a text")
     }
 
-    /// What one of some words stands for.
+    /// The value that one of some words stands for.
     pub fn word<T: Copy>(&self, name: &str, words: &[(&str, T)]) -> PyResult<Option<T>> {
         let Some(given) = self.text(name)? else { return Ok(None) };
         let found = words.iter().find(|(word, _)| *word == given).map(|&(_, value)| value);
         found.map(Some).ok_or_else(|| unknown(&self.at(name), &given, words.iter().map(|(word, _)| word)))
     }
 
-    /// A list of numbers, or an array of them in whatever shape.
+    /// A list of numbers, or an array of any shape.
     pub fn list(&self, name: &str) -> PyResult<Option<Vec<f64>>> {
         let Some(value) = self.get(name)? else { return Ok(None) };
         let flat = value.call_method0("ravel").unwrap_or(value);
         flat.extract().map(Some).map_err(|_| wrong(&self.at(name), "a list of numbers", &flat))
     }
 
-    /// So many of them.
+    /// A list of this many numbers.
     pub fn numbers<const COUNT: usize>(&self, name: &str) -> PyResult<Option<[f64; COUNT]>> {
         let Some(list) = self.list(name)? else { return Ok(None) };
         let message = format!("needs {COUNT} numbers, not {}", list.len());
@@ -103,13 +103,13 @@ impl<'py> Members<'py> {
     }
 }
 
-/// The error of a value of another type.
+/// The error for a value of the wrong type.
 pub fn wrong(field: &str, what: &str, value: &Bound<'_, PyAny>) -> PyErr {
     let name = value.get_type().name().map_or_else(|_| "that".to_owned(), |name| name.to_string());
     failure("type", field, &format!("must be {what}, not {name}"))
 }
 
-/// The error of a word that is none of those that are known.
+/// The error for an unknown word.
 pub fn unknown(field: &str, given: &str, known: impl Iterator<Item = impl Display>) -> PyErr {
     let known: Vec<String> = known.map(|word| word.to_string()).collect();
     failure("option", field, &format!("\"{given}\" is unknown; known: {}", known.join(", ")))

@@ -1,4 +1,4 @@
-//! From keyword arguments to the crate's options, over its defaults.
+//! Conversion of keyword arguments to the crate's options, over its defaults.
 
 use bimodal_stereo::{
     Light, LightGaussian, LightSource, Options, Registration, Shading, Start, StartTolerance, Weights,
@@ -28,7 +28,7 @@ const NAMES: [&str; 16] = [
     "workers",
 ];
 
-/// The options that these keyword arguments name; the others are the defaults'.
+/// The options in these keyword arguments; the others have their defaults.
 pub fn options(keywords: &Bound<'_, PyAny>) -> PyResult<Options> {
     let given = Members::new(keywords, "", &NAMES)?;
     let default = Options::default();
@@ -51,7 +51,7 @@ pub fn options(keywords: &Bound<'_, PyAny>) -> PyResult<Options> {
     })
 }
 
-/// How many threads share the work.
+/// Number of threads that share the work.
 pub fn workers(keywords: &Bound<'_, PyAny>) -> PyResult<Option<usize>> {
     const MOST_WORKERS: usize = 16;
     let given = Members::new(keywords, "", &NAMES)?.whole("workers")?;
@@ -68,7 +68,7 @@ const REGISTRATIONS: [(&str, Registration); 3] =
     [("joint", Registration::Joint), ("icp", Registration::Icp), ("fixed", Registration::Fixed)];
 const SHADINGS: [(&str, Shading); 2] = [("surface", Shading::Surface), ("pixel", Shading::Pixel)];
 
-/// A word in the place of something else.
+/// A word given instead of a value.
 fn word_of(given: &Members<'_>, name: &str) -> PyResult<Option<String>> {
     Ok(given.get(name)?.and_then(|value| value.extract().ok()))
 }

@@ -1,4 +1,5 @@
-//! From the crate's reports to dictionaries with the names of the JavaScript contract, of which the package makes its objects.
+//! Conversion of the crate's reports to dictionaries with the names of the JavaScript contract, from which the package
+//! makes its objects.
 
 use bimodal_stereo::StepReport;
 use pyo3::prelude::*;
@@ -6,7 +7,7 @@ use pyo3::types::{IntoPyDict, PyDict};
 use pythonize::pythonize;
 use serde::Serialize;
 
-/// A report in the shape that serde gives it.
+/// A report in the shape of its serialisation.
 pub fn plain<'py>(py: Python<'py>, report: &impl Serialize) -> PyResult<Bound<'py, PyDict>> {
     Ok(pythonize(py, report)?.cast_into::<PyDict>()?)
 }

@@ -1,4 +1,4 @@
-//! Made scenes for Python.
+//! Rendered scenes for Python.
 
 use bimodal_stereo::scenes::{self, DepthData, Relief, Sample, SampleRequest, Scene, lights, surfaces};
 use bimodal_stereo::{Camera, Size};
@@ -29,7 +29,7 @@ const NAMES: [&str; 12] = [
     "holes",
     "seed",
 ];
-/// What the grid protocol has no use for: it would be ignored in silence.
+/// Arguments that the grid protocol does not use and would silently ignore.
 const RENDERED_ALONE: [&str; 7] = ["size", "height", "scale", "noise", "depth_noise", "holes", "seed"];
 
 #[pyfunction]
@@ -47,7 +47,7 @@ pub fn sample<'py>(py: Python<'py>, keywords: &Bound<'py, PyAny>) -> PyResult<Bo
     plain(py, &made(py, &Members::new(keywords, "", &NAMES)?)?)
 }
 
-/// The least error of the rotation that any estimator can have on this scene, degrees.
+/// The lowest rotation error that any estimator can attain on this scene, degrees.
 #[pyfunction]
 pub fn sample_bound(py: Python<'_>, keywords: &Bound<'_, PyAny>, light_is_known: bool) -> PyResult<Option<f64>> {
     let given = Members::new(keywords, "", &NAMES)?;

@@ -14,7 +14,7 @@ use crate::guard::guarded;
 use crate::input::{POSE, pose};
 use crate::members::Members;
 
-/// Depth as a PNG of 16 bits, and its step in words.
+/// Depth as a 16-bit PNG, and its step in words.
 #[pyfunction]
 pub fn depth_png<'py>(
     py: Python<'py>,

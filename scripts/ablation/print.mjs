@@ -1,4 +1,4 @@
-// What each part buys, as text and as a table of docs/accuracy.md.
+// What each part buys, as text and as a table of docs/lab/results.md.
 import { columns, fixed, mark } from "../tables/columns.mjs";
 import { isConfidentlyWrong, isFound } from "../../protocols/counts.mjs";
 import { median, worst } from "../../protocols/numbers.mjs";

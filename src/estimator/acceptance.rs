@@ -1,4 +1,4 @@
-//! What follows the last stage of an iteration: its solution is accepted or taken back, shapes settle, and the loop goes on or ends.
+//! The end of an iteration: the solution is accepted or taken back, shapes settle, and the loop continues or ends.
 
 use super::Estimator;
 use super::checks;
@@ -13,7 +13,7 @@ use crate::reason::Reason;
 use crate::report::{Objective, Status};
 
 impl Estimator {
-    /// Compares the new solution with the accepted one, keeps the better, and decides whether the loop goes on.
+    /// Compares the new solution with the accepted one, keeps the better, and decides whether the loop continues.
     pub(super) fn finish_iteration(&mut self) {
         self.report.iteration += 1;
         let is_first = self.report.iteration == 1;
@@ -24,8 +24,7 @@ impl Estimator {
         let is_new = !self.settling.keeps_all();
         let after = if is_new { self.objective() } else { self.report.objective };
         let change = self.accepted.pose.degrees_to(&self.solution.pose);
-        // The registration by colours has an objective of its own: a pose that it moves is not for this one to take
-        // back.
+        // Photometric registration has its own objective, so this one does not take back a pose that it moved.
         let is_comparable =
             self.stages.registration.kind(&self.pair) != Registration::Joint || change < self.pair.options.stop_degrees;
         let worse_than =
@@ -77,12 +76,12 @@ impl Estimator {
         self.settle();
         self.accepted.accept(&self.solution);
         self.choose_evaluation_points();
-        // Over the new evaluation points, as the next iteration will be.
+        // Over the new evaluation points, as in the next iteration.
         self.report.objective = self.objective();
     }
 
-    /// Decides which shapes the next iteration keeps: none before the surface has tried its starts, and none after one
-    /// that has changed the pose.
+    /// Decides which shapes the next iteration keeps. It keeps none before the surface has tried its starts, and none
+    /// after an iteration that changed the pose.
     fn settle(&mut self) {
         let Self { pair, stages, accepted, solution, scratch, settling, report, .. } = self;
         let Stages { paint, registration, .. } = stages;
@@ -94,12 +93,12 @@ impl Estimator {
         }
     }
 
-    /// The evaluation points of the next comparison, from the present correspondences.
+    /// Chooses the evaluation points of the next comparison from the current correspondences.
     fn choose_evaluation_points(&mut self) {
         self.accepted.compared_over(objective::evaluation_points(&self.pair, &self.correspondences));
     }
 
-    /// Overlap, inliers and residuals of the present correspondences.
+    /// Measures overlap, inliers and residuals of the current correspondences.
     pub(super) fn measure(&mut self) {
         let Self { pair, stages: Stages { paint, .. }, solution, correspondences, scratch, .. } = self;
         let residual = self.residuals.measure(pair, paint, solution, correspondences, &mut scratch.spare);
@@ -108,7 +107,7 @@ impl Estimator {
         self.report.inliers = correspondences.inliers();
     }
 
-    /// Ends the loop where the evidence says so.
+    /// Ends the loop if the evidence suffices for a verdict.
     fn conclude(&mut self, is_rejected: bool, before: Option<Objective>) {
         let is_unmoved = self.history.proposed_degrees < self.pair.options.stop_degrees;
         self.history.unmoved = if is_unmoved { self.history.unmoved + 1 } else { 0 };
@@ -148,7 +147,7 @@ impl Estimator {
         }
     }
 
-    /// A verdict as it stands, or that of a depth map whose unit the image contradicts: where other poses fit as well, that may be why.
+    /// Caps the verdict if another depth unit fits the image better, because a wrong unit can also explain rivals.
     fn check_unit(&mut self, ended: Verdict) -> Verdict {
         let has_rivals =
             self.history.hollow.is_none() && ended.0 == Status::Ambiguous && !self.report.rivals.is_empty();

@@ -1,4 +1,5 @@
-//! What the verdict is taken from: the state of the loop at the end of an iteration, and what each registration reports of its answer.
+//! Evidence for the verdict: the state of the loop after an iteration, and what each registration reports about its
+//! answer.
 
 use crate::options::{Registration, Shading};
 use crate::pose::{ContrastReport, Direction, OutlineReport, PhotometricReport};
@@ -6,7 +7,7 @@ use crate::reason::Reason;
 
 use super::finder::Staying;
 
-/// What is known at the end of an iteration.
+/// The state of the loop at the end of an iteration.
 #[derive(Clone, Debug)]
 pub struct Evidence {
     /// Iterations so far, and their cap.
@@ -14,33 +15,32 @@ pub struct Evidence {
     pub max_iterations: u32,
     /// The largest sigma of the rotation at which a run converges, degrees.
     pub tolerance: f64,
-    /// The registration that ran, and the way the shape is found.
+    /// The registration that ran, and how the shape is found.
     pub registration: Registration,
     pub shading: Shading,
     /// Number of correspondences, and their share of the valid depth pixels.
     pub correspondences: usize,
     pub overlap: f64,
-    /// Objective before the iteration, none before the first, and after it.
+    /// Objective before the iteration (`None` before the first) and after it.
     pub objective_before: Option<f64>,
     pub objective: f64,
     /// Whether the iteration was taken back.
     pub is_rejected: bool,
     /// Iterations in a row that were taken back or found no better pose.
     pub rejections: u32,
-    /// Whether the registration's whole step was less than the caller's `stopDegrees`, and for how many iterations in a
-    /// row.
+    /// Number of successive iterations in which the registration's whole step was less than the caller's `stopDegrees`.
     pub unmoved: u32,
     /// Whether the registration's whole step was taken, and to a better pose.
     pub is_whole_step: bool,
-    /// What the registration by colours says of its answer, where the answer is its own.
+    /// Report of the photometric registration, if it found the answer.
     pub colours: Option<ColourEvidence>,
-    /// What outlines say of their answer, where the colours are painted and the answer is theirs.
+    /// Report of the silhouettes, if the albedo varies and they found the answer.
     pub outlines: Option<OutlineEvidence>,
-    /// What local contrast says, likewise.
+    /// Report of local contrast, if it found the answer.
     pub contrast: Option<ContrastEvidence>,
-    /// Whether the initial pose may be used, where it was kept.
+    /// Whether the initial pose is usable, if it was kept.
     pub staying: Option<Staying>,
-    /// What checks of the input have against an answer: a hollow depth map, a mask that is missing.
+    /// Reasons of the input checks to distrust an answer: a hollow depth map, a missing mask.
     pub hollow: Option<Reason>,
     pub missing_mask: Option<Reason>,
     /// Number of rivals, and the degrees to the nearest.
@@ -48,40 +48,40 @@ pub struct Evidence {
     pub nearest_rival: f64,
 }
 
-/// What the registration by colours says of its answer.
+/// What photometric registration reports about its answer.
 #[derive(Clone, Copy, Debug)]
 pub struct ColourEvidence {
     /// Sigma of the rotation about the least certain axis, degrees, and the weakest direction.
     pub sigma: f64,
     pub weakest: Direction,
-    /// Share of the colours' spread that is left unexplained.
+    /// Share of the log image's spread that is left unexplained.
     pub unexplained: f64,
     /// Share of the points within the robust scale.
     pub inliers: f64,
 }
 
-/// What outlines say of their answer.
+/// What silhouettes report about their answer.
 #[derive(Clone, Copy, Debug)]
 pub struct OutlineEvidence {
     /// Sigma of the rotation about the least certain axis, degrees, and that axis.
     pub sigma: f64,
     pub weakest: Direction,
-    /// Whether that rotation is as good as unseen.
+    /// Whether that rotation is practically unobserved.
     pub is_unseen: bool,
 }
 
-/// What local contrast says of its answer.
+/// What local contrast reports about its answer.
 #[derive(Clone, Copy, Debug)]
 pub struct ContrastEvidence {
     /// Sigma of the rotation about the least certain axis, degrees, and the weakest direction.
     pub sigma: f64,
     pub weakest: Direction,
-    /// What contrast and outline leave unexplained: zero where nothing, one where shading explains none of the contrast.
+    /// Objective of local contrast and silhouette: 0 if nothing is left, 1 if shading explains none of the contrast.
     pub unexplained: f64,
 }
 
 impl ContrastEvidence {
-    /// Of a registration by local contrast.
+    /// Evidence from a registration by local contrast.
     pub fn of(found: &ContrastReport) -> Self {
         Self {
             sigma: found.uncertainty.largest_rotation(),
@@ -92,7 +92,7 @@ impl ContrastEvidence {
 }
 
 impl ColourEvidence {
-    /// Of a registration, given the spread of the colours.
+    /// Evidence from a photometric registration, given the spread of the log image.
     pub fn of(found: &PhotometricReport, log_spread: f64) -> Self {
         Self {
             sigma: found.uncertainty.largest_rotation(),
@@ -104,7 +104,7 @@ impl ColourEvidence {
 }
 
 impl OutlineEvidence {
-    /// Of a registration by outlines.
+    /// Evidence from a registration by silhouettes.
     pub fn of(found: &OutlineReport) -> Self {
         Self {
             sigma: found.uncertainty.largest_rotation(),

@@ -1,9 +1,9 @@
-//! Units, starts and gauges: what the data cannot say, decided once and for all (`docs/method/frames.md`).
+//! Units, initial poses and gauges: fixes what the data cannot determine (`docs/method/frames.md`).
 //!
-//! - Scale: a metric cloud against a pixel image has s near s0 = focal length / median Z; pixels against pixels and
-//!   any image with known intrinsics have s0 = 1.
-//! - An orthographic image cannot see t_z: the median depth difference of the correspondences is made zero.
-//! - A pinhole image cannot see the size of its surface: s is held and the surface scaled instead.
+//! - Scale: for a metric cloud and a pixel image, s is near s0 = focal length / median Z. For pixels and pixels, and
+//!   for any image with known intrinsics, s0 = 1.
+//! - An orthographic image does not depend on t_z: the median depth difference of the correspondences is set to zero.
+//! - A pinhole image does not determine the size of its surface: s is held and the surface is scaled instead.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -16,11 +16,11 @@ use crate::view::{Camera, ColourView, DepthView, Points};
 
 /// Two orthographic masks that overlap less than this (intersection over union) are centred on each other first.
 const LEAST_OVERLAP: f64 = 0.5;
-/// Growth of the apparent size beyond which, or below whose inverse, a registration has collapsed: shrunk onto a few pixels
-/// a cloud is easily explained. The search looks from 0.7 to 1.4.
+/// Growth of the apparent size beyond which, or below whose inverse, a registration has collapsed: a cloud that shrinks
+/// onto a few pixels fits easily. The search covers 0.7 to 1.4.
 const LARGEST_GROWTH: f64 = 2.0;
 
-/// s0: what one unit of the depth view measures in the colour view.
+/// s0: length of one unit of the depth view in the colour view.
 pub fn unit_scale(pair: &ViewPair) -> f64 {
     let ViewPair { image, depth, .. } = pair;
     let focal_length = image.camera.focal_length().or_else(|| depth.camera.focal_length());
@@ -30,15 +30,15 @@ pub fn unit_scale(pair: &ViewPair) -> f64 {
     }
 }
 
-/// The scale that the registration holds, `None` where it is free.
+/// The scale that the registration holds; `None` if it is free.
 ///
-/// Behind a pinhole image a change of scale is a change of the surface's size, so the pose keeps its scale.
+/// Behind a pinhole, a change of scale equals a change of the surface's size, so the pose keeps its scale.
 pub fn held_scale(pair: &ViewPair) -> Option<f64> {
     pair.options.scale.or_else(|| (!pair.image.camera.is_orthographic()).then_some(1.0))
 }
 
-/// By how much the object's apparent size differs between two poses: |ln(s / s')| before an orthographic image, and
-/// |ln((s / z) / (s' / z'))| with the distances of its middle behind a pinhole, which holds s. Infinite behind the
+/// Difference of the object's apparent size between two poses: |ln(s / s')| for an orthographic image, and
+/// |ln((s / z) / (s' / z'))| with the distances z of its centre behind a pinhole, which holds s. Infinite behind the
 /// camera.
 pub fn growth(pair: &ViewPair, pose: &Similarity, other: &Similarity) -> f64 {
     if pair.image.camera.is_orthographic() {
@@ -55,7 +55,7 @@ pub fn keeps_size(pair: &ViewPair, pose: &Similarity, other: &Similarity) -> boo
     growth(pair, pose, other) <= LARGEST_GROWTH.ln()
 }
 
-/// Length of an image pixel at the object as the pose places it, in units of the colour view.
+/// Length of an image pixel at the object under the solution's pose, in units of the colour view.
 pub fn pixel_length(image: &ColourView, solution: &Solution) -> f64 {
     let distance = || solution.pose.apply(solution.depth.points.centroid()).z;
     image.camera.focal_length().map_or(1.0, |focal_length| distance() / focal_length)
@@ -76,7 +76,7 @@ pub fn first_pose(pair: &ViewPair) -> Similarity {
     pose
 }
 
-/// The pose of a rotation that puts the middle of the depth points on the middle of the image's object.
+/// The pose of a rotation that puts the centre of the depth points on the centre of the image's object.
 pub fn centred(pair: &ViewPair, rotation: Matrix3<f64>) -> Similarity {
     let scale = held_scale(pair).unwrap_or_else(|| unit_scale(pair));
     let mut pose = Similarity { scale, rotation, translation: Vector3::zeros() };
@@ -84,13 +84,13 @@ pub fn centred(pair: &ViewPair, rotation: Matrix3<f64>) -> Similarity {
     pose
 }
 
-/// Whether the views of the identity share their frame.
+/// Whether the views share a frame if the pose is the identity.
 pub fn shares_frame(pair: &ViewPair) -> bool {
     coincides(&pair.image, &pair.depth, Start::Identity)
 }
 
-/// Whether both views share their frame as they stand, so that no translation is the best first one. A view that is
-/// rotated by the start is rotated about its own centre, which has to be brought back.
+/// Whether both views share their frame initially, so that no translation is the best first one. A start that rotates a
+/// view rotates it about the frame's origin, so its centre must be brought back.
 fn coincides(image: &ColourView, depth: &DepthView, start: Start) -> bool {
     start == Start::Identity
         && match (image.camera, depth.camera) {
@@ -100,7 +100,7 @@ fn coincides(image: &ColourView, depth: &DepthView, start: Start) -> bool {
         }
 }
 
-/// Intersection over union of both masks, centre on centre.
+/// Intersection over union of both masks, with their centres aligned.
 fn mask_overlap(image: &ColourView, depth: &DepthView) -> f64 {
     let (mut both, mut any) = (0_usize, image.mask.iter().filter(|&&inside| inside).count());
     for index in (0..depth.size.len()).filter(|&index| depth.mask[index]) {
@@ -130,7 +130,7 @@ fn centring(image: &ColourView, depth: &DepthView, pose: &Similarity) -> Vector3
     let distance = match (image.camera.focal_length(), depth.camera) {
         (None, _) => 0.0,
         (Some(_), Camera::Pinhole(_)) => rotated.z,
-        // A cloud in pixels of its own stands where its silhouette is as large as the image's.
+        // A cloud in pixels is placed where its silhouette is as large as the image's.
         (Some(focal_length), Camera::Orthographic) => focal_length * pose.scale * (depth.valid() as f64 / count).sqrt(),
     };
     Vector3::from(image.camera.point(image.size, pixel, distance)) - rotated
@@ -141,8 +141,8 @@ fn median_depth(depth: &DepthView) -> f64 {
     f64::from(quantile(&mut values, 0.5))
 }
 
-/// Puts the image's surface where neither view can tell: an orthographic one's median depth is zero, a pinhole's stands
-/// where it meets the depth points that fall on it. Writes the image's points, and the pose's t_z.
+/// Fixes the depth of the image's surface where neither view determines it: an orthographic one gets median depth zero,
+/// a pinhole's is scaled to meet the corresponding depth points. Writes the image's points, and the pose's t_z.
 pub fn fix_depth_of_surface(
     pair: &ViewPair,
     correspondences: &Correspondences,
@@ -161,7 +161,7 @@ pub fn fix_depth_of_surface(
     fix_depth_of_pose(pair, correspondences, spare, solution);
 }
 
-/// The pose's t_z of an orthographic image: the median depth difference of the overlap becomes zero.
+/// Sets the pose's t_z for an orthographic image, so that the median depth difference of the overlap is zero.
 pub fn fix_depth_of_pose(
     pair: &ViewPair,
     correspondences: &Correspondences,

@@ -1,4 +1,4 @@
-//! What an iteration leaves unexplained: |log S - predicted| pixel by pixel, and its robust mean.
+//! Residuals of an iteration: |log S - predicted| for each pixel, and their robust mean.
 
 use nalgebra::Matrix3;
 
@@ -18,7 +18,7 @@ const MOST_MEDIANS: f32 = 3.0;
 pub struct PixelResiduals(Vec<f32>);
 
 impl PixelResiduals {
-    /// None yet, for so many pixels.
+    /// No residuals yet, for this number of pixels.
     pub fn new(pixels: usize) -> Self {
         Self(vec![f32::NAN; pixels])
     }
@@ -27,8 +27,8 @@ impl PixelResiduals {
         &self.0
     }
 
-    /// Predicts each pixel from the measured normal of the depth view where it reaches, from the image's own normal
-    /// elsewhere. Returns the robust mean over the pixels that the depth view reaches, if there are any.
+    /// Predicts each pixel from the measured normal of the corresponding depth point, or else from the image's own
+    /// normal. Returns the robust mean over the pixels that the depth view reaches, if there are any.
     pub fn measure(
         &mut self,
         pair: &ViewPair,
@@ -61,7 +61,7 @@ impl PixelResiduals {
     }
 }
 
-/// The normals that the image's pixels are predicted from, colour view's frame.
+/// The normals from which the image's pixels are predicted, in the colour view's frame.
 struct SeenNormals<'a> {
     measured: &'a Normals,
     own: &'a Normals,
@@ -75,7 +75,8 @@ impl<'a> SeenNormals<'a> {
         Self { measured: &pair.depth.normals, own: &solution.image.normals, correspondences, rotation }
     }
 
-    /// The measured one where the depth view reaches, else the image's own; and which of them it is.
+    /// The measured normal if the depth view reaches the pixel, else the image's own; and whether it is the measured
+    /// one.
     fn of_pixel(&self, pixel: usize) -> ([f32; 3], bool) {
         match self.correspondences.normal_at(pixel, self.measured) {
             Some(normal) => ((self.rotation * normal).into(), true),
@@ -84,12 +85,12 @@ impl<'a> SeenNormals<'a> {
     }
 }
 
-/// The light of the shading: exposure and tint included.
+/// The light of the shading, with exposure and tint.
 fn shading_light(paint: &PaintStage, solution: &Solution) -> Light {
     solution.light.total().tinted(paint.found().map_or([0.0; 3], |found| found.tint))
 }
 
-/// Log shading of each image pixel, R, G, B interleaved: from which [`PixelResiduals`] are taken. NaN off the mask.
+/// Log shading of each image pixel, R, G, B interleaved, as predicted for [`PixelResiduals`]. NaN off the mask.
 pub fn shading(
     pair: &ViewPair,
     paint: &PaintStage,

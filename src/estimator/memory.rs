@@ -1,25 +1,23 @@
-//! How much memory a pair of views will take, asked before any of it is allocated.
+//! Memory that a pair of views needs, checked before any of it is allocated.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::text::Fixed;
 use crate::view::Size;
 
-/// Bytes that one pixel of either view takes, all stages and the initialisation together. Measured on pairs at 640x480
-/// (`tests/contract/memory.test.mjs` watches it), the module's own megabyte included: 180 of each view's pixels where
-/// the object covers a third of the frame, 210 where it fills it. A lens with distortion adds up to 52, a noisy depth
-/// map, whose pose its surface settles, up to 35; of smaller views the megabyte is a larger share: 222 at 480x360.
+/// Bytes for one pixel of either view, all stages and the initialisation together, with the module's own megabyte. Set
+/// on pairs at 640x480 whose object fills the frame; `tests/contract/memory.test.mjs` measures it. Lens distortion and
+/// noisy depth take more, and in smaller views the megabyte counts for more.
 const BYTES_PER_PIXEL: f64 = 220.0;
-/// Bytes that one pixel of either view takes in a [`Worker`](super::Worker), which has a module of its own. Measured at
-/// 640x480: 75 while it searches; while it refines 84 where the object covers a third of the frame, 98 where it covers
-/// most of it.
+/// Bytes for one pixel of either view in a [`Worker`](super::Worker), which has a separate module. Set at 640x480,
+/// where refinement takes more than the search.
 const WORKER_BYTES_PER_PIXEL: f64 = 110.0;
-/// Most bytes of a pair: a quarter of what a wasm module may have, and what a phone's browser grants a page.
+/// Most bytes of a pair: a quarter of a wasm module's limit, and what a phone's browser grants a page.
 const MOST_BYTES: f64 = 1e9;
 
 /// Refuses pairs that are too large.
 ///
 /// # Errors
-/// [`ErrorKind::Memory`] naming the larger view.
+/// [`ErrorKind::Memory`] with the larger view as its field.
 pub fn check(image: Size, depth: Size) -> Result<()> {
     let [image, depth] = [image, depth].map(|size| size.len() as f64);
     let bytes = BYTES_PER_PIXEL * (image + depth);
@@ -32,12 +30,12 @@ pub fn check(image: Size, depth: Size) -> Result<()> {
     Err(Error::new(ErrorKind::Memory, field, message))
 }
 
-/// Image pixels that fit beside a depth map.
+/// Most image pixels that fit in memory with a depth map of this size.
 pub fn most_image_pixels(depth: Size) -> usize {
     (MOST_BYTES / BYTES_PER_PIXEL - depth.len() as f64).max(0.0) as usize
 }
 
-/// How many workers of a pair fit beside its estimator.
+/// Number of a pair's workers that fit in memory beside its estimator.
 pub fn workers_afforded(image: Size, depth: Size) -> u32 {
     let pixels = (image.len() + depth.len()) as f64;
     ((MOST_BYTES / pixels - BYTES_PER_PIXEL) / WORKER_BYTES_PER_PIXEL).max(0.0) as u32

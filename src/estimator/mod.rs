@@ -1,16 +1,16 @@
-//! Algorithm 1: one iteration, stage by stage.
+//! Algorithm 1: iterations, stage by stage.
 //!
-//! light (Eq. 2) -> shading (Eq. 6 to 9) -> surface -> registration (Eq. 12 to 16) -> refinement (Eq. 17 to 19),
-//! until the rotation settles. After each iteration the objective l + f + g (Eq. 1) of the new solution is compared
-//! with that of the last accepted one over the same depth points; a worse iteration is taken back, and the next one
-//! takes half the registration's step.
+//! light (Eq. 2) -> shading (Eq. 6 to 9) -> surface -> registration (Eq. 12 to 16) -> refinement (Eq. 17 to 19), until
+//! the rotation settles. After each iteration, the objective l + f + g (Eq. 1) of the new solution is compared with
+//! that of the last accepted one over the same depth points. A worse iteration is taken back, and the next one takes
+//! half the registration's step.
 //!
-//! Where nothing is known of the pose, the [`finder`] comes first; where an initial pose does not explain the image, it
-//! looks around that within the first iteration. The registration by colours has an objective of its own, so the loop's never
-//! takes back a pose that it moves.
+//! If nothing is known about the pose, the [`finder`] runs first. If an initial pose does not explain the image, it
+//! searches around that pose within the first iteration. Photometric registration has its own objective, so the loop
+//! never takes back a pose that it moved.
 //!
-//! Each stage owns its memory and says by its signature what it reads and what it writes ([`stages`]); this file is the
-//! order in which they run, [`acceptance`] what follows the last of them. What an end is called is decided in [`verdict`].
+//! Each stage owns its memory, and its signature shows what it reads and writes ([`stages`]). This file holds the order
+//! in which they run, [`acceptance`] the end of an iteration, and [`verdict`] the status at the end.
 
 mod acceptance;
 mod checks;
@@ -56,7 +56,7 @@ use stages::{
 pub use workers::Worker;
 pub use workers::task::{Finding, Task};
 
-/// The loop with all its memory. One value works on one pair of views.
+/// The loop with all its memory. An estimator works on one pair of views.
 ///
 /// ```
 /// use bimodal_stereo::{scenes, Estimator, LightSource, Options, Status};
@@ -78,17 +78,17 @@ pub struct Estimator {
     stages: Stages,
     correspondences: Correspondences,
     residuals: PixelResiduals,
-    /// Memory that the stages take turns at.
+    /// Memory that the stages share.
     scratch: Scratch,
-    /// What the stages of this iteration work on.
+    /// The working solution of this iteration.
     solution: Solution,
-    /// The last iteration that was accepted.
+    /// The last accepted iteration.
     accepted: Accepted,
     history: History,
-    /// Which shapes have settled, so that they are kept.
+    /// Which shapes have settled and are kept.
     settling: Settling,
     report: Reported,
-    /// Threads that share the work, where there are any.
+    /// Threads that share the work, if there are any.
     #[cfg(feature = "rayon")]
     threads: Option<Box<threads::Threads>>,
 }
@@ -105,7 +105,7 @@ impl Estimator {
     fn of(pair: ViewPair) -> Result<Self> {
         let pose = gauge::first_pose(&pair);
         let light = pair.known_light().copied().unwrap_or_else(|| pair.prior.mean());
-        // First what needs much more memory while it is made than afterwards.
+        // The parts that need much more memory during construction than afterwards come first.
         let registration = RegistrationStage::new(&pair, Opening::is_called_for(&pair));
         let refinement = RefinementStage::new(&pair)?;
         let shape = ShapeStage::new(&pair)?;
@@ -143,22 +143,23 @@ impl Estimator {
         Ok(estimator)
     }
 
-    /// Everything that iteration zero needs: holes guessed, points placed, correspondences and light by the first pose.
+    /// Prepares iteration zero: fills holes, places points, and finds correspondences and light under the first pose.
     fn prepare(&mut self) -> Result<()> {
         self.stages.refinement.fill_holes(&self.pair, &mut self.scratch, &mut self.solution.depth)?;
         self.solution.light.exposure = self.stages.light.find_first_exposure(&self.pair);
         self.find_correspondences();
-        // Relief that is next to flat asks for a light that there is none of. The prior's stands until a pose is tried.
+        // Nearly flat relief does not determine a light. The prior's light stays until a pose is tried.
         self.fit_light().or_else(|error| if error.kind() == ErrorKind::Range { Ok(()) } else { Err(error) })?;
         self.accepted.accept(&self.solution);
         self.measure();
         Ok(())
     }
 
-    /// Starts again from iteration zero with other options on the same views.
+    /// Restarts at iteration zero with other options on the same views.
     ///
     /// # Errors
-    /// [`ErrorKind::Range`] for a bad option, [`ErrorKind::Unsupported`] where `trim` differs: it belongs to the views.
+    /// [`ErrorKind::Range`] for an invalid option, [`ErrorKind::Unsupported`] if `trim` differs: it is applied to the
+    /// views.
     pub fn reset(&mut self, options: Options) -> Result<()> {
         options.validate()?;
         if options.trim != self.pair.options.trim {
@@ -175,8 +176,8 @@ impl Estimator {
         Ok(())
     }
 
-    /// One iteration, the rest of one that was begun by [`step_stage`](Self::step_stage), or a slice of the
-    /// finder. Changes nothing once the status is no longer [`Status::Running`].
+    /// Runs one iteration, the rest of one begun by [`step_stage`](Self::step_stage), or a slice of the finder. Changes
+    /// nothing once the status is no longer [`Status::Running`].
     pub fn step(&mut self) -> &StepReport {
         #[cfg(feature = "rayon")]
         if self.step_in_threads() {
@@ -192,7 +193,7 @@ impl Estimator {
         self.report()
     }
 
-    /// Whether the next step is a slice of the search that comes before the first iteration.
+    /// Whether the next step is a slice of the search that precedes the first iteration.
     #[must_use]
     pub const fn is_searching(&self) -> bool {
         match &self.run {
@@ -202,7 +203,7 @@ impl Estimator {
         }
     }
 
-    /// One stage of an iteration, or a slice of the finder.
+    /// Runs one stage of an iteration, or a slice of the finder.
     pub fn step_stage(&mut self) -> &StepReport {
         let outcome = match self.run {
             Run::Preparing(_) => self.prepare_search().map_err(Reason::from),
@@ -217,7 +218,7 @@ impl Estimator {
         self.report()
     }
 
-    /// One stage of Algorithm 1, and what follows the last of an iteration. Shapes that have settled are kept.
+    /// Runs one stage of Algorithm 1, and ends the iteration after the last. Settled shapes are kept.
     fn iterate(&mut self, stage: Stage) -> std::result::Result<(), Reason> {
         self.report.stage = stage;
         self.run = Run::Iterating(stage.next());
@@ -238,8 +239,8 @@ impl Estimator {
         Ok(())
     }
 
-    /// Light (Eq. 2). What the registration by colours has found together with the pose comes before the fit, and what
-    /// was found together with paint before both.
+    /// Light (Eq. 2). The light that photometric registration found with the pose replaces the fit, and the light found
+    /// with a varying albedo replaces both.
     fn fit_light(&mut self) -> Result<()> {
         self.find_paint();
         let colours = self.stages.paint.colours(&self.pair);
@@ -256,7 +257,8 @@ impl Estimator {
         Ok(())
     }
 
-    /// Paint, where the pose has come to rest or follows it, and it has not been looked for yet.
+    /// Finds the albedo once the pose has settled, or if it follows the albedo, unless it is already known for this
+    /// pose.
     fn find_paint(&mut self) {
         let Solution { pose, .. } = &self.solution;
         if self.stages.registration.asks_for_paint(&self.pair, pose) && !self.stages.paint.knows(&self.pair, pose) {
@@ -266,7 +268,7 @@ impl Estimator {
         }
     }
 
-    /// Normals of the image (Eq. 6 to 9), and the exposure of a known light unless the registration has found it.
+    /// Normals of the image (Eq. 6 to 9), and the exposure of a known light unless the registration found it.
     fn find_normals(&mut self) {
         let exposure_is_free =
             self.pair.known_light().is_some() && self.stages.registration.found_by_colours().is_none();
@@ -281,8 +283,8 @@ impl Estimator {
         self.stages.shape.find_normals(inputs, exposure_is_free, light, &mut image.normals);
     }
 
-    /// Heights of the image, then the gauges that neither view can tell: t_z of an orthographic image, the distance of
-    /// a pinhole image's surface.
+    /// Heights of the image, then the gauges that neither view determines: t_z of an orthographic image, the distance
+    /// of a pinhole image's surface.
     fn find_surface(&mut self) -> Result<()> {
         let light = self.solution.light.total();
         let inputs = Inputs::of(
@@ -297,7 +299,7 @@ impl Estimator {
         Ok(())
     }
 
-    /// Pose (Eq. 12 to 16), then the correspondences that it gives.
+    /// Pose (Eq. 12 to 16), then its correspondences.
     fn register(&mut self) -> std::result::Result<(), Reason> {
         if gauge::pixel_length(&self.pair.image, &self.solution) <= 0.0 {
             return Err(Reason::BehindCamera);
@@ -316,7 +318,7 @@ impl Estimator {
         Ok(())
     }
 
-    /// Takes over the pose of a registration, and finds the correspondences that it gives.
+    /// Adopts the pose of a registration and finds its correspondences.
     fn finish_registration(&mut self, registered: Option<Registered>) {
         let start = self.solution.pose;
         (self.history.proposed_degrees, self.history.improved) = (0.0, true);
@@ -334,7 +336,7 @@ impl Estimator {
         }
     }
 
-    /// Takes over a pose, its uncertainty and rivals, and the light where it was found with the pose.
+    /// Adopts a pose, its uncertainty and rivals, and the light if it was found with the pose.
     fn adopt(&mut self, found: Registered) {
         self.solution.pose = found.pose;
         self.solution.light.light = found.light.unwrap_or(self.solution.light.light);
@@ -348,8 +350,8 @@ impl Estimator {
         self.report.rivals = found.rivals.unwrap_or_else(|| std::mem::take(&mut self.report.rivals));
     }
 
-    /// Of a match of surfaces only a fraction is taken after rejections. Behind a pinhole image the pose keeps its
-    /// scale and the image's surface takes the rest.
+    /// After rejections, takes only a fraction of the step of a match of surfaces. Behind a pinhole the pose keeps its
+    /// scale, and the image's surface takes the rest.
     fn shorten_step(&mut self, start: &Similarity) {
         let Solution { pose, image, depth, .. } = &mut self.solution;
         if self.history.step_fraction < 1.0 {
@@ -377,7 +379,7 @@ impl Estimator {
         self.stages.refinement.refine(inputs, &self.accepted, &mut self.scratch, &mut self.solution);
     }
 
-    /// Projects the depth points, hides what is occluded, and drops what is too far from the image surface.
+    /// Projects the depth points, hides the occluded ones, and drops those too far from the image surface.
     fn find_correspondences(&mut self) {
         let problem = stages::correspondence_problem(&self.pair, &self.solution);
         self.correspondences.update(&problem);

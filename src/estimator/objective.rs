@@ -1,11 +1,11 @@
-//! The objective l + f + g (Eq. 1): one number by which an iteration is accepted or taken back.
+//! The objective l + f + g (Eq. 1), by which an iteration is accepted or taken back.
 //!
-//! Two solutions are compared over the SAME depth points, the evaluation points: those that had a correspondence before
-//! the iteration. A pose that moves points out of the image pays for each of them in full, so it can't look good by
-//! seeing less. Each term is a mean of Geman-McClure costs in 0 .. 1, so sizes of images do not matter.
+//! Two solutions are compared over the SAME depth points, the evaluation points: those with a correspondence before the
+//! iteration. A pose that moves points out of the image pays for each of them in full, so looking away never pays. Each
+//! term is a mean of Geman-McClure costs in 0 .. 1, so image sizes do not matter.
 //!
-//! The depth term g asks how well the measured normals, not the refined ones, explain the colours where the pose puts
-//! them: refined normals explain any colour, and would call any pose good.
+//! The depth term g measures how well the measured normals explain the colours under the pose. Refined normals would
+//! explain any colour, and any pose would look good.
 
 use nalgebra::Vector3;
 
@@ -19,34 +19,33 @@ use crate::pose::{Correspondences, Similarity};
 use crate::report::Objective;
 use crate::view::ColourView;
 
-/// Robust scale of the log-colour residual, natural logarithm over three channels: a tenth is a brightness that is
-/// wrong by 6 % in each of them, several times the noise of a good image.
+/// Robust scale of the log-colour residual, natural logarithm over three channels: 0.1 is a brightness error of 6 % in
+/// each channel, several times the noise of a good image.
 const COLOUR_SCALE: f64 = 0.1;
 /// Robust scale of the distance of both surfaces in image pixels: the paper's threshold for a correspondence.
 const DISTANCE_SCALE: f64 = 1.0;
 /// Robust scale of the difference of two normals: 12 degrees.
 const NORMAL_SCALE: f64 = 0.2;
 
-/// Points or pixels that a mean is taken of at most: of robust costs in 0 .. 1 it is then right to half a percent, and
-/// two solutions are compared over the same ones.
+/// Most points or pixels in a mean: robust costs in 0 .. 1 are then accurate to half a percent. Both solutions are
+/// compared over the same ones.
 pub const MOST_POINTS: usize = 10_000;
 /// Distance of the evaluation points from the border of the mask, image pixels.
 const MARGIN: f32 = 1.5;
 
-/// After a small step an objective that grows by less than this share has not grown: correspondences flicker at pixel
-/// borders.
+/// After a small step, an objective that grows by less than this share counts as unchanged, because correspondences
+/// flicker at pixel borders.
 const SLACK: f64 = 1e-2;
-/// Degrees up to which a step is small. A larger one has to lower the objective, or a flat one would let the pose
-/// drift.
+/// Largest small step, degrees. A larger one must lower the objective, or a flat objective would let the pose drift.
 const SMALL_STEP: f64 = 0.25;
 
-/// What is evaluated: a pose with the shape and light that go with it.
+/// What is evaluated: a pose with its shape and light.
 #[derive(Clone, Copy)]
 pub struct Trial<'a> {
     pub pose: &'a Similarity,
-    /// The image without paint.
+    /// The image without its albedo.
     pub colours: &'a ColourView,
-    /// Light, exposure included.
+    /// The light, with exposure.
     pub light: &'a Light,
     pub solution: &'a Solution,
     /// Length of an image pixel at the object, in units of the colour view.
@@ -54,15 +53,15 @@ pub struct Trial<'a> {
 }
 
 impl<'a> Trial<'a> {
-    /// The solution as it is, under `light`, its own.
+    /// The solution itself under `light`, which is its light with exposure.
     pub fn of(pair: &ViewPair, colours: &'a ColourView, solution: &'a Solution, light: &'a Light) -> Self {
         let pixel_length = gauge::pixel_length(&pair.image, solution);
         Self { pose: &solution.pose, colours, light, solution, pixel_length }
     }
 }
 
-/// Depth points that have a correspondence and a measured normal. Those near the border of the mask stay out: they
-/// would enter and leave it with every small step.
+/// Depth points with a correspondence and a measured normal. Those near the border of the mask are excluded, because
+/// they would enter and leave it with every small step.
 pub fn evaluation_points(pair: &ViewPair, correspondences: &Correspondences) -> impl Iterator<Item = u32> {
     let (image, depth) = (&pair.image, &pair.depth);
     let [columns, rows] = correspondences.position();
@@ -76,7 +75,7 @@ pub fn evaluation_points(pair: &ViewPair, correspondences: &Correspondences) -> 
     points.filter(move |&index| depth.normals.is_valid(index) && inside(index)).map(|index| index as u32)
 }
 
-/// Geman-McClure cost in 0 .. 1; numbers out of range cost the most.
+/// Geman-McClure cost in 0 .. 1; values that overflow cost 1.
 fn robust(value: f64, scale: f64) -> f64 {
     let squared = (value / scale).powi(2);
     if squared.is_finite() { saturated(squared) } else { 1.0 }
@@ -101,7 +100,7 @@ pub fn evaluate(pair: &ViewPair, evaluated: &[u32], trial: Trial<'_>) -> Objecti
     }
 }
 
-/// Costs of one depth point: of its normal, its distance, its colour. `None` where the image does not see it.
+/// Costs of one depth point: of its normal, its distance, its colour. `None` if it falls outside the image's mask.
 fn point_terms(
     ViewPair { image, depth, .. }: &ViewPair,
     index: usize,
@@ -137,13 +136,13 @@ fn brightness(image: &ColourView, trial: Trial<'_>, light: &[Polynomial; 3]) -> 
     sum / f64::max(count, 1.0)
 }
 
-/// |log S - predicted| for a normal in the colour view's frame, under a light as three polynomials.
+/// |log S - predicted| for a normal in the colour view's frame, under a light given as three polynomials.
 #[inline(never)]
 fn residual(log: [f32; 3], light: &[Polynomial; 3], normal: [f32; 3]) -> f64 {
     f64::from(square_residual(log, light, normal).sqrt())
 }
 
-/// [`residual`] of the pixels from `start` on, each for its own normal; `albedo` is taken off the colours.
+/// [`residual`] of the pixels from `start` on, each for its own normal; `albedo` is subtracted from the colours.
 pub fn residuals(
     image: &ColourView,
     albedo: Option<&[Vec<f32>; 3]>,
@@ -167,7 +166,7 @@ fn square_residual<T: Real<Scalar = f32>>(log: [T; 3], light: &[Polynomial; 3], 
     red * red + green * green + blue * blue
 }
 
-/// Whether a step of so many degrees has made the objective worse.
+/// Whether a step of this many degrees made the objective worse.
 pub fn worsens(before: f64, after: f64, degrees: f64) -> bool {
     let slack = if degrees < SMALL_STEP { SLACK } else { 0.0 };
     after > before * (1.0 + slack)
@@ -206,8 +205,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { cases: 8, failure_persistence: None, ..ProptestConfig::default() })]
 
-        /// The loop's own law, from its outside: over the points of the last solution the new one is no worse, or it is
-        /// taken back and its pose with it.
+        /// Over the points of the last solution the new one is no worse, or it is taken back together with its pose.
         #[test]
         fn no_accepted_step_raises_the_objective(sample in sample(), known: bool) {
             let light = if known { LightSource::Known(sample.light) } else { LightSource::Estimate };
@@ -221,7 +219,7 @@ mod tests {
                     estimator.step();
                     continue;
                 }
-                // What the last stage does, with a look in between.
+                // The end of the iteration, with the objective observed in between.
                 let (before, pose) = (estimator.report.objective.total(), estimator.accepted.pose);
                 estimator.report.stage = Stage::Refinement;
                 estimator.refine();
@@ -230,7 +228,7 @@ mod tests {
                 estimator.run = crate::estimator::Run::Iterating(Stage::Light);
                 let whole = estimator.history.step_fraction;
                 estimator.finish_iteration();
-                // The step of what is taken back is halved, and of nothing else.
+                // Only a step that is taken back is halved.
                 if estimator.history.step_fraction < whole {
                     prop_assert!(after > before, "{before} would have come to {after}");
                     prop_assert_eq!(estimator.report.pose, pose);

@@ -1,4 +1,4 @@
-//! What a run has found so far, to read.
+//! The results of a run so far.
 
 use std::borrow::Cow;
 
@@ -21,13 +21,13 @@ pub enum Surface {
 }
 
 impl Estimator {
-    /// What the last stage left.
+    /// The report of the last stage.
     #[must_use]
     pub fn report(&self) -> &StepReport {
         self.report.given_out()
     }
 
-    /// Which registration the pose is of, in words, for tests of the whole.
+    /// The registration that found the pose, in words, for tests of the whole.
     #[doc(hidden)]
     #[must_use]
     pub fn registered_by(&self) -> &'static str {
@@ -41,14 +41,14 @@ impl Estimator {
         self.pair.way.as_ref().map_or(Cow::Borrowed(own), |way| Cow::Owned(way.carry_normals(own)))
     }
 
-    /// Depth of the image surface, NaN off the mask; pixels with median zero for an orthographic image.
+    /// Depth of the image surface, NaN off the mask; in pixels with median zero for an orthographic image.
     #[must_use]
     pub fn image_depth(&self) -> Cow<'_, [f32]> {
         let own = &self.solution.image.points.z;
         self.pair.way.as_ref().map_or(Cow::Borrowed(own), |way| Cow::Owned(way.carry(own, way.unit())))
     }
 
-    /// Refined normals of the depth view, its own frame.
+    /// Refined normals of the depth view, in its own frame.
     #[must_use]
     pub const fn depth_normals(&self) -> &Normals {
         &self.solution.depth.normals
@@ -60,10 +60,11 @@ impl Estimator {
         &self.solution.depth.points.z
     }
 
-    /// A result as pixels of a screen, row by row, in place of what `rgba` held; numbers by `range` and `map`, which normals pass over.
+    /// Draws a result as screen pixels, row by row, replacing the content of `rgba`. `range` and `map` apply to numbers
+    /// and not to normals.
     ///
     /// # Errors
-    /// A range without a width, or not of finite numbers.
+    /// A range that is empty or not finite.
     pub fn draw(&self, layer: Layer, range: Option<[f64; 2]>, map: ColourMap, rgba: &mut Vec<u8>) -> Result<Size> {
         match layer {
             Layer::Normals => picture::paint_normals(&self.image_normals(), rgba),
@@ -79,23 +80,24 @@ impl Estimator {
         })
     }
 
-    /// For each image pixel the index of its depth pixel, or -1.
+    /// The index of the depth pixel for each image pixel, or -1.
     #[must_use]
     pub fn correspondence(&self) -> Cow<'_, [i32]> {
         let own = self.correspondences.depth_of_pixel();
         self.pair.way.as_ref().map_or(Cow::Borrowed(own), |way| Cow::Owned(way.carry_indices(own)))
     }
 
-    /// |log S - predicted| of each image pixel, NaN off the mask: predicted from the measured normal of the depth view
-    /// where it reaches, from the image's own normal elsewhere.
+    /// |log S - predicted| of each image pixel, NaN off the mask: predicted from the measured normal of the
+    /// corresponding depth point, or
+    /// else from the image's own normal.
     #[must_use]
     pub fn residual(&self) -> Cow<'_, [f32]> {
         let own = self.residuals.of_pixels();
         self.pair.way.as_ref().map_or(Cow::Borrowed(own), |way| Cow::Owned(way.carry(own, 1.0)))
     }
 
-    /// Log paint of each image pixel, R, G, B interleaved: mean zero over the mask in each channel, NaN off it. Zero
-    /// where one paint explains the colours, and before the pose has come to rest.
+    /// Log albedo of each image pixel, R, G, B interleaved: mean zero over the mask in each channel, NaN off it. Zero
+    /// if a single albedo explains the image, and before the pose has settled.
     #[must_use]
     pub fn albedo(&self) -> Vec<f32> {
         let mask = &self.pair.image.mask;
@@ -107,19 +109,19 @@ impl Estimator {
         })
     }
 
-    /// Log shading of each image pixel, R, G, B interleaved, NaN off the mask: log S less [`albedo`](Self::albedo) and
-    /// this has [`residual`](Self::residual) for its length.
+    /// Log shading of each image pixel, R, G, B interleaved, NaN off the mask. log S minus [`albedo`](Self::albedo) and
+    /// this has the length [`residual`](Self::residual).
     #[must_use]
     pub fn shading(&self) -> Vec<f32> {
         self.carried(measurement::shading(&self.pair, &self.stages.paint, &self.solution, &self.correspondences))
     }
 
-    /// The report of the last stage in the caller's units.
+    /// Converts the report of the last stage to the caller's units.
     pub(super) fn translate_report(&mut self) {
         self.report.translate(self.pair.way.as_ref());
     }
 
-    /// Colours of the working view at the caller's pixels.
+    /// Converts colours of the working view to the caller's pixels.
     fn carried(&self, interleaved: Vec<f32>) -> Vec<f32> {
         match &self.pair.way {
             Some(way) => way.carry_colours(&interleaved),
@@ -139,7 +141,8 @@ impl Estimator {
         self.solution.light.exposure
     }
 
-    /// The checked colour view, as it is worked on: of a photograph that is much finer than the depth map, a smaller one.
+    /// The checked colour view that the estimator works on: a smaller one if the photograph is much finer than the
+    /// depth map.
     #[must_use]
     pub const fn image(&self) -> &ColourView {
         &self.pair.image

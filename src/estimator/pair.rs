@@ -1,4 +1,4 @@
-//! What a run is given and never changes: both views, the options, the prior over lights.
+//! The constant input of a run: both views, the options, the prior over lights.
 
 use super::{memory, units};
 use crate::diagnosis::Residuals;
@@ -14,12 +14,12 @@ pub struct ViewPair {
     pub depth: DepthView,
     pub options: Options,
     pub prior: LightPrior,
-    /// From the caller's image to the one that is worked on, where they differ.
+    /// Converts between the caller's image and the working image; `None` if they are the same.
     pub way: Option<WorkingSize>,
 }
 
 impl ViewPair {
-    /// Checks both views and the options, and asks whether the memory for them is granted.
+    /// Checks both views and the options, and whether there is memory for them.
     ///
     /// # Errors
     /// Any [`Error`](crate::Error) of the views or the options, naming the field.
@@ -27,7 +27,7 @@ impl ViewPair {
         options.validate()?;
         let prior = options.light_prior()?;
         let size = Size::new("depth", depth.width, depth.height)?;
-        // What is too large whatever the image becomes is refused before anything is read.
+        // A depth map that is too large for any image is refused before anything is read.
         memory::check(Size { width: 0, height: 0 }, size)?;
         let (image, way) = WorkingSize::of(image, depth, memory::most_image_pixels(size))?;
         memory::check(image.size, size)?;
@@ -38,7 +38,7 @@ impl ViewPair {
     /// The same views with other options.
     ///
     /// # Errors
-    /// [`ErrorKind::Range`](crate::ErrorKind) or `Size` of a prior that is not a Gaussian over lights.
+    /// [`ErrorKind::Range`](crate::ErrorKind) or `Size` for a prior that is not a Gaussian over lights.
     pub fn with(&self, options: Options) -> Result<Self> {
         let prior = options.light_prior()?;
         let way = self.way.clone();
@@ -46,7 +46,7 @@ impl ViewPair {
         Ok(Self { image: self.image.clone(), depth: self.depth.clone(), options, prior, way })
     }
 
-    /// The light, where it is known but for its exposure.
+    /// The light, if it is known up to its exposure.
     pub const fn known_light(&self) -> Option<&Light> {
         match &self.options.light {
             LightSource::Known(light) => Some(light),
@@ -54,12 +54,12 @@ impl ViewPair {
         }
     }
 
-    /// What a registration leaves of the image.
+    /// The residuals of a registration.
     pub fn residuals(&self, found: &PhotometricReport) -> Residuals {
         Residuals { covariance: Some(found.structure), ..self.residuals_of_noise(found.noise) }
     }
 
-    /// The same where only the noise was measured.
+    /// The residuals if only their noise was measured.
     pub fn residuals_of_noise(&self, noise: f64) -> Residuals {
         Residuals { noise, covariance: None, image_noise: self.image.log_noise(), spread: self.image.log_spread() }
     }

@@ -1,4 +1,4 @@
-//! The report of a run, in the units of what is worked on and in those of the caller.
+//! The report of a run, in working units and in the caller's units.
 
 use std::ops::{Deref, DerefMut};
 
@@ -6,10 +6,10 @@ use super::units;
 use crate::report::StepReport;
 use crate::view::WorkingSize;
 
-/// A report that is worked on as itself, and given out in the caller's units.
+/// A report that is kept in working units and given out in the caller's.
 pub struct Reported {
     own: StepReport,
-    /// Where they are others.
+    /// The report in the caller's units, if these differ.
     out: Option<Box<StepReport>>,
 }
 
@@ -18,12 +18,12 @@ impl Reported {
         Self { own: report, out: None }
     }
 
-    /// Brings what is given out up to date.
+    /// Updates the report that is given out.
     pub fn translate(&mut self, way: Option<&WorkingSize>) {
         self.out = way.map(|way| Box::new(units::report_out(way, &self.own)));
     }
 
-    /// As it was when it was last [translated](Self::translate).
+    /// The report as of the last [`translate`](Self::translate).
     pub fn given_out(&self) -> &StepReport {
         self.out.as_deref().unwrap_or(&self.own)
     }

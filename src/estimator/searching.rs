@@ -1,4 +1,5 @@
-//! The finder as a part of the run: its slices, the reason given meanwhile, and the loop's start from what it finds.
+//! The finder as a part of the run: its slices, the reason reported meanwhile, and the start of the loop from its
+//! decision.
 
 use nalgebra::Matrix3;
 
@@ -12,7 +13,7 @@ use crate::reason::{Activity, Reason};
 use crate::report::Stage;
 
 impl Estimator {
-    /// What the search needs of one of the views.
+    /// Prepares one of the views for the search.
     pub(super) fn prepare_search(&mut self) -> Result<()> {
         self.report.stage = Stage::Search;
         self.report.reason = Some(Reason::Searching { percent: 0.0, activity: Activity::Preparing });
@@ -33,14 +34,14 @@ impl Estimator {
         Ok(())
     }
 
-    /// A finder in place of a registration, which goes on once that has decided.
+    /// Runs a finder in place of a registration, which continues after the decision.
     pub(super) fn find(&mut self, finder: Box<Finder>) {
         self.report.stage = Stage::Search;
         self.report.reason = Some(Reason::Searching { percent: 0.0, activity: Activity::Registering });
         self.run = Run::Searching(finder);
     }
 
-    /// A slice of the finder.
+    /// Runs a slice of the finder.
     pub(super) fn search(&mut self) -> std::result::Result<(), Reason> {
         let Run::Searching(finder) = &mut self.run else { return Ok(()) };
         match finder.advance(&self.pair, self.stages.registration.memory())? {
@@ -64,14 +65,14 @@ impl Estimator {
         }
     }
 
-    /// What the search has come to, and the best pose so far.
+    /// Reports the progress of the search and the best pose so far.
     fn report_search(&mut self, share: f64, activity: Activity) {
         let Run::Searching(finder) = &self.run else { return };
         self.report.reason = Some(Reason::Searching { percent: 100.0 * share, activity });
         self.report.pose = finder.best_pose().unwrap_or(self.report.pose);
     }
 
-    /// The report of a search that others have advanced.
+    /// Reports a search that other threads have advanced.
     #[cfg(feature = "rayon")]
     pub(super) fn show_search(&mut self) {
         let Run::Searching(finder) = &self.run else { return };
@@ -81,8 +82,9 @@ impl Estimator {
         }
     }
 
-    /// What the search has tried so far: alpha, beta, gamma in degrees of each rotation, and its score: the gain of log likelihood over
-    /// a constant colour, in cells of the search's grid, at the best translation and size. Empty before and after the search.
+    /// What the search has tried so far: alpha, beta and gamma of each rotation in degrees, and its score. The score is
+    /// the gain of log likelihood over a constant colour, in cells of the search's grid, at the best translation and
+    /// size. Empty before and after the search.
     #[must_use]
     pub fn search_scores(&self) -> Vec<[f32; 4]> {
         let Run::Searching(finder) = &self.run else { return vec![] };
@@ -93,7 +95,7 @@ impl Estimator {
         finder.scores().into_iter().filter(|(_, score)| score.is_finite()).map(row).collect()
     }
 
-    /// Starts the loop from what the finder has decided.
+    /// Starts the loop from the finder's decision.
     fn start_from(&mut self, decision: Decision) -> std::result::Result<(), Reason> {
         let by = decision.by.found_by();
         if let Some(registered) = self.stages.registration.adopt(&self.pair, decision, &self.solution.pose)? {

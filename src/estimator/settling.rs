@@ -1,13 +1,14 @@
-//! Which shapes have settled, so that the next iteration keeps them (docs/method/loop.md).
+//! Settled shapes, which the next iteration keeps (docs/method/loop.md).
 //!
-//! Where the pose no longer moves, two shapes go on: the image's, from colours and the depth view's normals, and the
-//! depth view's, from colours and the image's normals. A shape has settled where its own last solve moved it, and the
-//! other one's normals have moved since, by less than a tenth of a sigma. It is kept then, until the other one has moved
-//! far enough: movements are added up from its last solve on, so that slow ones count, too. Where both have settled, an
-//! iteration costs nothing.
+//! Once the pose no longer moves, two shapes still do: the image's, from the colours and the depth view's normals, and
+//! the depth view's, from the colours and the image's normals. A shape has settled if its last solve moved it, and the
+//! other one's normals have moved since, by less than a tenth of a sigma. It is kept until the other one has moved far
+//! enough; movements add up from its last solve on, so that slow ones count as well. If both have settled, an iteration
+//! costs nothing.
 //!
-//! Normals move by the colours that they predict under their light: root mean square, in units of the image's noise.
-//! Heights move by their median change, which no part that hangs on nothing decides, in units of [`HEIGHT_SIGMA`].
+//! The movement of normals is the root mean square change of the colours that they predict, in units of the image's
+//! noise. That of heights is their median change in units of [`HEIGHT_SIGMA`], because the median ignores unconnected
+//! parts.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -18,16 +19,16 @@ use crate::light::Light;
 use crate::numeric::quantile;
 use crate::view::{Normals, Size};
 
-/// Movement that is none, sigmas.
+/// Largest movement that counts as none, sigmas.
 pub const TOLERANCE: f64 = 0.1;
-/// Sigma of a height, pixel lengths: surfaces from shading at 1 % noise are that well known at best.
+/// Sigma of a height, pixel lengths: at best, surfaces from shading at 1 % noise are this accurate.
 const HEIGHT_SIGMA: f64 = 0.05;
-/// Pixels of each frame that are compared at most, on a square grid: their mean square is then right to a few percent.
+/// Most pixels of each frame that are compared, on a square grid: their mean square is then accurate to a few percent.
 const MOST_PIXELS: usize = 4000;
 
 /// How far both shapes are from rest.
 pub struct Settling {
-    /// Below zero nothing ever settles.
+    /// Below zero, nothing ever settles.
     tolerance: f64,
     image: Movement,
     depth: Movement,
@@ -36,15 +37,15 @@ pub struct Settling {
 /// Movements of one shape.
 #[derive(Clone, Copy)]
 struct Movement {
-    /// By its own last solve.
+    /// Movement by its own last solve.
     own: f64,
-    /// Of the other one's normals since then.
+    /// Movement of the other shape's normals since then.
     input: f64,
-    /// Whether both are none, so that the next iteration keeps the shape.
+    /// Whether both are within the tolerance, so that the next iteration keeps the shape.
     is_kept: bool,
 }
 
-/// Nothing is known: whatever is unsolved has not settled.
+/// An unsolved shape has not settled.
 const UNKNOWN: Movement = Movement { own: f64::INFINITY, input: f64::INFINITY, is_kept: false };
 
 impl Settling {
@@ -67,12 +68,12 @@ impl Settling {
         self.keeps_image() && self.keeps_depth()
     }
 
-    /// To be called where pose, paint or a start of the surface were new to the last iteration, or it was taken back.
+    /// Restarts if the last iteration used a new pose, albedo or start of the surface, or was taken back.
     pub const fn restart(&mut self) {
         *self = Self::new(self.tolerance);
     }
 
-    /// Takes in by how much the last iteration has moved the shapes.
+    /// Takes in how far the last iteration moved the shapes.
     pub fn advance(&mut self, [image, depth]: [Moved; 2]) {
         self.image.advance(self.tolerance, image, depth);
         self.depth.advance(self.tolerance, depth, image);
@@ -80,7 +81,7 @@ impl Settling {
 }
 
 impl Movement {
-    /// An iteration has kept this shape, or solved it before the other one moved.
+    /// Takes in an iteration that kept this shape, or solved it before the other one moved.
     fn advance(&mut self, tolerance: f64, this: Moved, other: Moved) {
         if !self.is_kept {
             (self.own, self.input) = (this.normals.max(this.heights), 0.0);
@@ -97,7 +98,7 @@ pub struct Moved {
     heights: f64,
 }
 
-/// By how much the shapes of the image and of the depth view have moved since the `accepted` iteration, under one pose.
+/// How far the shapes of the image and of the depth view have moved since the `accepted` iteration, under one pose.
 pub fn movements(pair: &ViewPair, accepted: &Accepted, solution: &Solution, spare: &mut Vec<f32>) -> [Moved; 2] {
     let Solution { pose, image, depth, .. } = solution;
     let lights = [accepted.light.total(), solution.light.total()];
@@ -114,8 +115,8 @@ pub fn movements(pair: &ViewPair, accepted: &Accepted, solution: &Solution, spar
     })
 }
 
-/// Root mean square change of the predicted colours in one channel, from the first of the lights to the second, and
-/// median change of the depths. Infinite where there is nothing to compare.
+/// Root mean square change per channel of the colours predicted under the first and the second light, and median change
+/// of the depths. Infinite if there is nothing to compare.
 #[inline(never)]
 fn change(
     size: Size,
@@ -191,7 +192,7 @@ mod tests {
         estimator
     }
 
-    /// One to the end of its loop, and how many solves were left out.
+    /// Runs the loop to its end, and counts the solves that were skipped.
     fn ended(sample: &Sample, options: &Options, tolerance: f64) -> (Estimator, usize) {
         let mut estimator = estimator(sample, options.clone(), tolerance);
         let mut kept = 0;
@@ -202,7 +203,7 @@ mod tests {
         (estimator, kept)
     }
 
-    /// Robust standard deviation of the difference of two depth maps, but for their level.
+    /// Robust standard deviation of the difference of two depth maps, apart from a constant offset.
     fn deviation(a: &[f32], b: &[f32]) -> f64 {
         let mut off: Vec<f32> = a.iter().zip(b).map(|(a, b)| a - b).filter(|off| !off.is_nan()).collect();
         let level = quantile(&mut off, 0.5);
@@ -239,13 +240,13 @@ mod tests {
             }
             left_out += kept;
         }
-        // One for each of the scenes at the least: else this compares full solves with themselves.
+        // At least one per scene; otherwise this would compare full solves with themselves.
         assert!(left_out >= 8, "{left_out}");
     }
 
     #[test]
     fn where_nothing_moves_outputs_keep_their_bits() {
-        // Of some scenes the first that keeps all before it has ended.
+        // The first of some scenes that keeps everything before its loop ends.
         let settled = |degrees: f64| {
             let sample = sample("vase", "overcast", 128, degrees, 0.0, false);
             let mut estimator = estimator(&sample, Options::default(), TOLERANCE);
@@ -278,7 +279,7 @@ mod tests {
         assert!(!settling.keeps_image() && !settling.keeps_depth());
         settling.advance([moved(0.01), moved(0.04)]);
         assert!(settling.keeps_image() && settling.keeps_depth());
-        // The image is kept, what it was found from goes on.
+        // The image is kept while its input moves on.
         settling.depth.is_kept = false;
         settling.advance([moved(0.0), moved(0.04)]);
         assert!(settling.keeps_image());

@@ -1,4 +1,4 @@
-//! What one iteration finds, and what is kept of the last one that was accepted.
+//! The solution of an iteration, and the part of the last accepted one that is kept.
 
 use super::pair::ViewPair;
 use crate::light::Light;
@@ -25,7 +25,7 @@ pub struct ExposedLight {
 }
 
 impl ExposedLight {
-    /// The light that predicts the image: exposure included.
+    /// The light that predicts the image, with exposure.
     pub fn total(&self) -> Light {
         self.light.exposed(self.exposure)
     }
@@ -39,7 +39,7 @@ pub struct Shape {
 }
 
 impl Solution {
-    /// Nothing known but the pose and the measured depth.
+    /// Starts with only the pose and the measured depth known.
     pub fn new(pair: &ViewPair, pose: Similarity, light: Light) -> Self {
         let ViewPair { image, depth, .. } = pair;
         let pixels = image.size.len();
@@ -51,7 +51,7 @@ impl Solution {
         }
     }
 
-    /// Goes back to what was accepted, without allocating.
+    /// Goes back to the accepted solution, without allocating.
     pub fn restore(&mut self, accepted: &Accepted, pair: &ViewPair) {
         (self.pose, self.light) = (accepted.pose, accepted.light);
         self.image.normals.copy_from(&accepted.image_normals);
@@ -64,7 +64,7 @@ impl Solution {
 }
 
 impl Shape {
-    /// Points of the image surface at their depths.
+    /// Places the points of the image surface at their depths.
     pub fn place_image_points(&mut self, view: &ColourView) {
         place(view.size, &view.camera, &mut self.points);
     }
@@ -82,7 +82,7 @@ impl Shape {
         self.points.z.iter_mut().for_each(|depth| *depth *= factor as f32);
     }
 
-    /// Points of the depth view at their depths. An organised cloud keeps its own.
+    /// Places the points of the depth view at their depths. An organised cloud keeps its points.
     pub fn place_depth_points(&mut self, view: &DepthView) {
         if !view.organised {
             place(view.size, &view.camera, &mut self.points);
@@ -90,11 +90,11 @@ impl Shape {
     }
 }
 
-/// The points at their depths along the pixels' rays.
+/// Places points at their depths along the pixels' rays.
 fn place(size: Size, camera: &Camera, points: &mut Points) {
     let parallel = camera.is_orthographic();
     let straight = camera.is_straight();
-    // Of straight rays x follows from the column and y from the row.
+    // For straight rays, x follows from the column and y from the row.
     let [first, second] = [0.0, 1.0].map(|place| camera.ray(size, [place; 2]));
     let step = second[0] - first[0];
     for row in 0..size.height {
@@ -116,8 +116,8 @@ fn place(size: Size, camera: &Camera, points: &mut Points) {
     }
 }
 
-/// The last accepted iteration: what a rejected one gives back, and what the next one is compared with. Points follow
-/// from their depths.
+/// The last accepted iteration: a rejected one restores it, and the next one is compared with it. Points follow from
+/// their depths.
 pub struct Accepted {
     pub pose: Similarity,
     pub light: ExposedLight,
@@ -130,7 +130,7 @@ pub struct Accepted {
 }
 
 impl Accepted {
-    /// No shape yet; memory for so many points to compare over.
+    /// No shape yet; capacity for this many evaluation points.
     pub fn new(solution: &Solution, points: usize) -> Self {
         Self {
             pose: solution.pose,
@@ -143,7 +143,7 @@ impl Accepted {
         }
     }
 
-    /// Normals of the image surface, those of the working solution until its iteration finds others.
+    /// Normals of the accepted image surface.
     pub const fn image_normals(&self) -> &Normals {
         &self.image_normals
     }
@@ -163,13 +163,13 @@ impl Accepted {
         &self.evaluated
     }
 
-    /// Chooses these points.
+    /// Sets the evaluation points.
     pub fn compared_over(&mut self, points: impl Iterator<Item = u32>) {
         self.evaluated.clear();
         self.evaluated.extend(points);
     }
 
-    /// Accepts `solution`; allocates the first time.
+    /// Accepts `solution`; allocates only the first time.
     pub fn accept(&mut self, solution: &Solution) {
         (self.pose, self.light) = (solution.pose, solution.light);
         self.image_normals.copy_from(&solution.image.normals);

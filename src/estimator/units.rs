@@ -1,5 +1,5 @@
-//! From the caller's units to those that are worked in, and back: they differ where an image without a camera is worked
-//! on at another size than the caller's.
+//! Conversion between the caller's units and the working units. They differ if an image without a camera is worked on
+//! at another size than the caller's.
 
 use nalgebra::Vector3;
 

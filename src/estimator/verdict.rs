@@ -1,8 +1,8 @@
-//! When the loop ends, and what its end is called (the last line of Algorithm 1).
+//! Decides when the loop ends, and with which status (the last line of Algorithm 1).
 //!
-//! One pure function: evidence in, status and reason out. First it decides whether the loop goes on; an end that looks
-//! good is then held against what the registration by colours says of its own answer, and may turn out to be ambiguous
-//! or lost. `docs/lab/thresholds.md` lists the thresholds with the data they were calibrated on.
+//! A pure function from evidence to status and reason. It first decides whether the loop continues. An end that looks
+//! good is then checked against what the registration reports about its answer, and may become ambiguous or lost.
+//! `docs/lab/thresholds.md` lists the thresholds with the data used to calibrate them.
 
 use crate::diagnosis::{LARGEST_UNEXPLAINED, LARGEST_UNEXPLAINED_CONTRAST};
 use crate::options::{Registration, Shading};
@@ -13,44 +13,43 @@ use crate::report::Status;
 use super::evidence::{ColourEvidence, ContrastEvidence, Evidence, OutlineEvidence};
 use super::finder::Staying;
 
-/// Rejected iterations in a row after which nothing new is to be expected.
+/// Successive rejected iterations after which no better pose is expected.
 const MOST_REJECTIONS: u32 = 6;
-/// Without a moving pose the loop has converged when the objective changes by less than this share.
+/// If the pose does not move, the loop has converged when the objective changes by less than this share.
 const SETTLED_OBJECTIVE: f64 = 1e-3;
-/// Iterations after which shapes under a pose that does not move have come as far as they will: they flicker by some
-/// tenths of a percent.
+/// Iterations after which shapes under an unmoving pose improve no further: they flicker by some tenths of a percent.
 const MOST_UNMOVED: u32 = 8;
 /// Overlap (share of valid depth pixels) below which a pose cannot be trusted.
 const LEAST_OVERLAP: f64 = 0.05;
 /// Fewer correspondences than this determine nothing.
 const FEWEST_CORRESPONDENCES: usize = 12;
-/// Iterations before convergence is believed: the first has no predecessor, and a surface tries its starts first.
+/// Iterations before the loop may converge: the first has no predecessor, and a surface tries its starts first.
 const FIRST_VERDICT: u32 = 2;
 const FIRST_VERDICT_OF_SURFACE: u32 = crate::shape::STARTS;
 
 /// A rotation less certain than this about any axis is not observable, degrees (one sigma): an angle that is uniform over a quarter turn has a
 /// sigma of 26.
 const UNOBSERVABLE: f64 = 25.0;
-/// A rotation less certain than this about any axis is no answer, degrees (one sigma). Found poses of the random scenes
-/// stay below 3.
+/// A rotation less certain than this about any axis is unusable, degrees (one sigma). Set above the sigmas of poses
+/// found in random scenes.
 const LARGEST_SIGMA: f64 = 5.0;
-/// Share of the points within the robust scale that a trusted pose has at least.
+/// Smallest share of points within the robust scale for a pose to be trusted.
 const FEWEST_INLIERS: f64 = 0.4;
 
 /// A status with its reason.
 pub type Verdict = (Status, Option<Reason>);
 
-/// What becomes of the loop after an iteration; `None` where it goes on.
+/// The verdict after an iteration; `None` if the loop continues.
 pub fn verdict(evidence: &Evidence) -> Option<Verdict> {
     let Evidence { registration, is_rejected, rejections, iteration, max_iterations, .. } = *evidence;
     if evidence.correspondences < FEWEST_CORRESPONDENCES || evidence.overlap < LEAST_OVERLAP {
         return Some((Status::Lost, Some(Reason::LittleOverlap { percent: 100.0 * evidence.overlap })));
     }
     let end = if has_settled(evidence) {
-        // What became of the last iteration is no news once the answer stands.
+        // The fate of the last iteration no longer matters once the answer is final.
         (Status::Converged, None)
     } else if is_rejected && registration == Registration::Fixed {
-        // With the pose held the next iteration would be this one again.
+        // With a fixed pose, the next iteration would repeat this one.
         (Status::MaxIterations, Some(Reason::ShapesStay))
     } else if rejections >= MOST_REJECTIONS {
         (Status::MaxIterations, Some(Reason::NoBetterPose { iterations: MOST_REJECTIONS }))
@@ -63,7 +62,7 @@ pub fn verdict(evidence: &Evidence) -> Option<Verdict> {
     Some(reason_for_distrust(evidence).or_else(of_input).unwrap_or(end))
 }
 
-/// What a check of the input leaves of an answer that looks good.
+/// The verdict if a check of the input distrusts an answer that looks good.
 pub const fn capped(reason: Reason) -> Verdict {
     (Status::Ambiguous, Some(reason))
 }
@@ -75,7 +74,7 @@ fn has_settled(evidence: &Evidence) -> bool {
     let is_steady = (objective - before).abs() < SETTLED_OBJECTIVE * before.max(f64::MIN_POSITIVE);
     let has_settled = match evidence.registration {
         Registration::Fixed => is_steady && !is_rejected,
-        // Shapes that get no better have settled, too.
+        // Shapes that improve no further have settled as well.
         Registration::Joint => unmoved > 0 && (is_steady || is_rejected || unmoved >= MOST_UNMOVED),
         Registration::Icp => unmoved > 0 && evidence.is_whole_step && !is_rejected,
     };
@@ -86,7 +85,7 @@ fn has_settled(evidence: &Evidence) -> bool {
     has_settled && evidence.iteration >= first_verdict
 }
 
-/// Why the answer is "lost" or "ambiguous" although the loop came to an end, if it is.
+/// The reason why the answer is "lost" or "ambiguous" although the loop has ended, if there is one.
 fn reason_for_distrust(evidence: &Evidence) -> Option<Verdict> {
     if let Some(staying) = evidence.staying {
         let status = match staying {
@@ -154,7 +153,7 @@ mod tests {
     use super::*;
     use crate::pose::{Axis, Unknown};
 
-    /// A run by colours in its fifth iteration, all well, that has just settled.
+    /// A photometric run without any problem that has just settled in its fifth iteration.
     const SETTLED: Evidence = Evidence {
         iteration: 5,
         max_iterations: 60,
@@ -186,7 +185,7 @@ mod tests {
     const FIXED: Evidence = Evidence { registration: Registration::Fixed, colours: None, ..SETTLED };
     const MOVING: Evidence = Evidence { unmoved: 0, ..SETTLED };
 
-    /// A kind of evidence, what it comes to, and the reason.
+    /// A case: its name, the evidence, the expected status and reason.
     type Row = (&'static str, Evidence, Option<Status>, Option<Reason>);
 
     const fn turned(sigma_degrees: f64) -> Option<Reason> {
@@ -231,7 +230,7 @@ mod tests {
         ]
     }
 
-    /// Whether its end is to be relied on.
+    /// Whether its end is reliable.
     fn reliability() -> Vec<Row> {
         let colours = |colours: ColourEvidence| Evidence { colours: Some(colours), ..SETTLED };
         let (lost, ambiguous) = (Some(Status::Lost), Some(Status::Ambiguous));
@@ -331,7 +330,7 @@ mod tests {
         ]
     }
 
-    /// Told starts, and what outlines say where colours are painted.
+    /// Initial poses, and silhouettes where the albedo varies.
     fn told_and_outlined() -> Vec<Row> {
         let outlines = |outlines: OutlineEvidence| Evidence { colours: None, outlines: Some(outlines), ..SETTLED };
         let (lost, ambiguous) = (Some(Status::Lost), Some(Status::Ambiguous));
@@ -368,7 +367,7 @@ mod tests {
     #[test]
     fn each_kind_of_evidence_has_its_verdict() {
         for (name, evidence, status, reason) in ends().into_iter().chain(reliability()).chain(told_and_outlined()) {
-            // By its code and numbers as text: NaN equals nothing.
+            // Compared as text, by code and numbers, because NaN equals nothing.
             let found = verdict(&evidence);
             assert_eq!(format!("{found:?}"), format!("{:?}", status.map(|status| (status, reason))), "{name}");
         }

@@ -1,25 +1,26 @@
-//! Axes of colour of a light, and the prior over lights along them (docs/method/image-model.md).
+//! Colour axes of a light, and the prior over lights along them (docs/method/image-model.md).
 //!
-//! Shading varies most in one direction of colour, under white lamps that of lightness. Along axes that begin with it, errors
-//! of shading fall into the first coordinate, and hue, which tells paints apart, into the two others.
+//! Shading varies most along one direction of colour, which under white lamps is lightness. With that direction as the
+//! first axis, errors of shading fall into the first coordinate, and chromaticity, which distinguishes albedos, into
+//! the other two.
 
 use crate::light::Light;
 use crate::light::harmonics::{HARMONICS, basis_gradient};
 use crate::light::prior::{COEFFICIENTS, CoefficientMatrix, Coefficients, LightPrior};
 
-/// Orthonormal axes of colour (R, G, B), the one of the shading first.
+/// Orthonormal axes of colour (R, G, B); shading varies most along the first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Axes([[f64; 3]; 3]);
 
 impl Axes {
-    /// Lightness and two differences of colour: those of white lamps.
+    /// Axes for white lamps: lightness and two differences of colour.
     pub const WHITE: Self = Self([
         [0.577_350_269_189_625_8, 0.577_350_269_189_625_8, 0.577_350_269_189_625_8],
         [std::f64::consts::FRAC_1_SQRT_2, -std::f64::consts::FRAC_1_SQRT_2, 0.0],
         [0.408_248_290_463_863, 0.408_248_290_463_863, -0.816_496_580_927_726],
     ]);
 
-    /// The first is the direction in which the shading of `light` varies most with the normals.
+    /// Axes of which the first is the direction in which the shading of `light` varies most with the normals.
     pub fn of_shading(light: &Light, normals: impl Iterator<Item = [f64; 3]>) -> Self {
         let mut scatter = [[0.0; 3]; 3];
         for normal in normals {
@@ -27,7 +28,7 @@ impl Axes {
             let slopes = light.0.map(|channel| {
                 let slope: [f64; 3] =
                     std::array::from_fn(|axis| (0..HARMONICS).map(|k| channel[k] * gradient[k][axis]).sum());
-                // A normal stays a unit vector.
+                // Only slopes across the normal count, because a normal stays a unit vector.
                 let along: f64 = slope.iter().zip(normal).map(|(s, n)| s * n).sum();
                 [0, 1, 2].map(|axis: usize| slope[axis] - along * normal[axis])
             });
@@ -41,7 +42,7 @@ impl Axes {
         if variance <= 0.0 {
             return Self::WHITE;
         }
-        // The second is any direction across it, the third completes the two.
+        // The second axis is any direction across the first; the third completes the frame.
         let least = if first[0].abs() < first[1].abs() { 0 } else { 1 };
         let mut second: [f64; 3] = std::array::from_fn(|c| f64::from(c == least) - first[least] * first[c]);
         let length = second.iter().map(|value| value * value).sum::<f64>().sqrt();
@@ -53,31 +54,31 @@ impl Axes {
         Self([first, second, third])
     }
 
-    /// R, G, B along the axes.
+    /// Coordinates of (R, G, B) along the axes.
     #[inline(never)]
     pub fn along(&self, rgb: [f64; 3]) -> [f64; 3] {
         self.0.map(|row| row[0] * rgb[0] + row[1] * rgb[1] + row[2] * rgb[2])
     }
 
-    /// And back.
+    /// (R, G, B) from coordinates along the axes.
     #[inline(never)]
     pub fn back(&self, values: [f64; 3]) -> [f64; 3] {
         std::array::from_fn(|channel| (0..3).map(|row| self.0[row][channel] * values[row]).sum())
     }
 }
 
-/// The prior over lights along the axes.
+/// The prior over lights, expressed along the axes.
 pub struct AxesPrior {
     pub precision: CoefficientMatrix,
     pub target: Coefficients,
-    /// A known light is taken off the colours before, and none is left to find.
+    /// Whether the light is known. A known light is subtracted from the colours beforehand, so no light is fitted.
     pub is_known: bool,
-    /// lambda_L against the mean squared error along the first axis.
+    /// lambda_L relative to the mean squared error along the first axis.
     pub weight: f64,
 }
 
 impl AxesPrior {
-    /// Of an unknown light.
+    /// The prior of an unknown light.
     pub fn of(prior: &LightPrior, weight: f64, Axes(axes): &Axes) -> Self {
         let turned = |row: usize, column: usize| -> f64 {
             let (i, j) = (row % HARMONICS, column % HARMONICS);
@@ -96,13 +97,13 @@ impl AxesPrior {
         Self { precision, target, is_known: false, weight }
     }
 
-    /// Of a light that is known.
+    /// The prior of a known light.
     pub fn known() -> Self {
         Self { precision: CoefficientMatrix::identity(), target: Coefficients::zeros(), is_known: true, weight: 1.0 }
     }
 }
 
-/// Axis of largest scatter, and the scatter along it, by the power method; a few rounds are enough for a direction.
+/// Axis of largest scatter and the scatter along it, by the power method; a few rounds suffice for a direction.
 pub fn principal_axis(scatter: &[[f64; 3]; 3]) -> ([f64; 3], f64) {
     let mut axis = [0.5, 0.6, 0.62];
     let mut variance = 0.0;
@@ -154,7 +155,7 @@ mod tests {
         assert_eq!(Axes::of_shading(&Light([[0.0; HARMONICS]; 3]), normals()), Axes::WHITE);
     }
 
-    /// (L - mu)^T P (L - mu) up to what does not depend on L, whichever axes L is written along.
+    /// (L - mu)^T P (L - mu), up to terms that do not depend on L, is the same along any axes.
     #[test]
     fn the_prior_is_the_same_along_any_axes() {
         let prior = LightPrior::natural();

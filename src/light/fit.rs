@@ -1,9 +1,8 @@
-//! The light from normals and colours (Eq. 2; docs/method/image-model.md).
+//! Fits the light to normals and colours (Eq. 2; docs/method/image-model.md).
 //!
-//! Given normals, log S is linear in the light: min over L of
-//! mean_i w_i |log S_i - B(n_i) L|^2 + lambda_L h(L), B the nine harmonics of each channel. The weights w are those of
-//! Geman and McClure, their scale a multiple of the median residual, so that cast shadows and wrong correspondences
-//! weigh little.
+//! Given normals, log S is linear in the light. The fit minimises mean_i w_i |log S_i - B(n_i) L|^2 + lambda_L h(L)
+//! over L, where B holds the nine harmonics of each channel. The weights w are those of Geman and McClure with a scale
+//! proportional to the median residual, so that cast shadows and wrong correspondences weigh little.
 
 use std::ops::Range;
 
@@ -14,27 +13,27 @@ use crate::light::{Light, Polynomial};
 use crate::numeric::{LANES, Lanes, Real, dot, quantile, robust, thin};
 use crate::view::Normals;
 
-/// Most rounds of reweighting; the weights settle in four to six (data not recorded).
+/// Maximum number of reweighting rounds; the weights settle in four to six (data not recorded).
 const ROUNDS: usize = 8;
-/// Relative change of the median residual at which the weights, whose scale follows it, have settled.
+/// Relative change of the median residual below which the weights have settled; their scale follows that median.
 const SETTLED: f64 = 0.01;
-/// Pixels that the light is fitted to at most, evenly spread. There are 27 unknowns and three equations from each
-/// pixel, so noise averages out long before; an object that fills half of 128x128 is taken whole.
+/// Maximum number of pixels in the fit, evenly spread. There are 27 unknowns and three equations from each pixel, so
+/// noise averages out with far fewer; an object that fills just under half of 128x128 is used whole.
 const MOST_PIXELS: usize = 8000;
-/// The robust scale in median residuals: residuals beyond it keep less than a quarter of their weight (two standard
-/// deviations of normal noise).
+/// The robust scale in median residuals: 4.6 standard deviations of a channel under normal noise. Larger residuals keep
+/// less than a quarter of their weight.
 const SCALE_OF_MEDIAN: f64 = 3.0;
-/// Smallest robust scale in log units: the noise of a good 8-bit image. Exact colours would make it zero.
+/// Smallest robust scale in log units: the noise of a good 8-bit image. Exact colours would make the scale zero.
 pub(super) const SMALLEST_SCALE: f64 = 0.005;
-/// Pixels whose terms are summed in f32 before the sum is added to one in f64: few enough to keep six digits.
+/// Number of pixels whose terms are summed in f32 before the sum is added to one in f64: few enough to keep six digits.
 const SUMMANDS: usize = 256;
-/// How often the prior's weight is taken tenfold until the equations of the light can be solved. Sums in f32 are off by up
-/// to a millionth, and where relief is next to flat a weak prior is less than that.
+/// Maximum number of times the prior's weight is raised tenfold until the equations of the light can be solved. Sums in
+/// f32 are off by up to a millionth, and on nearly flat relief a weak prior contributes less than that.
 const MOST_RAISES: i32 = 10;
 /// Products summed for each harmonic: with the nine harmonics, then with R, G, B.
 const COLUMNS: usize = HARMONICS + 3;
 
-/// A fitted light and how well it explains the colours.
+/// A fitted light and how well it fits the image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightFit {
     /// The light.
@@ -43,19 +42,19 @@ pub struct LightFit {
     pub residual: f64,
 }
 
-/// Fits the light again and again; owns the memory of its weights.
+/// Fits lights; reuses the memory of its samples and weights.
 #[derive(Clone, Debug, Default)]
 pub struct LightFitter {
     pixels: Vec<usize>,
-    /// Normals of these pixels, filled up to whole [`LANES`] with pixels of weight zero.
+    /// Normals of these pixels, padded to whole [`LANES`] with pixels of weight zero.
     normals: Normals,
-    /// log S less `offset`.
+    /// log S minus `offset`.
     colours: [Vec<f32>; 3],
-    /// Mean of log S, subtracted so that f32 keeps more digits of the rest. It is a change of exposure, to which the
+    /// Mean of log S, subtracted so that f32 keeps more digits of the rest. It changes only the exposure, to which the
     /// prior is blind.
     offset: f64,
     weights: Vec<f32>,
-    /// One for each pixel, without the filling.
+    /// One for each pixel, without the padding.
     residuals: Vec<f32>,
     sorted: Vec<f32>,
 }
@@ -63,13 +62,13 @@ pub struct LightFitter {
 impl LightFitter {
     /// Fits 27 coefficients to the pixels that have a normal and a colour.
     ///
-    /// `normals` in the colour view's frame and `log` (R, G, B) have the same length; NaN marks what is missing.
-    /// `weight` is lambda_L against the mean squared log residual. Allocates only where there are more pixels than in
-    /// every fit before.
+    /// `normals` in the colour view's frame and `log` (R, G, B) have the same length; NaN marks missing values.
+    /// `weight` is lambda_L relative to the mean squared log residual. Allocates only if there are more pixels than in
+    /// every earlier fit.
     ///
     /// # Errors
-    /// [`ErrorKind::Degenerate`] where the normals do not determine the light and `weight` is zero, [`ErrorKind::Range`]
-    /// where only a light beyond any real one would explain the colours, as by relief that is next to flat.
+    /// [`ErrorKind::Degenerate`] if the normals do not determine the light and `weight` is zero, [`ErrorKind::Range`]
+    /// if only a light beyond any real one would fit the image, as on nearly flat relief.
     pub fn fit(&mut self, normals: &Normals, log: [&[f32]; 3], prior: &LightPrior, weight: f64) -> Result<LightFit> {
         self.gather(normals, log);
         let mut light = prior.mean();
@@ -97,7 +96,7 @@ impl LightFitter {
         Ok(LightFit { light, residual: median })
     }
 
-    /// The pixels that count, their normals and colours side by side.
+    /// Collects the pixels with a normal and a colour, and stores their normals and colours side by side.
     fn gather(&mut self, normals: &Normals, log: [&[f32]; 3]) {
         self.pixels.clear();
         // A list that grows step by step takes up to three times the memory.
@@ -134,7 +133,7 @@ impl LightFitter {
         ([load(&self.normals.x), load(&self.normals.y), load(&self.normals.z)], [load(red), load(green), load(blue)])
     }
 
-    /// |log S - predicted| of the pixels.
+    /// Computes |log S - predicted| of each pixel.
     fn find_residuals(&mut self, light: &Light) {
         let [red, green, blue] = Polynomial::of(light);
         for start in (0..self.residuals.len()).step_by(LANES) {
@@ -174,7 +173,7 @@ impl LightFitter {
         Light::from_slice("light", solution.as_slice()).map_err(beyond_any)
     }
 
-    /// Adds the harmonics' weighted products with each other, up to the diagonal, and with the colours.
+    /// Adds the weighted products of the harmonics with each other, up to the diagonal, and with the colours.
     fn add_up(&self, samples: Range<usize>, sums: &mut [[f64; COLUMNS]; HARMONICS]) {
         let mut parts = [[Lanes::splat(0.0); COLUMNS]; HARMONICS];
         for start in samples.step_by(LANES) {
@@ -197,7 +196,7 @@ impl LightFitter {
     }
 }
 
-/// Says of a light that is no option what is wrong with it.
+/// Replaces an error about a coefficient, because a fitted light is not an option of the caller.
 fn beyond_any(_: Error) -> Error {
     Error::new(ErrorKind::Range, "light", "only one beyond any real light would explain the colours by this shape")
 }
@@ -206,7 +205,7 @@ fn beyond_any(_: Error) -> Error {
 mod tests {
     use super::*;
 
-    /// Normals over the visible hemisphere, their colours under `light`, and every tenth colour spoilt.
+    /// Normals over the visible hemisphere and their colours under `light`, every tenth colour spoilt on request.
     fn scene(light: &Light, spoilt: bool) -> (Normals, [Vec<f32>; 3]) {
         let count = 600;
         let mut normals = Normals::missing(count);

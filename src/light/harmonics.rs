@@ -9,7 +9,7 @@ use crate::text::Brief;
 /// Number of harmonics for each channel.
 pub const HARMONICS: usize = 9;
 
-/// Largest coefficient of a log light: e^100 is a ratio of intensities that no camera records, and squares of 100 are
+/// Largest coefficient of a log light: e^100 is a ratio of intensities that no camera records, and the square of 100 is
 /// far from the limits of f32.
 const LARGEST_COEFFICIENT: f64 = 100.0;
 
@@ -26,10 +26,11 @@ const C5: f64 = 0.247_708;
 pub struct Light(pub [[f64; HARMONICS]; 3]);
 
 impl Light {
-    /// From 27 numbers R1..9, G1..9, B1..9.
+    /// A light from 27 numbers R1..9, G1..9, B1..9.
     ///
     /// # Errors
-    /// [`ErrorKind::Size`] unless there are 27, [`ErrorKind::Range`] where one is not finite.
+    /// [`ErrorKind::Size`] unless there are 27 numbers, [`ErrorKind::Range`] if one is not finite or exceeds 100 in
+    /// magnitude.
     pub fn from_slice(field: &'static str, values: &[f64]) -> Result<Self> {
         if values.len() != 3 * HARMONICS {
             return Err(Error::new(ErrorKind::Size, field, format!("a light has 27 numbers, not {}", values.len())));
@@ -40,7 +41,7 @@ impl Light {
     }
 
     /// # Errors
-    /// [`ErrorKind::Range`] naming the coefficient that is not finite or larger than any light's.
+    /// [`ErrorKind::Range`] with the index of a coefficient that is not finite or larger than that of any real light.
     pub fn validate(&self, field: &'static str) -> Result<()> {
         let flat = self.flat();
         match flat.iter().position(|value| !value.is_finite() || value.abs() > LARGEST_COEFFICIENT) {
@@ -64,7 +65,7 @@ impl Light {
         self.tinted([offset; 3])
     }
 
-    /// The same light in another colour: log S of R, G, B grows by the `offsets` everywhere.
+    /// The same light in another colour: log S of R, G and B grows by the `offsets` everywhere.
     #[must_use]
     pub fn tinted(mut self, offsets: [f64; 3]) -> Self {
         for (channel, offset) in self.0.iter_mut().zip(offsets) {
@@ -73,11 +74,12 @@ impl Light {
         self
     }
 
-    /// The same light after its lamps were turned: a turned normal has the colour that the normal had before.
+    /// The light after a rotation of its lamps: under it a rotated normal has the colour that the normal has under this
+    /// light.
     #[must_use]
     pub fn turned(&self, rotation: &Matrix3<f64>) -> Self {
         Self(self.0.map(|l| {
-            // The quadratic form of the normal alone; its zz carries what the unit length moves to the constant.
+            // The quadratic form of the normal alone; the zz entry excludes what the unit length moves to the constant.
             let (xx, zz) = (C1 * l[8], C3 * l[6]);
             #[rustfmt::skip]
             let form = Matrix3::new(
@@ -87,7 +89,8 @@ impl Light {
             );
             let form = rotation * form * rotation.transpose();
             let linear = rotation * Vector3::new(l[3], l[1], l[2]);
-            // x^2 + y^2 = 1 - z^2 on unit normals, so the mean of xx and yy is a constant less as much of z^2.
+            // On unit normals x^2 + y^2 = 1 - z^2, so the mean of the xx and yy terms is a constant minus the same
+            // multiple of z^2.
             let mean = (form[(0, 0)] + form[(1, 1)]) / 2.0;
             let zz = (form[(2, 2)] - mean) / C3;
             let one = (C4 * l[0] - C5 * l[6] + mean + C5 * zz) / C4;
@@ -96,7 +99,7 @@ impl Light {
         }))
     }
 
-    /// By how much log S of R, G, B grows from `other`, a light that differs in its colour alone.
+    /// The growth of log S of R, G and B from `other`, a light that differs in colour alone.
     #[must_use]
     pub fn offsets_to(&self, other: &Self) -> [f64; 3] {
         std::array::from_fn(|channel| C4 * (self.0[channel][0] - other.0[channel][0]))
@@ -108,7 +111,7 @@ impl Light {
         self.of_basis(&basis(normal))
     }
 
-    /// log S of a normal by its harmonics.
+    /// log S of a normal, given its harmonics.
     #[must_use]
     pub(crate) fn of_basis(&self, basis: &[f64; HARMONICS]) -> [f64; 3] {
         self.0.map(|channel| channel.iter().zip(basis).map(|(l, b)| l * b).sum())
@@ -123,7 +126,7 @@ impl From<Light> for Vec<f64> {
     }
 }
 
-/// What L1..L9 multiply, so that log S = sum L_k basis_k: the quadratic form of Eq. 5 written out.
+/// Factors of L1..L9 in log S = sum L_k basis_k: the quadratic form of Eq. 5 written out.
 #[inline(always)]
 #[must_use]
 pub(crate) fn basis<T: Real>([x, y, z]: [T; 3]) -> [T; HARMONICS] {
@@ -159,8 +162,8 @@ pub(crate) fn basis_gradient<T: Real>([x, y, z]: [T; 3]) -> [[T; 3]; HARMONICS] 
     ]
 }
 
-/// How one channel's log S falls when normals turn about x, y and z, per radian: the coefficients of grad log S x n, since
-/// harmonics of either order turn into each other.
+/// Decrease of one channel's log S per radian as normals turn about x, y and z: the coefficients of grad log S x n.
+/// They exist because rotation turns the harmonics of each order into each other.
 pub(crate) fn falling_by_turns(l: &[f64; HARMONICS]) -> [[f64; HARMONICS]; 3] {
     // C3 / C1.
     let root = 3.0_f64.sqrt();
@@ -209,7 +212,7 @@ impl<S: Real<Scalar = S>> Polynomial<S> {
             + z * (T::splat(by_z) + T::splat(self.zz) * z)
     }
 
-    /// [`shade`](Self::shade) and [`gradient`](Self::gradient) together: a quadratic is its constant and half the sum
+    /// [`shade`](Self::shade) and [`gradient`](Self::gradient) together. A quadratic is its constant plus half the sum
     /// of both slopes, here and at zero, along the normal.
     #[inline(always)]
     #[must_use]

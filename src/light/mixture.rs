@@ -1,14 +1,14 @@
-//! Light and a palette of paints together, for one number of regions (docs/method/image-model.md).
+//! Fits a light together with a palette of a given number of albedos (docs/method/image-model.md).
 //!
-//! log S = B(n) L + a_k + e: the light L of the image model, and for each pixel one of a few log offsets a_k, nobody knows
-//! which. The error e falls into the direction in which this light's shading varies most with the normal, where wrong
-//! normals and cast shadows go (lightness, under white lamps), and into the two others, where they leave hardly any.
-//! Each has a scale of its own, so that hue decides which paint a pixel has wherever it can, and lightness where shading
-//! is good enough to. Student's t makes both robust.
+//! log S = B(n) L + a_k + e: the light L of the image model and, for each pixel, one of a few log offsets a_k; which
+//! one is unknown. The error e has three coordinates. The first is along the colour direction in which the shading of
+//! this light varies most with the normal (lightness, under white lamps), and absorbs wrong normals and cast shadows.
+//! The other two contain hardly any such errors. Both parts have separate scales, so that chromaticity decides which
+//! albedo a pixel has wherever it can, and lightness where the shading fits well enough. Student's t makes both robust.
 //!
-//! Expectation maximisation: shares of the paints for each pixel, then L and all a_k in one weighted least squares. The
-//! prior over lights and one over paints hold what the pixels leave open.
-//! A. Dempster, N. Laird, D. Rubin, J. R. Stat. Soc. B 39, 1977; K. Lange, R. Little, J. Taylor: "Robust statistical
+//! The solver is expectation maximisation: the probabilities of the albedos for each pixel, then L and all a_k in one
+//! weighted least squares. The prior over lights and another over albedos determine what the pixels leave open. A.
+//! Dempster, N. Laird, D. Rubin, J. R. Stat. Soc. B 39, 1977; K. Lange, R. Little, J. Taylor: "Robust statistical
 //! modeling using the t distribution", J. Am. Stat. Assoc. 84, 1989.
 
 use super::fit::SMALLEST_SCALE;
@@ -17,20 +17,20 @@ use crate::light::colour_axes::{Axes, AxesPrior, principal_axis};
 use crate::light::harmonics::HARMONICS;
 use crate::light::prior::COEFFICIENTS;
 
-/// Most paints of an object. Each of ten photographs was as well explained by eight as by more (docs/lab/thresholds.md).
+/// Maximum number of albedos of an object, set on ten photographs (docs/lab/thresholds.md).
 pub const MOST_REGIONS: usize = 8;
-/// Most unknowns: a light and three offsets for each paint.
+/// Maximum number of unknowns: a light, and three offsets for each albedo.
 const MOST_UNKNOWNS: usize = COEFFICIENTS + 3 * MOST_REGIONS;
 /// Degrees of freedom of Student's t: the usual choice of robust regression.
 const DEGREES: f64 = 4.0;
-/// Standard deviation of a paint's log offset: most paints reflect 4 to 90 percent.
+/// Standard deviation of the prior over log offsets: most materials reflect 4 to 90 percent.
 const PAINT_SPREAD: f64 = 1.0;
-/// Rounds of expectation maximisation for each number of regions, and the gain of log likelihood for each pixel below
-/// which it has settled: more changed no figure of ten photographs.
+/// Maximum rounds of expectation maximisation for each number of albedos, and the gain of log likelihood per pixel
+/// below which it has settled; both set on ten photographs (docs/lab/thresholds.md).
 const ROUNDS: usize = 14;
 const SETTLED: f64 = 1e-3;
 
-/// A pixel: its normal, the harmonics of it, and its log colour along the axes.
+/// A pixel: its normal, the harmonics of that normal, and its log colour along the axes.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {
     pub normal: [f64; 3],
@@ -38,22 +38,22 @@ pub struct Sample {
     pub colour: [f64; 3],
 }
 
-/// Light and palette along the axes.
+/// A light and a palette along the axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mixture {
     pub light: [[f64; HARMONICS]; 3],
     pub regions: usize,
-    /// Log offset of each paint.
+    /// Log offset of each albedo.
     pub offsets: [[f64; 3]; MOST_REGIONS],
-    /// Share of the pixels that have it.
+    /// Share of the pixels that have each albedo.
     pub shares: [f64; MOST_REGIONS],
     /// Scale of the error along each axis, log units.
     pub scales: [f64; 3],
-    /// Log likelihood of a pixel, at the mean and up to a constant.
+    /// Mean log likelihood of a pixel, up to a constant.
     pub likelihood: f64,
 }
 
-/// u = 1 + r^2 / (nu s^2) along the first axis, and of both others together.
+/// u = 1 + r^2 / (nu s^2), along the first axis and of the other two together.
 #[inline(never)]
 fn spreads(residual: [f64; 3], scales: [f64; 3]) -> [f64; 2] {
     let [first, second, third] = [0, 1, 2].map(|axis: usize| (residual[axis] / scales[axis]).powi(2) / DEGREES);
@@ -61,7 +61,7 @@ fn spreads(residual: [f64; 3], scales: [f64; 3]) -> [f64; 2] {
 }
 
 impl Mixture {
-    /// One paint, nothing known.
+    /// A single albedo before any fit.
     pub const fn blank() -> Self {
         Self {
             light: [[0.0; HARMONICS]; 3],
@@ -73,7 +73,7 @@ impl Mixture {
         }
     }
 
-    /// Its light for R, G, B.
+    /// The light for R, G, B.
     pub fn light(&self, axes: &Axes) -> Light {
         let mut light = Light([[0.0; HARMONICS]; 3]);
         for k in 0..HARMONICS {
@@ -83,7 +83,7 @@ impl Mixture {
         light
     }
 
-    /// What is left of a colour without its shading.
+    /// The colour of a pixel minus its shading.
     #[inline(never)]
     pub fn unshaded(&self, sample: &Sample) -> [f64; 3] {
         std::array::from_fn(|channel| {
@@ -92,8 +92,8 @@ impl Mixture {
         })
     }
 
-    /// Probability of each paint for a colour without its shading, and its density. Without `lightness` the differences
-    /// of colour alone decide.
+    /// Probability of each albedo for a colour without its shading, and the density of that colour. Without
+    /// `lightness`, differences of colour alone decide.
     #[inline(never)]
     pub fn responsibilities(&self, unshaded: [f64; 3], lightness: bool) -> ([f64; MOST_REGIONS], f64) {
         let mut densities = [0.0; MOST_REGIONS];
@@ -107,13 +107,13 @@ impl Mixture {
         (densities, total / self.scales.iter().product::<f64>())
     }
 
-    /// Mean paint by the probabilities.
+    /// Mean offset by the probabilities.
     #[inline(never)]
     pub fn mean_offset(&self, responsibilities: &[f64; MOST_REGIONS]) -> [f64; 3] {
         std::array::from_fn(|c| (0..self.regions).map(|k| responsibilities[k] * self.offsets[k][c]).sum())
     }
 
-    /// Variance of the paints in each coordinate.
+    /// Variance of the albedos in each coordinate.
     pub fn variance(&self) -> [f64; 3] {
         let mean = self.mean_offset(&self.shares);
         std::array::from_fn(|c| {
@@ -121,8 +121,8 @@ impl Mixture {
         })
     }
 
-    /// Expectation maximisation from here. The samples count as so many independent ones, `tiles`. `None` where the
-    /// system has no solution.
+    /// Expectation maximisation from this mixture. The samples count as `tiles` independent ones. `None` if the system
+    /// has no solution.
     pub fn fitted(mut self, samples: &[Sample], prior: &AxesPrior, tiles: f64) -> Option<Self> {
         for _ in 0..ROUNDS {
             let sums = Sums::of(&self, samples);
@@ -137,7 +137,7 @@ impl Mixture {
         Some(self)
     }
 
-    /// Light and paints in one system.
+    /// Solves for the light and all albedos in one system.
     fn solve(&mut self, sums: &Sums, prior: &AxesPrior, tiles: f64) -> Option<()> {
         let size = COEFFICIENTS + 3 * self.regions;
         let firmness = prior.weight * tiles / (self.scales[0] * self.scales[0]);
@@ -176,7 +176,7 @@ impl Mixture {
         Some(())
     }
 
-    /// Shares of the paints, and scales of what light and paints leave.
+    /// Updates the shares of the albedos and the scales of the residuals.
     fn find_scales(&mut self, samples: &[Sample], sums: &Sums) {
         let count = sums.count;
         let mut squares = [0.0; 3];
@@ -194,7 +194,7 @@ impl Mixture {
         self.shares = std::array::from_fn(|k| sums.share[k] / count);
     }
 
-    /// One paint more: the one whose pixels scatter most is split along the direction in which they do.
+    /// Adds one albedo: splits the one whose pixels scatter most along the direction of that scatter.
     pub fn split(&self, samples: &[Sample]) -> Self {
         let mut scatter = [[[0.0; 3]; 3]; MOST_REGIONS];
         let mut mass = [0.0; MOST_REGIONS];
@@ -236,12 +236,12 @@ fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|c| a[c] - b[c])
 }
 
-/// Weight of a squared residual in Student's t of so many dimensions, by [`spreads`].
+/// Weight of a squared residual under Student's t of this many dimensions, given its [`spreads`].
 fn weight_of(spread: f64, dimensions: f64) -> f64 {
     (DEGREES + dimensions) / (DEGREES * spread)
 }
 
-/// What one round sums over the pixels; the first index of a pair tells the first axis from the others.
+/// Sums of one round over the pixels. An index of length two distinguishes the first axis from the other two.
 struct Sums {
     gram: [[[f64; HARMONICS]; HARMONICS]; 2],
     cross: [[[f64; HARMONICS]; MOST_REGIONS]; 2],
@@ -302,7 +302,7 @@ impl Sums {
     }
 }
 
-/// A symmetric positive definite system, its lower triangle, and the right side, which becomes the solution.
+/// A symmetric positive definite system: its lower triangle, and the right-hand side, which becomes the solution.
 struct System {
     size: usize,
     matrix: [[f64; MOST_UNKNOWNS]; MOST_UNKNOWNS],
@@ -314,7 +314,7 @@ impl System {
         Self { size, matrix: [[0.0; MOST_UNKNOWNS]; MOST_UNKNOWNS], right: [0.0; MOST_UNKNOWNS] }
     }
 
-    /// By Cholesky's factor, in place. `None` unless it is positive definite.
+    /// Solves by Cholesky factorisation in place. `None` if the matrix is not positive definite.
     fn solve(&mut self) -> Option<()> {
         let Self { size, matrix, right } = self;
         for row in 0..*size {

@@ -1,13 +1,14 @@
-//! Paint: the log albedo of an object in a few colours, told from its shading (docs/method/image-model.md).
+//! Varying albedo: separates the log albedo of an object, in a few colours, from its shading
+//! (docs/method/image-model.md).
 //!
-//! How many paints there are is decided by evidence (Bayesian information criterion): a further one has to raise the
-//! likelihood of the colours by more than its four unknowns would by chance, with tiles of neighbouring pixels counted
-//! once, since errors of shading are alike there. One paint means none: then the light explains all.
+//! The Bayesian information criterion chooses the number of albedos. A further albedo has to raise the likelihood of
+//! the colours by more than its four unknowns would by chance. A tile of neighbouring pixels counts once, because
+//! errors of shading are alike within it. A single albedo means none: the light then explains everything.
 //!
-//! Given are log colours and the normals of the same pixels, nothing else; see [`PaintFitter::fit`].
+//! The only inputs are log colours and the normals of the same pixels; see [`PaintFitter::fit`].
 //!
-//! Limits: paint of one chromaticity whose lightness follows the shading is taken for shading, and a large cast shadow
-//! with a sharp border may be taken for paint of the same hue.
+//! Limits: albedo of one chromaticity whose lightness follows the shading counts as shading, and a large cast shadow
+//! with a sharp border may count as an albedo of the same chromaticity.
 
 use crate::diagnosis::PURE_NOISE;
 use crate::light::colour_axes::{Axes, AxesPrior};
@@ -17,65 +18,66 @@ use crate::light::{Light, LightPrior};
 use crate::numeric::evenly_spread;
 use crate::view::Normals;
 
-/// Pixels that light and palette are fitted to at most, evenly spread: 51 unknowns at most, and noise averages out long
-/// before.
+/// Maximum number of pixels to which light and palette are fitted, evenly spread. There are at most 51 unknowns, so
+/// noise averages out with far fewer.
 const MOST_SAMPLES: usize = 2000;
-/// Fewest pixels that a palette is looked for in.
+/// Minimum number of pixels for fitting a palette.
 const FEWEST_SAMPLES: usize = 100;
-/// Pixels that count as one for the evidence: tiles of 8x8, as for the uncertainty of a pose (docs/method/uncertainty.md) ..
+/// Pixels that count as one for the evidence: tiles of 8x8, as for the uncertainty of a pose
+/// (docs/method/uncertainty.md).
 const TILE: f64 = 64.0;
-/// .. and tiles at most: in a larger image errors of shading are larger patches, and not more of them.
+/// Maximum number of tiles: in a larger image the errors of shading form larger patches, not more of them.
 const MOST_TILES: f64 = 125.0;
-/// Unknowns of one paint more: its offset in three channels, and its share.
+/// Unknowns of one more albedo: its offset in three channels, and its share.
 const UNKNOWNS: f64 = 4.0;
-/// Share of the lightness that a region's paint leaves unexplained which is paint, not shading, where there is as much
-/// paint as one likes: none, half and all of it left 0.30, 0.25 and 0.26 of error on ten photographs (median).
+/// Share of the lightness left by a region's albedo that counts as albedo rather than shading, with an unlimited
+/// palette; set on ten photographs (docs/lab/thresholds.md).
 const LIGHTNESS_SHARE: f64 = 0.5;
 
-/// A light and the paints under it.
+/// A light and the albedos under it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Paint {
     mixture: Mixture,
-    /// The same with the scales of pixels without a normal, whose shading is not known but for its mean and variance.
+    /// The same with the scales for pixels without a normal, of whose shading only mean and variance are known.
     unseen: Mixture,
     axes: Axes,
-    /// Whether the light was known: then the mixture has none.
+    /// The light if it is known; the mixture then has none.
     known: Option<Light>,
-    /// Mean log colour, R, G, B, which the mixture is relative to.
+    /// Mean log colour (R, G, B) that is subtracted before the mixture.
     centre: [f64; 3],
     /// Mean shading along the axes, for pixels without a normal.
     mean_shading: [f64; 3],
-    /// Share of what a region's paint leaves that is paint as well, along each axis.
+    /// Share of the residual of a region's albedo that is albedo as well, along each axis.
     gains: [f64; 3],
-    /// Likewise without a normal: there lightness says nothing.
+    /// The same for pixels without a normal, whose lightness carries no information about albedo.
     unseen_gains: [f64; 3],
 }
 
-/// The paint of one pixel: of its region, and with the variation inside it, log units of R, G, B.
+/// Log albedo of one pixel, R, G, B: that of its region, and with the variation inside the region.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PaintOfPixel {
-    /// Offset of the paint that the pixel has; between paints the mean by probability.
+    /// Offset of the pixel's albedo; between albedos, the mean by probability.
     pub region: [f64; 3],
-    /// The same with what seems to be paint of the rest.
+    /// The same plus the part of the residual that seems to be albedo.
     pub fine: [f64; 3],
 }
 
-/// Fits paints again and again; owns the memory of its samples.
+/// Fits palettes; owns the memory of its samples.
 #[derive(Clone, Debug, Default)]
 pub struct PaintFitter {
     samples: Vec<Sample>,
 }
 
 impl PaintFitter {
-    /// Memory for the samples.
+    /// Allocates the memory of the samples.
     #[must_use]
     pub fn new() -> Self {
         Self { samples: Vec::with_capacity(MOST_SAMPLES) }
     }
 
-    /// The paints of pixels with these `normals` (colour view's frame) and `log` colours, NaN where missing; `known` is
-    /// the light where it is known up to its exposure. `None` where one paint, which is to say none, explains the
-    /// colours as well.
+    /// Fits albedos to pixels with these `normals` (colour view's frame) and `log` colours, NaN where missing. `known`
+    /// is the light if it is known up to its exposure. `None` if a single albedo, which means none, fits the image
+    /// equally well.
     pub fn fit(
         &mut self,
         normals: &Normals,
@@ -89,7 +91,7 @@ impl PaintFitter {
         }
         let tiles = (count_of(normals, log[0]) as f64 / TILE).clamp(1.0, MOST_TILES);
         let prior = |axes: &Axes| known.map_or_else(|| AxesPrior::of(prior, weight, axes), |_| AxesPrior::known());
-        // One paint under white lamps, for the light's own axes.
+        // A single albedo under white lamps, to find the axes of the light.
         self.turn(None, &Axes::WHITE);
         let white = Mixture::blank().fitted(&self.samples, &prior(&Axes::WHITE), tiles)?;
         if white.scales.iter().map(|scale| scale * scale).sum::<f64>() < 3.0 * PURE_NOISE * PURE_NOISE {
@@ -128,7 +130,8 @@ impl PaintFitter {
         Paint { mixture, unseen, axes, known, centre, mean_shading, gains, unseen_gains }
     }
 
-    /// Evenly spread pixels that have both; colours, R, G, B, are relative to their mean, which is returned.
+    /// Collects evenly spread pixels that have both a normal and a colour. Returns the mean colour (R, G, B), which is
+    /// subtracted from the samples.
     fn gather(&mut self, normals: &Normals, log: [&[f32]; 3], known: Option<&Light>) -> [f64; 3] {
         self.samples.clear();
         let mut centre = [0.0; 3];
@@ -147,20 +150,20 @@ impl PaintFitter {
         centre
     }
 
-    /// Turns the samples' colours from R, G, B, or from axes, to axes.
+    /// Expresses the samples' colours along the axes `to`; without `from` they are R, G, B.
     fn turn(&mut self, from: Option<&Axes>, to: &Axes) {
         for sample in &mut self.samples {
             sample.colour = to.along(from.map_or(sample.colour, |from| from.back(sample.colour)));
         }
     }
 
-    /// The mixture with the most evidence; `None` if that is one paint.
+    /// The mixture with the most evidence; `None` if that has a single albedo.
     fn choose(&self, prior: &AxesPrior, tiles: f64) -> Option<Mixture> {
         let mut mixture = Mixture::blank().fitted(&self.samples, prior, tiles)?;
         let evidence =
             |mixture: &Mixture| tiles * mixture.likelihood - 0.5 * UNKNOWNS * mixture.regions as f64 * tiles.ln();
         let mut best = mixture;
-        // A split may pay only together with the next.
+        // A split may pay off only together with the next one.
         while mixture.regions < MOST_REGIONS {
             let Some(further) = mixture.split(&self.samples).fitted(&self.samples, prior, tiles) else { break };
             mixture = further;
@@ -177,20 +180,20 @@ fn count_of(normals: &Normals, log: &[f32]) -> usize {
 }
 
 impl Paint {
-    /// Number of paints, two or more.
+    /// Number of albedos, two or more.
     #[cfg(test)]
     pub const fn regions(&self) -> usize {
         self.mixture.regions
     }
 
-    /// The light that the paints are offsets to, the mean colour included.
+    /// The light relative to which the albedos are offsets, including the mean colour.
     #[must_use]
     pub fn light(&self) -> Light {
         self.known.unwrap_or_else(|| self.mixture.light(&self.axes)).tinted(self.centre)
     }
 
-    /// The paint of a pixel by its log colour and its shading under [`light`](Self::light); without a shading by its
-    /// chromaticity alone.
+    /// The albedo of a pixel, given its log colour and its shading under [`light`](Self::light). Without a shading,
+    /// chromaticity alone decides.
     #[must_use]
     pub fn of_pixel(&self, log: [f64; 3], shading: Option<[f64; 3]>) -> PaintOfPixel {
         let (mixture, gains) = match shading {
@@ -212,7 +215,7 @@ mod tests {
     use super::*;
     use crate::numeric::random::Random;
 
-    /// Normals of a dome, 60x60, and their log colours under `light`, with `noise` and the paint of each pixel.
+    /// Normals of a dome, 60x60, and their log colours under `light`, with `noise` and the albedo of each pixel.
     fn dome(light: &Light, noise: f64, paint: impl Fn(usize, usize) -> [f64; 3]) -> (Normals, [Vec<f32>; 3]) {
         let side = 60;
         let mut random = Random::new(3, 0);
@@ -240,7 +243,7 @@ mod tests {
         PaintFitter::new().fit(normals, log, (&LightPrior::natural(), 1e-6), known)
     }
 
-    /// Stripes of three paints, log units.
+    /// Stripes of three albedos, log units.
     const STRIPES: [[f64; 3]; 3] = [[0.0, 0.0, 0.0], [-0.9, -0.3, 0.2], [0.3, -0.5, -0.8]];
 
     fn stripes(column: usize, _: usize) -> [f64; 3] {
@@ -270,7 +273,7 @@ mod tests {
                 let [region, truth] = [paint.of_pixel(colours, Some(shading)).region, stripes(pixel % 60, 0)];
                 [0, 1, 2].map(|c: usize| region[c] - truth[c])
             };
-            // Up to one offset, which is the light's.
+            // Up to one common offset, which belongs to the light.
             let count = usable().count() as f64;
             for channel in 0..3 {
                 let mean = usable().map(|pixel| off(pixel)[channel]).sum::<f64>() / count;

@@ -1,9 +1,9 @@
-//! h(L) = (L - mu)^T Sigma^-1 (L - mu) with the exposure left free (Eq. 2; docs/method/image-model.md).
+//! h(L) = (L - mu)^T Sigma^-1 (L - mu), minimised over the exposure (Eq. 2; docs/method/image-model.md).
 //!
-//! A common offset of log S is the exposure and says nothing about the light. It moves L1 of all three channels alike,
-//! along e = (1 at R1, G1, B1). Minimising h over that direction leaves the precision P = W^T (I - w w^T / w^T w) W
-//! with the whitening W = C^-1 of Sigma = C C^T and w = W e: in whitened coordinates the prior is a unit ball flattened
-//! along w.
+//! A common offset of log S is the exposure and carries no information about the light. It moves L1 of all three
+//! channels alike, along e = (1 at R1, G1, B1). Minimising h along that direction leaves the precision P = W^T (I - w
+//! w^T / w^T w) W with the whitening W = C^-1 of Sigma = C C^T and w = W e. In whitened coordinates the prior is a unit
+//! ball flattened along w.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -11,20 +11,20 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::light::harmonics::HARMONICS;
 use crate::light::{Light, environments};
 
-/// Coefficients of a light in all channels.
+/// Number of coefficients of a light over all channels.
 pub const COEFFICIENTS: usize = 3 * HARMONICS;
 
-/// Vector of 27 coefficients R1..9, G1..9, B1..9.
+/// A vector of 27 coefficients R1..9, G1..9, B1..9.
 pub type Coefficients = SVector<f64, COEFFICIENTS>;
-/// Matrix over them.
+/// A matrix over these coefficients.
 pub type CoefficientMatrix = SMatrix<f64, COEFFICIENTS, COEFFICIENTS>;
 
-/// Largest difference of a covariance from its transpose, as a share of its largest number: rounding to six digits.
+/// Largest difference of a covariance from its transpose, as a share of its largest entry: rounding to six digits.
 const ASYMMETRY: f64 = 1e-5;
-/// Largest precision: a standard deviation of a millionth, far below what any image determines.
+/// Largest precision: a standard deviation of one millionth, far below what any image determines.
 const MOST_PRECISION: f64 = 1e12;
 
-/// Mean and covariance of lights, in the order R1..9, G1..9, B1..9, as a caller gives them.
+/// Mean and covariance of lights from the caller, in the order R1..9, G1..9, B1..9.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct LightGaussian {
@@ -35,7 +35,7 @@ pub struct LightGaussian {
     pub covariance: Vec<f64>,
 }
 
-/// A matrix as one list or as a list of rows.
+/// Reads a matrix from one list or from a list of rows.
 #[cfg(feature = "serde")]
 fn row_after_row<'de, D: serde::Deserializer<'de>>(deserializer: D) -> std::result::Result<Vec<f64>, D::Error> {
     #[derive(serde::Deserialize)]
@@ -58,11 +58,11 @@ pub struct LightPrior {
 }
 
 impl LightPrior {
-    /// From a mean and a symmetric positive definite covariance in the order R1..9, G1..9, B1..9.
+    /// A prior from a mean and a symmetric positive definite covariance in the order R1..9, G1..9, B1..9.
     ///
     /// # Errors
-    /// [`ErrorKind::Range`] naming `prior.mean` where a number is not finite or larger than any light's, and
-    /// `prior.covariance` where it is not symmetric and positive definite or a standard deviation is under a millionth.
+    /// [`ErrorKind::Range`] for `prior.mean` if a number is not finite or larger than that of any real light, and for
+    /// `prior.covariance` if it is not symmetric and positive definite or a standard deviation is below one millionth.
     pub fn new(mean: &[f64; COEFFICIENTS], covariance: &CoefficientMatrix) -> Result<Self> {
         Light::from_slice("prior.mean", mean)?;
         let bad = |message| Error::new(ErrorKind::Range, "prior.covariance", message);
@@ -85,10 +85,10 @@ impl LightPrior {
         Ok(Self { mean: Coefficients::from(*mean), precision })
     }
 
-    /// From lists: 27 numbers and 729, row after row.
+    /// A prior from lists: 27 numbers, and 729 row after row.
     ///
     /// # Errors
-    /// [`ErrorKind::Size`] for any other count, and what [`new`](Self::new) refuses.
+    /// [`ErrorKind::Size`] for any other count, and the errors of [`new`](Self::new).
     pub fn from_slices(mean: &[f64], covariance: &[f64]) -> Result<Self> {
         let wrong =
             |field, needed, given| Error::new(ErrorKind::Size, field, format!("needs {needed} numbers, not {given}"));
@@ -100,7 +100,7 @@ impl LightPrior {
         Self::new(given, &CoefficientMatrix::from_row_slice(covariance))
     }
 
-    /// Lights around us: 18 photographed environments, indoors and outdoors, at every azimuth.
+    /// Natural lights: 18 photographed environments, indoors and outdoors, at every azimuth.
     #[must_use]
     pub fn natural() -> Self {
         let Ok(prior) = Self::new(&environments::MEAN.map(f64::from), &natural_covariance()) else {
@@ -109,7 +109,7 @@ impl LightPrior {
         prior
     }
 
-    /// h(L): squared Mahalanobis distance from the mean, least over all exposures.
+    /// h(L): squared Mahalanobis distance from the mean, minimised over the exposure.
     #[must_use]
     pub fn squared_distance(&self, light: &Light) -> f64 {
         let off = Coefficients::from(light.flat()) - self.mean;
@@ -131,7 +131,7 @@ impl LightPrior {
     }
 }
 
-/// The kept covariance.
+/// The covariance stored in `environments`.
 fn natural_covariance() -> CoefficientMatrix {
     CoefficientMatrix::from_fn(|row, column| {
         let (long, short) = (row.max(column), row.min(column));
@@ -139,7 +139,7 @@ fn natural_covariance() -> CoefficientMatrix {
     })
 }
 
-/// e: what one unit of exposure adds to the coefficients, up to a factor.
+/// e: the change of the coefficients with the exposure, up to a factor.
 fn exposure_direction() -> Coefficients {
     Coefficients::from_fn(|row, _| if row % HARMONICS == 0 { 1.0 } else { 0.0 })
 }
@@ -171,7 +171,7 @@ mod tests {
         let mut light = Light([[0.0; HARMONICS]; 3]);
         light.0[1][4] = 3.0;
         assert!((prior.squared_distance(&light) - 9.0 / 4.0).abs() < 1e-12);
-        // Of a brighter red a third is exposure.
+        // A third of a brighter red is exposure.
         light.0[0][0] = 3.0;
         assert!((prior.squared_distance(&light) - (9.0 + 6.0) / 4.0).abs() < 1e-12);
     }
@@ -194,7 +194,7 @@ mod tests {
     fn light_from_above_and_without_a_hue_is_likelier() {
         let prior = LightPrior::natural();
         let distance = |red: [f64; HARMONICS], blue: [f64; HARMONICS]| prior.squared_distance(&Light([red, red, blue]));
-        // y is down: a negative second coefficient is light from above.
+        // y is down, so a negative second coefficient is light from above.
         let (above, below) =
             ([-1.0, -0.8, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], [-1.0, 0.8, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
         assert!(distance(above, above) < 10.0 && distance(below, below) > 2.0 * distance(above, above));

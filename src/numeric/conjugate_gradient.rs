@@ -1,30 +1,31 @@
-//! Preconditioned conjugate gradients: the minimum over x of x^T A x / 2 - b^T x, A symmetric and positive
-//! semi-definite, without its matrix (docs/method/normals.md and docs/method/heights.md).
+//! Preconditioned conjugate gradients: minimises x^T A x / 2 - b^T x over x for a symmetric, positive semi-definite A,
+//! without
+//! forming the matrix (docs/method/normals.md and docs/method/heights.md).
 //!
-//! M, the preconditioner, is close to A and easy to solve for. In exact arithmetic each iteration minimises over one
-//! more dimension, and the error in the norm of A falls by (k - 1) / (k + 1) or better, k the root of the condition
-//! number of M^-1 A. Vectors are f32, sums f64: relative residuals below about 1e-6 are not reached. M. Hestenes, E.
-//! Stiefel: "Methods of conjugate gradients for solving linear systems", 1952.
+//! The preconditioner M is close to A and easy to solve for. In exact arithmetic each iteration minimises over one more
+//! dimension, and the error in the norm of A falls by (k - 1) / (k + 1) or better, where k is the square root of the
+//! condition number of M^-1 A. Vectors are f32 and sums f64, so relative residuals below about 1e-6 are not reached. M.
+//! Hestenes, E. Stiefel: "Methods of conjugate gradients for solving linear systems", 1952.
 //!
-//! Why no library: argmin's method takes no preconditioner. faer's takes one, but it sums in the precision of the vectors
-//! and ends by the norm of the residual alone, neither by the error in the norm of A nor by the decrease.
+//! Why no library: argmin's method takes no preconditioner. faer's takes one, but it sums in the precision of the
+//! vectors and stops on the norm of the residual alone, not on the error in the norm of A or the decrease.
 
 use super::vector::{add_scaled, dot};
 
 /// A and M of a linear system.
 pub(crate) trait System {
-    /// product = A direction.
+    /// Computes product = A direction.
     fn apply(&mut self, direction: &[f32], product: &mut [f32]);
 
-    /// solution = M^-1 residual.
+    /// Computes solution = M^-1 residual.
     fn precondition(&mut self, residual: &[f32], solution: &mut [f32]);
 }
 
-/// The vectors of a solve, all of one length. They belong to the caller, so that nothing is allocated.
+/// The vectors of a solve, all of one length. The caller owns them, so a solve allocates nothing.
 pub(crate) struct Vectors<'a> {
-    /// x: the start, then the solution.
+    /// x: the initial guess, then the solution.
     pub solution: &'a mut [f32],
-    /// b - A x at the start, and of the solution in the end.
+    /// b - A x: of the initial guess at first, of the solution at the end.
     pub residual: &'a mut [f32],
     /// Scratch.
     pub direction: &'a mut [f32],
@@ -32,18 +33,17 @@ pub(crate) struct Vectors<'a> {
     pub product: &'a mut [f32],
 }
 
-/// When a solve ends. Its error is measured as r^T M^-1 r, r the residual: about the square of the error in the norm of
-/// A.
+/// When a solve ends. Its error is measured as r^T M^-1 r with the residual r, which is about the square of the error
+/// in the norm of A.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Limits {
-    /// Most iterations.
+    /// Maximum number of iterations.
     pub iterations: u32,
-    /// Error that is small enough.
+    /// Error at which the solve ends.
     pub error: f64,
-    /// Error that is small enough, as a share of the first one; the larger of both limits counts.
+    /// The same as a share of the initial error; the larger of the two limits applies.
     pub relative_error: f64,
-    /// Decrease of the objective (twice it: x^T A x - 2 b^T x) by one iteration after which another one is not worth
-    /// its time.
+    /// The solve ends after an iteration that decreases twice the objective (x^T A x - 2 b^T x) by less than this.
     pub decrease: f64,
 }
 
@@ -52,26 +52,26 @@ pub(crate) struct Limits {
 pub(crate) enum End {
     /// The error or the decrease is within its limit.
     Converged,
-    /// The limit on iterations came first. The residual is that of the solution; the error is that of the solution
-    /// before.
+    /// The limit on iterations came first. The residual is that of the solution, the error that of the previous
+    /// iterate.
     Capped,
-    /// A is not positive along a direction, or numbers ran out of range.
+    /// A is not positive along a direction, or a number overflowed.
     Breakdown,
 }
 
-/// What a solve did.
+/// Outcome of a solve.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Solved {
     pub iterations: u32,
     /// r^T M^-1 r.
     pub error: f64,
-    /// By how much x^T A x - 2 b^T x has fallen, all iterations together.
+    /// Total decrease of x^T A x - 2 b^T x.
     pub decrease: f64,
     pub end: End,
 }
 
-/// Solves A x = b from the start that `vectors` holds. (The system is a trait object: one copy of this code serves
-/// all.)
+/// Solves A x = b from the initial guess in `vectors`. The system is a trait object, so that one copy of this code
+/// serves all systems.
 pub(crate) fn solve(system: &mut dyn System, limits: Limits, vectors: Vectors<'_>) -> Solved {
     let Vectors { solution, residual, direction, product } = vectors;
     system.precondition(residual, product);
@@ -100,7 +100,8 @@ pub(crate) fn solve(system: &mut dyn System, limits: Limits, vectors: Vectors<'_
         if gain < limits.decrease {
             break End::Converged;
         }
-        // What the last iteration leaves is not measured: that costs half an iteration, and not every caller asks.
+        // The error after the last iteration is not measured: it costs half an iteration, and not every caller needs
+        // it.
         if iterations == limits.iterations {
             break End::Capped;
         }

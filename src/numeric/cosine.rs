@@ -1,38 +1,38 @@
-//! (c L + s) z = f on a full rectangle, where (L z)_i = sum over the neighbours j of i of (z_i - z_j).
+//! Solves (c L + s) z = f on a full rectangle, where (L z)_i is the sum of z_i - z_j over the neighbours j of i.
 //!
 //! Method: L has free (Neumann) borders, so the cosines cos(pi k (x + 1/2) / W) are its eigenvectors along a row, with
-//! eigenvalues mu_k = 2 - 2 cos(pi k / W). A cosine transform (DCT-II) of every row leaves, for each k, one tridiagonal
-//! system down the columns with 2 + mu_k + s/c on its diagonal; elimination solves it, the inverse transform (DCT-III)
-//! returns. That is one transform of every row and back, where transforms along both axes take two, and columns may
-//! have any length. Cost O(W H log W). Eight rows are transformed at once, see [`Rows`].
+//! eigenvalues mu_k = 2 - 2 cos(pi k / W). A cosine transform (DCT-II) of every row leaves one tridiagonal system down
+//! the columns for each k, with 2 + mu_k + s/c on its diagonal. Elimination solves it, and the inverse transform
+//! (DCT-III) returns to pixels. Each row is transformed once each way, where transforms along both axes would need two
+//! passes, and columns may have any length. Cost O(W H log W). Eight rows are transformed at once, see [`Rows`].
 //!
-//! A rectangle whose width has large prime factors is solved as part of a wider one, zero beyond it: a preconditioner
-//! need not be exact (docs/method/normals.md).
+//! A rectangle whose width has large prime factors is solved as part of a wider one that is zero beyond it, because a
+//! preconditioner need not be exact (docs/method/normals.md).
 //!
-//! Why not rustdct (0.7): it takes one row after the other. A solve of 640x480 takes 5.9 ms instead of 2.9 with simd128 and
-//! rustfft's SIMD for WebAssembly, 8.0 without the latter (Node 20); a solve is most of an iteration of the integration.
-//! Without SIMD rustdct needs 0.4 to 0.8 of the time: what counts is the module that browsers of today load.
+//! Why not rustdct (0.7): it transforms one row after the other. A solve, which takes most of an iteration of the
+//! integration, takes 5.9 ms instead of 2.9 at 640x480 with simd128 and rustfft's SIMD for WebAssembly, and 8.0 without
+//! the latter (Node 20). Without SIMD rustdct is faster (0.4 to 0.8 of the time), but current browsers load simd128.
 //!
-//! Limits: without a shift (s = 0) constants are in the null space: f has to sum to zero (its mean is ignored)
-//! and the answer has mean zero. Rounding: about 1e-6 of the largest height at 256x256 (f32 pixels, f64 pivots).
+//! Limits: without a shift (s = 0) constants are in the null space. Then f has to sum to zero (its mean is ignored),
+//! and the solution has mean zero. Rounding: about 1e-6 of the largest height at 256x256 (f32 pixels, f64 pivots).
 
 use std::f64::consts::PI;
 
 use super::fourier::rows::{Complex, RowFourier, fast_length};
 use crate::numeric::{LANES, Lanes, Real};
 
-/// Direct solver for one size of rectangle; owns its plan and its scratch memory.
+/// Direct solver for one size of rectangle; owns its plan and scratch memory.
 pub struct CosineSolver {
     /// Columns of the fields.
     width: usize,
     rows: Rows,
-    /// 1 / pivot of each row (slow) and frequency (fast); zero where the system is singular.
+    /// 1 / pivot for each row (slow index) and frequency (fast index); zero where the system is singular.
     reciprocals: Vec<f32>,
-    /// mu_k for each frequency.
+    /// mu_k of each frequency.
     eigenvalues: Vec<f64>,
-    /// 1 / pivot of the row above, while they are found.
+    /// 1 / pivot of the row above, during the computation of the pivots.
     above: Vec<f64>,
-    /// 1 / (c W): the transforms' normalisation and the stiffness.
+    /// 1 / (c W): normalisation of the transforms and the stiffness.
     gain: f32,
     /// s / c.
     ratio: f64,
@@ -50,7 +50,7 @@ impl CosineSolver {
             eigenvalues,
             above: vec![0.0; length],
             gain: 0.0,
-            // NaN differs from every ratio that may be set first.
+            // NaN differs from every ratio, so the first call of `set` finds the pivots.
             ratio: f64::NAN,
         };
         solver.set(1.0, 0.0);
@@ -67,13 +67,13 @@ impl CosineSolver {
         }
     }
 
-    /// The elimination's pivots of every row and frequency.
+    /// Computes the pivots of every row and frequency.
     fn find_pivots(&mut self) {
         let length = self.above.len();
         let last = self.reciprocals.len() / length - 1;
         self.above.fill(0.0);
         for (row, reciprocals) in self.reciprocals.chunks_exact_mut(length).enumerate() {
-            // Diagonal without mu: s/c and the number of neighbours above and below.
+            // Diagonal without mu: s/c plus the number of neighbours above and below.
             let diagonal = self.ratio + f64::from(u8::from(row > 0)) + f64::from(u8::from(row < last));
             for ((reciprocal, above), mu) in reciprocals.iter_mut().zip(&mut self.above).zip(&self.eigenvalues) {
                 *above = 1.0 / (diagonal + mu - *above);
@@ -81,17 +81,17 @@ impl CosineSolver {
             }
         }
         if self.ratio == 0.0 {
-            // The last pivot of the constant mode is zero up to rounding: its level is free.
+            // The last pivot of the constant mode is zero up to rounding, because its level is free.
             self.reciprocals[last * length] = 0.0;
         }
     }
 
-    /// Numbers of a spectrum: one for each row and frequency.
+    /// Length of a spectrum: one number for each row and frequency.
     pub fn len(&self) -> usize {
         self.reciprocals.len()
     }
 
-    /// Writes the solution for the right-hand side `field`; both are `width` x `height`. `spectrum` is scratch.
+    /// Writes the solution for the right-hand side `field`, both `width` x `height`. `spectrum` is scratch.
     pub fn solve(&mut self, field: &[f32], spectrum: &mut [f32], solution: &mut [f32]) {
         let (several, length) = (ROWS * self.width, ROWS * self.above.len());
         for (field, spectrum) in field.chunks(several).zip(spectrum.chunks_mut(length)) {
@@ -103,7 +103,7 @@ impl CosineSolver {
         }
     }
 
-    /// Forward elimination and back substitution down the columns, all frequencies side by side.
+    /// Forward elimination and back substitution down the columns, for all frequencies side by side.
     fn eliminate(&self, field: &mut [f32]) {
         let length = self.above.len();
         let rows = field.len() / length;
@@ -132,17 +132,17 @@ impl CosineSolver {
     }
 }
 
-/// Rows that are transformed at once.
+/// Number of rows that are transformed at once.
 const ROWS: usize = 2 * LANES;
 
-/// Cosine transforms of eight rows: four in lanes, and other four as their imaginary parts.
+/// Cosine transforms of eight rows: four in lanes, and four more as their imaginary parts.
 ///
-/// Method (Makhoul): v holds the even samples of a row x from its start and the odd ones, backwards, from its end. With
-/// V its Fourier transform and e_k = exp(-i pi k / 2W), e_k V_k = X_k - i X_(W-k), X the cosine transform. V of a row a
-/// and of a row b come out of one transform of a + i b: V_k + conj V_(W-k) is twice that of a.
+/// Method (Makhoul): v holds the even samples of a row x from its start, and the odd ones backwards from its end. With
+/// the Fourier transform V of v and e_k = exp(-i pi k / 2W), e_k V_k = X_k - i X_(W-k), where X is the cosine
+/// transform. One transform of a + i b yields V of both rows a and b: V_k + conj V_(W-k) is twice that of a.
 struct Rows {
     fourier: RowFourier,
-    /// Of a frequency or a sample: the first four rows and the other four.
+    /// The first four rows and the other four of each sample or frequency.
     work: Vec<Complex>,
     /// cos and sin of pi k / 2W.
     turns: Vec<[f32; 2]>,
@@ -161,7 +161,7 @@ impl Rows {
         }
     }
 
-    /// Where the samples of [`LANES`] columns from `column` on are in v.
+    /// Positions in v of the samples of [`LANES`] columns from `column` on.
     fn samples(&self, column: usize) -> [usize; LANES] {
         let last = self.work.len() - 1;
         std::array::from_fn(|lane| {
@@ -170,7 +170,8 @@ impl Rows {
         })
     }
 
-    /// `spectrum` = `gain` times the sums of x_n cos(pi k (n + 1/2) / W) of up to eight rows of `width`, zero beyond.
+    /// Sets `spectrum` to `gain` times the sums of x_n cos(pi k (n + 1/2) / W), for up to eight rows of `width`
+    /// samples, with zeros beyond.
     fn forward(&mut self, rows: &[f32], width: usize, gain: f32, spectrum: &mut [f32]) {
         self.work.fill([Lanes::splat(0.0); 2]);
         for column in (0..width).step_by(LANES) {
@@ -193,7 +194,7 @@ impl Rows {
         }
     }
 
-    /// Up to eight `rows` of `width` = what [`forward`](Self::forward) makes this spectrum of, times W.
+    /// Inverts [`forward`](Self::forward) up to a factor of W, for up to eight `rows` of `width` samples.
     fn inverse(&mut self, spectrum: &[f32], rows: &mut [f32], width: usize) {
         let length = self.work.len();
         for (block, values) in self.work.as_chunks_mut::<LANES>().0.iter_mut().enumerate() {
@@ -209,14 +210,14 @@ impl Rows {
         for column in (0..width).step_by(LANES) {
             let places = self.samples(column);
             for half in 0..2 {
-                // Real and imaginary part have changed places.
+                // The real and imaginary parts have changed places.
                 let four = places.map(|place| self.work[place][1 - half]);
                 set_columns(four, rows, half * LANES * width + column, width);
             }
         }
     }
 
-    /// The transform of a + i b becomes the cosine transforms of a and b, times `gain`.
+    /// Turns the transform of a + i b into the cosine transforms of a and b, times `gain`.
     fn part(&mut self, gain: f32) {
         let gain_lanes = Lanes::splat(gain);
         let [a, b] = self.work[0];
@@ -232,7 +233,8 @@ impl Rows {
         }
     }
 
-    /// The way back, with real and imaginary part exchanged: so the transform forwards is the one backwards.
+    /// Inverts [`part`](Self::part), with real and imaginary parts exchanged so that the forward transform acts as the
+    /// inverse one.
     fn join(&mut self) {
         let [a, b] = self.work[0];
         self.work[0] = [b, a];
@@ -248,8 +250,7 @@ impl Rows {
     }
 }
 
-/// As many columns from `start` on of as many rows as there are lanes, the rows `stride` apart; zeros of a row that is
-/// missing.
+/// [`LANES`] columns, from `start` on, of as many rows, which are `stride` apart; zeros for missing rows.
 #[inline(never)]
 fn columns(rows: &[f32], start: usize, stride: usize) -> [Lanes; LANES] {
     Lanes::transpose(std::array::from_fn(|row| {
@@ -258,7 +259,7 @@ fn columns(rows: &[f32], start: usize, stride: usize) -> [Lanes; LANES] {
     }))
 }
 
-/// The way back; nothing of a row that is missing.
+/// Inverts [`columns`]; skips missing rows.
 #[inline(never)]
 fn set_columns(four: [Lanes; LANES], rows: &mut [f32], start: usize, stride: usize) {
     for (row, value) in Lanes::transpose(four).into_iter().enumerate() {
@@ -274,7 +275,7 @@ mod tests {
     #[cfg(target_arch = "wasm32")]
     use wasm_bindgen_test::wasm_bindgen_test as test;
 
-    /// (c L + s) z in f64.
+    /// Applies (c L + s) to z in f64.
     fn apply(width: usize, height: usize, stiffness: f64, shift: f64, z: &[f64]) -> Vec<f32> {
         let mut out: Vec<f64> = z.iter().map(|value| shift * value).collect();
         for row in 0..height {
@@ -320,7 +321,7 @@ mod tests {
         }
     }
 
-    /// Of a field that ends in zeros the narrower solver gives the same, as far as it is wide.
+    /// For a field that ends in zeros, the narrower solver agrees within its width.
     #[test]
     fn a_narrow_field_is_part_of_a_wide_one() {
         let (width, wider, height) = (44, 48, 11);

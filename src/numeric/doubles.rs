@@ -1,36 +1,36 @@
 //! Two pixels side by side: f64 arithmetic that fills one vector register of WebAssembly, see [`lanes`](super::lanes).
 //!
-//! For sums of which small differences matter: solving normal equations loses half of the digits.
+//! For sums whose small differences matter, because solving normal equations loses half of the digits.
 //!
-//! Why not the crate `wide` (1.7): its exponential takes 4.5 times as long with simd128 and 3.6 times without (Node 20), as
-//! it has all digits; seven suffice here.
+//! Why not the crate `wide` (1.7): its exponential takes 4.5 times as long with simd128 and 3.6 times without (Node 20),
+//! because it returns all digits. Seven suffice here.
 
 use std::ops::{Add, BitAnd, Div, Mul, Sub};
 
 use super::lanes::Real;
 
-/// Pixels that are worked on at once.
+/// Number of pixels that are processed at once.
 pub const DOUBLE_LANES: usize = if cfg!(all(target_arch = "wasm32", not(target_feature = "simd128"))) { 1 } else { 2 };
 
-/// Exponents below this one count as this one: 2^-1000 is as good as zero.
+/// Exponents below this one are raised to it, because 2^-1000 is as good as zero.
 const LEAST_POWER: f64 = -1000.0;
-/// 1.5 2^52. A number added to it is rounded to an integer, which is then found in the last bits of the sum.
+/// 1.5 2^52. Adding it to a number rounds that number to an integer, which the last bits of the sum then hold.
 const ROUNDING: f64 = 6_755_399_441_055_744.0;
-/// Bits of an f64 behind its exponent.
+/// Number of mantissa bits of an f64, below its exponent.
 const MANTISSA: u32 = 52;
-/// Taylor's series of e^x, from the sixth power down; its relative error is below 2e-7 where |x| < ln(2) / 2.
+/// Taylor series of e^x, from the sixth power down; its relative error is below 2e-7 where |x| < ln(2) / 2.
 const SERIES: [f64; 7] = [1.0 / 720.0, 1.0 / 120.0, 1.0 / 24.0, 1.0 / 6.0, 0.5, 1.0, 1.0];
 
 /// Two numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct Doubles(arch::Two);
 
-/// True or false for each of two.
+/// A boolean for each of two numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct Choices(arch::Choice);
 
 impl Doubles {
-    /// Two values from `start`, NaN where there are not as many.
+    /// Two values from `start`; all NaN where fewer are left.
     #[inline(always)]
     pub fn load(values: &[f64], start: usize) -> Self {
         let two = values.get(start..).and_then(|values| values.first_chunk());
@@ -65,13 +65,13 @@ impl Doubles {
         Choices(arch::at_most(self.0, other.0))
     }
 
-    /// The smaller of each two; the other's where this one is NaN.
+    /// The smaller of each pair; the other's number where this one is NaN.
     #[inline(always)]
     pub fn min(self, other: Self) -> Self {
         self.less(other).select(self, other)
     }
 
-    /// At least as large as `floor`; NaN stays.
+    /// Raises numbers below `floor` to it; NaN stays NaN.
     #[inline(always)]
     pub fn raised_to(self, floor: f64) -> Self {
         let floor = Self::splat(floor);
@@ -112,13 +112,13 @@ impl Real for Doubles {
 }
 
 impl Choices {
-    /// `yes` where it is true, `no` elsewhere.
+    /// `yes` where the choice is true, `no` elsewhere.
     #[inline(always)]
     pub fn select(self, yes: Doubles, no: Doubles) -> Doubles {
         Doubles(arch::select(self.0, yes.0, no.0))
     }
 
-    /// The number where it is true, zero elsewhere.
+    /// `number` where the choice is true, zero elsewhere.
     #[inline(always)]
     pub fn keep(self, number: Doubles) -> Doubles {
         self.select(number, Doubles::splat(0.0))
@@ -151,7 +151,7 @@ mod arch {
 
     #[inline(always)]
     pub fn two(values: [f64; 2]) -> v128 {
-        // As one, for the reason given in lanes.rs.
+        // Cast as a whole, for the reason given in lanes.rs.
         bytemuck::cast(values)
     }
 
@@ -165,7 +165,7 @@ mod arch {
         v128_bitselect(yes, no, choice)
     }
 
-    /// The value times 2 to the power of the last bits of `power`.
+    /// The value times 2 to the power in the last bits of `power`.
     #[inline(always)]
     pub fn grow(value: v128, power: v128) -> v128 {
         i64x2_add(value, i64x2_shl(power, super::MANTISSA))
@@ -188,7 +188,7 @@ mod arch {
         less(a, b: Two) -> Choice { a < b }
         at_most(a, b: Two) -> Choice { a <= b }
         and(a, b: Choice) -> Choice { a && b }
-        // The value times 2 to the power of the last bits of the other.
+        // The value times 2 to the power in the last bits of `power`.
         grow(value, power: Two) -> Two {
             f64::from_bits(value.to_bits().wrapping_add(power.to_bits() << super::MANTISSA))
         }

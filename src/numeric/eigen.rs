@@ -1,22 +1,22 @@
 //! Eigenvalues and eigenvectors of small symmetric matrices, by nalgebra.
 //!
-//! Limits: the error of an eigenvalue is that of the largest one times the rounding of f64.
+//! Limits: the error of every eigenvalue is the largest eigenvalue times the rounding of f64.
 
 use nalgebra::allocator::Allocator;
 use nalgebra::{Const, DefaultAllocator, DimDiff, DimSub, OMatrix, SymmetricEigen, U1};
 
-/// Cap on the rounds of the iteration, which takes two to three for each row.
+/// Cap on the iterations; a matrix takes two to three for each row.
 const MOST_ROUNDS: usize = 200;
 
-/// Eigenvalues in no order, and their eigenvectors as columns.
+/// Eigenvalues in no particular order, and their eigenvectors as columns.
 pub(crate) type Eigen<const N: usize> = SymmetricEigen<f64, Const<N>>;
 
-/// `None` where an entry is not finite.
+/// The decomposition, or `None` where an entry is not finite.
 pub(crate) fn symmetric_eigen<D: DimSub<U1>>(matrix: &OMatrix<f64, D, D>) -> Option<SymmetricEigen<f64, D>>
 where
     DefaultAllocator: Allocator<D, D> + Allocator<D> + Allocator<DimDiff<D, U1>>,
 {
-    // The iteration never ends by itself on NaN.
+    // On NaN the iteration would never end.
     let is_finite = matrix.iter().all(|value| value.is_finite());
     is_finite.then(|| SymmetricEigen::try_new(matrix.clone(), f64::EPSILON, MOST_ROUNDS))?
 }
@@ -28,7 +28,7 @@ mod tests {
     use super::*;
     use crate::numeric::noise;
 
-    /// Graded over many powers of ten, with equal eigenvalues and with none but zero.
+    /// Matrices graded over many powers of ten, with equal eigenvalues, and with all eigenvalues zero.
     #[test]
     fn products_with_eigenvectors_are_multiples() {
         let mut random = noise::white_noise(4);

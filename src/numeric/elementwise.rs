@@ -1,6 +1,6 @@
-//! Macros that define the arithmetic of [`lanes`](super::lanes) and [`doubles`](super::doubles) number by number.
+//! Macros that define the arithmetic of [`lanes`](super::lanes) and [`doubles`](super::doubles) for each number.
 
-/// Implements an operator of a vector by the function of that name in its module `arch`.
+/// Implements an operator of a vector type by the function of the same name in its module `arch`.
 macro_rules! operator {
     ($type:ident, $name:ident, $method:ident) => {
         impl $name for $type {
@@ -13,7 +13,8 @@ macro_rules! operator {
     };
 }
 
-/// Defines functions of arrays that treat each number alike: the module `arch` where there are no vector instructions.
+/// Defines functions of arrays that treat each number alike, for the module `arch` on targets without vector
+/// instructions.
 #[cfg(not(all(target_arch = "wasm32", target_feature = "simd128")))]
 macro_rules! each {
     ($($name:ident($a:ident $(, $b:ident)*: $from:ty) -> $to:ty { $body:expr })*) => {

@@ -1,28 +1,28 @@
 //! Four pixels side by side: f32 arithmetic that fills one vector register of WebAssembly.
 //!
 //! Solvers of single pixels branch too much for the compiler to vectorise them. Here all four pixels compute both sides
-//! of a branch, and a [`Mask`] selects. WebAssembly without SIMD takes one pixel at a time: four of each instruction
-//! would be a larger download and no faster. Every operation is rounded as f32 is, so that both agree but for the order
-//! of sums.
+//! of a branch, and a [`Mask`] selects. WebAssembly without SIMD processes one pixel at a time, because four of each
+//! instruction would be a larger download and no faster. Every operation rounds as f32 does, so both variants agree
+//! except for the order of sums.
 //!
-//! Why not the crate `wide` (1.7): a kernel of shading takes nine tenths of the time with simd128 and as long without
-//! (Node 20), so that speed does not decide. It has no load that is padded at the ends of a row, its masks are numbers, which
-//! can be mistaken for values, and [`doubles`](super::doubles) need an exponential that it has four times slower.
+//! Why not the crate `wide` (1.7): a kernel of shading takes 0.9 of the time with simd128 and as long without (Node
+//! 20), so speed does not decide. It has no load that pads the ends of a row, its masks are numbers that can be
+//! mistaken for values, and its exponential is too slow for [`doubles`](super::doubles).
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Not, Sub};
 
-/// Pixels that are worked on at once.
+/// Number of pixels that are processed at once.
 pub const LANES: usize = if cfg!(all(target_arch = "wasm32", not(target_feature = "simd128"))) { 1 } else { 4 };
 
-/// What a formula needs of a number, be it one pixel's or several pixels'.
+/// The operations that a formula needs of a number, whether of one pixel or of several.
 pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> {
-    /// The type of one pixel's number.
+    /// Number type of one pixel.
     type Scalar: Real<Scalar = Self::Scalar>;
 
-    /// The same number everywhere.
+    /// The same number for every pixel.
     fn splat(value: Self::Scalar) -> Self;
 
-    /// A constant of a formula, rounded as this is.
+    /// A constant of a formula, rounded to the precision of this type.
     fn constant(value: f64) -> Self;
 }
 
@@ -54,11 +54,11 @@ impl Real for f64 {
     }
 }
 
-/// Four numbers, of four pixels.
+/// Four numbers, one for each of four pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct Lanes(arch::Four);
 
-/// True or false for each of four pixels.
+/// A boolean for each of four pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct Mask(arch::Choice);
 
@@ -66,7 +66,7 @@ impl Lanes {
     /// Four values from `start`, NaN beyond the ends.
     #[inline(always)]
     pub fn load(values: &[f32], start: isize) -> Self {
-        // A start before the first value is, without its sign, beyond the last one.
+        // As an unsigned number, a negative start lies beyond the last value.
         match values.get(start as usize..).and_then(|values| values.first_chunk()) {
             Some(four) => Self::from(*four),
             None => Self::load_end(values, start),
@@ -86,7 +86,7 @@ impl Lanes {
         Self::from(four)
     }
 
-    /// Writes as many of the four as there is room for.
+    /// Writes as many of the four numbers as `values` can hold.
     #[inline(always)]
     pub fn store(self, values: &mut [f32]) {
         match values.first_chunk_mut() {
@@ -106,7 +106,7 @@ impl Lanes {
         arch::array(self.0)
     }
 
-    /// The first numbers of all rows, the second ones, and so on.
+    /// The first numbers of all rows, then the second ones, and so on.
     #[inline(always)]
     pub fn transpose(rows: [Self; LANES]) -> [Self; LANES] {
         arch::transpose(rows.map(|row| row.0)).map(Self)
@@ -126,7 +126,7 @@ impl Lanes {
         Self(arch::sqrt(self.0))
     }
 
-    /// The smaller of each two; the other's where this one is NaN.
+    /// The smaller of each pair; the other's number where this one is NaN.
     #[inline(always)]
     pub fn min(self, other: Self) -> Self {
         self.less(other).select(self, other)
@@ -151,7 +151,7 @@ impl Lanes {
     }
 }
 
-/// The product of two vectors.
+/// Dot product of two vectors.
 #[inline(always)]
 pub fn dot<T: Real>(a: [T; 3], b: [T; 3]) -> T {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
@@ -179,7 +179,7 @@ impl Real for Lanes {
 }
 
 impl Mask {
-    /// True for those of four bytes that have one of these bits.
+    /// True for those of four bytes that share a bit with `bits`.
     #[inline(always)]
     pub fn with_bits(bytes: [u8; LANES], bits: u8) -> Self {
         Self(arch::with_bits(bytes, bits))
@@ -191,7 +191,7 @@ impl Mask {
         Lanes(arch::select(self.0, yes.0, no.0))
     }
 
-    /// [`select`](Self::select) of a vector.
+    /// [`select`](Self::select) for vectors.
     #[inline(always)]
     pub fn select3(self, yes: [Lanes; 3], no: [Lanes; 3]) -> [Lanes; 3] {
         [self.select(yes[0], no[0]), self.select(yes[1], no[1]), self.select(yes[2], no[2])]
@@ -202,7 +202,7 @@ impl Mask {
         arch::any(self.0)
     }
 
-    /// For how many it is true.
+    /// Number of pixels for which the mask is true.
     #[inline(always)]
     pub fn count(self) -> usize {
         arch::count(self.0)
@@ -254,7 +254,7 @@ mod arch {
 
     #[inline(always)]
     pub fn four(values: [f32; 4]) -> v128 {
-        // Lane by lane the compiler would load and insert each by itself.
+        // Assembled lane by lane, each number would be loaded and inserted separately.
         bytemuck::cast(values)
     }
 

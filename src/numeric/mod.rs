@@ -1,8 +1,9 @@
-//! The ground floor: arithmetic that knows nothing of images, lights or poses.
+//! Arithmetic, the lowest module: it knows nothing of images, lights or poses.
 //!
-//! [`lanes`] and [`doubles`] are numbers of several pixels side by side, `elementwise` the macros that define them;
-//! [`vector`] holds sums over long vectors, [`eigen`] eigenvalues, [`order`] quantiles and thinning, [`robust`] robust weights,
-//! [`noise`] the noise of a raster, [`random`] numbers that follow from a seed, [`fourier`] and [`cosine`] transforms and the Poisson solver made of them.
+//! [`lanes`] and [`doubles`] process several pixels side by side, with the macros of `elementwise`. [`vector`] sums
+//! over long vectors, [`eigen`] computes eigenvalues, [`order`] quantiles and thinning, [`robust`] robust weights,
+//! [`noise`] the noise of a raster, and [`random`] numbers from a seed. [`fourier`] holds Fourier transforms,
+//! [`cosine`] the Poisson solver built on them, [`conjugate_gradient`] an iterative solver.
 
 #[macro_use]
 mod elementwise;

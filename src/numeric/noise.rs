@@ -1,18 +1,18 @@
-//! The noise of a raster by the fourth differences of neighbours (docs/method/views.md).
+//! Noise of a raster, estimated by the fourth differences of neighbours (docs/method/views.md).
 //!
-//! Fourth differences of a cubic vanish, so what a cubic through five neighbours does not follow counts as noise.
-//! Limits: so does texture as fine as that.
+//! Fourth differences of a cubic vanish, so whatever deviates from a cubic through five neighbours counts as noise.
+//! Limits: so does texture that fine.
 
 use super::quantile;
 
-/// Neighbours in a line that a fourth difference takes.
+/// Number of collinear neighbours in a fourth difference.
 pub const NEIGHBOURS: usize = 5;
 /// Standard deviation of the fourth differences of white noise of variance one: 70^(1/2), as 1 + 16 + 36 + 16 + 1 = 70.
 const FOURTH_DIFFERENCE: f64 = 8.366_600_265_340_756;
-/// Median of |x| of a normal x of variance one.
+/// Median of |x| for a normal x of variance one.
 const MEDIAN_ABSOLUTE: f64 = 0.674_489_750_196_082;
 
-/// The fourth difference of five neighbours.
+/// Fourth difference of five neighbours.
 pub fn fourth_difference<T>(line: [T; NEIGHBOURS]) -> T
 where
     T: std::ops::Mul<f64, Output = T> + std::ops::Add<Output = T>,
@@ -21,7 +21,8 @@ where
     a + b * -4.0 + c * 6.0 + d * -4.0 + e
 }
 
-/// Standard deviation of the noise whose fourth differences have these sizes, `most` of them at most; zero without any.
+/// Standard deviation of the noise whose fourth differences have these sizes. There are at most `most` of them; without
+/// any, the result is zero.
 pub fn of_fourth_differences(sizes: &mut dyn Iterator<Item = f32>, most: usize) -> f64 {
     // A list that grows step by step takes up to three times the memory.
     let mut known = Vec::with_capacity(most);
@@ -32,7 +33,7 @@ pub fn of_fourth_differences(sizes: &mut dyn Iterator<Item = f32>, most: usize) 
     f64::from(quantile(&mut known, 0.5)) / (FOURTH_DIFFERENCE * MEDIAN_ABSOLUTE)
 }
 
-/// White noise of variance one for tests: sums of twelve uniform numbers are nearly normal.
+/// White noise of variance one for tests: a sum of twelve uniform numbers is nearly normal.
 #[cfg(test)]
 pub fn white_noise(seed: u64) -> impl FnMut() -> f64 {
     let mut random = super::random::Random::new(seed, 0);

@@ -1,12 +1,12 @@
-//! Ranks: quantiles, and thinning of long lists.
+//! Quantiles, and thinning of long lists.
 
-/// The value below which the `share` of `values` lies; `values` is reordered and must hold no NaN.
+/// The value below which the `share` of `values` lies. Reorders `values`, which must hold no NaN.
 pub(crate) fn quantile(values: &mut [f32], share: f64) -> f32 {
     let rank = ((values.len() - 1) as f64 * share).round() as usize;
     *values.select_nth_unstable_by(rank, f32::total_cmp).1
 }
 
-/// At most `most` of some indices, evenly spread.
+/// At most `most` of the indices, evenly spread.
 pub(crate) fn evenly_spread<I: Iterator<Item = usize>>(
     most: usize,
     indices: impl Fn() -> I,

@@ -1,4 +1,4 @@
-//! Random numbers that follow from a seed, the same on every platform: rand_chacha's ChaCha with eight rounds.
+//! Random numbers from a seed, the same on every platform: ChaCha with eight rounds, by rand_chacha.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -7,7 +7,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 pub(crate) struct Random(ChaCha8Rng);
 
 impl Random {
-    /// The numbers of one seed fall into streams that have nothing to do with each other.
+    /// One seed yields many independent streams.
     pub fn new(seed: u64, stream: u64) -> Self {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         generator.set_stream(stream);
@@ -19,7 +19,7 @@ impl Random {
         self.0.next_u32()
     }
 
-    /// Evenly over [0, 1), with 53 bits.
+    /// Uniform over [0, 1), with 53 bits.
     pub fn uniform(&mut self) -> f64 {
         (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
@@ -29,7 +29,7 @@ impl Random {
 mod tests {
     use super::*;
 
-    /// Every scene, search and verdict is drawn from these streams: a release of the crate that changed them would
+    /// Every scene, search and verdict draws from these streams, so a release of the crate that changed them would
     /// change every published table.
     #[test]
     fn streams_stay_as_the_published_tables_have_them() {
@@ -46,7 +46,7 @@ mod tests {
             let mut random = Random::new(seed, stream);
             assert_eq!([(); 3].map(|()| random.word()), words, "{seed}");
             assert_eq!(random.uniform(), early, "{seed}");
-            // Ten more, so that the next number takes a word of this block and one of the next.
+            // Ten more words, so that the next number takes one word of this block and one of the next.
             (0..10).for_each(|_| _ = random.word());
             assert_eq!(random.uniform(), late, "{seed}");
         }

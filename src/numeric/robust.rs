@@ -1,27 +1,27 @@
-//! rho(r) = r^2 / (1 + r^2 / s^2), the robust function of Geman and McClure, and the robust standard deviation.
+//! The robust function of Geman and McClure, rho(r) = r^2 / (1 + r^2 / s^2), and the robust standard deviation.
 //!
-//! Everything here is a function of u = (r / s)^2, the square of a residual in units of the scale s; callers form u, as
-//! their residuals are at hand squared, or divided, or times 1 / s^2. A residual of one scale keeps a quarter of its
-//! weight, and rho never exceeds s^2.
-//! S. Geman, D. McClure: "Bayesian image analysis: an application to single photon emission tomography", 1985.
+//! Everything here is a function of u = (r / s)^2, the squared residual in units of the scale s. Callers form u,
+//! because they hold their residuals squared, divided, or times 1 / s^2. A residual of one scale keeps a quarter of its
+//! weight, and rho never exceeds s^2. S. Geman, D. McClure: "Bayesian image analysis: an application to single photon
+//! emission tomography", 1985.
 
 use super::Real;
 
-/// sigma = 1.4826 median |x| of normal x: the median absolute deviation as a standard deviation.
+/// sigma = 1.4826 median |x| for a normal x: turns a median absolute deviation into a standard deviation.
 pub(crate) const SIGMA_OF_MEDIAN: f64 = 1.4826;
 
-/// The robust scale s in standard deviations of the residuals: those of three sigmas, beyond which hardly any is noise, keep a quarter of
-/// their weight.
+/// The robust scale s in standard deviations of the residuals. Residuals of three sigmas, beyond which hardly any are
+/// noise, keep a quarter of their weight.
 pub(crate) const SCALE_IN_SIGMAS: f64 = 3.0;
 
 /// Root mean square of |r| over three channels of unit normal noise.
 pub(crate) const NORM_OF_CHANNELS: f64 = 1.732_050_807_568_877_2;
 
-/// Median of |r| over three channels of unit normal noise: the root of the median of chi squared with three degrees of
-/// freedom.
+/// Median of |r| over three channels of unit normal noise: the square root of the median of chi squared with three
+/// degrees of freedom.
 pub(crate) const MEDIAN_OF_THREE: f64 = 1.538_172_253_6;
 
-/// 1 / (1 + u): rho is r^2 times this, and the weight in least squares is the square of this.
+/// 1 / (1 + u). rho is r^2 times this, and the weight in least squares is its square.
 #[inline(always)]
 pub(crate) fn attenuation<T: Real>(u: T) -> T {
     let one = T::constant(1.0);
@@ -35,15 +35,15 @@ pub(crate) fn weight<T: Real>(u: T) -> T {
     attenuation * attenuation
 }
 
-/// [`weight`] by one division, of the squared sum: the last bit differs. One bit moves single correspondences of a loop,
-/// so that each caller keeps to the form that its figures were measured with.
+/// [`weight`] by one division, of the squared sum, which differs in the last bit. One bit changes single
+/// correspondences of a loop, so each caller keeps the form with which its published figures were measured.
 #[inline(always)]
 pub(crate) fn weight_of_square<T: Real>(u: T) -> T {
     let sum = T::constant(1.0) + u;
     T::constant(1.0) / (sum * sum)
 }
 
-/// rho = r^2 / (1 + u) of a squared residual r^2, weighted or not.
+/// rho = r^2 / (1 + u) of a squared residual r^2, which may be weighted.
 #[inline(always)]
 pub(crate) fn rho<T: Real>(squared: T, u: T) -> T {
     squared / (T::constant(1.0) + u)

@@ -1,6 +1,6 @@
-//! Long vectors of f32, their sums in f64: nalgebra sums in the precision of its vectors.
+//! Long vectors of f32 with sums in f64, because nalgebra sums in the precision of its vectors.
 
-/// target += factor * source.
+/// Computes target += factor * source.
 #[inline(never)]
 pub(crate) fn add_scaled(target: &mut [f32], factor: f32, source: &[f32]) {
     target.iter_mut().zip(source).for_each(|(t, s)| *t += factor * s);
@@ -12,10 +12,11 @@ pub(crate) fn dot(a: &[f32], b: &[f32]) -> f64 {
     sum_of(a, b, |a, b| f64::from(a) * f64::from(b))
 }
 
-/// Independent partial sums: the compiler may not reorder one sum, but it may keep eight in vector registers.
+/// Number of independent partial sums. The compiler may not reorder a single sum, but it may keep eight in vector
+/// registers.
 const SUMS: usize = 8;
 
-/// Sum of a function of two vectors' members.
+/// Sum of a function of corresponding elements.
 pub(crate) fn sum_of(a: &[f32], b: &[f32], term: impl Fn(f32, f32) -> f64) -> f64 {
     let mut sums = [0.0; SUMS];
     let (a, b) = (a.chunks_exact(SUMS), b.chunks_exact(SUMS));
@@ -34,7 +35,7 @@ mod tests {
     #[cfg(target_arch = "wasm32")]
     use wasm_bindgen_test::wasm_bindgen_test as test;
 
-    /// Lengths around multiples of the partial sums; whole numbers, so that no order of sums rounds.
+    /// Lengths around multiples of the number of partial sums, with whole numbers so that no order of summation rounds.
     #[test]
     fn sums_are_those_of_a_plain_loop() {
         for length in [0, 1, 7, 8, 9, 16, 21] {

@@ -1,5 +1,5 @@
-//! Options as they are written: members that are a word or something else, `"estimate"` or 27 numbers, `"search"`, `"identity"` or a pose,
-//! `"free"` or a number. A member that there is not is an error with its name.
+//! Serialised options: members that are either a word or a value, such as `"estimate"` or 27 numbers, `"search"`,
+//! `"identity"` or a pose, `"free"` or a number. An unknown member is an error with its name.
 
 use std::array::from_fn;
 use std::fmt::Formatter;
@@ -31,7 +31,7 @@ impl From<GivenLight> for LightSource {
     fn from(given: GivenLight) -> Self {
         match given {
             GivenLight::Word(LightWord::Estimate) => Self::Estimate,
-            // Their range is for `Options::validate` to check, whose errors name them.
+            // `Options::validate` checks their range, because its errors name them.
             GivenLight::Numbers(flat) => Self::Known(Light(from_fn(|channel| from_fn(|k| flat[9 * channel + k])))),
         }
     }
@@ -53,7 +53,7 @@ pub enum StartWord {
     Identity,
 }
 
-/// As much of a pose as is known. The rotation, row by row, wins over the angles.
+/// A pose as far as it is known. The rotation, row by row, takes precedence over the angles.
 #[derive(Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct GivenPose {
@@ -67,7 +67,7 @@ pub struct GivenPose {
     angles: GivenAngles,
 }
 
-/// The members of [`Angles`] and no others.
+/// The members of [`Angles`], all optional, without unknown ones.
 #[derive(Clone, Copy, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 struct GivenAngles {
@@ -89,7 +89,8 @@ pub enum GivenStart {
     Pose(GivenPose),
 }
 
-/// Derived, it would say of a pose with a wrong member that nothing fits, and not which member is wrong.
+/// The derived implementation would report a pose with a wrong member as matching no variant, without naming the
+/// member.
 impl<'de> Deserialize<'de> for GivenStart {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_any(WordOrPose)

@@ -1,14 +1,14 @@
 //! The three angles of a rotation (Eq. 15 and 16): R = Rx(alpha) Ry(beta) Rz(gamma).
 //!
-//! Eq. 16 asks for the scale and the angles that bring s Rx Ry Rz next to a 3x3 matrix A in least squares, which the
-//! paper finds by Levenberg-Marquardt. They have a closed form: over all rotations at once the minimum is the polar
-//! factor of A ([`Similarity::nearest`](super::Similarity::nearest)), and the angles of that rotation leave nothing of
-//! it over. `tests/library/pose_angles.rs` solves Eq. 16 as the paper does and finds the same.
+//! Eq. 16 seeks the scale and the angles for which s Rx Ry Rz is nearest to a 3x3 matrix A in least squares; the paper
+//! finds them by Levenberg-Marquardt. They have a closed form: over all rotations the minimum is the polar factor of A
+//! ([`Similarity::nearest`](super::Similarity::nearest)), and every rotation has such angles exactly.
+//! `tests/library/pose_angles.rs` solves Eq. 16 as in the paper and finds the same angles.
 
 use nalgebra::Matrix3;
 
-/// Closer to beta = +-90 degrees than this (as cos beta, that is in radians) alpha and gamma turn about the same axis
-/// and only their sum is seen; the convention then is alpha = 0.
+/// Distance of beta from +-90 degrees (as cos beta, in effect radians) below which alpha and gamma turn about the same
+/// axis and only their sum is determined. By convention alpha is then zero.
 const POLE: f64 = 1e-6;
 
 /// Angles in degrees of R = Rx(alpha) Ry(beta) Rz(gamma), active and right-handed, in the colour view's frame.
@@ -36,18 +36,18 @@ impl Angles {
         x * y * z
     }
 
-    /// The angles of a rotation, in closed form: they make the residual of Eq. 16 zero.
+    /// The angles of a rotation, in closed form; the residual of Eq. 16 is zero for them.
     #[must_use]
     pub fn of(rotation: &Matrix3<f64>) -> Self {
         let r = rotation;
         let cosine = r[(0, 0)].hypot(r[(0, 1)]);
         let beta = r[(0, 2)].atan2(cosine);
         let alpha = if cosine < POLE { 0.0 } else { (-r[(1, 2)]).atan2(r[(2, 2)]) };
-        // The second row of Rx(-alpha) R is (sin gamma, cos gamma, 0) for every beta, so that what alpha loses near
-        // the pole gamma takes up.
+        // The second row of Rx(-alpha) R is (sin gamma, cos gamma, 0) for every beta, so near the pole gamma absorbs
+        // what alpha loses.
         let (sine, cosine) = alpha.sin_cos();
         let gamma = (cosine * r[(1, 0)] + sine * r[(2, 0)]).atan2(cosine * r[(1, 1)] + sine * r[(2, 1)]);
-        // Adding zero turns a negative zero, which reads like a result, into a plain one.
+        // Adding zero turns negative zero, which reads like a result, into zero.
         let degrees = |radians: f64| radians.to_degrees() + 0.0;
         Self { alpha: degrees(alpha), beta: degrees(beta), gamma: degrees(gamma) }
     }

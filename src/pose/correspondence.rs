@@ -1,17 +1,17 @@
-//! Which depth point is which image pixel (the paper's 1-pixel rule), with occlusion in both directions.
+//! Correspondences between depth points and image pixels (the paper's 1-pixel rule), with occlusion in both directions.
 //!
-//! See docs/method/surfaces.md. A depth point is transformed by the pose and projected. It corresponds to the pixel
-//! that it falls on if the pixel is on the mask, the point faces the colour camera, no other depth point hides it there
+//! See docs/method/surfaces.md. The pose transforms and projects a depth point. It corresponds to the pixel on which it
+//! falls if the pixel is on the mask, the point faces the colour camera, no other depth point hides it there
 //! (z-buffer), the image surface does not hide it from the depth camera (z-buffer of the reverse view), and both
-//! surfaces are close to each other. How close is the caller's threshold, or follows the robust spread of the
-//! distances, never below one pixel: a surface from shading under poor light is off by several pixels although every
-//! pose but one is worse.
+//! surfaces are close to each other. The distance threshold comes from the caller or from the robust spread of the
+//! distances, but is at least one pixel: a surface from shading under poor light is off by several pixels even under
+//! the best pose.
 //!
-//! Of several points on one pixel the nearest to its centre is kept. Where the depth camera sees a surface more obliquely
-//! than the image does, pixels lie between the points: they have no correspondence, but neighbours whose normals they
-//! share ([`Correspondences::normal_at`]). Limits: the z-buffers have the views' resolution,
-//! so parts thinner than two pixels may be wrong; organised clouds have no depth camera and skip the reverse
-//! test.
+//! Of several points on one pixel, the nearest to its centre is kept. Where the depth camera sees a surface more
+//! obliquely than the image does, some pixels lie between the points. They have no correspondence, but their
+//! neighbours' normals apply to them ([`Correspondences::normal_at`]). Limits: the z-buffers have the views'
+//! resolution, so parts thinner than two pixels may be misjudged; organised clouds have no depth camera and skip the
+//! reverse test.
 
 use nalgebra::Vector3;
 
@@ -20,20 +20,21 @@ use super::visibility::{CloudProjection, HIDDEN_BEHIND, Visibility, VisibilityPr
 use crate::numeric::{LANES, quantile};
 use crate::view::{ColourView, DepthView, Normals, Points, Size};
 
-/// Least accepted distance in image pixels: the paper's threshold.
+/// Smallest accepted distance in image pixels: the paper's threshold.
 const LEAST_DISTANCE: f64 = 1.0;
-/// Tolerance of the reverse view over that of the colour view: the image surface is an estimate, and only what it hides
-/// by a clear margin is hidden.
+/// Tolerance of the reverse view relative to that of the colour view. The image surface is an estimate, so only points
+/// that it hides by a clear margin count as hidden.
 const REVERSE_TOLERANCE: f64 = 2.0;
 /// Inliers are within this multiple of the median distance.
 const INLIER_SPREADS: f32 = 3.0;
-/// Pixels between two points of one surface at most. Depth pixels that the image sees three times as wide, as under a turn
-/// of 70 degrees, leave two.
+/// Maximum number of pixels between two points of one surface. A rotation by 70 degrees spreads depth pixels three
+/// image pixels apart, which leaves gaps of two.
 const WIDEST_GAP: usize = 2;
-/// Points on either side of a gap are of one surface where the depth map has them so near, pixels along either axis.
+/// The points on either side of a gap belong to one surface if they are at most this many depth pixels apart along
+/// either axis.
 const NEIGHBOURS: usize = 2;
 
-/// What decides about correspondences. Points and normals are NaN where missing.
+/// Input of the correspondences. Points and normals are NaN where missing.
 #[derive(Clone, Copy)]
 pub struct CorrespondenceProblem<'a> {
     /// The colour view.
@@ -42,19 +43,19 @@ pub struct CorrespondenceProblem<'a> {
     pub depth: &'a DepthView,
     /// The pose.
     pub pose: &'a Similarity,
-    /// Points of the depth view, its own frame.
+    /// Points of the depth view, in its own frame.
     pub depth_points: &'a Points,
-    /// Normals of the depth view, its own frame.
+    /// Normals of the depth view, in its own frame.
     pub depth_normals: &'a Normals,
-    /// Points of the image surface; NaN before there is one, then only visibility decides.
+    /// Points of the image surface; NaN as long as there is no surface, in which case visibility alone decides.
     pub image_points: &'a Points,
     /// Normals of the image surface.
     pub image_normals: &'a Normals,
-    /// Accepted distance of both surfaces in units of the colour view; `None` follows the data.
+    /// Accepted distance between both surfaces in units of the colour view; `None` derives it from the data.
     pub distance: Option<f64>,
-    /// Length of an image pixel at the object in units of the colour view.
+    /// Length of an image pixel at the object, in units of the colour view.
     pub pixel_length: f64,
-    /// Multiple of the robust spread that the data-driven threshold accepts.
+    /// Multiple of the median distance that the threshold from the data accepts.
     pub spreads: f64,
 }
 
@@ -66,16 +67,16 @@ pub struct Correspondences {
     widest_gap: usize,
     depth_of_pixel: Vec<i32>,
     visible: Visibility,
-    /// A number for each point: the z-buffer of the reverse view, then distances from the image surface.
+    /// One number for each point: the z-buffer of the reverse view, then the distance from the image surface.
     of_point: Vec<f32>,
-    /// Scratch of the median distance.
+    /// Scratch for the median distance.
     distances: Vec<f32>,
     count: usize,
     inliers: f64,
 }
 
 impl Correspondences {
-    /// No correspondence yet, memory for two views.
+    /// Allocates the memory for two views, without correspondences.
     #[must_use]
     pub fn new(image: &ColourView, depth: &DepthView) -> Self {
         let (pixels, points) = (image.size.len(), depth.size.len());
@@ -92,21 +93,22 @@ impl Correspondences {
         }
     }
 
-    /// For each image pixel the index of its depth pixel, or -1.
+    /// Index of the depth pixel for each image pixel, or -1.
     #[must_use]
     pub fn depth_of_pixel(&self) -> &[i32] {
         &self.depth_of_pixel
     }
 
-    /// The same without normals between points, as the paper has it: its prior holds pixels one by one, and more of them that are
-    /// off hold its loop back (a bust of 48x48 ended 4.6 degrees off instead of 2.2).
+    /// The same without normals in gaps between points, as in the paper, whose prior holds each pixel separately:
+    /// additional pixels with wrong normals would impede its loop.
     #[must_use]
     pub fn of_points_alone(self) -> Self {
         Self { widest_gap: 0, ..self }
     }
 
-    /// The normal that the depth view has at an image pixel, of `normals` in its own frame: that of the pixel's counterpart,
-    /// or between two points of one surface their mean; `None` where it sees nothing.
+    /// The depth view's normal at an image pixel, from `normals` in the depth view's own frame: that of the
+    /// corresponding point, or in a gap the mean of the two points of one surface beside it. `None` where the depth
+    /// view shows nothing.
     #[must_use]
     pub fn normal_at(&self, pixel: usize, normals: &Normals) -> Option<Vector3<f32>> {
         let normal_of = |index: usize| normals.is_valid(index).then(|| Vector3::from(normals.get(index)));
@@ -123,14 +125,14 @@ impl Correspondences {
         usize::try_from(self.depth_of_pixel[pixel]).ok()
     }
 
-    /// The depth pixels on either side of a gap, across or down.
+    /// The depth pixels on either side of a gap, along the row or the column.
     fn around(&self, pixel: usize) -> Option<[usize; 2]> {
         let (column, row) = self.image.position(pixel);
         let across = || self.ends(pixel, 1, column, self.image.width);
         across().or_else(|| self.ends(pixel, self.image.width, row, self.image.height))
     }
 
-    /// The same along a line of pixels `stride` apart, on which this one is at `place`.
+    /// The same along a line of pixels that are `stride` apart; this pixel is number `place` on it.
     fn ends(&self, pixel: usize, stride: usize, place: usize, length: usize) -> Option<[usize; 2]> {
         let reach = 1..=self.widest_gap;
         let before =
@@ -159,7 +161,7 @@ impl Correspondences {
         self.count
     }
 
-    /// Share of them whose distance is within the robust scale.
+    /// Share of these whose distance from the image surface is within three medians, or unknown.
     #[must_use]
     pub const fn inliers(&self) -> f64 {
         self.inliers
@@ -175,7 +177,7 @@ impl Correspondences {
         self.accept_near(problem, median);
     }
 
-    /// The z-buffer of the image surface before the depth camera.
+    /// Fills the z-buffer of the image surface as seen by the depth camera.
     fn project_back(&mut self, problem: &CorrespondenceProblem<'_>) {
         let DepthView { camera, size, .. } = problem.depth;
         let projection = CloudProjection::new(&problem.pose.inverse(), problem.image_points, camera, *size);
@@ -185,7 +187,7 @@ impl Correspondences {
         }
     }
 
-    /// Which points neither view hides, and how far they are from the image surface.
+    /// Finds the points that neither view hides, and their distances from the image surface.
     fn measure_distances(&mut self, problem: &CorrespondenceProblem<'_>) {
         let CorrespondenceProblem { image, depth, pose, depth_points: points, image_points, .. } = *problem;
         let (normals, pixel_length) = (problem.depth_normals, problem.pixel_length);
@@ -210,19 +212,19 @@ impl Correspondences {
         );
     }
 
-    /// Drops the points that are too far from the image surface, and gives each pixel the point nearest to its centre.
+    /// Drops points too far from the image surface, and assigns to each pixel the point nearest to its centre.
     fn accept_near(&mut self, problem: &CorrespondenceProblem<'_>, median: f32) {
         let follows = (problem.spreads * f64::from(median)).max(LEAST_DISTANCE * problem.pixel_length);
         let threshold = problem.distance.unwrap_or(follows) as f32;
         let inlier = (INLIER_SPREADS * median).min(threshold);
         self.depth_of_pixel.fill(-1);
-        // Squared distance of each pixel's point from its centre.
+        // From here on: squared distance of each pixel's point from its centre.
         self.visible.of_pixel.fill(f32::INFINITY);
         (self.count, self.inliers) = (0, 0.0);
         for index in 0..self.of_point.len() {
             let (column, row) = (self.visible.column[index], self.visible.row[index]);
             let Some(pixel) = problem.image.size.nearest(column, row) else { continue };
-            // A point over a pixel without a surface has no distance, and stays.
+            // A point over a pixel without a surface has no distance and stays.
             let distance = self.of_point[index];
             if distance > threshold {
                 self.visible.drop(index);
@@ -243,7 +245,7 @@ impl Correspondences {
     }
 }
 
-/// Distance along an axis from the middle of the pixel that a position falls on.
+/// Distance along one axis from the centre of the pixel on which a position falls.
 fn from_centre(position: f32) -> f32 {
     position - (position + 0.5).floor()
 }

@@ -1,8 +1,8 @@
-//! The damping of Gauss-Newton steps that have to lower an objective (Levenberg and Marquardt's method).
+//! Damping of Gauss-Newton steps that have to lower an objective (Levenberg and Marquardt's method).
 
-/// At the start of a descent, as a share of the diagonal.
+/// Initial damping, as a share of the diagonal.
 const FIRST: f64 = 1e-3;
-/// Factors after a success and after a failure, and the least that is left.
+/// Factors after a success and after a failure, and the smallest damping.
 const AFTER_SUCCESS: f64 = 0.2;
 const AFTER_FAILURE: f64 = 8.0;
 const LEAST: f64 = 1e-9;
@@ -15,15 +15,15 @@ pub(crate) struct Damping(f64);
 pub(crate) struct Lowered<State> {
     pub state: State,
     pub objective: f64,
-    /// Length of the step, in its unknowns' units.
+    /// Length of the step, in the units of its unknowns.
     pub size: f64,
 }
 
 impl Damping {
     pub const FIRST: Self = Self(FIRST);
 
-    /// The first of at most `attempts` steps, each damped more than the one before, that does not raise the objective. `step` makes one with
-    /// a damping; `None` where its equations have no solution.
+    /// Returns the first of at most `attempts` steps, each damped more than the previous one, that does not raise the
+    /// objective. `step` computes a step for a damping, or `None` if its equations have no solution.
     pub fn lower<State>(
         &mut self,
         attempts: usize,
@@ -31,7 +31,7 @@ impl Damping {
         mut step: impl FnMut(f64) -> Option<Lowered<State>>,
     ) -> Option<Lowered<State>> {
         for _ in 0..attempts {
-            // Written so that an objective that is no number is refused.
+            // This comparison also rejects an objective of NaN.
             if let Some(lowered) = step(self.0).filter(|lowered| lowered.objective <= objective) {
                 self.0 = (AFTER_SUCCESS * self.0).max(LEAST);
                 return Some(lowered);
@@ -46,7 +46,7 @@ impl Damping {
 mod tests {
     use super::*;
 
-    /// Rosenbrock's valley by its two residuals, 10 (y - x^2) and 1 - x.
+    /// Rosenbrock's valley, with the two residuals 10 (y - x^2) and 1 - x.
     fn objective([x, y]: [f64; 2]) -> f64 {
         100.0 * (y - x * x).powi(2) + (1.0 - x).powi(2)
     }

@@ -1,13 +1,13 @@
-//! The exact Euclidean distance of every pixel to the nearest one of a kind.
+//! The exact Euclidean distance from every pixel to the nearest pixel of a kind.
 //!
 //! P. Felzenszwalb, D. Huttenlocher: "Distance transforms of sampled functions", Theory of Computing 8, 2012.
 
 use crate::view::Size;
 
-/// No pixel of the kind is there: farther than any.
+/// Squared distance where there is no pixel of the kind: larger than any other.
 const NOWHERE: f64 = 1e12;
 
-/// The squared distance of each pixel to the nearest one of a kind.
+/// Squared distance from each pixel to the nearest pixel of a kind.
 pub(crate) fn squared_distances(size: Size, is_of_kind: impl Fn(usize) -> bool) -> Vec<f64> {
     let mut values: Vec<f64> = (0..size.len()).map(|index| if is_of_kind(index) { 0.0 } else { NOWHERE }).collect();
     let longest = size.width.max(size.height);
@@ -24,7 +24,7 @@ pub(crate) fn squared_distances(size: Size, is_of_kind: impl Fn(usize) -> bool) 
     values
 }
 
-/// min over q of (p - q)^2 + f(q) for each p of a line.
+/// Minimum over q of (p - q)^2 + f(q) for each p of a line.
 fn lower_envelope(line: &[f64], result: &mut [f64], places: &mut [usize], ends: &mut [f64]) {
     let mut last = 0;
     (places[0], ends[0], ends[1]) = (0, f64::NEG_INFINITY, f64::INFINITY);

@@ -1,19 +1,18 @@
-//! Iterative closest points with scale (Eq. 12): the depth view's points onto the image surface.
+//! Iterative closest points with scale (Eq. 12): registers the depth view's points to the image surface.
 //!
 //! See docs/method/surfaces.md. Each iteration transforms the depth points by the present pose, finds their nearest
-//! points on the image surface, and takes one damped Gauss-Newton step of the seven unknowns (six where the scale is
-//! held). Pairs whose normals disagree, that end on the border of the image surface (where everything that has no
-//! counterpart ends), that are farther apart than a distance which shrinks from iteration to iteration, or that are
-//! among the farthest, are left out; the rest is weighted by Geman and McClure's function of the residual.
+//! points on the image surface, and takes one damped Gauss-Newton step of the seven unknowns (six if the scale is
+//! held). Some pairs are left out: those whose normals disagree, those on the border of the image surface (where every
+//! point without a counterpart ends), those farther apart than a distance that shrinks with each iteration, and the
+//! farthest of the rest. The others are weighted by Geman and McClure's function of the residual.
 //!
-//! Point-to-plane is what holds a smooth object of free scale; point-to-point slides (12 to 32 degrees on a bust).
-//! Measured on smooth busts of 64 pixels, scale free, half of the columns cut off or not: a share of point-to-point
-//! that fades with the distance widens the basin a little; matching in position and normal, a residual on the normals,
-//! the symmetric distance and matching both ways each made it narrower.
+//! Point-to-plane distances hold a smooth object of free scale in place; with point-to-point distances alone it slides.
+//! A share of point-to-point distances that fades with the pairing distance widens the basin a little
+//! (docs/lab/experiments.md).
 //!
-//! Limits: from the identity a face is registered from 60 degrees off, an almost bare ellipsoid from 30 only; beyond,
-//! it ends in a wrong rotation. [`Information`] flags many such ends, not all: they are local optima, and only a start
-//! elsewhere shows it.
+//! Limits: from the identity, ICP registers a face that is rotated by up to 60 degrees, a nearly bare ellipsoid only up
+//! to 30. Beyond that it ends in a wrong rotation. [`Information`] flags many such ends but not all: they are local
+//! optima, which only another initial pose reveals.
 
 use nalgebra::Vector3;
 
@@ -26,66 +25,65 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::numeric::{quantile, robust};
 use crate::view::{Normals, Points, Size, extent};
 
-/// Normals of a pair must agree to 60 degrees. Up to 90 makes no difference; 45 loses 3 of 34 far starts of the busts
-/// above, 26 loses 7.
+/// Smallest cosine between the normals of a pair: they must agree to 60 degrees (docs/lab/thresholds.md).
 const LEAST_COSINE: f64 = 0.5;
-/// Share of the pairs that is kept, nearest first. Of 34 far starts that are registered 0.7 loses 2, and 1 loses 6,
-/// most of them with half of the columns missing.
+/// Share of the pairs that is kept, nearest first (docs/lab/thresholds.md).
 const KEPT_SHARE: f64 = 0.9;
-/// The distance shrinks by this factor from one iteration to the next.
+/// Factor by which the pairing distance shrinks from one iteration to the next.
 const SHRINKING: f64 = 0.9;
-/// Weight of point-to-point against point-to-plane at the first distance; it falls to zero with the logarithm of the
-/// distance.
+/// Weight of point-to-point against point-to-plane distances at the first pairing distance; it falls to zero with the
+/// logarithm of that distance.
 const FIRST_POINT_WEIGHT: f64 = 1.0;
-/// Damping as a share of the weight: 1e-2 slows far starts so much that 10 of 34 do not arrive, 1e-5 is no faster.
+/// Damping as a share of the total weight (docs/lab/thresholds.md).
 const DAMPING: f64 = 1e-3;
-/// Least robust scale as a share of the final distance: below it residuals are rounding.
+/// Smallest robust scale as a share of the final distance; smaller residuals are rounding.
 const LEAST_SCALE: f64 = 0.02;
-/// Settled: a step that rotates by less (radians), moves by less (object sizes) and grows by less. 0.0006 degrees.
+/// The pose has settled if a step rotates by less (radians; 0.0006 degrees), moves by less (object sizes) and grows by
+/// less.
 const SETTLED: f64 = 1e-5;
-/// Scale beyond this factor of its start has run away.
+/// The scale has diverged if it differs from the initial scale by more than this factor.
 const LARGEST_GROWTH: f64 = 4.0;
-/// Correlation of neighbouring residuals is capped here, where 40000 pixels count as one.
+/// Cap on the correlation of neighbouring residuals, at which 40000 pixels count as one.
 const LARGEST_CORRELATION: f64 = 0.99;
-/// More depth points than this are thinned out evenly: their number no longer limits the accuracy, but the time.
+/// Maximum number of depth points, evenly spread: more of them take time but do not improve the accuracy.
 const MOST_POINTS: usize = 5_000;
 
-/// The two surfaces and the pose to start from. Points and normals are NaN where missing; normals are unit.
+/// The two surfaces and the initial pose. Points and normals are NaN where missing; normals are unit vectors.
 #[derive(Clone, Copy)]
 pub struct IcpProblem<'a> {
-    /// Points of the depth view, its own frame and unit.
+    /// Points of the depth view, in its own frame and unit.
     pub depth_points: &'a Points,
     /// Their normals.
     pub depth_normals: &'a Normals,
-    /// Points of the image surface over its raster, colour view's frame.
+    /// Points of the image surface on its raster, in the colour view's frame.
     pub image_points: &'a Points,
     /// Their normals.
     pub image_normals: &'a Normals,
     /// Raster of the image surface.
     pub image_size: Size,
-    /// The pose to start from; its scale is held or the first guess, s0.
+    /// The initial pose; its scale is held or the initial value s0.
     pub start: Similarity,
 }
 
-/// What is minimised.
+/// The distance that is minimised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Metric {
-    /// |q - p|, the plain distance of Eq. 12.
+    /// |q - p|, the distance of Eq. 12.
     PointToPoint,
     /// n . (q - p) with the normal n of the image surface.
     PointToPlane,
 }
 
-/// How to match. Distances are in units of the colour view.
+/// Options of the registration. Distances are in units of the colour view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IcpOptions {
-    /// What is minimised.
+    /// The distance that is minimised.
     pub metric: Metric,
-    /// Whether s stays as in the start.
+    /// Whether s keeps its initial value.
     pub scale_is_held: bool,
-    /// Distance up to which points are paired at first; `None` is the size of the object, right for an unknown pose.
+    /// Initial pairing distance; `None` is the size of the object, right for an unknown pose.
     pub first_distance: Option<f64>,
-    /// Distance up to which points are paired in the end.
+    /// Final pairing distance.
     pub final_distance: f64,
     /// Cap on the iterations.
     pub most_iterations: u32,
@@ -108,11 +106,11 @@ impl Default for IcpOptions {
 pub enum IcpTermination {
     /// The pose has settled at the final distance.
     Settled,
-    /// The cap on the iterations came first; usually a few pairs that change to and fro.
+    /// The cap on the iterations came first, usually because a few pairs alternate.
     MostIterations,
 }
 
-/// What ICP found.
+/// Result of ICP.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IcpReport {
     /// The pose.
@@ -125,7 +123,7 @@ pub struct IcpReport {
     pub iterations: u32,
     /// Why it ended.
     pub termination: IcpTermination,
-    /// How well the pairs determine the pose; where it [is degenerate](Information::is_degenerate), they do not.
+    /// How well the pairs determine the pose; if it [is degenerate](Information::is_degenerate), they do not.
     pub information: Information,
 }
 
@@ -140,18 +138,18 @@ pub struct Pair {
     pub distance: f32,
 }
 
-/// The matcher with its memory: nothing is allocated between iterations.
+/// ICP with its memory; allocates nothing between iterations.
 #[derive(Default)]
 pub struct Icp {
     neighbours: Neighbours,
     sources: Vec<u32>,
     pairs: Vec<Pair>,
-    /// Scratch of quantiles.
+    /// Scratch for quantiles.
     distances: Vec<f32>,
 }
 
 impl Icp {
-    /// A matcher without memory yet.
+    /// ICP without allocated memory.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
@@ -163,8 +161,8 @@ impl Icp {
         &self.pairs
     }
 
-    /// Fills in the points of the last registration's pairs, side by side: the correspondences that
-    /// [`ransac`](super::ransac) asks for; at `most` so many, evenly spread.
+    /// Stores the points of the last registration's pairs side by side: the correspondences that
+    /// [`ransac`](super::ransac) requires, at most `most` of them, evenly spread.
     pub fn paired_points(
         &self,
         problem: &IcpProblem<'_>,
@@ -179,14 +177,14 @@ impl Icp {
         image.extend(pairs().map(|pair| vector(problem.image_points, pair.image)));
     }
 
-    /// The pose that lays the depth points onto the image surface, from a start that is roughly right.
+    /// The pose that registers the depth points to the image surface, from a roughly correct initial pose.
     ///
     /// A plane, a sphere or another surface that slides onto itself gives a report whose information
     /// [is degenerate](Information::is_degenerate) and whose uncertainty is wide.
     ///
     /// # Errors
-    /// [`ErrorKind::Size`] where lengths disagree, [`ErrorKind::Range`] for a start or distances that are not valid,
-    /// [`ErrorKind::Degenerate`] where fewer than four pairs are left or the scale runs away.
+    /// [`ErrorKind::Size`] if lengths disagree, [`ErrorKind::Range`] if the initial pose or a distance is invalid,
+    /// [`ErrorKind::Degenerate`] if fewer than four pairs are left or the scale diverges.
     pub fn register(&mut self, problem: &IcpProblem<'_>, options: &IcpOptions) -> Result<IcpReport> {
         check(problem, options)?;
         self.prepare(problem)?;
@@ -216,7 +214,7 @@ impl Icp {
         Ok(IcpReport { pose, rms, pairs: self.pairs.len(), iterations, termination, information })
     }
 
-    /// The tree of the image surface without its border, and the depth points that take part.
+    /// Builds the tree of the image surface without its border, and selects the depth points.
     fn prepare(&mut self, problem: &IcpProblem<'_>) -> Result<()> {
         self.neighbours.rebuild(problem.image_points, |index| {
             problem.image_normals.is_valid(index) && !is_border(problem.image_points, problem.image_size, index)
@@ -234,7 +232,7 @@ impl Icp {
         Ok(())
     }
 
-    /// Nearest points within `distance` whose normals agree, without the farthest.
+    /// Finds the nearest points within `distance` whose normals agree, and drops the farthest.
     fn pair(&mut self, problem: &IcpProblem<'_>, pose: &Similarity, distance: f64) -> Result<()> {
         self.pairs.clear();
         for &depth in &self.sources {
@@ -286,7 +284,7 @@ impl Icp {
         equations.solve(DAMPING, options.scale_is_held).ok_or_else(|| degenerate("the pairs determine no step"))
     }
 
-    /// The scale of the robust function.
+    /// Scale of the robust function.
     fn robust_scale(&mut self, problem: &IcpProblem<'_>, pose: &Similarity, options: &IcpOptions) -> f64 {
         self.distances.clear();
         self.distances.extend(self.pairs.iter().map(|pair| {
@@ -298,11 +296,11 @@ impl Icp {
             .max(LEAST_SCALE * options.final_distance)
     }
 
-    /// Centroid of the transformed points of the pairs and their root mean square distance from it.
+    /// Centroid of the transformed points of the pairs, and their root mean square distance from it.
     fn frame(&self, problem: &IcpProblem<'_>, pose: &Similarity) -> (Vector3<f64>, f64) {
         let (centre, length) =
             extent(self.pairs.iter().map(|pair| pose.apply(vector(problem.depth_points, pair.depth))));
-        // Equal points have no extent; any length keeps the equations finite, and they then have no information.
+        // Equal points have no extent. Any length keeps the equations finite, and they contain no information.
         (centre, if length > 0.0 { length } else { 1.0 })
     }
 
@@ -348,7 +346,7 @@ impl Icp {
 struct Match {
     /// The transformed depth point.
     point: Vector3<f64>,
-    /// From it to the image point.
+    /// Vector from it to the image point.
     difference: Vector3<f64>,
     /// Normal of the image surface.
     normal: Vector3<f64>,
@@ -375,15 +373,15 @@ fn residual(metric: Metric, difference: &Vector3<f64>, normal: &Vector3<f64>) ->
     }
 }
 
-/// Share of samples of a plane that are independent where neighbours correlate with `correlation`: ((1-r)/(1+r))^2, the
+/// Share of samples on a plane that are independent if neighbours correlate by `correlation`: ((1-r)/(1+r))^2, for a
 /// first-order autoregression along either axis.
 fn independent_share(correlation: f64) -> f64 {
-    // No residual at all has no correlation; negative ones would promise more than there is.
+    // Residuals that are all zero have no correlation. Negative correlations would overstate the information.
     let correlation = if correlation.is_nan() { 0.0 } else { correlation.clamp(0.0, LARGEST_CORRELATION) };
     ((1.0 - correlation) / (1.0 + correlation)).powi(2)
 }
 
-/// The distance within which points are paired, on its way from the first to the last.
+/// The pairing distance on its way from first to last.
 struct Distances {
     first: f64,
     present: f64,

@@ -1,32 +1,32 @@
-//! One Gauss-Newton step of a similarity: seven unknowns around the centre of the matched points.
+//! One Gauss-Newton step of a similarity: seven unknowns about the centre of the matched points.
 //!
 //! The step is P -> c + e^u exp([w]) (P - c) + L v with the rotation w (radians), the translation L v and the growth u
-//! (natural logarithm of the scale's factor). c is the centroid of the points and L their root mean square distance
-//! from it, so that all seven numbers are free of units, of like size, and hardly coupled. Residuals are divided by L
-//! as well.
+//! (natural logarithm of the factor of the scale). c is the centroid of the points and L their root mean square
+//! distance from it, so that all seven numbers are dimensionless, of similar size and hardly coupled. Residuals are
+//! divided by L as well.
 
 use nalgebra::{Matrix3, Rotation3, SMatrix, SVector, UnitQuaternion, Vector3};
 
 use super::similarity::Similarity;
 
-/// Largest rotation of one step in radians: beyond it the linear model of a rotation is off by more than 2 %.
+/// Largest rotation of one step in radians; beyond it the linear model of a rotation is off by more than 2 %.
 const LARGEST_ROTATION: f64 = 0.2;
 /// Largest |u| of one step, for the same reason.
 const LARGEST_GROWTH: f64 = 0.1;
 
-/// The unknowns in the order w (3), v (3), u.
+/// Number of unknowns, in the order w (3), v (3), u.
 pub(crate) const UNKNOWNS: usize = 7;
-/// Indices of the translation along z and of the scale among them.
+/// Indices of the translation along z and of the scale.
 pub(crate) const TRANSLATION_Z: usize = 5;
 pub(crate) const SCALE: usize = 6;
-/// Sigma of a direction that nothing is known about, radians or object sizes: enough to be seen as "unknown".
+/// Sigma of an undetermined direction, radians or object sizes: large enough to be recognised as "unknown".
 pub(crate) const UNKNOWN: f64 = 1e3;
 /// A matrix over the unknowns.
 pub(crate) type PoseMatrix = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
-/// A number for each unknown: a row of a Jacobian, a gradient, a step.
+/// One number for each unknown: a row of a Jacobian, a gradient or a step.
 pub(crate) type PoseVector = SVector<f64, UNKNOWNS>;
 
-/// c and L: where the unknowns are zero, and their unit of length.
+/// c and L: the origin of the unknowns, and their unit of length.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame {
     pub centre: Vector3<f64>,
@@ -34,7 +34,7 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
-    /// How far a point moves along `direction` with each unknown.
+    /// Derivative of a point's position along `direction` by each unknown.
     pub fn row(&self, point: &Vector3<f64>, direction: &Vector3<f64>) -> PoseVector {
         let arm = point - self.centre;
         let by_rotation = arm.cross(direction);
@@ -42,7 +42,7 @@ impl Frame {
         PoseVector::from([by_rotation.x, by_rotation.y, by_rotation.z, shift.x, shift.y, shift.z, arm.dot(direction)])
     }
 
-    /// The similarity of a step, shortened to where it is still near linear.
+    /// The similarity of a step, which is shortened to stay nearly linear.
     pub fn change(&self, step: &PoseVector) -> Similarity {
         let rotation: Vector3<f64> = step.fixed_rows::<3>(0).into();
         let shift: Vector3<f64> = step.fixed_rows::<3>(3).into();
@@ -54,13 +54,13 @@ impl Frame {
     }
 }
 
-/// Axis times angle of a rotation, radians. By a quaternion: nalgebra takes a matrix's angle from its trace, which rounding raises above three
-/// where nothing turns, and the angle is then no number.
+/// Axis times angle of a rotation, radians. Uses a quaternion because nalgebra takes a matrix's angle from its trace,
+/// which rounding raises above three for the identity, and the angle is then NaN.
 pub(crate) fn rotation_vector(rotation: &Matrix3<f64>) -> Vector3<f64> {
     UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(*rotation)).scaled_axis()
 }
 
-/// Clears rows and columns of the unknowns that are `held`.
+/// Sets rows and columns of the unknowns that are `held` to zero.
 pub(crate) fn clear_unknowns(matrix: &mut PoseMatrix, held: &[bool; UNKNOWNS]) {
     for k in (0..UNKNOWNS).filter(|&k| held[k]) {
         matrix.row_mut(k).fill(0.0);
@@ -68,7 +68,7 @@ pub(crate) fn clear_unknowns(matrix: &mut PoseMatrix, held: &[bool; UNKNOWNS]) {
     }
 }
 
-/// Clears them but for a one on the diagonal, so that they stay where they are and the matrix can be inverted.
+/// The same with a one on the diagonal, so that held unknowns do not move and the matrix can be inverted.
 pub(crate) fn fix_unknowns(matrix: &mut PoseMatrix, held: &[bool; UNKNOWNS]) {
     clear_unknowns(matrix, held);
     (0..UNKNOWNS).filter(|&k| held[k]).for_each(|k| matrix[(k, k)] = 1.0);
@@ -82,11 +82,11 @@ pub(crate) struct NormalEquations {
     weight: f64,
 }
 
-/// What one step did, free of units.
+/// Result of one step, dimensionless.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Increment {
     pub change: Similarity,
-    /// The largest of the rotation in radians, the shift in object sizes and the growth of the scale.
+    /// The largest of the rotation in radians, the shift in object sizes, and the growth of the scale.
     pub size: f64,
 }
 
@@ -100,12 +100,12 @@ impl NormalEquations {
         }
     }
 
-    /// How far a point moves along `direction` with each unknown, in units of L.
+    /// Derivative of a point's position along `direction` by each unknown, in units of L.
     pub fn row(&self, point: &Vector3<f64>, direction: &Vector3<f64>) -> PoseVector {
         self.frame.row(point, direction) / self.frame.length
     }
 
-    /// Enters a residual: what `point` still has to move along the unit vector `direction`.
+    /// Adds a residual: the distance that `point` has left to move along the unit vector `direction`.
     pub fn add(&mut self, point: &Vector3<f64>, direction: &Vector3<f64>, residual: f64, weight: f64) {
         let row = self.row(point, direction);
         self.matrix.syger(weight, &row, &row, 1.0);
@@ -113,8 +113,8 @@ impl NormalEquations {
         self.weight += weight;
     }
 
-    /// The step that solves the equations, damped by a share of the total weight on each unknown, and shortened to
-    /// where it is still near linear. `None` where the sums are not finite or empty.
+    /// Solves the equations with a damping of a share of the total weight on each unknown, and shortens the step to
+    /// stay nearly linear. `None` if the sums are empty or not finite.
     pub fn solve(&self, damping: f64, scale_is_held: bool) -> Option<Increment> {
         let mut matrix = self.matrix;
         let mut gradient = self.gradient;
@@ -138,8 +138,8 @@ impl NormalEquations {
     }
 }
 
-/// The Gauss-Newton step of symmetric equations, damped by a share of the diagonal (Levenberg and Marquardt); held unknowns stay.
-/// `None` where they determine none.
+/// The Gauss-Newton step of symmetric equations, damped by a share of the diagonal (Levenberg and Marquardt); held
+/// unknowns do not move. `None` if the equations determine no step.
 pub(crate) fn damped_step(
     mut matrix: PoseMatrix,
     mut gradient: PoseVector,
@@ -156,20 +156,20 @@ pub(crate) fn damped_step(
     solve(matrix, &gradient).map(|step| -step).filter(|step| step.norm().is_finite())
 }
 
-/// The solution of symmetric equations; `None` where they are not positive definite. One copy of it and of the next two:
-/// visitors download each.
+/// The solution of symmetric equations; `None` if they are not positive definite. Like the next two functions it is not
+/// inlined, because every copy adds to the download.
 #[inline(never)]
 pub(crate) fn solve(matrix: PoseMatrix, gradient: &PoseVector) -> Option<PoseVector> {
     Some(matrix.cholesky()?.solve(gradient))
 }
 
-/// A product, which would be unrolled wherever it is written.
+/// A matrix product; inlined, it would be unrolled at every call.
 #[inline(never)]
 pub(crate) fn product(left: &PoseMatrix, right: &PoseMatrix) -> PoseMatrix {
     left * right
 }
 
-/// The inverse, `None` where there is none.
+/// The inverse, or `None` if the matrix is singular.
 #[inline(never)]
 pub(crate) fn inverse(matrix: &PoseMatrix) -> Option<PoseMatrix> {
     matrix.try_inverse()
@@ -200,14 +200,14 @@ mod tests {
     #[test]
     fn a_rotation_vector_is_a_number_even_where_rounding_turns_nothing() {
         let mut is_raised = false;
-        // Up to half a turn, beyond which another vector says the same.
+        // Up to half a turn; beyond that another vector describes the same rotation.
         for k in 0..1750 {
             let vector = Vector3::new(0.001, -0.0007, 0.0013) * f64::from(k);
             let rotation = Rotation3::new(vector).into_inner();
             assert!((rotation_vector(&rotation) - vector).norm() < 1e-12, "{k}");
             let nothing = rotation * rotation.transpose();
             is_raised |= nothing.trace() > 3.0;
-            // Written so that NaN fails.
+            // This comparison also fails for NaN.
             assert!(rotation_vector(&nothing).norm() < 1e-14, "{k}");
         }
         assert!(is_raised, "no product rounds to a trace above three");

@@ -1,7 +1,8 @@
-//! The delete-group jackknife of a registration: the pose without each sector of the object in turn (docs/method/uncertainty.md).
+//! Delete-group jackknife of a registration: the pose without each sector of the object in turn
+//! (docs/method/uncertainty.md).
 //!
-//! Slowly varying albedo, ambient shadow and biased normals correlate over more than a tile, so the scores of tiles do not show them. They
-//! bias each part of the object differently, so the pose moves when a part is left out.
+//! Slowly varying albedo, ambient shadow and biased normals correlate over more than a tile, so the scores of tiles do
+//! not show them. They bias each part of the object differently, so the pose moves when a part is left out.
 //!
 //! M. Quenouille: "Notes on bias in estimation", Biometrika 43, 1956. J. Tukey: "Bias and confidence in not-quite large samples", Annals of
 //! Mathematical Statistics 29, 1958.
@@ -10,7 +11,8 @@ use nalgebra::Vector3;
 
 use super::increment::{PoseMatrix, PoseVector};
 
-/// Sectors of the object, with equally many points. Their covariance has rank five; that of the tiles, to which it is added, has full rank.
+/// Number of sectors, each with the same number of points. Their covariance has rank five; that of the tiles, to which
+/// it is added, has full rank.
 pub(super) const SECTORS: usize = 6;
 
 /// The sector of each point, by its angle about the centre as seen along the line of sight.
@@ -25,9 +27,9 @@ pub(super) fn sectors(points: impl Iterator<Item = Vector3<f64>>, centre: Vector
     sectors
 }
 
-/// Covariance of a pose from its moves without each of n sectors: (n - 1) / n times their sum of squares about the mean. So few moves estimate
-/// the variance poorly; the error over the estimated sigma follows Student's distribution of n - 1 degrees of freedom, with a variance of
-/// (n - 1) / (n - 3). Zero where a move is not finite.
+/// Covariance of a pose from its moves without each of n sectors: (n - 1) / n times their sum of squares about the
+/// mean. So few moves estimate the variance poorly. The error divided by the estimated sigma follows Student's
+/// distribution with n - 1 degrees of freedom, whose variance is (n - 1) / (n - 3). Zero if a move is not finite.
 pub(super) fn covariance(moves: &[PoseVector; SECTORS]) -> PoseMatrix {
     let count = SECTORS as f64;
     let growth = (count - 1.0) / (count - 3.0);
@@ -60,7 +62,7 @@ mod tests {
         }
     }
 
-    /// The pose is the mean of six independent measurements: its variance is theirs over six, times Student's 5 / 3.
+    /// The pose is the mean of six independent measurements, so its variance is theirs over six, times Student's 5 / 3.
     #[test]
     fn the_covariance_of_a_mean_is_that_of_the_sectors_over_their_number() {
         let (sigma, runs) = (0.2, 4000);

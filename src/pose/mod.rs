@@ -1,29 +1,29 @@
 //! The pose between both views: P_colour = s R P_depth + t (docs/method/).
 //!
-//! | file | what it holds | objective | unknowns | solver |
+//! | file | content | objective | unknowns | solver |
 //! |---|---|---|---|---|
-//! | `search/` | initialisation, before Algorithm 1: poses worth refining when nothing is known | log likelihood over a constant colour | rotation, scale, translation in the image | sweep over all rotations, correlation by FFT, local ascent |
-//! | `photometric/` | registration by colours, beyond the paper | robust residuals of log colours + prior of the light | pose and light | Gauss-Newton, the light eliminated; instrumental variables |
-//! | `outline/` | registration by outlines, beyond the paper, where colours are painted | rims of the depth map on the image's mask and edges | pose without scale, and the loss of outlines | Gauss-Newton |
-//! | `contrast/` | registration by local contrast, for painted objects | robust residuals with local means removed, outline | pose and light | Gauss-Newton, the light eliminated; many starts |
+//! | `search/` | search before Algorithm 1: candidate poses without an initial pose | log likelihood relative to a constant colour | rotation, scale, translation in the image | sweep over all rotations, correlation by FFT, local ascent |
+//! | `photometric/` | photometric registration, beyond the paper | robust residuals of log colours + prior of the light | pose and light | Gauss-Newton, the light eliminated; instrumental variables |
+//! | `outline/` | registration from silhouettes, beyond the paper, for varying albedo | depth discontinuities against the image's mask and edges | pose without scale, and the edge bias | Gauss-Newton |
+//! | `contrast/` | registration by local contrast, for varying albedo | robust residuals with local means removed, silhouette | pose and light | Gauss-Newton, the light eliminated; many initial poses |
 //! | `icp` | Eq. 12: the depth points onto the image surface | robust point-to-plane distance | pose | nearest neighbours and Gauss-Newton, alternating |
 //! | `ransac` | Eq. 13 and 14: consensus of pairs over the linear model P -> A P + t | truncated squared distance | the twelve numbers theta | samples of four pairs, then linear least squares |
 //! | `similarity` | Eq. 15: the similarity nearest to A; Eq. 12 for known pairs, in closed form | least squares | s, R, t | Horn's quaternion |
 //! | `transforms` | a pose as nalgebra's transformations and as a 4x4 matrix | | | |
 //! | `angles` | Eq. 16: the angles of a rotation | | alpha, beta, gamma | closed form |
-//! | `correspondence`, `visibility` | which depth point is which pixel, with occlusion in both directions: the 1-pixel rule | | | z-buffers |
+//! | `correspondence`, `visibility` | the 1-pixel rule: depth points and their pixels, with occlusion in both directions | | | z-buffers |
 //! | `prior` | a Gaussian about an initial pose | | | |
-//! | `descent` | the step control of damped Gauss-Newton, for `photometric/` and `contrast/` | | | |
+//! | `descent` | step control of damped Gauss-Newton, for `photometric/` and `contrast/` | | | |
 //! | `increment` | a Gauss-Newton step of a similarity: seven unknowns | | | |
-//! | `sandwich`, `jackknife` | the covariance of a pose from the scores of independent clusters, and from its moves without each sector | | | |
-//! | `residuals` | what `photometric/` and `contrast/` expect of residuals | | | |
-//! | `sums` | the sums of a step over robust residuals | | | |
+//! | `sandwich`, `jackknife` | covariance of a pose from the scores of independent clusters, and from its moves without each sector | | | |
+//! | `residuals` | constants of residuals that `photometric/` and `contrast/` share | | | |
+//! | `sums` | sums of a step over robust residuals | | | |
 //! | `uncertainty` | one sigma of each number of a pose, from the information of matched surfaces | | | |
 //! | `spline_image`, `silhouette`, `distance_transform` | log S between pixels; distance to the mask | | | |
 //! | `neighbours` | nearest points | | | k-d tree |
 //!
-//! The error of Eq. 20, the spectral norm of R - R_g, is 2 sin(a / 2) of the angle a that [`Similarity::degrees_to`]
-//! returns. The loop that calls these stages is `estimator`.
+//! The error of Eq. 20, the spectral norm of R - R_g, is 2 sin(a / 2) for the angle a that [`Similarity::degrees_to`]
+//! returns. `estimator` holds the loop that calls these stages.
 
 mod angles;
 mod contrast;

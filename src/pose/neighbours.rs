@@ -9,31 +9,30 @@ const LARGEST_COORDINATE: f32 = 1e15;
 
 /// The points of one surface in a tree. Missing points never enter it, and a missing query has no neighbour.
 ///
-/// The immutable tree takes any number of identical points, where the mutable one panics beyond 32. NaN makes either
-/// panic.
+/// The immutable tree takes any number of identical points; the mutable one panics beyond 32. NaN makes either panic.
 #[derive(Default)]
 pub(super) struct Neighbours {
     tree: Option<ImmutableKdTree<f32, 3>>,
-    /// The points in the tree; kept to spare the next build its allocation.
+    /// The points in the tree; kept so that the next build need not allocate.
     points: Vec<[f32; 3]>,
-    /// The index in the caller's order of every point in the tree.
+    /// The index of every point of the tree in the caller's order.
     original: Vec<u32>,
 }
 
 /// The nearest point to a query.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Neighbour {
-    /// Index in the points that were given, missing ones counted.
+    /// Index among the given points, including missing ones.
     pub index: usize,
     /// Distance in the points' unit.
     pub distance: f32,
 }
 
 impl Neighbours {
-    /// Forgets the points it held and takes those of `points` for which `accept(index)` holds and that are not missing.
-    /// Equal points are all kept; any one of them may be the answer.
+    /// Replaces the points by those of `points` that are not missing and for which `accept(index)` holds. Keeps all
+    /// equal points; a query may return any of them.
     pub fn rebuild(&mut self, points: &Points, accept: impl Fn(usize) -> bool) {
-        // Frees the old tree before the new one takes memory.
+        // Free the old tree before the new one takes memory.
         self.tree = None;
         self.points.clear();
         self.original.clear();
@@ -54,7 +53,7 @@ impl Neighbours {
         self.points.len()
     }
 
-    /// The nearest point to `query` that is no farther than `distance`; `None` too where the query is missing.
+    /// The point nearest to `query` within `distance`; `None` also if the query is missing.
     #[must_use]
     pub fn nearest(&self, query: [f32; 3], distance: f32) -> Option<Neighbour> {
         let tree = self.tree.as_ref().filter(|_| is_present(&query))?;
@@ -66,7 +65,7 @@ impl Neighbours {
 }
 
 fn is_present(point: &[f32; 3]) -> bool {
-    // Written so that NaN fails.
+    // This comparison also rejects NaN.
     point.iter().all(|value| value.abs() < LARGEST_COORDINATE)
 }
 

@@ -1,4 +1,4 @@
-//! A Gaussian about an initial pose: of its rotation, and of where it puts the middle of the object.
+//! A Gaussian about an initial pose: over its rotation and over the position of the object's centre.
 
 use nalgebra::Vector3;
 
@@ -7,30 +7,30 @@ use super::similarity::Similarity;
 use crate::check::positive;
 use crate::error::Result;
 
-/// A pose and one sigma of it.
+/// A pose with its sigmas.
 #[derive(Clone, Copy, Debug)]
 pub struct PosePrior {
     /// The pose.
     pub pose: Similarity,
     /// Sigma of the rotation about each axis, radians.
     pub rotation: f64,
-    /// Sigma of the object's middle across the line of sight, units of the colour view.
+    /// Sigma of the object's centre across the line of sight, units of the colour view.
     pub across: f64,
-    /// Sigma of the object's middle along the line of sight, units of the colour view.
+    /// Sigma of the object's centre along the line of sight, units of the colour view.
     pub along: f64,
 }
 
 impl PosePrior {
     /// # Errors
-    /// [`ErrorKind::Range`](crate::ErrorKind::Range) of a pose that is no similarity, and of sigmas that are not above zero.
+    /// [`ErrorKind::Range`](crate::ErrorKind::Range) if the pose is not a similarity or a sigma is not positive.
     pub(super) fn validate(&self, field: &'static str) -> Result<()> {
         self.pose.validate(field)?;
         let sigmas = [("rotation", self.rotation), ("across", self.across), ("along", self.along)];
         sigmas.into_iter().try_for_each(|(name, sigma)| positive(name, sigma).map_err(|error| error.below(field)))
     }
 
-    /// Calls `visit` with each residual of a pose, in sigmas, and its derivative by the unknowns of a frame; `middle` is that of the
-    /// object, depth view's frame.
+    /// Calls `visit` with each residual of a pose, in sigmas, and its derivative by the unknowns of `frame`; `middle`
+    /// is the object's centre in the depth view's frame.
     pub(super) fn for_each(
         &self,
         middle: Vector3<f64>,
@@ -88,7 +88,7 @@ mod tests {
             step[k] = small;
             let after = residuals(&frame.change(&step).after(&pose), &frame);
             for ((row, before), (_, after)) in before.iter().zip(&after) {
-                // A rotation vector adds up but for products of small turns.
+                // Rotation vectors add up except for products of small angles.
                 assert!(
                     (row[k] - (after - before) / small).abs() < 0.5,
                     "{k}: {} {}",

@@ -1,12 +1,12 @@
 //! Consensus of correspondences over the linear model of Eq. 14, an affine map P -> A P + t with twelve parameters
 //! theta (docs/method/surfaces.md).
 //!
-//! Four pairs determine theta. The sample whose model has the least objective, sum min(|r|^2, threshold^2), is
-//! improved by least squares on its inliers; A becomes a similarity as in Eq. 15, and the similarity is fitted to its
-//! own inliers until they no longer change.
+//! Four pairs determine theta. Least squares on its inliers refines the sample with the lowest objective, sum
+//! min(|r|^2, threshold^2). A then becomes a similarity as in Eq. 15, and that similarity is fitted to its own inliers
+//! until they no longer change.
 //!
-//! The linear model shears and stretches, so on nearly flat parts it follows noise where a similarity would not: it
-//! only decides which pairs the similarity is first fitted to.
+//! The linear model shears and stretches, so on nearly flat parts it follows noise where a similarity would not. It
+//! therefore only decides which pairs the similarity is fitted to first.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -18,45 +18,46 @@ use crate::numeric::random::Random;
 
 /// Number of pairs that determine the twelve parameters.
 const SAMPLE: usize = 4;
-/// Sampling ends when a sample without outliers was missed with less than this probability.
+/// Sampling ends when the probability of having missed a sample without outliers falls below this.
 const MISSED: f64 = 1e-3;
-/// A sample is flat, and skipped, where the volume over the product of its three edges is below this. 0.01 amplifies
-/// noise a hundredfold at most.
+/// A sample is flat, and skipped, if its volume over the product of its three edges is below this. A ratio of 0.01
+/// amplifies noise at most a hundredfold.
 const LEAST_VOLUME: f64 = 1e-2;
-/// Points are flat where their variance across is below this share of the one along: a relief of 1 %. Then A has a
-/// column that nothing determines.
+/// Points are flat if the ratio of their smallest to their largest variance is below this: a relief of 1 %. Nothing
+/// then determines one column of A.
 const LEAST_THICKNESS: f64 = 1e-4;
-/// Rounds of least squares and new inliers; two or three change nothing any more.
+/// Maximum number of alternations of least squares and new inliers; two or three suffice.
 const MOST_REFITS: usize = 10;
 
-/// How to sample.
+/// Options of the sampling.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RansacOptions {
     /// A pair within this distance is an inlier, units of the colour view.
     pub threshold: f64,
-    /// Scale to hold; `None` is free.
+    /// Scale to hold; `None` leaves it free.
     pub scale: Option<f64>,
     /// Cap on the samples.
     pub most_iterations: u32,
-    /// The same seed gives the same answer.
+    /// Equal seeds give equal results.
     pub seed: u64,
 }
 
 impl Default for RansacOptions {
     fn default() -> Self {
-        // 1000 samples find one without outliers among 70 % of them with probability 0.9997 (0.3^4 = 0.0081).
+        // Even if 70 % of the pairs are outliers, 1000 samples contain one without outliers with probability 0.9997
+        // (0.3^4 = 0.0081).
         Self { threshold: 1.0, scale: None, most_iterations: 1000, seed: 1 }
     }
 }
 
-/// What the consensus is.
+/// The consensus.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RansacReport {
     /// The similarity fitted to its own inliers.
     pub pose: Similarity,
-    /// A of Eq. 14 on the inliers of the linear model; [`Similarity::nearest`] reads scale and rotation off it.
+    /// A of Eq. 14 on the inliers of the linear model; [`Similarity::nearest`] extracts scale and rotation from it.
     pub matrix: Matrix3<f64>,
-    /// Indices of the pairs that the similarity explains, ascending.
+    /// Indices of the pairs within the threshold of the similarity, ascending.
     pub inliers: Vec<u32>,
     /// Samples drawn.
     pub iterations: u32,
@@ -78,7 +79,7 @@ struct Pairs<'a> {
 }
 
 impl Pairs<'_> {
-    /// Indices of the pairs that a model explains.
+    /// Indices of the inliers of a model.
     fn inliers(&self, model: impl Fn(&Vector3<f64>) -> Vector3<f64>) -> Vec<u32> {
         let residual = |k: usize| self.image[k] - model(&self.depth[k]);
         let is_inlier = |&k: &u32| residual(k as usize).norm_squared() < self.threshold;
@@ -86,11 +87,11 @@ impl Pairs<'_> {
     }
 }
 
-/// The pose that most of the pairs `depth[i]`, `image[i]` agree on. Units: those of the two views.
+/// The pose on which most of the pairs `depth[i]`, `image[i]` agree. Units: those of the two views.
 ///
 /// # Errors
-/// [`ErrorKind::Size`] where lengths differ, [`ErrorKind::Range`] for points or a threshold that are not valid,
-/// [`ErrorKind::Degenerate`] for fewer than four pairs, points on a plane or line, or where no four pairs agree.
+/// [`ErrorKind::Size`] if lengths differ, [`ErrorKind::Range`] if a point or the threshold is invalid,
+/// [`ErrorKind::Degenerate`] for fewer than four pairs, for points on a plane or line, and if no four pairs agree.
 pub fn ransac(depth: &[Vector3<f64>], image: &[Vector3<f64>], options: &RansacOptions) -> Result<RansacReport> {
     check(depth, image, options)?;
     let pairs = Pairs { depth, image, threshold: options.threshold * options.threshold };
@@ -100,7 +101,7 @@ pub fn ransac(depth: &[Vector3<f64>], image: &[Vector3<f64>], options: &RansacOp
     Ok(RansacReport { pose, matrix: affine.matrix, inliers, iterations })
 }
 
-/// The model of the best sample, and how many samples were drawn.
+/// The model of the best sample, and the number of samples drawn.
 fn best_of_samples(pairs: &Pairs<'_>, options: &RansacOptions) -> Result<(AffineModel, u32)> {
     let Pairs { depth, image, threshold } = *pairs;
     let mut generator = Random::new(options.seed, 0);
@@ -127,12 +128,12 @@ fn best_of_samples(pairs: &Pairs<'_>, options: &RansacOptions) -> Result<(Affine
 }
 
 impl AffineModel {
-    /// The model through four pairs, `None` where the depth points are flat.
+    /// The model through four pairs; `None` if the depth points are flat.
     fn through(p: [Vector3<f64>; SAMPLE], q: [Vector3<f64>; SAMPLE]) -> Option<Self> {
         let from = Matrix3::from_columns(&[p[1] - p[0], p[2] - p[0], p[3] - p[0]]);
         let edges: f64 = from.column_iter().map(|edge| edge.norm()).product();
         let volume = from.determinant().abs();
-        // Written so that NaN is flat.
+        // This comparison also treats NaN as flat.
         if !matches!(volume.partial_cmp(&(LEAST_VOLUME * edges)), Some(std::cmp::Ordering::Greater)) {
             return None;
         }
@@ -164,7 +165,7 @@ impl AffineModel {
     }
 }
 
-/// Least squares on the inliers, new inliers, and so on; a round that loses inliers is the last.
+/// Alternates least squares on the inliers with new inliers; ends with a round that loses inliers.
 fn refine_affine(mut affine: AffineModel, pairs: &Pairs<'_>) -> Result<(AffineModel, Vec<u32>)> {
     let mut inliers = pairs.inliers(|point| affine.apply(point));
     for _ in 0..MOST_REFITS {
@@ -185,7 +186,7 @@ fn refine_affine(mut affine: AffineModel, pairs: &Pairs<'_>) -> Result<(AffineMo
     Ok((affine, inliers))
 }
 
-/// The similarity nearest to A (Eq. 15), fitted to the pairs that it explains.
+/// The similarity nearest to A (Eq. 15), fitted to its inliers.
 fn refine_similarity(
     affine: &AffineModel,
     affine_inliers: Vec<u32>,
@@ -210,11 +211,11 @@ fn refine_similarity(
     Ok((pose, inliers))
 }
 
-/// Four different numbers below `count`, which is at least four.
+/// Draws four different numbers below `count`, which is at least four.
 fn draw(generator: &mut Random, count: u32) -> [usize; SAMPLE] {
     let mut sample = [0; SAMPLE];
     for k in 0..SAMPLE {
-        // One of the numbers not taken yet: a draw among the rest, moved up past those taken, which are in order.
+        // Draw among the numbers not yet taken: skip past those taken, which are in ascending order.
         let mut number = generator.word() % (count - k as u32);
         let mut place = 0;
         while place < k && number >= sample[place] {
@@ -227,15 +228,15 @@ fn draw(generator: &mut Random, count: u32) -> [usize; SAMPLE] {
     sample.map(|number| number as usize)
 }
 
-/// Samples after which one without outliers was missed with probability [`MISSED`].
+/// Number of samples after which the probability of having missed one without outliers is [`MISSED`].
 fn samples_needed(share: f64) -> u32 {
     let good = share.powi(SAMPLE as i32);
-    // ln_1p keeps the sign of zero, so that no inlier at all needs infinitely many samples.
+    // ln_1p keeps the sign of zero, so that a share of zero requires infinitely many samples.
     let needed = MISSED.ln() / (-good).ln_1p();
     (needed.ceil() as u32).max(1)
 }
 
-/// Smallest over largest eigenvalue of a covariance.
+/// Ratio of the smallest to the largest eigenvalue of a covariance.
 fn thickness(covariance: &Matrix3<f64>) -> f64 {
     match symmetric_eigen(covariance) {
         Some(eigen) if eigen.eigenvalues.max() > 0.0 => eigen.eigenvalues.min() / eigen.eigenvalues.max(),

@@ -1,12 +1,14 @@
-//! What photometric registration and registration by local contrast expect of residuals of log intensity alike.
+//! Constants of residuals of log intensity that photometric registration and registration by local contrast share.
 
-/// Noise of log S that is always allowed for, log units: half a percent, the rounding of a good 8-bit image.
+/// Smallest assumed noise of log S, log units: 0.2 percent, the rounding of a good 8-bit image.
 pub(super) const LEAST_NOISE: f64 = 0.002;
-/// Error of a normal, radians, at which its point has lost three quarters of its weight. Errors act in the mean by their
-/// square: 0.1 rad shifts the pose by some tenths of a degree whatever the light.
+/// Error of a normal, radians, at which its point has lost three quarters of its weight. On average errors act by their
+/// square: 0.1 rad shifts the pose by some tenths of a degree, whatever the light.
 pub(super) const NORMAL_ERROR: f64 = 0.1;
-/// The first robust scale over that of the residuals, and the factor by which it shrinks from round to round, at most.
+/// First robust scale relative to that of the residuals, and the factor by which it shrinks at most from round to
+/// round.
 pub(super) const FIRST_SCALE: f64 = 2.0;
 pub(super) const SHRINKING: f64 = 0.6;
-/// Depth pixels of the object for which windows on the depth map are stated, root of their number; windows grow with the object.
+/// Square root of the number of object pixels in the depth map for which the sizes of windows are stated; windows grow
+/// with the object.
 pub(super) const MEASURED_SIDE: f64 = 64.0;

@@ -1,29 +1,29 @@
-//! The sandwich estimator of a pose's covariance: G (sum over clusters of g g^T) G^T (docs/method/uncertainty.md).
+//! Sandwich estimator of a pose's covariance: G (sum over clusters of g g^T) G^T (docs/method/uncertainty.md).
 //!
-//! g is the sum of the scores of a cluster of neighbouring residuals, G the gain of the equations that the pose solves, as a rule the
-//! inverse of their matrix. Noise, wrong normals and interpolation enter with the size and the correlation that they have; the one
-//! assumption is that clusters are independent.
+//! g is the sum of the scores of a cluster of neighbouring residuals, and G the gain of the equations that the pose
+//! solves, normally the inverse of their matrix. Noise, wrong normals and interpolation enter with their actual size
+//! and correlation; the only assumption is that clusters are independent.
 //!
 //! P. Huber: "The behavior of maximum likelihood estimates under nonstandard conditions", Proc. 5th Berkeley Symposium,
 //! 1967. K.-Y. Liang, S. Zeger: "Longitudinal data analysis using generalized linear models", Biometrika 73, 1986.
 
 use super::increment::{PoseMatrix, PoseVector, UNKNOWN, UNKNOWNS, clear_unknowns, product};
 
-/// The scores of the clusters, summed up.
+/// Sum of the outer products of the clusters' scores.
 pub(super) struct Scores {
     spread: PoseMatrix,
     count: f64,
 }
 
 impl Scores {
-    /// Of clusters that count as observations; those without a score are empty and do not.
+    /// From clusters that count as observations. Clusters with a score of zero are empty and do not count.
     pub fn of<'a>(clusters: impl Iterator<Item = &'a PoseVector>) -> Self {
         let mut scores = Self { spread: PoseMatrix::zeros(), count: 0.0 };
         scores.count = scores.add(clusters);
         scores
     }
 
-    /// Adds the spread of further clusters, which do not count as observations; their number.
+    /// Adds the spread of further clusters, which do not count as observations. Returns their number.
     pub fn add<'a>(&mut self, clusters: impl Iterator<Item = &'a PoseVector>) -> f64 {
         let mut count = 0.0;
         for score in clusters.filter(|score| score.norm() > 0.0) {
@@ -33,14 +33,15 @@ impl Scores {
         count
     }
 
-    /// Observations beyond the unknowns that are not held: fewer clusters than unknowns say nothing about the spread.
+    /// Number of observations minus free unknowns. `None` if that is not positive, because so few clusters carry no
+    /// information about the spread.
     pub fn degrees_of_freedom(&self, held: &[bool; UNKNOWNS]) -> Option<f64> {
         let free = held.iter().filter(|&&held| !held).count() as f64;
         (self.count > free).then_some(self.count - free)
     }
 
-    /// The covariance where sigmas are to grow by a factor; held unknowns have none, and nothing is known without a gain or
-    /// where there are too few clusters.
+    /// The covariance, with sigmas enlarged by `growth`. Held unknowns have none. Without a gain or with too few
+    /// clusters everything is unknown.
     pub fn covariance(&self, gain: Option<&PoseMatrix>, growth: f64, held: &[bool; UNKNOWNS]) -> PoseMatrix {
         let mut covariance = match (gain, self.degrees_of_freedom(held)) {
             (Some(gain), Some(freedom)) => {
@@ -56,9 +57,10 @@ impl Scores {
     }
 }
 
-/// Three sigmas of Student's distribution over those of the normal one: a spread that few clusters tell is itself uncertain.
-/// D. Wallace: "Bounds on normal approximations to Student's and the chi-square distributions", Annals of Mathematical
-/// Statistics 30, 1959, the other way round: within 3 % from four degrees of freedom on, and never below the truth.
+/// Ratio of three sigmas of Student's distribution to three of the normal one, because a spread estimated from few
+/// clusters is itself uncertain. Inverts an approximation of D. Wallace: "Bounds on normal approximations to Student's
+/// and the chi-square distributions", Annals of Mathematical Statistics 30, 1959. It is within 3 % from four degrees of
+/// freedom on, and never too small.
 pub(super) fn student_growth(degrees_of_freedom: f64) -> f64 {
     let sigmas = 3.0 * (8.0 * degrees_of_freedom + 3.0) / (8.0 * degrees_of_freedom + 1.0);
     (degrees_of_freedom * ((sigmas * sigmas / degrees_of_freedom).exp() - 1.0)).sqrt() / 3.0
@@ -71,7 +73,7 @@ mod tests {
 
     const FREE: [bool; UNKNOWNS] = [false; UNKNOWNS];
 
-    /// The mean of vectors of white noise: its covariance is the noise's over their number.
+    /// The mean of vectors of white noise has the covariance of the noise over their number.
     #[test]
     fn the_covariance_of_a_mean_is_the_variance_over_the_count() {
         let (sigma, count) = (0.3, 4000);

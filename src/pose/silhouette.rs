@@ -1,58 +1,59 @@
-//! How far a position lies off an image's mask. Distances are exact at pixel centres and bilinear between them.
+//! Distance of a position from an image's mask: exact at pixel centres, bilinear between them.
 
 use super::distance_transform::squared_distances;
 use crate::view::Size;
 
-/// Distance off the mask that costs nothing, pixels: neither a pixel's own size nor the rounding of a mask is an error. Without it
-/// a silhouette pulls poses by one to two degrees.
+/// Distance off the mask that costs nothing, pixels: neither the size of a pixel nor the rounding of a mask is an
+/// error, and without this slack the silhouette would bias the pose.
 pub(crate) const SLACK: f64 = 0.7;
-/// Weight of points off the mask, against one of what else decides (local contrast, depth discontinuities).
+/// Weight of points off the mask, relative to the other terms (local contrast, depth discontinuities).
 pub(super) const OUTSIDE_WEIGHT: f64 = 3.0;
-/// Half the distance over which [`Silhouette::smoothly_signed_at`] takes its gradient, pixels: the steps of a mask's border turn its
-/// normal by up to 45 degrees, and noise of normals passes for information about rotations that leave the border as it is.
+/// Half the distance over which [`Silhouette::smoothly_signed_at`] takes its gradient, pixels. The steps of a mask's
+/// border turn its normal by up to 45 degrees, and that noise would pass for information about rotations that do not
+/// change the border.
 const SMOOTHING: f64 = 4.0;
 
 /// Distances to one mask, pixels.
 pub(crate) struct Silhouette {
     size: Size,
-    /// To the nearest pixel of the mask: zero on it.
+    /// Distance to the nearest pixel of the mask; zero on the mask.
     outside: Vec<f32>,
-    /// To the mask's border, which runs between pixels: negative on the mask.
+    /// Distance to the mask's border, which runs between pixels; negative on the mask.
     signed: Vec<f32>,
 }
 
 impl Silhouette {
     pub fn new(size: Size, mask: &[bool]) -> Self {
         let [outside, inside] = [true, false].map(|kind| distances(size, |index| mask[index] == kind));
-        // Centres of pixels on either side of a border are half a pixel off it.
+        // Centres of pixels on either side of the border are half a pixel from it.
         let signed =
             outside.iter().zip(&inside).map(|(out, inn)| if *out > 0.0 { out - 0.5 } else { 0.5 - inn }).collect();
         Self { size, outside, signed }
     }
 
-    /// Pixels of the mask next to one that is not.
+    /// Number of pixels of the mask next to a pixel off it.
     pub fn border(&self) -> usize {
         self.signed.iter().filter(|&&signed| signed == -0.5).count()
     }
 
-    /// The distance to the mask and its derivative by column and row. Beyond the frame it is that of the nearest position within:
-    /// an object that the frame cuts off may go on there.
+    /// Distance to the mask, and its derivative by column and row. Beyond the frame it is that of the nearest position
+    /// inside, because an object cut off by the frame may continue there.
     pub fn at(&self, place: [f64; 2]) -> (f64, [f64; 2]) {
         self.bilinear(&self.outside, place)
     }
 
-    /// The distance to the mask. Beyond the frame it grows with the distance from the frame.
+    /// Distance to the mask. Beyond the frame it grows with the distance from the frame.
     pub fn beyond_frame_at(&self, place: [f64; 2]) -> f64 {
         self.bilinear(&self.outside, place).0 + self.off_frame(place)
     }
 
-    /// The signed distance to the border and its derivative, beyond the frame as [`at`](Self::at).
+    /// Signed distance to the border and its derivative; beyond the frame as in [`at`](Self::at).
     pub fn signed_at(&self, place: [f64; 2]) -> (f64, [f64; 2]) {
         self.bilinear(&self.signed, place)
     }
 
-    /// The signed distance to the border, and its gradient over several pixels. Beyond the frame it grows with the distance from
-    /// the frame.
+    /// Signed distance to the border, and its gradient over several pixels. Beyond the frame it grows with the distance
+    /// from the frame.
     pub fn smoothly_signed_at(&self, place: [f64; 2]) -> (f64, [f64; 2]) {
         let value = |place: [f64; 2]| {
             let (value, off) = (self.bilinear(&self.signed, place).0, self.off_frame(place));
@@ -65,14 +66,14 @@ impl Silhouette {
         (value(place), gradient)
     }
 
-    /// How far a position lies beyond the frame.
+    /// Distance of a position from the frame; zero inside.
     fn off_frame(&self, place: [f64; 2]) -> f64 {
         let [x, y] = self.within(place);
         (place[0] - x).hypot(place[1] - y)
     }
 
     fn within(&self, [column, row]: [f64; 2]) -> [f64; 2] {
-        // `clamp` can panic with both limits in words, which takes 8 kB of code for floats.
+        // `clamp` can panic with both limits in its message, which takes 8 kB of code for floats.
         let within = |value: f64, length: usize| value.max(0.0).min((length - 1) as f64);
         [within(column, self.size.width), within(row, self.size.height)]
     }
@@ -93,7 +94,7 @@ impl Silhouette {
     }
 }
 
-/// Distance of each pixel to the nearest one of a kind.
+/// Distance from each pixel to the nearest pixel of a kind.
 fn distances(size: Size, is_of_kind: impl Fn(usize) -> bool) -> Vec<f32> {
     squared_distances(size, is_of_kind).into_iter().map(|squared| squared.sqrt() as f32).collect()
 }
@@ -168,7 +169,7 @@ mod tests {
             let (value, gradient) = silhouette.smoothly_signed_at(at);
             let [right, down] = [at[0] - 18.0, at[1] - 15.0];
             let exact = right.hypot(down);
-            // The frame is nearer than the disc where the position is beyond it.
+            // Beyond the frame, the frame is nearer than the disc.
             assert!((value - (exact - 9.0)).abs() < if at[0] < 0.0 { 20.0 } else { 0.6 }, "{at:?}: {value}");
             assert!((gradient[0] * right + gradient[1] * down) / exact > 0.9, "{at:?}: {gradient:?}");
         }

@@ -1,4 +1,5 @@
-//! P_colour = s R P_depth + t: the pose (Eq. 12 with known pairs, Eq. 15; docs/method/frames.md and docs/method/surfaces.md).
+//! The pose, P_colour = s R P_depth + t (Eq. 12 with known pairs, Eq. 15; docs/method/frames.md and
+//! docs/method/surfaces.md).
 
 use nalgebra::{Matrix3, Matrix4, Quaternion, Rotation3, UnitQuaternion, Vector3};
 
@@ -6,14 +7,15 @@ use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
 use crate::numeric::eigen::symmetric_eigen;
 
-/// How far R^T R may be from one: rotations typed with five digits pass, anything else is a mistake.
+/// Largest difference of R^T R from the identity: rotations typed with five digits pass, anything worse is a mistake.
 const ROTATION_TOLERANCE: f64 = 1e-4;
 
-/// A rotation is undetermined where the second of three singular values is below this share of the first: points on a
-/// line. Rounding in f32 coordinates leaves 1e-7 squared at most, real objects are above 1e-4.
+/// A rotation is undetermined if its eigenvalue gap, twice the sum of the second and the signed third of the normalised
+/// singular values, is below this, as for points on a line. Rounding of f32 coordinates leaves at most 1e-7 squared;
+/// real objects are above 1e-4.
 const RANK_TOLERANCE: f64 = 1e-9;
 
-/// Fewest pairs that determine a similarity: three are fitted so well that no residual shows a mistake.
+/// Minimum number of pairs for a similarity: three are fitted so well that no residual reveals a mistake.
 pub(crate) const FEWEST_PAIRS: usize = 4;
 
 /// An active, right-handed similarity that transforms points of the depth view into the colour view.
@@ -29,21 +31,21 @@ pub struct Similarity {
 }
 
 impl Similarity {
-    /// The pose that changes nothing.
+    /// The identity.
     #[must_use]
     pub fn identity() -> Self {
         Self { scale: 1.0, rotation: Matrix3::identity(), translation: Vector3::zeros() }
     }
 
     /// # Errors
-    /// [`ErrorKind::Range`] naming the member of `field` that is not finite, not positive or no rotation.
+    /// [`ErrorKind::Range`] with the member of `field` that is not finite, not positive or not a rotation.
     pub fn validate(&self, field: &'static str) -> Result<()> {
         positive("scale", self.scale).map_err(|error| error.below(field))?;
         if let Some(index) = self.translation.iter().position(|value| !value.is_finite()) {
             return Err(Error::new(ErrorKind::Range, "translation", "must be finite").at(index).below(field));
         }
         let off = (self.rotation.transpose() * self.rotation - Matrix3::identity()).abs().max();
-        // The largest entry passes over those that are NaN; the determinant is NaN where one is.
+        // The maximum skips NaN entries; the determinant is NaN if one entry is.
         if off > ROTATION_TOLERANCE || !(0.5..2.0).contains(&self.rotation.determinant()) {
             return Err(
                 Error::new(ErrorKind::Range, "rotation", "must be orthonormal with determinant one").below(field)
@@ -58,7 +60,7 @@ impl Similarity {
         self.scale * (self.rotation * point) + self.translation
     }
 
-    /// The similarity that undoes this one.
+    /// The inverse similarity.
     #[must_use]
     pub fn inverse(&self) -> Self {
         let rotation = self.rotation.transpose();
@@ -66,7 +68,7 @@ impl Similarity {
         Self { scale, rotation, translation: -scale * (rotation * self.translation) }
     }
 
-    /// Angle between the rotations of two poses in degrees.
+    /// Angle between the rotations of two poses, degrees.
     #[must_use]
     pub fn degrees_to(&self, other: &Self) -> f64 {
         // 2 asin(|R - R'|_F / (2 sqrt 2)) keeps its digits for small angles, where acos loses half of them.
@@ -74,7 +76,7 @@ impl Similarity {
         2.0 * chord.min(1.0).asin().to_degrees()
     }
 
-    /// By how much this scale differs from that of `other`: |ln(s / s')|.
+    /// Difference of the scales of two poses, |ln(s / s')|.
     #[must_use]
     pub(crate) fn growth_from(&self, other: &Self) -> f64 {
         (self.scale / other.scale).ln().abs()
@@ -90,15 +92,15 @@ impl Similarity {
         }
     }
 
-    /// This pose with another scale and rotation, which leaves `point` of the depth view where this one puts it.
+    /// This pose with another scale and rotation, which maps `point` of the depth view to the same place.
     #[must_use]
     pub(crate) fn turned_about(&self, point: Vector3<f64>, scale: f64, rotation: Matrix3<f64>) -> Self {
         Self { scale, rotation, translation: self.apply(point) - scale * (rotation * point) }
     }
 
-    /// The pose a `share` of the way from this one (0) to `other` (1): constant rotation, constant growth, and a
-    /// straight path for `centre`, a point of the depth view. With the centroid there the object does not swing about a
-    /// far origin half-way, as it would were the translations interpolated.
+    /// The pose a `share` of the way from this one (0) to `other` (1), with constant rotation, constant growth, and a
+    /// straight path of `centre`, a point of the depth view. With the centroid as `centre`, the object does not swing
+    /// about a distant origin, as it would if the translations were interpolated.
     #[must_use]
     pub fn towards(&self, other: &Self, share: f64, centre: Vector3<f64>) -> Self {
         let change = quaternion(&(other.rotation * self.rotation.transpose())).powf(share);
@@ -108,19 +110,19 @@ impl Similarity {
         Self { scale, rotation, translation: target - scale * (rotation * centre) }
     }
 
-    /// The same pose with its rotation made orthonormal again, after many products.
+    /// The same pose with its rotation made orthonormal again, as after many products.
     #[must_use]
     pub fn orthonormal(&self) -> Self {
         Self { rotation: quaternion(&self.rotation).to_rotation_matrix().into_inner(), ..*self }
     }
 
-    /// Least squares of sum w |image - s R depth - t|^2 (Eq. 12 with known correspondences) in closed form (Umeyama
-    /// 1991; the rotation by Horn's quaternion, which is never a reflection). `weights` are not negative, `None` means
-    /// one each; `scale` holds s. Units: those of the two views.
+    /// Minimises sum w |image - s R depth - t|^2 (Eq. 12 with known correspondences) in closed form (Umeyama 1991; the
+    /// rotation by Horn's quaternion, which is never a reflection). `weights` must not be negative; `None` means equal
+    /// weights. `scale` holds s. Units: those of the two views.
     ///
     /// # Errors
-    /// [`ErrorKind::Size`] where lengths differ, [`ErrorKind::Range`] where a number is not finite,
-    /// [`ErrorKind::Degenerate`] for fewer than four pairs of positive weight or points on a line.
+    /// [`ErrorKind::Size`] if lengths differ, [`ErrorKind::Range`] if a number is not finite, [`ErrorKind::Degenerate`]
+    /// for fewer than four pairs of positive weight and for points on a line.
     pub fn fit(
         depth: &[Vector3<f64>],
         image: &[Vector3<f64>],
@@ -159,10 +161,10 @@ impl Similarity {
         Ok(Self { scale, rotation, translation: to - scale * (rotation * from) })
     }
 
-    /// The similarity nearest to the linear model P -> A P + t of Eq. 14: least squares of |s R - A| (Eq. 15).
+    /// The similarity nearest to the linear model P -> A P + t of Eq. 14: minimises |s R - A| (Eq. 15).
     ///
     /// # Errors
-    /// [`ErrorKind::Degenerate`] where A has rank one or less or no rotation is near it, [`ErrorKind::Range`] where it
+    /// [`ErrorKind::Degenerate`] if A has a rank of at most one or no rotation is near it, [`ErrorKind::Range`] if it
     /// is not finite.
     pub fn nearest(matrix: &Matrix3<f64>, translation: Vector3<f64>) -> Result<Self> {
         let rotation = nearest_rotation(matrix)?;
@@ -179,7 +181,7 @@ fn quaternion(rotation: &Matrix3<f64>) -> UnitQuaternion<f64> {
     UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(*rotation))
 }
 
-/// The rotation R with the largest trace of R^T M: the eigenvector of Horn's 4x4 matrix (1987) for its largest
+/// The rotation R with the largest trace of R^T M, from the eigenvector of Horn's 4x4 matrix (1987) for its largest
 /// eigenvalue. Unlike nalgebra's 3x3 SVD it does not square the condition number, and its determinant is always one.
 fn nearest_rotation(matrix: &Matrix3<f64>) -> Result<Matrix3<f64>> {
     let size = matrix.norm();
@@ -209,7 +211,7 @@ fn nearest_rotation(matrix: &Matrix3<f64>) -> Result<Matrix3<f64>> {
     Ok(UnitQuaternion::from_quaternion(Quaternion::new(q[0], q[1], q[2], q[3])).to_rotation_matrix().into_inner())
 }
 
-/// A pose of the JavaScript contract: what it says, and that as angles and as one matrix.
+/// A pose in the JavaScript contract: its members, and in addition its angles and its matrix.
 #[cfg(feature = "serde")]
 mod serialised {
     use super::Similarity;
@@ -222,7 +224,7 @@ mod serialised {
         rotation: [f64; 9],
         translation: [f64; 3],
         angles: Angles,
-        /// s R and t: rows.
+        /// s R and t, as rows.
         matrix: [[f64; 4]; 4],
     }
 

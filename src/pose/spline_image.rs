@@ -1,50 +1,51 @@
-//! log S between pixels: cubic splines over the mask, with their gradients (docs/method/registration.md).
+//! log S between pixels: cubic splines over the mask, with gradients (docs/method/registration.md).
 //!
 //! f(x, y) = sum c_ij b(x - i) b(y - j) with the cubic B-spline b and coefficients that make f pass through every pixel
 //! (M. Unser: "Splines: a perfect fit for signal and image processing", IEEE Signal Processing Magazine 16, 1999: one
-//! pole, 3^(1/2) - 2, forwards and backwards). Fourth order between pixels, twice differentiable
-//! across them, exact on them. Off the mask the image is first continued in straight lines, ring by ring, so that the
-//! spline meets no step at the rim; values are given only inside cells whose four pixels are all on the mask.
+//! pole, 3^(1/2) - 2, forwards and backwards). The spline is exact at pixels, of fourth order between them, and twice
+//! differentiable across them. Off the mask the image is first continued in straight lines, ring by ring, so that the
+//! spline meets no step at the border. Values are defined only inside cells whose four pixels are all on the mask.
 //!
 //! Coarse levels hold the mask-normalised Gaussian mean of log S on the same raster.
 //!
-//! Limits: an image with detail near one pixel is not band-limited and no interpolation finds what lies between; the
-//! outermost cells depend on the continuation, a quarter of it for each pixel inwards.
+//! Limits: an image with detail near one pixel is not band-limited, and no interpolation recovers the values between
+//! pixels. The outermost cells depend on the continuation; its influence falls to a quarter with each pixel inwards.
 
 use std::sync::Arc;
 
 use crate::numeric::{LANES, Lanes, Real};
 use crate::view::{ColourView, Gaussian, Size};
 
-/// Pole of the cubic B-spline's inverse filter.
+/// Pole of the inverse filter of the cubic B-spline.
 const POLE: f64 = -0.267_949_192_431_122_7;
-/// Samples after which the pole's powers have fallen below the rounding of f32: 0.268^14 = 1e-8.
+/// Number of samples after which powers of the pole fall below the rounding of f32: 0.268^14 = 1e-8.
 const HORIZON: usize = 14;
-/// Rings of pixels that the continuation adds: the spline on the mask depends on the last of them by 0.268^8 = 3e-5.
+/// Number of rings of pixels in the continuation: the spline on the mask depends on the last one by 0.268^8 = 3e-5.
 const RINGS: u8 = 8;
-/// Mirrored samples of a line: one before, two behind.
+/// Number of mirrored samples of a line: one before, two behind.
 const MIRRORED: usize = 3;
 
-/// Lanes that hold the three colours of a sample: one, and what follows in the fourth is ignored.
+/// Number of lanes for the three colours of a sample. With four pixels in a lane it is one, and the fourth number is
+/// ignored.
 const CHUNKS: usize = 3_usize.div_ceil(LANES);
-/// Numbers of a line of four samples, with the one more that the last lanes load.
+/// Length of a line of four samples, plus the one number that the last lanes load beyond them.
 const LINE: usize = 4 * 3 + 1;
 
 /// log S of three channels as splines over one mask.
 #[derive(Clone, Debug)]
 pub(super) struct SplineImage {
     size: Size,
-    /// The mean of log S. Splines run through what differs from it, so that another exposure is rounded in the same
-    /// way.
+    /// The mean of log S. The splines interpolate the difference from it, so that rounding does not depend on the
+    /// exposure.
     mean: f64,
-    /// Whether the four pixels right and below of each, itself included, are all on the mask.
+    /// For each pixel: whether the pixel and those right of, below, and diagonally below it are all on the mask.
     cells: Arc<[bool]>,
-    /// R, G and B side by side, mirrored by one sample before and two behind each line and column, so that the sixteen
-    /// around a cell are always there.
+    /// R, G and B side by side. Each line and column is mirrored by one sample before and two behind, so that the
+    /// sixteen coefficients around a cell always exist.
     coefficients: Vec<[f32; 3]>,
 }
 
-/// A place on the image: log S of the three channels and d log S / d (column, row).
+/// A position on the image: log S of the three channels and d log S / d (column, row).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ImagePoint {
     pub log: [f64; 3],
@@ -52,12 +53,12 @@ pub(super) struct ImagePoint {
 }
 
 impl SplineImage {
-    /// Splines through the Gaussian mean (sigma `blur` in pixels, zero for none) of a view's log S.
+    /// Splines through the Gaussian mean of a view's log S; `blur` is the sigma in pixels, zero for none.
     pub fn new(view: &ColourView, blur: f64) -> Self {
         Self::over(&Arc::from(cells(view)), view.log_mean(), view, blur)
     }
 
-    /// The same view's with another blur.
+    /// Splines of the same view with another blur.
     pub fn blurred(&self, view: &ColourView, blur: f64) -> Self {
         Self::over(&self.cells, self.mean, view, blur)
     }
@@ -69,7 +70,7 @@ impl SplineImage {
         fields.iter_mut().for_each(|field| filter(view.size, field));
         let [red, green, blue] = &fields;
         let samples = (view.size.width + MIRRORED) * (view.size.height + MIRRORED);
-        // One more, for the number that the lanes of the last one load beyond it.
+        // One more, because the lanes of the last sample load one number beyond it.
         let mut coefficients = Vec::with_capacity(samples + 1);
         mirrored(view.size.height).for_each(|row| {
             mirrored(view.size.width).for_each(|column| {
@@ -81,7 +82,7 @@ impl SplineImage {
         Self { size: view.size, mean, cells: Arc::clone(cells), coefficients }
     }
 
-    /// Whether the cell around a position, and `margin` pixels beyond it on every side, is on the mask.
+    /// Whether the cell around a position and `margin` pixels beyond it on every side are on the mask.
     pub fn covers(&self, position: [f64; 2], margin: usize) -> bool {
         let Some([left, top]) = self.cell(position) else { return false };
         let (right, low) = (left + margin, top + margin);
@@ -139,12 +140,12 @@ impl SplineImage {
         self.coefficients.as_flattened().get(start..start + LINE).unwrap_or_default()
     }
 
-    /// The cell around a position, where its pixels are all on the mask.
+    /// The cell around a position if its pixels are all on the mask.
     fn whole_cell(&self, position: [f64; 2]) -> Option<[usize; 2]> {
         self.cell(position).filter(|&[left, top]| self.cells[self.size.index(left, top)])
     }
 
-    /// Left column and top row of the cell around a position, inside the raster.
+    /// Left column and top row of the cell around a position on the raster.
     fn cell(&self, [column, row]: [f64; 2]) -> Option<[usize; 2]> {
         let inside = column >= 0.0
             && row >= 0.0
@@ -155,13 +156,13 @@ impl SplineImage {
     }
 }
 
-/// Samples of a line with its mirrored ends: one before, two behind.
+/// Indices of a line's samples with mirrored ends: one before, two behind.
 fn mirrored(length: usize) -> impl Iterator<Item = usize> + Clone {
     let last = length - 1;
     std::iter::once(1.min(last)).chain(0..length).chain([last.saturating_sub(1), last.saturating_sub(2)])
 }
 
-/// Whether the pixel and those right and below of it are on the mask; the last column and row begin no cell.
+/// Whether a pixel and those right of and below it are on the mask; the last column and row begin no cell.
 fn cells(view: &ColourView) -> Vec<bool> {
     let Size { width, height } = view.size;
     let inside = |column: usize, row: usize| view.mask[view.size.index(column, row)];
@@ -176,14 +177,14 @@ fn cells(view: &ColourView) -> Vec<bool> {
     (0..view.size.len()).map(|index| view.size.position(index)).map(|(column, row)| whole(column, row)).collect()
 }
 
-/// The cubic B-spline's four weights at `t` in 0 .. 1 within a cell.
+/// The four weights of the cubic B-spline at `t` in 0 .. 1 within a cell.
 fn values(t: f64) -> [f64; 4] {
     let u = 1.0 - t;
     let middle = |t: f64| (0.5 * t - 1.0) * t * t + 4.0 / 6.0;
     [u * u * u / 6.0, middle(t), middle(u), t * t * t / 6.0]
 }
 
-/// Their derivatives.
+/// Derivatives of these weights.
 fn derivatives(t: f64) -> [f64; 4] {
     let u = 1.0 - t;
     let middle = |t: f64| (1.5 * t - 2.0) * t;
@@ -196,7 +197,7 @@ fn splat(weights: [f64; 4]) -> [Lanes; 4] {
     [Lanes::constant(first), Lanes::constant(second), Lanes::constant(third), Lanes::constant(fourth)]
 }
 
-/// The weighted sum of a line's four samples.
+/// Weighted sum of the four samples of a line.
 #[inline(always)]
 fn sum(weights: &[Lanes; 4], line: &[f32]) -> [Lanes; CHUNKS] {
     let mut sums = [Lanes::splat(0.0); CHUNKS];
@@ -212,7 +213,7 @@ fn add_share(sums: &mut [Lanes; CHUNKS], share: Lanes, values: &[Lanes; CHUNKS])
     sums.iter_mut().zip(values).for_each(|(sum, &value)| *sum = *sum + share * value);
 }
 
-/// Those of the three colours without what lies beyond them.
+/// The numbers of the three colours, without the lanes beyond them.
 #[inline(always)]
 fn numbers(sums: [Lanes; CHUNKS]) -> [f64; 3] {
     let number = |channel: usize| f64::from(sums[channel / LANES].array()[channel % LANES]);
@@ -229,10 +230,10 @@ fn blurred(view: &ColourView, sigma: f64) -> [Vec<f32>; 3] {
         .map(|means| means.into_iter().map(|mean| mean as f32).collect())
 }
 
-/// Continues fields beyond their mask: each new pixel is the mean of the straight lines (of the values, where there is
-/// no second pixel) that reach it from its neighbours. What is farther away than the rings becomes zero.
+/// Continues fields beyond their mask. Each new pixel is the mean of the straight lines that reach it from its
+/// neighbours, or of their values where a line has only one pixel. Pixels beyond the rings become zero.
 fn continue_outwards(size: Size, fields: &mut [Vec<f32>; 3], mask: &[bool]) {
-    // Zero on the mask, then the number of the ring; one more than there are is not known yet.
+    // Zero on the mask, then the number of the ring; RINGS + 1 marks pixels not yet known.
     let mut rings: Vec<u8> = mask.iter().map(|&inside| if inside { 0 } else { RINGS + 1 }).collect();
     let mut ring: Vec<usize> = (0..mask.len()).filter(|&index| mask[index]).collect();
     for number in 1..=RINGS {
@@ -256,7 +257,7 @@ fn continue_outwards(size: Size, fields: &mut [Vec<f32>; 3], mask: &[bool]) {
     }
 }
 
-/// The mean of the straight lines from the neighbours that are known.
+/// Mean of the straight lines from the known neighbours.
 fn continued(size: Size, field: &[f32], index: usize, known: impl Fn(&usize) -> bool) -> f32 {
     let (column, row) = size.position(index);
     let (mut sum, mut count) = (0.0, 0.0);
@@ -274,7 +275,7 @@ fn continued(size: Size, field: &[f32], index: usize, known: impl Fn(&usize) -> 
     sum / count
 }
 
-/// Pixel values to B-spline coefficients, in place: rows, then columns.
+/// Turns pixel values into B-spline coefficients in place: rows, then columns.
 fn filter(size: Size, field: &mut [f32]) {
     let mut line = vec![0.0; size.width.max(size.height)];
     let mut run = |first: usize, step: usize, length: usize| {
@@ -287,7 +288,7 @@ fn filter(size: Size, field: &mut [f32]) {
     (0..size.width).for_each(|column| run(column, size.width, size.height));
 }
 
-/// The recursion of one line with mirrored ends.
+/// Recursion along one line with mirrored ends.
 fn filter_line(line: &mut [f64]) {
     let last = line.len() - 1;
     let mut power = 1.0;
@@ -358,7 +359,7 @@ mod tests {
     #[test]
     fn gradients_are_the_difference_quotients() {
         let image = SplineImage::new(&view(), 1.0);
-        // Values are those of f32: a difference of smaller steps would be their rounding.
+        // Values are rounded to f32, so the difference over a smaller step would be rounding.
         let small = 0.02;
         for [x, y] in [[20.3, 17.8], [25.0, 22.0], [30.1, 12.9], [9.4, 14.3]] {
             let point = image.at([x, y]).unwrap();

@@ -3,9 +3,9 @@
 use crate::numeric::robust;
 use crate::pose::increment::{PoseMatrix, PoseVector};
 
-/// Matrix, gradient and cost; an infinite scale leaves a residual its square.
+/// Matrix, gradient and cost. With an infinite scale a residual costs its square.
 pub(super) struct Sums {
-    /// Its lower triangle.
+    /// Lower triangle of the matrix.
     pub matrix: PoseMatrix,
     pub gradient: PoseVector,
     pub cost: f64,
@@ -23,7 +23,7 @@ impl Sums {
         matrix
     }
 
-    /// Enters a residual under the robust function.
+    /// Adds a residual under the robust function.
     pub fn add(&mut self, row: &PoseVector, residual: f64, weight: f64, scale: f64) {
         let square = (residual / scale).powi(2);
         let robust = weight * robust::weight(square);

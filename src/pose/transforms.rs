@@ -1,8 +1,8 @@
 //! A pose as nalgebra's transformations and as a 4x4 matrix, and back.
 //!
-//! All of them are active and carry points of the depth view into the frame of the colour view: x right, y down, z
-//! forward, in metres behind a camera and in pixels without one. None is the pose of a camera in the world; the colour
-//! camera's, seen from the depth camera, is the inverse of the pose.
+//! All of them are active and map points of the depth view into the frame of the colour view: x right, y down, z
+//! forward, in metres behind a camera and in pixels without one. None of them is the pose of a camera in the world; the
+//! pose of the colour camera in the frame of the depth camera is the inverse.
 //!
 //! ```
 //! use bimodal_stereo::Similarity;
@@ -25,9 +25,9 @@ use nalgebra::{Isometry3, Matrix4, Rotation3, Similarity3, Translation3, UnitQua
 use super::similarity::Similarity;
 use crate::error::{Error, ErrorKind, Result};
 
-/// How far a scale may be from one in a rigid motion: what products of a few rounded numbers leave.
+/// Largest difference of a scale from one in a rigid motion: rounding of a few products.
 const UNIT_TOLERANCE: f64 = 1e-9;
-/// How far the last row of a matrix may be from 0, 0, 0, 1.
+/// Largest difference of the last row of a matrix from 0, 0, 0, 1.
 const ROW_TOLERANCE: f64 = 1e-9;
 
 impl Similarity {
@@ -36,7 +36,7 @@ impl Similarity {
     /// > | s R  t |
     /// > |  0   1 |
     ///
-    /// It carries (x, y, z, 1) of the depth view into the colour view.
+    /// It maps (x, y, z, 1) of the depth view into the colour view.
     #[must_use]
     pub fn matrix(&self) -> Matrix4<f64> {
         let mut matrix = (self.scale * self.rotation).to_homogeneous();
@@ -55,14 +55,14 @@ impl From<Similarity> for Matrix4<f64> {
 impl TryFrom<Matrix4<f64>> for Similarity {
     type Error = Error;
 
-    /// The pose of a homogeneous matrix; its rotation is made orthonormal to the last digits.
+    /// The pose of a homogeneous matrix; its rotation is made orthonormal to the last digit.
     ///
     /// # Errors
-    /// [`ErrorKind::Range`] where the last row is not 0, 0, 0, 1, or the upper left 3x3 block is no rotation times a
+    /// [`ErrorKind::Range`] if the last row is not 0, 0, 0, 1, the upper left 3x3 block is not a rotation times a
     /// positive scale, or a number is not finite. The field is `matrix` or a member of it.
     fn try_from(matrix: Matrix4<f64>) -> Result<Self> {
         let refused = |message: &'static str| Error::new(ErrorKind::Range, "matrix", message);
-        // So written that NaN is refused.
+        // This comparison also rejects NaN.
         let is_row = |column: usize, wanted: f64| (matrix[(3, column)] - wanted).abs() <= ROW_TOLERANCE;
         if !(is_row(0, 0.0) && is_row(1, 0.0) && is_row(2, 0.0) && is_row(3, 1.0)) {
             return Err(refused("must have the last row 0, 0, 0, 1"));
@@ -80,7 +80,7 @@ impl TryFrom<Matrix4<f64>> for Similarity {
 }
 
 impl From<Isometry3<f64>> for Similarity {
-    /// A rigid motion: its scale is one.
+    /// A rigid motion has a scale of one.
     fn from(motion: Isometry3<f64>) -> Self {
         let rotation = motion.rotation.to_rotation_matrix().into_inner();
         Self { scale: 1.0, rotation, translation: motion.translation.vector }
@@ -90,10 +90,10 @@ impl From<Isometry3<f64>> for Similarity {
 impl TryFrom<Similarity> for Isometry3<f64> {
     type Error = Error;
 
-    /// The pose as a rigid motion. To leave a scale out, set it to one: `Similarity { scale: 1.0, ..pose }`.
+    /// The pose as a rigid motion. To drop the scale, set it to one: `Similarity { scale: 1.0, ..pose }`.
     ///
     /// # Errors
-    /// [`ErrorKind::Range`] naming the member of `pose` that is invalid, `pose.scale` where it is not one.
+    /// [`ErrorKind::Range`] with the invalid member of `pose`, or `pose.scale` if it is not one.
     fn try_from(pose: Similarity) -> Result<Self> {
         pose.validate("pose")?;
         if (pose.scale - 1.0).abs() > UNIT_TOLERANCE {
@@ -110,7 +110,7 @@ impl TryFrom<Similarity3<f64>> for Similarity {
     /// The same transformation.
     ///
     /// # Errors
-    /// [`ErrorKind::Range`] where the scaling is not positive, which nalgebra permits, or a number is not finite. The
+    /// [`ErrorKind::Range`] if the scaling is not positive, which nalgebra permits, or a number is not finite. The
     /// field is a member of `similarity`.
     fn try_from(similarity: Similarity3<f64>) -> Result<Self> {
         let pose = Self { scale: similarity.scaling(), ..Self::from(similarity.isometry) };
@@ -125,7 +125,7 @@ impl TryFrom<Similarity> for Similarity3<f64> {
     /// The same transformation.
     ///
     /// # Errors
-    /// [`ErrorKind::Range`] naming the member of `pose` that is invalid.
+    /// [`ErrorKind::Range`] with the invalid member of `pose`.
     fn try_from(pose: Similarity) -> Result<Self> {
         pose.validate("pose")?;
         Ok(Self::from_parts(Translation3::from(pose.translation), quaternion(&pose), pose.scale))

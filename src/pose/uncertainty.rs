@@ -1,12 +1,13 @@
 //! How well the matched surfaces determine the pose, and one sigma of each of its numbers.
 //!
-//! The information is that of point-to-plane distances: a point that slides along its surface costs nothing, so a
-//! plane, a sphere or a cylinder leave the directions in which they slide onto themselves without information. It is
-//! formed from the normal of the image on one side and that of the depth view on the other, J_n^T J_m, instead of J_n^T
-//! J_n: errors of two independent normals do not multiply up, where noise squared would pass for shape.
+//! The information is that of point-to-plane distances. A point that slides along its surface costs nothing, so a
+//! plane, a sphere or a cylinder has no information in the directions in which it slides onto itself. The matrix is
+//! J_n^T J_m, with the normal of the image on one side and that of the depth view on the other, instead of J_n^T J_n.
+//! The errors of two independent normals do not multiply, whereas squared noise would pass for shape.
 //!
-//! One sigma covers what the residuals show, correlated ones included; an error that leaves no residual (a surface that
-//! is tilted as a whole, another local optimum that fits as well) is not seen by it. See docs/method/uncertainty.md.
+//! One sigma covers the errors that residuals show, correlated ones included. It does not cover errors that leave no
+//! residual, such as a surface that is tilted as a whole or another local optimum that fits as well. See
+//! docs/method/uncertainty.md.
 
 use std::fmt;
 
@@ -19,17 +20,15 @@ use super::similarity::Similarity;
 use crate::numeric::eigen::{Eigen, symmetric_eigen};
 use crate::view::Camera;
 
-/// Eigenvalues of the information, divided by its weight, below this count as zero. Free of units: the squared cosine
-/// between normals and motion. A face has 5e-3, a bust with a third of its relief 1e-3; smooth surfaces of revolution
-/// stay below 1e-4.
+/// Eigenvalues of the information over its weight below this count as zero. Dimensionless: the squared cosine between
+/// normals and motion. Faces and busts are above it, smooth surfaces of revolution below (docs/lab/thresholds.md).
 const LEAST_INFORMATION: f64 = 1e-4;
-/// Rotations are never more uncertain than this, degrees.
+/// Largest sigma of a rotation, degrees.
 const LARGEST_SIGMA: f64 = 180.0;
-/// Sigma of the focal lengths that files state, as a share. Set so that the rotations of random pinhole pairs, one of whose
-/// focal lengths is wrong by 1 to 5 %, are held by three sigmas in 95 % on the scenes of odd numbers; those of even ones
-/// are as well.
+/// Relative sigma of the focal lengths in files. Set on random pinhole pairs, with focal lengths wrong by 1 to 5 %, so
+/// that three sigmas cover the rotations (docs/lab/thresholds.md).
 const FOCAL_LENGTH_SIGMA: f64 = 0.005;
-/// A second direction is named where it has at least this share of the first one's part.
+/// A second direction is named if its part is at least this share of the largest one.
 const WORTH_NAMING: f64 = 0.6;
 
 /// One of the seven numbers of a pose, in the colour view's frame.
@@ -65,12 +64,13 @@ const ORDER: [Unknown; UNKNOWNS] = [
     Unknown::Scale,
 ];
 
-/// A direction in which a pose may change, by its one or two largest parts. [`Display`](fmt::Display) writes them as words.
+/// A direction in which a pose may change, given by its one or two largest parts. [`Display`](fmt::Display) writes them
+/// in words.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Direction {
-    /// The largest part; `None` where the direction is unknown.
+    /// The largest part; `None` if the direction is unknown.
     pub first: Option<Unknown>,
-    /// A second part that is nearly as large.
+    /// A second part of nearly the same size.
     pub second: Option<Unknown>,
 }
 
@@ -129,9 +129,9 @@ impl serde::Serialize for Direction {
 pub struct Uncertainty {
     /// Rotation about the x, y and z axis of the colour view, degrees.
     pub rotation_degrees: [f64; 3],
-    /// Translation along x, y, z in units of the colour view; `None` where it is a gauge.
+    /// Translation along x, y, z in units of the colour view; `None` if it is a gauge.
     pub translation: [Option<f64>; 3],
-    /// Scale; `None` where it is held.
+    /// Scale; `None` if it is held.
     pub scale: Option<f64>,
     /// The least certain direction.
     pub weakest: Direction,
@@ -143,8 +143,8 @@ impl Uncertainty {
         self.rotation_degrees.into_iter().fold(0.0, f64::max)
     }
 
-    /// Adds what the focal lengths are uncertain by. A relief that is stretched by a share of it turns its normals by half of
-    /// that share at most, share sin(2 slope) / 2; an object is nearer or farther by that share of its distance.
+    /// Adds the uncertainty of the focal lengths. Stretching a relief by some share turns its normals by at most half
+    /// of that share, share sin(2 slope) / 2, and moves an object by that share of its distance.
     pub(crate) fn add_focal_length(&mut self, distance: f64) {
         let turned = (0.5 * FOCAL_LENGTH_SIGMA).to_degrees();
         self.rotation_degrees = self.rotation_degrees.map(|sigma| sigma.hypot(turned).min(LARGEST_SIGMA));
@@ -153,43 +153,45 @@ impl Uncertainty {
 }
 
 /// Information of a registration about its seven unknowns: rotation about x, y, z (radians), translation along x, y, z
-/// (in object sizes) and the logarithm of the scale, all in the colour view's frame around the centroid of the points.
+/// (in object sizes) and the logarithm of the scale, all in the colour view's frame about the centroid of the points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Information {
-    /// The 7x7 matrix; the last row and column are zero where the scale is held. Free of units.
+    /// The 7x7 matrix, dimensionless; its last row and column are zero if the scale is held.
     pub matrix: PoseMatrix,
-    /// Sum of the weights in it.
+    /// Sum of the weights in the matrix.
     pub weight: f64,
     /// Centroid of the matched points in the colour view.
     pub centre: Vector3<f64>,
     /// Object size: root mean square distance of the points from the centroid, in units of the colour view.
     pub length: f64,
-    /// Root mean square disagreement |n - R n_R| of the matched normals.
+    /// Root mean square difference |n - R n_R| of the matched normals.
     pub normal_noise: f64,
     /// Number of pairs.
     pub pairs: usize,
-    /// Share of the pairs that count as independent, 0 .. 1: errors of neighbouring points of a surface correlate.
+    /// Share of the pairs that count as independent, 0 .. 1, because errors of neighbouring points on a surface
+    /// correlate.
     pub independent: f64,
     /// Whether the scale was held.
     pub scale_is_held: bool,
 }
 
 impl Information {
-    /// The smallest eigenvalue over the weight: what the worst determined direction has, 0 .. 1/3.
+    /// The smallest eigenvalue over the weight, that of the least determined direction: 0 .. 1/3.
     #[must_use]
     pub fn weakest(&self) -> f64 {
         self.eigen(false).map_or(0.0, |eigen| eigen.eigenvalues.min())
     }
 
-    /// Whether some direction has no information: the geometry does not determine the pose.
+    /// Whether some direction has no information, so that the geometry does not determine the pose.
     #[must_use]
     pub fn is_degenerate(&self) -> bool {
-        // Written so that NaN is degenerate.
+        // This comparison also treats NaN as degenerate.
         !matches!(self.weakest().partial_cmp(&self.floor()), Some(std::cmp::Ordering::Greater))
     }
 
-    /// One sigma of `pose` for distances with standard deviation `sigma` (units of the colour view). Rotation is capped
-    /// at 180 degrees, which means unknown. The z of the translation is a gauge for an orthographic image: `None`.
+    /// One sigma of `pose` for distances with standard deviation `sigma` (units of the colour view). Rotations are
+    /// capped at 180 degrees, which means unknown. For an orthographic image the z of the translation is a gauge:
+    /// `None`.
     #[must_use]
     pub fn uncertainty(&self, sigma: f64, pose: &Similarity, camera: &Camera) -> Uncertainty {
         let gauge = camera.is_orthographic();
@@ -198,7 +200,7 @@ impl Information {
         describe(&covariance, &frame, pose, [gauge, self.scale_is_held], weakest)
     }
 
-    /// Covariance of the seven unknowns and the weakest direction. Held and gauge unknowns have none.
+    /// Covariance of the seven unknowns, and the weakest direction. Held and gauge unknowns have no variance.
     fn covariance(&self, sigma: f64, gauge: bool) -> (PoseMatrix, Direction) {
         let Some(eigen) = self.eigen(gauge) else {
             return (PoseMatrix::identity() * UNKNOWN.powi(2), Direction::default());
@@ -218,8 +220,8 @@ impl Information {
         (covariance, Direction::of(&eigen.eigenvectors.column(eigen.eigenvalues.imin()).into_owned()))
     }
 
-    /// Eigenvalues over the weight. The gauge is projected out. What is not estimated gets the eigenvalue one, so that
-    /// it is never the weakest direction: those of the three translations sum to one.
+    /// Eigenvalues over the weight, with the gauge projected out. Unknowns that are not estimated get the eigenvalue
+    /// one, so that they are never the weakest direction: the eigenvalues of the three translations sum to one.
     fn eigen(&self, gauge: bool) -> Option<Eigen<UNKNOWNS>> {
         let mut matrix = self.matrix / self.weight;
         if gauge && matrix[(TRANSLATION_Z, TRANSLATION_Z)] > 0.0 {
@@ -233,19 +235,20 @@ impl Information {
         symmetric_eigen(&matrix)
     }
 
-    /// Which of the seven are not estimated: the gauge, a scale that is held.
+    /// Which of the seven unknowns are not estimated: the gauge, and a held scale.
     fn without_variance(&self, gauge: bool) -> [bool; UNKNOWNS] {
         std::array::from_fn(|k| (k == TRANSLATION_Z && gauge) || (k == SCALE && self.scale_is_held))
     }
 
-    /// What chance leaves of J_n^T J_m where there is no shape: the noise of the normals, averaged over the pairs.
+    /// Eigenvalues that chance leaves in J_n^T J_m without any shape: the noise of the normals, averaged over the
+    /// pairs.
     fn floor(&self) -> f64 {
         LEAST_INFORMATION.max(self.normal_noise.powi(2) / (self.pairs.max(1) as f64).sqrt())
     }
 }
 
-/// One sigma of each number of `pose` from the covariance of the seven unknowns about a centre. The z of the
-/// translation and the scale have none where the first or the second of `fixed` says so.
+/// One sigma of each number of `pose` from the covariance of the seven unknowns about a centre. The two flags of
+/// `fixed` mark the z of the translation and the scale as having none.
 pub(super) fn describe(
     covariance: &PoseMatrix,
     frame: &Frame,
@@ -253,7 +256,7 @@ pub(super) fn describe(
     fixed: [bool; 2],
     weakest: Direction,
 ) -> Uncertainty {
-    // t is where the origin of the depth view goes; it is rotated and scaled about the centre with everything else.
+    // t is the image of the depth view's origin, which is rotated and scaled about the centre with everything else.
     let arm = pose.translation - frame.centre;
     let cross = arm.cross_matrix();
     let along = |axis: usize| {
@@ -295,7 +298,7 @@ mod tests {
         };
         let mut found = sure.clone();
         found.add_focal_length(0.8);
-        // Half of half a percent, and four millimetres in 0.8 m.
+        // Half of half a percent, and four millimetres at 0.8 m.
         assert!((found.rotation_degrees[0] - 0.1432).abs() < 1e-4, "{found:?}");
         assert_eq!(found.rotation_degrees[2], LARGEST_SIGMA);
         assert_eq!(found.translation[..2], sure.translation[..2]);

@@ -1,8 +1,7 @@
-//! Which points of the depth view the colour camera sees, and where.
+//! Points of the depth view that the colour camera sees, and their positions in the image.
 //!
-//! A point is visible where it falls on the mask, faces the camera, and no other depth point hides it (z-buffer of the
-//! colour view's own resolution, so parts thinner than two pixels may be wrong).
-//! See docs/method/surfaces.md.
+//! A point is visible if it falls on the mask, faces the camera, and no other depth point hides it (z-buffer at the
+//! colour view's resolution, so parts thinner than two pixels may be misjudged). See docs/method/surfaces.md.
 
 use nalgebra::Vector3;
 
@@ -10,27 +9,27 @@ use super::similarity::Similarity;
 use crate::numeric::{LANES, Lanes, Mask, Real, dot};
 use crate::view::{Camera, ColourView, Normals, Points, Size};
 
-/// A point counts as hidden when it lies this many image pixels behind the nearest one: more than a steep slope drops
-/// between neighbours, less than a nose stands before a cheek.
+/// A point is hidden if it lies this many image pixels behind the nearest one. That is more than a steep slope drops
+/// between neighbours, and less than a nose stands out from a cheek.
 pub(super) const HIDDEN_BEHIND: f64 = 3.0;
-/// Cosine at the rim: flatter views of a surface have no reliable pixel.
+/// Smallest cosine between normal and ray of a visible point; at a more grazing angle no pixel is reliable.
 const RIM: f32 = 0.05;
 
-/// A cloud before a colour camera. Points and normals are NaN where missing.
+/// A cloud in front of a colour camera. Points and normals are NaN where missing.
 #[derive(Clone, Copy)]
 pub(super) struct VisibilityProblem<'a> {
     pub image: &'a ColourView,
     pub pose: &'a Similarity,
     pub points: &'a Points,
     pub normals: &'a Normals,
-    /// Length of an image pixel at the object in units of the colour view.
+    /// Length of an image pixel at the object, in units of the colour view.
     pub pixel_length: f64,
 }
 
-/// A pose for many points of one cloud in f32, as the transform of differences from one of them: these keep their
-/// digits however far off the cloud stands.
+/// A pose in f32 for many points of one cloud. It transforms differences from one of the points, which keep their
+/// digits however far away the cloud is.
 struct SingleTransform {
-    /// One point of the cloud, before and after.
+    /// One point of the cloud, before and after the transformation.
     from: [f32; 3],
     to: [f32; 3],
     /// s R.
@@ -71,8 +70,8 @@ impl<'a> CloudProjection<'a> {
         Self { transform: SingleTransform::new(pose, cloud), cloud, camera, size }
     }
 
-    /// Columns and rows of the points from `start` on, which it enters into the z-buffer `buffer`; `None` where all of
-    /// them are missing.
+    /// Columns and rows of the [`LANES`] points from `start` on, which are also entered into the z-buffer `buffer`;
+    /// `None` if all of them are missing.
     #[inline(never)]
     pub fn enter(&self, start: usize, buffer: &mut [f32]) -> Option<[Lanes; 2]> {
         if !Lanes::load(&self.cloud.z, start as isize).finite().any() {
@@ -88,24 +87,25 @@ impl<'a> CloudProjection<'a> {
     }
 }
 
-/// Where the points are visible; owns its memory.
+/// Positions of the visible points; owns its memory.
 #[derive(Clone, Debug)]
 pub(super) struct Visibility {
-    /// Continuous image column and row of each point, NaN where it is not visible.
+    /// Continuous image column and row of each point, NaN if it is not visible.
     pub column: Vec<f32>,
     pub row: Vec<f32>,
-    /// A number for each pixel: the z-buffer during an update, after that the caller's.
+    /// One number for each pixel: the z-buffer during an update, free for the caller afterwards.
     pub of_pixel: Vec<f32>,
 }
 
 impl Visibility {
-    /// Memory for so many pixels and points.
+    /// Allocates the memory for this many pixels and points.
     pub fn new(pixels: usize, points: usize) -> Self {
         Self { column: vec![f32::NAN; points], row: vec![f32::NAN; points], of_pixel: vec![f32::INFINITY; pixels] }
     }
 
-    /// Finds the visible points anew. Of those that mask, normal and z-buffer leave, `keeps` leaves some: given are the
-    /// index, the pixel that the point falls on and the transformed point. Allocates nothing.
+    /// Finds the visible points again. Of the points that pass mask, normal and z-buffer, those stay for which `keeps`
+    /// is true; its arguments are the index, the pixel on which the point falls, and the transformed point. Allocates
+    /// nothing.
     pub fn update(&mut self, problem: &VisibilityProblem<'_>, keeps: &mut dyn FnMut(usize, usize, [f32; 3]) -> bool) {
         let projection = CloudProjection::new(problem.pose, problem.points, &problem.image.camera, problem.image.size);
         self.project(problem, &projection);
@@ -118,7 +118,7 @@ impl Visibility {
         (self.column[index], self.row[index]) = (f32::NAN, f32::NAN);
     }
 
-    /// Places of all points that face the camera, and the z-buffer.
+    /// Projects all points that face the camera, and fills the z-buffer.
     fn project(&mut self, problem: &VisibilityProblem<'_>, projection: &CloudProjection<'_>) {
         self.of_pixel.fill(f32::INFINITY);
         let missing = Lanes::splat(f32::NAN);
@@ -134,7 +134,7 @@ impl Visibility {
         }
     }
 
-    /// Drops the points that fall off the mask, lie behind others or are not kept.
+    /// Drops points that fall off the mask, lie behind others or are not kept.
     fn hide(
         &mut self,
         problem: &VisibilityProblem<'_>,
@@ -159,7 +159,7 @@ impl Visibility {
     }
 }
 
-/// Rays from the camera to the points, in the depth view's frame: all along its axis, or from where it stands.
+/// Rays from the camera to the points, in the depth view's frame: along its axis, or from its centre.
 enum Rays {
     Along([f32; 3]),
     From([f32; 3]),
@@ -174,8 +174,8 @@ impl Rays {
         }
     }
 
-    /// Whose surface is seen from behind or too flat. A normal that is missing (a hole not yet filled) does not exclude
-    /// its point.
+    /// Mask of points whose surface is seen from behind or at a grazing angle. A missing normal (a hole not yet filled)
+    /// does not exclude its point.
     #[inline(always)]
     fn meet(&self, point: [Lanes; 3], normal: [Lanes; 3]) -> Mask {
         match self {
@@ -196,17 +196,17 @@ fn vector(values: [f32; 3]) -> Vector3<f64> {
     Vector3::from(values.map(f64::from))
 }
 
-/// Enters a depth at the four pixels around a position, so that gaps between points let nothing through.
+/// Enters a depth at the four pixels around a position, so that gaps between points are closed.
 #[inline(always)]
 fn splat(size: Size, buffer: &mut [f32], [column, row]: [f32; 2], depth: f32) {
-    // A position on a pixel's centre enters that pixel alone: then the four are one, and it is entered again.
+    // For a position at a pixel's centre all four are that pixel, which is entered repeatedly.
     let (left, right, top, low) = (column.floor(), column.ceil(), row.floor(), row.ceil());
     // A position may lie outside by less than a pixel; NaN fails every comparison.
     let (last_column, last_row) = ((size.width - 1) as f32, (size.height - 1) as f32);
     if !(right >= 0.0 && low >= 0.0 && left <= last_column && top <= last_row) {
         return;
     }
-    // Negative numbers become zero.
+    // The casts turn negative numbers into zero.
     let (left, right) = (left as usize, right.min(last_column) as usize);
     for row in [top as usize, low.min(last_row) as usize] {
         for column in [left, right] {

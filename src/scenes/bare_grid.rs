@@ -1,5 +1,5 @@
-//! The pair of the paper's easy reading (docs/lab/protocols.md, Table 2A): one bare grid, seen twice without
-//! occlusion and without resampling.
+//! The pair of the paper's easy reading (docs/lab/protocols.md, Table 2A): one bare grid, seen twice without occlusion
+//! and without resampling.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -14,16 +14,16 @@ use crate::view::{Camera, Normals, Size};
 /// Every eighth sample of the relief is taken: 32 of 256.
 const STRIDE: usize = 8;
 
-/// Image and organised cloud from samples 0, 8, 16, .. of the relief, heights divided by 8.
+/// Image and organised cloud from samples 0, 8, 16, .. of the relief, with heights divided by 8.
 ///
-/// The normals are the central finite differences of that very grid; samples that lack a neighbour leave both masks.
-/// The cloud holds the image's own points rotated by R_g^T about their mean, with the rotated normals; `overlap` keeps
-/// the middle round(overlap * n) of the object's n columns. An exact answer exists, so that every
-/// error is the estimator's.
+/// The normals are central finite differences of that same grid; samples that lack a neighbour leave both masks. The
+/// cloud holds the image's own points rotated by R_g^T about their mean, with the rotated normals. `overlap` keeps the
+/// middle round(overlap * n) of the object's n columns. An exact solution exists, so every error is that of the
+/// estimator.
 ///
 /// # Errors
-/// [`ErrorKind::Range`] for a light, rotation or overlap out of range, [`ErrorKind::Empty`] where no sample has all
-/// its neighbours.
+/// [`ErrorKind::Range`] for a light, rotation or overlap out of range, [`ErrorKind::Empty`] if no sample has all its
+/// neighbours.
 pub fn bare_grid(relief: &Relief, light: &Light, rotation: &Matrix3<f64>, overlap: f64) -> Result<Sample> {
     light.validate("light")?;
     Similarity { rotation: *rotation, ..Similarity::identity() }.validate("pose")?;
@@ -73,7 +73,7 @@ pub fn bare_grid(relief: &Relief, light: &Light, rotation: &Matrix3<f64>, overla
     })
 }
 
-/// Every eighth sample; NaN is background.
+/// Every eighth height; NaN is background.
 fn coarse_heights(relief: &Relief) -> (Size, Vec<f64>) {
     let [width, height] = [relief.size().width, relief.size().height].map(|side| side.div_ceil(STRIDE));
     let size = Size { width, height };
@@ -87,7 +87,7 @@ fn coarse_heights(relief: &Relief) -> (Size, Vec<f64>) {
     (size, heights)
 }
 
-/// From central differences; `None` where one of the five samples is background or beyond the border.
+/// Normal from central differences; `None` if one of the five samples is background or beyond the border.
 fn normal(heights: &[f64], size: Size, index: usize) -> Option<Vector3<f64>> {
     let (column, row) = size.position(index);
     let at = |column: usize, row: usize| {
@@ -100,7 +100,7 @@ fn normal(heights: &[f64], size: Size, index: usize) -> Option<Vector3<f64>> {
     Some(Vector3::new(-slope_x, -slope_y, -1.0).normalize())
 }
 
-/// Grid points in the optical frame; their constant is the larger side of the grid.
+/// Grid points in the optical frame; the constant of their depth is the larger side of the grid.
 fn points(heights: &[f64], mask: &[bool], size: Size) -> Vec<Vector3<f64>> {
     let constant = size.width.max(size.height) as f64;
     (0..size.len())

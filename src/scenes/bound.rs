@@ -1,13 +1,14 @@
-//! sqrt(trace of the rotation block of F^-1): the least error of the rotation that any estimator can have (Cramer,
+//! sqrt(trace of the rotation block of F^-1): the smallest error of the rotation that any estimator can have (Cramer,
 //! Rao).
 //!
-//! F = sum over image pixels of J^T J / sigma^2, J the derivative of log S at the pixel with respect to rotation and
-//! translation (scale fixed) and, where it is unknown, the 27 coefficients of the light, at the true pose with the true
-//! normals. A pixel counts where the depth view sees its point. With g the slope of log S in the image and b its slope
-//! by the normal, a rotation about c changes the prediction at a fixed pixel by (P - c) x g - n x b, up to sign.
+//! F = sum over image pixels of J^T J / sigma^2 at the true pose with the true normals. J is the derivative of log S at
+//! a pixel by rotation and translation (scale fixed) and, if it is unknown, by the 27 coefficients of the light. A
+//! pixel counts if the depth view sees its point. With the slope g of log S in the image and its slope b by the normal,
+//! a rotation about c changes the prediction at a fixed pixel by (P - c) x g - n x b, up to sign.
 //!
-//! Limits: no prior of the light, no exposure; slopes of log S by central differences of the noise-free image, so
-//! pixels at its border do not count; errors of the depth view (noise, normals from differences) are not in it.
+//! Limits: the bound has no prior of the light and no exposure. Slopes of log S are central differences of the
+//! noise-free image, so pixels at its border do not count. Errors of the depth view (noise, normals from differences)
+//! are not included.
 
 use nalgebra::{SMatrix, SVector, Vector3};
 
@@ -20,12 +21,12 @@ const UNKNOWNS: usize = POSE + COEFFICIENTS;
 type FisherInformation = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
 type Row = SVector<f64, UNKNOWNS>;
 
-/// A point of the image is seen by the depth view when their depths there differ by less, in steps between neighbouring
+/// The depth view sees a point of the image if their depths differ by less than this, in steps between neighbouring
 /// pixels (at least one pixel length).
 const SAME_DEPTH: f64 = 1.0;
 
-/// The bound of a sample's rotation in degrees for noise `sigma` of log S; `None` where the scene determines no
-/// rotation, and where there is no noise to bound.
+/// The bound of a sample's rotation in degrees for noise `sigma` of log S. `None` if the scene determines no rotation
+/// or there is no noise.
 #[must_use]
 pub fn bound(sample: &Sample, light_is_known: bool, sigma: f64) -> Option<f64> {
     let size = sample.image.size;
@@ -100,7 +101,7 @@ fn log_slopes(sample: &Sample, index: usize) -> Option<[[f64; 2]; 3]> {
     Some(std::array::from_fn(|c| [(right[c] - left[c]) / 2.0, (down[c] - up[c]) / 2.0]))
 }
 
-/// A slope in the image as one in space.
+/// Converts a slope in the image to one in space.
 fn in_space(camera: &Camera, size: Size, point: Vector3<f64>, [column, row]: [f64; 2]) -> Option<Vector3<f64>> {
     let (_, by_point) = camera.project_with_gradient(size, point.into())?;
     Some(Vector3::from_fn(|axis, _| column * by_point[0][axis] + row * by_point[1][axis]))

@@ -1,11 +1,11 @@
-//! A bust: head with hair, face, ears, neck and shoulders turned to one side. Nothing of it is quite symmetric, so that
-//! its pose can be observed.
+//! A bust: head with hair, face, ears, neck and shoulders turned to one side. No part is quite symmetric, so the pose
+//! is observable.
 
 use super::profiles::{bell, bump, dome, overhang, step, union};
 
 /// Size of the head relative to the samples in which its parts below are measured.
 const HEAD_SCALE: f64 = 1.13;
-/// Row about which the head is scaled, from the centre of the grid: its crown stays in place.
+/// Row about which the head is scaled, from the centre of the grid, so that its crown stays in place.
 const CROWN: f64 = -108.0;
 /// Column of the parting, left of the middle.
 const PARTING: f64 = -15.0;
@@ -63,7 +63,7 @@ fn skull(x: f64, y: f64) -> f64 {
     skin + step((hairline - y) / 2.2) * (hair - skin).max(0.0)
 }
 
-/// A ridge that grows from the bridge to the tip, a little bent.
+/// A slightly bent ridge that grows from the bridge to the tip.
 fn nose(x: f64, y: f64) -> f64 {
     let along = ((y + 52.0) / 36.0).clamp(0.0, 1.0);
     let growth = along * along * (3.0 - 2.0 * along);

@@ -1,11 +1,11 @@
-//! What a sensor does to a perfect view: noise, holes, a field of view that ends. Everything follows from a seed.
+//! Flaws that a sensor adds to a perfect view: noise, holes, a limited field of view. All of them follow from a seed.
 
 use std::f64::consts::TAU;
 
 use crate::numeric::random::Random;
 use crate::view::Size;
 
-/// Share of the lost pixels that go in blobs, as dark or shiny spots do; the others go one by one.
+/// Share of the lost pixels that form blobs, as at dark or shiny spots; the others are single.
 const BLOB_SHARE: f64 = 0.5;
 /// Largest radius of a blob relative to the smaller side of the view.
 const LARGEST_BLOB: f64 = 1.0 / 16.0;
@@ -13,7 +13,7 @@ const LARGEST_BLOB: f64 = 1.0 / 16.0;
 /// A stream of random numbers, the same on every platform.
 pub(super) struct Chance(Random);
 
-/// Purposes with a stream of their own, so that switching one on does not change the others.
+/// Purposes with separate streams, so that enabling one does not change the others.
 #[derive(Clone, Copy)]
 pub(super) enum Purpose {
     Brightness = 1,
@@ -31,12 +31,12 @@ impl Chance {
         Self(Random::new(seed, stream))
     }
 
-    /// Evenly over [0, 1), with 53 bits.
+    /// Uniform over [0, 1), with 53 bits.
     pub(super) fn uniform(&mut self) -> f64 {
         self.0.uniform()
     }
 
-    /// Evenly between two bounds.
+    /// Uniform between two bounds.
     pub(super) fn between(&mut self, [low, high]: [f64; 2]) -> f64 {
         low + (high - low) * self.uniform()
     }
@@ -47,7 +47,7 @@ impl Chance {
         (self.uniform() * count as f64) as usize
     }
 
-    /// Standard normal, by the method of Box and Muller: exact, and it needs no tables.
+    /// Standard normal, by the method of Box and Muller, which is exact and needs no tables.
     pub(super) fn gaussian(&mut self) -> f64 {
         // 1 - u lies in (0, 1], where the logarithm is finite.
         let radius = (-2.0 * (1.0 - self.0.uniform()).ln()).sqrt();
@@ -67,7 +67,7 @@ pub(super) fn keep_columns(mask: &mut [bool], size: Size, share: f64) {
     }
 }
 
-/// Sets round(share * n) of the n values that are not NaN to NaN: half of them in discs, half one by one.
+/// Sets round(share * n) of the n values that are not NaN to NaN: half of them in discs, half singly.
 pub(super) fn punch_holes(values: &mut [f32], size: Size, share: f64, chance: &mut Chance) {
     let valid: Vec<usize> = (0..values.len()).filter(|&index| !values[index].is_nan()).collect();
     let mut left = (share * valid.len() as f64).round() as usize;
@@ -83,7 +83,7 @@ pub(super) fn punch_holes(values: &mut [f32], size: Size, share: f64, chance: &m
             }
         }
     }
-    // A partial shuffle: every draw takes one of those still there.
+    // A partial shuffle: every draw takes one of the remaining pixels.
     let mut there: Vec<usize> = valid.into_iter().filter(|&index| !values[index].is_nan()).collect();
     for _ in 0..left {
         let index = there.swap_remove(chance.below(there.len()));

@@ -1,4 +1,4 @@
-//! One triangle mesh of a relief (docs/lab/protocols.md), from which every view of a scene is rendered.
+//! A triangle mesh of a relief (docs/lab/protocols.md), from which every view of a scene is rendered.
 
 use nalgebra::Vector3;
 
@@ -6,21 +6,22 @@ use super::relief::Relief;
 use crate::error::{Error, ErrorKind, Result};
 use crate::view::{Gaussian, Size};
 
-/// Sigma of the smoothing of the heights in samples (docs/lab/protocols.md): scanner noise goes, features stay.
+/// Sigma of the smoothing of the heights in samples (docs/lab/protocols.md): it removes scanner noise and keeps
+/// features.
 const SMOOTHING: f64 = 1.0;
 /// Reach of the smoothing kernel in sigmas; samples beyond it would have weights below 1e-4.
 const SMOOTHING_REACH: f64 = 4.0;
-/// Largest difference of the heights in one triangle, in samples (docs/lab/protocols.md): beyond it the grid jumps
-/// from one part of the object to another, and there is no surface in between.
+/// Largest difference of the heights in one triangle, in samples (docs/lab/protocols.md). Beyond it the grid jumps from
+/// one part of the object to another, with no surface in between.
 const LARGEST_JUMP: f64 = 12.0;
 
-/// Triangles with vertex normals. Unit: samples of the relief; optical frame (x right, y down, z forward) with the
+/// Triangles with vertex normals. Unit: samples of the relief. Optical frame (x right, y down, z forward) with the
 /// origin in the centre of the grid at height zero, so that z = -height.
 #[derive(Clone, Debug)]
 pub struct Mesh {
     /// Only vertices that belong to a triangle.
     vertices: Vec<Vector3<f64>>,
-    /// Unit, one for each vertex, facing the side from which the relief is seen (z < 0).
+    /// Unit normals, one for each vertex, on the side from which the relief is seen (z < 0).
     normals: Vec<Vector3<f64>>,
     /// Indices of three vertices each.
     triangles: Vec<[usize; 3]>,
@@ -29,12 +30,11 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Smooths the heights inside the object, spans two triangles over each cell and gives each vertex the
-    /// area-weighted mean normal of its triangles. Cells that touch the background and triangles with a jump are
-    /// left out.
+    /// Smooths the heights inside the object, spans two triangles over each cell, and gives each vertex the
+    /// area-weighted mean normal of its triangles. Omits cells that touch the background and triangles with a jump.
     ///
     /// # Errors
-    /// [`ErrorKind::Empty`] where no triangle is left.
+    /// [`ErrorKind::Empty`] if no triangle is left.
     pub fn from_relief(relief: &Relief) -> Result<Self> {
         let size = relief.size();
         let object: Vec<bool> = relief.object().collect();
@@ -46,16 +46,16 @@ impl Mesh {
         Ok(Self::from_triangles(&grid_points(&heights, size), &triangles))
     }
 
-    /// Keeps the points that a triangle uses.
+    /// Keeps the points that belong to a triangle.
     fn from_triangles(points: &[Vector3<f64>], triangles: &[[usize; 3]]) -> Self {
         let mut normals = vec![Vector3::zeros(); points.len()];
         for &corners in triangles {
             let [a, b, c] = corners.map(|corner| points[corner]);
-            // Twice the area long, which is the weight.
+            // Its length is twice the area, which serves as the weight.
             let normal = (b - a).cross(&(c - a));
             corners.iter().for_each(|&corner| normals[corner] += normal);
         }
-        // A height map never folds: the z components of a vertex's triangles all have the same sign.
+        // A height map never folds, so the z components of a vertex's triangles all have the same sign.
         let used: Vec<usize> = (0..points.len()).filter(|&index| normals[index].z < 0.0).collect();
         let mut place = vec![usize::MAX; points.len()];
         used.iter().enumerate().for_each(|(new, &old)| place[old] = new);
@@ -72,7 +72,7 @@ impl Mesh {
         }
     }
 
-    /// Mean of the vertices: the point about which synthetic views are rotated.
+    /// Mean of the vertices, about which synthetic views are rotated.
     #[must_use]
     pub const fn centroid(&self) -> Vector3<f64> {
         self.centroid
@@ -96,14 +96,14 @@ impl Mesh {
         &self.normals
     }
 
-    /// Three indices of vertices for each triangle.
+    /// Three vertex indices for each triangle.
     #[must_use]
     pub fn triangles(&self) -> &[[usize; 3]] {
         &self.triangles
     }
 }
 
-/// Gaussian mean over the samples of the object alone, so that the background does not lower its rim.
+/// Gaussian mean over the samples of the object alone, so that the background does not lower the object's border.
 fn smooth(heights: &[f32], object: &[bool], size: Size) -> Vec<f64> {
     let [means] =
         Gaussian::new(size, SMOOTHING, SMOOTHING_REACH).means(|index| object[index], |_, index| heights[index]);
@@ -119,7 +119,7 @@ fn triangulate(heights: &[f64], object: &[bool], size: Size) -> Vec<[usize; 3]> 
             if ![a, b, c, d].iter().all(|&corner| object[corner]) {
                 continue;
             }
-            // Down before right: the cross product of the edges then faces the camera.
+            // Down before right, so that the cross product of the edges faces the camera.
             let cell = [[a, c, b], [b, c, d]];
             triangles.extend(cell.into_iter().filter(|corners| jump(heights, corners) <= LARGEST_JUMP));
         }

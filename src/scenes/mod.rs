@@ -1,7 +1,8 @@
 //! Built-in surfaces, lights and the renderer that tests, tables and the page share (docs/lab/protocols.md).
 //!
-//! [`surface`] and [`Relief`] give heights, [`Scene`] makes a mesh of them, [`Scene::sample`] a pair of views with a
-//! known pose; [`bare_grid`] makes the pair of the paper's own synthetic test, and [`rig`] frames of a rig of cameras.
+//! [`surface`] and [`Relief`] provide heights, [`Scene`] turns them into a mesh, and [`Scene::sample`] into a pair of
+//! views with a known pose. [`bare_grid`] makes the pair of the paper's own synthetic test, [`rig`] the frames of a rig
+//! of cameras.
 
 mod bare_grid;
 mod bound;

@@ -1,6 +1,6 @@
-//! Profiles that the built-in surfaces are put together of; lengths and heights are in samples.
+//! Profiles from which the built-in surfaces are composed; lengths and heights are in samples.
 
-/// Half circle of the given depth over -1 .. 1; outside, it falls away in a straight line.
+/// Half circle of the given depth over -1 .. 1, continued outside by descending straight lines.
 pub(super) fn round(offset: f64, depth: f64) -> f64 {
     dome_of(offset * offset, depth)
 }
@@ -34,7 +34,7 @@ pub(super) fn window(at: f64, centre: f64, half: f64) -> f64 {
     step((half - (at - centre).abs()) / 5.0)
 }
 
-/// Zero until `past` has the sign of `reach`, then a fourth power that is one at `reach`: rounds an end off.
+/// Zero until `past` has the sign of `reach`, then a fourth power that is one at `reach`; rounds an end off.
 pub(super) fn overhang(past: f64, reach: f64) -> f64 {
     (past / reach).max(0.0).powi(4)
 }

@@ -1,24 +1,24 @@
-//! A height map to make a scene from.
+//! A height map from which a scene is made.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::text::Brief;
 use crate::view::Size;
 
-/// Smallest side of a relief in samples: the mesh of a coarser one shows its triangles.
+/// Smallest side of a relief in samples; a coarser mesh would show its triangles.
 pub const SMALLEST_RELIEF: usize = 64;
-/// Largest side of a relief in samples: half a million triangles, the most a page renders without a wait.
+/// Largest side of a relief in samples: half a million triangles, the most that a page renders without a wait.
 pub const LARGEST_RELIEF: usize = 512;
 /// Largest height in samples: eight times the largest side, far beyond any relief, and exact in f32.
 const LARGEST_HEIGHT: f32 = 4096.0;
 
-/// Side of the grid for which the thresholds of the protocol (docs/lab/protocols.md) are stated, in samples.
+/// Side of the grid, in samples, for which the thresholds of the protocol (docs/lab/protocols.md) are stated.
 const PROTOCOL_SIDE: f64 = 256.0;
-/// Height above which a sample of a 256 grid belongs to the object, in samples (docs/lab/protocols.md): the
-/// scanned bust has a skirt of small values around it. On other grids it shrinks and grows with the side.
+/// Height above which a sample of a 256 grid belongs to the object, in samples (docs/lab/protocols.md), because the
+/// scanned bust has a skirt of small values around it. On other grids it scales with the side.
 const PROTOCOL_FLOOR: f64 = 5.0;
 
-/// Heights over a grid: larger is nearer, NaN, zero and everything below [`floor`](Relief::floor) is background.
-/// The unit of a height is the distance of two neighbouring samples.
+/// Heights over a grid. Larger is nearer; NaN, zero and everything up to [`floor`](Relief::floor) is background. The
+/// unit of a height is the distance between neighbouring samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Relief {
     size: Size,
@@ -29,8 +29,8 @@ impl Relief {
     /// A relief of `width * height` row-major heights.
     ///
     /// # Errors
-    /// [`ErrorKind::Size`] where a side lies outside 64 .. 512 or the heights are of another number,
-    /// [`ErrorKind::Range`] where one is infinite or above 4096, [`ErrorKind::Empty`] where none belongs to the object.
+    /// [`ErrorKind::Size`] if a side lies outside 64 .. 512 or the number of heights is wrong, [`ErrorKind::Range`] if
+    /// a height is infinite or its magnitude exceeds 4096, [`ErrorKind::Empty`] if none belongs to the object.
     pub fn new(width: usize, height: usize, heights: Vec<f32>) -> Result<Self> {
         let sides = SMALLEST_RELIEF..=LARGEST_RELIEF;
         if !sides.contains(&width) || !sides.contains(&height) {
@@ -56,7 +56,7 @@ impl Relief {
         Err(Error::new(ErrorKind::Empty, "surface.heights", message))
     }
 
-    /// Height of every sample centre of a `side` x `side` grid; `height_at` takes x (right) and y (down) from the
+    /// The height at every sample centre of a `side` x `side` grid; `height_at` takes x (right) and y (down) from the
     /// centre of the grid in samples.
     pub(super) fn from_function(side: usize, height_at: impl Fn(f64, f64) -> f64) -> Self {
         let size = Size { width: side, height: side };
@@ -82,13 +82,13 @@ impl Relief {
         &self.heights
     }
 
-    /// Height in samples above which a sample belongs to the object: 5 on a 256 grid, in proportion on others.
+    /// Height in samples above which a sample belongs to the object: 5 on a 256 grid, proportional on others.
     #[must_use]
     pub fn floor(&self) -> f64 {
         PROTOCOL_FLOOR * self.size.width.max(self.size.height) as f64 / PROTOCOL_SIDE
     }
 
-    /// For each sample whether it belongs to the object.
+    /// For each sample, whether it belongs to the object.
     pub(super) fn object(&self) -> impl Iterator<Item = bool> {
         let floor = self.floor();
         self.heights.iter().map(move |&height| f64::from(height) > floor)

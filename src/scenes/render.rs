@@ -1,4 +1,4 @@
-//! A mesh seen by a camera: depth and normals by a z-buffer, orthographic or through a pinhole.
+//! View of a mesh through a camera: depth and normals by a z-buffer, orthographic or through a pinhole.
 
 use nalgebra::Vector3;
 
@@ -6,29 +6,28 @@ use super::mesh::Mesh;
 use crate::pose::Similarity;
 use crate::view::{Camera, Normals, Size};
 
-/// How far outside a triangle a pixel centre may lie, in barycentric coordinates (no unit): rounding must not open
-/// a crack between two triangles that share an edge. 64-bit rounding at 1024 pixels is 1e-13.
+/// How far outside a triangle a pixel centre may lie, in barycentric coordinates (no unit), so that rounding opens no
+/// crack between two triangles that share an edge. Rounding of f64 at 1024 pixels is 1e-13.
 pub(super) const EDGE_TOLERANCE: f64 = 1e-9;
-/// A triangle smaller than this is seen edge on, in squared units of the ray plane, relative to its longest edge
-/// squared.
+/// A triangle whose area is smaller than this, relative to the square of its longest edge in the ray plane, is seen
+/// edge on.
 const EDGE_ON: f64 = 1e-12;
-/// Pixels added around the corners of a triangle in search of the pixels it covers: its edges are straight lines only
-/// where the lens does not distort.
+/// Margin in pixels around the corners of a triangle in the search for pixels that it covers, because lens distortion
+/// bends its edges.
 const SEARCH_MARGIN: f64 = 1.0;
-/// A normal whose cosine to the line of sight is smaller does not face the camera: below it 32-bit slopes lose all
-/// digits.
+/// Smallest cosine between line of sight and a normal that faces the camera; below it f32 slopes lose all digits.
 const GRAZING: f64 = 1e-6;
 
-/// What a camera sees of a mesh. All fields are row-major over `size`.
+/// A camera's view of a mesh. All fields are row-major over `size`.
 #[derive(Clone, Debug)]
 pub struct View {
     /// Columns and rows.
     pub size: Size,
-    /// The camera it was seen by.
+    /// The camera of the view.
     pub camera: Camera,
-    /// Depth along z in units of the placed mesh, NaN where nothing is seen.
+    /// Depth along z in units of the placed mesh, NaN for background.
     pub depth: Vec<f64>,
-    /// Unit normals that face the camera, NaN where nothing is seen.
+    /// Unit normals that face the camera, NaN for background.
     pub normals: Vec<Vector3<f64>>,
 }
 
@@ -39,27 +38,27 @@ impl View {
         !self.depth[index].is_nan()
     }
 
-    /// The point of the surface seen by a pixel, in the camera's frame; NaN where nothing is seen.
+    /// The surface point of a pixel, in the camera's frame; NaN for background.
     #[must_use]
     pub fn point(&self, index: usize) -> Vector3<f64> {
         let (column, row) = self.size.position(index);
         self.camera.point(self.size, [column as f64, row as f64], self.depth[index]).into()
     }
 
-    /// The mask: true where the object is seen.
+    /// The mask: true where the object is visible.
     #[must_use]
     pub fn mask(&self) -> Vec<bool> {
         (0..self.size.len()).map(|index| self.is_valid(index)).collect()
     }
 
-    /// The normals in the crate's own layout, rounded to 32 bits.
+    /// The normals in the crate's own layout, rounded to f32.
     #[must_use]
     pub fn normals_f32(&self) -> Normals {
         let component = |axis: usize| self.normals.iter().map(|normal| normal[axis] as f32).collect();
         Normals { x: component(0), y: component(1), z: component(2) }
     }
 
-    /// The depth rounded to 32 bits.
+    /// The depth rounded to f32.
     #[must_use]
     pub fn depth_f32(&self) -> Vec<f32> {
         self.depth.iter().map(|&depth| depth as f32).collect()
@@ -68,8 +67,8 @@ impl View {
 
 /// Renders `mesh`, transformed into the camera's frame by `placement`.
 ///
-/// Every triangle hides what lies behind it, also where its back is seen. Normals are interpolated linearly over the
-/// surface (perspective-correct) and made unit again; a pixel whose normal faces away from the camera is dropped.
+/// Every triangle hides what lies behind it, even if its back is visible. Normals are interpolated linearly over the
+/// surface (perspective-correct) and normalised again; pixels whose normal faces away from the camera are dropped.
 #[must_use]
 pub fn render(mesh: &Mesh, placement: &Similarity, size: Size, camera: Camera) -> View {
     let missing = Vector3::repeat(f64::NAN);
@@ -87,7 +86,7 @@ pub fn render(mesh: &Mesh, placement: &Similarity, size: Size, camera: Camera) -
         .map(|(&vertex, normal)| Corner::new(placement.apply(vertex), placement.rotation * normal, &view))
         .collect();
     for triangle in mesh.triangles() {
-        // What reaches behind the camera is not seen; scenes are placed in front of it.
+        // Triangles that reach behind the camera are dropped; scenes are placed in front of it.
         if let [Some(a), Some(b), Some(c)] = triangle.map(|corner| corners[corner].as_ref()) {
             draw(&mut view, &rays, [a, b, c]);
         }
@@ -108,9 +107,9 @@ struct Corner {
     normal: Vector3<f64>,
     /// Column and row.
     pixel: [f64; 2],
-    /// In the plane of [`Camera::ray`], where straight lines stay straight whatever the lens.
+    /// In the plane of [`Camera::ray`], where straight lines stay straight behind any lens.
     ray: [f64; 2],
-    /// Linear over the ray plane after multiplication with it: 1 / z for a pinhole, 1 for parallel rays.
+    /// Factor that makes attributes linear over the ray plane: 1 / z for a pinhole, 1 for parallel rays.
     weight: f64,
 }
 
@@ -160,11 +159,11 @@ fn square(a: [f64; 2], b: [f64; 2]) -> f64 {
     (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2)
 }
 
-/// Pixels of a side of `length` that a triangle with these coordinates may cover.
+/// Pixels along a side of `length` that a triangle with these coordinates may cover.
 fn span(coordinates: [f64; 3], length: usize) -> std::ops::Range<usize> {
     let [a, b, c] = coordinates;
     let first = (a.min(b).min(c) - SEARCH_MARGIN).ceil().max(0.0);
     let end = (a.max(b).max(c) + SEARCH_MARGIN).floor() + 1.0;
-    // A cast to an integer saturates: what lies left of the view ends at pixel 0 and is empty.
+    // Casts to an integer saturate, so a triangle left of the view yields an empty range.
     first as usize..(end as usize).min(length)
 }

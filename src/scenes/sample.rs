@@ -13,40 +13,40 @@ use crate::light::Light;
 use crate::pose::{Angles, Similarity};
 use crate::view::{Camera, ColourImage, ColourSamples, DepthMap, DepthSamples, Normals, Points, Size};
 
-/// Smallest side of a view in pixels: on a smaller one no built-in surface keeps its features.
+/// Smallest side of a view in pixels; on a smaller one no built-in surface keeps its features.
 pub const SMALLEST_VIEW: usize = 16;
 /// Largest side of a view in pixels: four pixels for each sample of the 256 grid, beyond which triangles show.
 pub const LARGEST_VIEW: usize = 1024;
-/// Depth of the centroid of an orthographic view relative to the radius of the object, where the side of the view is
-/// less: depths stay well above zero, which would be a hole.
+/// Smallest depth of the centroid of an orthographic view, in radii of the object; it applies if the side of the view
+/// is less. It keeps depths well above zero, which would mark a hole.
 const CLEARANCE: f64 = 1.25;
 /// Default rotation about y in degrees: that of the paper's Table 1.
 const DEFAULT_BETA: f64 = 20.0;
 
-/// What to make of a surface. The default is the protocol's plainest case: 64 x 64, colourful light, beta = 20 degrees.
+/// Options of a sample. The default is the protocol's simplest case: 64 x 64, colourful light, beta = 20 degrees.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SampleRequest {
     /// Light of the colour view.
     pub light: Light,
-    /// Size of both views, sides 16 .. 1024 pixels. The surface is scaled to fit: size / 256 on its own grid.
+    /// Size of both views, with sides of 16 .. 1024 pixels. The surface is scaled to fit: size / 256 on the 256 grid.
     pub size: Size,
-    /// R_g: the rotation of the pose to find, see [`Angles::rotation`].
+    /// R_g, the rotation of the true pose, see [`Angles::rotation`].
     pub rotation: Matrix3<f64>,
-    /// s of the pose to find: the depth view is 1 / s times as large.
+    /// s of the true pose; the depth view is 1 / s times as large.
     pub scale: f64,
     /// Share of the depth map's valid columns that is kept, centred; above 0, at most 1.
     pub overlap: f64,
     /// Sigma of the Gaussian noise on log S.
     pub noise: f64,
-    /// Sigma of the Gaussian noise on depth in units of the depth map (pixels where it is orthographic).
+    /// Sigma of the Gaussian noise on depth in units of the depth map (pixels if it is orthographic).
     pub depth_noise: f64,
-    /// Share of the valid depth pixels lost in holes, 0 .. 1; the mask keeps them.
+    /// Share of the valid depth pixels lost in holes, at least 0 and below 1; they stay in the mask.
     pub holes: f64,
-    /// Seed of everything random.
+    /// Seed of all random numbers.
     pub seed: u64,
-    /// Camera of the colour view. A pinhole's centroid lies at depth fx, so that a pixel there measures one unit.
+    /// Camera of the colour view. For a pinhole the centroid lies at depth fx, so that a pixel there measures one unit.
     pub image_camera: Camera,
-    /// Camera of the depth view. A pinhole's centroid lies at depth fx / scale.
+    /// Camera of the depth view. For a pinhole the centroid lies at depth fx / scale.
     pub depth_camera: Camera,
 }
 
@@ -68,23 +68,23 @@ impl Default for SampleRequest {
     }
 }
 
-/// A scene with a known answer.
+/// A pair of views with a known pose.
 #[derive(Clone, Debug)]
 pub struct Sample {
-    /// What the colour camera sees.
+    /// The view of the colour camera.
     pub image: SampleImage,
-    /// What the depth camera sees.
+    /// The view of the depth camera.
     pub depth: SampleDepth,
     /// The light of the colour view.
     pub light: Light,
     /// Transforms points of the depth view into the frame of the colour view.
     pub pose: Similarity,
-    /// What to measure against.
+    /// The true values.
     pub truth: Truth,
 }
 
 impl Sample {
-    /// The colour view as an input of the estimator.
+    /// The colour view as input of the estimator.
     #[must_use]
     pub fn colour_image(&self) -> ColourImage {
         ColourImage {
@@ -97,7 +97,7 @@ impl Sample {
         }
     }
 
-    /// The depth view as an input of the estimator.
+    /// The depth view as input of the estimator.
     #[must_use]
     pub fn depth_map(&self) -> DepthMap {
         let (samples, normals) = match &self.depth.data {
@@ -125,7 +125,7 @@ pub struct SampleImage {
     pub size: Size,
     /// Linear R, G, B interleaved, 3 * `size.len()`; zero outside the mask.
     pub colours: Vec<f32>,
-    /// True where the object is.
+    /// True on the object.
     pub mask: Vec<bool>,
     /// Orthographic or pinhole.
     pub camera: Camera,
@@ -138,7 +138,7 @@ pub struct SampleDepth {
     pub size: Size,
     /// The measurement.
     pub data: DepthData,
-    /// True where the object is, holes included.
+    /// True on the object, including holes.
     pub mask: Vec<bool>,
     /// Orthographic or pinhole.
     pub camera: Camera,
@@ -149,16 +149,16 @@ pub struct SampleDepth {
 pub enum DepthData {
     /// Depth along z for each pixel, NaN where missing.
     Map(Vec<f32>),
-    /// A point and a unit normal for each pixel, NaN where missing. Normals may turn away from the depth camera.
+    /// A point and a unit normal for each pixel, NaN where missing. Normals may face away from the depth camera.
     Cloud {
         /// In the depth camera's frame.
         points: Points,
-        /// Facing the camera of the grid.
+        /// Towards the camera of the grid.
         normals: Normals,
     },
 }
 
-/// The answer, without noise and without holes, NaN outside the masks.
+/// True values without noise and holes, NaN outside the masks.
 #[derive(Clone, Debug)]
 pub struct Truth {
     /// Unit normals of the colour view, in its frame.
@@ -171,7 +171,7 @@ pub struct Truth {
     pub depth: Vec<f32>,
 }
 
-/// A surface ready to be seen from anywhere.
+/// A surface that can be viewed from any pose.
 #[derive(Clone, Debug)]
 pub struct Scene {
     mesh: Mesh,
@@ -181,7 +181,7 @@ pub struct Scene {
 
 impl Scene {
     /// # Errors
-    /// [`ErrorKind::Empty`] where the relief has no surface (see [`Mesh::from_relief`]).
+    /// [`ErrorKind::Empty`] if the relief has no surface (see [`Mesh::from_relief`]).
     pub fn new(relief: &Relief) -> Result<Self> {
         Ok(Self { mesh: Mesh::from_relief(relief)?, grid: relief.size() })
     }
@@ -194,14 +194,14 @@ impl Scene {
 
     /// The surface rotated by `rotation` about its centroid, scaled to the view (times `scale`) and seen by `camera`.
     ///
-    /// The centroid keeps the place it has without rotation; its depth is fx * scale for a pinhole and the larger side
-    /// of the view for an orthographic camera (1.25 radii of the object where that is more).
+    /// The centroid keeps its position without rotation. Its depth is fx * scale for a pinhole, and the larger side of
+    /// the view for an orthographic camera (1.25 radii of the object if that is more).
     #[must_use]
     pub fn view(&self, rotation: &Matrix3<f64>, scale: f64, size: Size, camera: Camera) -> View {
         render(&self.mesh, &self.placement(rotation, scale, size, camera), size, camera)
     }
 
-    /// Transforms the mesh into the frame of a camera.
+    /// The transformation of the mesh into the frame of a camera.
     fn placement(&self, rotation: &Matrix3<f64>, scale: f64, size: Size, camera: Camera) -> Similarity {
         let scaled = scale * self.fit(size);
         let place = self.place(scale, size, camera);
@@ -209,12 +209,12 @@ impl Scene {
         Similarity { scale: scaled, rotation: *rotation, translation }
     }
 
-    /// Pixels for each sample.
+    /// Pixels per sample.
     fn fit(&self, size: Size) -> f64 {
         (size.width as f64 / self.grid.width as f64).min(size.height as f64 / self.grid.height as f64)
     }
 
-    /// Where the centroid lies in the frame of a camera.
+    /// Position of the centroid in the frame of a camera.
     fn place(&self, scale: f64, size: Size, camera: Camera) -> Vector3<f64> {
         let fit = self.fit(size);
         let centre = fit * self.mesh.centroid();
@@ -227,13 +227,13 @@ impl Scene {
         }
     }
 
-    /// The colour view is the surface as it is; the depth view is the surface under R_g^T, 1 / s times as large.
-    /// The pose transforms the second exactly into the first: t = C_image - s R_g C_depth with the centroid C of each
-    /// view.
+    /// A pair of views. The colour view is the surface as it is; the depth view is the surface under R_g^T, 1 / s times
+    /// as large. The pose transforms the second exactly into the first: t = C_image - s R_g C_depth with the centroid C
+    /// of each view.
     ///
     /// # Errors
-    /// [`ErrorKind::Size`] or [`ErrorKind::Range`] naming the field at fault, [`ErrorKind::Empty`] where a view sees
-    /// nothing of the surface.
+    /// [`ErrorKind::Size`] or [`ErrorKind::Range`] with the field at fault, [`ErrorKind::Empty`] if a view sees nothing
+    /// of the surface.
     pub fn sample(&self, request: &SampleRequest) -> Result<Sample> {
         request.validate()?;
         let SampleRequest { size, rotation, scale, .. } = *request;
@@ -274,7 +274,7 @@ impl Scene {
 
 impl SampleRequest {
     /// # Errors
-    /// [`ErrorKind::Size`] or [`ErrorKind::Range`] naming the first field out of range.
+    /// [`ErrorKind::Size`] or [`ErrorKind::Range`] with the first field out of range.
     pub fn validate(&self) -> Result<()> {
         let sides = SMALLEST_VIEW..=LARGEST_VIEW;
         if !sides.contains(&self.size.width) || !sides.contains(&self.size.height) {
@@ -309,7 +309,7 @@ pub(super) fn check_overlap(overlap: f64) -> Result<()> {
     Err(Error::new(ErrorKind::Range, "overlap", "must be at most 1").value(overlap))
 }
 
-/// S = exp(log S + noise) of every normal.
+/// S = exp(log S + noise) for every normal.
 fn shade(view: &View, request: &SampleRequest) -> SampleImage {
     let mut chance = Chance::new(request.seed, Purpose::Brightness);
     let mut colours = vec![0.0; 3 * view.size.len()];

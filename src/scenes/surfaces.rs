@@ -1,4 +1,4 @@
-//! Procedural surfaces on the 256 grid: free of licences, and their true shape is known.
+//! Procedural surfaces on the 256 grid: free of licences, with a known true shape.
 
 use std::f64::consts::TAU;
 
@@ -13,10 +13,10 @@ pub const NAMES: [&str; 3] = ["bust", "vase", "ripples"];
 /// Side of the grid of every built-in surface in samples: that of the protocol (docs/lab/protocols.md).
 const SIDE: usize = 256;
 
-/// The built-in surface of that name, one of [`NAMES`], as heights on a 256 x 256 grid.
+/// The built-in surface with this name, one of [`NAMES`], as heights on a 256 x 256 grid.
 ///
 /// # Errors
-/// [`ErrorKind::Range`] for another name.
+/// [`ErrorKind::Range`] for any other name.
 pub fn surface(name: &str) -> Result<Relief> {
     let height: fn(f64, f64) -> f64 = match name {
         "bust" => bust::height,
@@ -33,8 +33,8 @@ pub fn surface(name: &str) -> Result<Relief> {
 /// (y, radius) of the vase where its radius is largest or smallest, from lip to foot.
 const PROFILE: [[f64; 2]; 5] = [[-108.0, 41.0], [-72.0, 25.0], [10.0, 66.0], [86.0, 24.0], [110.0, 38.0]];
 
-/// A vase as from a potter's wheel. Flutes that wind around its belly, a medallion left of the middle and two unlike
-/// handles make its rotation about its axis observable.
+/// A vase like one from a potter's wheel. Flutes that wind around its belly, a medallion left of the middle and two
+/// different handles make the rotation about its axis observable.
 fn vase(x: f64, y: f64) -> f64 {
     let radius = profile(y);
     let shell = round(x / radius, radius);
@@ -46,7 +46,7 @@ fn vase(x: f64, y: f64) -> f64 {
     let body = shell + (flutes + collar + medallion) * step((radius - x.abs()) / 3.0);
     let handles = handle(x, y, [-47.0, -44.0], [25.0, 30.0]).max(handle(x, y, [49.0, -36.0], [29.0, 37.0]));
     let ends = overhang(y + 103.0, -6.0) + overhang(y - 106.0, 6.0);
-    // The last samples before the rim, where a round body is seen edge on, are cut away.
+    // Cuts off the last samples before the border, where a round body is seen edge on.
     union(0.95 * body - 14.0 * ends, handles, 2.0) - 4.0
 }
 
@@ -65,7 +65,7 @@ fn handle(x: f64, y: f64, centre: [f64; 2], radii: [f64; 2]) -> f64 {
     8.0 + round(ring * radii[0].midpoint(radii[1]) / thickness, 12.0)
 }
 
-/// A shallow dome with an irregular, smooth border that two systems of waves cross.
+/// A shallow dome with an irregular, smooth border, crossed by two systems of waves.
 fn ripples(x: f64, y: f64) -> f64 {
     let bearing = y.atan2(x);
     let border = 104.0 + 5.0 * (3.0 * bearing + 0.6).sin() + 3.0 * (5.0 * bearing).cos();

@@ -1,7 +1,7 @@
-//! The shape of the colour view: normals of its pixels, a surface that has them, and the normals once more, with the
-//! surface for a prior (docs/method/normals.md and docs/method/heights.md).
+//! The shape of the colour view: normals of its pixels, a surface with these normals, and the normals once more, with
+//! the surface as a prior (docs/method/normals.md and docs/method/heights.md).
 //!
-//! The surface is found in one of two ways: by integration alone, as the paper does, or as a whole, heights from
+//! The surface is found in one of two ways: by integration alone, as in the paper, or as a whole by heights from
 //! shading, for which the integrated surface is one of several starts.
 
 use super::heights::{HeightDomain, ImageSurfaceProblem, ImageSurfaceSolver, Scratch};
@@ -11,26 +11,26 @@ use crate::error::Result;
 use crate::light::Light;
 use crate::view::{ColourView, Normals, normals};
 
-/// Least weight of the surface's own normals as a prior, as lambda_2: the surface says more than a pixel's colours
-/// under natural light. Measured on Mozart under the lights A, B, C without a depth view: 0.1 is better than 0.05 in
-/// five cases of six, 0.03 in none.
+/// Least weight of the surface's own normals as a prior, in units of lambda_2: under natural light, the surface
+/// determines more than a pixel's colours. Set on Mozart under the lights A, B, C without a depth view
+/// (docs/lab/thresholds.md).
 const LEAST_SURFACE_PRIOR: f64 = 0.1;
 
-/// What the shape of the colour view is found from.
+/// The data from which the shape of the colour view is found.
 #[derive(Clone, Copy)]
 pub struct ImageShapeProblem<'a> {
     /// The colour view.
     pub image: &'a ColourView,
-    /// The light, exposure included.
+    /// The light, with exposure.
     pub light: &'a Light,
-    /// Normals of the depth view at the image pixels (R n_R of Eq. 9), NaN where it sees nothing.
+    /// Normals of the depth view at the image pixels (R n_R of Eq. 9), NaN where no depth point falls.
     pub prior: &'a Normals,
     /// lambda_2 of Eq. 6.
     pub prior_weight: f64,
     /// lambda_3 of Eq. 6.
     pub unit_weight: f64,
-    /// Variance of the colours' residuals in units of what is usual: colours that even the light leaves unexplained
-    /// weigh less, which is to say that priors weigh more.
+    /// Variance of the colours' residuals relative to its usual value: colours that even the light does not explain
+    /// weigh less, so priors weigh more.
     pub variance_inflation: f64,
 }
 
@@ -45,12 +45,12 @@ impl<'a> ImageShapeProblem<'a> {
     }
 }
 
-/// Solves one image again and again. Owns what lasts from call to call; rasters in between are those of a [`Scratch`].
+/// Solves one image repeatedly. Owns what persists between calls; intermediate rasters belong to a [`Scratch`].
 pub struct ImageShapeSolver {
     pixels: ShadingSolver,
-    /// Made by the first integration.
+    /// Created by the first integration.
     integrator: Option<Integrator>,
-    /// Where the surface is solved as a whole.
+    /// Present if the surface is solved as a whole.
     surface: Option<ImageSurfaceSolver>,
 }
 
@@ -63,7 +63,7 @@ impl ImageShapeSolver {
     /// A solver that finds the surface as a whole.
     ///
     /// # Errors
-    /// [`crate::ErrorKind::Empty`] where the view's mask is empty.
+    /// [`crate::ErrorKind::Empty`] if the view's mask is empty.
     pub fn as_a_whole(image: &ColourView) -> Result<Self> {
         Ok(Self { surface: Some(ImageSurfaceSolver::new(image)?), ..Self::by_integration() })
     }
@@ -73,22 +73,22 @@ impl ImageShapeSolver {
         self.surface.as_ref().map(ImageSurfaceSolver::domain)
     }
 
-    /// Normals of the pixels, each for itself (Eq. 6 to 9), from the present ones.
+    /// Normals of the pixels, each one alone (Eq. 6 to 9), starting from the current ones.
     pub fn solve_normals(&mut self, problem: &ImageShapeProblem<'_>, normals: &mut Normals) {
         self.pixels.solve(problem.shading(), problem.weights(problem.prior_weight), normals);
     }
 
-    /// How to change the exposure after [`solve_normals`](Self::solve_normals); `moved` is how far it is from the first
-    /// one already.
+    /// Change of the exposure after [`solve_normals`](Self::solve_normals); `moved` is its distance from the first one
+    /// so far.
     pub fn exposure_step(problem: &ImageShapeProblem<'_>, normals: &Normals, moved: f64) -> f64 {
         pixels::exposure_step(problem.shading(), problem.weights(problem.prior_weight), normals, moved)
     }
 
-    /// `depth` of the surface, NaN off the mask, from the normals of the pixels; these improve by it where the surface
-    /// is solved as a whole. The depth is determined up to a constant (orthographic) or a factor (pinhole).
+    /// `depth` of the surface, NaN off the mask, from the normals of the pixels; if the surface is solved as a whole,
+    /// it improves these normals. The depth is determined up to a constant (orthographic) or a factor (pinhole).
     ///
     /// # Errors
-    /// Those of the integration.
+    /// The errors of the integration.
     pub fn solve_surface(
         &mut self,
         scratch: &mut Scratch,
@@ -111,7 +111,7 @@ impl ImageShapeSolver {
         Ok(())
     }
 
-    /// Heights of the surface that has the slopes of the scratch.
+    /// Integrates the slopes in the scratch to heights.
     fn integrate(&mut self, scratch: &Scratch, image: &ColourView, heights: &mut [f32]) -> Result<()> {
         let integrator = match &mut self.integrator {
             Some(integrator) => integrator,
@@ -121,7 +121,7 @@ impl ImageShapeSolver {
         integrator.integrate(p, q, None, &IntegrationOptions::ROBUST, heights).map(|_| ())
     }
 
-    /// Heights of the surface as a whole.
+    /// Solves the heights as a whole.
     fn solve_heights(
         &mut self,
         scratch: &mut Scratch,
@@ -138,8 +138,8 @@ impl ImageShapeSolver {
         surface.solve(solver, problem, heights)
     }
 
-    /// Normals of the pixels once more. Their prior is the depth view's normal, where that weighs anything, or else
-    /// that of the surface: differences of heights lack the detail of a pixel, which its colours have.
+    /// Normals of the pixels once more. Their prior is the depth view's normal if that has weight, or else that of the
+    /// surface: differences of heights lack the detail of a pixel, which its colours have.
     fn solve_normals_again(
         &mut self,
         scratch: &mut Scratch,

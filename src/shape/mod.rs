@@ -8,27 +8,27 @@
 //! | `heights/` | the same | brightness of every cell of four pixels, edges, anchors, smoothness | damped Gauss-Newton; each step as above; several starts, coarse to fine |
 //! | `refinement` | normals and depth of the depth view, Eq. 17 to 19 | those of `pixels` and `heights`, anchored to the measured depth | these |
 //!
-//! Where an equation is:
+//! Files of the equations:
 //!
 //! | equation | file |
 //! |---|---|
 //! | Eq. 6 to 9 (17 and 18 for the depth view): terms and derivatives of one pixel | `pixels/shading` |
-//! | the objective of one pixel over the hemisphere, to look at | `pixels/landscape` |
+//! | the objective of one pixel over the hemisphere, for display | `pixels/landscape` |
 //! | the exposure of a known light | `pixels/exposure` |
 //! | gradients and slopes of normals | `integration/normals_to_gradients` |
-//! | a surface straight from given normals | `integration/surface_of_normals` |
+//! | a surface from given normals alone | `integration/surface_of_normals` |
 //! | robust weights of gradients | `integration/gradients_to_heights` |
 //! | the weighted Poisson equation and its preconditioner | `integration/poisson` |
-//! | brightness of a cell as a function of its slopes | `heights/cell_terms`, the rays' part in `heights/ray_frames` |
+//! | brightness of a cell as a function of its slopes | `heights/cell_terms`, its rays in `heights/ray_frames` |
 //! | the Gauss-Newton matrix of the heights | `heights/normal_operator` |
 //! | Gauss-Newton steps, edges and smoothness | `heights/solver` |
-//! | starts and the choice between local optima | `heights/starts`, coarse to fine in `heights/image_surface` |
+//! | starts and the choice among local optima | `heights/starts`, coarse to fine in `heights/image_surface` |
 //! | normals and surface of the colour view, one after the other | `image_shape` |
 //! | Eq. 19, anchors and their weights | `refinement` |
 //!
-//! Data flow one way: `pixels` and `integration` know nothing of each other, `heights` takes edges and anchors from
-//! `integration`, `image_shape` and `refinement` use all three. Rasters that live for one stage only are those of a
-//! [`Scratch`], which the caller lends to one stage after the other.
+//! Data flows one way: `pixels` and `integration` are independent, `heights` takes edges and anchors from
+//! `integration`, `image_shape` and `refinement` use all three. Rasters that live for one stage only belong to a
+//! [`Scratch`], which the caller lends to one stage after another.
 
 mod heights;
 mod image_shape;

@@ -1,13 +1,13 @@
 //! Shading-based refinement of the depth view (Eq. 17 to 19; docs/method/heights.md): shape from shading over the
 //! pixels of the other view.
 //!
-//! Each depth pixel that the colour camera sees has a colour: its normal, rotated into the colour view's frame, has to
-//! explain it. So the solver of single pixels runs over the depth pixels, with the prior of Eq. 19 (the normal that the
-//! image has found there). The heights then follow these normals and the colours, anchored to the measured depth with
-//! a weight that its noise decides: noise goes down where there is shading, holes inside the mask are filled, and
+//! Each depth pixel visible to the colour camera has a colour, which its normal, rotated into the colour view's frame,
+//! must explain. The solver of single pixels therefore runs over the depth pixels, with the prior of Eq. 19 (the normal
+//! found in the image there). The heights then follow these normals and the colours, anchored to the measured depth
+//! with a weight set by its noise. Noise decreases where there is shading, holes inside the mask are filled, and
 //! nothing moves elsewhere.
 //!
-//! Limits: an organised cloud has no depth along a ray; its normals are refined, its points are kept.
+//! Limits: an organised cloud has no depth along a ray; its normals are refined, and its points stay.
 
 use std::ops::Range;
 
@@ -23,25 +23,26 @@ use crate::error::Result;
 use crate::light::Light;
 use crate::view::{ColourView, DepthView, Normals, depth_noise, normals};
 
-/// Error of the shading in log units, in standard deviations of the image's own noise, and what discretisation adds as
-/// a share of the colours' spread: 0.05 under colourful light, 0.03 under natural light at 2 % noise. Measured on
-/// Mozart at 64x64 with depth noise of half a pixel: the best errors there are 0.045 to 0.06 and 0.028 to 0.035.
+/// Error of the shading in log units: a multiple of the image's noise, and the share of the colours' spread that
+/// discretisation adds. Set on Mozart at 64x64 with depth noise of half a pixel under colourful and natural light
+/// (docs/lab/thresholds.md).
 const SHADING_ERROR: f64 = 1.4;
 const DISCRETISATION: f64 = 0.065;
 /// Bounds of the weight of an anchor, squared log residual per squared pixel of height: whatever its noise, depth
 /// neither loses all weight nor overrides the colours.
 const ANCHOR_WEIGHTS: [f64; 2] = [1e-3, 10.0];
-/// Share of the bending that gives way to colours which tell more of the surface than its roughness does. Mozart at 64x64 with noise of half a pixel under colourful light, A, B, C: x5.9, 3.3,
-/// 2.4, 2.2 without, 6.0, 3.8, 2.8, 2.9 with it; photographs with quantised depth want all of the bending.
+/// Share of the bending that yields to colours which determine the surface better than its roughness does. Set on
+/// Mozart at 64x64 under four lights and on photographs with quantised depth, which need all of the bending
+/// (docs/lab/thresholds.md).
 const GIVEN_WAY: f64 = 0.75;
-/// Work at each scale of the first refinement: noisy depth starts far from its colours.
+/// Work at each scale of the first refinement, in which noisy depth starts far from its colours.
 const FIRST: Effort = Effort { steps: 6, iterations: 40, tolerance: 0.03, damping: FAR_DAMPING };
-/// Work of a refinement that continues an earlier one, at the last scale alone.
+/// Work of a refinement that continues an earlier one, at the last scale only.
 const LATER: Effort = Effort { steps: 1, iterations: 20, tolerance: 0.03, damping: FAR_DAMPING };
-/// Most sweeps that extend slopes into a hole: its radius in pixels at the most.
+/// Most sweeps that extend slopes into a hole, and thus its largest radius in pixels.
 const FILL_SWEEPS: usize = 256;
 
-/// What a refinement needs.
+/// Input of a refinement.
 #[derive(Clone, Copy)]
 pub struct RefinementProblem<'a> {
     /// The measured depth view.
@@ -56,38 +57,38 @@ pub struct RefinementProblem<'a> {
     pub terms: RefinementTerms,
 }
 
-/// What a refinement needs besides rasters.
+/// Input of a refinement other than rasters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RefinementTerms {
-    /// The light, exposure included.
+    /// The light, with exposure.
     pub light: Light,
     /// R of the pose.
     pub rotation: Matrix3<f64>,
     /// Weights of Eq. 17; `prior` is lambda_g2.
     pub weights: ShadingWeights,
-    /// What the light leaves unexplained of the colours, in log units; zero where it is known.
+    /// Error of the colours under the light, log units; zero for a known light.
     pub colour_error: f64,
 }
 
-/// Refines one depth view again and again; the scratch is lent, and has the view's size.
+/// Refines one depth view repeatedly; the caller lends the scratch, which has the view's size.
 pub struct Refiner {
     solver: ShadingSolver,
     domain: HeightDomain,
-    /// The image's log colours where the depth pixels fall.
+    /// The image's log colours at the depth pixels.
     log: [Vec<f32>; 3],
     /// Standard deviation of the shading, log units.
     shading_error: f64,
-    /// Weight of a measured depth against the shading, or against its neighbours where there is no colour.
+    /// Weight of a measured depth relative to the shading, or to its neighbours where there is no colour.
     anchor_weight: f32,
-    /// Whether the depth has been refined before, so that it starts near its colours.
+    /// Whether the depth has been refined before, so that it starts close to its colours.
     continues: bool,
 }
 
 impl Refiner {
-    /// A refiner for one depth view by the colours of one image.
+    /// A refiner for one depth view with the colours of one image.
     ///
     /// # Errors
-    /// [`crate::ErrorKind::Empty`] where the view's mask is empty.
+    /// [`crate::ErrorKind::Empty`] if the view's mask is empty.
     pub fn new(depth: &DepthView, image: &ColourView) -> Result<Self> {
         let length = depth.size.len();
         let zeros = || vec![0.0; length];
@@ -102,21 +103,22 @@ impl Refiner {
         })
     }
 
-    /// One that goes on from a depth that another one has refined.
+    /// A refiner that continues from a depth refined by another one.
     #[must_use]
     pub fn resumed(self) -> Self {
         Self { continues: true, ..self }
     }
 
-    /// Where the heights of the view are unknown.
+    /// The domain of the view's unknown heights.
     pub const fn domain(&self) -> &HeightDomain {
         &self.domain
     }
 
-    /// Fills the holes of the measured depth smoothly: a first guess that gives hidden pixels a place in the image.
+    /// Fills the holes of the measured depth smoothly, as an initial guess that gives hidden pixels a position in the
+    /// image.
     ///
     /// # Errors
-    /// Those of the integration.
+    /// The errors of the integration.
     pub fn fill(&self, scratch: &mut Scratch, view: &DepthView, depth: &mut [f32]) -> Result<()> {
         if view.organised {
             depth.copy_from_slice(view.depth());
@@ -130,7 +132,7 @@ impl Refiner {
         let options = IntegrationOptions { robustness: Robustness::Off, ..IntegrationOptions::default() };
         let anchors = Anchors { height: &scratch.spare, weight: AnchorWeight::PerPixel(&scratch.weight) };
         let [p, q] = &scratch.slopes;
-        // It is asked for once, so the integrator's memory is not kept.
+        // Needed only once, so the integrator's memory is not kept.
         Integrator::new(view.size, &view.mask)?.integrate(p, q, Some(anchors), &options, depth)?;
         view.camera.depth_from_heights(depth);
         Ok(())
@@ -150,10 +152,10 @@ impl Refiner {
         if view.organised {
             return;
         }
-        // Colours that the light does not explain have a larger variance, so that depth weighs more against them.
+        // Colours that the light does not explain have a larger variance, so depth weighs more relative to them.
         let variance_inflation = (problem.terms.colour_error / self.shading_error).max(1.0).powi(2);
         let shaded = (f64::from(self.anchor_weight) * variance_inflation).min(ANCHOR_WEIGHTS[1]) as f32;
-        // Where the surface is known to resist bending, that weighs against depth without colours as well.
+        // If the surface's resistance to bending is known, it also weighs against depth without colours.
         let unshaded = if view.noise.is_visible() { shaded } else { self.anchor_weight };
         let error = self.shading_error.max(problem.terms.colour_error);
         let bending = bending(shaded, [variance_inflation, (MIXED_NOISE / error).min(1.0).powi(2)], view);
@@ -181,7 +183,7 @@ impl Refiner {
         normals::of_depth_into(view.size, view.camera, depth, normals);
     }
 
-    /// Eq. 17 for each pixel alone: what an organised cloud, which has no rays, gets.
+    /// Eq. 17 for each pixel alone; an organised cloud, whose pixels have no rays, gets only this.
     fn refine_normals(&mut self, scratch: &mut Scratch, problem: RefinementProblem<'_>, normals: &mut Normals) {
         let RefinementTerms { light, rotation, weights, .. } = &problem.terms;
         let back = rotation.transpose();
@@ -201,7 +203,8 @@ impl Refiner {
         }
     }
 
-    /// Bilinear log colours at the positions of the depth pixels; NaN where a neighbour is off the mask.
+    /// Bilinear log colours at the positions of the depth pixels, from their known neighbours; NaN if all are off the
+    /// mask.
     fn sample_colours(&mut self, problem: RefinementProblem<'_>) {
         let [columns, rows] = problem.position;
         let channels = problem.image.log.each_ref().map(Vec::as_slice);
@@ -212,7 +215,7 @@ impl Refiner {
         }
     }
 
-    /// Anchors at the measured heights.
+    /// Sets anchors at the measured heights.
     fn load_anchors(&self, scratch: &mut Scratch, view: &DepthView, depth: &[f32], weight: impl Fn(bool) -> f32) {
         scratch.spare.copy_from_slice(depth);
         view.camera.heights_from_depth(&mut scratch.spare);
@@ -222,7 +225,7 @@ impl Refiner {
     }
 }
 
-/// Eq. 19: the image's normal where each depth pixel of a band falls, in the colour view's frame.
+/// Eq. 19: the image's normal at each depth pixel of a band, in the colour view's frame.
 fn sample_prior(problem: RefinementProblem<'_>, band: &Range<usize>, prior: &mut Normals) {
     let [columns, rows] = problem.position;
     for (place, index) in band.clone().enumerate() {
@@ -231,8 +234,8 @@ fn sample_prior(problem: RefinementProblem<'_>, band: &Range<usize>, prior: &mut
     }
 }
 
-/// What the map says of its surface's second differences, against anchors of this weight. It gives way to colours as far
-/// as they can be believed.
+/// The map's own prior of its surface's second differences, relative to anchors of this weight. It yields to colours as
+/// far as these can be trusted.
 fn bending(anchor_weight: f32, [variance_inflation, explained]: [f64; 2], view: &DepthView) -> Bending {
     if !view.noise.is_visible() {
         return Bending::FREE;
@@ -258,8 +261,7 @@ fn variance_ratio(shading_error: f64, depth_noise: f64) -> f32 {
     weight.clamp(ANCHOR_WEIGHTS[0], ANCHOR_WEIGHTS[1]) as f32
 }
 
-/// Extends a field from where it is known into the unknown pixels of the mask, ring by ring, each the mean of its known
-/// neighbours.
+/// Extends a field into the unknown pixels of the mask, ring by ring: each becomes the mean of its known neighbours.
 fn extend(view: &DepthView, field: &mut [f32], spare: &mut [f32]) {
     for _ in 0..FILL_SWEEPS {
         spare.copy_from_slice(field);

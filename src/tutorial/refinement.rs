@@ -1,12 +1,14 @@
-//! Chapter 7. What do the colours tell the depth map?
+//! Chapter 7. What does the image add to the depth map?
 //!
-//! With the pose known the image shades the depth map's surface as well. Its normals follow the colours that fall onto them (Eq. 17),
+//! If the pose is known, the image also shades the depth map's surface. Its normals follow the colours of their pixels
+//! (Eq. 17),
 //!
 //! > g(n_R) = Σ_j ( (R n_R)ᵀ M_j (R n_R) − log S_j )² + λ_g2 |n_R − n_R⁰|²
 //!
-//! the mirror image of chapter 3, and its depth follows these normals and the measurement, each as far as it can be trusted (Eq. 18, 19).
-//! Noise goes down, holes are filled. [`Estimator::refined_depth`](crate::Estimator::refined_depth) and
-//! [`Estimator::depth_normals`](crate::Estimator::depth_normals) are the outcome.
+//! the mirror image of chapter 3. Its depth follows these normals and the measurement, each as far as it can be trusted
+//! (Eq. 18, 19). The noise decreases and holes are filled.
+//! [`Estimator::refined_depth`](crate::Estimator::refined_depth) and
+//! [`Estimator::depth_normals`](crate::Estimator::depth_normals) hold the result.
 //!
 //! ```
 //! use bimodal_stereo::{Estimator, LightSource, Options, Start, Status, scenes};
@@ -26,7 +28,7 @@
 //!     estimator.step();
 //! }
 //!
-//! // Median distance to the truth, where there was a measurement.
+//! // Median distance to the truth where there is a measurement.
 //! let DepthData::Map(measured) = &sample.depth.data else { unreachable!("an orthographic map is no cloud") };
 //! let median_error = |depth: &[f32]| {
 //!     let errors = depth.iter().zip(&sample.truth.depth).zip(measured);

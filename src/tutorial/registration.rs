@@ -1,11 +1,12 @@
-//! Chapter 6. Which pose lays both surfaces onto each other?
+//! Chapter 6. Which pose aligns both surfaces?
 //!
-//! The paper pairs points (ICP, Eq. 12), fits a linear model P → A P + t to most of them (RANSAC, Eq. 13, 14), and takes the similarity
-//! nearest to it,
+//! The paper pairs points (ICP, Eq. 12), fits a linear model P → A P + t to most of them (RANSAC, Eq. 13, 14), and
+//! takes the nearest similarity,
 //!
 //! > min_{s, R} |s R − A|²  (Eq. 15, 16)
 //!
-//! which has a closed form: [`Similarity::nearest`](crate::Similarity::nearest). [`ransac`](crate::ransac) does both:
+//! which has a closed form: [`Similarity::nearest`](crate::Similarity::nearest). [`ransac`](crate::ransac) fits the
+//! model and takes the similarity:
 //!
 //! ```
 //! use bimodal_stereo::{Angles, RansacOptions, Similarity, ransac};
@@ -15,7 +16,7 @@
 //! let truth = Similarity { scale: 1.2, rotation, translation: Vector3::new(3.0, -1.0, 7.0) };
 //! let depth: Vec<_> = (0..200).map(f64::from).map(|k| Vector3::new((3.0 * k).sin(), (5.0 * k).cos(), (7.0 * k).sin()) * 20.0).collect();
 //! let mut image: Vec<_> = depth.iter().map(|&point| truth.apply(point)).collect();
-//! // A quarter of the pairs is wrong.
+//! // A quarter of the pairs are wrong.
 //! image.iter_mut().step_by(4).for_each(|point| *point += Vector3::new(15.0, -9.0, 4.0));
 //! let found = ransac(&depth, &image, &RansacOptions::default())?;
 //! assert_eq!(found.inliers.len(), 150);
@@ -23,12 +24,12 @@
 //! # Ok::<(), bimodal_stereo::Error>(())
 //! ```
 //!
-//! By default the pose is found without pairs, straight from the colours, the light projected out:
+//! By default, the pose is found without pairs, directly from the image, with the light projected out:
 //!
 //! > min_{s, R, t} min_L  Σ ρ( log S(π(s R P + t)) − Y(R n_R) L )
 //!
-//! with harmonics Y of the turned normal, and a robust ρ. [`Photometric`](crate::Photometric) does this; a known light is told in
-//! `light`:
+//! with harmonics Y of the rotated normal and a robust ρ. [`Photometric`](crate::Photometric) does this; a known light
+//! is passed in `light`:
 //!
 //! ```
 //! use bimodal_stereo::{
@@ -39,7 +40,7 @@
 //! let request = scenes::SampleRequest { noise: 0.01, ..Default::default() };
 //! let sample = scenes::Scene::new(&scenes::surface("bust")?)?.sample(&request)?;
 //! let (image, mut depth) = (ColourView::new(sample.colour_image())?, DepthView::new(&sample.depth_map(), true)?);
-//! // Finer normals than a plane's through the neighbours, and how far off they are.
+//! // More accurate normals than those of a plane through the neighbours, with their errors.
 //! let mut error = vec![0.0; depth.size.len()];
 //! cubic_normals::improve(depth.size, &depth.points, &mut depth.normals, &mut error, depth.noise.is_white);
 //! let prior = LightPrior::natural();

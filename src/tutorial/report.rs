@@ -1,23 +1,24 @@
-//! Chapter 8. How far is the answer to be trusted?
+//! Chapter 8. How far can the answer be trusted?
 //!
 //! The loop lowers the sum of all terms (Eq. 1),
 //!
 //! > l + f + g
 //!
-//! and ends when the rotation has settled (Algorithm 1). What its end is called says how far to trust it:
+//! and ends when the rotation has settled (Algorithm 1). The status at the end says how far to trust it:
 //!
 //! | status | meaning |
 //! |---|---|
-//! | [`Converged`](crate::Status::Converged) | the rotation has settled, and nothing speaks against it |
-//! | [`Ambiguous`](crate::Status::Ambiguous) | other poses explain the colours as well: they are in `rivals` |
-//! | [`Lost`](crate::Status::Lost) | the answer cannot be trusted; `message` says why |
-//! | [`MaxIterations`](crate::Status::MaxIterations) | the cap came first |
+//! | [`Converged`](crate::Status::Converged) | the rotation has settled, and no check contradicts it |
+//! | [`Ambiguous`](crate::Status::Ambiguous) | other poses fit equally well (`rivals`), or the rotation is uncertain; `reason` says why |
+//! | [`Lost`](crate::Status::Lost) | the answer cannot be trusted; `reason` says why |
+//! | [`MaxIterations`](crate::Status::MaxIterations) | the loop ended before it settled |
 //!
-//! One sigma of each number is in `uncertainty`, from the curvature of the objective and the noise of the residuals,
+//! `uncertainty` holds one sigma of each number, from the curvature of the objective and the noise of the residuals,
 //!
 //! > Σ_pose ≈ σ² (JᵀJ)⁻¹
 //!
-//! It knows noise, not what the model leaves out. A number that nothing determines has no sigma: t_z of an orthographic image is `None`.
+//! It covers noise, not errors of the model. An undetermined number has no sigma: t_z of an orthographic image is
+//! `None`.
 //!
 //! ```
 //! use bimodal_stereo::{Estimator, LightSource, Options, Start, Status, scenes};

@@ -1,13 +1,14 @@
-//! Chapter 5. Where to start, with nothing known?
+//! Chapter 5. Where to start if nothing is known?
 //!
-//! The paper starts from identity. Here all rotations are tried, coarsely: for each of them the depth map's normals are turned, and the
-//! light that would explain the colours best is projected out,
+//! The paper starts from the identity. This crate tries all rotations on a coarse grid. For each of them it rotates the
+//! depth map's normals and projects out the light that would fit the image best,
 //!
 //! > score(R) = max over t, s of  log p(colours | R, s, t) − log p(colours | one colour)
 //!
-//! with all translations at once by correlation. The work comes in slices, so that whoever waits can be told; the best candidates are
-//! then registered. [`Search`](crate::Search) is this, and [`Estimator::step`](crate::Estimator::step) runs it slice by slice while its
-//! stage is [`Stage::Search`](crate::Stage::Search).
+//! with all translations at once by correlation. The work is cut into slices, so that progress can be reported; the
+//! best candidates are then registered. [`Search`](crate::Search) does this, and
+//! [`Estimator::step`](crate::Estimator::step) runs it slice by slice while its stage is
+//! [`Stage::Search`](crate::Stage::Search).
 //!
 //! ```
 //! use bimodal_stereo::{Angles, ColourView, DepthView, Search, SearchProblem, scenes};
@@ -28,7 +29,7 @@
 //! })?;
 //! while search.advance().share < 1.0 {}
 //!
-//! // One of the first candidates is within reach of a registration.
+//! // One of the first candidates is close enough for a registration.
 //! let nearest = search.candidates().iter().take(10).map(|found| found.pose.degrees_to(&sample.pose));
 //! assert!(nearest.fold(f64::INFINITY, f64::min) < 12.0);
 //! # Ok::<(), bimodal_stereo::Error>(())

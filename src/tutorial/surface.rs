@@ -4,12 +4,13 @@
 //!
 //! > p = ∂z/∂x = −n_x / n_z,  q = ∂z/∂y = −n_y / n_z
 //!
-//! and a surface follows from slopes up to its distance, by least squares over the edges between neighbours on the object's mask (Eq. 11):
+//! and a surface follows from slopes up to its distance, by least squares over the edges between neighbours on the
+//! object's mask (Eq. 11):
 //!
 //! > min_z  Σ (z(x+1, y) − z(x, y) − p̄)² + (z(x, y+1) − z(x, y) − q̄)²
 //!
 //! This is a Poisson equation; [`Integrator`](crate::Integrator) solves it with conjugate gradients, preconditioned by cosine transforms.
-//! Edges across which depth jumps are outliers, and lose their weight.
+//! Edges across which depth jumps are outliers and lose their weight.
 //!
 //! ```
 //! use bimodal_stereo::{scenes, surface_of_normals};
@@ -17,7 +18,7 @@
 //! let sample = scenes::Scene::new(&scenes::surface("bust")?)?.sample(&scenes::SampleRequest::default())?;
 //! let depth = surface_of_normals(sample.image.size, &sample.truth.image_normals, true)?;
 //!
-//! // Both about their median, as the distance is free.
+//! // Both relative to their median, because the distance is free.
 //! let about_median = |values: &[f32]| -> Vec<f32> {
 //!     let mut known: Vec<f32> = values.iter().copied().filter(|value| value.is_finite()).collect();
 //!     known.sort_by(f32::total_cmp);

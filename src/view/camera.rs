@@ -1,4 +1,4 @@
-//! From pixels to rays and back (docs/method/frames.md: x right, y down, z forward).
+//! Conversion between pixels and rays (docs/method/frames.md: x right, y down, z forward).
 
 use super::pinhole::Pinhole;
 use crate::error::{Error, ErrorKind, Result};
@@ -15,18 +15,19 @@ pub enum Camera {
 }
 
 impl Camera {
-    /// Continuous pixel coordinates (column, row) of a point, `None` behind a pinhole camera and beyond the fold of its lens.
+    /// Continuous pixel coordinates (column, row) of a point; `None` behind a pinhole camera or beyond the fold of its
+    /// lens.
     #[must_use]
     pub fn project(&self, size: Size, point: [f64; 3]) -> Option<[f64; 2]> {
         let [x, y, z] = point;
         match self {
             Self::Orthographic => Some([x + centre(size.width), y + centre(size.height)]),
-            // Depth is along z: what a fisheye sees beside and behind itself has none.
+            // Depth is measured along z, so points beside and behind a fisheye have none.
             Self::Pinhole(pinhole) => pinhole.project(point).filter(|_| z > 0.0),
         }
     }
 
-    /// Columns and rows of four points, NaN behind a pinhole camera and beyond the fold of its lens.
+    /// Columns and rows of four points; NaN behind a pinhole camera or beyond the fold of its lens.
     #[inline(always)]
     pub(crate) fn project_lanes(&self, size: Size, [x, y, z]: [Lanes; 3]) -> [Lanes; 2] {
         let splat = |value: f64| Lanes::splat(value as f32);
@@ -36,7 +37,7 @@ impl Camera {
         }
     }
 
-    /// [`project`](Self::project) with its derivative: d column and d row, each by x, y, z of the point.
+    /// [`project`](Self::project) with the derivatives of column and row by x, y, z of the point.
     #[must_use]
     pub fn project_with_gradient(&self, size: Size, point: [f64; 3]) -> Option<([f64; 2], [[f64; 3]; 2])> {
         let [x, y, z] = point;
@@ -44,7 +45,7 @@ impl Camera {
             Self::Orthographic => Some((self.project(size, point)?, [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])),
             Self::Pinhole(pinhole) => {
                 let pixel = self.project(size, point)?;
-                // Ahead of the camera the pixel is the ray's, so that its derivative by the slopes is enough.
+                // In front of the camera the pixel depends only on the ray, so the derivative by its slopes suffices.
                 let [u, v] = [x / z, y / z];
                 let (_, [column, row]) = pinhole.lens.project_with_gradient([u, v, 1.0])?;
                 let gradient = [(pinhole.fx, column), (pinhole.fy, row)].map(|(focal_length, [by_u, by_v, _])| {
@@ -56,8 +57,8 @@ impl Camera {
         }
     }
 
-    /// Direction through a pixel with z = 1 for a pinhole camera, NaN where the lens lets none through or looks aside; for an
-    /// orthographic camera the x and y of every point on it.
+    /// Direction through a pixel, with z = 1, for a pinhole camera; NaN if the lens has no ray there or the ray does
+    /// not point forward. For an orthographic camera, the x and y of every point on the ray.
     #[must_use]
     pub fn ray(&self, size: Size, [column, row]: [f64; 2]) -> [f64; 2] {
         match self {
@@ -70,7 +71,7 @@ impl Camera {
         }
     }
 
-    /// Whether a pixel's column alone says its ray's x, and its row the y.
+    /// Whether a ray's x depends only on the pixel's column, and its y only on the row.
     pub(crate) fn is_straight(&self) -> bool {
         match self {
             Self::Orthographic => true,
@@ -78,11 +79,11 @@ impl Camera {
         }
     }
 
-    /// Takes the pixels out of `mask` that no ray runs through, or none through the points half a pixel beside, where
-    /// slopes are evaluated.
+    /// Removes pixels from `mask` that have no ray, or no ray through the points half a pixel away, where slopes are
+    /// evaluated.
     ///
     /// # Errors
-    /// [`ErrorKind::Range`] naming `field` where that is so of most pixels in the mask whose `values` are not NaN.
+    /// [`ErrorKind::Range`] with `field` if most pixels in the mask with `values` that are not NaN are removed.
     pub(super) fn keep_pixels_with_rays(
         &self,
         field: &'static str,
@@ -93,7 +94,7 @@ impl Camera {
         if self.is_straight() {
             return Ok(());
         }
-        // Kept pixels less removed ones.
+        // Number of kept pixels minus removed ones.
         let mut balance = 0;
         for (index, inside) in mask.iter_mut().enumerate().filter(|(_, inside)| **inside) {
             let (column, row) = size.position(index);
@@ -121,7 +122,7 @@ impl Camera {
         }
     }
 
-    /// Mean focal length in pixels, `None` for an orthographic camera.
+    /// Mean focal length in pixels; `None` for an orthographic camera.
     #[must_use]
     pub fn focal_length(&self) -> Option<f64> {
         match self {
@@ -130,7 +131,7 @@ impl Camera {
         }
     }
 
-    /// The intrinsics, `None` for an orthographic camera.
+    /// The intrinsics; `None` for an orthographic camera.
     #[must_use]
     pub const fn pinhole(&self) -> Option<Pinhole> {
         match self {
@@ -155,7 +156,7 @@ mod tests {
     use super::*;
     use crate::view::Lens;
 
-    /// A ray's pixel is this near, in pixels: far below the rounding of points in f32.
+    /// Largest distance between a pixel and the projection of its ray, pixels: far below the rounding of points in f32.
     const RETURN_DISTANCE: f64 = 1e-6;
 
     #[test]
@@ -165,7 +166,7 @@ mod tests {
             let lens = Lens::brown(&distortion).unwrap();
             Camera::Pinhole(Pinhole { fx: 60.0, fy: 60.0, cx: 32.0, cy: 32.0, lens })
         };
-        // A barrel, a strong pincushion that a fixed point would run away from, and one with everything.
+        // A barrel, a strong pincushion for which a fixed-point iteration would diverge, and all terms together.
         for lens in [[-0.2, 0.0, 0.0, 0.0, 0.0], [2.0, 0.0, 0.0, 0.0, 0.0], [0.1, -0.05, 0.003, -0.002, 0.01]] {
             let camera = camera(lens);
             for pixel in [[0.0, 0.0], [63.0, 10.0], [31.5, 32.5]] {
@@ -174,7 +175,7 @@ mod tests {
                 assert!((column - pixel[0]).hypot(row - pixel[1]) < RETURN_DISTANCE, "{lens:?} {pixel:?}");
             }
         }
-        // r - r^3 grows to 0.385 at most: 23 pixels from the middle. Beyond lie mirrored solutions alone.
+        // r - r^3 grows to at most 0.385, or 23 pixels from the centre; beyond it, only mirrored solutions exist.
         let folding = camera([-1.0, 0.0, 0.0, 0.0, 0.0]);
         assert!(folding.ray(size, [54.5, 32.0])[0].is_finite() && folding.ray(size, [55.5, 32.0])[0].is_nan());
         let mut middle: Vec<bool> = (0..size.len()).map(|index| size.position(index).0 == 32).collect();

@@ -1,39 +1,40 @@
-//! Hues as sharp as the brightness beside them (docs/method/views.md).
+//! Sharpens chromaticity to the resolution of brightness (docs/method/views.md).
 //!
-//! JPEG keeps colours at half the resolution of brightness, and a Bayer sensor has one colour a pixel: where two paints
-//! meet brightness leaps and hue drifts over three or four pixels, which is neither the one paint nor the other, and no edge.
-//! Whether that is so the image says itself: of a step all of the change is between two neighbours, of a drift it grows
-//! with the distance. Then each pixel takes the mean hue of that window around it in which hue and brightness vary least,
-//! which lies on its own side of the edge; brightness stays as it is.
+//! JPEG stores colours at half the resolution of brightness, and a Bayer sensor has one colour a pixel. Where two
+//! albedos meet, brightness steps, but chromaticity drifts over three or four pixels through values that belong to
+//! neither. The image itself shows whether this is so: a step changes between two neighbours, whereas the change of a
+//! drift grows with the distance. Each pixel then takes the mean chromaticity of the window around it in which
+//! chromaticity and brightness vary least, which lies on its own side of the edge. Brightness stays unchanged.
 //!
 //! M. Kuwahara et al.: "Processing of RI-angiocardiographic images", Digital Processing of Biomedical Images, 1976.
 //!
-//! Limits: hue finer than the window is lost, and a smooth change of hue becomes a staircase of small steps: for finding
-//! paint and taking it out, not for shading.
+//! Limits: chromaticity finer than the window is lost, and a smooth change becomes a staircase of small steps. The
+//! result serves to find and remove albedo, not to compare shading.
 
 use super::{ColourView, Size};
 
-/// Weights of R, G, B in the brightness that is stored in full (ITU-R BT.601), and the exponent that it is stored with.
+/// Weights of R, G, B in the brightness that is stored at full resolution (ITU-R BT.601), and the exponent of its
+/// encoding.
 const LUMA: [f32; 3] = [0.299, 0.587, 0.114];
 const GAMMA: f32 = 2.2;
-/// Share of the squared differences of neighbours in those two pixels apart, of hue over that of brightness, below which
-/// hue is the softer one: of 30 painted renders it is 0.94 to 1.4, through JPEG 0.58 to 0.76 where paints differ in hue and
-/// 0.72 to 1.07 where they do not.
+/// Chromaticity is sharpened if its [`softness`] is below this share of that of brightness. Set on renders with varying
+/// albedo, with and without JPEG (docs/lab/thresholds.md).
 const SOFT: f64 = 0.85;
-/// Half width of a window, pixels: a drift of four pixels lies between two windows. Half of it (1) leaves twice the error.
+/// Half width of a window, pixels: a drift of four pixels fits between two windows.
 const REACH: isize = 2;
-/// Share of a window that has a colour, at least.
+/// Smallest share of a window with known colours.
 const COVERED: f32 = 0.6;
-/// Weight of brightness beside hue in what varies: shading varies brightness, and paint both.
+/// Weight of brightness relative to chromaticity in the variance of a window: shading varies brightness, albedo varies
+/// both.
 const BRIGHTNESS: f32 = 0.5;
-/// One leaves what lies in the middle of the drift.
+/// Rounds of the filter: one alone leaves the middle of the drift.
 const ROUNDS: usize = 2;
 
-/// Hue in three channels (log S less log brightness), and brightness.
+/// Chromaticity in three channels (log S minus log brightness), and log brightness.
 type Shade = [f32; 4];
 
 impl ColourView {
-    /// This view with its hues as sharp as its brightness; `None` where they are so already.
+    /// This view with its chromaticity as sharp as its brightness; `None` if it already is.
     pub(crate) fn with_sharp_hues(&self) -> Option<Self> {
         let mut shades: Vec<Shade> = (0..self.size.len()).map(|index| shade(self.log_at(index))).collect();
         if softness(self.size, &shades, 0..3) >= SOFT * softness(self.size, &shades, 3..4) {
@@ -55,7 +56,7 @@ impl ColourView {
         let mut log = [(); 3].map(|()| vec![f32::NAN; self.size.len()]);
         for index in (0..self.size.len()).filter(|&index| self.mask[index]) {
             let [r, g, b, bright] = shades[index];
-            // The mean of hues has a brightness of its own.
+            // The mean chromaticity has a brightness itself.
             let offset = bright - brightness([r, g, b]);
             (0..3).for_each(|channel| log[channel][index] = [r, g, b][channel] + offset);
         }
@@ -63,7 +64,7 @@ impl ColourView {
     }
 }
 
-/// log of the brightness of a colour, as it is stored.
+/// Logarithm of the stored brightness of a colour.
 fn brightness(log: [f32; 3]) -> f32 {
     GAMMA * (0..3).map(|channel| LUMA[channel] * (log[channel] / GAMMA).exp()).sum::<f32>().ln()
 }
@@ -79,7 +80,7 @@ fn beside(size: Size, index: usize, right: isize, down: isize) -> Option<usize> 
     (column < size.width && row < size.height).then(|| size.index(column, row))
 }
 
-/// Squared differences of neighbours over those of pixels two apart: half for steps, a quarter for slopes, one for noise.
+/// Squared differences of neighbours over those of pixels two apart: 1/2 for steps, 1/4 for slopes, 1 for noise.
 fn softness(size: Size, shades: &[Shade], members: std::ops::Range<usize>) -> f64 {
     let (mut near, mut far) = (0.0, f64::MIN_POSITIVE);
     for index in 0..size.len() {
@@ -95,7 +96,7 @@ fn softness(size: Size, shades: &[Shade], members: std::ops::Range<usize>) -> f6
     near / far
 }
 
-/// Mean and variance in the window around a pixel; `None` where too little of it has a colour.
+/// Mean and variance in the window around a pixel; `None` if too few of its pixels have a colour.
 fn window(size: Size, shades: &[Shade], index: usize) -> Option<(Shade, f32)> {
     let (mut count, mut sum, mut square) = (0.0, [0.0; 4], [0.0; 4]);
     for down in -REACH..=REACH {
@@ -125,7 +126,7 @@ mod tests {
 
     const SIDE: usize = 40;
 
-    /// Two paints of one brightness gradient with 1 % of noise, beside one another; hue drifts over `drift` pixels.
+    /// Two albedos of one brightness gradient with 1 % noise, side by side; chromaticity drifts over `drift` pixels.
     fn two_paints(drift: f32) -> ColourView {
         let mut dice = noise::white_noise(3);
         let mut log = [(); 3].map(|()| vec![f32::NAN; SIDE * SIDE]);

@@ -14,7 +14,7 @@ pub enum Transfer {
     Linear,
 }
 
-/// Samples as they come from a file or a canvas.
+/// Samples as a file or a canvas holds them.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ColourSamples {
     /// R, G, B, A of each pixel, 8 bit.
@@ -42,7 +42,7 @@ pub struct ColourImage {
     pub camera: Option<Pinhole>,
 }
 
-/// The checked colour view: natural logarithms of linear intensity where they exist.
+/// The checked colour view: natural logarithms of linear intensity, where they exist.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColourView {
     /// Size of the image.
@@ -61,27 +61,27 @@ pub struct ColourView {
     log_noise: f64,
 }
 
-/// What silhouettes and edges are read from.
+/// The input of silhouettes and edges.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WholeFrame {
-    /// The caller's mask, black and saturated pixels included; everything without one.
+    /// The caller's mask, with black and saturated pixels; everything if there is no mask.
     pub object: Vec<bool>,
-    /// Brightness as displayed, 0 .. 1 for integers, also beside the object; empty without intrinsics.
+    /// Brightness as displayed, 0 .. 1 for integers, also outside the object; empty without intrinsics.
     pub grey: Vec<f32>,
 }
 
-/// Darkest usable 8-bit level: below it one quantisation step is more than a quarter of the intensity.
+/// Darkest usable 8-bit level: below it, one quantisation step exceeds a quarter of the intensity.
 const DARKEST_LEVEL_8: u8 = 4;
-/// Darkest usable 16-bit level: level 4 of a sensor of 12 bits, which is 16 times coarser.
+/// Darkest usable 16-bit level: level 4 of a 12-bit sensor, whose steps are 16 times coarser.
 const DARKEST_LEVEL_16: u16 = 64;
 
 impl ColourView {
-    /// Checks the image and takes its logarithms. The mask leaves out pixels that are black, saturated, transparent, or over 10000 times
-    /// brighter or darker than the median.
+    /// Checks the image and takes its logarithms. The mask excludes pixels that are black, saturated, transparent, or
+    /// over 10000 times brighter or darker than the median.
     ///
     /// # Errors
-    /// [`ErrorKind::Size`] for sizes that disagree, [`ErrorKind::Range`] for bad intrinsics or lenses,
-    /// [`ErrorKind::Empty`] where fewer than 16 pixels are usable.
+    /// [`ErrorKind::Size`] for sizes that disagree, [`ErrorKind::Range`] for invalid intrinsics or lenses,
+    /// [`ErrorKind::Empty`] if fewer than 16 pixels are usable.
     pub fn new(image: ColourImage) -> Result<Self> {
         let (size, object) = checked(&image)?;
         let transfer = transfer_of(&image.samples, image.transfer);
@@ -114,7 +114,8 @@ impl ColourView {
         Ok(Self { whole, ..Self::of(size, camera, usable, log, transfer) })
     }
 
-    /// Whether it is a camera's whole frame: intrinsics, no mask, and over half of the first and last rows show something.
+    /// Whether this is a camera's whole frame: it has intrinsics and no mask, and over half of its first and last rows
+    /// have usable colours.
     pub fn is_whole_frame(&self) -> bool {
         let (width, whole) = (self.size.width, &self.whole.object);
         let shown = |row: &[bool]| row.iter().filter(|&&is_shown| is_shown).count();
@@ -122,24 +123,25 @@ impl ColourView {
         !self.camera.is_orthographic() && edges > width && !whole.is_empty() && !whole.contains(&false)
     }
 
-    /// Where the object is: the caller's mask, or the pixels with usable colours without one.
+    /// The object: the caller's mask, or else the pixels with usable colours.
     pub(crate) fn object(&self) -> &[bool] {
         if self.whole.object.contains(&false) { &self.whole.object } else { &self.mask }
     }
 
-    /// The view of these logarithms, NaN off the mask.
+    /// A view of these logarithms, which are NaN off the mask.
     pub(super) fn of(size: Size, camera: Camera, mask: Vec<bool>, log: [Vec<f32>; 3], transfer: Transfer) -> Self {
-        // Computed once: every stage's preparation needs them, and they would be a fifth of the search's.
+        // Computed once, because every stage's preparation needs them and recomputing would take a fifth of the
+        // search's.
         let (log_spread, log_noise) = (spread_of(&log), noise_of(size, &log));
         Self { size, camera, mask, log, transfer, whole: WholeFrame::default(), log_spread, log_noise }
     }
 
-    /// The same view of an image that was encoded otherwise.
+    /// The same view for an image with another encoding.
     pub(super) fn with_transfer(self, transfer: Transfer) -> Self {
         Self { transfer, ..self }
     }
 
-    /// Mean of log S over the mask and the three channels: what a change of exposure shifts.
+    /// Mean of log S over the mask and the three channels, which a change of exposure shifts.
     #[must_use]
     pub fn log_mean(&self) -> f64 {
         let inside = || self.log.iter().flatten().filter(|log| log.is_finite()).map(|&log| f64::from(log));
@@ -152,15 +154,15 @@ impl ColourView {
         self.log_spread
     }
 
-    /// Standard deviation of the noise of log S in one channel, by fourth differences along rows and columns;
-    /// printed texture counts as noise.
+    /// Standard deviation of the noise of log S in one channel, from fourth differences along rows and columns; printed
+    /// texture counts as noise.
     #[must_use]
     pub const fn log_noise(&self) -> f64 {
         self.log_noise
     }
 
-    /// The same view with `share` of each channel's median intensity added to it: log(I + share median I). The dark end,
-    /// where logarithms magnify whatever light was left out, loses its weight.
+    /// The same view with `share` of each channel's median intensity added: log(I + share median I). This reduces the
+    /// weight of the dark end, where logarithms amplify unmodelled light.
     #[must_use]
     pub(crate) fn lifted(&self, share: f32) -> Self {
         let log = self.log.each_ref().map(|channel| {
@@ -171,8 +173,8 @@ impl ColourView {
         Self::of(self.size, self.camera, self.mask.clone(), log, self.transfer)
     }
 
-    /// Standard deviation of the noise of a difference of neighbours, as far as paint at edges lets see: most neighbours
-    /// have one paint.
+    /// Standard deviation of the noise in a difference of neighbours. The median ignores edges of albedo, because most
+    /// neighbours share one albedo.
     pub(super) fn edge_noise(&self) -> f32 {
         let mut steps: Vec<f32> = (self.size.runs())
             .filter(|pair| pair.iter().all(|&index| self.mask[index]))
@@ -191,7 +193,7 @@ impl ColourView {
     }
 }
 
-/// Size and object of an image whose parts fit each other.
+/// Size and object mask of an image whose parts are consistent.
 pub(super) fn checked(image: &ColourImage) -> Result<(Size, Vec<bool>)> {
     let size = Size::new("image", image.width, image.height)?;
     if let Some(camera) = &image.camera {
@@ -213,8 +215,8 @@ pub(super) fn checked(image: &ColourImage) -> Result<(Size, Vec<bool>)> {
     Ok((size, object))
 }
 
-/// Log intensity: farthest from the channel's median, either way. The factor of 10000 exceeds the contrast of any picture of one object; floats
-/// beyond it mark missing pixels.
+/// Largest deviation of log intensity from the channel's median. The factor of 10000 exceeds the contrast of any
+/// picture of one object; floats beyond it mark missing pixels.
 const FARTHEST_FROM_MEDIAN: f32 = 9.21;
 
 fn leave_out_far_from_median(log: &[Vec<f32>; 3], usable: &mut [bool]) {
@@ -249,7 +251,7 @@ fn noise_of(size: Size, log: &[Vec<f32>; 3]) -> f64 {
 }
 
 impl ColourSamples {
-    /// Linear intensity of a pixel, `None` where it is black, saturated, transparent or not a number.
+    /// Linear intensity of a pixel; `None` if it is black, saturated, transparent or not a number.
     pub(super) fn linear(&self, index: usize, transfer: Transfer) -> Option<[f32; 3]> {
         match self {
             Self::Rgba8(data) => {
@@ -273,7 +275,7 @@ impl ColourSamples {
 }
 
 impl ColourSamples {
-    /// Mean of the channels of a pixel as they look: integers as stored, the root of linear floats.
+    /// Mean of a pixel's channels as displayed: integers as stored, the square root of linear floats.
     fn grey(&self, index: usize) -> f32 {
         let grey = match self {
             Self::Rgba8(data) => (0..3).map(|c| f32::from(data[4 * index + c]) / f32::from(u8::MAX)).sum::<f32>() / 3.0,
@@ -286,7 +288,8 @@ impl ColourSamples {
     }
 }
 
-/// Given, else: floats are linear, 8 bit is sRGB, and 16 bit is sRGB exactly where it was widened from 8 bit.
+/// The given transfer, or else the default: floats are linear, 8 bit is sRGB, and 16 bit is sRGB exactly if widened
+/// from 8 bit.
 pub(crate) fn transfer_of(samples: &ColourSamples, told: Option<Transfer>) -> Transfer {
     /// An 8-bit level widened to 16 bit is a multiple of 257.
     const WIDENED: u16 = 257;
@@ -308,7 +311,7 @@ fn decode(value: f32, transfer: Transfer) -> f32 {
     }
 }
 
-/// Linear intensity to the encoding of a display: the curve of IEC 61966-2-1, the other way round.
+/// Linear intensity to the encoding of a display: the inverse curve of IEC 61966-2-1.
 pub(crate) fn to_srgb(linear: f64) -> f64 {
     if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
@@ -341,13 +344,13 @@ mod tests {
             ColourView::new(image).unwrap().is_whole_frame()
         };
         assert!(frame(false, None, camera));
-        // An object before black, one that a mask tells, and what has no camera.
+        // An object in front of black, one given by a mask, and an image without a camera.
         assert!(!frame(true, None, camera));
         assert!(!frame(false, Some((0..64).map(|index| u8::from(is_middle(index))).collect()), camera));
         assert!(!frame(false, None, None));
     }
 
-    /// Found by a law of whole runs: stripes were noise or not as the camera was held.
+    /// Stripes count as noise whichever way the camera is held.
     #[test]
     fn noise_is_the_same_however_the_view_is_held() {
         let side = 12;

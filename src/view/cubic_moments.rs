@@ -1,7 +1,7 @@
 //! A cubic w(a, b) = sum c_jk a^j b^k, j + k <= 3, fitted to the neighbours of a point by weighted least squares
 //! (docs/method/views.md): the sums over the neighbours, and the slopes at the point that follow from them.
 //!
-//! The products of a cubic's terms are powers up to the sixth, so that 28 sums hold the normal equations. Two points are
+//! The products of a cubic's terms are powers up to the sixth, so 28 sums hold the normal equations. Two points are
 //! fitted side by side.
 
 use crate::numeric::{Doubles, Real};
@@ -11,10 +11,10 @@ const TERMS: usize = 10;
 /// Relative damping of the normal equations: above the rounding of their sums.
 const DAMPING: f64 = 1e-9;
 
-/// Sums of a^j b^k up to the sixth power, all that the products of a cubic's terms are.
+/// Number of sums of a^j b^k up to the sixth power, which are all products of a cubic's terms.
 const MOMENTS: usize = 28;
 
-/// Sums over the neighbours: of the weights times a^j b^k by rising j + k, then by rising k, and of those to the third
+/// Sums over the neighbours: of the weights times a^j b^k, ordered by j + k and then by k, and of those up to the third
 /// power times w.
 pub struct Moments {
     count: Doubles,
@@ -23,7 +23,7 @@ pub struct Moments {
     square: Doubles,
 }
 
-/// Sums of products, entry by entry, in straight lines: the build unrolls no loop of so many.
+/// Adds products entry by entry in straight-line code, because the compiler does not unroll a loop of this length.
 macro_rules! add {
     ($sums:expr, $($place:literal: $value:expr),*) => { $($sums[$place] = $sums[$place] + $value;)* };
 }
@@ -51,11 +51,11 @@ impl Moments {
         self.count = self.count + one;
     }
 
-    /// Slopes of the cubics at the points along both tangents, and their standard errors with so much `noise`; the
-    /// errors are NaN where the neighbours do not determine them.
+    /// Slopes of the cubics at the points along both tangents, and their standard errors under this `noise`. The errors
+    /// are NaN if the neighbours do not determine the slopes.
     ///
-    /// The normal equations with w as a last column are eliminated; what is left of w^2 is the residual, and of the
-    /// slopes, which come last, the inverse of their variances.
+    /// Eliminates the normal equations with w as a last column. The remainder of w^2 is the residual; the remaining
+    /// pivots of the slopes, which come last, are the inverses of their variances.
     #[inline(never)]
     pub fn slopes(&self, noise: f64) -> ([Doubles; 2], Doubles) {
         const A: usize = TERMS - 2;
@@ -88,7 +88,8 @@ impl Moments {
         let along_b = rows[TERMS][B] / rows[B][B];
         let along_a = rows[TERMS][A] / rows[A][A] - share * along_b;
         let variance = one / rows[A][A] + (one + share * share) / rows[B][B];
-        // Noise averages out, a misfit of the cubic does not: its share of the error is no less than the misfit itself.
+        // Noise averages out, but a misfit of the cubic does not: its contribution to the error is at least the misfit
+        // itself.
         let residual = left.raised_to(0.0) / self.plain[0];
         let noise = residual.min(Doubles::splat(noise * noise));
         let error = (noise * variance + (residual - noise) * variance.raised_to(1.0)).sqrt();
@@ -96,10 +97,10 @@ impl Moments {
     }
 }
 
-/// The terms of a cubic as powers of a and b, its slopes last.
+/// The terms of a cubic as powers of a and b, with the slopes last.
 const POWERS: [[usize; 2]; TERMS] = [[0, 0], [2, 0], [1, 1], [0, 2], [3, 0], [2, 1], [1, 2], [0, 3], [1, 0], [0, 1]];
 
-/// Where the sum of a^j b^k is.
+/// Index of the sum of a^j b^k.
 const fn place([j, k]: [usize; 2]) -> usize {
     (j + k) * (j + k + 1) / 2 + k
 }
@@ -108,8 +109,8 @@ const fn place([j, k]: [usize; 2]) -> usize {
 mod tests {
     use super::*;
 
-    /// The slopes along a and b, and their error, of a cubic through `w` over a grid of 2 `reach` + 1 places a side, with
-    /// weights that fall outwards.
+    /// The slopes along a and b, and their error, of a cubic through `w` on a grid of 2 `reach` + 1 points a side, with
+    /// weights that fall off outwards.
     fn fitted(reach: i32, noise: f64, w: impl Fn(f64, f64) -> f64) -> ([f64; 2], f64) {
         let mut moments = Moments::zero();
         for (row, column) in (-reach..=reach).flat_map(|row| (-reach..=reach).map(move |column| (row, column))) {
@@ -131,7 +132,7 @@ mod tests {
         assert!(error < 1e-3, "{error}");
     }
 
-    /// What exceeds the noise is a misfit, which does not average out.
+    /// Residuals beyond the noise are a misfit, which does not average out.
     #[test]
     fn a_misfit_counts_more_than_noise() {
         let ripple = |a: f64, b: f64| 0.1 * (2.0 * a + 3.0 * b).sin();

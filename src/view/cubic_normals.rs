@@ -1,16 +1,16 @@
-//! w(a, b) = sum c_jk a^j b^k, j + k <= 3, over the tangent plane: normals of third order, with their errors
-//! (docs/method/views.md).
+//! Third-order normals with their errors (docs/method/views.md): w(a, b) = sum c_jk a^j b^k, j + k <= 3, over the
+//! tangent plane.
 //!
 //! The neighbours of a point are expressed in its tangent plane (a, b along it, w off it), and a cubic is fitted to
-//! them by weighted least squares; its slope at the point corrects the normal, twice. Neighbours are those within two
-//! or three pixels (more under noise), whichever gives the smaller error. In the tangent plane a round rim is as smooth
-//! as a front, whereas a depth z(x, y) has derivatives that grow without bound there, and central differences are
-//! biased. Measured on Mozart at 128x128 from the side (beta = 90 degrees): median error 0.011 against 0.024 rad.
+//! them by weighted least squares. Its slope at the point corrects the normal, twice. The neighbours are those within
+//! two or three pixels (more under noise), whichever gives the smaller error. In the tangent plane, the surface near an
+//! occluding contour is as smooth as one that faces the camera. A depth z(x, y) has unbounded derivatives there, which
+//! bias central differences.
 //!
-//! The error of a normal follows from the residual of its cubic and the share of the weights that its slopes have.
-//! Neighbours beyond a jump are left out. Where fewer are left than a cubic needs, the first normal stays with the
-//! error [`UNFITTED`]. Limits: detail finer than the window is smoothed; noise of the points passes with a
-//! gain of about a half, no worse than central differences.
+//! The error of a normal follows from the residual of its cubic and the weight that determines its slopes. Neighbours
+//! beyond a depth discontinuity are excluded. If fewer remain than a cubic needs, the first normal stays with the error
+//! [`UNFITTED`]. Limits: detail finer than the window is smoothed; noise of the points passes with a gain of about a
+//! half, no worse than with central differences.
 
 use nalgebra::Vector3;
 
@@ -18,54 +18,51 @@ use crate::numeric::{DOUBLE_LANES, Doubles, Real, dot, noise, quantile};
 use crate::view::cubic_moments::Moments;
 use crate::view::{Normals, Points, Size};
 
-/// Half widths of the windows in pixels. The first is the smallest that holds a cubic with some spare; flat parts are
-/// better served by the second, noisy views by more.
+/// Half widths of the windows in pixels. The first is the smallest that determines a cubic with some redundancy; the
+/// second suits flat parts, the others noisy views.
 const RADII: [usize; 4] = [2, 3, 5, 8];
-/// Sigma of the weights along the tangent plane over the half width. Between 0.5 and 1 the poses of Mozart's tables
-/// differ little.
+/// Sigma of the weights along the tangent plane, in half widths. Set on Mozart (docs/lab/thresholds.md).
 const SIGMA: f64 = 0.75;
-/// Median error of the normals from which on wider windows than the first two are tried, radians: views without noise
-/// stay below (which, not recorded).
+/// Median error of the normals above which windows wider than the first two are tried, radians: views without noise
+/// stay below it (data not recorded).
 const NOISY: f32 = 0.06;
-/// In noisy views, by how much a wider window may move the normals: their mean square over what the squares of the claimed
-/// errors fall by. Noise alone moves them by 0.62 of it, that share of the claimed square being noise; the rest is squared
-/// bias of the wider window. Up to 1.24 bias and noise together fall; a little less because noise averages over the
-/// points of a registration, and bias does not.
+/// Limit of how far a wider window may move the normals of noisy views: their mean square move over the decrease of the
+/// squared claimed errors. Noise alone gives 0.62, the share of noise in the claimed square; the rest is squared bias
+/// of the wider window. Up to 1.24, the sum of bias and noise falls. The limit is a little lower, because a
+/// registration averages noise over its points, but not bias.
 const MOST_MOVED: f64 = 1.1;
-/// Half width of the squares that this is summed over, half widths of the window: windows that overlap share their noise.
+/// Half width of the squares over which this is summed, in half widths of the window: overlapping windows share their
+/// noise.
 const REACH: usize = 2;
-/// Largest |w| of a neighbour: half the distance along the plane and 0.3 pixel lengths; beyond lies another part of the
-/// object.
+/// Largest |w| of a neighbour: half the distance along the plane plus 0.3 pixel lengths. Beyond it lies another part of
+/// the object.
 const LARGEST_SLOPE: f64 = 0.5;
 const LARGEST_OFFSET: f64 = 0.3;
-/// Instead of [`LARGEST_OFFSET`], where that is more: standard deviations of the depth's noise.
+/// Replaces [`LARGEST_OFFSET`] if larger: standard deviations of the depth's noise.
 const NOISE_OFFSETS: f64 = 3.0;
-/// Residuals up to this multiple of the estimated noise count as noise: the estimate is off by a sixth on steep or
-/// small views.
+/// Residuals up to this multiple of the estimated noise count as noise: the estimate errs by a sixth on steep or small
+/// views.
 const NOISE_MARGIN: f64 = 1.25;
-/// Rounds from a first normal: the second starts from a normal that is right to a few hundredths. Where that of a narrower
-/// window is, by its error, one round from it is enough.
+/// Rounds from a first normal: the second starts from a normal accurate to a few hundredths. If the normal of a
+/// narrower window is that accurate, one round from it suffices.
 const ROUNDS: usize = 2;
-/// Error of a normal below which that is so, radians. Table 2B at 128x128, light known, 24 cells from 80 and 90 degrees: all stay within
-/// 0.02 degrees but for two of an eighth of the depth map (0.05, 0.14); one round from every normal moved a cell at 90 degrees from 0.20 to 0.54.
+/// Error below which a normal is accurate enough for a single round, radians. Set on Mozart at 128x128
+/// (docs/lab/thresholds.md).
 const CLOSE: f32 = 0.06;
-/// Least cosine between the fitted normal and the first one: with less it is rejected.
+/// Smallest cosine between the fitted normal and the first one; below it the fit is rejected.
 const LEAST_COSINE: f64 = 0.02;
-/// Largest |n_y| for which the y axis serves to construct the tangents.
+/// Largest |n_y| for which the tangents are constructed from the y axis.
 const LEVEL: f64 = 0.7;
-/// Error of a normal that no cubic could be fitted for, radians: that of a one-sided difference.
+/// Error of a normal for which no cubic could be fitted, radians: that of a one-sided difference.
 pub const UNFITTED: f32 = 0.3;
 
 /// Improves `normals` (unit, NaN where missing) of the organised `points` in place and writes each one's error in
 /// radians; NaN where there is no normal. Returns the standard deviation of the points in pixel lengths.
 ///
-/// Each pixel has the window of its least error among those that agree with the narrower ones: a normal that moves by
-/// more than the error it had is biased by the wider window (Lepski's rule). In noisy views noise moves normals anyhow, and
-/// the surroundings of a pixel tell together whether they move by more than that where
-/// the noise is white; else the error alone decides. Measured on Mozart, median degrees of 48
-/// poses at 64x64
-/// with the light unknown and of 60 at 128x128 with the light known: 0.56 and 0.079; without the rule 0.67 and 0.078,
-/// with the narrowest window alone 0.50 and 0.080.
+/// Each pixel takes the window of least error among those consistent with the narrower ones: a normal that moves by
+/// more than its previous error is biased by the wider window (Lepski's rule). In noisy views, noise moves normals
+/// anyway. If it is white, the surroundings of a pixel together show whether normals move by more than the noise
+/// explains; otherwise the error alone decides.
 pub fn improve(size: Size, points: &Points, normals: &mut Normals, error: &mut [f32], is_white: bool) -> f64 {
     let mut first = normals.clone();
     let (mut wide, mut wide_error) = (normals.clone(), vec![f32::NAN; error.len()]);
@@ -115,7 +112,7 @@ pub fn improve(size: Size, points: &Points, normals: &mut Normals, error: &mut [
     noise
 }
 
-/// Sums over squares that reach so many pixels from each.
+/// Sums over squares with this half width around each pixel.
 fn sums_around(size: Size, values: &[f64], reach: usize) -> Vec<f64> {
     let pass = |values: &[f64], stride: usize, count: usize| -> Vec<f64> {
         let sum = |index: usize| {
@@ -129,19 +126,19 @@ fn sums_around(size: Size, values: &[f64], reach: usize) -> Vec<f64> {
     pass(&pass(values, 1, size.width), size.width, size.height)
 }
 
-/// How far apart two normals of a pixel are.
+/// Distance between two normals of a pixel.
 fn apart(a: &Normals, b: &Normals, index: usize) -> f64 {
     f64::from((Vector3::from(a.get(index)) - Vector3::from(b.get(index))).norm())
 }
 
-/// What takes part in a fit, pixel lengths.
+/// Limits of the neighbours in a fit, pixel lengths.
 #[derive(Clone, Copy)]
 struct Window {
     radius: usize,
     sigma: f64,
-    /// Largest |w| next to the point.
+    /// Largest |w| close to the point.
     offset: f64,
-    /// Largest residual that is noise.
+    /// Largest residual that counts as noise.
     noise: f64,
 }
 
@@ -155,14 +152,14 @@ fn noise_of(size: Size, points: &Points) -> f64 {
     noise::of_fourth_differences(&mut fourths, 2 * size.len())
 }
 
-/// Median of the numbers; infinite without any.
+/// Median of the finite values; infinite without any.
 fn median(values: impl Iterator<Item = f32>) -> f32 {
     let mut values: Vec<f32> = values.filter(|value| value.is_finite()).collect();
     if values.is_empty() { f32::INFINITY } else { quantile(&mut values, 0.5) }
 }
 
-/// Visits every point that has a first normal, with the error that is known of it or NaN, with the normal of its cubic and its
-/// error.
+/// Visits every point that has a first normal, with the normal of its cubic and its error; `error` holds the known
+/// errors, or NaN.
 fn fit_all(
     size: Size,
     points: &Points,
@@ -188,7 +185,7 @@ fn fit_all(
             let (cosine, error) = (dot(fitted, normal).array(), error.array());
             for lane in (0..count).filter(|lane| known(start + lane)) {
                 let fitted = fitted.map(|axis| axis.array()[lane] as f32);
-                // Both are NaN where nothing could be fitted.
+                // Both are NaN if no cubic could be fitted.
                 let good = cosine[lane] > LEAST_COSINE && error[lane].is_finite();
                 let (normal, error) = if good { (fitted, error[lane] as f32) } else { (firsts[lane], UNFITTED) };
                 visit(start + lane, normal, error.min(UNFITTED));
@@ -197,8 +194,8 @@ fn fit_all(
     }
 }
 
-/// The rows of points that the windows of one row reach, padded with NaN left and right of the raster, so that no index
-/// has to be checked.
+/// The rows of points within reach of the windows of one row, padded with NaN left and right of the raster, so that no
+/// index needs a check.
 struct Band {
     window: Window,
     stride: usize,
@@ -228,14 +225,14 @@ impl Band {
         }
     }
 
-    /// The points at so many columns and rows from the upper left of the window.
+    /// The points at this offset into the band.
     #[inline(always)]
     fn points(&self, start: usize) -> [Doubles; 3] {
         let [x, y, z] = &self.axes;
         [Doubles::load(x, start), Doubles::load(y, start), Doubles::load(z, start)]
     }
 
-    /// The normals of the cubics at `column` and its right neighbour, and their errors; NaN where there is none.
+    /// The normals of the cubics at `column` and its right neighbour, and their errors; NaN where missing.
     fn fit(&self, column: usize, first: [Doubles; 3], rounds: usize) -> ([Doubles; 3], Doubles) {
         let middle = column + self.window.radius * (self.stride + 1);
         let centre = self.points(middle);
@@ -257,7 +254,7 @@ impl Band {
         (normal, last_error)
     }
 
-    /// Sums over the neighbours of two points, seen along their `axes`.
+    /// Sums over the neighbours of two points, in coordinates along their `axes`.
     #[inline(never)]
     fn moments(&self, column: usize, centre: [Doubles; 3], axes: [[Doubles; 3]; 3]) -> Moments {
         let slope = Doubles::splat(LARGEST_SLOPE * LARGEST_SLOPE);
@@ -269,7 +266,7 @@ impl Band {
                 let [a, b, w] = [dot(axes[0], offset), dot(axes[1], offset), dot(axes[2], offset)];
                 let far = a * a + b * b;
                 let beyond = ((w * w).sqrt() - Doubles::splat(self.window.offset)).raised_to(0.0);
-                // NaN is not near: a missing neighbour gets weight and position zero.
+                // NaN fails the comparison: a missing neighbour gets weight and position zero.
                 let near = (beyond * beyond).at_most(slope * far);
                 let weight = near.keep((far * flatness).exp2());
                 moments.add(near.keep(Doubles::splat(1.0)), weight, near.keep(a), near.keep(b), near.keep(w));
@@ -279,7 +276,7 @@ impl Band {
     }
 }
 
-/// Unit vectors across a normal: the first across the y axis, too, or across x where that is near.
+/// Unit vectors perpendicular to a normal: the first also to the y axis, or to the x axis if y is close to the normal.
 fn tangents([x, y, z]: [Doubles; 3]) -> [[Doubles; 3]; 2] {
     let zero = Doubles::splat(0.0);
     let level = (y * y).less(Doubles::splat(LEVEL * LEVEL));
@@ -305,7 +302,7 @@ mod tests {
     use super::*;
     use crate::view::{Camera, normals};
 
-    /// Depth of a sphere of radius 20 before an orthographic camera, with its true normals.
+    /// Depth of a sphere of radius 20 in an orthographic view, with its true normals.
     fn sphere() -> (Size, Points, Normals) {
         let size = Size { width: 48, height: 48 };
         let (mut points, mut truth) = (Points::missing(size.len()), Normals::missing(size.len()));
@@ -345,8 +342,8 @@ mod tests {
         }
     }
 
-    /// Half a pixel of noise tilts differences by 20 degrees; the estimated errors are the true ones within a factor of
-    /// two.
+    /// Half a pixel of noise tilts differences by 20 degrees; the estimated errors match the true ones within a factor
+    /// of two.
     #[test]
     fn noise_takes_wider_windows_and_errors_are_estimated() {
         let (size, mut points, truth) = sphere();

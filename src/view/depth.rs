@@ -1,4 +1,5 @@
-//! The depth map: checked once and converted to points and normals; holes are told from background (docs/method/views.md).
+//! The depth map: checked once and converted to points and normals; holes are distinguished from background
+//! (docs/method/views.md).
 
 use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
@@ -9,7 +10,7 @@ use crate::view::pinhole::FARTHEST;
 use crate::view::smoothing::smooth;
 use crate::view::{Camera, Normals, Pinhole, Points, Size, flying_pixels, normals};
 
-/// Samples as they come from a sensor or a file.
+/// Samples as a sensor or a file holds them.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DepthSamples {
     /// Depth along z in stored units; NaN, infinite, zero and negative values are holes.
@@ -31,11 +32,11 @@ pub struct DepthMap {
     pub samples: DepthSamples,
     /// Metres (or pixels, orthographic) of a stored unit; `None`: 1, and 0.001 for integers with a camera.
     pub unit: Option<f64>,
-    /// Non-zero where the object is; `None`: where there is depth, and holes enclosed by it.
+    /// Non-zero where the object is; `None`: pixels with depth, and holes enclosed by them.
     pub mask: Option<Vec<u8>>,
     /// `None`: orthographic.
     pub camera: Option<Pinhole>,
-    /// Unit normals of the caller's, interleaved; they override our own.
+    /// The caller's unit normals, interleaved; they override the computed ones.
     pub normals: Option<Vec<f32>>,
 }
 
@@ -46,41 +47,41 @@ pub struct DepthView {
     pub size: Size,
     /// How points map to pixels.
     pub camera: Camera,
-    /// Object pixels, holes included where they touch a depth.
+    /// Object pixels, including holes that touch a depth.
     pub mask: Vec<bool>,
-    /// Points in the depth camera's frame in metres or pixels, NaN at holes and off the mask; without the noise that
-    /// pixels share with their neighbours.
+    /// Points in the depth camera's frame in metres or pixels, NaN at holes and off the mask, without the noise that
+    /// neighbouring pixels share.
     pub points: Points,
-    /// Depth along z as it was measured; empty where it is the points' own.
+    /// Depth along z as measured; empty if it equals that of the points.
     pub measured_depth: Vec<f32>,
     /// The noise of the measured depth.
     pub noise: DepthNoise,
-    /// Unit normals in the depth camera's frame, NaN where there is none.
+    /// Unit normals in the depth camera's frame, NaN where missing.
     pub normals: Normals,
-    /// Whether the input was an organised cloud: no ray of a camera runs through its pixels.
+    /// Whether the input was an organised cloud, whose pixels have no camera rays.
     pub organised: bool,
-    /// Whether the normals are the caller's own.
+    /// Whether the caller gave the normals.
     pub normals_given: bool,
-    /// Pixels with a depth that trimming took out of the object.
+    /// Number of pixels with a depth that trimming removed from the object.
     pub trimmed: usize,
-    /// Whether a mask said what the object is.
+    /// Whether the caller gave a mask.
     pub has_mask: bool,
 }
 
-/// The field that is named where the lens lets no rays through.
+/// The field of an error if the lens has no rays.
 const LENS: &str = "depth.camera.distortion";
-/// Metres of a stored integer where a camera is known and no unit is given: millimetres, as sensors store them.
+/// Metres of a stored integer if a camera is known and no unit is given: millimetres, as sensors store them.
 const MILLIMETRE: f64 = 0.001;
-/// Without a mask, a gap in the depth that the object encloses belongs to it up to this share of its pixels (data not
+/// Without a mask, an enclosed gap in the depth belongs to the object up to this share of the object's pixels (data not
 /// recorded).
 const LARGEST_HOLE: f64 = 0.02;
 
 impl DepthView {
-    /// Checks the depth map, trims it where `trim` is set, and computes points and normals.
+    /// Checks the depth map, trims it if `trim` is set, and computes points and normals.
     ///
     /// # Errors
-    /// [`ErrorKind::Size`] for sizes that disagree, [`ErrorKind::Range`] for bad intrinsics, lenses or units,
-    /// [`ErrorKind::Empty`] where fewer than 16 pixels have a depth.
+    /// [`ErrorKind::Size`] for sizes that disagree, [`ErrorKind::Range`] for invalid intrinsics, lenses or units,
+    /// [`ErrorKind::Empty`] if fewer than 16 pixels have a depth.
     pub fn new(map: &DepthMap, trim: bool) -> Result<Self> {
         let size = Size::new("depth", map.width, map.height)?;
         if let Some(camera) = &map.camera {
@@ -143,7 +144,7 @@ impl DepthView {
         ))
     }
 
-    /// Share of the depths that trimming left out where no mask said what the object is.
+    /// Share of the depths that trimming removed; zero with a mask.
     pub fn trimmed_without_mask(&self) -> f64 {
         let trimmed = if self.has_mask { 0.0 } else { self.trimmed as f64 };
         trimmed / (trimmed + self.valid() as f64)
@@ -160,8 +161,8 @@ impl DepthView {
         }
     }
 
-    /// Moves the points along their rays to where they are without the noise of the map, unless that is white: cubics and
-    /// registrations average white noise, and miss what smoothing takes from the relief.
+    /// Moves the points along their rays to remove the noise of the map, unless that is white: cubics and registration
+    /// average white noise themselves, and smoothing would take relief that they need.
     fn remove_noise(&mut self) {
         let mut depth = self.points.z.clone();
         self.camera.heights_from_depth(&mut depth);
@@ -180,7 +181,7 @@ impl DepthView {
         self.measured_depth = std::mem::replace(&mut self.points.z, depth);
     }
 
-    /// Takes those components of the mask that hold no depth at all out of it: nothing tells how far away they are.
+    /// Removes from the mask its components without any depth, because their distance is unknown.
     fn drop_islands(&mut self) {
         let (labels, counts) = components(self.size, |index| self.mask[index], |_, _| true);
         let mut measured = vec![false; counts.len()];
@@ -192,7 +193,7 @@ impl DepthView {
         }
     }
 
-    /// Depth along z as it was measured, NaN at holes and off the mask.
+    /// Depth along z as measured, NaN at holes and off the mask.
     #[must_use]
     pub fn measured(&self) -> &[f32] {
         if self.measured_depth.is_empty() { self.depth() } else { &self.measured_depth }
@@ -220,7 +221,7 @@ impl DepthMap {
         }
     }
 
-    /// Points in metres or pixels, NaN at holes; x and y also where no ray runs.
+    /// Points in metres or pixels, NaN at holes; x and y also where there is no ray.
     fn points(&self, size: Size, camera: Camera, unit: f64) -> Result<Points> {
         let (field, per_pixel, length) = match &self.samples {
             DepthSamples::Float(data) => ("depth.data", 1, data.len()),
@@ -243,7 +244,7 @@ impl DepthMap {
             };
             let (column, row) = size.position(index);
             let point = camera.point(size, [column as f64, row as f64], depth * unit).map(|value| value as f32);
-            // Aside as well: behind a focal length of next to nothing.
+            // x and y may exceed the limit as well, if the focal length is tiny.
             if point[2] > 0.0 && !point.iter().any(|value| value.abs() >= FARTHEST as f32) {
                 points.set(index, point);
             }
@@ -260,7 +261,7 @@ fn require_length(field: &'static str, size: Size, per_pixel: usize, length: usi
     Err(Error::new(ErrorKind::Size, field, format!("{width}x{height} pixels need {needed} values, not {length}")))
 }
 
-/// The caller's normals at unit length; what is not finite or has no length is missing.
+/// The caller's normals at unit length; those that are not finite or have no length are missing.
 fn given_normals(size: Size, given: &[f32]) -> Result<Normals> {
     require_length("depth.normals", size, 3, given.len())?;
     let mut normals = Normals::missing(size.len());
@@ -273,7 +274,7 @@ fn given_normals(size: Size, given: &[f32]) -> Result<Normals> {
     Ok(normals)
 }
 
-/// Pixels with depth, and the small gaps that they enclose.
+/// Pixels with depth, and the small gaps enclosed by them.
 fn enclosed(size: Size, depth: &[f32]) -> Vec<bool> {
     let valid = depth.iter().filter(|depth| !depth.is_nan()).count();
     let (labels, counts) = components(size, |index| depth[index].is_nan(), |_, _| true);
@@ -352,7 +353,7 @@ mod tests {
     #[test]
     fn where_the_lens_lets_no_ray_through_is_no_depth() {
         let mut input = map(DepthSamples::Float(vec![1.0; 100]));
-        // No ray runs farther than 0.385 focal lengths from the middle.
+        // No ray lies farther than 0.385 focal lengths from the centre.
         let lens = Lens::brown(&[-1.0, 0.0, 0.0, 0.0, 0.0]).unwrap();
         let camera = Pinhole { fx: 10.0, fy: 10.0, cx: 4.5, cy: 4.5, lens };
         input.camera = Some(camera);

@@ -1,60 +1,60 @@
-//! The noise of a depth map, told from its surface by how second differences grow with their span (docs/method/views.md).
+//! The noise of a depth map, distinguished from its surface by how second differences grow with their span
+//! (docs/method/views.md).
 //!
 //! D_k = z(x - k) - 2 z(x) + z(x + k). A surface whose slope wanders, by innovations of variance c^2 a pixel, has
-//! var D_k = c^2 k (2 k^2 + 1) / 3; noise has var D_k = 6 sigma^2 for every span that is wider than its correlation.
-//! So both follow from a few spans by linear least squares. It does not matter what makes the noise: white noise,
-//! noise that the sensor has smoothed sideways and the staircase of a quantised map all stop growing, a surface never
-//! does. Fourth differences of neighbours (`numeric::noise`) see only the first kind, and nothing at all of a staircase.
+//! var D_k = c^2 k (2 k^2 + 1) / 3. Noise has var D_k = 6 sigma^2 for every span wider than its correlation. Both therefore
+//! follow from a few spans by linear least squares, whatever causes the noise: white noise, noise that the sensor has
+//! smoothed laterally, and the staircase of a quantised map all stop growing, while a surface never does. Fourth
+//! differences of neighbours (`numeric::noise`) see only white noise, and nothing of a staircase.
 //!
-//! All lengths are heights in pixels (`heights`). A depth sensor's noise grows with z^2, so that of f ln Z with z.
-//! Limits: relief that repeats within a few pixels stops growing as well; what grows too slowly at the first two spans
-//! to be a surface is noise.
+//! All lengths are heights in pixels (`heights`). A depth sensor's noise grows with z^2, so that of f ln Z grows with
+//! z. Limits: relief that repeats within a few pixels stops growing as well; relief that grows too slowly over the
+//! first two spans counts as noise.
 
 use crate::numeric::{noise, quantile};
 use crate::view::Size;
 
-/// Spans of the fit in pixels. The noise of a sensor is correlated over two or three pixels, so that the span of one
-/// says too little of it; over wider spans small objects stop growing as noise does (white noise of 0.1 pixels on busts
-/// of 64x64 passed for 0.28 with spans up to 8, and passes for 0.16).
+/// Spans of the fit in pixels. A sensor's noise is correlated over two or three pixels, so a span of one shows too
+/// little of it. Over wider spans the differences of small objects stop growing, like noise. Set on busts of 64x64 with
+/// white noise (docs/lab/thresholds.md).
 const SPANS: [usize; 3] = [2, 3, 4];
-/// Spans of the growth that tells noise from a surface.
+/// Spans whose growth distinguishes noise from a surface.
 const GROWTH_SPANS: [usize; 2] = [1, 2];
-/// var D_1 / var D_2 of a slope that wanders; of anything smoother it is less (scans 0.07 to 0.11), of noise
-/// it is more (0.31 to 1.2 on quantised and laterally smoothed maps).
+/// var D_1 / var D_2 of a wandering slope: smoother surfaces have less, noise has more.
 const SURFACE_GROWTH: f64 = 1.0 / 6.0;
-/// Second differences beyond this quantile are rims and creases, and left out; the factor makes up for it where they
-/// are normal: 1 - 2 q phi(q) / 0.8 with q = 1.2816.
+/// Second differences beyond this quantile are excluded as depth discontinuities and creases. The factor corrects the
+/// variance of the others if they are normal: 1 - 2 q phi(q) / 0.8 with q = 1.2816.
 const KEPT: f64 = 0.8;
 const KEPT_VARIANCE: f64 = 0.438;
-/// Fewest second differences that tell a variance to 5 %, and most that are taken. An object of 32x32 pixels has fewer:
-/// there relief of a few pixels cannot be told from noise.
+/// Fewest second differences, which determine a variance to 5 %, and the most that are used. An object of 32x32 pixels
+/// has fewer: relief of a few pixels cannot be distinguished from noise there.
 const FEWEST: usize = 1000;
 const MOST: usize = 1 << 16;
 
-/// Least share of the noise that the fourth differences of neighbours see of it where it is white (0.75 to 1; of that of
-/// quantised and laterally smoothed maps 0.3 to 0.7, and where steps are as narrow as pixels, which is white, more).
+/// Smallest share of the noise that fourth differences of neighbours see if it is white. They see less of quantised and
+/// laterally smoothed maps, unless steps are as narrow as pixels, which makes the noise white. Set on ten surfaces
+/// (docs/lab/thresholds.md).
 const LEAST_WHITE: f64 = 0.75;
-/// Least smoothing of a map whose noise is not white: a window of lambda^(1/4) = 0.8 pixels. Less tells nothing from
-/// relief (busts of 64x64 with white noise of 0.1: 0.2 and 0.36) and smooths nothing.
+/// Least smoothing of a map whose noise is not white: a window of lambda^(1/4) = 0.8 pixels. Less cannot be
+/// distinguished from relief and smooths nothing. Set on busts of 64x64 (docs/lab/thresholds.md).
 const LEAST_SMOOTHING: f64 = 0.4;
-/// Scale of the robust second differences in roughnesses: by squares alone creases are rounded off. Chosen on five
-/// objects of MIT-Berkeley with quantised depth and a scanned bear (2, 3 and 5 were tried).
+/// Scale of the robust second differences in roughnesses: least squares alone would round off creases. Set on five
+/// objects of MIT-Berkeley with quantised depth and a scanned bear (docs/lab/thresholds.md).
 const CREASE: f64 = 2.0;
 
 /// Noise and roughness of a depth map, heights in pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DepthNoise {
-    /// Standard deviation of the noise at the median depth; zero where the map shows none.
+    /// Standard deviation of the noise at the median depth; zero if the map shows none.
     pub sigma: f64,
-    /// Standard deviation by which the surface's slope wanders in a pixel.
+    /// Standard deviation of the change of the surface's slope from one pixel to the next.
     pub roughness: f64,
-    /// Whether neighbours have no noise in common: the staircase of a quantised map and noise that a sensor has smoothed
-    /// sideways are not white.
+    /// Whether neighbours share no noise: the staircase of a quantised map and laterally smoothed noise are not white.
     pub is_white: bool,
 }
 
 impl DepthNoise {
-    /// That of a raster of heights, NaN where there is none.
+    /// Estimates the noise of a raster of heights, NaN where missing.
     #[must_use]
     pub(crate) fn of(size: Size, heights: &[f32]) -> Self {
         let mut sizes = Vec::with_capacity(MOST);
@@ -63,7 +63,7 @@ impl DepthNoise {
         if first <= SURFACE_GROWTH * second {
             return Self::default();
         }
-        // Least squares of relative errors: variances of wide spans are hundreds of times larger.
+        // Least squares of relative errors, because variances of wide spans are hundreds of times larger.
         let (mut ss, mut sc, mut cc, mut s1, mut c1) = (0.0, 0.0, 0.0, 0.0, 0.0);
         for span in SPANS {
             let Some(variance) = variance(span) else { break };
@@ -73,7 +73,7 @@ impl DepthNoise {
         }
         let determinant = ss * cc - sc * sc;
         let [variance, wander] = [cc * s1 - sc * c1, ss * c1 - sc * s1].map(|part| part / determinant);
-        // Also where there are too few spans: the determinant is zero then.
+        // Covers too few spans as well, where the determinant is zero.
         if !(variance > 0.0 && wander > 0.0 && variance.is_finite() && wander.is_finite()) {
             return Self::default();
         }
@@ -82,7 +82,7 @@ impl DepthNoise {
         let is_white = white > LEAST_WHITE * all;
         let sigma = if is_white { white } else { all };
         let told = Self { sigma, roughness: wander.sqrt(), is_white };
-        // White noise is known by itself; what is neither white nor wide may be relief.
+        // White noise is identified by itself; noise that is neither white nor wide may be relief.
         if is_white || told.smoothing() > LEAST_SMOOTHING { told } else { Self::default() }
     }
 
@@ -92,38 +92,38 @@ impl DepthNoise {
         self.sigma > 0.0
     }
 
-    /// Second differences beyond which the surface has a crease, heights in pixels.
+    /// Second difference beyond which the surface has a crease, heights in pixels.
     #[must_use]
     pub fn crease(&self) -> f64 {
         CREASE * self.roughness
     }
 
-    /// How far smoothing reaches, lambda^(1/4) pixels: what is narrower, the map does not tell from noise.
+    /// Reach of the smoothing, lambda^(1/4) pixels: narrower detail cannot be distinguished from noise.
     #[must_use]
     pub fn window(&self) -> f64 {
         self.smoothing().sqrt().sqrt()
     }
 
-    /// sigma^2 / c^2: the weight of a squared second difference against a squared offset from the measured height.
+    /// sigma^2 / c^2: the weight of a squared second difference relative to a squared offset from the measured height.
     #[must_use]
     pub fn smoothing(&self) -> f64 {
         if self.is_visible() { (self.sigma / self.roughness).powi(2) } else { 0.0 }
     }
 }
 
-/// Standard deviation of white noise by the fourth differences of neighbours along both axes.
+/// Standard deviation of white noise, from the fourth differences of neighbours along both axes.
 pub(crate) fn white_noise(size: Size, heights: &[f32]) -> f64 {
     let fourth =
         |run: [usize; noise::NEIGHBOURS]| noise::fourth_difference(run.map(|index| f64::from(heights[index]))) as f32;
     noise::of_fourth_differences(&mut size.runs().map(fourth), 2 * size.len())
 }
 
-/// An upper bound of the noise of a raster: what there is of relief within two pixels passes for noise.
+/// An upper bound of a raster's noise: relief within two pixels counts as noise.
 pub(crate) fn most(size: Size, values: &[f32]) -> f64 {
     variance_of_second_differences(size, values, SPANS[0], &mut vec![]).map_or(0.0, |variance| (variance / 6.0).sqrt())
 }
 
-/// Variance of the second differences of this span along both axes, without the largest; `None` where there are few.
+/// Variance of the second differences of this span along both axes, without the largest; `None` if there are too few.
 fn variance_of_second_differences(size: Size, heights: &[f32], span: usize, sizes: &mut Vec<f32>) -> Option<f64> {
     sizes.clear();
     let every = (2 * size.len()).div_ceil(MOST);
@@ -182,7 +182,7 @@ mod tests {
         assert!(noise.is_white && (noise.sigma - 0.3).abs() < 0.03, "{noise:?}");
     }
 
-    /// Rounding errs by the step over the root of twelve.
+    /// Rounding errs by the step divided by the root of twelve.
     #[test]
     fn a_staircase_is_not_free_of_noise() {
         for step in [0.8_f32, 1.5] {
@@ -193,7 +193,7 @@ mod tests {
         }
     }
 
-    /// Neighbours that share their noise hide it from differences of neighbours: a box of three by three.
+    /// A box filter of three by three: neighbours share their noise, which differences of neighbours then do not show.
     #[test]
     fn noise_smoothed_sideways_keeps_its_size() {
         let (mut heights, mut normal) = (body(), normal_numbers(9));

@@ -1,4 +1,4 @@
-//! Pictures of the crate [`image`] as views, not yet checked. Cameras, masks, units and normals are the caller's to add.
+//! Conversion of pictures of the crate [`image`] to unchecked views. The caller adds cameras, masks, units and normals.
 //!
 //! ```
 //! use bimodal_stereo::image::{DynamicImage, ImageBuffer, Luma};
@@ -24,21 +24,21 @@ use crate::view::{ColourImage, ColourSamples, DepthMap, DepthSamples, Transfer};
 impl TryFrom<&DynamicImage> for ColourImage {
     type Error = Error;
 
-    /// The picture's colours; grey ones have three equal channels. Pixels that are wholly transparent don't belong to
-    /// the object.
+    /// The picture's colours; grey pictures get three equal channels. Fully transparent pixels do not belong to the
+    /// object.
     ///
-    /// Floats are linear. Integers are linear where the picture's colour space says so; otherwise 8 bits are sRGB and 16
-    /// bits are told apart as always ([`ColourImage::transfer`]), because the crate `image` calls everything sRGB that
-    /// says nothing.
+    /// Floats are linear. Integers are linear if the picture's colour space says so. Otherwise 8 bits are sRGB and 16
+    /// bits are guessed ([`ColourImage::transfer`]), because the crate `image` labels every picture without a colour
+    /// space as sRGB.
     ///
     /// # Errors
-    /// [`ErrorKind::Unsupported`] for a kind of pixel that this release does not know.
+    /// [`ErrorKind::Unsupported`] for a pixel format that this release does not know.
     fn try_from(picture: &DynamicImage) -> Result<Self> {
         let samples = match levels("image.data", picture)? {
             Levels::Bytes(rgba) => ColourSamples::Rgba8(rgba),
             Levels::Words(rgba) => ColourSamples::Rgba16(rgba),
             Levels::Floats(rgba) => {
-                // Floats have no fourth channel here: zero is the colour that is not looked at.
+                // These floats get no fourth channel, so zero marks an unused pixel.
                 let colours = rgba.as_chunks().0.iter().map(|&[r, g, b, a]| if a > 0.0 { [r, g, b] } else { [0.0; 3] });
                 ColourSamples::RgbLinear(colours.flatten().collect())
             }
@@ -58,17 +58,17 @@ impl TryFrom<&DynamicImage> for ColourImage {
 impl TryFrom<&DynamicImage> for DepthMap {
     type Error = Error;
 
-    /// The picture's numbers as they are stored, whatever its colour space. Zero is a hole, so is a pixel that is wholly
-    /// transparent, and among floats what is not finite. The unit is [`DepthMap::unit`]'s default until it is set.
+    /// The picture's stored numbers, whatever its colour space. Zeros, fully transparent pixels and floats that are not
+    /// finite are holes. The unit is [`DepthMap::unit`]'s default until it is set.
     ///
     /// # Errors
-    /// [`ErrorKind::Range`] with the first pixel whose channels differ: that is a picture of something else.
-    /// [`ErrorKind::Unsupported`] for a kind of pixel that this release does not know.
+    /// [`ErrorKind::Range`] with the first pixel whose channels differ, because such a picture is no depth map.
+    /// [`ErrorKind::Unsupported`] for a pixel format that this release does not know.
     fn try_from(picture: &DynamicImage) -> Result<Self> {
         let samples = match levels("depth.data", picture)? {
             Levels::Bytes(rgba) => DepthSamples::Integer(grey(&rgba, |a, b| a == b)?.map(u16::from).collect()),
             Levels::Words(rgba) => DepthSamples::Integer(grey(&rgba, |a, b| a == b)?.collect()),
-            // As bits, because a hole may be NaN, which equals nothing.
+            // Compared as bits, because a hole may be NaN, which equals nothing.
             Levels::Floats(rgba) => {
                 DepthSamples::Float(grey(&rgba, |a: f32, b: f32| a.to_bits() == b.to_bits())?.collect())
             }
@@ -85,7 +85,7 @@ impl TryFrom<&DynamicImage> for DepthMap {
     }
 }
 
-/// R, G, B, A of each pixel, with the digits of the picture.
+/// R, G, B, A of each pixel, with the picture's number of bits.
 enum Levels {
     Bytes(Vec<u8>),
     Words(Vec<u16>),
@@ -109,7 +109,7 @@ fn levels(field: &'static str, picture: &DynamicImage) -> Result<Levels> {
     })
 }
 
-/// The one number of each pixel, zero where it is transparent.
+/// The single value of each pixel, zero if it is transparent.
 fn grey<T: Copy + Default + PartialEq>(rgba: &[T], is_same: impl Fn(T, T) -> bool) -> Result<impl Iterator<Item = T>> {
     let pixels = rgba.as_chunks().0;
     if let Some(index) = pixels.iter().position(|&[r, g, b, _]| !is_same(r, g) || !is_same(g, b)) {
@@ -125,7 +125,7 @@ mod tests {
 
     use super::*;
 
-    /// Every level of 8 bits, and as many of 16.
+    /// Every 8-bit level, and as many 16-bit ones.
     fn grey_bytes() -> DynamicImage {
         ImageBuffer::from_fn(16, 16, |x, y| Luma([(16 * y + x) as u8])).into()
     }

@@ -1,29 +1,29 @@
-//! Trimming: flying pixels and background are taken out of the object (docs/method/views.md).
+//! Trimming: removes flying pixels and background from the object (docs/method/views.md).
 //!
-//! The depth map is cut wherever neighbours differ by more than a multiple of the median step. Of the pieces those stay
-//! that have enough pixels, relative to the largest piece, and lie no farther before or behind it than its own extent.
-//! Limits: an object whose parts lie one behind the other by more than that loses the smaller parts; trimming can be
-//! switched off. Data behind the constants: not recorded.
+//! The depth map is cut wherever neighbours differ by more than a multiple of the median step. A piece stays if it has
+//! enough pixels relative to the largest piece, and lies no farther in front of or behind it than the extent of that
+//! piece. Limits: an object with parts farther apart in depth than that loses the smaller parts; trimming can be
+//! switched off. The data used to set the constants are not recorded.
 
 use crate::numeric::quantile;
 use crate::view::Size;
 use crate::view::mask::components;
 
-/// Neighbours are cut apart beyond this multiple of the median step between neighbours: steep but smooth surfaces stay
-/// whole.
+/// Neighbours are cut apart beyond this multiple of the median step between neighbours, so that steep but smooth
+/// surfaces stay whole.
 const JUMP_STEPS: f32 = 12.0;
-/// Smallest step that cuts in a metric view, as a share of the median depth: above the noise of consumer sensors at
-/// arm's length.
+/// Smallest cutting step in a metric view, as a share of the median depth: above the noise of consumer sensors at arm's
+/// length.
 const METRIC_JUMP: f32 = 0.015;
-/// Smallest step that cuts in pixels: a slope of 76 degrees.
+/// Smallest cutting step in pixels: a slope of 76 degrees.
 const PIXEL_JUMP: f32 = 4.0;
-/// Pixels of the smallest piece that stays, as a share of the largest piece's.
+/// Fewest pixels of a piece that stays, as a share of the largest piece's.
 const LEAST_SHARE: f64 = 0.05;
-/// How far a piece that stays may lie before or behind the largest one, in extents of that one.
+/// Largest distance of a piece that stays in front of or behind the largest one, in extents of that one.
 const REACH: f32 = 1.0;
 
-/// For each pixel whether it belongs to the object. `depth` is NaN at holes; `focal_length`, in pixels, is `None` for
-/// an orthographic view.
+/// Whether each pixel belongs to the object. `depth` is NaN at holes; `focal_length`, in pixels, is `None` for an
+/// orthographic view.
 pub fn object_pixels(size: Size, depth: &[f32], focal_length: Option<f64>) -> Vec<bool> {
     let valid = |index: usize| !depth[index].is_nan();
     let mut values: Vec<f32> = depth.iter().copied().filter(|value| !value.is_nan()).collect();

@@ -1,8 +1,8 @@
-//! Gaussian means on a raster.
+//! Gaussian-weighted means on a raster.
 
 use super::Size;
 
-/// A Gaussian that is cut off; its sums take what lies beyond the raster as zero.
+/// A truncated Gaussian; its sums treat everything outside the raster as zero.
 pub(crate) struct Gaussian {
     size: Size,
     /// Weights from minus to plus the reach.
@@ -10,17 +10,17 @@ pub(crate) struct Gaussian {
 }
 
 impl Gaussian {
-    /// A reach, sigmas, beyond which weights are below 1 %.
+    /// Reach in sigmas beyond which weights are below 1.2 %.
     pub const REACH: f64 = 3.0;
 
-    /// Of `sigma` pixels, above zero, cut off at `reach` sigmas or at the raster's longer side.
+    /// A kernel of `sigma` pixels, above zero, truncated at `reach` sigmas or at the raster's longer side.
     pub fn new(size: Size, sigma: f64, reach: f64) -> Self {
         let reach = ((reach * sigma).ceil() as usize).min(size.width.max(size.height));
         let weight = |k: usize| (-0.5 * (k.abs_diff(reach) as f64 / sigma).powi(2)).exp();
         Self { size, kernel: (0..=2 * reach).map(weight).collect() }
     }
 
-    /// Means of fields around each pixel, of the pixels inside alone; NaN where the pixel itself is not.
+    /// Means of fields around each pixel over the pixels inside; NaN if the pixel itself is outside.
     pub fn means<const N: usize>(
         &self,
         inside: impl Fn(usize) -> bool,
@@ -58,7 +58,7 @@ impl Gaussian {
     }
 }
 
-/// Adds a share of the values to as many sums, if there are any.
+/// Adds a share of the values to the sums pairwise, if both exist.
 fn add(sums: Option<&mut [f64]>, share: f64, values: Option<&[f64]>) {
     let (Some(sums), Some(values)) = (sums, values) else { return };
     sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += share * value);
@@ -70,7 +70,7 @@ mod tests {
 
     const SIZE: Size = Size { width: 5, height: 3 };
 
-    /// Candidates that lie far off ask for any width, and its weights would not have fitted into memory.
+    /// Candidates far away can require any width, and the weights must still fit into memory.
     #[test]
     fn a_blur_of_any_width_is_the_mean() {
         for sigma in [1e4, 1e30, f64::INFINITY] {

@@ -1,4 +1,4 @@
-//! Views at half the resolution: a pixel is the mean of those of the 2x2 pixels it covers that have a value.
+//! Views at half the resolution: a pixel is the mean of the known values among the 2x2 pixels that it covers.
 
 use nalgebra::Vector3;
 
@@ -11,7 +11,7 @@ impl Size {
         Self { width: self.width.div_ceil(2), height: self.height.div_ceil(2) }
     }
 
-    /// Calls `visit` with the index of each pixel of the halved view and those that it covers.
+    /// Calls `visit` with the index of each pixel of the halved view and the pixels that it covers.
     fn for_each_block(self, mut visit: impl FnMut(usize, &[usize])) {
         let half = self.halved();
         for coarse in 0..half.len() {
@@ -37,7 +37,7 @@ impl Size {
         });
     }
 
-    /// The inverse: bilinear values between those pixels of the halved view that are not NaN.
+    /// The inverse: interpolates bilinearly between the pixels of the halved view that are not NaN.
     pub(crate) fn double(self, coarse: &[f32], fine: &mut [f32]) {
         let half = self.halved();
         for (index, value) in fine.iter_mut().enumerate() {
@@ -63,7 +63,7 @@ impl Camera {
 }
 
 impl ColourView {
-    /// The view at half the resolution; an object pixel is one that covers any.
+    /// The view at half the resolution; a pixel belongs to the object if it covers any object pixel.
     #[inline(never)]
     pub(crate) fn halved(&self) -> Self {
         let size = self.size.halved();
@@ -72,21 +72,22 @@ impl ColourView {
             self.size.halve(fine, &mut coarse);
             coarse
         });
-        // Colours are known where the object is.
+        // Colours are known exactly where the object is.
         let mask = log[0].iter().map(|log| !log.is_nan()).collect();
         Self::of(size, self.camera.halved(), mask, log, self.transfer)
     }
 }
 
-/// Where the middle of the halved raster lies from that of its view, in the view's pixels; `None` where the unit of the
-/// view's frame is no pixel.
+/// Centre of the halved raster relative to that of its view, in the view's pixels; `None` if the view's frame is not
+/// measured in pixels.
 fn half_origin(size: Size, unit_is_pixel: bool) -> Option<Vector3<f64>> {
     let shift = |side: usize| if side.is_multiple_of(2) { 0.0 } else { 0.5 };
     unit_is_pixel.then(|| Vector3::new(shift(size.width), shift(size.height), 0.0))
 }
 
 impl ColourView {
-    /// The origin of the halved view's frame in this one's, whose unit is half as long; `None` where they are the same.
+    /// The origin of the halved view's frame in this view's, whose unit is half as long; `None` if both frames are the
+    /// same.
     pub(crate) fn half_origin(&self) -> Option<Vector3<f64>> {
         half_origin(self.size, self.camera.is_orthographic())
     }
@@ -110,7 +111,7 @@ impl Normals {
         for index in 0..coarse.len() {
             let [x, y, z] = coarse.get(index);
             let length = (x * x + y * y + z * z).sqrt();
-            // Opposite ones have no direction, and zero by zero is missing.
+            // Opposite vectors have no mean direction, and 0 / 0 marks it as missing.
             coarse.set(index, [x / length, y / length, z / length]);
         }
         coarse
@@ -118,12 +119,12 @@ impl Normals {
 }
 
 impl DepthView {
-    /// The same of a depth view. The frame of an organised cloud is its own.
+    /// The same for a depth view. An organised cloud keeps its frame.
     pub(crate) fn half_origin(&self) -> Option<Vector3<f64>> {
         half_origin(self.size, self.camera.is_orthographic() && !self.organised)
     }
 
-    /// The view at half the resolution, its holes left out: means of the points, directions of the mean normals.
+    /// The view at half the resolution, without its holes: means of the points, directions of the mean normals.
     pub(crate) fn halved(&self) -> Self {
         let size = self.size.halved();
         let mut points: Points = self.points.halved(self.size);

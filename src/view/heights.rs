@@ -1,12 +1,11 @@
-//! Heights, the coordinate in which surfaces are solved for (docs/method/heights.md): depth itself for an
-//! orthographic camera, f ln Z for a pinhole camera of focal length f. Both are in pixels, so the slopes of both are in
-//! pixels of height per pixel, and gradients of ln Z, which normals give behind a pinhole, become theirs
-//! times f.
+//! Heights, the coordinate in which surfaces are solved (docs/method/heights.md): depth itself for an orthographic
+//! camera, f ln Z for a pinhole camera of focal length f. Both are in pixels, so their slopes are pixels of height per
+//! pixel. Normals behind a pinhole give gradients of ln Z, which become slopes of height when multiplied by f.
 
 use super::Camera;
 
 impl Camera {
-    /// Depths become heights, in place; NaN stays NaN.
+    /// Converts depths to heights in place; NaN stays NaN.
     pub(crate) fn heights_from_depth(&self, field: &mut [f32]) {
         let Some(focal_length) = self.focal_length() else { return };
         for value in field {
@@ -14,7 +13,7 @@ impl Camera {
         }
     }
 
-    /// Heights become depths, in place: the inverse.
+    /// Converts heights to depths in place: the inverse.
     pub(crate) fn depth_from_heights(&self, field: &mut [f32]) {
         let Some(focal_length) = self.focal_length() else { return };
         for value in field {

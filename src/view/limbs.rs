@@ -1,28 +1,29 @@
-//! Whether a depth map is hollow: as of a bowl seen from inside, or stored so that larger means nearer.
+//! Detects a hollow depth map, such as a bowl seen from inside, or one stored so that larger means nearer.
 //!
-//! Where a solid object turns away from the camera, at its limbs, the normals face outward. In a map whose depths are
-//! mirrored they face inward. Colours cannot tell: depth mirrored, with the light's and the pose's turns toward the
-//! camera mirrored as well, gives the very same image.
+//! At the occluding contours of a solid object, where it turns away from the camera, the normals face outward. In a map
+//! with mirrored depths they face inward. The image cannot distinguish the two: mirrored depth gives the same image if
+//! the turns of light and pose towards the camera are mirrored as well.
 //!
-//! Limits: a relief that ends before it turns away has no limbs, and nothing is said of it.
+//! Limits: a relief that ends before it turns away has no occluding contours and is not judged.
 
 use super::{Normals, Size};
 
-/// How far off what lies beyond a rim is looked for, pixels: normals of the last pixel are one-sided.
+/// Distance at which pixels without depth are looked for, pixels: the normals of the last pixel are one-sided.
 const BEYOND: isize = 2;
-/// Component of a normal along the way out from which on a rim is a limb: it has turned away by 37 degrees.
+/// Outward component of a normal above which a border pixel lies on an occluding contour: the surface has turned away
+/// by 37 degrees.
 const TURNED: f32 = 0.6;
-/// Limbs that face inward for each that faces outward in a hollow map, from which on it is one. As they are 84 random scenes
-/// have at most 0.6, where what the surface lacks behind is seen from the side, 0.003 at the median; mirrored over
-/// 1.6. A capture of a bowl has 0.2.
+/// Ratio of inward to outward contour pixels above which a map counts as hollow. Set on random scenes, their mirrored
+/// versions and a capture of a bowl (docs/lab/thresholds.md). Solid objects have inward ones where the surface seen
+/// from the side lacks its far part.
 const HOLLOW: f64 = 1.5;
-/// Fewer limbs tell nothing.
+/// Fewer contour pixels are not judged.
 const FEWEST: usize = 12;
 
-/// The eight pixels in which something else may be.
+/// Directions of the eight pixels that are checked for depth.
 const AROUND: [[isize; 2]; 8] = [[1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0], [-1, -1], [0, -1], [1, -1]];
 
-/// Whether most limbs face inward. `depths` are NaN where nothing is.
+/// Whether most occluding contours face inward. `depths` are NaN where missing.
 pub fn is_hollow(size: Size, depths: &[f32], normals: &Normals) -> bool {
     let (mut inward, mut outward) = (0_usize, 0_usize);
     for index in (0..size.len()).filter(|&index| normals.x[index].is_finite()) {
@@ -38,7 +39,7 @@ pub fn is_hollow(size: Size, depths: &[f32], normals: &Normals) -> bool {
     inward >= FEWEST && inward as f64 > HOLLOW * outward as f64
 }
 
-/// The way to what lies beyond the rim; zero where there is none. Beyond the frame nobody knows.
+/// Outward direction from a border pixel; zero for other pixels. Pixels outside the frame are unknown and do not count.
 fn out(size: Size, depths: &[f32], index: usize) -> [f32; 2] {
     let (column, row) = size.position(index);
     let mut sum = [0.0; 2];
@@ -59,7 +60,7 @@ mod tests {
 
     const SIDE: usize = 40;
 
-    /// A map of depths, NaN where nothing is.
+    /// Judges a map of depths, NaN where missing.
     fn judged(depth: impl Fn(f32, f32) -> f32) -> bool {
         let middle = (SIDE as f32 - 1.0) / 2.0;
         let at = |index: usize| depth((index % SIDE) as f32 - middle, (index / SIDE) as f32 - middle);
@@ -69,7 +70,7 @@ mod tests {
         is_hollow(view.size, &view.points.z, &view.normals)
     }
 
-    /// Depth of a ball's near side behind its nearest point.
+    /// Depth of a ball's near side, measured from its nearest point.
     fn ball(x: f32, y: f32, radius: f32) -> f32 {
         radius - (radius * radius - x * x - y * y).sqrt()
     }
@@ -82,14 +83,14 @@ mod tests {
 
     #[test]
     fn a_bowl_that_shows_its_outside_as_well_is_solid() {
-        // Its far half is seen from inside, its near half from outside.
+        // Its far half shows the inside, its near half the outside.
         assert!(!judged(|x, y| 100.0 + ball(x, y, 16.0) * if y < 0.0 { -1.0 } else { 1.0 }));
     }
 
     #[test]
     fn what_has_no_limbs_is_not_judged() {
         assert!(!judged(|x, y| if x.abs() < 15.0 && y.abs() < 15.0 { 100.0 + 0.3 * x } else { f32::NAN }));
-        // A bowl that fills the frame ends where the frame does.
+        // A bowl that fills the frame has its border outside.
         assert!(!judged(|x, y| 100.0 - ball(x, y, 40.0)));
     }
 }

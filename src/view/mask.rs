@@ -6,7 +6,7 @@ use crate::view::Size;
 /// Fewest usable pixels of a view: as many as the smallest view, 4x4, has.
 pub const FEWEST_PIXELS: usize = 16;
 
-/// The caller's mask, checked; none means every pixel.
+/// The caller's mask, checked; without one, every pixel.
 pub fn checked(field: &'static str, size: Size, mask: Option<&[u8]>) -> Result<Vec<bool>> {
     let Some(mask) = mask else { return Ok(vec![true; size.len()]) };
     if mask.len() != size.len() {
@@ -25,8 +25,8 @@ pub fn checked(field: &'static str, size: Size, mask: Option<&[u8]>) -> Result<V
     Ok(mask)
 }
 
-/// Labels the four-connected components of `inside`, where two neighbours also have to be `joined`.
-/// Returns the label of each pixel (`usize::MAX` outside) and the pixel count of each label.
+/// Labels the four-connected components of `inside`; neighbours in a component must also be `joined`. Returns the label
+/// of each pixel (`usize::MAX` outside) and the pixel count of each label.
 pub fn components(
     size: Size,
     inside: impl Fn(usize) -> bool,

@@ -1,4 +1,4 @@
-//! What comes in: sizes, masks, cameras, one colour image and one depth map, checked once (docs/method/views.md).
+//! The input: sizes, masks, cameras, one colour image and one depth map, checked once (docs/method/views.md).
 
 mod camera;
 mod chroma;

@@ -1,30 +1,30 @@
 //! n = (dP/drow x dP/dcolumn) / |...|: normals of a depth map or an organised cloud P(column, row) (docs/method/views.md).
 //!
-//! Method: central differences of the points along both axes, so that camera and distortion are in them; one-sided at
-//! holes and borders. Or, for noisy depth, the slopes of the weighted least-squares plane P = c + a column + b row over
-//! a window. The winding of the grid orients the normal; for a depth map it then faces its camera, a
-//! rotated organised cloud may turn away from the depth camera, as it should.
+//! Method: central differences of the points along both axes, which include camera and distortion, and one-sided
+//! differences at holes and borders. For noisy depth, alternatively the slopes of the weighted least-squares plane
+//! P = c + a column + b row over a window. The winding of the grid orients the normal. For a depth map it then faces the
+//! camera; for a rotated organised cloud it may rightly face away from it.
 //!
-//! Discontinuities: a step between neighbours is not used where it is longer than four times the median of
-//! the (up to) four steps around the pixel along the same axis. Lengths are in space, so a flat region has the steps of
-//! its sampling and neither quantisation nor noise below that counts as a jump.
+//! Discontinuities: a step between neighbours is not used if it is longer than four times the median of the (up to)
+//! four steps around the pixel along the same axis. Lengths are in space, so a flat region has the steps of its
+//! sampling, and neither quantisation nor noise below that counts as a jump.
 //!
-//! Limits: second order inside (error z'''/6 per pixel), first order at borders and holes; a structure of one or two
-//! pixels has no steps around it to compare with and keeps its jumps. The plane fit is first order where its window is
-//! lopsided, and rounds edges off within its radius. NaN where an axis has no usable neighbour.
+//! Limits: second order inside (error z'''/6 per pixel), first order at borders and holes. A structure of one or two
+//! pixels has no steps around it for comparison and keeps its jumps. The plane fit is first order where its window is
+//! asymmetric, and rounds edges off within its radius. NaN if an axis has no usable neighbour.
 
 use crate::numeric::{LANES, Lanes, Real};
 use crate::view::{Camera, Normals, Points, Size};
 
-/// Longest usable step in median steps around it. Smooth shapes stay below three up to their last pixel before the rim
-/// (a sphere of radius 50: 2.7); a fold of 75 degrees against a flat surround just passes.
+/// Longest usable step in median steps around it. Smooth shapes stay below three up to the last pixel before their
+/// occluding contour; a fold of 75 degrees against a flat surround just passes.
 const LONGEST_STEP: f64 = 4.0;
 /// Widest window of a plane fit, in pixels from its centre.
 const LARGEST_RADIUS: usize = 16;
-/// Least determinant of a plane's two slopes, as a share of its diagonal: below it the window is a line.
+/// Least determinant of a plane's two slopes, as a share of its diagonal: below it, the window is a line.
 const LEAST_DETERMINANT: f64 = 1e-3;
 
-/// How normals are taken from points.
+/// How normals are estimated from points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Estimate {
     /// Central differences.
@@ -44,13 +44,13 @@ pub fn of_depth(size: Size, camera: Camera, depth: &[f32]) -> Normals {
     normals
 }
 
-/// [`of_depth`] into memory of the caller's. Allocates nothing. With lens distortion, [`points_of_depth`] and
-/// [`from_points`] are quicker: each pixel's ray is found once instead of nine times.
+/// [`of_depth`] into the caller's memory. Allocates nothing. With lens distortion, [`points_of_depth`] and
+/// [`from_points`] are faster, because each pixel's ray is found once instead of nine times.
 pub fn of_depth_into(size: Size, camera: Camera, depth: &[f32], normals: &mut Normals) {
     of_depth_rows(size, camera, depth, 0, normals);
 }
 
-/// [`of_depth_into`] of as many pixels as `normals` holds, from the row `first` on.
+/// [`of_depth_into`] for as many pixels as `normals` holds, from the row `first` on.
 pub(crate) fn of_depth_rows(size: Size, camera: Camera, depth: &[f32], first: usize, normals: &mut Normals) {
     let rows = normals.len() / size.width;
     if camera.is_orthographic()
@@ -72,7 +72,7 @@ pub fn of_cloud(size: Size, points: &Points) -> Normals {
     normals
 }
 
-/// Unit normals of an organised cloud over `size`, NaN where there is none. Allocates nothing.
+/// Unit normals of an organised cloud over `size`, NaN where missing. Allocates nothing.
 pub fn from_points(size: Size, points: &Points, estimate: Estimate, normals: &mut Normals) {
     let point = |index| {
         let point = if index < points.len() { points.get(index).map(f64::from) } else { return None };
@@ -81,8 +81,7 @@ pub fn from_points(size: Size, points: &Points, estimate: Estimate, normals: &mu
     Grid { size, point }.estimate(estimate, 0, normals);
 }
 
-/// Points in the camera's frame of a depth map (row-major, along z, in metres or pixels); NaN where the depth is a
-/// hole.
+/// Points of a depth map in the camera's frame (row-major, depth along z, in metres or pixels); NaN at holes.
 pub fn points_of_depth(size: Size, camera: &Camera, depth: &[f32], points: &mut Points) {
     for (index, &depth) in depth.iter().enumerate().take(points.len().min(size.len())) {
         let point = point_at(size, camera, depth, index);
@@ -101,14 +100,14 @@ type Vector = [f64; 3];
 /// Column and row.
 type Pixel = (usize, usize);
 
-/// Points over a raster, `None` where there is none.
+/// Points over a raster, `None` where missing.
 struct Grid<F> {
     size: Size,
     point: F,
 }
 
 impl<F: Fn(usize) -> Option<Vector>> Grid<F> {
-    /// Of the pixels from `first` on.
+    /// Estimates the normals of the pixels from `first` on.
     fn estimate(&self, estimate: Estimate, first: usize, normals: &mut Normals) {
         for index in 0..(self.size.len() - first).min(normals.len()) {
             let pixel = self.size.position(first + index);
@@ -121,14 +120,14 @@ impl<F: Fn(usize) -> Option<Vector>> Grid<F> {
         }
     }
 
-    /// The point `right` columns and `down` rows from a pixel, where there is one.
+    /// The point `right` columns and `down` rows from a pixel, if there is one.
     fn beside(&self, (column, row): Pixel, right: isize, down: isize) -> Option<Vector> {
         let column = column.checked_add_signed(right).filter(|&column| column < self.size.width)?;
         let row = row.checked_add_signed(down).filter(|&row| row < self.size.height)?;
         (self.point)(self.size.index(column, row))
     }
 
-    /// The five points along an axis, the pixel in the middle.
+    /// The five points along an axis, with the pixel in the middle.
     fn line(&self, pixel: Pixel, right: isize, down: isize) -> [Option<Vector>; 5] {
         [-2, -1, 0, 1, 2].map(|step| self.beside(pixel, step * right, step * down))
     }
@@ -146,7 +145,7 @@ impl<F: Fn(usize) -> Option<Vector>> Grid<F> {
         let longest = LONGEST_STEP * LONGEST_STEP * steps[0].unwrap_or(0.0).max(steps[1].unwrap_or(0.0));
         let reach = (radius + 1) as f64;
         let radius = radius as isize;
-        // Moments of weight, column u and row v, and of these with the point.
+        // Moments of weight, column u and row v, and their products with the point.
         let (mut w0, mut wu, mut wv, mut wuu, mut wuv, mut wvv) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
         let (mut p0, mut pu, mut pv) = ([0.0; 3], [0.0; 3], [0.0; 3]);
         for down in -radius..=radius {
@@ -172,7 +171,7 @@ impl<F: Fn(usize) -> Option<Vector>> Grid<F> {
                 }
             }
         }
-        // The centre itself has weight one, so w0 > 0; eliminating c leaves a 2x2 system.
+        // The centre has weight one, so w0 > 0; eliminating c leaves a 2x2 system.
         let (uu, uv, vv) = (wuu - wu * wu / w0, wuv - wu * wv / w0, wvv - wv * wv / w0);
         let determinant = uu * vv - uv * uv;
         if determinant.is_nan() || determinant <= LEAST_DETERMINANT * wuu * wvv {
@@ -188,11 +187,11 @@ impl<F: Fn(usize) -> Option<Vector>> Grid<F> {
 }
 
 /// Central differences of an orthographic depth map, whose steps along an axis are (1, dz): four pixels at a time and
-/// in f32, as the difference of two neighbouring depths is exact there. From the row `first` on.
+/// in f32, because the difference of two neighbouring depths is exact there. Starts from the row `first`.
 fn of_orthographic(size: Size, depth: &[f32], first: usize, normals: &mut Normals) {
     let (one, missing) = (Lanes::splat(1.0), Lanes::splat(f32::NAN));
     for row in first..first + normals.len() / size.width {
-        // Two rows above, this one, two below.
+        // Two rows above, this row, and two below.
         let rows = [-2, -1, 0, 1, 2].map(|step| {
             let row = row.wrapping_add_signed(step);
             if row < size.height { &depth[row * size.width..][..size.width] } else { &[] }
@@ -215,7 +214,7 @@ fn of_orthographic(size: Size, depth: &[f32], first: usize, normals: &mut Normal
     }
 }
 
-/// [`slope`] of five depths in a line, a pixel apart; NaN where there is none.
+/// [`slope`] of five depths in a line, a pixel apart; NaN where missing.
 #[inline(never)]
 fn lane_slope(line: [Lanes; 5]) -> Lanes {
     let far = Lanes::splat(f32::INFINITY);
@@ -233,7 +232,7 @@ fn lane_slope(line: [Lanes; 5]) -> Lanes {
         (other_first.select(other_low, low), other_first.select(low, other_low))
     };
     let rest = other_high.less(high).select(other_high, high);
-    // Of one or two steps the shorter, of three or four the second: at least three are there if the third is.
+    // The shorter of one or two steps, the second of three or four: if the third exists, there are at least three.
     let second = rest.less(more).select(rest, more);
     let third = rest.less(more).select(more, rest);
     let median = third.less(far).select(second, least);
@@ -251,7 +250,7 @@ fn median_step(line: [Option<Vector>; 5]) -> Option<f64> {
     for pair in line.windows(2) {
         if let (Some(a), Some(b)) = (pair[0], pair[1]) {
             let square = square(minus(b, a));
-            // In order from the first: a general sort is slow, and large in wasm, for four numbers.
+            // Insertion sort: for four numbers, a general sort is slow and large in wasm.
             let mut place = count;
             while place > 0 && squares[place - 1] > square {
                 squares[place] = squares[place - 1];
@@ -264,7 +263,7 @@ fn median_step(line: [Option<Vector>; 5]) -> Option<f64> {
     (count > 0).then(|| squares[(count - 1) / 2])
 }
 
-/// Derivative at the middle of five points, from those neighbours that no jump separates from it.
+/// Derivative at the middle of five points, from the neighbours that no jump separates from it.
 fn slope(line: [Option<Vector>; 5]) -> Option<Vector> {
     let longest = LONGEST_STEP * LONGEST_STEP * median_step(line)?;
     let middle = line[2]?;
@@ -289,7 +288,7 @@ fn square([x, y, z]: Vector) -> f64 {
     x * x + y * y + z * z
 }
 
-/// The vector at length one, where it has a direction.
+/// The vector at unit length, if it has a direction.
 fn unit(vector: Vector) -> Option<Vector> {
     let length = square(vector).sqrt();
     (length.is_finite() && length > 0.0).then(|| vector.map(|value| value / length))

@@ -1,45 +1,47 @@
-//! An image without the paint that shows at its edges: regions between sharp changes of colour, brought to one level.
+//! Removes the albedo that shows at its edges from an image: regions between sharp changes of colour are brought to one
+//! level.
 //!
-//! Shading changes slowly from pixel to pixel, paint at once, and mostly in hue. So neighbours whose log colours differ
-//! by more than shading does lie in two regions; what differs across their common border, less the slope on either
-//! side, is the difference of their paints, the median over the border's length. Least squares over all borders give a
-//! log offset to each region, up to one for all.
+//! Shading changes slowly from pixel to pixel; albedo changes abruptly, and mostly in chromaticity. Neighbours whose
+//! log colours differ by more than shading does therefore lie in two regions. The difference across their common
+//! border, minus the slope on either side, is the difference of their albedos; its median over the border counts. Least
+//! squares over all borders gives a log offset for each region, up to a common one.
 //!
 //! E. Land, J. McCann: "Lightness and retinex theory", Journal of the Optical Society of America 61, 1971.
 //!
-//! Limits: paint that changes softly stays, and so does what a region's borders do not tell; an edge of the relief looks
-//! like one of paint if it is sharp enough. Regions of a few pixels, mixtures of two paints, leave the mask.
+//! Limits: gradual changes of albedo stay, and so does what a region's borders do not show. A sufficiently sharp edge
+//! of the relief looks like one of albedo. Regions of a few pixels, which mix two albedos, leave the mask.
 
 use std::cmp::Reverse;
 
 use super::ColourView;
 use crate::numeric::quantile;
 
-/// Differences of neighbours' log colours, hue (what differs from their mean) and all, that no shading of a smooth
-/// surface makes, beside four sigmas of the noise; set once, and not varied since.
+/// Differences of neighbours' log colours in chromaticity (deviation from the channels' mean) and in brightness (that
+/// mean), beyond which, plus four sigmas of the noise, an edge of albedo lies between them: no shading of a smooth
+/// surface reaches them. Not varied.
 const HUE_STEP: f32 = 0.06;
 const LOG_STEP: f32 = 0.22;
-/// Pixels of a region, at least.
+/// Fewest pixels of a region.
 const SMALLEST_REGION: usize = 6;
-/// Regions at most; the smallest of more leave the mask.
+/// Most regions; beyond these, the smallest leave the mask.
 const MOST_REGIONS: usize = 240;
-/// Pairs of pixels along a border, at least.
+/// Fewest pairs of pixels along a border.
 const FEWEST_PAIRS: usize = 3;
 /// Widest border of mixed pixels between two regions.
 const WIDEST_BORDER: usize = 3;
-/// Share of the pixels outside the largest region from which on there is paint.
+/// Share of the pixels outside the largest region from which on the albedo counts as varying.
 const LEAST_PAINT: f64 = 0.03;
-/// Ties each region to the mean, in pairs: only where no border does.
+/// Weight that ties each region to the mean, in pairs of pixels: it matters only for regions without borders.
 const LOOSE_TIE: f64 = 1e-3;
 
-/// Regions whose paints differ by less, in hue (what differs from the mean of the channels) and in brightness, are of one
-/// paint: edges of the relief between them shift brightness, and hardly hue.
+/// Regions with smaller differences in chromaticity (deviation from the channels' mean) and in brightness share one
+/// albedo: edges of the relief between them shift brightness, but hardly chromaticity.
 const ONE_HUE: f64 = 0.1;
 const ONE_BRIGHTNESS: f64 = 0.4;
-/// Times that paints are joined and compared anew, over all borders between two of them together.
+/// Number of times that albedos are joined and compared again, over all borders between two of them together.
 const PALETTE_ROUNDS: usize = 2;
 
-/// Sweeps over the borders at most, and the change of a log offset that ends them.
+/// Most sweeps over the borders, and the change of a log offset that ends them.
 const MOST_SWEEPS: usize = 2000;
 const SETTLED_OFFSET: f64 = 1e-5;
 
@@ -47,7 +49,7 @@ const SETTLED_OFFSET: f64 = 1e-5;
 const NONE: u32 = u32::MAX;
 
 impl ColourView {
-    /// This view without the paint that shows at its edges; `None` where there is none.
+    /// This view without the albedo that shows at its edges; `None` if there is no such albedo.
     #[must_use]
     pub(crate) fn without_paint(&self) -> Option<Self> {
         let mut regions = Regions::new(self);
@@ -74,7 +76,7 @@ impl ColourView {
         Some(Self::of(self.size, self.camera, mask, log, self.transfer))
     }
 
-    /// Whether paint or the border of an object lies between two neighbours.
+    /// Whether an edge of albedo or the border of an object lies between two neighbours.
     fn is_edge(&self, a: usize, b: usize, noise: f32) -> bool {
         let step: [f32; 3] = std::array::from_fn(|channel| self.log[channel][b] - self.log[channel][a]);
         let mean = step.iter().sum::<f32>() / 3.0;
@@ -83,26 +85,26 @@ impl ColourView {
     }
 }
 
-/// Whether two log paints are one.
+/// Whether two log albedos count as one.
 fn is_one_paint(a: &[f64; 3], b: &[f64; 3]) -> bool {
     let off: [f64; 3] = std::array::from_fn(|channel| a[channel] - b[channel]);
     let brightness = off.iter().sum::<f64>() / 3.0;
     brightness.abs() < ONE_BRIGHTNESS && off.iter().all(|value| (value - brightness).abs() < ONE_HUE)
 }
 
-/// Where two paints meet.
+/// The border between two regions.
 struct Border {
     regions: [usize; 2],
-    /// Pairs of pixels along it.
+    /// Number of pixel pairs along it.
     pairs: f64,
-    /// log paint of the second region less that of the first.
+    /// log albedo of the second region minus that of the first.
     step: [f64; 3],
 }
 
-/// Pixels of one paint: connected ones at first.
+/// Regions of one albedo each, connected ones at first.
 struct Regions {
     of_pixel: Vec<u32>,
-    /// Pixels of each, largest first.
+    /// Pixel count of each, largest first.
     sizes: Vec<usize>,
 }
 
@@ -141,7 +143,7 @@ impl Regions {
         Self { of_pixel, sizes: found.into_iter().map(|(pixels, _)| pixels).collect() }
     }
 
-    /// Makes one of all regions that have one paint, by the log paint of each.
+    /// Merges all regions of the same albedo, given the log albedo of each.
     fn join(&mut self, offsets: &[Vec<f64>; 3]) {
         let paint = |region: usize| offsets.each_ref().map(|channel| channel[region]);
         let mut palette: Vec<(usize, [f64; 3])> = Vec::new();
@@ -167,8 +169,8 @@ impl Regions {
         self.sizes.iter().sum()
     }
 
-    /// log paint of each region in each channel, zero in the mean over the pixels: least squares over the borders, each
-    /// region in turn at the mean that its neighbours ask for (Gauss and Seidel).
+    /// log albedo of each region in each channel, with mean zero over the pixels: least squares over the borders by
+    /// damped Jacobi sweeps, in which each region moves halfway to the mean that its neighbours imply.
     fn offsets(&self, view: &ColourView) -> [Vec<f64>; 3] {
         let borders = self.borders(view);
         [0, 1, 2].map(|channel: usize| {
@@ -184,7 +186,7 @@ impl Regions {
                 }
                 let mut change = 0.0_f64;
                 for (offset, &(sum, weight)) in offsets.iter_mut().zip(&sums) {
-                    // Half the way: all at once would swing between two regions for ever.
+                    // Halfway, because a full step of all regions at once would oscillate between two of them for ever.
                     let next = 0.5 * (*offset + sum / weight);
                     change = change.max((next - *offset).abs());
                     *offset = next;
@@ -199,7 +201,7 @@ impl Regions {
         })
     }
 
-    /// What paints differ by across each border that is long enough.
+    /// The albedo difference across each border that is long enough.
     fn borders(&self, view: &ColourView) -> Vec<Border> {
         let mut steps = self.steps(view);
         steps.sort_by_key(|&(regions, _)| Reverse(regions));
@@ -215,7 +217,7 @@ impl Regions {
         .collect()
     }
 
-    /// For each pair of regions what the second one's paint has more than the first one's, at each place of their border.
+    /// For each pair of regions, the albedo of the second relative to the first at each place of their border.
     fn steps(&self, view: &ColourView) -> Vec<([u32; 2], [f32; 3])> {
         let mut all = Vec::new();
         let (width, height) = (view.size.width as isize, view.size.height as isize);
@@ -231,7 +233,7 @@ impl Regions {
                     let inside = (0..width).contains(&column) && (0..height).contains(&row);
                     inside.then(|| view.size.index(column as usize, row as usize))
                 };
-                // The next pixel of another region, across mixed ones of none.
+                // The next pixel of another region, across mixed pixels without one.
                 let across = (1..=1 + WIDEST_BORDER as isize)
                     .map_while(|steps| at(steps).map(|other| (steps, other)))
                     .find(|(_, other)| self.of_pixel[*other] != NONE);
@@ -265,7 +267,7 @@ mod tests {
 
     const SIDE: usize = 48;
 
-    /// A ball in a soft lamp with 1 % noise; `paint` in log units by place.
+    /// A ball under a soft lamp with 1 % noise; `paint` is its log albedo by position.
     fn ball(paint: impl Fn(usize, usize) -> [f64; 3]) -> ColourView {
         let mut dice = noise::white_noise(5);
         let (mut data, mut mask) = (Vec::new(), Vec::new());
@@ -298,7 +300,7 @@ mod tests {
                 .collect();
             let mean = off.iter().sum::<f64>() / off.len() as f64;
             let spread = (off.iter().map(|off| (off - mean).powi(2)).sum::<f64>() / off.len() as f64).sqrt();
-            // Medians over borders of seven pixels with 1 % of noise, over a chain of some six squares.
+            // Error of medians over borders of seven pixels with 1 % noise, along a chain of about six squares.
             assert!(spread < 0.03, "channel {channel}: {spread}");
         }
         let kept = clean.mask.iter().filter(|&&inside| inside).count();
@@ -308,7 +310,7 @@ mod tests {
     #[test]
     fn without_paint_there_is_nothing_to_take_away() {
         assert!(ball(|_, _| [0.0; 3]).without_paint().is_none());
-        // Nor where it changes softly.
+        // Nor if it changes gradually.
         assert!(ball(|column, _| [0.01 * column as f64, 0.0, 0.0]).without_paint().is_none());
     }
 }

@@ -16,21 +16,22 @@ pub struct Pinhole {
     pub cx: f64,
     /// Row of the principal point.
     pub cy: f64,
-    /// Between pinhole and pixels.
+    /// Lens between pinhole and pixels.
     pub lens: Lens,
 }
 
-/// Metres or pixels from which on a depth, or a coordinate of a cloud, counts as missing: some formats write their
-/// largest number for a hole, and f32 cannot hold its square.
+/// Metres or pixels from which on a depth, or a coordinate of a cloud, counts as missing: some formats mark a hole by
+/// their largest number, and f32 cannot hold its square.
 pub const FARTHEST: f64 = 1e12;
-/// Of a ray with a slope that no picture has, and whose points may be beyond all numbers.
+/// Message for a ray steeper than in any picture, whose points may overflow.
 const TOO_STEEP: &str = "must be finite, and below 1e12 focal lengths";
-/// Pixels and slopes from here on, whose squares f64 cannot hold, have no ray: rounding would send some to infinity and back.
+/// Pixels and slopes from here on, whose squares overflow f64, have no ray: rounding would send some to infinity and
+/// back.
 const BEYOND: f64 = 1e150;
 
 impl Pinhole {
     /// # Errors
-    /// [`ErrorKind::Range`] naming the number at fault below `field`.
+    /// [`ErrorKind::Range`] with the path of the offending number below `field`.
     pub fn validate(&self, field: &str) -> Result<()> {
         positive("fx", self.fx).and(positive("fy", self.fy)).map_err(|error| error.below(field))?;
         for (name, value, focal_length) in [("cx", self.cx, self.fx), ("cy", self.cy, self.fy)] {
@@ -50,7 +51,7 @@ impl Pinhole {
         Ok(())
     }
 
-    /// Column and row of a point; `None` behind the camera, beyond the fold of its lens, and in the camera itself. A
+    /// Column and row of a point; `None` behind the camera, beyond the fold of its lens, and at the camera's centre. A
     /// fisheye sees points beside and behind it as far as its lens does not fold.
     #[must_use]
     pub fn project(&self, point: [f64; 3]) -> Option<[f64; 2]> {
@@ -58,7 +59,7 @@ impl Pinhole {
         Some([self.fx * x + self.cx, self.fy * y + self.cy])
     }
 
-    /// [`project`](Self::project) with its derivative: d column and d row, each by x, y, z of the point.
+    /// [`project`](Self::project) with the derivatives of column and row by x, y, z of the point.
     #[must_use]
     pub fn project_with_gradient(&self, point: [f64; 3]) -> Option<([f64; 2], [[f64; 3]; 2])> {
         let ([x, y], [by_x, by_y]) = self.lens.project_with_gradient(point)?;
@@ -66,9 +67,9 @@ impl Pinhole {
         Some((pixel, [by_x.map(|slope| self.fx * slope), by_y.map(|slope| self.fy * slope)]))
     }
 
-    /// Direction of the ray through a pixel: with z = 1 where it runs ahead, so that depth times it is the point; a
-    /// unit vector (z below 0.01) where a fisheye looks aside or back. `None` where the lens lets no ray through, and where
-    /// the square of pixel or slope is beyond all numbers.
+    /// Direction of the ray through a pixel: with z = 1 if it points forward, so that depth times the direction is the
+    /// point; for a fisheye, a unit vector (z below 0.01) if it points sideways or backward. `None` if the lens has no
+    /// ray there, or if the square of pixel or slope overflows.
     #[must_use]
     pub fn ray(&self, [column, row]: [f64; 2]) -> Option<[f64; 3]> {
         let target = self.straight([column, row]);
@@ -78,12 +79,12 @@ impl Pinhole {
         self.lens.ray(target, [self.fx, self.fy])
     }
 
-    /// The slopes of the ray through a pixel without the lens.
+    /// The slopes of the ray through a pixel without a lens.
     pub(super) fn straight(&self, [column, row]: [f64; 2]) -> [f64; 2] {
         [(column - self.cx) / self.fx, (row - self.cy) / self.fy]
     }
 
-    /// Columns and rows of four points, NaN behind the camera and beyond the fold of its lens.
+    /// Columns and rows of four points; NaN behind the camera and beyond the fold of its lens.
     #[inline(always)]
     pub(super) fn project_lanes(&self, [x, y, z]: [Lanes; 3]) -> [Lanes; 2] {
         let splat = |value: f64| Lanes::splat(value as f32);
@@ -98,7 +99,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// What a ray is found to, in pixels.
+    /// Accuracy of a ray, pixels.
     const RETURN_DISTANCE: f64 = 1e-7;
     const MIDDLE: [f64; 4] = [520.0, 515.0, 322.5, 236.5];
 
@@ -107,7 +108,8 @@ mod tests {
         Pinhole { fx, fy, cx, cy, lens }
     }
 
-    /// Usual lenses, among them an action camera's and a depth sensor's whose eight coefficients nearly cancel.
+    /// Usual lenses, among them those of an action camera, and of a depth sensor whose eight coefficients nearly
+    /// cancel.
     fn lenses() -> impl Strategy<Value = Lens> {
         let plain = (-0.3..0.3, -0.1..0.1, -0.005..0.005, -0.005..0.005, -0.05..0.05);
         let rational = (0.0..1.0_f64, -0.1..0.1);
@@ -137,7 +139,7 @@ mod tests {
         fn a_ray_returns_to_its_pixel(lens in lenses(), column in 0.0..639.0, row in 0.0..479.0) {
             let camera = camera(lens);
             let ray = camera.ray([column, row]);
-            // A few of these lenses fold within the picture; pixels beyond have no ray.
+            // A few of these lenses fold within the picture; pixels beyond the fold have no ray.
             prop_assume!(ray.is_some());
             let [x, y, z] = ray.unwrap();
             prop_assert_eq!(z, 1.0);
@@ -150,7 +152,8 @@ mod tests {
             let camera = camera(lens);
             if let Some(pixel) = camera.project([x, y, z]) {
                 let [u, v, w] = camera.ray(pixel).unwrap();
-                // A pixel of a millionth may be far in space where the lens is about to fold: there the pixel counts.
+                // Where the lens is about to fold, a millionth of a pixel may be far in space, so the distance is
+                // measured in pixels.
                 let back = camera.project([u, v, w]).unwrap();
                 let far = pixel[0].hypot(pixel[1]);
                 prop_assert!((back[0] - pixel[0]).hypot(back[1] - pixel[1]) < 2.0 * RETURN_DISTANCE + 1e-11 * far);
@@ -190,7 +193,7 @@ mod tests {
 
     #[test]
     fn nothing_is_seen_beyond_the_fold() {
-        // r - r^3 grows to r = 0.577; r (1 - 0.5 r^2 + 0.1 r^4) falls from r = 1 on and grows again from 1.41 on.
+        // r - r^3 grows up to r = 0.577; r (1 - 0.5 r^2 + 0.1 r^4) falls from r = 1 on and grows again from 1.41 on.
         let once = camera(Lens::Brown([-1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]));
         let twice = camera(Lens::Brown([-0.5, 0.1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]));
         for (camera, seen, unseen) in [(once, 0.57, [0.585, 3.0]), (twice, 0.99, [1.02, 1.5])] {
@@ -203,11 +206,11 @@ mod tests {
                 assert_eq!(unseen.map(|slope| camera.project_with_gradient(point(slope))), [None; 2]);
             }
         }
-        // 0.385 focal lengths are the most that the first shows; the second shows 0.6.
+        // The first shows at most 0.385 focal lengths; the second shows 0.6.
         let [fx, _, cx, cy] = MIDDLE;
         assert!(once.ray([cx + 0.384 * fx, cy]).is_some() && once.ray([cx + 0.386 * fx, cy]).is_none());
         assert!(twice.ray([cx + 0.599 * fx, cy]).is_some() && twice.ray([cx + 0.601 * fx, cy]).is_none());
-        // A pole of the rational model: 1 - r^2 below the line.
+        // A pole of the rational model: 1 - r^2 in the denominator.
         let pole = camera(Lens::Brown([0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0]));
         assert!(pole.project([0.9, 0.0, 1.0]).is_some() && pole.project([1.1, 0.0, 1.0]).is_none());
         // theta - 0.2 theta^3 grows up to 1.29 rad.
@@ -253,7 +256,7 @@ mod tests {
         }
     }
 
-    /// Found by the fuzzer: the first pose of such a camera was infinite.
+    /// The first pose of such a camera would be infinite.
     #[test]
     fn rays_as_steep_as_no_picture_has_them_are_refused() {
         let good = Pinhole { fx: 60.0, fy: 60.0, cx: -500.0, cy: 31.5, lens: Lens::None };

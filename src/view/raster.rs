@@ -1,10 +1,10 @@
-//! A raster's size, its pixels and their neighbours, and bilinear values between pixels.
+//! A raster's size, its pixels and their neighbours, and bilinear interpolation between pixels.
 
 use crate::error::{Error, ErrorKind, Result};
 
-/// Smallest side of a view: below it neither a normal nor a light is determined.
+/// Smallest side of a view: below it, neither a normal nor a light is determined.
 pub const SMALLEST_SIDE: usize = 4;
-/// Largest side of a view: the buffers of two such views still fit a 32-bit memory.
+/// Largest side of a view: the samples of two such views fit a 32-bit memory.
 pub const LARGEST_SIDE: usize = 4096;
 
 /// Width and height of a raster in pixels; row-major, pixel (0, 0) top left.
@@ -20,7 +20,7 @@ impl Size {
     /// A size within 4x4 .. 4096x4096.
     ///
     /// # Errors
-    /// [`ErrorKind::Size`] naming `field` otherwise.
+    /// [`ErrorKind::Size`] with `field` otherwise.
     pub fn new(field: &'static str, width: usize, height: usize) -> Result<Self> {
         for side in [width, height] {
             if !(SMALLEST_SIDE..=LARGEST_SIDE).contains(&side) {
@@ -47,7 +47,7 @@ impl Size {
         row * self.width + column
     }
 
-    /// The pixels left, right, above and below that exist.
+    /// The existing pixels to the left and right, above and below.
     pub fn neighbours(self, index: usize) -> impl Iterator<Item = usize> {
         let (column, row) = self.position(index);
         [
@@ -60,8 +60,8 @@ impl Size {
         .flatten()
     }
 
-    /// All runs of `N` neighbours, along the rows and down the columns: nothing that is measured by them depends on how a
-    /// view is held.
+    /// All runs of `N` neighbours, along the rows and down the columns, so that measurements do not depend on how a
+    /// view is oriented.
     pub(crate) fn runs<const N: usize>(self) -> impl Iterator<Item = [usize; N]> {
         (0..2 * self.len()).filter_map(move |number| {
             let (index, is_across) = (number / 2, number % 2 == 0);
@@ -71,10 +71,10 @@ impl Size {
         })
     }
 
-    /// Index of the pixel nearest to a continuous position, `None` outside the raster.
+    /// Index of the pixel nearest to a continuous position; `None` outside the raster.
     #[must_use]
     pub fn nearest(self, column: f32, row: f32) -> Option<usize> {
-        // WebAssembly has no instruction that rounds halves away from zero, but one that rounds down.
+        // WebAssembly has an instruction that rounds down, but none that rounds halves away from zero.
         let (column, row) = ((column + 0.5).floor(), (row + 0.5).floor());
         let inside = column >= 0.0 && row >= 0.0 && column < self.width as f32 && row < self.height as f32;
         inside.then(|| self.index(column as usize, row as usize))
@@ -93,7 +93,8 @@ impl Size {
         self.interpolate(fields, column, row, weighted_mean)
     }
 
-    /// As [`bilinear`](Self::bilinear), of those neighbours that are not NaN: at an object's rim some are off the mask.
+    /// [`bilinear`](Self::bilinear) over the neighbours that are not NaN: at the border of an object, some lie off the
+    /// mask.
     #[must_use]
     pub fn bilinear_of_known(self, field: &[f32], column: f32, row: f32) -> f32 {
         let [value] = self.each_bilinear_of_known([field], column, row);
@@ -106,7 +107,7 @@ impl Size {
         self.interpolate(fields, column, row, weighted_mean_of_known)
     }
 
-    /// A mean of the four pixels around a position in each field, NaN outside of the raster.
+    /// A mean of the four pixels around a position in each field; NaN outside the raster.
     #[inline(always)]
     fn interpolate<const N: usize>(
         self,
@@ -119,7 +120,7 @@ impl Size {
         fields.map(|field| mean(field, &corners))
     }
 
-    /// The four pixels around a continuous position and their bilinear weights; `None` outside of the raster.
+    /// The four pixels around a continuous position and their bilinear weights; `None` outside the raster.
     #[inline(always)]
     fn corners(self, column: f32, row: f32) -> Option<Corners> {
         let inside =
@@ -148,13 +149,13 @@ impl Size {
 /// Four pixels and their weights, which add up to one.
 type Corners = [(usize, f32); 4];
 
-/// Weighted mean of the corners. A corner without weight must not make it NaN, and NaN times zero is NaN.
+/// Weighted mean of the corners. A corner without weight must not contribute, because NaN times zero is NaN.
 #[inline(never)]
 fn weighted_mean(field: &[f32], corners: &Corners) -> f32 {
     corners.iter().filter(|(_, weight)| *weight > 0.0).map(|&(pixel, weight)| weight * field[pixel]).sum()
 }
 
-/// Weighted mean of those corners that are not NaN; NaN where all are.
+/// Weighted mean of the corners that are not NaN; NaN if all are.
 #[inline(never)]
 fn weighted_mean_of_known(field: &[f32], corners: &Corners) -> f32 {
     let (mut sum, mut weights) = (0.0, 0.0);

@@ -1,26 +1,26 @@
-//! A depth map without its noise: min over z of sum a (z - measured)^2 + lambda sum rho(second differences of z)
+//! Removes the noise from a depth map: min over z of sum a (z - measured)^2 + lambda sum rho(second differences of z)
 //! (docs/method/views.md).
 //!
-//! lambda = sigma^2 / c^2 is Bayes' rule for the noise and the roughness that the map itself shows ([`DepthNoise`]):
-//! the window is as wide as this map wants it. rho is Geman-McClure with a scale of two c, so that creases and rims
-//! keep their shape. Second differences along rows, columns and both (the thin plate's), between pixels that have a
-//! depth; holes stay holes.
+//! lambda = sigma^2 / c^2 is Bayes' rule for the noise and the roughness of the map itself ([`DepthNoise`]), so the
+//! window adapts to the map. rho is Geman-McClure with a scale of two c, so that creases and depth discontinuities keep
+//! their shape. Second differences run along rows, columns and both (as in a thin plate), between pixels with a depth;
+//! holes stay holes.
 //!
 //! Method: iteratively reweighted least squares, each round by conjugate gradients with the diagonal as preconditioner.
-//! Smoothing reaches over lambda^(1/4) pixels, two or three, so that few iterations settle it. Limits: noise that
-//! reaches further than its surface's detail, such as the drift of a whole map from frame to frame, stays.
+//! Smoothing reaches over lambda^(1/4) pixels, two or three, so few iterations suffice. Limits: noise that reaches
+//! farther than the surface's detail, such as the drift of a whole map from frame to frame, stays.
 
 use super::Size;
 use super::depth_noise::DepthNoise;
 use crate::numeric::conjugate_gradient::{Limits, System, Vectors, solve};
 use crate::numeric::robust;
 
-/// Rounds after the first, which is by squares.
+/// Reweighted rounds after the first one, which is plain least squares.
 const REWEIGHTED: usize = 3;
-/// Of each round; the error is about the square of that of the heights.
+/// Limits of each round; the error is about the square of that of the heights.
 const LIMITS: Limits = Limits { iterations: 60, error: 0.0, relative_error: 1e-6, decrease: 0.0 };
 
-/// Removes the noise from a raster of heights, NaN where there is none.
+/// Removes the noise from a raster of heights, NaN where missing.
 pub fn smooth(size: Size, noise: &DepthNoise, heights: &mut [f32]) {
     let mut plate = ThinPlate::new(size, heights);
     let measured: Vec<f32> = heights.iter().map(|height| if height.is_nan() { 0.0 } else { *height }).collect();
@@ -41,11 +41,11 @@ pub fn smooth(size: Size, noise: &DepthNoise, heights: &mut [f32]) {
     }
 }
 
-/// A second difference: four pixels from its first one, and their factors.
+/// A second difference: four pixel offsets from its first pixel, and their factors.
 struct Stencil {
     offsets: [usize; 4],
     factors: [f32; 4],
-    /// Of its square: the twist counts twice in the energy of a thin plate.
+    /// Weight of its square: the twist counts twice in the energy of a thin plate.
     share: f32,
 }
 
@@ -53,7 +53,7 @@ struct Stencil {
 struct ThinPlate {
     known: Vec<bool>,
     stencils: [Stencil; 3],
-    /// lambda w of each second difference, at its first pixel; zero where there is none.
+    /// lambda w of each second difference, at its first pixel; zero where it does not exist.
     weights: [Vec<f32>; 3],
     diagonal: Vec<f32>,
 }
@@ -69,7 +69,7 @@ impl ThinPlate {
         let twist = Stencil { offsets: [0, 1, width, width + 1], factors: [1.0, -1.0, -1.0, 1.0], share: 2.0 };
         let stencils = [line(1), line(width), twist];
         let known: Vec<bool> = heights.iter().map(|height| !height.is_nan()).collect();
-        // One where the second difference exists, else zero.
+        // One where the second difference exists, otherwise zero.
         let weights = [0, 1, 2].map(|kind: usize| {
             let (Stencil { offsets, .. }, [right, down]) = (&stencils[kind], [[2, 0], [0, 2], [1, 1]][kind]);
             let exists = |index: usize| {
@@ -92,7 +92,7 @@ impl ThinPlate {
             for (index, weight) in weights.iter_mut().enumerate().filter(|(_, weight)| **weight > 0.0) {
                 let difference: f32 = (0..4).map(|k| factors[k] * z[index + offsets[k]]).sum();
                 let robust: f32 = robust::weight(difference * difference * inverse_square);
-                // Never zero, which says that there is no second difference.
+                // Never zero, which would mark a missing second difference.
                 *weight = (share * lambda * robust).max(f32::MIN_POSITIVE);
                 for k in 0..4 {
                     self.diagonal[index + offsets[k]] += *weight * factors[k] * factors[k];
@@ -129,7 +129,7 @@ impl System for ThinPlate {
 mod tests {
     use super::*;
 
-    /// A roof with a staircase on it: its planes lose the steps, its ridge stays where it was, its hole stays a hole.
+    /// A roof with a staircase on it: its planes lose the steps, its ridge stays in place, its hole stays a hole.
     #[test]
     fn steps_go_and_a_ridge_stays() {
         let size = Size { width: 64, height: 64 };

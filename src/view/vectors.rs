@@ -1,4 +1,4 @@
-//! Fields of vectors over a raster, normals and points, as structure-of-arrays.
+//! Vector fields over a raster, normals and points, as structure-of-arrays.
 
 use std::ops::Range;
 
@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::numeric::Lanes;
 
-/// Unit normals over a raster, NaN where there is none. They face the camera: z < 0.
+/// Unit normals over a raster, NaN where missing. They face the camera: z < 0.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Normals {
     /// x components (right).
@@ -17,7 +17,7 @@ pub struct Normals {
     pub z: Vec<f32>,
 }
 
-/// Points over a raster, NaN where there is none.
+/// Points over a raster, NaN where missing.
 pub type Points = Normals;
 
 impl Normals {
@@ -47,7 +47,7 @@ impl Normals {
         [self.x[index], self.y[index], self.z[index]]
     }
 
-    /// The four vectors from `index` on, NaN beyond the last one.
+    /// The four vectors from `index` on; NaN beyond the last one.
     pub(crate) fn lanes(&self, index: usize) -> [Lanes; 3] {
         let start = index as isize;
         [Lanes::load(&self.x, start), Lanes::load(&self.y, start), Lanes::load(&self.z, start)]
@@ -63,11 +63,11 @@ impl Normals {
     #[inline(always)]
     #[must_use]
     pub fn is_valid(&self, index: usize) -> bool {
-        // A sum is NaN where a member is.
+        // A sum is NaN if a member is.
         !self.get(index).iter().sum::<f32>().is_nan()
     }
 
-    /// Copies other vectors; allocates where there are more than ever before.
+    /// Copies other vectors; allocates if there are more than ever before.
     pub(crate) fn copy_from(&mut self, other: &Self) {
         self.x.clone_from(&other.x);
         self.y.clone_from(&other.y);
@@ -79,7 +79,7 @@ impl Normals {
         [&mut self.x, &mut self.y, &mut self.z].into_iter().for_each(|axis| axis.resize(length, f32::NAN));
     }
 
-    /// Copies a range of other vectors to the places from `start` on.
+    /// Copies a range of other vectors to this one from `start` on.
     pub(crate) fn copy_range(&mut self, start: usize, other: &Self, range: &Range<usize>) {
         let [x, y, z] = [&other.x, &other.y, &other.z].map(|axis| &axis[range.clone()]);
         for (mine, theirs) in [(&mut self.x, x), (&mut self.y, y), (&mut self.z, z)] {
@@ -87,7 +87,7 @@ impl Normals {
         }
     }
 
-    /// Rotates a range of the vectors and writes them to the places of `rotated` from `start` on.
+    /// Rotates a range of the vectors and writes them into `rotated` from `start` on.
     pub(crate) fn rotate(&self, range: &Range<usize>, rotation: &Matrix3<f64>, rotated: &mut Self, start: usize) {
         let [x, y, z] = [&self.x, &self.y, &self.z].map(|axis| &axis[range.clone()]);
         for (axis, out) in [&mut rotated.x, &mut rotated.y, &mut rotated.z].into_iter().enumerate() {
@@ -103,7 +103,7 @@ impl Normals {
         (0..self.len()).filter(|&index| self.is_valid(index)).map(|index| self.get(index).map(f64::from).into())
     }
 
-    /// Mean of the vectors that are not missing, zero where all are.
+    /// Mean of the vectors that are not missing; zero if all are.
     #[must_use]
     pub fn centroid(&self) -> Vector3<f64> {
         extent(self.valid()).0
@@ -116,7 +116,7 @@ impl Normals {
     }
 }
 
-/// Centroid of points and their root mean square distance from it; zero without points.
+/// Centroid of points and their root mean square distance from it; zero if there are no points.
 pub(crate) fn extent(points: impl Iterator<Item = Vector3<f64>> + Clone) -> (Vector3<f64>, f64) {
     let (mut sum, mut count) = (Vector3::zeros(), 0.0);
     for point in points.clone() {

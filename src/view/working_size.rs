@@ -1,11 +1,11 @@
-//! Unlike resolutions of the two views are matched: a photograph that is finer than the depth map is
-//! worked on where one of its pixels covers about as much of the object as one of the depth map's (docs/method/views.md).
+//! Matches the resolutions of the two views: a photograph finer than the depth map is reduced until one of its pixels
+//! covers about as much of the object as one of the depth map's (docs/method/views.md).
 //!
-//! A working pixel is the mean of the linear intensities over a square of the photograph, whose side need not be whole:
-//! a pixel counts by its usable area in the square. What is found is carried back to the photograph's pixels. Normals of
-//! a coarse depth map cannot explain finer colours: they would be noise to the model, and cost memory and time. Where the
-//! views are alike nothing is touched. A depth map that is finer than the image is used as it is: its normals average
-//! what an image pixel sees.
+//! A working pixel is the mean of the linear intensities over a square of the photograph, whose side need not be whole;
+//! a pixel counts by its usable area in the square. Results are carried back to the photograph's pixels. Normals of a
+//! coarse depth map cannot explain finer colours, which would be noise to the model and cost memory and time. Views of
+//! similar resolution stay unchanged, and so does a depth map finer than the image: its normals average what an image
+//! pixel sees.
 
 use nalgebra::Vector3;
 
@@ -13,35 +13,35 @@ use super::colour::{self, ColourImage, ColourSamples, ColourView};
 use super::{Camera, DepthMap, DepthSamples, Normals, Pinhole, Size};
 use crate::error::Result;
 
-/// Ratio of resolutions from which the views are unlike: areas of masks, and of two views of one object, are not exact.
+/// Ratio of resolutions from which they are matched: areas of masks, and of two views of one object, are inexact.
 const UNLIKE: f64 = 1.25;
-/// Least share of a working pixel that usable pixels of the image cover.
+/// Smallest share of a working pixel that usable image pixels must cover.
 const COVERED: f64 = 0.5;
-/// Share of a working pixel that is rounding: no column of its own.
+/// Share of a working pixel that is rounding and adds no further column.
 const SLIVER: f64 = 1e-6;
-/// Working pixels of air around the object, where the image is cut to its mask.
+/// Margin around the object in working pixels, if the image is cut to its mask.
 const MARGIN: usize = 4;
 
-/// From the caller's image to the one that is worked on, and back.
+/// Converts between the caller's image and the working image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WorkingSize {
     full: Size,
     working: Size,
-    /// Side of a working pixel in the caller's.
+    /// Side of a working pixel in the caller's pixels.
     factor: f64,
-    /// First column and row of the caller's image that is worked on.
+    /// First column and row of the caller's image in the working image.
     origin: [usize; 2],
     is_orthographic: bool,
-    /// The caller's pixels that are usable.
+    /// The usable pixels of the caller's image.
     mask: Vec<bool>,
 }
 
 impl WorkingSize {
-    /// The view that is worked on, and the way back where it is not the caller's own. It has at most `most` pixels
-    /// where a photograph finer than the depth map can be made so small.
+    /// The working view, and its conversion if it is not the caller's image. The view has at most `most` pixels if a
+    /// photograph finer than the depth map can be reduced that far.
     ///
     /// # Errors
-    /// Those of [`ColourView::new`].
+    /// The errors of [`ColourView::new`].
     pub fn of(image: ColourImage, depth: &DepthMap, most: usize) -> Result<(ColourView, Option<Self>)> {
         let (full, object) = colour::checked(&image)?;
         let area = Area::of(full, image.mask.is_some().then_some(&object[..]));
@@ -92,7 +92,7 @@ impl WorkingSize {
         ColourImage { width, height, samples, transfer: None, mask: Some(mask), camera }
     }
 
-    /// The caller's columns (rows along axis 1) that a working one covers, each with the share of it that is covered.
+    /// The caller's columns (rows along axis 1) that a working one covers, each with its covered share.
     fn span(&self, at: usize, axis: usize) -> impl Iterator<Item = (usize, f64)> + use<> {
         let side = [self.full.width, self.full.height][axis] as f64;
         let start = self.origin[axis] as f64 + at as f64 * self.factor;
@@ -108,26 +108,26 @@ impl WorkingSize {
         Pinhole { fx: fx / side, fy: fy / side, cx, cy, lens }
     }
 
-    /// How long a unit of the working view is in the caller's: both are metres behind a pinhole.
+    /// Length of a unit of the working view in the caller's units: behind a pinhole, both are metres.
     #[must_use]
     pub fn unit(&self) -> f64 {
         if self.is_orthographic { self.factor } else { 1.0 }
     }
 
-    /// Size of the image as it was given.
+    /// Size of the image as given.
     #[must_use]
     pub const fn full(&self) -> Size {
         self.full
     }
 
-    /// Side of a working pixel in the caller's.
+    /// Side of a working pixel in the caller's pixels.
     #[must_use]
     pub const fn factor(&self) -> f64 {
         self.factor
     }
 
-    /// Where the origin of the working view lies in the caller's: the middles of two images without a camera differ
-    /// where one is cut.
+    /// Position of the working view's origin in the caller's view: the centres of two images without a camera differ if
+    /// one is cut.
     #[must_use]
     pub fn shift(&self) -> Vector3<f64> {
         if !self.is_orthographic {
@@ -146,7 +146,7 @@ impl WorkingSize {
         )
     }
 
-    /// Column and row of the working view, continuous, of a pixel of the caller's.
+    /// Continuous column and row in the working view of a pixel of the caller's.
     fn place(&self, pixel: usize) -> [f32; 2] {
         let (column, row) = self.full.position(pixel);
         let place = |at: usize, origin: usize, side: usize| {
@@ -156,7 +156,7 @@ impl WorkingSize {
         [place(column, self.origin[0], self.working.width), place(row, self.origin[1], self.working.height)]
     }
 
-    /// The working pixels around a position, near ones first by rings.
+    /// The working pixels around a position, ring by ring from the nearest.
     fn around(&self, column: f32, row: f32) -> impl Iterator<Item = usize> + use<> {
         let size = self.working;
         let offsets = (1..=2).flat_map(|ring| {
@@ -165,11 +165,13 @@ impl WorkingSize {
         offsets.filter_map(move |[right, down]| size.nearest(column + right, row + down))
     }
 
-    /// A field at the caller's pixels, times `unit`: bilinear, the nearest value that there is at rims, NaN off the mask.
+    /// A field at the caller's pixels, times `unit`: bilinear, with the nearest known value at borders, NaN off the
+    /// mask.
     #[must_use]
     pub fn carry(&self, field: &[f32], unit: f64) -> Vec<f32> {
         let mut carried = vec![f32::NAN; self.full.len()];
-        // Before the first iteration there is nothing: looking for it around each of 12 million pixels takes four seconds.
+        // Before the first iteration the field is empty, and searching it around each of 12 million pixels would take
+        // seconds.
         if field.iter().all(|value| value.is_nan()) {
             return carried;
         }
@@ -188,7 +190,7 @@ impl WorkingSize {
         carried
     }
 
-    /// Normals, of unit length.
+    /// Unit normals at the caller's pixels.
     #[must_use]
     pub fn carry_normals(&self, normals: &Normals) -> Normals {
         let [x, y, z] = [&normals.x, &normals.y, &normals.z].map(|axis| self.carry(axis, 1.0));
@@ -201,7 +203,7 @@ impl WorkingSize {
         carried
     }
 
-    /// Three channels, interleaved.
+    /// Three interleaved channels at the caller's pixels.
     #[must_use]
     pub fn carry_colours(&self, interleaved: &[f32]) -> Vec<f32> {
         let [x, y, z] = [0, 1, 2].map(|channel| {
@@ -211,7 +213,7 @@ impl WorkingSize {
         Normals { x, y, z }.interleaved()
     }
 
-    /// Indices, -1 for none, of the nearest working pixel.
+    /// Indices at the nearest working pixel, -1 for none.
     #[must_use]
     pub fn carry_indices(&self, indices: &[i32]) -> Vec<i32> {
         let nearest = |pixel: usize| {
@@ -222,14 +224,14 @@ impl WorkingSize {
     }
 }
 
-/// The part of an image that is worked on.
+/// The part of an image that becomes the working image.
 struct Area {
     origin: [usize; 2],
     size: [usize; 2],
 }
 
 impl Area {
-    /// The box around the mask, or everything.
+    /// The box around the mask, or everything without a mask.
     fn of(full: Size, mask: Option<&[bool]>) -> Self {
         let mut area = Self { origin: [0, 0], size: [full.width, full.height] };
         let Some(mask) = mask else { return area };
@@ -254,8 +256,8 @@ impl Area {
     }
 }
 
-/// How many image pixels a depth pixel is as wide as, at the object: by both focal lengths, else by the areas of both
-/// masks, else by the whole views; never more than by these.
+/// Width of a depth pixel at the object, in image pixels: from both focal lengths, else from the areas of both masks,
+/// else from the sizes of the views; never more than the last.
 fn factor(image: &ColourImage, object: &[bool], depth: &DepthMap) -> f64 {
     let count = |inside: &[bool]| inside.iter().filter(|&&inside| inside).count();
     let frames = ratio(object.len(), depth.width * depth.height);
@@ -268,16 +270,16 @@ fn factor(image: &ColourImage, object: &[bool], depth: &DepthMap) -> f64 {
         _ => frames,
     };
     let factor = footprint.min(frames);
-    // A ratio that is not a number asks for nothing.
+    // A ratio that is NaN changes nothing.
     if factor >= UNLIKE { factor } else { 1.0 }
 }
 
-/// By which factor the pixels' sides differ.
+/// Ratio of the pixels' sides.
 fn ratio(fine: usize, coarse: usize) -> f64 {
     (fine as f64 / coarse.max(1) as f64).sqrt()
 }
 
-/// Pixels of the depth map with a depth.
+/// Number of the depth map's pixels with a depth.
 fn measured(depth: &DepthMap) -> usize {
     let inside =
         |index: usize| depth.mask.as_ref().is_none_or(|mask| mask.get(index).is_some_and(|&inside| inside != 0));
@@ -320,13 +322,13 @@ mod tests {
             let found = factor_of(&image(side, side), &depth(40, 40), MOST);
             assert!((found - expected).abs() < 1e-12, "{side}: {found}");
         }
-        // A tenth of the columns in a frame of the same size is no coarser map.
+        // A tenth of the columns in a frame of the same size does not make the map coarser.
         let mut narrow = depth(40, 40);
         narrow.mask = Some((0..1600).map(|index| u8::from(index % 40 < 4)).collect());
         let mut whole = image(40, 40);
         whole.mask = Some(vec![1; 1600]);
         assert_eq!(factor_of(&whole, &narrow, MOST), 1.0);
-        // Focal lengths say it before masks do, and a cut frame does not make an image coarser.
+        // Focal lengths take precedence over masks, and a cut frame does not make an image coarser.
         let (mut metric, mut cut) = (image(120, 120), image(40, 40));
         (metric.camera, cut.camera) = (camera(300.0), camera(300.0));
         let mut coarse = depth(40, 40);
@@ -334,7 +336,7 @@ mod tests {
         assert_eq!([factor_of(&metric, &coarse, MOST), factor_of(&cut, &coarse, MOST)], [3.0, 1.0]);
         coarse.camera = camera(290.0);
         assert_eq!(factor_of(&metric, &coarse, MOST), 1.0);
-        // What does not fit is made smaller as long as it has more pixels than the depth map.
+        // An image that does not fit is reduced as long as it has more pixels than the depth map.
         let (mut wide, mut narrow) = (image(72, 72), depth(20, 20));
         (wide.camera, narrow.camera) = (camera(300.0), camera(300.0));
         assert_eq!([MOST, 450, 100].map(|most| factor_of(&wide, &narrow, most)), [1.0, 4.0, 4.0]);
@@ -352,7 +354,7 @@ mod tests {
         assert!((way.factor() - 4.1).abs() < 0.1 && way.factor().fract() > 0.0, "{}", way.factor());
         for working in [0, 40, view.size.len() - 1] {
             let (column, row) = view.size.position(working);
-            // The middle of what it covers, in the frame of either view.
+            // The centre of the covered area, in the frame of either view.
             let middle = |at: usize, axis: usize| way.origin[axis] as f64 + way.factor() * (at as f64 + 0.5) - 0.5;
             let expected = Camera::Orthographic.ray(full, [middle(column, 0), middle(row, 1)]);
             let [x, y] = Camera::Orthographic.ray(view.size, [column as f64, row as f64]);
@@ -378,7 +380,7 @@ mod tests {
 
     #[test]
     fn a_working_pixel_is_the_mean_over_its_area() {
-        // One working pixel covers one and a half of the image's along both axes.
+        // A working pixel covers one and a half image pixels along both axes.
         let ramp: Vec<_> = (0..60 * 60).flat_map(|pixel| [(pixel % 60) as f32 + 1.0; 3]).collect();
         let fine = ColourImage { samples: ColourSamples::RgbLinear(ramp), ..image(60, 60) };
         let (view, _) = WorkingSize::of(fine, &depth(40, 40), MOST).unwrap();

@@ -28,16 +28,16 @@ extern "C" {
     pub type JsReport;
 }
 
-/// A check under way.
+/// A check in progress.
 #[wasm_bindgen(js_name = "CalibrationCheck")]
 pub struct Check(calibration::CalibrationCheck);
 
 #[wasm_bindgen(js_class = "CalibrationCheck")]
 impl Check {
-    /// Twelve numbers for each candidate: its rotation row by row and its translation.
+    /// Takes twelve numbers for each candidate: its rotation row by row and its translation.
     ///
     /// # Errors
-    /// As the native constructor.
+    /// Those of the native constructor.
     #[wasm_bindgen(constructor)]
     pub fn new(
         frames: Vec<JsFrame>,
@@ -52,24 +52,24 @@ impl Check {
         Ok(Self(calibration::CalibrationCheck::new(views, candidates, &cues)?))
     }
 
-    /// One slice of the work; whether the report is complete.
+    /// Runs one slice of the work; returns whether the report is complete.
     pub fn step(&mut self) -> bool {
         self.0.step()
     }
 
-    /// Share of the work that is done.
+    /// Share of the work done.
     #[must_use]
     pub fn share(&self) -> f64 {
         self.0.progress().0
     }
 
-    /// What is being done.
+    /// The current activity.
     #[must_use]
     pub fn message(&self) -> String {
         self.0.progress().1.to_owned()
     }
 
-    /// The report so far, once the candidates are judged.
+    /// The report so far, once the candidates have been judged.
     #[must_use]
     pub fn report(&self) -> Option<JsReport> {
         self.0.report().map(|report| plain(report).unchecked_into())
@@ -79,7 +79,7 @@ impl Check {
 /// Visible points and depth edges of a frame on its image: `{ points, positions, edges }`.
 ///
 /// # Errors
-/// As the constructor of [`Check`].
+/// Those of the constructor of [`Check`].
 #[wasm_bindgen(js_name = "overlay")]
 pub fn overlay(frame: &JsFrame, numbers: &[f64]) -> std::result::Result<Object, Thrown> {
     let overlay = calibration::overlay(view(0, frame)?, &pose(numbers))?;

@@ -1,11 +1,11 @@
-//! Errors cross as plain data; the facade makes a `BimodalError` of them.
+//! Errors cross as plain data; the facade turns them into a `BimodalError`.
 
 use wasm_bindgen::JsValue;
 
 use super::output::plain;
 use crate::error::Error;
 
-/// An [`Error`] on its way out.
+/// An [`Error`] to be thrown.
 #[derive(Debug)]
 pub struct Thrown(Error);
 

@@ -21,7 +21,7 @@ extern "C" {
     #[wasm_bindgen(typescript_type = "StepReport")]
     pub type JsReport;
 
-    /// Number of the shape that it starts from, numbers, planes one after the other.
+    /// Number of the shape from which it starts, numbers, and planes in sequence.
     #[wasm_bindgen(typescript_type = "[number, Float64Array, Float32Array]")]
     pub type JsRefinementTask;
 
@@ -31,14 +31,14 @@ extern "C" {
 
 type Result<T> = std::result::Result<T, Thrown>;
 
-/// An estimator, the options a reset without options goes back to, and the wall time of the stages that ran last: the
+/// An estimator, the options for a reset without options, and the wall time of the stages that ran last, because the
 /// numerics have no clock.
 #[wasm_bindgen]
 pub struct Estimator {
     native: Native,
     options: Options,
     milliseconds: Vec<(&'static str, f64)>,
-    /// Whether an iteration has been begun by `step_halfway`: the next step finishes it and adds to these times.
+    /// Whether `step_halfway` has begun an iteration: the next step finishes it and adds to these times.
     halfway: bool,
     /// Pixels of the last picture.
     rgba: Vec<u8>,
@@ -68,7 +68,7 @@ impl Estimator {
         }
     }
 
-    /// As `step`, but for a search around an initial pose within the first iteration, of which it does one slice.
+    /// Like `step`, but runs a single slice of a search around an initial pose within the first iteration.
     pub fn advance(&mut self) -> JsReport {
         let report = self.native.report();
         if self.halfway || self.native.is_searching() || report.iteration > 0 || report.status != Status::Running {
@@ -84,7 +84,7 @@ impl Estimator {
         }
     }
 
-    /// The stages before a refinement that a worker may be making.
+    /// Runs the stages before a refinement that a worker may be running.
     #[wasm_bindgen(js_name = "stepHalfway")]
     pub fn step_halfway(&mut self) {
         if !std::mem::replace(&mut self.halfway, true) {
@@ -95,7 +95,7 @@ impl Estimator {
         }
     }
 
-    /// The next refinement for a worker that holds the shape of number `held`.
+    /// The next refinement, for a worker that holds the shape numbered `held`.
     #[wasm_bindgen(js_name = "refinementTask")]
     pub fn refinement_task(&self, held: Option<u32>) -> Option<JsRefinementTask> {
         let RefinementTask { shape, numbers, planes } = self.native.refinement_task(held)?;
@@ -103,7 +103,7 @@ impl Estimator {
         Some(Array::of3(&shape.into(), &numbers, &output::planes(&planes)).unchecked_into())
     }
 
-    /// What a worker has made of the shape of number `shape`; passed over where it is not asked for.
+    /// Takes a worker's refinement of the shape numbered `shape`; ignores it if it is not needed.
     #[wasm_bindgen(js_name = "acceptRefinement")]
     pub fn accept_refinement(&mut self, shape: u32, planes: &Float32Array) {
         if planes.length() as usize == 4 * self.native.depth().size.len()
@@ -144,19 +144,19 @@ impl Estimator {
         Ok(())
     }
 
-    /// How many workers the memory of a pair leaves room for.
+    /// Number of workers that fit in the memory of a pair.
     #[wasm_bindgen(js_name = "workersAfforded")]
     pub fn workers_afforded(&self) -> u32 {
         self.native.workers_afforded()
     }
 
-    /// A part of the initialisation for a worker in another thread, as plain numbers.
+    /// A task of the search for a worker in another thread, as plain numbers.
     #[wasm_bindgen(js_name = "takeTask")]
     pub fn take_task(&mut self) -> Option<Float64Array> {
         self.native.take_task().map(|task| Float64Array::from(task.to_numbers().as_slice()))
     }
 
-    /// What a worker has found.
+    /// Takes a worker's finding.
     pub fn accept(&mut self, finding: &Float64Array) {
         if let Some(finding) = Finding::from_numbers(&finding.to_vec()) {
             self.native.accept_finding(finding);
@@ -199,14 +199,14 @@ impl Estimator {
         Float32Array::from(self.native.shading().as_slice())
     }
 
-    /// Paints a layer into the top left corner of a canvas; the facade has checked the words and the context.
+    /// Draws a layer into the top left corner of a canvas; the facade has checked the words and the context.
     pub fn draw(&mut self, context: &JsContext, layer: &str, range: Option<Vec<f64>>, map: &str) -> Result<()> {
         let layer = Layer::ALL.into_iter().find(|known| known.name() == layer).unwrap_or(Layer::Depth);
         let map = ColourMap::ALL.into_iter().find(|known| known.name() == map).unwrap_or_default();
         let range = range.and_then(|range| range.try_into().ok());
         let size = self.native.draw(layer, range, map, &mut self.rgba)?;
         let (pixels, width, height) = (Clamped(self.rgba.as_slice()), size.width as u32, size.height as u32);
-        // Sides and number of pixels agree, so neither fails.
+        // Sides and number of pixels agree, so neither call fails.
         let picture = ImageData::new_with_u8_clamped_array_and_sh(pixels, width, height).unwrap_throw();
         match context.dyn_ref::<OffscreenCanvasRenderingContext2d>() {
             Some(context) => context.put_image_data(&picture, 0.0, 0.0),

@@ -1,5 +1,5 @@
-//! From the objects of the JavaScript contract to the native inputs. JavaScript has one type for all numbers: that
-//! sides, counts and seeds are whole and fit their types here has been checked by the facade.
+//! Conversion of the JavaScript contract's objects to the native inputs. JavaScript has one type for all numbers; the
+//! facade has checked that sides, counts and seeds are whole and fit their types here.
 
 use js_sys::{Float32Array, Float64Array, Uint8Array, Uint8ClampedArray, Uint16Array};
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -72,7 +72,7 @@ extern "C" {
     fn gamma(this: &JsAngles) -> Option<f64>;
 }
 
-/// Numbers from any list of numbers; `None` where there is none.
+/// Numbers from any list of numbers; `None` if the value is no object.
 pub fn numbers(value: &JsValue) -> Option<Vec<f64>> {
     value.is_object().then(|| Float64Array::new(value).to_vec())
 }
@@ -136,7 +136,7 @@ pub fn pinhole(js: &JsPinhole, field: &str) -> Result<Pinhole> {
     Ok(Pinhole { fx: js.fx(), fy: js.fy(), cx: js.cx(), cy: js.cy(), lens })
 }
 
-/// Options of the contract over the native defaults. Names and types have been checked by the facade.
+/// Options of the contract over the native defaults. The facade has checked names and types.
 pub fn options(js: &JsOptions) -> Result<Options> {
     serde_path_to_error::deserialize(serde_wasm_bindgen::Deserializer::from(JsValue::from(js))).map_err(|error| {
         let field = format!("options.{}", error.path());
@@ -153,7 +153,7 @@ pub fn angles(js: &JsAngles) -> Angles {
     }
 }
 
-/// Takes over rasters that stand one after the other, as many as there are; whether they end with a whole one.
+/// Fills rasters from their concatenation, as many as there are; returns whether it ends with a whole one.
 pub fn planes<'a>(all: &Float32Array, planes: impl IntoIterator<Item = &'a mut [f32]>) -> bool {
     let mut start = 0;
     for plane in planes {

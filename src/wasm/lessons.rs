@@ -1,5 +1,5 @@
-//! What lessons look at: the objective of one pixel, and a surface of given normals.
-//! Numbers come in plain rows, which the facade has checked and put in order: objects cost every visitor bytes.
+//! Functions for the lessons: the objective of one pixel, and a surface from given normals. Numbers arrive in plain
+//! rows, checked and ordered by the facade, because objects would add to the download.
 
 use js_sys::{Array, Float32Array};
 use wasm_bindgen::JsCast;
@@ -31,7 +31,7 @@ fn normals(planes: &[f32]) -> Normals {
     Normals { x: x.to_vec(), y: y.to_vec(), z: z[..x.len()].to_vec() }
 }
 
-/// Three numbers from a place on; NaN beyond the end.
+/// Three numbers from an index on; NaN beyond the end.
 #[inline(never)]
 fn three(numbers: &[f64], place: usize) -> [f32; 3] {
     [0, 1, 2].map(|axis| numbers.get(place + axis).map_or(f32::NAN, |&value| value as f32))
@@ -44,7 +44,8 @@ pub fn integrate_normals(planes: &[f32], width: u32, height: u32, robust: bool) 
     Ok(Float32Array::from(surface_of_normals(size, &normals(planes), robust)?.as_slice()))
 }
 
-/// The objective of one pixel over the visible hemisphere. The numbers: log S, prior (NaN: none), start, lambda_2.
+/// The objective of one pixel over the visible hemisphere. The numbers: log S, prior (NaN if there is no prior), start,
+/// lambda_2.
 #[wasm_bindgen(js_name = "pixelLandscape")]
 pub fn pixel_landscape(coefficients: &[f64], numbers: &[f64], robust: bool, side: u32) -> Result<JsLandscape> {
     let mut weights = ShadingWeights::with_robust_prior(three(numbers, 9)[0], 1.0);

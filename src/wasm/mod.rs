@@ -1,7 +1,8 @@
 //! Bindings for JavaScript: thin newtypes over the native API, without mathematics.
 //!
-//! The facade in `js/` has checked names and types before anything arrives here; values are checked by the native API,
-//! as for every other caller. Arrays are copied both ways, because a view on wasm memory dies when that memory grows.
+//! The facade in `js/` has checked names and types before anything arrives here; the native API checks values, as for
+//! every other caller. Arrays are copied both ways, because a view on wasm memory becomes invalid when that memory
+//! grows.
 
 mod error;
 #[cfg(not(feature = "bindings-rigs"))]
@@ -10,7 +11,7 @@ mod input;
 #[cfg_attr(any(feature = "bindings-check", feature = "bindings-rigs"), allow(dead_code, reason = "so are its reports"))]
 mod output;
 
-// A file of its own for each: visitors who don't check a rig don't download the check, and the other way round.
+// Each feature builds a separate file, so that visitors download only what they use.
 #[cfg(feature = "bindings-check")]
 mod calibration;
 #[cfg(not(any(feature = "bindings-check", feature = "bindings-rigs")))]
@@ -44,7 +45,7 @@ const TYPES: &str = r#"
 import type { RigSample } from "../../../js/types/index.js";
 "#;
 
-/// Runs once, when the module has been loaded: a panic then says in the console where it happened.
+/// Runs once after the module has loaded: a panic then shows its location in the console.
 #[wasm_bindgen(start)]
 fn start() {
     console_error_panic_hook::set_once();

@@ -1,4 +1,4 @@
-//! From native reports and rasters to the objects of the JavaScript contract.
+//! Conversion of native reports and rasters to the objects of the JavaScript contract.
 
 use js_sys::{Array, Float32Array, Object, Reflect, Uint8Array};
 use serde::Serialize;
@@ -17,7 +17,7 @@ pub fn numbers(values: impl IntoIterator<Item = f64>) -> JsValue {
     values.into_iter().map(JsValue::from_f64).collect::<Array>().into()
 }
 
-/// A value in the shape that serde gives it, which is the contract's. None of ours can fail.
+/// A value in the contract's shape, as serialised by serde. None of this crate's values can fail.
 pub fn plain(value: &impl Serialize) -> JsValue {
     value.serialize(&Serializer::json_compatible()).unwrap_throw()
 }
@@ -30,7 +30,7 @@ pub fn report(report: &StepReport, milliseconds: &[(&'static str, f64)]) -> JsVa
     object.into()
 }
 
-/// A camera of the contract.
+/// A camera as in the contract.
 pub fn pinhole(camera: &Pinhole) -> Object {
     let Pinhole { fx, fy, cx, cy, lens } = camera;
     let object = Object::new();
@@ -43,13 +43,13 @@ pub fn pinhole(camera: &Pinhole) -> Object {
     object
 }
 
-/// A mask of the contract: 255 inside.
+/// A mask as in the contract: 255 inside.
 pub fn mask(mask: &[bool]) -> Uint8Array {
     let bytes: Vec<u8> = mask.iter().map(|&inside| if inside { u8::MAX } else { 0 }).collect();
     Uint8Array::from(bytes.as_slice())
 }
 
-/// Rasters one after the other.
+/// Concatenated rasters.
 pub fn planes(planes: &[&[f32]]) -> Float32Array {
     let length: usize = planes.iter().map(|plane| plane.len()).sum();
     let all = Float32Array::new_with_length(length as u32);

@@ -19,7 +19,7 @@ extern "C" {
 /// One frame of a rendered rig.
 ///
 /// # Errors
-/// As the native renderer.
+/// Those of the native renderer.
 #[wasm_bindgen(js_name = "sampleRig")]
 pub fn sample_rig(name: &str, seed: f64, frame: f64, noise: Option<f64>) -> std::result::Result<JsRigSample, Thrown> {
     let kind = RigKind::ALL.into_iter().find(|kind| kind.name() == name);
@@ -52,7 +52,7 @@ fn raster(size: Size, camera: &Pinhole) -> Object {
     ])
 }
 
-/// A plain object of these properties, in this order.
+/// A plain object with these properties, in this order.
 fn object<const COUNT: usize>(properties: [(&str, JsValue); COUNT]) -> Object {
     let object = Object::new();
     properties.into_iter().for_each(|(key, value)| set(&object, key, value));

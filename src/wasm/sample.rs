@@ -1,4 +1,4 @@
-//! Made scenes for JavaScript.
+//! Rendered scenes for JavaScript.
 
 use js_sys::{Float32Array, Float64Array, Object};
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -74,20 +74,20 @@ pub fn sample(request: &JsRequest) -> std::result::Result<JsSample, Thrown> {
     Ok(plain(&made).unchecked_into())
 }
 
-/// The least error of the rotation that any estimator can have on this scene, degrees.
+/// The lowest rotation error that any estimator can attain on this scene, degrees.
 #[wasm_bindgen(js_name = "sampleBound")]
 pub fn sample_bound(request: &JsRequest, light_is_known: bool) -> std::result::Result<Option<f64>, Thrown> {
     let made = make(request).map_err(|error| error.below("sample"))?;
     Ok(bound(&made, light_is_known, request.noise().unwrap_or_default()))
 }
 
-/// The 27 coefficients of a light that is named or given, turned by angles.
+/// The 27 coefficients of a named or given light, rotated by angles.
 #[wasm_bindgen(js_name = "turnLight")]
 pub fn turn_light(given: &JsValue, turn: &JsAngles) -> std::result::Result<Float64Array, Thrown> {
     Ok(Float64Array::from(light(given)?.turned(&angles(turn).rotation()).flat().as_slice()))
 }
 
-/// log S of each of some normals, three numbers after three.
+/// log S of each normal; normals and results are sequences of three numbers.
 #[wasm_bindgen(js_name = "shadeNormals")]
 pub fn shade_normals(given: &JsValue, normals: &Float32Array) -> std::result::Result<Float32Array, Thrown> {
     let light = light(given)?;
@@ -176,7 +176,7 @@ fn view(size: Size, inside: &[bool], camera: &Camera) -> Object {
     set(&object, "width", size.width as f64);
     set(&object, "height", size.height as f64);
     set(&object, "mask", mask(inside));
-    // An orthographic camera is the absence of one.
+    // An orthographic camera is represented by no camera.
     if let Camera::Pinhole(camera) = camera {
         set(&object, "camera", pinhole(camera));
     }

@@ -1,4 +1,4 @@
-//! A worker for JavaScript: tasks and findings are plain numbers, and rasters one after the other.
+//! A worker for JavaScript: tasks and findings are plain numbers, and rasters are concatenated.
 
 use js_sys::{Float32Array, Float64Array};
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -18,13 +18,13 @@ impl Worker {
         Ok(Self(Native::new(input::image(image)?, &input::depth(depth)?, input::options(options)?)?))
     }
 
-    /// The result of a task; `undefined` for numbers that are no task.
+    /// The result of a task; `undefined` for numbers that are not a task.
     pub fn perform(&mut self, task: &Float64Array) -> Option<Float64Array> {
         let finding = self.0.perform(&Task::from_numbers(&task.to_vec())?).ok()?;
         Some(Float64Array::from(finding.to_numbers().as_slice()))
     }
 
-    /// The refined shape of a task; `undefined` for numbers that are no task.
+    /// The refined shape of a task; `undefined` for numbers that are not a task.
     pub fn refine(&mut self, numbers: &Float64Array, planes: &Float32Array) -> Option<Float32Array> {
         let mut whole = false;
         let refined = self.0.refine(&numbers.to_vec(), |own| whole = input::planes(planes, own)).ok()?;

@@ -19,6 +19,7 @@ test("a region is replaced as a whole, and what surrounds it stays", () => {
   for (const [path, name] of [
     ["docs/accuracy.md", "tables"],
     ["docs/performance.md", "bench"],
+    ["docs/lab/results.md", "ablation"],
   ]) {
     const text = readFileSync(inRoot(path), "utf8");
     const once = filled(text, name, ["| a |"]);

@@ -58,7 +58,7 @@ export const PICTURES = [
   ["tall.jpg", jpeg(8, 0), /8x0 pixels/],
   ["segment.jpg", bytes([0xff, 0xd8, 0xff, 0xe0, 0, 0]), /no pixels/],
 
-  ["order.tif", swappedTiff(), /format is not known/],
+  ["order.tif", swappedTiff(), /format is not supported/],
   [
     "circle.tif",
     bytes(tiff(tiffTags(4, 4, { 330: 8, 34665: 8 }), u32(8)), new Uint8Array(300)),

@@ -103,7 +103,9 @@ test("a mask of 16 bits is a mask, and labels are refused in words", async ({ la
   await expect(slot(lab, 3)).toContainText("soft.png");
   // By hand it is what its place asks for, with what speaks against it.
   await put(lab, "Depth map", labels);
-  await expect(slot(lab, 1)).toContainText("By itself it would have been refused: its few small integers are labels");
+  await expect(slot(lab, 1)).toContainText(
+    "Without this slot it would have been refused: its few small integers are labels",
+  );
 });
 
 test("intrinsics of another picture size are scaled and named; of another aspect they are named and left out", async ({

@@ -1,16 +1,16 @@
-/** A mask of the colour image, drawn on it with the tool of "Check a rig". Loaded when it is asked for. */
+/** Draws a mask of the colour image with the tool of "Check a rig". Loaded on demand. */
 
 import { MaskTool } from "../rig/masktool";
 import type { Paint } from "../rig/paint";
 import { lookAt, pictureOf } from "./look";
 import { writePng } from "./write";
 
-/** Columns of the picture that is drawn on, at most: finer than a pointer, and as quick as one. */
+/** Largest width of the picture that is drawn on: finer than a pointer, and small enough to draw without delay. */
 const WIDEST = 1600;
 
 let tool: MaskTool | undefined;
 
-/** The mask at the size of the image that it was drawn for. */
+/** The mask at the size of its image. */
 async function fileOf({ width, height, data }: Paint, image: File): Promise<File> {
   const { width: columns = width, height: rows = height } = await lookAt(image);
   const full = new Uint8Array(columns * rows);
@@ -25,12 +25,12 @@ async function fileOf({ width, height, data }: Paint, image: File): Promise<File
   });
 }
 
-/** Opens the tool; `take` gets the mask, or nothing where all of the image is used. */
+/** Opens the tool; `take` receives the mask, or undefined if the whole image is used. */
 export async function drawMask(image: File, take: (mask: File | undefined) => void): Promise<void> {
   tool ??= new MaskTool();
   await tool.open({
     title: `The object in ${image.name}`,
-    advice: "Draw over the object: what is dark counts as background and is left out.",
+    advice: "Draw over the object. What stays dark is background and is left out.",
     picture: () => pictureOf(image, WIDEST),
     done: (paint) => {
       if (paint.data) void fileOf(paint, image).then(take);

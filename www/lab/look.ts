@@ -1,6 +1,6 @@
 /**
- * The visitor's files, each read once by the package's readers of a rig, in their own thread, which keeps the pixels: what a file is, what it
- * looks like, and a pair of them as a run takes it. Loaded with the first file.
+ * The visitor's files, recognised by their contents. The package's readers of rig files read each one once, in a separate thread that keeps
+ * the pixels; a pair of them becomes the input of a run. Loaded with the first file.
  */
 
 import type { ErrorDetails } from "../../pkg/index.js";
@@ -32,10 +32,10 @@ export interface Look {
   picture?: ImageBitmap;
 }
 
-/** Warnings that are said beside the Lab's own fields; and an object before nothing has holes around it. */
+/** Warnings that the Lab shows beside its fields, and that of holes: an object without a background has them all around. */
 const SETTLED: ReadonlySet<string> = new Set(["unit-guessed", "units-differ", "depth-range", "many-holes"]);
 
-/** Pixels of a preview's width. */
+/** Width of a preview, pixels. */
 const PREVIEW = 192;
 
 const session = new Session();
@@ -89,7 +89,7 @@ async function seen(file: File, number: number, how: Reading): Promise<Look> {
   };
 }
 
-/** A look of which no pixels are kept. */
+/** Looks at a file without keeping its pixels. */
 async function glance(file: File, how: Reading): Promise<Look> {
   const number = next++;
   try {
@@ -114,7 +114,7 @@ async function look(file: File): Promise<Look> {
   }
 }
 
-/** A picture at most so wide; of one that these readers do not know, by the browser. */
+/** A picture of at most this width. The browser decodes formats that the readers do not know. */
 export async function pictureOf(file: File, width: number): Promise<ImageBitmap> {
   const number = numberOf(file);
   if (kept.has(number)) return session.call("picture", { file: number, width });
@@ -127,12 +127,14 @@ export async function pictureOf(file: File, width: number): Promise<ImageBitmap>
 
 const KINDS = { colour: "colour", depth: "depth", colourMask: "mask", depthMask: "mask" } as const;
 
-/** A file in its place: one that its content or name speaks against is read as what its place asks for, and that is said. */
+/** A file in its slot. If its content or name contradicts the slot, it is read as the kind that the slot requires, with a warning. */
 export async function lookIn(slot: Slot, file: File): Promise<Look> {
   const own = await lookAt(file);
   if (own.fault === undefined) return own;
   const asked = await glance(file, { as: KINDS[slot] }).catch(() => undefined);
-  return asked ? { ...asked, warnings: [...asked.warnings, `By itself it would have been refused: ${own.says}`] } : own;
+  return asked
+    ? { ...asked, warnings: [...asked.warnings, `Without this slot it would have been refused: ${own.says}`] }
+    : own;
 }
 
 const short = (value: number): string => String(Number(value.toPrecision(3)));
@@ -143,7 +145,7 @@ function inWords({ kind, says, measured, width, height, unit = 1 }: Summary): st
   return `${width}x${height}, ${measured.stored}, ${(100 * measured.valid).toFixed(1)} % valid, stored numbers ${range}`;
 }
 
-/** What these readers do not take the Lab may still: larger pictures, which it scales down, and whatever else the browser decodes. */
+/** A file that the readers refuse. The Lab still accepts larger pictures, which it scales down, and other formats that the browser decodes. */
 async function unread(
   file: File,
   fault: string,
@@ -163,11 +165,11 @@ async function unread(
   return { ...none, kind: "colour", says: `${width}x${height}, read by the browser`, width, height, picture };
 }
 
-/** Which cameras took which pictures. */
+/** Assigns cameras to pictures. */
 export const camerasFor = (ask: Calls["cameras"]["ask"]): Promise<Calls["cameras"]["answer"]> =>
   session.call("cameras", ask);
 
-/** The files as a run takes them. What is wrong with one is said of its slot; what is done to a large one, as soon as it is known. */
+/** The files as the input of a run. Errors name the slot; `say` reports at once what is done to a large picture. */
 export async function pairFrom(files: OwnFiles, say: (words: string) => void): Promise<Pair> {
   const { colour, depth, colourMask, depthMask, ...given } = files;
   const slots = Object.entries({ colour, depth, colourMask, depthMask }) as [PartName, File | undefined][];

@@ -1,9 +1,9 @@
-/** What of the visitor's files seems to be in the wrong place, and the change that would mend it. */
+/** Files that seem to be in the wrong slot, and the change that would correct it. */
 
 import { type Look, lookAt } from "./look";
 import type { Files, Slot } from "./storage";
 
-/** A change of places that seems due, in words. */
+/** A proposed change of slots. */
 export interface Offer {
   words: string;
   button: string;
@@ -18,7 +18,7 @@ const called: Readonly<Record<Slot, string>> = {
 };
 const sorts: Readonly<Record<string, string>> = { colour: "a colour image", depth: "a depth map", mask: "a mask" };
 
-/** What of the files seems to be in the wrong place. */
+/** The change to propose, if a file seems to be in the wrong slot. */
 export async function offerFor(files: Files): Promise<Offer | undefined> {
   const look = async (slot: Slot) => {
     const file = files[slot];
@@ -32,7 +32,7 @@ export async function offerFor(files: Files): Promise<Offer | undefined> {
   ]);
   const seems = (there: Look | undefined, kind: Look["kind"]) => there?.kind === kind;
   const isCoarse = seems(depth, "colour") && depth?.isGrey === true;
-  // Of a grey picture and a coloured one the coloured one is no depth map, while the grey one may be.
+  // A coloured picture is not a depth map; a grey one may be.
   const isGrey = seems(colour, "colour") && colour?.isGrey === true;
   if (
     files.colour &&
@@ -42,11 +42,11 @@ export async function offerFor(files: Files): Promise<Offer | undefined> {
   ) {
     return {
       words: "Colour and depth seem to be swapped.",
-      button: "Swap them",
+      button: "Swap",
       slots: { ...files, colour: files.depth, depth: files.colour },
     };
   }
-  // A mask may have soft edges, and a coarse depth map 8 bits of grey: that alone proves nothing.
+  // A mask may have soft edges, and a coarse depth map may have 8 bits, so neither is evidence of a wrong slot.
   const wrong: [Slot, Look | undefined, boolean][] = [
     ["colour", colour, seems(colour, "depth") || seems(colour, "mask")],
     ["depth", depth, (seems(depth, "colour") && !isCoarse) || seems(depth, "mask")],
@@ -56,13 +56,13 @@ export async function offerFor(files: Files): Promise<Offer | undefined> {
   for (const [slot, there, isWrong] of wrong) {
     const file = files[slot];
     if (!isWrong || !there?.kind || !file) continue;
-    const words = `${file.name} looks like ${sorts[there.kind]}, and is in the place of the ${called[slot].toLowerCase()}.`;
+    const words = `${file.name} looks like ${sorts[there.kind]} but is in the slot of the ${called[slot].toLowerCase()}.`;
     const masks: Slot[] = slot === "depth" ? ["depthMask", "colourMask"] : ["colourMask", "depthMask"];
     const targets: Slot[] = there.kind === "mask" ? masks : there.kind === "depth" ? ["depth"] : ["colour"];
     const to = targets.find((each) => files[each] === undefined);
     const { [slot]: _, ...rest } = files;
     if (to) return { words, button: `Move it to ${called[to]}`, slots: { ...rest, [to]: file } };
-    return { words, button: "Take it out", slots: rest };
+    return { words, button: "Remove", slots: rest };
   }
   return undefined;
 }

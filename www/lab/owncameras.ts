@@ -1,4 +1,4 @@
-/** The cameras of the visitor's files: whose picture each took, its numbers in the Lab's fields, and what is to be said of that. */
+/** The cameras of the visitor's files: which picture each took, its numbers in the Lab's fields, and remarks about them. */
 
 import type { Pinhole } from "../../pkg/index.js";
 import type { GivenCamera, PictureSize } from "../rig/protocol";
@@ -38,10 +38,10 @@ export interface Assigned {
 
 export class OwnCameras {
   #given: GivenCamera[] = [];
-  /** What was put into the fields last; nothing since the last file came. */
+  /** The fields filled last; undefined after a new file. */
   #filled: Fields | undefined;
 
-  /** Those of new files take the place of all others. */
+  /** Cameras of new files replace all others. */
   bring(given: GivenCamera[]): void {
     if (given.length === 0) return;
     this.#given = given;
@@ -58,7 +58,7 @@ export class OwnCameras {
     return this.#filled === undefined || holds(settings, this.#filled);
   }
 
-  /** The numbers for these pictures; nothing where there are none to give, or the visitor has changed them since. */
+  /** The numbers for these pictures; undefined without cameras, or if the visitor has changed the fields. */
   async assign(files: Files, settings: Settings): Promise<Assigned | undefined> {
     const given = this.#given;
     if (given.length === 0 || !this.areIn(settings)) return undefined;
@@ -67,7 +67,7 @@ export class OwnCameras {
       const names = [...new Set(given.map(({ file }) => file))].join(", ");
       return {
         fields: {},
-        remarks: [{ words: `${names}: intrinsics, used once both pictures are here.`, wrong: false }],
+        remarks: [{ words: `${names}: intrinsics. They are used once both pictures are here.`, wrong: false }],
       };
     }
     const found = await camerasFor({ cameras: given, colour, depth });
@@ -75,7 +75,7 @@ export class OwnCameras {
     const fields: Fields = {};
     const remarks: Remark[] = [];
     const isShared = given.length === 1 && found.colour !== undefined && found.depth !== undefined;
-    const isOfBoth = isShared ? ", which is that of both images" : "";
+    const isOfBoth = isShared ? ", used for both images" : "";
     for (const side of ["colour", "depth"] as const) {
       const camera = found[side];
       if (!camera) continue;

@@ -1,4 +1,4 @@
-/** The visitor's files: what they are, where they belong, and that the browser keeps them. */
+/** The visitor's files: recognised, put into their slots, and kept by the browser. */
 
 import { Intake } from "./intake";
 import { runAmong } from "./kind";
@@ -8,17 +8,17 @@ import type { Origin, Settings, Value } from "./settings";
 import type { Files, Slot } from "./storage";
 
 export interface OwnFilesHooks {
-  /** Other files than before. */
+  /** The files have changed. */
   onChange(): void;
   /** A saved run in place of a pair. */
   onRun(file: File): void;
-  /** Something of them seems to be in the wrong place, or no longer. */
+  /** Whether a file seems to be in the wrong slot has changed. */
   onDoubt(): void;
-  /** Files are being looked at before they go anywhere: their names, or nothing once none of them went anywhere. */
+  /** Names of the files being recognised; empty if none of them went into a slot. */
   onLooking(names: string): void;
-  /** What is in the fields now. */
+  /** The present fields. */
   settings(): Settings;
-  /** Fields that files fill; other files follow at once where `isFollowed`. */
+  /** Fields that files fill; `isFollowed` if a change of files follows at once. */
   onFields(fields: Record<string, Value>, isFollowed: boolean): void;
 }
 
@@ -28,9 +28,9 @@ export class OwnFiles {
   /** Whether the stored files have been requested. */
   #restored = false;
   #doubt = "";
-  /** How often files have come by hand: those of last time come too late after the first. */
+  /** How often files were chosen by hand: stored files are not restored after the first time. */
   #hands = 0;
-  /** There once a file of cameras has come. */
+  /** Exists once a file of cameras was opened. */
   #cameras: OwnCameras | undefined;
 
   constructor(hooks: OwnFilesHooks) {
@@ -48,12 +48,12 @@ export class OwnFiles {
     else this.intake.silence();
   }
 
-  /** Other fields than before: what is said of cameras that are no longer in them is over. */
+  /** Removes the remarks about cameras whose numbers are no longer in the fields. */
   adapt(settings: Settings): void {
     if (this.#cameras && !this.#cameras.areIn(settings)) this.intake.remarks("cameras", []);
   }
 
-  /** Any number of them, each into the slot that its content is of. */
+  /** Any number of files, each put into the slot of its content. */
   async drop(files: readonly File[]): Promise<void> {
     this.#restored = true;
     this.#hands++;
@@ -77,7 +77,7 @@ export class OwnFiles {
     else this.#hooks.onLooking("");
   }
 
-  /** Has a mask of the colour image drawn, in the place of the one that there is. */
+  /** Opens the tool that draws a mask of the colour image; it replaces the present one. */
   async drawMask(): Promise<void> {
     const { colour } = this.intake.files;
     if (!colour) return;
@@ -85,14 +85,14 @@ export class OwnFiles {
     await drawMask(colour, (mask) => this.intake.files.colour === colour && this.intake.put("colourMask", mask));
   }
 
-  /** The cameras' numbers for these pictures, and what is said of them. */
+  /** Fills the cameras' numbers for these pictures and shows remarks about them. */
   async #assign(files: Files): Promise<Record<string, Value>> {
     const assigned = await this.#cameras?.assign(files, this.#hooks.settings());
     if (assigned) this.intake.remarks("cameras", assigned.remarks);
     return assigned?.fields ?? {};
   }
 
-  /** The files of last time, once, unless there are others by then. */
+  /** Restores the stored files, once, unless others were chosen by then. */
   async #restore(): Promise<void> {
     if (this.#restored) return;
     this.#restored = true;
@@ -110,7 +110,7 @@ export class OwnFiles {
     void this.#keep();
   }
 
-  /** Shows what each file is, and asks where one seems to be in the wrong place. */
+  /** Shows what each file is, and proposes a change if one seems to be in the wrong slot. */
   async #look(): Promise<void> {
     const files: Files = { ...this.intake.files };
     this.#offer(undefined);
@@ -153,7 +153,7 @@ export class OwnFiles {
       await keep(files);
       this.intake.keeping("These files stay in this browser, also after a reload, until you remove them.", true);
     } catch (error) {
-      // Those of another time must not come back in their place.
+      // Files stored earlier must not come back instead.
       await forget().catch(() => {});
       this.intake.keeping(
         `This browser could not store the files (${reasonOf(error)}). They work, but a reload removes them.`,
@@ -162,7 +162,7 @@ export class OwnFiles {
     }
   }
 
-  /** Another tab has put its files in the place of these, or has had them forgotten. */
+  /** Another tab has replaced or removed the stored files. */
   #overtaken(isEmpty: boolean): void {
     if (Object.keys(this.intake.files).length === 0) return;
     const words = isEmpty

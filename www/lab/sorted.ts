@@ -1,4 +1,4 @@
-/** The visitor's files, each told by what is in it: where it belongs, what it gives the fields, and what is said of those that go nowhere. */
+/** Sorts the visitor's files by their contents: their slots, the fields that they fill, and remarks about files without a slot. */
 
 import type { GivenCamera } from "../rig/protocol";
 import type { Remark } from "./intake";
@@ -8,7 +8,7 @@ import type { Files, Slot } from "./storage";
 
 export interface Sorted {
   slots: Map<Slot, File>;
-  /** What the files say of fields, cameras aside. */
+  /** Fields that the files fill, other than those of cameras. */
   fields: Record<string, Value>;
   cameras: GivenCamera[];
   remarks: Remark[];
@@ -22,14 +22,14 @@ interface Seen {
   look: Look;
 }
 
-/** Of two pictures that claim the same place, the one that rather belongs into the other: by its name, or the grey one. */
+/** Of two pictures for one slot, the one that belongs in the other: by its name, or else the grey one. */
 function odd(pair: readonly [Seen, Seen], isOther: (name: string) => boolean): Seen {
   return pair.find(({ file }) => isOther(file.name)) ?? pair.find(({ look }) => look.isGrey) ?? pair[1];
 }
 
 const ofKind = (seen: readonly Seen[], kind: Look["kind"]): Seen[] => seen.filter(({ look }) => look.kind === kind);
 
-/** Colour images and depth maps; where two of one kind come for two free places, one of them is the other. */
+/** Colour images and depth maps. If two of one kind arrive while the slot of the other is free, one of them goes there. */
 function picturesOf(seen: readonly Seen[], there: Files): { colours: Seen[]; depths: Seen[] } {
   const [colours, depths] = [ofKind(seen, "colour"), ofKind(seen, "depth")];
   const [one, two] = colours.length > 0 ? colours : depths;
@@ -44,7 +44,7 @@ function picturesOf(seen: readonly Seen[], there: Files): { colours: Seen[]; dep
   return { colours, depths };
 }
 
-/** Masks by their names, by the size of the pictures, or into the free place. */
+/** Assigns masks by name, by the size of the pictures, or to the free slot. */
 async function placeMasks(masks: readonly Seen[], after: Files, slots: Sorted["slots"]): Promise<void> {
   const lookOf = async (file: File | undefined) => file && (await lookAt(file));
   const [colour, depth] = [await lookOf(after.colour), await lookOf(after.depth)];
@@ -60,7 +60,7 @@ async function placeMasks(masks: readonly Seen[], after: Files, slots: Sorted["s
   }
 }
 
-/** What the kind of a depth map, and the text beside it, say of its numbers. A unit that the visitor typed stays. */
+/** The fields of the depth map's numbers, from its kind and the text beside it. A unit that the visitor typed stays. */
 function fieldsOf(
   depth: Seen | undefined,
   seen: readonly Seen[],
@@ -72,7 +72,7 @@ function fieldsOf(
   if (depth?.look.isInverse && settings.meaning !== "inverse") {
     Object.assign(fields, guess("meaning", "inverse"));
     say(
-      `${depth.file.name}: by its name it holds disparities or inverse depths, so that larger numbers are nearer (Depth camera, Numbers).`,
+      `${depth.file.name}: its name says disparities or inverse depths, so larger numbers are read as nearer (Depth camera, Numbers).`,
     );
   } else if (depth && !depth.look.isInverse && isGuessed(settings, "meaning")) fields.meaning = "depth";
   const beside = ofKind(seen, "cameras").find(({ look }) => look.unit !== undefined);
@@ -81,26 +81,26 @@ function fieldsOf(
   const isOpen = settings.unit === null || isGuessed(settings, "unit");
   if (isOpen) fields.unit = unit;
   const millimetres = Number((1000 * unit).toPrecision(4));
-  say(
-    `${file.name}: ${millimetres} mm for each stored number of depth${isOpen ? "" : "; the unit that was typed stays"}.`,
-  );
+  say(`${file.name}: one stored unit of depth is ${millimetres} mm${isOpen ? "" : "; the unit that you typed stays"}.`);
   return fields;
 }
 
-/** The way out of a refusal here: the readers' own is an option. */
+/** The remedy on this page; the readers name an option. */
 const byHand = (words: string): string =>
   words.replace(/give (?:that as )?the kind to read it as/, "choose it by hand in its place in the settings");
 
 function sayOthers(seen: readonly Seen[], say: (words: string, wrong?: boolean) => void): void {
   for (const { file, look } of seen) {
     if (look.kind === "poses")
-      say(`${file.name}: a pose, which the Lab finds by itself; Settings, Start, near takes its angles.`);
-    else if (look.kind === "recording") say(`${file.name}: a recording, which Check a rig reads.`, true);
+      say(
+        `${file.name}: a pose. The Lab does not need one; to begin from it, enter its angles under Settings, Start, near.`,
+      );
+    else if (look.kind === "recording") say(`${file.name}: a recording. Open it in Check a rig.`, true);
     else if (look.kind === undefined) say(`${file.name}: ${byHand(look.says)}`, true);
   }
 }
 
-/** One of each kind; `there` are the files that the slots already hold. */
+/** At most one file of each kind; `there` are the files already in the slots. */
 export async function sorted(files: readonly File[], there: Files, settings: Settings): Promise<Sorted> {
   const seen = await Promise.all(files.map(async (file): Promise<Seen> => ({ file, look: await lookAt(file) })));
   const slots: Sorted["slots"] = new Map();
@@ -114,15 +114,17 @@ export async function sorted(files: readonly File[], there: Files, settings: Set
     const [first, ...more] = all;
     if (first) slots.set(slot, first.file);
     for (const { file } of more)
-      say(`${file.name}: another ${slot === "colour" ? "colour image" : "depth map"}; the Lab takes one.`);
+      say(
+        `${file.name} looks like a second ${slot === "colour" ? "colour image" : "depth map"}; the Lab uses only one.`,
+      );
   }
-  // A pair that comes whole is another one, to which the masks of the last do not belong.
+  // A complete pair replaces the last one, whose masks do not belong to it.
   const isPair = slots.has("colour") && slots.has("depth");
   const after: Files = { ...(isPair ? {} : there), ...Object.fromEntries(slots) };
   const masks = ofKind(seen, "mask");
   await placeMasks(masks, after, slots);
   if (masks.length > 0 && after.colourMask && after.depth && !after.depthMask)
-    say("The depth map has no mask: if it shows more than the object, give it one.");
+    say("The depth map has no mask. Add one if it shows more than the object.");
   const fields = fieldsOf(depths[0], seen, settings, remarks);
   sayOthers(seen, say);
   const cameras = ofKind(seen, "cameras").flatMap(({ file, look }) =>

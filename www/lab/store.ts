@@ -56,7 +56,7 @@ export class Store {
     for (const listener of this.#listeners) listener(next, [], false);
   }
 
-  /** What the page fills in by itself, such as what it guessed: no step of its own, and nothing has to be run for it. */
+  /** What the page fills in by itself, such as guesses: not a step of undo, and nothing runs because of it. */
   complete(patch: Settings): void {
     const isNew = Object.entries(patch).some(([key, value]) => value !== (this.#now[key] ?? null));
     // What the visitor is typing meanwhile is shown over by every change.

@@ -4,14 +4,14 @@ import type { Subject } from "./masktool";
 import type { Frame, Rig } from "./rig";
 
 const ADVICE =
-  "Restrict it to what you trust: a thing and the background behind it, without screens, mirrors, glass or people who moved.";
+  "Restrict the check to what you trust: an object and the background behind it, without screens, mirrors, glass or people who moved.";
 
-/** Nothing of a frame that has no colour image. */
+/** Undefined for a frame without a colour image. */
 export function subjectOf(rig: Rig, frame: Frame): Subject | undefined {
   const { colour, depth, paint, range } = frame;
   if (colour === undefined) return undefined;
   return {
-    title: `What is used of ${frame.name}`,
+    title: `Used part of ${frame.name}`,
     advice: ADVICE,
     paint,
     range,

@@ -49,7 +49,7 @@ export class Session {
     ask: Calls[K]["ask"],
     onProgress?: (share: number, message: string) => void,
   ): Promise<Calls[K]["answer"]> {
-    // A new worker is told what is remembered: this would be among it, and be done twice.
+    // A new worker repeats what is remembered; this request would be among it and run twice.
     const worker = this.#thread();
     this.#remember(kind, ask);
     const id = this.#next++;

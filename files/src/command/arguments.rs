@@ -1,4 +1,4 @@
-//! What can be asked of the command, with the options of the package for JavaScript.
+//! The arguments of the command, equal to those of the JavaScript package.
 
 use std::path::PathBuf;
 
@@ -37,7 +37,7 @@ pub struct Arguments {
 }
 
 impl Arguments {
-    /// Refuses numbers that are none of their option.
+    /// Refuses numbers outside the range of their option.
     pub fn checked(&self) -> Result<()> {
         if self.unit.is_some_and(|unit| !(unit > 0.0 && unit.is_finite())) {
             return Err(Problem::option("--unit", "needs metres per stored number, above zero"));

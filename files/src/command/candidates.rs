@@ -1,4 +1,4 @@
-//! The extrinsics in question, from their files.
+//! The extrinsics to be checked, from their files.
 
 use std::path::{Path, PathBuf};
 
@@ -15,14 +15,14 @@ static COLOUR: Pattern = Pattern::new(|| pattern("(?i)colou?r|rgb"));
 static DEPTH: Pattern = Pattern::new(|| pattern(r"(?i)depth|infra|\bir\b|tof"));
 
 pub struct Candidates {
-    /// By name, that in question first.
+    /// By name, with the calibration to be checked first.
     pub poses: Vec<(String, Similarity)>,
     pub readings: Vec<Reading>,
-    /// Calibrations that hold cameras as well.
+    /// Calibration files that hold cameras as well.
     pub cameras: Vec<PathBuf>,
 }
 
-/// Whether names state that a pose carries colour to depth.
+/// Whether the names state that a pose maps colour to depth.
 fn is_backwards(pose: &NamedPose) -> bool {
     let [from, to] = [&pose.names.from, &pose.names.to].map(|name| name.as_deref().unwrap_or(""));
     COLOUR.is_match(from) && !DEPTH.is_match(from) && DEPTH.is_match(to) && !COLOUR.is_match(to)
@@ -72,7 +72,7 @@ fn add(
             let words = format!("it carries {from} to {to}; its inverse was checked.");
             warnings.push(Warning::new("inverse-checked", words).of_file(name));
         }
-        // A number as a name would come first in JavaScript, and two files may have one name.
+        // JavaScript would sort a number used as a name first, and two files may share a name.
         let is_number = title.bytes().all(|letter| letter.is_ascii_digit());
         let mut unique = if is_number { format!("\"{title}\"") } else { title };
         while poses.iter().any(|(known, _)| *known == unique) {

@@ -1,9 +1,9 @@
-//! What a check found over files, with what their readers warn of.
+//! The result of a check over files, with the warnings of their readers.
 
 use bimodal_stereo::{CheckReport, CheckVerdict};
 use serde_json::Value;
 
-/// A file that was read, with the hash by which it can be recognised.
+/// A file that was read, with a hash that identifies it.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct Input {
     pub name: String,
@@ -18,7 +18,7 @@ pub struct Said {
     pub json: Value,
 }
 
-/// What a check found, with what the readers add to it.
+/// The result of a check, with what the readers add to it.
 pub struct Checked {
     pub report: CheckReport,
     pub verdict: CheckVerdict,
@@ -29,9 +29,9 @@ pub struct Checked {
 }
 
 impl Checked {
-    /// What the readers guessed keeps the verdict from green, as the check's own warnings do.
+    /// Guesses of the readers cap the verdict, as the check's own warnings do.
     pub fn capped(report: CheckReport, warnings: Vec<Said>, inputs: Vec<Input>) -> Self {
-        /// That of the check's own warnings.
+        /// The code of a verdict capped by the check's own warnings.
         const DOUBTFUL: &str = "doubtful";
         let (mut verdict, mut code, mut reason) = (report.verdict, report.reason.code(), report.reason.to_string());
         if let (CheckVerdict::Consistent, Some(first)) = (verdict, warnings.iter().find(|warning| warning.is_doubt)) {

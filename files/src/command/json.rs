@@ -1,10 +1,10 @@
-//! The report as JSON, as the library serialises it, with what the readers add and the files that it was made from.
+//! The report as JSON, as the library serialises it, with the readers' warnings and the input files.
 
 use serde_json::{Value, json};
 
 use super::checked::Checked;
 
-/// Numbers that are none become null.
+/// Numbers that are not finite become null.
 pub fn json(checked: &Checked) -> String {
     let mut report = serde_json::to_value(&checked.report).unwrap_or_default();
     if let Value::Object(members) = &mut report {

@@ -1,7 +1,7 @@
 //! The command `check`: the calibration of a rig over a folder of frames, for a shell and for continuous integration.
 //!
-//! `arguments` states what can be asked, `candidates` reads the calibrations in question, `checked` is what came out, and `text`, `json` and `page` write it.
-//! The help text is that of the package for JavaScript, line by line.
+//! `arguments` defines the arguments, `candidates` reads the calibrations to be checked, `checked` is the result, and
+//! `text`, `json` and `page` write it. The help text equals that of the JavaScript package, line by line.
 
 mod arguments;
 mod candidates;
@@ -32,17 +32,17 @@ use progress::Progress;
 
 pub use arguments::HELP;
 
-/// Exit codes besides those of the verdicts.
+/// Exit codes in addition to those of the verdicts.
 const BAD: u8 = 3;
 const INTERRUPTED: u8 = 130;
 
-/// Where the command writes, and when it ends before its time.
+/// Output streams of the command, and its interruption.
 pub struct Terminal<'a> {
     pub out: &'a mut dyn Write,
     pub err: &'a mut dyn Write,
-    /// Whether `err` is one that a person looks at.
+    /// Whether `err` is a terminal that a person watches.
     pub is_terminal: bool,
-    /// Asked between two slices of the work.
+    /// Called between two slices of the work.
     pub is_interrupted: &'a mut dyn FnMut() -> bool,
 }
 
@@ -58,7 +58,7 @@ impl From<Problem> for End {
     }
 }
 
-/// Runs the command with its arguments, those behind `check`; the exit code.
+/// Runs the command with the arguments after `check`; returns the exit code.
 pub fn run(arguments: impl IntoIterator<Item = OsString>, terminal: &mut Terminal<'_>) -> u8 {
     let name = OsString::from("check");
     let parsed = Arguments::try_parse_from([name].into_iter().chain(arguments));
@@ -118,7 +118,7 @@ fn check(arguments: &Arguments, terminal: &mut Terminal<'_>) -> std::result::Res
     })
 }
 
-/// Runs the check to its end under a bar.
+/// Runs the check to its end with a progress bar.
 fn finished(mut check: CalibrationCheck, terminal: &mut Terminal<'_>) -> std::result::Result<CheckReport, End> {
     let mut progress = Progress::new(terminal.is_terminal);
     loop {
@@ -157,7 +157,7 @@ fn inputs(files: impl Iterator<Item = (String, (String, PathBuf))>) -> Result<Ve
 
 fn write(checked: &Checked, arguments: &Arguments, terminal: &mut Terminal<'_>) -> Result<()> {
     let is_json = arguments.json.as_deref() == Some(Path::new("-"));
-    // First: a file that cannot be written costs no verdict.
+    // Printed first, so that a file that cannot be written does not cost the verdict.
     let words = text::text(checked);
     if is_json { print(terminal.err, &words) } else { print(terminal.out, &words) }?;
     if let Some(path) = arguments.json.as_ref().filter(|_| !is_json) {
@@ -173,7 +173,7 @@ fn write(checked: &Checked, arguments: &Arguments, terminal: &mut Terminal<'_>) 
     Ok(())
 }
 
-/// A reader that has seen enough (`head`) is no fault.
+/// A reader that closes the pipe early (`head`) is not an error.
 fn print(to: &mut dyn Write, text: &str) -> Result<()> {
     match to.write_all(text.as_bytes()).and_then(|()| to.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {

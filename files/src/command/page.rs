@@ -1,5 +1,5 @@
-//! The report as one HTML file that asks for nothing else: it can be kept, mailed and printed. It has no script, its policy allows none, and
-//! whatever comes from files is escaped. The sections are those of js/rig/write/report, without the charts.
+//! The report as one self-contained HTML file that can be kept, mailed and printed. It has no script, its policy allows
+//! none, and everything from files is escaped. The sections are those of js/rig/write/report, without the charts.
 
 use bimodal_stereo::{Angles, CandidateReport, CheckVerdict, Health};
 
@@ -12,7 +12,7 @@ h1{font-size:1.5rem}h2{font-size:1.15rem;margin-top:2rem}table{border-collapse:c
 padding:.3rem .8rem .3rem 0;border-bottom:1px solid #d5dade}pre{overflow-x:auto;background:#f3f5f6;padding:.8rem}code{overflow-wrap:anywhere}\
 .card{border-left:.5rem solid #8a6d00;padding:.5rem 1rem;background:#fbf6e3}.consistent{border-color:#0a6b3d;background:#eaf6ef}\
 .off{border-color:#b3261e;background:#fbecea}.verdict{font-size:1.3rem;font-weight:600;margin:0}.soft{color:#59636c}";
-/// No request leaves the page; a style of its own is all that it has.
+/// The page makes no request; it has only an inline style.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'";
 const DIGITS: usize = 3;
 
@@ -44,7 +44,7 @@ fn percent(share: f64) -> String {
     format!("{} %", fixed(100.0 * share, 0))
 }
 
-/// Text cells, of which the first names the row.
+/// Text cells; the first one names the row.
 fn table(head: &[&str], rows: impl Iterator<Item = Vec<String>>) -> String {
     let head: String = head.iter().map(|name| format!("<th scope=\"col\">{name}</th>")).collect();
     let row = |cells: Vec<String>| {

@@ -1,9 +1,9 @@
-//! A bar that moves on a terminal, and a line for each tenth elsewhere.
+//! A moving bar on a terminal, and a line for each tenth elsewhere.
 
 use std::io::Write;
 
 const WIDTH: usize = 24;
-/// Letters of what is being done that fit a terminal.
+/// Characters of the current activity that fit a terminal.
 const ROOM: usize = 44;
 
 pub struct Progress {
@@ -16,7 +16,7 @@ impl Progress {
         Self { is_terminal, tenth: None }
     }
 
-    /// What cannot be shown is no fault of the check.
+    /// A failure to print is not an error of the check.
     pub fn show(&mut self, share: f64, words: &str, to: &mut dyn Write) {
         let share = share.clamp(0.0, 1.0);
         let percent = (100.0 * share).floor();
@@ -34,7 +34,7 @@ impl Progress {
         }
     }
 
-    /// Wipes the bar away.
+    /// Erases the bar.
     pub fn end(&self, to: &mut dyn Write) {
         if self.is_terminal {
             let _ = write!(to, "\r\x1b[K");

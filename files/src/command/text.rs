@@ -6,7 +6,7 @@ use super::checked::Checked;
 use crate::problem::plain;
 use crate::text::numbers::{brief, fixed, shown};
 
-/// Digits of what is shown.
+/// Digits of printed numbers.
 const DIGITS: usize = 3;
 
 pub const fn word(verdict: CheckVerdict) -> &'static str {

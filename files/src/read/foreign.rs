@@ -1,6 +1,6 @@
-//! Files that are not read, recognised by their first bytes, and what to do about them.
+//! Files that are not read: recognised by their first bytes, with advice.
 
-/// First bytes of pictures that are not read at all, and what to do about them.
+/// First bytes of picture formats that are not supported, with advice.
 const PICTURES: [(usize, &[u8], &str); 7] = [
     (0, b"GIF8", "a GIF; save it as PNG"),
     (0, b"BM", "a BMP; save it as PNG"),
@@ -25,7 +25,7 @@ const OTHERS: [(usize, &[u8], &str); 10] = [
     (0, b"%PDF", "a PDF"),
 ];
 
-/// Files of pixels and points that only the npm package reads.
+/// Formats of pixels and points that only the npm package reads.
 const ELSEWHERE: [(usize, &[u8], &str); 12] = [
     (0, b"II*\0", "TIFF"),
     (0, b"MM\0*", "TIFF"),
@@ -46,17 +46,17 @@ fn kind_in(kinds: &'static [(usize, &'static [u8], &'static str)], bytes: &[u8])
     kinds.iter().find(is).map(|(_, _, name)| *name)
 }
 
-/// The kind of a file of pixels or points that is read by the package for JavaScript alone.
+/// The format of a file of pixels or points that only the npm package reads.
 pub fn read_elsewhere(bytes: &[u8]) -> Option<&'static str> {
     kind_in(&ELSEWHERE, bytes)
 }
 
-/// Whether the bytes begin a picture of a kind that is not read here.
+/// Whether the bytes begin a picture in a format that is not read here.
 pub fn is_foreign_picture(bytes: &[u8]) -> bool {
     read_elsewhere(bytes).is_some() || kind_in(&PICTURES, bytes).is_some()
 }
 
-/// What a file that is not read seems to be, in words.
+/// A description of what an unread file seems to be.
 pub fn describe(bytes: &[u8]) -> String {
     if let Some(kind) = read_elsewhere(bytes) {
         return format!("it is {kind}, which is not read here; npx bimodal-stereo check reads it");

@@ -1,4 +1,4 @@
-//! Files as rasters: PNG and JPEG through `image`, `.npy` by hand. What they hold is told by their first bytes.
+//! Files as rasters: PNG and JPEG through `image`, `.npy` by the module `npy`. The first bytes of a file give its kind.
 
 pub mod foreign;
 mod npy;
@@ -15,7 +15,7 @@ use crate::problem::{Problem, Result};
 pub use npy::bytes as npy_bytes;
 pub use raster::{MOST_SIDE, Raster, Samples};
 
-/// Largest file that is read, as in js/rig/formats/limits.ts; what is no file (/dev/zero) ends there too.
+/// Largest file, as in js/rig/formats/limits.ts; it also bounds what is read from a device such as /dev/zero.
 const MOST_BYTES: u64 = 64 << 20;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,7 +55,7 @@ pub fn raster(path: &Path) -> Result<Raster> {
     decoded(&whole(path)?).map_err(|reason| Problem::file(path, reason))
 }
 
-/// The same of a file's bytes, or why it is not read.
+/// The same for a file's bytes, or why they are not read.
 pub fn decoded(bytes: &[u8]) -> std::result::Result<Raster, String> {
     match kind_of(bytes) {
         Some(Kind::Png) => picture::png(bytes),
@@ -65,9 +65,9 @@ pub fn decoded(bytes: &[u8]) -> std::result::Result<Raster, String> {
     }
 }
 
-/// 27 numbers in a text, whatever lies between them: names of channels and coefficients are passed over.
+/// 27 numbers in a text, whatever lies between them: names of channels and coefficients are ignored.
 pub fn light(path: &Path) -> Result<Light> {
-    /// A light has half a kilobyte.
+    /// A light takes half a kilobyte.
     const MOST_TEXT: u64 = 1 << 16;
     let bytes = head(path, MOST_TEXT).map_err(|error| Problem::file(path, error))?;
     let text = String::from_utf8(bytes).map_err(|_| Problem::file(path, "it is no text"))?;
@@ -80,9 +80,9 @@ pub fn light(path: &Path) -> Result<Light> {
     Ok(light)
 }
 
-/// A Gaussian over lights from JSON. Other members, such as where it comes from, are passed over.
+/// A Gaussian over lights from JSON. Other members, such as its source, are ignored.
 pub fn light_prior(path: &Path) -> Result<LightGaussian> {
-    /// The file of the crate's own prior has ten kilobytes.
+    /// The file of the crate's default prior takes ten kilobytes.
     const MOST_TEXT: u64 = 1 << 20;
     let bytes = head(path, MOST_TEXT).map_err(|error| Problem::file(path, error))?;
     let mut file: serde_json::Value = serde_json::from_slice(&bytes).map_err(|error| Problem::file(path, error))?;

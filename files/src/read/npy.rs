@@ -1,6 +1,7 @@
-//! NumPy's .npy, the few kinds that images and depth maps come in, as js/npy.ts reads them.
+//! NumPy's .npy, in the few types that images and depth maps come in, like js/npy.ts.
 //!
-//! By hand: npyz (0.9.1) multiplies the sides of a shape before anybody can look at them, which overflows on a hostile header.
+//! Not through npyz (0.9.1), which multiplies the sides of a shape before they can be checked, and so overflows on a
+//! hostile header.
 
 use super::raster::{Raster, Samples, check_size};
 
@@ -12,14 +13,15 @@ const CUT_OFF: &str = "this .npy file is cut off in its header";
 
 type Result<T> = std::result::Result<T, String>;
 
-/// What stands in the header.
+/// Content of the header.
 struct Header<'a> {
     kind: &'a str,
     in_columns: bool,
     shape: Vec<usize>,
 }
 
-/// Reads rows x columns, or rows x columns x channels, in either order; 64-bit floats and 32-bit integers become 32-bit floats.
+/// Reads rows x columns, or rows x columns x channels, in either order; 64-bit floats and 32-bit integers become 32-bit
+/// floats.
 pub fn read(bytes: &[u8]) -> Result<Raster> {
     let (text, body) = parts(bytes).ok_or(CUT_OFF)?;
     let Header { kind, in_columns, shape } = header(text)?;
@@ -91,7 +93,7 @@ fn header(text: &[u8]) -> Result<Header<'_>> {
             "this .npy file has {count} axes; rows and columns, or rows, columns and channels are needed"
         ));
     }
-    // Nothing but digits: parse() would also take "+2".
+    // Only digits: parse() would also accept "+2".
     let whole = |axis: &&str| axis.bytes().all(|letter| letter.is_ascii_digit()).then(|| axis.parse::<usize>().ok())?;
     let shape: Option<Vec<usize>> = axes.iter().map(whole).map(|side| side.filter(|&side| side > 0)).collect();
     let shape =
@@ -103,7 +105,7 @@ fn each<T, const SIZE: usize>(bytes: &[u8], decode: impl Fn([u8; SIZE]) -> T) ->
     bytes.as_chunks().0.iter().map(|&chunk| decode(chunk)).collect()
 }
 
-/// Data in column order (the first index runs fastest) in row order.
+/// Converts data from column order (the first index runs fastest) to row order.
 fn in_rows(samples: Samples, [height, width, channels]: [usize; 3]) -> Samples {
     let places: Vec<usize> = (0..height * width * channels)
         .map(|at| {
@@ -118,7 +120,7 @@ fn in_rows(samples: Samples, [height, width, channels]: [usize; 3]) -> Samples {
     }
 }
 
-/// A file of rows x columns, version 1: a header that fills whole blocks of 64 bytes, then the numbers, row by row.
+/// A file of rows x columns, version 1: a header padded to blocks of 64 bytes, then the numbers, row by row.
 pub fn bytes(width: usize, data: &[f32]) -> Vec<u8> {
     const BLOCK: usize = 64;
     let height = data.len() / width;

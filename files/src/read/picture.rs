@@ -1,4 +1,4 @@
-//! PNG and JPEG, upright as EXIF says and in sRGB as far as their profile says how, as js/rig/formats has them.
+//! PNG and JPEG, turned upright by EXIF and converted to sRGB by their colour profile, like js/rig/formats.
 
 use std::io::Cursor;
 
@@ -9,9 +9,9 @@ use moxcms::{ColorProfile, Layout, TransformOptions};
 use super::raster::{MOST_SIDE, Raster, Samples, check_size};
 use crate::warning::Warning;
 
-/// Bytes that a decoder may ask for: 4096x4096 pixels of four channels of 16 bits, and as much again.
+/// Most bytes for a decoder: 4096x4096 pixels of four 16-bit channels, twice.
 const MOST_MEMORY: u64 = 256 << 20;
-/// What gAMA says of linear numbers, and by what share it may be off.
+/// The gAMA value of linear numbers, and its relative tolerance.
 const LINEAR: f64 = 1.0;
 const SAME: f64 = 0.02;
 
@@ -24,7 +24,7 @@ pub fn png(bytes: &[u8]) -> Result<Raster> {
     let (has_srgb, gamma) = (info.srgb.is_some(), info.gama_chunk.map(|gamma| f64::from(gamma.into_value())));
     check_size(info.width as usize, info.height as usize)?;
     let (mut raster, profile) = decoded(bytes, ImageFormat::Png).map_err(|error| damaged(&error))?;
-    // What it says of its colours is nothing to depths.
+    // Statements about colours do not matter to depths.
     if !raster.has_colour() {
         return Ok(raster);
     }
@@ -40,7 +40,7 @@ pub fn png(bytes: &[u8]) -> Result<Raster> {
 }
 
 pub fn jpeg(bytes: &[u8]) -> Result<Raster> {
-    // Decoders show grey for what is missing.
+    // Decoders fill missing parts with grey.
     if !has_end(bytes) {
         return Err("this JPEG is cut off: its end is missing".into());
     }
@@ -53,7 +53,7 @@ pub fn jpeg(bytes: &[u8]) -> Result<Raster> {
     Ok(raster)
 }
 
-/// Pixels and the colour profile.
+/// Decodes pixels and the colour profile.
 fn decoded(bytes: &[u8], format: ImageFormat) -> image::ImageResult<(Raster, Option<Vec<u8>>)> {
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     let mut limits = Limits::default();
@@ -69,7 +69,7 @@ fn decoded(bytes: &[u8], format: ImageFormat) -> image::ImageResult<(Raster, Opt
     Ok((raster_of(picture, orientation), profile))
 }
 
-/// What EXIF says in words.
+/// The EXIF orientation in words.
 const fn turned(orientation: Orientation) -> &'static str {
     match orientation {
         Orientation::NoTransforms => "not turned",
@@ -103,13 +103,14 @@ fn raster_of(picture: DynamicImage, orientation: Orientation) -> Raster {
     Raster { width, height, channels, samples, bits, is_lossy: false, linear: None, encoding: None, notes, warnings }
 }
 
-/// Whether the picture's own end is there: a preview in the file's remarks has one too, and segments are passed over by their length.
+/// Whether the picture's own end marker is there. Segments are skipped by their length, because a preview in one has an
+/// end marker as well.
 fn has_end(bytes: &[u8]) -> bool {
     let mut at = 2;
     while let Some(&[mark, kind]) = bytes.get(at..).and_then(|rest| rest.first_chunk()) {
         at += match (mark, kind) {
             (0xff, 0xd9) => return true,
-            // Stuffed, single and restarted: no segment follows.
+            // Stuffed bytes, standalone and restart markers: no segment follows.
             (0xff, 0x00 | 0x01 | 0xd0..=0xd8) => 2,
             (0xff, 0x02..=0xfe) => match bytes.get(at + 2..at + 4) {
                 Some(&[high, low]) => 2 + usize::from(u16::from_be_bytes([high, low])),
@@ -121,10 +122,10 @@ fn has_end(bytes: &[u8]) -> bool {
     false
 }
 
-/// Brings the colours to sRGB, or says that it could not.
+/// Converts the colours to sRGB, or warns that it could not.
 fn to_srgb(raster: &mut Raster, profile: &[u8]) {
     match converted(raster, profile) {
-        // Rounding moves colours of sRGB under another name by a step.
+        // If the profile is sRGB under another name, rounding moves colours by a step.
         Some(samples) if is_same(&samples, &raster.samples) => raster.linear = Some(false),
         Some(samples) => {
             raster.samples = samples;
@@ -161,7 +162,7 @@ fn converted(raster: &Raster, profile: &[u8]) -> Option<Samples> {
     }
 }
 
-/// Whether nothing differs by more than a step of 8 bits.
+/// Whether nothing differs by more than one 8-bit step.
 fn is_same(one: &Samples, other: &Samples) -> bool {
     match (one, other) {
         (Samples::U8(one), Samples::U8(other)) => one.iter().zip(other).all(|(a, b)| a.abs_diff(*b) <= 1),
@@ -207,7 +208,7 @@ mod tests {
             assert_eq!(((turned.width, turned.height), turned.warnings.len()), (sides, 1), "{turn}");
             for at in 0..turned.width * turned.height {
                 let (x, y) = (at % turned.width, at / turned.width);
-                // The stored pixel that each of the eight shows there.
+                // The stored pixel that each of the eight orientations shows there.
                 let [column, row] = [
                     [w - x.min(w), y],
                     [w - x.min(w), h - y.min(h)],
@@ -232,7 +233,7 @@ mod tests {
 
     #[test]
     fn an_end_is_the_pictures_own() {
-        // A preview in a segment has an end of its own.
+        // A preview in a segment has an end marker as well.
         let preview = [0xff, 0xd8, 0xff, 0xe1, 0, 6, 0xff, 0xd9, 0, 0];
         assert!(!has_end(&preview));
         assert!(has_end(&[&preview[..], &[0xff, 0xda, 0, 2, 1, 0xff, 0x00, 0xff, 0xd0, 7, 0xff, 0xd9]].concat()));

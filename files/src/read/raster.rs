@@ -2,7 +2,7 @@
 
 use crate::warning::Warning;
 
-/// Pixels on a side, as for all images of the library.
+/// Most pixels on a side, as for all images of the library.
 pub const MOST_SIDE: usize = 4096;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -12,26 +12,26 @@ pub enum Samples {
     F32(Vec<f32>),
 }
 
-/// Samples with their channels interleaved, and what the file says of itself.
+/// Samples with interleaved channels, and what the file states about them.
 #[derive(Clone, Debug)]
 pub struct Raster {
     pub width: usize,
     pub height: usize,
     pub channels: usize,
     pub samples: Samples,
-    /// Bits of a channel.
+    /// Bits per channel.
     pub bits: u32,
-    /// Whether its format keeps less than it was given (JPEG).
+    /// Whether its format is lossy (JPEG).
     pub is_lossy: bool,
-    /// Whether the file says that its numbers are proportional to intensity; `None` where it says nothing.
+    /// Whether the file states that its numbers are proportional to intensity; `None` if it states nothing.
     pub linear: Option<bool>,
-    /// The chunk of a PNG that states it: "sRGB" or "linear".
+    /// The PNG chunk that states the encoding: "sRGB" or "linear".
     pub encoding: Option<&'static str>,
     pub notes: Vec<String>,
     pub warnings: Vec<Warning>,
 }
 
-/// Refuses what is too large before anything is made of it.
+/// Refuses too large a size before memory is allocated.
 pub(super) fn check_size(width: usize, height: usize) -> Result<(), String> {
     if width.max(height) > MOST_SIDE {
         return Err(format!("it says that it is {width}x{height} pixels large; up to {MOST_SIDE} on a side are read"));
@@ -45,12 +45,12 @@ impl Raster {
         self.channels >= 3
     }
 
-    /// Whether the last channel is the opacity.
+    /// Whether the last channel is opacity.
     pub fn has_alpha(&self) -> bool {
         self.channels == 2 || self.channels == 4
     }
 
-    /// Whether red, green and blue are the same in all pixels.
+    /// Whether red, green and blue are equal in all pixels.
     pub fn is_grey(&self) -> bool {
         fn grey<T: PartialEq>(data: &[T], channels: usize) -> bool {
             data.chunks_exact(channels).all(|pixel| pixel[0] == pixel[1] && pixel[0] == pixel[2])
@@ -63,7 +63,7 @@ impl Raster {
             }
     }
 
-    /// Each pixel of integers as `pick` has it.
+    /// Maps each pixel of integers through `pick`.
     pub fn map_pixels<T>(&self, pick: impl Fn(&[u16]) -> T) -> Vec<T> {
         let wide = |data: &mut dyn Iterator<Item = u16>| {
             let all: Vec<u16> = data.collect();

@@ -1,4 +1,4 @@
-//! What a text of cameras and poses holds.
+//! Content of a text with cameras and poses.
 
 use bimodal_stereo::{Pinhole, Similarity};
 
@@ -7,7 +7,7 @@ use crate::warning::Warnings;
 /// Why a file is not read, without its name.
 pub type Reason = String;
 
-/// A camera with the size of its images, where the file states it.
+/// A camera with the size of its images, if the file states it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedCamera {
     pub name: Option<String>,
@@ -16,7 +16,7 @@ pub struct NamedCamera {
     pub size: Option<[usize; 2]>,
 }
 
-/// What a file calls a motion, and between which frames it is.
+/// Name of a motion in its file, and its two frames.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Names {
     pub name: Option<String>,
@@ -37,12 +37,12 @@ pub struct NamedPose {
     pub pose: Similarity,
 }
 
-/// What a text holds.
+/// Content of a text.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Calibration {
     pub cameras: Vec<NamedCamera>,
     pub poses: Vec<NamedPose>,
     pub warnings: Warnings,
-    /// What kind of text it is.
+    /// Kind of the text.
     pub format: String,
 }

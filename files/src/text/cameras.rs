@@ -1,4 +1,4 @@
-//! Cameras as files write them: checked, with their distortion by OpenCV's names.
+//! Cameras from files, checked, with distortion models by their many names.
 
 use std::sync::LazyLock;
 
@@ -10,7 +10,7 @@ use super::numbers::{fixed, shown};
 use crate::read::MOST_SIDE;
 use crate::warning::Warnings;
 
-/// What a file states about a camera, before it is checked.
+/// A camera as the file states it, before it is checked.
 #[derive(Clone, Debug, Default)]
 pub struct RawCamera {
     pub name: Option<String>,
@@ -36,12 +36,13 @@ static BROWN: LazyLock<Regex> = LazyLock::new(|| {
 });
 static FISHEYE: LazyLock<Regex> =
     LazyLock::new(|| pattern("^(fisheye|equidistant|equi|kannala[_ ]?brandt4?|opencv_fisheye)$"));
-/// librealsense's variants; it projects both as Brown's (its older versions followed the second the other way), but for products of terms.
+/// Variants of librealsense, which projects both as Brown's model except for products of terms (older versions inverted
+/// the second).
 static REALSENSE: LazyLock<Regex> = LazyLock::new(|| pattern("^(modified|inverse)[_ ]?brown[_ ]?conrady$"));
-/// Longer focal lengths, in pixels, are no camera.
+/// Longest plausible focal length, pixels.
 const LONGEST: f64 = 1e6;
 
-/// The camera, or why it is none.
+/// The checked camera, or why it is invalid.
 pub fn camera_of(raw: RawCamera, warnings: &mut Warnings) -> Result<NamedCamera, Reason> {
     let ([fx, fy], [cx, cy]) = (raw.focal, raw.centre);
     let called = raw.name.as_ref().map(|name| format!(" \"{name}\"")).unwrap_or_default();
@@ -78,7 +79,7 @@ fn size_of(raw: &RawCamera) -> Result<Option<[usize; 2]>, Reason> {
     }
 }
 
-/// What looks wrong about a camera that can be used.
+/// Warns about suspicious values of a usable camera.
 fn doubts(raw: &RawCamera, size: Option<[usize; 2]>, label: &str, warnings: &mut Warnings) {
     let ([fx, fy], [cx, cy]) = (raw.focal, raw.centre);
     match size {
@@ -144,14 +145,14 @@ fn lens_of(raw: &RawCamera, label: &str, warnings: &mut Warnings) -> Result<Lens
         let short: String = raw.model.as_deref().unwrap_or("").chars().take(40).collect();
         return Err(format!("its lens model \"{short}\" is not supported; Brown's and Kannala-Brandt's are"));
     }
-    // Further coefficients are those of thin prisms and of a tilted sensor.
+    // Further coefficients belong to thin prisms and a tilted sensor.
     if values.len() > 14 || is_bent(values.get(8..).unwrap_or(&[])) {
         return Err("its distortion has thin-prism or tilt terms, which are not supported".into());
     }
     Ok(Lens::Brown(std::array::from_fn(|index| values.get(index).copied().unwrap_or(0.0))))
 }
 
-/// Coefficients as files write them: four, five or eight of Brown's lens.
+/// Number of coefficients as files have it: four, five or eight for Brown's lens.
 pub fn coefficients(lens: &Lens) -> Option<usize> {
     match lens {
         Lens::None => None,

@@ -1,13 +1,13 @@
-//! Text files of cameras and poses: what they are is recognised by their words, and what they hold comes out as cameras and poses.
+//! Text files of cameras and poses: recognises their format by its words, and extracts cameras and poses.
 //!
-//! | file | what it holds |
+//! | file | content |
 //! |---|---|
-//! | `calibration` | what comes out |
-//! | `numbers` | numbers and matrices as files write them |
-//! | `cameras`, `poses` | what a file states about a camera or a motion, checked |
+//! | `calibration` | the result |
+//! | `numbers` | numbers and matrices in their many notations |
+//! | `cameras`, `poses` | checked cameras and motions |
 //! | `names`, `tree` | members of JSON, YAML and XML by their names |
-//! | `plain`, `realsense`, `ros`, `colmap` | matrices and trajectories, and what these programs write |
-//! | `words` | cameras and poses in plain words |
+//! | `plain`, `realsense`, `ros`, `colmap` | matrices and trajectories, and the formats of these programs |
+//! | `words` | descriptions of cameras and poses |
 
 mod calibration;
 mod cameras;
@@ -28,13 +28,13 @@ pub use calibration::{Calibration, NamedCamera, NamedPose, Names};
 
 use calibration::Reason;
 
-/// Characters of a text that holds cameras or poses; a trajectory of ten thousand poses has a million.
+/// Most characters of a text with cameras or poses; a trajectory of ten thousand poses has a million.
 const MOST_TEXT: usize = 4 << 20;
-/// Characters of YAML: calibrations have a few thousand.
+/// Most characters of YAML: calibrations have a few thousand.
 const MOST_YAML: usize = 1 << 18;
 const NO_FORM: &str = "it is a text in none of the forms that are read here";
 
-/// The text of a file, or nothing where its bytes are none.
+/// The text of a file; `None` if its bytes are not text.
 pub fn text_of(bytes: &[u8]) -> Option<String> {
     if bytes.len() > MOST_TEXT {
         return None;
@@ -48,12 +48,12 @@ pub fn text_of(bytes: &[u8]) -> Option<String> {
         [0xfe, 0xff, rest @ ..] => wide(rest, u16::from_be_bytes)?,
         _ => String::from_utf8(bytes.to_vec()).ok()?,
     };
-    // Control characters tell bytes from text.
+    // Control characters distinguish binary data from text.
     let is_binary = |letter: char| matches!(letter, '\0'..='\x08' | '\x0e'..='\x1f');
     (!text.contains(is_binary)).then_some(text)
 }
 
-/// What a text holds, with a word on what kind of text it is.
+/// Content of a text, with its format.
 pub fn read_text(text: &str) -> Result<Calibration, Reason> {
     let text = text.trim_start_matches('\u{feff}').trim();
     if text.is_empty() {
@@ -98,7 +98,7 @@ fn searched(value: &Value, format: &str) -> Result<Calibration, Reason> {
 }
 
 fn json(text: &str) -> Result<Value, Reason> {
-    // Python writes these three, which JSON does not have; nothing of a calibration may be one of them.
+    // Python writes these three, which JSON does not allow; no value of a calibration may be one of them.
     static NONE: names::Pattern = names::Pattern::new(|| names::pattern(r"-?\bInfinity\b|\bNaN\b"));
     let plain = NONE.replace_all(text, "null");
     serde_json::from_str(&plain).map_err(|error| format!("this JSON is damaged or cut off ({error})"))
@@ -119,7 +119,7 @@ fn yaml(text: &str) -> Result<Value, Reason> {
     Ok(plain_value(value))
 }
 
-/// OpenCV's YAML begins with "%YAML:1.0", which YAML does not have, and marks its matrices by a tag of its own, as Python does its tuples.
+/// OpenCV's YAML begins with "%YAML:1.0", which is not valid YAML, and tags its matrices, as Python does its tuples.
 fn plain_yaml(text: &str) -> String {
     static HEAD: names::Pattern = names::Pattern::new(|| names::pattern(r"(?m)^%YAML.*$"));
     static TAG: names::Pattern =
@@ -133,7 +133,7 @@ fn plain_yaml(text: &str) -> String {
     text.split('\n').map(line).collect::<Vec<_>>().join("\n")
 }
 
-/// Settings as "fx = 500", line by line, are YAML but for the sign.
+/// Settings written as "fx = 500", line by line, are YAML except for the sign.
 fn with_colons(text: &str) -> String {
     static COLON: names::Pattern = names::Pattern::new(|| names::pattern(r"(?m)^[ \t]*[A-Za-z0-9_.]{1,80}[ \t]*:"));
     static EQUAL: names::Pattern =
@@ -141,7 +141,7 @@ fn with_colons(text: &str) -> String {
     if COLON.is_match(text) { text.into() } else { EQUAL.replace_all(text, "$1: ").into_owned() }
 }
 
-/// YAML as JSON: its tags are left out, and its keys are texts.
+/// YAML as JSON: tags are dropped, and keys become text.
 fn plain_value(value: serde_yaml_ng::Value) -> Value {
     use serde_yaml_ng::Value as Yaml;
     match value {
@@ -163,15 +163,16 @@ fn plain_value(value: serde_yaml_ng::Value) -> Value {
     }
 }
 
-/// Elements as plain values: those with children as objects (repeated ones and OpenCV's `<_>` as lists), others as their text.
+/// Elements as plain values: those with children as objects (repeated ones and OpenCV's `<_>` as lists), others as
+/// their text.
 fn xml(text: &str) -> Result<Value, Reason> {
     const MOST_ELEMENTS: u32 = 300_000;
     const MOST_DEPTH: usize = 32;
     let options = roxmltree::ParsingOptions { allow_dtd: false, nodes_limit: MOST_ELEMENTS, ..Default::default() };
-    // Launch files and pieces of them may hold several elements side by side, which XML itself does not allow.
+    // Launch files and fragments of them may hold several elements side by side, which XML does not allow.
     let text = text.split_once("?>").filter(|_| text.starts_with("<?")).map_or(text, |(_, rest)| rest);
     let whole = format!("<_all>{text}</_all>");
-    // Below an element a declaration is no syntax to the parser, which would call it damage.
+    // The parser would report a declaration below an element as damage.
     if ["<!DOCTYPE", "<![CDATA["].iter().any(|declaration| text.contains(declaration)) {
         return Err("this XML declares a document type or raw data, which no calibration needs: not read".to_owned());
     }

@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use regex_lite::Regex;
 use serde_json::{Map, Value};
 
-/// Letters of a name that means anything here.
+/// Longest name that is interpreted.
 pub const LONGEST: usize = 80;
 
 pub type Pattern = LazyLock<Regex>;
@@ -48,7 +48,7 @@ pub const ROTATION: Phrases = &[
 ];
 pub const TRANSLATION: Phrases =
     &[&["translation", "vector"], &["translation"], &["position"], &["trans"], &["tvec"], &["t"]];
-/// Matrices of 3x4 and 4x4 that are no motions: projections, and disparity to depth.
+/// Matrices of 3x4 and 4x4 that are not motions: projections, and disparity to depth.
 pub const NO_MOTION: Phrases = &[
     &["p"],
     &["q"],
@@ -83,7 +83,7 @@ fn words(name: &str) -> Vec<String> {
         .collect()
 }
 
-/// What is left of a name without one of some phrases at its beginning or end; nothing where it has none.
+/// What remains of a name without one of some phrases at its beginning or end; `None` if it has none of them.
 pub fn leftover(name: &str, phrases: Phrases) -> Option<String> {
     let words = words(name);
     phrases.iter().find_map(|phrase| {
@@ -96,7 +96,7 @@ pub fn leftover(name: &str, phrases: Phrases) -> Option<String> {
     })
 }
 
-/// A name without regard to case and punctuation.
+/// A name in lower case without punctuation.
 fn bare(name: &str) -> String {
     if name.len() > LONGEST {
         return String::new();
@@ -104,12 +104,12 @@ fn bare(name: &str) -> String {
     name.to_lowercase().chars().filter(char::is_ascii_alphanumeric).collect()
 }
 
-/// A member by one of its names, without regard to case and punctuation.
+/// A member by one of its names, ignoring case and punctuation.
 pub fn member<'a>(node: &'a Map<String, Value>, names: &[&str]) -> Option<&'a Value> {
     node.iter().find(|(key, _)| names.contains(&bare(key).as_str())).map(|(_, value)| value)
 }
 
-/// The member whose name is one of some phrases and this label; earlier phrases go before later ones.
+/// The member whose name consists of one of some phrases and this label; earlier phrases take precedence.
 pub fn labelled<'a>(node: &'a Map<String, Value>, phrases: Phrases, label: &str) -> Option<(&'a String, &'a Value)> {
     (0..phrases.len())
         .find_map(|index| node.iter().find(|(key, _)| leftover(key, &phrases[index..=index]).as_deref() == Some(label)))

@@ -1,18 +1,18 @@
-//! Numbers and matrices as the many files write them.
+//! Numbers and matrices in the notations of many files.
 
 use std::sync::LazyLock;
 
 use regex_lite::Regex;
 use serde_json::Value;
 
-/// Calibrations have matrices of 16 numbers, distortions of 14; more than this is something else.
+/// Most numbers of a matrix: calibrations have 16, distortions 14; more is something else.
 const MOST: usize = 64;
 
 static NUMBER: LazyLock<Regex> = LazyLock::new(|| {
     Regex::new(r"^[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eEdD][-+]?[0-9]+)?$").expect("is a constant")
 });
 
-/// A number in a text; nothing where it is not a number.
+/// A number in a text; `None` if it is not a number.
 pub fn number_in(text: &str) -> Option<f64> {
     let text = text.trim();
     if !NUMBER.is_match(text) {
@@ -21,7 +21,7 @@ pub fn number_in(text: &str) -> Option<f64> {
     text.replace(['d', 'D'], "e").parse().ok()
 }
 
-/// A number, also one that is written as text; nothing where it is none or not finite.
+/// A number, possibly written as text; `None` if it is not one or not finite.
 pub fn number_of(value: Option<&Value>) -> Option<f64> {
     match value? {
         Value::Number(number) => number.as_f64().filter(|value| value.is_finite()),
@@ -30,12 +30,12 @@ pub fn number_of(value: Option<&Value>) -> Option<f64> {
     }
 }
 
-/// A number as messages show it, which is as JavaScript writes it.
+/// A number as in messages, formatted like JavaScript's.
 pub fn shown(value: f64) -> String {
     ryu_js::Buffer::new().format(value).to_owned()
 }
 
-/// So many digits that count, and no zeros at the end.
+/// This many significant digits, without trailing zeros.
 pub fn brief(value: f64, digits: usize) -> String {
     match precise(value, digits).parse() {
         Ok(value) => shown(value),
@@ -43,7 +43,7 @@ pub fn brief(value: f64, digits: usize) -> String {
     }
 }
 
-/// So many digits that count, as JavaScript's toPrecision writes them.
+/// This many significant digits, formatted like JavaScript's toPrecision.
 pub fn precise(value: f64, digits: usize) -> String {
     if !value.is_finite() {
         return shown(value);
@@ -60,19 +60,19 @@ pub fn precise(value: f64, digits: usize) -> String {
     format!("{value:.*}", (digits as i32 - 1 - power).max(0) as usize)
 }
 
-/// So many decimals, halves away from zero, as JavaScript's toFixed writes them.
+/// This many decimals, halves away from zero, formatted like JavaScript's toFixed.
 pub fn fixed(value: f64, decimals: i32) -> String {
     if !value.is_finite() || value.abs() >= 1e15 {
         return shown(value);
     }
-    // A value that lies exactly between two is the only one that the two languages round differently; it is a multiple of that power of two.
+    // The languages round only exact halves differently; such a value is a multiple of this power of two.
     let scaled = value.abs() * 10_f64.powi(decimals);
     let is_half = scaled.fract() == 0.5 && (value * 2_f64.powi(decimals + 1)).fract() == 0.0;
     let value = if is_half { value.signum() * (scaled + 0.25).round() / 10_f64.powi(decimals) } else { value };
     format!("{value:.*}", decimals as usize)
 }
 
-/// Numbers, and their rows where the file states them: lists of lists, `rows`.
+/// Numbers, and the number of rows if the file states it: lists of lists, `rows`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Matrix {
     pub values: Vec<f64>,
@@ -114,7 +114,7 @@ pub fn matrix_of(value: Option<&Value>) -> Option<Matrix> {
     list_of(value).map(|values| Matrix { values, rows: None })
 }
 
-/// Of a square matrix.
+/// The transpose of a square matrix.
 pub fn transposed(values: &[f64], side: usize) -> Vec<f64> {
     (0..values.len()).map(|at| values.get((at % side) * side + at / side).copied().unwrap_or(0.0)).collect()
 }

@@ -1,4 +1,4 @@
-//! Files of nothing but numbers: K.txt, matrices of motions, and trajectories of the TUM and Redwood kind.
+//! Files that hold only numbers: K.txt, matrices of motions, and trajectories in the TUM and Redwood formats.
 
 use super::calibration::{Calibration, Names, Reason};
 use super::cameras::{RawCamera, camera_of};
@@ -7,14 +7,14 @@ use super::poses::{motion_of_matrix, of_quaternion, turned};
 use crate::warning::Warnings;
 
 const MOST_NUMBERS: usize = 200_000;
-/// Warnings of a trajectory, whose poses mostly have the same.
+/// Most warnings of a trajectory, whose poses mostly share them.
 const MOST_WARNINGS: usize = 4;
 
 fn near(value: Option<&f64>, to: f64) -> bool {
     value.is_some_and(|value| (value - to).abs() < 1e-9)
 }
 
-/// Rows of numbers, without comments and brackets; nothing where there is anything else.
+/// Rows of numbers, without comments and brackets; `None` if there is anything else.
 fn rows_of(text: &str) -> Result<Option<Vec<Vec<f64>>>, Reason> {
     let mut rows = Vec::new();
     let mut count = 0;
@@ -71,7 +71,7 @@ fn nine(values: &[f64; 9], size: Option<[f64; 2]>) -> Result<Calibration, Reason
     Err("its nine numbers are no matrix of intrinsics, fx 0 cx / 0 fy cy / 0 0 1; a rotation needs its translation beside it".into())
 }
 
-/// TUM: time stamp, translation, quaternion x y z w, of the camera in the world.
+/// TUM: time stamp, translation and quaternion x y z w of the camera in the world.
 fn trajectory(rows: &[Vec<f64>]) -> Result<Calibration, Reason> {
     let mut warnings = Warnings::default();
     let pose = |row: &Vec<f64>| {
@@ -87,7 +87,7 @@ fn trajectory(rows: &[Vec<f64>]) -> Result<Calibration, Reason> {
     Ok(Calibration { poses, ..found(format, warnings) })
 }
 
-/// Redwood: three whole numbers, then 4x4 of the camera in the world.
+/// Redwood: three whole numbers, then the 4x4 matrix of the camera in the world.
 fn log(rows: &[Vec<f64>]) -> Result<Calibration, Reason> {
     let mut warnings = Warnings::default();
     let pose = |rows: &[Vec<f64>]| {
@@ -99,7 +99,7 @@ fn log(rows: &[Vec<f64>]) -> Result<Calibration, Reason> {
     Ok(Calibration { poses, ..found("a trajectory", warnings) })
 }
 
-/// What a text of numbers holds; nothing where it has words.
+/// Content of a text of numbers; `None` if it has words.
 pub fn read(text: &str) -> Result<Option<Calibration>, Reason> {
     let Some(rows) = rows_of(text)? else { return Ok(None) };
     of_rows(&rows).map(Some)

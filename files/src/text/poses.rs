@@ -1,4 +1,4 @@
-//! Rigid motions as files write them: checked, orthonormal to the last digit, in metres, P_to = R P_from + t.
+//! Rigid motions from files: checked, orthonormal to the last digit, in metres, P_to = R P_from + t.
 
 use bimodal_stereo::Similarity;
 use bimodal_stereo::nalgebra::{Matrix3, Vector3};
@@ -7,26 +7,27 @@ use super::calibration::{NamedPose, Names, Reason};
 use super::numbers::{precise, shown};
 use crate::warning::Warnings;
 
-/// What may be wrong with R R^T - 1 before the matrix is not a rotation: digits that were cut off, or a calibration that drifted.
+/// Largest element of R R^T - 1 for a rotation: allows for truncated digits, or a calibration that drifted.
 const ROTATION_TOLERANCE: f64 = 1e-2;
-/// .. and what goes unmentioned: 0.06 degrees and less, as of four digits.
+/// Largest such element without a warning: 0.06 degrees and less, as from four digits.
 const ROUNDING: f64 = 1e-3;
-/// Cameras of one rig are not so far apart, metres: a longer shift is in millimetres.
+/// Largest distance between cameras of one rig, metres: a longer shift is in millimetres.
 const LONGEST: f64 = 10.0;
 
-/// The nearest rotation, by Newton's iteration for the polar factor: quadratic, four steps from 1e-2 are exact.
+/// The nearest rotation, by Newton's iteration for the polar factor: it converges quadratically, and four steps from
+/// 1e-2 are exact.
 fn nearest(matrix: Matrix3<f64>) -> Matrix3<f64> {
     (0..6).fold(matrix, |r, _| r.try_inverse().map_or(r, |inverse| (r + inverse.transpose()) / 2.0))
 }
 
-/// Nine numbers as a rotation, with a warning where they had to be changed.
+/// Nine numbers as a rotation, with a warning if they had to be changed.
 pub fn rotation_of(values: &[f64], warnings: &mut Warnings) -> Result<Matrix3<f64>, Reason> {
     if values.len() != 9 || !values.iter().all(|value| value.is_finite()) {
         return Err("a rotation has nine numbers".into());
     }
     let matrix = Matrix3::from_row_slice(values);
     let differences = (matrix * matrix.transpose() - Matrix3::identity()).abs();
-    // Numbers whose squares are infinite differ by what is not a number.
+    // If squares overflow, the differences are NaN.
     let off = if differences.iter().any(|one| one.is_nan()) { f64::INFINITY } else { differences.max() };
     if off > ROTATION_TOLERANCE {
         return Err(format!("its matrix is not a rotation: R R^T differs from 1 by {}", precise(off, 2)));
@@ -46,7 +47,7 @@ pub fn rotation_of(values: &[f64], warnings: &mut Warnings) -> Result<Matrix3<f6
     Ok(nearest(matrix))
 }
 
-/// From x, y, z, w.
+/// A rotation from a quaternion x, y, z, w.
 pub fn of_quaternion(values: [f64; 4], warnings: &mut Warnings) -> Result<Matrix3<f64>, Reason> {
     let length = values.iter().map(|value| value * value).sum::<f64>().sqrt();
     if (length - 1.0).abs() > ROTATION_TOLERANCE || length.is_nan() {
@@ -72,7 +73,7 @@ pub fn of_quaternion(values: [f64; 4], warnings: &mut Warnings) -> Result<Matrix
     ))
 }
 
-/// From a rotation vector in rad.
+/// A rotation from a rotation vector in rad.
 pub fn of_vector([x, y, z]: [f64; 3]) -> Result<Matrix3<f64>, Reason> {
     let angle = x.hypot(y).hypot(z);
     if angle < 1e-12 {
@@ -82,7 +83,7 @@ pub fn of_vector([x, y, z]: [f64; 3]) -> Result<Matrix3<f64>, Reason> {
     of_quaternion([x * half, y * half, z * half, (angle / 2.0).cos()], &mut Warnings::default())
 }
 
-/// ROS 1's yaw, pitch and roll in rad: about z, then y, then x, of fixed axes in the order roll, pitch, yaw.
+/// A rotation from ROS 1's yaw, pitch and roll in rad: about fixed axes in the order roll (x), pitch (y), yaw (z).
 pub fn of_yaw_pitch_roll([yaw, pitch, roll]: [f64; 3]) -> Matrix3<f64> {
     let ((sy, cy), (sp, cp), (sr, cr)) = (yaw.sin_cos(), pitch.sin_cos(), roll.sin_cos());
     Matrix3::new(
@@ -98,7 +99,8 @@ pub fn of_yaw_pitch_roll([yaw, pitch, roll]: [f64; 3]) -> Matrix3<f64> {
     )
 }
 
-/// A shift in metres: longer than a rig is in millimetres, where `is_rig` says that two cameras are related and not a world.
+/// A shift in metres. If `is_rig`, so that it relates two cameras rather than a camera and the world, one longer than a
+/// rig is in millimetres.
 pub fn shift_of(values: &[f64], is_rig: bool, warnings: &mut Warnings) -> Result<Vector3<f64>, Reason> {
     if values.len() != 3 || !values.iter().all(|value| value.is_finite() && value.abs() < 1e9) {
         return Err("a translation has three numbers".into());
@@ -114,7 +116,7 @@ pub fn shift_of(values: &[f64], is_rig: bool, warnings: &mut Warnings) -> Result
     Ok(shift / 1000.0)
 }
 
-/// A pose from a rotation and a translation that were read, with its names.
+/// A named pose from a rotation and a translation.
 pub fn motion(
     rotation: &[f64],
     translation: &[f64],
@@ -127,7 +129,7 @@ pub fn motion(
     Ok(NamedPose { names, pose: Similarity { scale: 1.0, rotation, translation } })
 }
 
-/// The same of a rotation that was made from other numbers.
+/// The same for a rotation computed from other numbers.
 pub fn turned(
     rotation: &Matrix3<f64>,
     translation: &[f64],
@@ -138,7 +140,7 @@ pub fn turned(
     motion(rotation.transpose().as_slice(), translation, names, warnings, is_rig)
 }
 
-/// Whether a row is that of a motion's matrix, 0 0 0 1.
+/// Whether a row is the last one of a motion's matrix, 0 0 0 1.
 pub fn is_last_row(row: &[f64]) -> bool {
     row.len() == 4
         && row.iter().enumerate().all(|(index, value)| (value - f64::from(u8::from(index == 3))).abs() < 1e-6)
@@ -149,7 +151,7 @@ pub fn last_column(values: &[f64]) -> Vec<f64> {
     values.iter().skip(3).step_by(4).copied().collect()
 }
 
-/// 12 or 16 numbers, row by row.
+/// A motion from 12 or 16 numbers, row by row.
 pub fn motion_of_matrix(
     values: &[f64],
     names: Names,
@@ -170,7 +172,7 @@ pub fn motion_of_matrix(
     motion(&rotation, &[values[3], values[7], values[11]], names, warnings, is_rig)
 }
 
-/// First `b`, then `a`, of rigid motions.
+/// The composition of rigid motions: first `b`, then `a`.
 pub fn chained(a: &Similarity, b: &Similarity) -> Similarity {
     a.after(b)
 }

@@ -1,4 +1,4 @@
-//! What `rs-enumerate-devices -c` prints: intrinsics of all streams and sizes, and what relates the streams.
+//! The output of `rs-enumerate-devices -c`: intrinsics of all streams and sizes, and the extrinsics between streams.
 
 use std::collections::HashMap;
 
@@ -11,9 +11,9 @@ use crate::warning::Warnings;
 
 static INTRINSIC: Pattern = Pattern::new(|| pattern(r#"^\s*Intrinsic of "([^"]{1,60})""#));
 static EXTRINSIC: Pattern = Pattern::new(|| pattern(r#"(?i)^\s*Extrinsic from "([^"]{1,60})"\s+To\s+"([^"]{1,60})""#));
-/// Streams times sizes of a camera: some sixty.
+/// Most entries, streams times sizes: a camera has some sixty.
 const MOST: usize = 2000;
-/// Lines of one camera or motion.
+/// Most lines of a camera, and of a motion.
 const BLOCK: usize = 15;
 const MOTION: usize = 7;
 
@@ -46,7 +46,7 @@ fn camera(name: &str, lines: &[&str], warnings: &mut Warnings) -> Result<NamedCa
     camera_of(raw, warnings)
 }
 
-/// The rotation is printed row by row, though librealsense keeps it by columns.
+/// The rotation is printed row by row, although librealsense stores it by columns.
 fn extrinsics(from: &str, to: &str, lines: &[&str], warnings: &mut Warnings) -> Result<NamedPose, Reason> {
     let after_colon = |line: &&str| numbers_of(line.rsplit_once(':').map_or(line, |(_, value)| value));
     let values: Vec<f64> = lines.iter().flat_map(after_colon).collect();

@@ -1,4 +1,4 @@
-//! ROS's static transforms as they stand on a command line, in a launch file or in a script, and what tf_echo prints.
+//! ROS's static transforms on a command line, in a launch file or in a script, and the output of tf_echo.
 
 use std::collections::HashMap;
 
@@ -9,7 +9,7 @@ use super::poses::{of_quaternion, of_yaw_pitch_roll, turned};
 use crate::warning::Warnings;
 
 const NAME: &str = "static_transform_publisher";
-/// What follows the name and belongs to it, in characters: numbers, names, quotes and brackets.
+/// Characters after the name that may belong to it: numbers, names, quotes and brackets.
 const REACH: usize = 2000;
 const MOST: usize = 1000;
 
@@ -17,12 +17,12 @@ pub fn is_publisher(text: &str) -> bool {
     text.contains(NAME)
 }
 
-/// The first so many characters.
+/// The first `most` characters.
 fn head(text: &str, most: usize) -> &str {
     text.char_indices().nth(most).map_or(text, |(end, _)| &text[..end])
 }
 
-/// The words behind each mention, up to the end of its element or the next mention.
+/// The words after each mention, up to the end of its element or the next mention.
 fn mentions(text: &str) -> Result<Vec<Vec<String>>, Reason> {
     static END: Pattern = Pattern::new(|| pattern(r"/>|</node>|<node|\bNode\s*\("));
     static BROKEN: Pattern = Pattern::new(|| pattern(r"\\\r?\n"));
@@ -91,7 +91,7 @@ fn of_places(words: &[String], warnings: &mut Warnings) -> Result<NamedPose, Rea
     turned(&rotation, &numbers[..3], names(name(1), name(0)), warnings, true)
 }
 
-/// The transform carries points of the child frame into the parent, so that the child is where they come from.
+/// The transform maps points of the child frame into the parent, so they come from the child.
 pub fn read_publishers(text: &str) -> Result<Calibration, Reason> {
     let mut found = Calibration { format: "a static transform of ROS".into(), ..Calibration::default() };
     let mut mentions = mentions(text)?;
@@ -115,7 +115,7 @@ pub fn is_echo(text: &str) -> bool {
     TRIPLE.is_match(text) && QUATERNION.is_match(text)
 }
 
-/// What tf_echo prints, the first of it; which frames it asked for is not in there.
+/// The first transform in the output of tf_echo, which does not contain the names of the frames.
 pub fn read_echo(text: &str) -> Result<Calibration, Reason> {
     let text = head(text, REACH);
     let numbers = |pattern: &Pattern, count: usize| {

@@ -1,7 +1,8 @@
-//! Cameras and motions in JSON, YAML and XML, whatever program wrote them: ROS, OpenCV, Open3D, Kalibr, RealSense, or by hand.
+//! Cameras and motions in JSON, YAML and XML from any program: ROS, OpenCV, Open3D, Kalibr, RealSense, or written by
+//! hand.
 //!
-//! A walk over all objects that knows them by the names and shapes of their members (see `names`); what is left of a name beside the words
-//! that are known names the camera. Walks are bounded in depth and in number of objects.
+//! A walk over all objects recognises them by the names and shapes of their members (see `names`); the rest of a name
+//! beside the known words becomes the camera's name. Walks are bounded in depth and in number of objects.
 
 use bimodal_stereo::Similarity;
 use serde_json::{Map, Value};
@@ -19,15 +20,15 @@ type Done = Result<(), Reason>;
 
 const MOST_NODES: usize = 50_000;
 const MOST_MEMBERS: usize = 200_000;
-/// Members of one object that is a camera or a motion; larger ones may hold some.
+/// Most members of an object that is a camera or a motion; larger ones may contain some.
 const MOST_OWN: usize = 300;
 const MOST_DEPTH: usize = 24;
-/// Cameras and poses of a file.
+/// Most cameras and poses of a file.
 const MOST_FOUND: usize = 5000;
-/// Letters of a text that names something.
+/// Most characters of a text that names something.
 const LONGEST_TEXT: usize = 200;
 
-/// The frames that an object names.
+/// The frames named by an object.
 #[derive(Clone, Debug, Default)]
 struct Frames {
     from: Option<String>,
@@ -64,7 +65,7 @@ fn short(text: &str) -> String {
     text.chars().take(40).collect()
 }
 
-/// Nine numbers as a matrix of intrinsics, row by row, however they stood.
+/// Nine numbers as a matrix of intrinsics, row by row, whether they are given by rows or by columns.
 fn intrinsics(matrix: Option<&Matrix>) -> Option<Vec<f64>> {
     let values = &matrix?.values;
     if values.len() != 9 || !is_like(values.last(), 1.0) {
@@ -118,12 +119,13 @@ impl Search {
         Ok(())
     }
 
-    /// The cameras and motions that are members of this object, and the frames that it names.
+    /// Adds the cameras and motions among this object's members, and returns the frames that it names.
     fn read(&mut self, node: &Node, name: &str, frames: &Frames) -> Result<Frames, Reason> {
         let before = self.found.cameras.len();
         self.camera(node, name)?;
         let names: Vec<Option<&str>> = self.found.cameras[before..].iter().map(|each| each.name.as_deref()).collect();
-        // OpenCV's stereo calibration: R and T carry points of camera 1 into camera 2. Of other names the order says nothing.
+        // In OpenCV's stereo calibration, R and T map points of camera 1 into camera 2. With other names, the order
+        // has no meaning.
         let stereo = if names == [Some("1"), Some("2")] {
             Frames { from: Some("1".into()), to: Some("2".into()) }
         } else {
@@ -212,7 +214,7 @@ impl Search {
             return Err(format!("its {other} has {} numbers, not three", t.values.len()));
         }
         let warnings = &mut self.found.warnings;
-        // RealSense writes these two names, flat, and its rotations column by column.
+        // RealSense writes these two names with flat lists, and its rotations column by column.
         let is_realsense = key == "rotation" && r.rows.is_none();
         let found = match r.values[..] {
             [x, y, z] => turned(&of_vector([x, y, z])?, &t.values, names, warnings, true)?,
@@ -259,7 +261,7 @@ impl Search {
         Ok(())
     }
 
-    /// Of cameras that are each related to the same inertial unit, the motion from one to the next.
+    /// Adds the motion from each camera to the next one, if both are related to the same inertial unit.
     fn chain(&mut self) {
         let is_between = |pose: &NamedPose, from: &str, to: &str| {
             pose.names.from.as_deref() == Some(from) && pose.names.to.as_deref() == Some(to)
@@ -287,7 +289,7 @@ fn camera_before(number: u64) -> Option<String> {
     number.checked_sub(1).map(|before| format!("cam{before}"))
 }
 
-/// Kalibr's names, where cn is the camera that the matrix stands in, cnm1 the one before.
+/// Kalibr's names, where cn is the camera that holds the matrix and cnm1 the one before.
 fn kalibr(key: &str, parent: &str) -> Option<Names> {
     let number = camera_number(parent)?;
     match key {
@@ -348,14 +350,14 @@ fn size_of(node: &Node, label: &str) -> [Option<f64>; 2] {
     })
 }
 
-/// ROS: the transform carries points of the child frame into the parent.
+/// In ROS, the transform maps points of the child frame into the parent.
 fn frames_of(node: &Node) -> Option<Frames> {
     let child = text_of(member(node, &["childframeid", "childframe"]))?;
     let header = member(node, &["header"]).and_then(Value::as_object).unwrap_or(node);
     Some(Frames { from: Some(child), to: text_of(member(header, &["frameid", "parentframe"])) })
 }
 
-/// Members that are named "Camera.fx", as ORB-SLAM writes them, by what stands before the dot.
+/// Members named "Camera.fx", as in ORB-SLAM, grouped by the part before the dot.
 fn dotted(node: &Node) -> Vec<(String, Node)> {
     static DOT: Pattern = Pattern::new(|| pattern(r"^([A-Za-z0-9_]{1,40})\.([A-Za-z0-9_]{1,40})$"));
     let mut groups: Map<String, Value> = Map::new();
@@ -373,7 +375,7 @@ fn dotted(node: &Node) -> Vec<(String, Node)> {
     groups.into_iter().map(|(name, value)| (name, members(value))).collect()
 }
 
-/// What a member's cameras and poses are called: members that only say what they are take their parent's name.
+/// The name for a member's cameras and poses: members that only state their kind take their parent's name.
 fn name_of<'a>(key: &'a str, parent: &'a str) -> &'a str {
     let is_kind = matches!(
         key,
@@ -391,7 +393,7 @@ fn name_of<'a>(key: &'a str, parent: &'a str) -> &'a str {
     if is_kind { parent } else { key }
 }
 
-/// A list or matrix, or an object of x, y, z and w.
+/// A list or matrix, or an object with x, y, z and w.
 fn parts(value: &Value, axes: &[&str]) -> Option<Matrix> {
     match value {
         Value::Object(node) if !node.contains_key("data") => {

@@ -1,4 +1,4 @@
-//! Cameras and poses in plain words.
+//! Descriptions of cameras and poses.
 
 use bimodal_stereo::Lens;
 use bimodal_stereo::nalgebra::Matrix3;
@@ -7,7 +7,7 @@ use super::calibration::{Calibration, NamedCamera, NamedPose};
 use super::cameras::coefficients;
 use super::numbers::{brief, fixed};
 
-/// How many are described one by one.
+/// How many are described individually.
 const FEW: usize = 4;
 const DIGITS: usize = 5;
 
@@ -27,7 +27,7 @@ fn of_camera(each: &NamedCamera) -> String {
     format!("{name}{size}fx {fx} fy {fy} cx {cx} cy {cy}, {}", lens(each))
 }
 
-/// The turn of a rotation, degrees.
+/// The angle of a rotation, degrees.
 fn turn(r: &Matrix3<f64>) -> f64 {
     ((r.trace() - 1.0) / 2.0).clamp(-1.0, 1.0).acos().to_degrees()
 }
@@ -52,7 +52,7 @@ fn listed<T>(all: &[T], one: &str, many: &str, words: impl Fn(&T) -> String) -> 
     Some(format!("{head} ({}{})", some.join("; "), if all.len() > FEW { "; .." } else { "" }))
 }
 
-/// What a text holds.
+/// A description of a text's content.
 pub fn in_words(found: &Calibration) -> String {
     let parts =
         [listed(&found.cameras, "a camera", "cameras", of_camera), listed(&found.poses, "a pose", "poses", of_pose)];

@@ -1,9 +1,10 @@
-//! Whether the depth map shows a hollow, or its depths grow towards the camera: mirrored, it has another pose that is as good.
+//! Detects a hollow depth map or depths that grow towards the camera. Mirrored, such a map has another pose that fits
+//! as well.
 
 use crate::reason::Reason;
 use crate::view::{DepthView, is_hollow};
 
-/// Of a depth map most of whose occluding contours face inward.
+/// The reason to cap a verdict if most occluding contours of the depth map face inward.
 pub fn hollow(depth: &DepthView) -> Option<Reason> {
     is_hollow(depth.size, &depth.points.z, &depth.normals).then_some(Reason::Hollow)
 }

@@ -1,15 +1,15 @@
-//! Whether a mask is missing, so that the pose may be that of something else.
+//! Detects a missing mask, without which the pose may be that of something else.
 
 use crate::estimator::pair::ViewPair;
 use crate::options::Start;
 use crate::reason::Reason;
 
-/// Share of the depths that trimming may leave out of a map without a mask. Of two whole frames of a table with an object it left out 40
-/// and 45 %, the object among them, and the wall had a pose 56 to 94 degrees off that seemed sure; of 79 renders with a second object,
-/// which seemed sure as well, less than this.
+/// Largest share of the depths that trimming may remove from a depth map without a mask. Flying pixels stay below it; a
+/// whole frame with a background exceeds it. Set on whole frames of objects on a table (docs/lab/thresholds.md).
 const LARGEST_TRIMMED: f64 = 0.15;
 
-/// Of a depth map of which much was trimmed, or of a whole frame that a pose was searched for.
+/// The reason to cap a verdict if trimming removed much of the depth map, or if the pose was searched for in a whole
+/// frame.
 pub fn missing_mask(pair: &ViewPair) -> Option<Reason> {
     let is_whole_frame = pair.options.start == Start::Search && pair.image.is_whole_frame();
     reason(pair.depth.trimmed_without_mask(), is_whole_frame)

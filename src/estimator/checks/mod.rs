@@ -1,11 +1,11 @@
-//! Checks of the input. Each makes of some evidence a reason not to trust an answer that looks good, or none;
-//! what such a reason caps is decided in the verdict alone.
+//! Checks of the input. Each turns evidence into a reason to distrust a good-looking answer, if there is one. Only the
+//! verdict decides what such a reason caps.
 //!
-//! | file | what it asks |
+//! | file | what it detects |
 //! |---|---|
-//! | `hollow` | whether depths grow towards the camera |
-//! | `masks` | whether the views show more than the object |
-//! | `unit` | whether the depths are in another unit |
+//! | `hollow` | depths that grow towards the camera |
+//! | `masks` | views that show more than the object |
+//! | `unit` | depths in another unit |
 
 mod hollow;
 mod masks;

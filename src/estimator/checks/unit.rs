@@ -1,6 +1,6 @@
-//! Whether the depth map's unit is another one: relief is held against the image in units beside the given one.
+//! Detects a depth map in another unit by registering its relief in other units and comparing the fits.
 //!
-//! Only before a parallel projection of the map: a pinhole's unit is that of all three axes.
+//! Applies only to depth maps under a parallel projection: behind a pinhole, the unit scales all three axes alike.
 
 use crate::diagnosis::{Alternative, Diagnosis};
 use crate::estimator::gauge;
@@ -9,34 +9,36 @@ use crate::estimator::stages::{COLLAPSE, ColourRegistration};
 use crate::pose::{PhotometricReport, Similarity};
 use crate::reason::Reason;
 
-/// Relief so many times as flat and as deep is held against the map's own, from what is nearest on. Units are mistaken by any
-/// factor, so these go from a tenth to ten times in steps of 1.3 to 1.7.
+/// Factors that scale the relief (flatter, deeper), nearest first. A unit may be mistaken by any factor, so they cover
+/// a tenth to ten times in steps of 1.3 to 1.7.
 const UNITS: [[f32; 6]; 2] = [[0.7, 0.5, 0.3, 0.2, 0.15, 0.1], [1.5, 2.0, 3.0, 5.0, 7.0, 10.0]];
-/// Relief that leaves so many times the noise of the map's own leads away from the right one, and none beyond it is tried.
+/// A unit with more than this multiple of the given unit's noise leads away from the right one; no unit beyond it is
+/// tried.
 const AWAY: f64 = 2.0;
-/// Rounds of a registration by another unit at most, as many as least squares mostly take: those with instrumental variables would
-/// take as long again. One that has settled sooner spends what is left on them.
+/// Most rounds of a registration in another unit. Least squares usually takes as many, and rounds with instrumental
+/// variables would double the time. A registration that settles sooner spends the remaining rounds on them.
 const UNIT_ROUNDS: usize = 5;
-/// Another unit explains the colours better where it leaves less than this share of what residuals have in common: wrong pairs
-/// leave 0 to 0.47 of it by their own, right ones of 48x48 without noise 0.7 or more by one that leaves less noise ..
+/// Another unit fits better if the spatial covariance of its residuals is below this share of the given unit's. Set on
+/// pairs with right and wrong units (docs/lab/thresholds.md).
 const BETTER_STRUCTURE: f64 = 0.5;
-/// .. and less noise, by four sigmas: the median of n points in three channels tells the noise to 0.56/sqrt(n).
+/// Its noise must also be lower by four sigmas: the median of n points in three channels gives the noise to
+/// 0.56/sqrt(n).
 const SIGMAS_OF_NOISE: f64 = 4.0 * 0.56;
 
-/// Whether relief so many times as deep explains an image that the given unit does not explain.
+/// The reason to cap a verdict if relief in another unit explains an image that the given unit does not explain.
 pub fn other_unit(colours: &mut ColourRegistration, pair: &ViewPair, pose: &Similarity) -> Option<Reason> {
     better_unit(colours, pair, pose).map(|times| Reason::OtherUnit { times: f64::from(times) })
 }
 
-/// How many times as deep relief would have to be.
+/// The factor by which relief would have to be deeper.
 fn better_unit(colours: &mut ColourRegistration, pair: &ViewPair, pose: &Similarity) -> Option<f32> {
-    // White noise leaves nothing for another unit to explain, in all points or in the few that are tried here.
+    // White noise leaves nothing for another unit to explain, neither in all points nor in the few that are tried here.
     let is_explained =
         |found: &PhotometricReport| pair.residuals(found).diagnose(Alternative::DepthUnit) == Diagnosis::Explained;
     if !pair.depth.camera.is_orthographic() || colours.found().is_some_and(is_explained) {
         return None;
     }
-    // All of them by the points that its own unit shows.
+    // All units are compared on the points that are visible in the given one.
     colours.judge(pair, pose)?;
     let own = colours.register_relief(pair, pose, 1.0, UNIT_ROUNDS).filter(|own| !is_explained(own))?;
     let uncertainty = SIGMAS_OF_NOISE / (own.visible as f64).sqrt();
@@ -70,7 +72,8 @@ mod tests {
     use crate::scenes::{SampleRequest, Scene, light, surface};
     use crate::view::{DepthMap, Size};
 
-    /// The views of a pair whose depths are read by `unit`, registered from the true rotation, the middles one on the other.
+    /// The views of a pair whose depths are multiplied by `unit`, registered from the true rotation with their centres
+    /// aligned.
     fn registered(unit: f64) -> (Estimator, ColourRegistration) {
         let request = SampleRequest {
             light: light("colourful").unwrap(),
@@ -114,7 +117,7 @@ mod tests {
             registration.adopt(found);
             assert_eq!(better_unit(&estimator, &mut registration), expected, "{structure} and {noise} of the limits");
         }
-        // Without relief that is right there is nothing to tell, gate or no gate.
+        // With the right relief no unit is better, with or without the gate.
         let (estimator, mut registration) = registered(1.0);
         let found = registration.found().unwrap().clone();
         registration.adopt(PhotometricReport { structure: f64::MAX, ..found });

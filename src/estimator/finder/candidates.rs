@@ -1,6 +1,7 @@
 //! The search, and the photometric registration of its candidates.
 //!
-//! Tasks depend on the pair and themselves alone, so that threads may do some of them; what they find counts in the order of the candidates.
+//! Each task depends only on the pair and itself, so threads may take some of them. Results count in the order of the
+//! candidates.
 
 use nalgebra::Matrix3;
 
@@ -15,29 +16,30 @@ use crate::reason::Activity;
 use super::local_optima::{Choice, LocalOptima, Origin, Ranking, RegisteredCandidate};
 use super::trust_region::TrustRegion;
 
-/// How many candidates are registered.
+/// Numbers of candidates to register.
 #[derive(Clone, Copy)]
 pub struct Effort {
-    /// After so many an optimum that convinces is trusted.
+    /// After this many, a convincing optimum is trusted.
     pub few: usize,
     pub most: usize,
 }
 
-/// Where nothing is known of the pose.
+/// Effort if nothing is known about the pose.
 pub const EVERYWHERE: Effort = Effort { few: 10, most: 40 };
-/// Near an initial pose: all of them, to be held against that.
+/// Effort near an initial pose: all candidates are registered and compared with it.
 pub const NEARBY: Effort = Effort { few: 12, most: 12 };
-/// Share of the progress that the search itself takes ..
+/// Share of the progress that the search takes.
 const SEARCH_SHARE: f64 = 0.4;
-/// .. the first few registrations: what comes after them may be spared, and then progress leaps to its end ..
+/// Share of the first few registrations. The later ones may be skipped, and then progress jumps to its end.
 const FEW_SHARE: f64 = 0.2;
-/// .. and all of them.
+/// Share of the later registrations.
 const MORE_SHARE: f64 = 0.15;
 
-/// The search of a pair, by the normals that registrations go by; near an initial pose of the rotations within its tolerance.
+/// The search of a pair, with the normals of photometric registration. Near an initial pose it covers the rotations
+/// within tolerance.
 ///
 /// # Errors
-/// Those of [`Search`], where the views allow none.
+/// The errors of [`Search`], if the views allow no search.
 #[inline(never)]
 pub fn search(pair: &ViewPair, grid: ImageGrid, colours: &ColourRegistration) -> Result<Search> {
     let region = TrustRegion::of(pair);
@@ -57,19 +59,19 @@ pub fn search(pair: &ViewPair, grid: ImageGrid, colours: &ColourRegistration) ->
     Ok(search)
 }
 
-/// The candidates of a search on their way to a choice; owns its memory.
+/// The candidates of a search up to the choice; owns its memory.
 pub struct Candidates {
     search: Search,
-    /// What became of each candidate; `None` where it could not be registered.
+    /// The result for each candidate; `None` if it could not be registered.
     registrations: TaskResults<Option<RegisteredCandidate>>,
     effort: Effort,
-    /// The next candidate to count, and how many have been counted.
+    /// The next candidate to count, and the number already counted.
     next: usize,
     tried: usize,
     optima: LocalOptima,
-    /// The candidate whose registration is under way here.
+    /// The candidate whose registration is in progress in this thread.
     begun: Option<usize>,
-    /// Whether something else takes over where no single albedo explains anything.
+    /// Whether another method takes over if a single albedo does not explain the image.
     may_vary: bool,
     /// Whether registrations are kept near the initial pose.
     is_near: bool,
@@ -77,7 +79,7 @@ pub struct Candidates {
 }
 
 impl Candidates {
-    /// Of a search, beside the optima that are known already.
+    /// Starts from a search and from the optima already known.
     pub fn new(search: Search, optima: LocalOptima, effort: Effort, may_vary: bool) -> Self {
         let registrations = TaskResults::new(0);
         Self {
@@ -94,29 +96,29 @@ impl Candidates {
         }
     }
 
-    /// The same, registered near the initial pose.
+    /// Keeps the registrations near the initial pose.
     pub fn near(self) -> Self {
         Self { is_near: true, ..self }
     }
 
-    /// The best pose so far: that of a registration, or else of the search.
+    /// The best pose so far: from a registration, or else from the search.
     pub fn best_pose(&self) -> Option<Similarity> {
         self.optima.best().or_else(|| self.search.best().map(|best| best.pose))
     }
 
-    /// Each rotation that was tried so far, and its score.
+    /// Each rotation tried so far, with its score.
     pub fn scores(&self) -> Vec<(Matrix3<f64>, f64)> {
         self.search.scores()
     }
 
-    /// Where the search was: every rotation of its sweep, and its candidates.
+    /// Where the search looked: every rotation of its sweep, and its candidates.
     pub fn poses(&self) -> Vec<Similarity> {
         let mut poses = self.search.swept_poses();
         poses.extend(self.search.candidates().iter().map(|candidate| candidate.pose));
         poses
     }
 
-    /// A task for a worker; `None` while none can be begun.
+    /// A task for a worker; `None` if none is ready.
     pub fn take(&mut self) -> Option<Task> {
         if let Some(task) = self.search.take() {
             return Some(Task(Work::Search(task)));
@@ -131,7 +133,7 @@ impl Candidates {
         Some(Task(Work::Register(index, candidates[index].pose, *is_near)))
     }
 
-    /// What a worker has found.
+    /// Takes a worker's result.
     pub fn accept(&mut self, finding: Finding, is_allowed: impl Fn(&Similarity) -> bool) {
         match finding.0 {
             Found::Search(finding) => self.search.accept(finding),
@@ -140,7 +142,8 @@ impl Candidates {
         self.count(is_allowed);
     }
 
-    /// One slice: a part of the search, or a step of a registration. The choice, once there is one; ends where not `is_allowed` do not count.
+    /// Runs one slice: a part of the search, or a step of a registration. Returns the choice at the end. Registrations
+    /// that end at a pose that is not `is_allowed` do not count.
     #[inline(never)]
     pub fn advance(
         &mut self,
@@ -163,7 +166,7 @@ impl Candidates {
         !self.search.is_done()
     }
 
-    /// Share of the work that is done, and what is being done.
+    /// Share of the work done, and the current activity.
     pub fn progress(&self) -> (f64, Activity) {
         if self.is_searching() {
             return (SEARCH_SHARE * self.search.progress().share, Activity::Comparing);
@@ -174,7 +177,7 @@ impl Candidates {
         (SEARCH_SHARE + FEW_SHARE * first as f64 / few as f64 + MORE_SHARE * more, Activity::Registering)
     }
 
-    /// A step of the registration that is under way here, or the beginning of the next one.
+    /// Advances the registration in progress here by a step, or begins the next one.
     fn register(&mut self, pair: &ViewPair, colours: &mut ColourRegistration) {
         let candidates = self.search.candidates();
         let is_wanted = |index: usize| index >= self.next && !self.optima.is_known(&candidates[index].pose);
@@ -185,7 +188,7 @@ impl Candidates {
         }
     }
 
-    /// A step of one registration; another one that was under way here is dropped.
+    /// One step of a registration. Drops another one in progress here.
     fn step_candidate(&mut self, pair: &ViewPair, colours: &mut ColourRegistration, candidate: usize) -> Attempt {
         let start = self.search.candidates()[candidate].pose;
         let progress = colours.step_candidate(pair, &start, self.begun != Some(candidate));
@@ -193,7 +196,7 @@ impl Candidates {
         progress
     }
 
-    /// Counts what has become of the candidates, in their order, up to the first that is still open.
+    /// Counts the results in the order of the candidates, up to the first that is still open.
     fn count(&mut self, is_allowed: impl Fn(&Similarity) -> bool) {
         if self.is_searching() || self.chosen.is_some() {
             return;
@@ -224,7 +227,8 @@ impl Candidates {
         self.next >= self.search.candidates().len() || enough
     }
 
-    /// The choice, once the best one's whole report is here: a worker brings only what tells one optimum from another.
+    /// Makes the choice once the whole report of the best optimum is here: a worker returns only what distinguishes
+    /// optima.
     fn conclude(&mut self, pair: &ViewPair, colours: &mut ColourRegistration, chosen: Ranking) -> Option<Choice> {
         let Ranking { best, rivals } = chosen;
         let Some(mut best) = best else { return Some(Choice::default()) };

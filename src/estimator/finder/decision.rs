@@ -1,12 +1,12 @@
-//! What the finder decides: a pose, and which measurement it rests on.
+//! The finder's decision: a pose, and the method that it rests on.
 
 use crate::pose::{ContrastReport, OutlineReport, PhotometricReport, Similarity};
 use crate::reason::FoundBy;
 
-/// The answer.
+/// The decision.
 pub struct Decision {
     pub by: Method,
-    /// Other poses that fit as well, best first; none where they were not looked for.
+    /// Other poses that fit equally well, best first; `None` if none were looked for.
     pub rivals: Option<Vec<Similarity>>,
 }
 
@@ -14,9 +14,9 @@ pub struct Decision {
 pub enum Method {
     /// A single albedo explains the image.
     Image(Box<PhotometricReport>),
-    /// The albedo varies: local contrast ..
+    /// The albedo varies: the pose is from local contrast.
     Contrast(Box<ContrastReport>),
-    /// .. or silhouettes.
+    /// The albedo varies: the pose is from silhouettes.
     Silhouettes(Box<OutlineReport>),
     /// No pose near the initial one fits the image better, so that one is kept.
     Initial(Staying),
@@ -34,7 +34,7 @@ pub enum Staying {
 }
 
 impl Method {
-    /// As a reason names it.
+    /// The name of the method in a reason.
     pub const fn found_by(&self) -> FoundBy {
         match self {
             Self::Silhouettes(_) => FoundBy::Silhouettes,

@@ -1,5 +1,5 @@
-//! Local contrast, where the albedo varies before an orthographic image (docs/method/registration.md): from what the search has seen, or around
-//! an initial pose.
+//! Local contrast, used if the albedo varies in an orthographic image (docs/method/registration.md): from the poses of
+//! the search, or around an initial pose.
 
 use nalgebra::{Rotation3, Vector3};
 
@@ -11,22 +11,23 @@ use crate::options::Registration;
 use crate::pose::{ContrastOutcome, ContrastSearch, PhotometricReport, Similarity};
 use crate::view::ColourView;
 
-/// Both registrations have found one pose where their ends are this near, degrees: contrast may be off by a few.
+/// Two registrations agree if they end within this angle, degrees: local contrast can be off by a few.
 const SAME_POSE: f64 = 8.0;
-/// Around a told pose starts are turned by multiples of so many degrees about the axes, up to so many of them: 123 turns. Of
-/// forty photographs told 8 degrees off, 27 turns by 6 degrees find 32 natively, these 36.
+/// Around an initial pose, starts are turned about the axes by multiples of this angle (degrees), up to this many: 123
+/// turns. Set on photographs with initial poses 8 degrees off (docs/lab/thresholds.md).
 const TURN: f64 = 5.0;
 const MOST_TURNS: i32 = 3;
 
-/// Whether colours that leave more than noise have something else to be asked: paint or shadows, in an image whose object
-/// has an outline.
-/// Behind a pinhole outlines in space decide; under a known light surfaces settle what noisy normals leave. Noisy normals
-/// leave as much as paint does, so there the image itself has to show edges of paint.
+/// Whether local contrast may take over if photometric residuals exceed noise: the image has a mask, and varying albedo
+/// or shadows could explain them. Behind a pinhole silhouettes decide instead; under a known light the surfaces settle
+/// what noisy normals leave open. Noisy normals leave as large residuals as varying albedo does, so with them the image
+/// itself must show edges of albedo.
 pub fn may_be_called_for(pair: &ViewPair, colours: &ColourRegistration) -> bool {
     is_open(pair, None) && (colours.has_clean_normals() || CleanedImage::new(pair).image.is_some())
 }
 
-/// The image that contrast is compared in, where the best registration by colours calls for it likewise.
+/// The image in which contrast is compared, if the residuals of the best photometric registration also require local
+/// contrast.
 pub fn cleaned(
     pair: &ViewPair,
     colours: &ColourRegistration,
@@ -36,7 +37,7 @@ pub fn cleaned(
     Some(cleaned).filter(|cleaned| colours.has_clean_normals() || cleaned.image.is_some())
 }
 
-/// Whether pair and colours leave room for paint.
+/// Whether the options, the views and the registration allow for varying albedo.
 fn is_open(pair: &ViewPair, plain: Option<&PhotometricReport>) -> bool {
     pair.options.registration == Registration::Joint
         && pair.known_light().is_none()
@@ -49,38 +50,38 @@ fn albedo_varies(pair: &ViewPair, plain: &PhotometricReport) -> bool {
     pair.residuals(plain).diagnose(Alternative::LocalContrast) == Diagnosis::VaryingAlbedo
 }
 
-/// Whether a registration by colours from where contrast ended leaves no more than noise: then there is no paint, and its
-/// pose is the better one.
+/// Whether a photometric registration from the end of local contrast leaves only noise. Then the albedo does not vary,
+/// and its pose is the better one.
 fn is_plain(pair: &ViewPair, plain: &PhotometricReport, contrast: &ContrastOutcome) -> bool {
     !albedo_varies(pair, plain) && plain.pose.degrees_to(&contrast.best.pose) < SAME_POSE
 }
 
-/// What contrast is compared in: the image without the paint that shows at its edges, or as it is.
+/// The image in which contrast is compared: without the albedo that shows at its edges, or unchanged.
 pub struct CleanedImage {
     image: Option<Box<ColourView>>,
-    /// Whether hues were blurred, as JPEG leaves them.
+    /// Whether the chromaticity was blurred, as JPEG leaves it.
     was_soft: bool,
 }
 
 impl CleanedImage {
-    /// Of a pair's image.
+    /// Cleans a pair's image.
     pub fn new(pair: &ViewPair) -> Self {
         let sharp = pair.image.with_sharp_hues();
         let image = sharp.as_ref().unwrap_or(&pair.image).without_paint().map(Box::new);
         Self { image, was_soft: sharp.is_some() }
     }
 
-    /// The image.
+    /// The cleaned image, or the pair's own if nothing was removed.
     pub fn image<'a>(&'a self, pair: &'a ViewPair) -> &'a ColourView {
         self.image.as_deref().unwrap_or(&pair.image)
     }
 }
 
-/// Sizes that starts have where the scale is free, relative to the units' scale. With the middle one alone, of 60 painted
-/// renders all that were 16 % larger or smaller were lost; with three, two are.
+/// Sizes of the starts relative to the units' scale, if the scale is free. With the middle one alone, objects about a
+/// sixth larger or smaller are missed.
 const SIZES: [f64; 3] = [0.84, 1.0, 1.19];
 
-/// These poses at each of the sizes that the scale may have.
+/// These poses at each size that the scale may have.
 pub fn of_all_sizes(pair: &ViewPair, poses: &[Similarity]) -> Vec<Similarity> {
     let middle = pair.depth.points.centroid();
     let held = gauge::held_scale(pair);
@@ -90,13 +91,13 @@ pub fn of_all_sizes(pair: &ViewPair, poses: &[Similarity]) -> Vec<Similarity> {
     poses.iter().flat_map(|pose| scales.iter().map(move |&scale| rescaled(pose, scale))).collect()
 }
 
-/// The poses around an initial one.
+/// Poses around an initial one.
 pub fn around(pair: &ViewPair, initial: &Similarity) -> Vec<Similarity> {
     let middle = pair.depth.points.centroid();
     let turned = |turn: Vector3<f64>| {
         initial.turned_about(middle, initial.scale, Rotation3::new(turn).into_inner() * initial.rotation)
     };
-    // A cube of turns, of which the ball in it is taken.
+    // The turns within the ball inscribed in a cube of turns.
     let side = 2 * MOST_TURNS + 1;
     let turn =
         |at: i32| Vector3::new(at % side, at / side % side, at / side / side).map(|step| f64::from(step - MOST_TURNS));
@@ -105,7 +106,8 @@ pub fn around(pair: &ViewPair, initial: &Similarity) -> Vec<Similarity> {
     turns.map(|turn| turned(TURN.to_radians() * turn)).collect()
 }
 
-/// The outcome of a search that is done: contrast's, or that of the colours from there, where they leave nothing more.
+/// The outcome of a finished search: that of local contrast, or the photometric pose from there if it leaves only
+/// noise.
 pub fn conclude(
     pair: &ViewPair,
     colours: &ColourRegistration,
@@ -117,7 +119,7 @@ pub fn conclude(
     let mut contrast = search.outcome(&problem)?;
     let plain = colours.register_in(pair, image, &contrast.best.pose);
     let is_coarse = cleaned.was_soft || !colours.has_clean_normals();
-    // Contrast of blurred hues or noisy normals is less to be believed where the colours without paint point elsewhere.
+    // With blurred chromaticity or noisy normals, contrast is less reliable if photometric registration ends elsewhere.
     if is_coarse {
         rival(&mut contrast, plain.as_ref().map(|plain| plain.pose));
     }
@@ -132,13 +134,13 @@ pub fn conclude(
     })
 }
 
-/// A pose by the colours, if it is another one, beside contrast's.
+/// Adds the photometric pose as a rival of contrast's if the two differ.
 pub fn rival(contrast: &mut ContrastOutcome, by_colours: Option<Similarity>) {
     let best = contrast.best.pose;
     contrast.rivals.extend(by_colours.filter(|pose| pose.degrees_to(&best) >= SAME_POSE));
 }
 
-/// Which of the two has the pose.
+/// The method that found the pose.
 pub enum Conclusion {
     ByColours(Box<PhotometricReport>),
     ByContrast(Box<ContrastOutcome>),

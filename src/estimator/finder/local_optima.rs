@@ -1,13 +1,11 @@
-//! Where registrations from different candidates ended: which of these poses is the answer, and which are its rivals.
+//! Local optima, where registrations of the candidates end: chooses the answer and its rivals.
 //!
-//! Registrations that end in different poses see different points, so their objectives cannot be compared; what they
-//! are worth is gain = N^(1/3) ln(spread / noise): by how much the pose explains the colours better than a constant
-//! would, with a root of the number of visible points against overlaps that are tiny and thus easily explained.
-//! Measured on the local optima of 300 random scenes at 96x96 (Mozart, four scanned animals, three built-in surfaces;
-//! natural lights, free scale): any power from 0.1 to 0.6 puts a right pose first in all of them, none at all errs in
-//! one; of two a few degrees apart, the square root favours the one that merely sees more. Rivals of right winners
-//! leave 1.25 times their noise or more, so a pose that leaves nothing but the noise of the image comes before one that
-//! sees more but leaves so much.
+//! Registrations that end in different poses see different points, so their objectives cannot be compared. They are
+//! ranked by gain = N^(1/3) ln(spread / noise). The logarithm is how much better the pose explains the image than a
+//! constant would. The root of the number N of visible points penalises tiny overlaps, which are easy to explain. Other
+//! powers were compared on local optima of random scenes (docs/lab/thresholds.md): without any, tiny overlaps win; the
+//! square root prefers the pose that merely sees more of two that are a few degrees apart. A pose that leaves only the
+//! image noise ranks above one that sees more but leaves over 1.25 times as much.
 
 use crate::diagnosis::{Alternative, Diagnosis, Residuals};
 use crate::pose::{PhotometricReport, Similarity};
@@ -23,32 +21,32 @@ pub enum Origin {
     Candidate(usize),
 }
 
-/// Power of the number of visible points. A cube root of its own would be 1 kB of the download.
+/// Exponent of the number of visible points. `powf` serves, because a separate `cbrt` would add 1 kB to the download.
 const THIRD: f64 = 1.0 / 3.0;
-/// A local optimum convinces when the noise of every other one that sees as much is larger by this factor.
+/// A local optimum is convincing if every other one that sees as much has larger noise by this factor.
 const CONVINCING_NOISE: f64 = 2.0;
-/// Registrations that end nearer than this have found one optimum, degrees.
+/// Registrations that end within this angle have found the same optimum, degrees.
 const SAME_OPTIMUM: f64 = 3.0;
-/// An optimum reached so often needs no more support: candidates next to it are passed over.
+/// An optimum reached this often needs no more support; candidates near it are skipped.
 const ENOUGH_SUPPORT: u32 = 2;
-/// Candidates nearer than this to such an optimum would only reach it again, degrees.
+/// Candidates within this angle of such an optimum would only reach it again, degrees.
 const CATCHMENT: f64 = 15.0;
-/// A rival leaves a noise of at most so many times the winner's ..
+/// Noise of a rival, at most, as a multiple of the winner's.
 const RIVAL_NOISE: f64 = 1.25;
-/// .. on at least this share of its points.
+/// Visible points of a rival, at least, as a share of the winner's.
 const RIVAL_VISIBLE: f64 = 0.5;
-/// Rivals reported at most.
+/// Most rivals in a report.
 const MOST_RIVALS: usize = 5;
 
-/// What tells one registration from another.
+/// What distinguishes one registration from another.
 #[derive(Clone, Debug)]
 pub struct RegisteredCandidate {
     pub pose: Similarity,
     /// Number of visible points.
     pub visible: f64,
-    /// Standard deviation of what is left of log S.
+    /// Standard deviation of the residuals of log S.
     pub noise: f64,
-    /// All of it, where it was made in this thread.
+    /// The whole report, if it was made in this thread.
     pub report: Option<Box<PhotometricReport>>,
 }
 
@@ -61,7 +59,7 @@ impl RegisteredCandidate {
 /// A pose where registrations end.
 #[derive(Clone)]
 pub struct LocalOptimum {
-    /// Of the registration that ended best here.
+    /// Where the best registration that ended here began.
     pub origin: Origin,
     pub registered: RegisteredCandidate,
     gain: f64,
@@ -74,7 +72,7 @@ impl LocalOptimum {
         self.registered.pose.degrees_to(&other.registered.pose) >= SAME_OPTIMUM
     }
 
-    /// Whether it explains about as many points as `best` nearly as well: up to `factor` times the noise.
+    /// Whether it explains about as many points as `best` nearly as well: with at most `factor` times the noise.
     fn rivals(&self, best: &Self, factor: f64) -> bool {
         self.registered.visible >= RIVAL_VISIBLE * best.registered.visible
             && self.registered.noise <= factor * best.registered.noise
@@ -90,14 +88,14 @@ pub struct Ranking {
 /// The choice among the local optima.
 #[derive(Default)]
 pub struct Choice {
-    /// The best pose by a single albedo, if any could be registered; none where the initial pose is as good.
+    /// The best pose under a single albedo; `None` if nothing could be registered or the initial pose is as good.
     pub best: Option<Box<PhotometricReport>>,
-    /// Poses that the data cannot tell from the best, best first.
+    /// Poses that the data cannot distinguish from the best, best first.
     pub rivals: Vec<Similarity>,
 }
 
 impl Choice {
-    /// Of the best optimum, whose report is there.
+    /// The choice of a ranking whose best optimum has its report.
     pub fn of(Ranking { best, rivals }: Ranking) -> Self {
         let best = best.filter(|best| best.origin != Origin::Initial).and_then(|best| best.registered.report);
         Self { best, rivals }
@@ -107,22 +105,22 @@ impl Choice {
 /// All optima that registrations have found so far.
 pub struct LocalOptima {
     optima: Vec<LocalOptimum>,
-    /// Of the image: its noise and its spread.
+    /// Noise and spread of the image.
     image: Residuals,
 }
 
 impl LocalOptima {
-    /// None yet, of this image; memory for `most`.
+    /// An empty list for this image, with capacity for `most`.
     pub fn new(most: usize, image: Residuals) -> Self {
         Self { optima: Vec::with_capacity(most), image }
     }
 
-    /// What an optimum leaves of the image.
+    /// The residuals of an optimum.
     fn residuals(&self, optimum: &LocalOptimum) -> Residuals {
         Residuals { noise: optimum.registered.noise, ..self.image }
     }
 
-    /// Enters where a registration ended: the better of two that are one.
+    /// Enters the end of a registration; of two at the same optimum, the better one stays.
     pub fn enter(&mut self, origin: Origin, registered: RegisteredCandidate) {
         let gain = registered.visible.powf(THIRD) * (self.image.spread / registered.noise).ln();
         if !gain.is_finite() {
@@ -145,7 +143,7 @@ impl LocalOptima {
         self.optima.iter().max_by(|a, b| a.gain.total_cmp(&b.gain)).map(|best| best.registered.pose)
     }
 
-    /// Whether a candidate lies next to an optimum that has support enough.
+    /// Whether a candidate lies near an optimum with enough support.
     pub fn is_known(&self, pose: &Similarity) -> bool {
         let near = |known: &LocalOptimum| {
             known.support >= ENOUGH_SUPPORT && known.registered.pose.degrees_to(pose) < CATCHMENT
@@ -153,13 +151,13 @@ impl LocalOptima {
         self.optima.iter().any(near)
     }
 
-    /// Whether after so many registrations the best optimum has no rival by far, and either explains nearly all or is
-    /// where most registrations end, though not all.
+    /// Whether the best optimum after this many registrations has no close rival, and either explains nearly everything
+    /// or attracts most registrations, though not all.
     pub fn is_convincing(&self, tried: usize) -> bool {
         let best = self.optima.iter().max_by(|a, b| a.gain.total_cmp(&b.gain));
         best.is_some_and(|best| {
             let mut others = self.optima.iter().filter(|other| other.is_apart(best)).peekable();
-            // Where all registrations end in one place, the candidates may just be alike.
+            // If all registrations end at one optimum, the candidates may simply be alike.
             let compared = others.peek().is_some();
             let alone = !others.any(|other| other.rivals(best, CONVINCING_NOISE));
             let most = compared && 2 * best.support as usize >= tried;
@@ -168,17 +166,18 @@ impl LocalOptima {
         })
     }
 
-    /// Whether all optima leave far more than light, noise and errors of normals do on an object of one albedo.
+    /// Whether all optima leave far larger residuals than light, noise and errors of normals cause on an object with a
+    /// single albedo.
     pub fn are_of_varying_albedo(&self) -> bool {
         let varies = |optimum| self.residuals(optimum).diagnose(Alternative::LocalContrast) == Diagnosis::VaryingAlbedo;
         self.optima.iter().all(varies)
     }
 
-    /// The best optimum and those that the data can't tell from it, given the noise of the image.
+    /// The best optimum, and those that the data cannot distinguish from it, given the noise of the image.
     pub fn ranked(&mut self) -> Ranking {
         let (mut optima, noise) = (std::mem::take(&mut self.optima), self.image.image_noise);
         optima.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-        // Nothing but the image's noise is left by it, and far more by the first.
+        // The other one leaves only the image's noise, and the first far more.
         let wins = |first: &LocalOptimum, other: &LocalOptimum| {
             other.registered.noise <= noise && other.rivals(first, 1.0) && !first.rivals(other, RIVAL_NOISE)
         };
@@ -204,7 +203,7 @@ mod tests {
 
     use super::*;
 
-    /// An optimum so many degrees about z, with what it sees and leaves.
+    /// An optimum at this angle about z, with its visible points and its noise.
     fn optimum(degrees: f64, visible: f64, noise: f64) -> LocalOptimum {
         let rotation = Rotation3::new(Vector3::z() * degrees.to_radians()).into_inner();
         let pose = Similarity { rotation, ..Similarity::identity() };
@@ -227,9 +226,9 @@ mod tests {
         let (large, exact) = (optimum(40.0, 1000.0, 0.02), optimum(0.0, 600.0, 0.0099));
         assert!(large.gain > exact.gain);
         assert_eq!(winner(&[large.clone(), exact.clone()], 0.01), (Some(Origin::Candidate(0)), 0));
-        // Not where the image is so clean that there is more to explain ..
+        // Not if the image is so clean that more is left to explain.
         assert_eq!(winner(&[large.clone(), exact], 0.005).0, Some(Origin::Candidate(40)));
-        // .. nor where the first leaves hardly more, or the other sees little.
+        // Nor if the first leaves hardly more noise, or the other sees little.
         assert_eq!(
             winner(&[optimum(40.0, 1000.0, 0.012), optimum(0.0, 600.0, 0.0099)], 0.01),
             (Some(Origin::Candidate(40)), 1)

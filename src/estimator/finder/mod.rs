@@ -1,4 +1,4 @@
-//! The finder: one pose, found everywhere or near an initial one, and decided here (docs/method/README.md).
+//! The finder: finds one pose, everywhere or near an initial one, and decides on it (docs/method/README.md).
 //!
 //! ```text
 //!            scope
@@ -20,19 +20,19 @@
 //!                    decision: pose, method, rivals <--------------------+
 //! ```
 //!
-//! Everything falls into slices, and those of search and registration into tasks that depend on nothing but the pair and themselves, so that
-//! threads may do some of them ([`Worker`](super::Worker)). What they find counts in the order of the tasks, however it comes in: the
-//! outcome is the same to the bit.
+//! All work is cut into slices. Those of search and registration are tasks that depend only on the pair and themselves, so threads may take
+//! some of them ([`Worker`](super::Worker)). Results count in the order of the tasks, not of their arrival, so the outcome is the same to
+//! the bit.
 //!
 //! | file | what it holds |
 //! |---|---|
 //! | `trust_region` | an initial pose, and how far from it the answer may lie |
-//! | `nearby` | what is tried before the search where there is an initial pose |
+//! | `nearby` | registrations near an initial pose, before the search |
 //! | `candidates` | the search, and the registration of its candidates |
-//! | `local_optima` | where registrations ended; the best of these poses, and its rivals |
-//! | `local_contrast`, `silhouettes` | what decides where the albedo varies |
-//! | `opening` | the halved pair that large views are searched by |
-//! | `decision` | what comes out |
+//! | `local_optima` | ends of the registrations; the best pose and its rivals |
+//! | `local_contrast`, `silhouettes` | the methods for varying albedo |
+//! | `opening` | the halved pair in which large views are searched |
+//! | `decision` | the outcome |
 
 mod candidates;
 mod decision;
@@ -65,32 +65,32 @@ pub use nearby::explains;
 pub use opening::Opening;
 pub use trust_region::TrustRegion;
 
-/// Share of the work that comes before local contrast.
+/// Share of the work that precedes local contrast.
 const BEFORE_CONTRAST: f64 = 0.75;
 
-/// How the finder stands.
+/// Progress of the finder.
 pub enum Advance {
-    /// Not done; the share of the work that is, and what is being done.
+    /// Not done: share of the work done, and the current activity.
     Ongoing(f64, Activity),
     Done(Decision),
 }
 
 /// Where the pose is looked for.
 enum Scope {
-    /// The halved pair stands in for the views where these are large.
+    /// A halved pair stands in for large views.
     Everywhere(Option<Box<Opening>>),
     Near(Box<Near>),
 }
 
-/// What is known around an initial pose.
+/// What is known about the surroundings of an initial pose.
 struct Near {
     region: TrustRegion,
-    /// Where the registration from the initial pose left no more than the image's own noise.
+    /// The pose registered from the initial one, if it leaves no more than the image's own noise.
     noisy: Option<Similarity>,
     silhouettes: Option<Box<OutlineReport>>,
 }
 
-/// What is being done.
+/// The current phase.
 enum Phase {
     Nearby(Box<Nearby>),
     Candidates(Box<Candidates>),
@@ -105,13 +105,13 @@ struct ByContrast {
     search: ContrastSearch,
 }
 
-/// What a slice has come to.
+/// Result of a slice.
 enum Next {
     Phase(Phase),
     Decision(Decision),
 }
 
-/// The registration by colours, which a search of a halved pair does without.
+/// Memory of the photometric registration; the search of a halved pair needs none.
 type Memory = Option<ColourRegistration>;
 
 /// Finds a pose in slices; owns its memory.
@@ -122,10 +122,10 @@ pub struct Finder {
 }
 
 impl Finder {
-    /// Of a pair of which nothing is known, or of its opening; `grid` is that of its image.
+    /// Starts with nothing known about the pose, in the pair or in its opening; `grid` belongs to the image that is searched.
     ///
     /// # Errors
-    /// Those of the search, where the views allow none.
+    /// The errors of the search, if the views allow none.
     pub fn everywhere(
         pair: &ViewPair,
         memory: &mut Memory,
@@ -143,7 +143,7 @@ impl Finder {
         Ok(Self { scope: Scope::Everywhere(opening), phase, chosen: Choice::default() })
     }
 
-    /// Around an initial pose, from which a registration did not explain the image; `plain` is what it found, within the region or not.
+    /// Starts from an initial pose from which registration did not explain the image; `plain` is its result, inside the region or not.
     pub fn near(pair: &ViewPair, region: TrustRegion, plain: Option<PhotometricReport>) -> Self {
         let plain = plain.map(Box::new).filter(|found| region.holds(pair, &found.pose));
         let noisy = plain.as_deref().filter(|found| pair.residuals(found).is_noise()).map(|found| found.pose);
@@ -157,7 +157,7 @@ impl Finder {
         matches!(self.scope, Scope::Near(_))
     }
 
-    /// The best pose so far: that of a registration, or else of the search.
+    /// The best pose so far: from a registration, or else from the search.
     pub fn best_pose(&self) -> Option<Similarity> {
         let best = match &self.phase {
             Phase::Candidates(candidates) => candidates.best_pose(),
@@ -170,7 +170,7 @@ impl Finder {
         }
     }
 
-    /// Each rotation that was tried so far, and its score.
+    /// Each rotation tried so far, with its score.
     pub fn scores(&self) -> Vec<(Matrix3<f64>, f64)> {
         match &self.phase {
             Phase::Candidates(candidates) => candidates.scores(),
@@ -178,7 +178,7 @@ impl Finder {
         }
     }
 
-    /// A task for a worker; `None` while none can be begun.
+    /// A task for a worker; `None` if none is ready.
     pub fn take(&mut self) -> Option<Task> {
         match &mut self.phase {
             Phase::Candidates(candidates) => candidates.take(),
@@ -186,14 +186,14 @@ impl Finder {
         }
     }
 
-    /// What a worker has found.
+    /// Takes a worker's result.
     pub fn accept(&mut self, pair: &ViewPair, finding: Finding) {
         if let Phase::Candidates(candidates) = &mut self.phase {
             candidates.accept(finding, |pose| self.scope.holds(pair, pose));
         }
     }
 
-    /// How far the search and the registrations have come.
+    /// Progress of the search and the registrations.
     #[cfg(feature = "rayon")]
     pub fn progress(&self) -> Option<(f64, Activity)> {
         match &self.phase {
@@ -202,10 +202,10 @@ impl Finder {
         }
     }
 
-    /// One slice.
+    /// Runs one slice.
     ///
     /// # Errors
-    /// Those of the search near an initial pose, where the views allow none; there is nothing more to find then.
+    /// The errors of the search near an initial pose, if the views allow none. Then there is nothing more to find.
     pub fn advance(&mut self, pair: &ViewPair, memory: &mut Memory) -> Result<Advance> {
         let next = match std::mem::replace(&mut self.phase, Phase::Done) {
             Phase::Nearby(nearby) => self.look_nearby(pair, memory, nearby)?,
@@ -224,7 +224,7 @@ impl Finder {
         })
     }
 
-    /// What is tried first around an initial pose.
+    /// A slice of the registrations near an initial pose.
     fn look_nearby(&mut self, pair: &ViewPair, memory: &mut Memory, mut nearby: Box<Nearby>) -> Result<Next> {
         let progress = nearby.advance(pair, ColourRegistration::prepared(memory, pair))?;
         match progress {
@@ -263,7 +263,7 @@ impl Finder {
         self.diagnose(pair, memory, choice, looked_at)
     }
 
-    /// Goes on with local contrast where the albedo varies; `looked_at` is where the search was.
+    /// Continues with local contrast if the albedo varies; `looked_at` holds the poses of the search.
     fn diagnose(
         &mut self,
         pair: &ViewPair,
@@ -304,7 +304,7 @@ impl Finder {
         self.decide(pair, memory, conclusion)
     }
 
-    /// A slice of the registrations by silhouettes from anywhere.
+    /// A slice of the registrations by silhouettes from everywhere.
     fn compare_silhouettes(&mut self, pair: &ViewPair, memory: &mut Memory, mut anywhere: Box<Anywhere>) -> Next {
         if anywhere.advance(pair, ColourRegistration::prepared(memory, pair).normals()) {
             return Next::Decision(everywhere_by(anywhere.best(), std::mem::take(&mut self.chosen)));
@@ -341,7 +341,7 @@ impl Finder {
     }
 }
 
-/// By silhouettes, or else by the best registration.
+/// The decision for silhouettes, or else for the best registration.
 fn everywhere_by(silhouettes: Option<OutlineReport>, Choice { best, rivals }: Choice) -> Decision {
     match (silhouettes, best) {
         (Some(found), _) => Decision { by: Method::Silhouettes(Box::new(found)), rivals: Some(Vec::new()) },
@@ -368,13 +368,13 @@ impl Scope {
 }
 
 impl Near {
-    /// Whether to repeat the registrations near the initial pose: once, and only where a single albedo does not explain the image.
+    /// Whether to repeat the registrations near the initial pose: once, and only if a single albedo does not explain the image.
     fn begins_again(&self, pair: &ViewPair, colours: &ColourRegistration, choice: &Choice) -> bool {
         let is_explained = choice.best.as_ref().is_some_and(|best| !silhouettes::is_painted(pair, best));
         !colours.is_kept_near() && !is_explained && self.region.prior(pair).is_some()
     }
 
-    /// What lies within the trust region: by local contrast, by the image, by silhouettes; or else the initial pose.
+    /// Takes the first pose within the trust region: from local contrast, the image or silhouettes. Otherwise keeps the initial pose.
     fn decide(
         &mut self,
         pair: &ViewPair,
@@ -388,14 +388,14 @@ impl Near {
                 return Ok(Decision::of(Method::Image(found)));
             }
             Some(Conclusion::ByContrast(mut found)) if region.holds(pair, &found.best.pose) => {
-                // What leaves no more than the image's own noise is a rival, however much of it neighbours share.
+                // A pose that leaves only the image's own noise is a rival, however large the spatial covariance of its residuals.
                 local_contrast::rival(&mut found, self.noisy);
                 return Ok(Decision { by: Method::Contrast(Box::new(found.best)), rivals: Some(found.rivals) });
             }
             _ => {}
         }
         let silhouettes = self.silhouettes.take();
-        // Where the albedo varies, colours that hardly fit tell less than silhouettes, and so do those that leave more open.
+        // If the albedo varies, a photometric pose counts less than silhouettes when it hardly fits or is less certain.
         let is_trusted = |best: &PhotometricReport| match &silhouettes {
             Some(_) if !silhouettes::is_painted(pair, best) => true,
             Some(found) => {
@@ -407,7 +407,7 @@ impl Near {
         let Some(best) = best.filter(|best| is_trusted(best)) else {
             return Ok(Decision::of(silhouettes.map_or_else(|| stay(pair, colours, region), Method::Silhouettes)));
         };
-        // All points follow the sample that candidates are registered by.
+        // Candidates are registered on a sample of the points; all points follow.
         let found = colours.register_all(pair, *best)?;
         Ok(match region.holds(pair, &found.pose) {
             true => Decision { by: Method::Image(Box::new(found)), rivals: Some(rivals) },
@@ -418,7 +418,7 @@ impl Near {
 
 /// Keeps the initial pose.
 fn stay(pair: &ViewPair, colours: &mut ColourRegistration, region: &TrustRegion) -> Method {
-    // An object that shrinks to a few pixels fits any image, so its size has to be plausible as well.
+    // An object shrunk to a few pixels fits any image, so its size must be plausible as well.
     let of_size = Similarity { scale: gauge::unit_scale(pair), ..region.initial };
     let explains = |found: Box<PhotometricReport>| found.noise < pair.image.log_spread();
     let has_size = gauge::keeps_size(pair, &region.initial, &of_size);
@@ -429,7 +429,7 @@ fn stay(pair: &ViewPair, colours: &mut ColourRegistration, region: &TrustRegion)
 }
 
 impl Phase {
-    /// Share of the work that is done, and what is being done.
+    /// Share of the work done, and the current activity.
     fn progress(&self) -> (f64, Activity) {
         match self {
             Self::Nearby(_) => (0.0, Activity::Registering),

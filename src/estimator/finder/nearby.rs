@@ -1,8 +1,10 @@
-//! Registrations around an initial pose that come before the search. Each runs only if the ones before it did not explain the image.
+//! Registrations near an initial pose that precede the search. Each runs only if the earlier ones did not explain the
+//! image.
 //!
-//! The loop itself registers from the initial pose. Then follow the pose that silhouettes find, and the initial rotation shifted to where the
-//! projected cloud fits mask and colours: a calibration that is wrong by a degree about the sensor moves the object by an eighth of its size,
-//! more than the registration's basin of translation. The search over the rotations within the tolerance comes last.
+//! The loop itself registers from the initial pose. The next starts are the pose that silhouettes find, and the initial
+//! rotation shifted to where the projected cloud fits mask and image best: a calibration that is wrong by a degree
+//! about the sensor moves the object by an eighth of its size, beyond the registration's basin of convergence. The
+//! search over the rotations within tolerance comes last.
 
 use crate::diagnosis::{Alternative, Diagnosis};
 use crate::error::Result;
@@ -15,7 +17,7 @@ use super::local_optima::{Choice, LocalOptima, Origin, RegisteredCandidate};
 use super::silhouettes;
 use super::trust_region::TrustRegion;
 
-/// What has come of a slice.
+/// Result of a slice.
 pub enum Progress {
     Ongoing,
     Explained(Choice),
@@ -36,9 +38,9 @@ enum Step {
 pub struct Nearby {
     region: TrustRegion,
     step: Step,
-    /// Whether the registration of this step is under way.
+    /// Whether the registration of this step is in progress.
     is_begun: bool,
-    /// Where the registration from the initial pose ended, if that is within the tolerance.
+    /// Where the registration from the initial pose ended, if within tolerance.
     plain: Option<Box<PhotometricReport>>,
     optima: Option<LocalOptima>,
     silhouettes: Option<Box<OutlineReport>>,
@@ -59,19 +61,19 @@ impl Nearby {
         }
     }
 
-    /// Repeats the registrations, now kept near the initial pose, because a single albedo did not explain the image. They begin from that pose
-    /// and from the one that silhouettes found.
+    /// Repeats the registrations near the initial pose, because a single albedo did not explain the image. They start
+    /// from that pose and from the one that silhouettes found.
     pub fn again(pair: &ViewPair, region: TrustRegion, silhouettes: Option<Box<OutlineReport>>) -> Self {
         let step = Step::FromInitial { level: COARSEST_NEAR };
         Self { step, silhouettes, ..Self::new(pair, region, None) }
     }
 
-    /// The pose by silhouettes, where they decide anything.
+    /// The pose from silhouettes, if they constrain it.
     pub fn silhouettes(&mut self) -> Option<Box<OutlineReport>> {
         self.silhouettes.take()
     }
 
-    /// One slice.
+    /// Runs one slice.
     pub fn advance(&mut self, pair: &ViewPair, colours: &mut ColourRegistration) -> Result<Progress> {
         match self.step {
             Step::Judge => {
@@ -107,12 +109,12 @@ impl Nearby {
         Ok(Progress::Ongoing)
     }
 
-    /// What follows the initial pose.
+    /// The step after the initial pose.
     fn after_initial(&self) -> Step {
         self.silhouettes.as_ref().map_or(Step::Shift, |found| Step::FromSilhouettes(found.pose))
     }
 
-    /// Enters the initial pose and what was found from it, and registers silhouettes.
+    /// Enters the initial pose and the result from it, and registers silhouettes.
     fn judge(&mut self, pair: &ViewPair, colours: &mut ColourRegistration) {
         let region = &self.region;
         let Some(optima) = &mut self.optima else { return };
@@ -126,7 +128,7 @@ impl Nearby {
         self.silhouettes = found.filter(|found| region.holds(pair, &found.pose)).map(Box::new);
     }
 
-    /// A step of a registration; at its end, whether it explains the image.
+    /// Advances a registration by a step; at its end, decides whether it explains the image.
     fn register(
         &mut self,
         pair: &ViewPair,
@@ -149,7 +151,7 @@ impl Nearby {
     }
 }
 
-/// Whether a pose explains the image: fine print is noise to an image, but not to neighbours.
+/// Whether a pose explains the image. Fine print raises the residuals like noise, but neighbouring residuals share it.
 pub fn explains(pair: &ViewPair, found: &PhotometricReport) -> bool {
     pair.residuals(found).diagnose(Alternative::Silhouettes) == Diagnosis::Explained
 }
@@ -163,7 +165,7 @@ mod tests {
     use crate::pose::Angles;
     use crate::scenes::{SampleRequest, Scene, surface};
 
-    /// A pair whose initial pose is three degrees off and trusted to a tenth of one, and its true pose.
+    /// A pair whose initial pose is three degrees off and trusted within 0.1 degrees, and its true pose.
     fn pair_beside_its_pose() -> (ViewPair, Similarity) {
         let sample = Scene::new(&surface("bust").unwrap()).unwrap().sample(&SampleRequest::default()).unwrap();
         let Similarity { rotation, scale, translation } = sample.pose;

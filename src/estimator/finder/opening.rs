@@ -1,5 +1,5 @@
-//! The pair that the initialisation works on: where views are large, both at the resolution that telling one pose from
-//! another needs, so that the opening takes as long at any size. The pose that it finds is a start for all pixels.
+//! The pair in which the pose of large views is searched: both views at the resolution that distinguishing poses
+//! requires, so that the search takes equally long at any size. All pixels are registered from the pose it finds.
 
 use nalgebra::Vector3;
 
@@ -9,11 +9,11 @@ use crate::options::Start;
 use crate::pose::{PhotometricReport, Similarity};
 use crate::view::{ColourView, DepthView};
 
-/// Object pixels up to which a view is searched as it is: a frame of 128x128. On random scenes of that size poses are
-/// found within 0.07 degrees at the median, and a registration of all pixels starts from within degrees.
+/// Most object pixels at which a view is searched unhalved: a frame of 128x128. Set on views of 640x480
+/// (docs/lab/thresholds.md).
 const MOST_PIXELS: usize = 128 * 128;
 
-/// A coarser pair, the registration by its colours, and the way from its frames to those of the views.
+/// A coarser pair, its photometric registration, and the transformation from its frames to those of the views.
 pub struct Opening {
     pub pair: ViewPair,
     pub colours: ColourRegistration,
@@ -21,7 +21,7 @@ pub struct Opening {
     depth: Frame,
 }
 
-/// Length of a unit of a coarse frame, and its origin, in the view's own.
+/// Unit length and origin of a coarse frame, in the frame of the view.
 #[derive(Clone, Copy)]
 struct Frame {
     unit: f64,
@@ -29,12 +29,12 @@ struct Frame {
 }
 
 impl Opening {
-    /// Whether nothing is known of the pose and a view is large.
+    /// Whether nothing is known about the pose and a view is large.
     pub fn is_called_for(pair: &ViewPair) -> bool {
         pair.options.start == Start::Search && (is_large_image(&pair.image) || is_large_depth(&pair.depth))
     }
 
-    /// That of a pair whose views are large; `None` where it is worked on as it is.
+    /// The opening of a pair with a large view; `None` if the pair itself is searched.
     #[inline(never)]
     pub fn of(pair: &ViewPair) -> Option<Self> {
         if !Self::is_called_for(pair) {
@@ -54,7 +54,7 @@ impl Opening {
         Some(Self { colours: ColourRegistration::new(&pair), pair, image: image_frame, depth: depth_frame })
     }
 
-    /// A pose of the coarse pair as one of the views.
+    /// Converts a pose of the coarse pair to the views' frames.
     #[inline(never)]
     pub fn pose_out(&self, pose: &Similarity) -> Similarity {
         let Self { image, depth, .. } = self;
@@ -63,7 +63,7 @@ impl Opening {
         Similarity { scale, rotation: pose.rotation, translation }
     }
 
-    /// A registration of the coarse pair: one of a part of what the views hold.
+    /// Converts a registration of the coarse pair, which is one of a sample of the views' points.
     pub fn report_out(&self, mut report: Box<PhotometricReport>) -> Box<PhotometricReport> {
         report.pose = self.pose_out(&report.pose);
         report.sampled = true;
@@ -76,15 +76,15 @@ impl Opening {
 }
 
 impl Frame {
-    /// That of the view itself.
+    /// The frame of the view itself.
     const OWN: Self = Self { unit: 1.0, origin: Vector3::new(0.0, 0.0, 0.0) };
 
-    /// That of a halved view, whose pixels are its unit where it has an origin to say.
+    /// The frame of a halved view, measured in its pixels; the view's own frame if that is not in pixels.
     fn of_halved(origin: Option<Vector3<f64>>) -> Self {
         origin.map_or(Self::OWN, |origin| Self { unit: 2.0, origin })
     }
 
-    /// A frame within this one as one of the view itself.
+    /// Expresses a frame within this one in the frame of the view.
     fn then(self, inner: Self) -> Self {
         Self { unit: self.unit * inner.unit, origin: self.origin + self.unit * inner.origin }
     }
@@ -98,7 +98,7 @@ fn is_large_depth(view: &DepthView) -> bool {
     view.valid() > MOST_PIXELS
 }
 
-/// The view halved as often as it can be; `None` where it is small enough.
+/// The view, halved until it is small enough; `None` if it already is.
 fn coarsest<T>(view: &T, halve: impl Fn(&T) -> Option<(T, Frame)>) -> Option<(T, Frame)> {
     let (mut coarse, mut frame) = halve(view)?;
     while let Some((coarser, inner)) = halve(&coarse) {

@@ -1,4 +1,5 @@
-//! Silhouettes, where the albedo varies behind a pinhole (docs/method/registration.md): near an initial pose, or from anywhere.
+//! Silhouettes, used if the albedo varies behind a pinhole (docs/method/registration.md): near an initial pose, or
+//! everywhere.
 
 use crate::diagnosis::{Alternative, Diagnosis};
 use crate::estimator::gauge;
@@ -7,25 +8,25 @@ use crate::options::Registration;
 use crate::pose::{Angles, Outline, OutlineProblem, OutlineReport, PhotometricReport, PosePrior, Similarity};
 use crate::view::Normals;
 
-/// Outlines of fewer points, or that are farther from the image's in the median, tell nothing; pixels.
+/// A registration with fewer depth discontinuities, or a larger noise of their distances to the silhouette (pixels), is
+/// ignored.
 const FEWEST_RIMS: usize = 40;
 const LARGEST_RIM_NOISE: f64 = 6.0;
-/// Where nothing is told, starts are turned by so many degrees about y and x: from all of them the captures that see their
-/// rotation at all end in one place.
+/// Without an initial pose, starts are turned by these angles about y and x, degrees.
 const TURNS: [f64; 3] = [0.0, -32.0, 32.0];
 const TILTS: [f64; 3] = [0.0, -24.0, 24.0];
-/// One sigma of the pose where nothing is told: cameras look from one side by and large. Degrees, and shares of the
-/// distance.
+/// Sigma of the pose without an initial one, degrees and shares of the distance: both cameras look from roughly the
+/// same side.
 const ANYWHERE_DEGREES: f64 = 25.0;
 const ANYWHERE_ACROSS: f64 = 0.12;
 const ANYWHERE_ALONG: f64 = 0.08;
 
-/// Whether what the colours leave is paint: then outlines decide where there are any.
+/// Whether the photometric residuals show varying albedo, so that silhouettes decide if they can.
 pub fn is_painted(pair: &ViewPair, found: &PhotometricReport) -> bool {
     pair.residuals(found).diagnose(Alternative::Silhouettes) == Diagnosis::VaryingAlbedo
 }
 
-/// The pose near a told one, where outlines like it better.
+/// The pose near an initial one, if silhouettes fit it better.
 pub fn near(pair: &ViewPair, normals: &Normals, told: PosePrior) -> Option<OutlineReport> {
     let problem = OutlineProblem { image: &pair.image, depth: &pair.depth, normals, prior: told };
     let mut outline = Outline::new(&problem);
@@ -34,22 +35,23 @@ pub fn near(pair: &ViewPair, normals: &Normals, told: PosePrior) -> Option<Outli
     Some(found).filter(|found| is_seen(found) && found.cost < staying)
 }
 
-/// Whether silhouettes decide where nothing is known of the pose, unless they tell nothing: `found` is the best by a single albedo.
+/// Whether silhouettes are tried if nothing is known about the pose; `found` is the best pose under a single albedo.
 pub fn are_called_for(pair: &ViewPair, found: Option<&PhotometricReport>) -> bool {
     pair.options.registration == Registration::Joint && found.is_none_or(|found| is_painted(pair, found))
 }
 
-/// The pose where nothing is known of it, in slices: the best from several rotations at the middle of the image's object.
+/// Finds the pose if nothing is known about it, in slices: the best of several rotations at the centre of the image's
+/// object.
 pub struct Anywhere {
     outline: Outline,
     prior: PosePrior,
-    /// Those that are left, the next one last.
+    /// The remaining starts, the next one last.
     starts: Vec<Similarity>,
     best: Option<OutlineReport>,
 }
 
 impl Anywhere {
-    /// `None` where silhouettes tell nothing.
+    /// `None` if silhouettes constrain nothing.
     pub fn new(pair: &ViewPair, normals: &Normals) -> Option<Self> {
         let turned = |angles: Angles| gauge::centred(pair, angles.rotation());
         let prior = placed_by_middles(pair, turned(Angles::default()), ANYWHERE_DEGREES)?;
@@ -60,12 +62,12 @@ impl Anywhere {
         Some(Self { outline, prior, starts, best: None })
     }
 
-    /// The registration from the next start; whether all are done.
+    /// Registers from the next start; returns whether all are done.
     pub fn advance(&mut self, pair: &ViewPair, normals: &Normals) -> bool {
         let Some(start) = self.starts.pop() else { return true };
         let problem = OutlineProblem { image: &pair.image, depth: &pair.depth, normals, prior: self.prior };
         let found = self.outline.register(&problem, &start);
-        // The first of equals stays.
+        // Among equals, the first stays.
         let is_better = |best: &OutlineReport| found.cost.total_cmp(&best.cost).is_lt();
         if is_seen(&found) && self.best.as_ref().is_none_or(is_better) {
             self.best = Some(found);
@@ -73,16 +75,16 @@ impl Anywhere {
         self.starts.is_empty()
     }
 
-    /// The best so far that tells anything.
+    /// The best registration so far that constrains the pose.
     pub fn best(&mut self) -> Option<OutlineReport> {
         self.best.take()
     }
 }
 
-/// What is known where no place is told: the pose, which puts the middle of the depth points on that of the image's object,
-/// with this sigma of its rotation, degrees.
+/// The prior without a given translation: `pose` puts the centre of the depth points at that of the image's object;
+/// `degrees` is the sigma of its rotation.
 pub fn placed_by_middles(pair: &ViewPair, pose: Similarity, degrees: f64) -> Option<PosePrior> {
-    // An orthographic image has other ways; a frame without a mask has no object whose middle it could be.
+    // Orthographic images have other methods, and without a mask the centre of the object is unknown.
     if pair.image.camera.is_orthographic() || !pair.image.whole.object.contains(&false) {
         return None;
     }

@@ -1,7 +1,7 @@
 //! An initial pose, and how far from it the answer may lie (docs/method/registration.md).
 //!
-//! Limits: where the views share no frame and no translation is given, only the initial rotation is trusted; silhouettes then look for the
-//! place from where the middles of both views meet.
+//! Limits: if the views share no frame and no translation is given, only the initial rotation is trusted. Silhouettes
+//! then start from the position that aligns the centres of both views.
 
 use nalgebra::Vector3;
 
@@ -13,12 +13,12 @@ use crate::view::extent;
 
 use super::silhouettes;
 
-/// Tolerance of the object's place where none is stated, in object sizes (root mean square distance of its points from
-/// their middle): the object's own width, more or less, and as far as a turn by 8 degrees about a sensor moves what is 0.2
-/// m high at 0.8 m, a slim vase included.
+/// Default tolerance of the object's position, in object sizes (root mean square distance of its points from their
+/// centre). It is roughly the object's own width, and covers how far a turn by 8 degrees about a sensor at 0.8 m moves
+/// an object 0.2 m high, a slim vase included.
 const OBJECT_SIZES: f64 = 3.0;
-/// One sigma of the initial pose as a share of its tolerance: of the rotation, and of the object's place across and along the
-/// line of sight. For a mug at 0.8 m 3 degrees, 45 and 25 mm.
+/// One sigma of the initial pose as a share of its tolerance: of the rotation, and of the object's position across and
+/// along the line of sight. For a mug at 0.8 m these are 3 degrees, 45 and 25 mm.
 const SIGMA_OF_DEGREES: f64 = 0.1;
 const SIGMA_ACROSS: f64 = 0.4;
 const SIGMA_ALONG: f64 = 0.22;
@@ -29,16 +29,16 @@ pub struct TrustRegion {
     pub initial: Similarity,
     /// Degrees.
     pub degrees: f64,
-    /// Middle of the depth points, in their own frame.
+    /// Centre of the depth points, in their own frame.
     middle: Vector3<f64>,
-    /// Of the middle, in units of the colour view; infinite where no translation is given.
+    /// Tolerance of the centre's position, in units of the colour view; infinite if no translation is given.
     distance: f64,
-    /// Whether the image sees distances.
+    /// Whether the image depends on distances.
     sees_depth: bool,
 }
 
 impl TrustRegion {
-    /// Of a pair with an initial pose; none for the paper's own registration, which walks as far as it likes.
+    /// The trust region of a pair with an initial pose; `None` for the paper's registration, which is not held near it.
     pub fn of(pair: &ViewPair) -> Option<Self> {
         if pair.options.registration != Registration::Joint {
             return None;
@@ -57,7 +57,7 @@ impl TrustRegion {
         Some(Self { initial, middle, degrees: tolerance.degrees, distance, sees_depth })
     }
 
-    /// Whether a pose lies within the tolerance, and leaves the object its size.
+    /// Whether a pose lies within the tolerance and keeps the object's size.
     pub fn holds(&self, pair: &ViewPair, pose: &Similarity) -> bool {
         let mut moved = pose.apply(self.middle) - self.initial.apply(self.middle);
         if !self.sees_depth {
@@ -68,7 +68,7 @@ impl TrustRegion {
             && gauge::keeps_size(pair, pose, &self.initial)
     }
 
-    /// The initial pose as silhouettes take it into account; none where they see no distances.
+    /// The prior that silhouettes use; `None` if the image does not depend on distances.
     pub fn prior(&self, pair: &ViewPair) -> Option<PosePrior> {
         let degrees = SIGMA_OF_DEGREES * self.degrees;
         if self.distance.is_infinite() {

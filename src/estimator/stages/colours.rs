@@ -1,4 +1,4 @@
-//! The registration by colours as a stage of the loop: the photometric registration, its normals, and its last result.
+//! Photometric registration as a stage of the loop: the normals it uses, its memory, and its last result.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimator::gauge;
@@ -8,30 +8,30 @@ use crate::pose::{
 };
 use crate::view::{ColourView, DepthView, Normals, cubic_normals};
 
-/// Weight of the light's prior in the registration: one, as Bayes' rule has it. `lambda.light` weighs the fit of the
-/// light stage alone, but where it is zero there is no prior here, either.
+/// Weight of the light's prior in the registration, one as in Bayes' rule. `lambda.light` weighs only the fit of the
+/// light stage, but if it is zero, there is no prior here either.
 const PRIOR_WEIGHT: f64 = 1.0;
 
-/// Noise of the points from which on the surfaces tell the pose better than the normals, pixel lengths. Half a pixel on
-/// Mozart at 64x64 leaves 1.5 to 5 degrees by normals and 0.2 to 1 by surfaces; clean views have 0.1 at most.
+/// Depth noise above which surfaces determine the pose better than normals, pixel lengths. Set on Mozart at 64x64
+/// (docs/lab/thresholds.md).
 const LARGEST_NOISE: f64 = 0.2;
 
-/// Points that candidates of the search are registered by at most, evenly spread: the best one is registered anew by
-/// all. With 14 to 34 unknowns noise is averaged well enough to tell one candidate from another, and large views take
-/// no longer.
+/// Most points by which a candidate of the search is registered, evenly spread; the best one is registered again by
+/// all. For 14 to 34 unknowns they average the noise well enough to distinguish candidates, and large views take no
+/// longer.
 const CANDIDATE_POINTS: usize = 2500;
 
-/// Change of the apparent size (natural logarithm) beyond which a registration has collapsed: shrunk onto a few pixels, a
-/// cloud is easily explained. Candidates of the search lie within 0.1 of a right size.
+/// Change of the apparent size (natural logarithm) beyond which a registration has collapsed: a cloud that shrinks onto
+/// a few pixels fits easily. Candidates of the search lie within 0.1 of the right size.
 pub const COLLAPSE: f64 = 0.3;
 
-/// Level of the image that candidates near an initial pose begin with.
+/// Image level at which candidates near an initial pose begin.
 pub const FIRST_LEVEL_NEAR: usize = 1;
 
-/// How the registration of a candidate stands.
+/// Progress of a candidate's registration.
 pub enum Attempt {
     Ongoing,
-    /// Its report, or nothing: a candidate that cannot be registered is no error of the pair.
+    /// Its report; `None` if the candidate cannot be registered, which is not an error of the pair.
     Ended(Option<Box<PhotometricReport>>),
 }
 
@@ -40,13 +40,13 @@ pub struct ColourRegistration {
     photometric: Photometric,
     sharp: SharpNormals,
     is_coarse: bool,
-    /// An initial pose that registrations keep near, where a single albedo does not explain the image from there.
+    /// An initial pose near which registrations are held, if a single albedo does not explain the image from there.
     near: Option<PosePrior>,
     /// The last registration.
     found: Option<PhotometricReport>,
 }
 
-/// Normals of the depth view of third order, and one sigma of each in radians.
+/// Third-order normals of the depth view, and the sigma of each in radians.
 struct SharpNormals {
     normals: Normals,
     error: Vec<f32>,
@@ -55,7 +55,7 @@ struct SharpNormals {
 }
 
 impl SharpNormals {
-    /// Those of the caller are taken as exact.
+    /// The caller's normals are taken as exact.
     fn new(depth: &DepthView) -> Self {
         let mut normals = depth.normals.clone();
         let mut error = vec![0.0; depth.size.len()];
@@ -67,7 +67,7 @@ impl SharpNormals {
         Self { normals, error, noise }
     }
 
-    // One copy of it: visitors download each.
+    // Not inlined, because each copy adds to the download.
     #[inline(never)]
     fn problem<'a>(
         &'a self,
@@ -104,35 +104,35 @@ impl ColourRegistration {
         }
     }
 
-    /// Keeps the registrations that follow near an initial pose, or sets them free.
+    /// Holds the next registrations near an initial pose, or frees them.
     pub const fn keep_near(&mut self, prior: Option<PosePrior>) {
         self.near = prior;
     }
 
-    /// Whether registrations are kept near an initial pose.
+    /// Whether registrations are held near an initial pose.
     pub const fn is_kept_near(&self) -> bool {
         self.near.is_some()
     }
 
-    /// That of a pair, made now where it is not there yet.
+    /// The memory of a pair, made now if it does not exist yet.
     #[inline(never)]
     pub fn prepared<'a>(memory: &'a mut Option<Self>, pair: &ViewPair) -> &'a mut Self {
         memory.get_or_insert_with(|| Self::new(pair))
     }
 
-    /// Normals of the depth view, which it is registered by.
+    /// Normals of the depth view that registration uses.
     pub const fn normals(&self) -> &Normals {
         &self.sharp.normals
     }
 
-    /// The best pose near `start` by the colours of another version of the image.
+    /// The best pose near `start` by photometric registration in another version of the image.
     pub fn register_in(&self, pair: &ViewPair, image: &ColourView, start: &Similarity) -> Option<PhotometricReport> {
         let problem = PhotometricProblem { image, ..self.sharp.problem(pair, is_scale_held(pair), self.near) };
         let found = Photometric::new(&problem).register(&problem, start, &options(pair)).ok()?;
         Some(found).filter(|found| gauge::growth(pair, &found.pose, start) < COLLAPSE)
     }
 
-    /// The pair for a registration by local contrast, with a version of its image.
+    /// The problem of a registration by local contrast, with a version of the pair's image.
     pub fn contrast_problem<'a>(&'a self, pair: &'a ViewPair, image: &'a ColourView) -> ContrastProblem<'a> {
         ContrastProblem {
             image,
@@ -145,34 +145,34 @@ impl ColourRegistration {
         }
     }
 
-    /// Whether the depth is so noisy that its normals only find the pose, and matching surfaces, which averages the
-    /// noise of whole surfaces, has to settle it. The surface of an image under unknown light follows the pose and
-    /// settles nothing.
+    /// Whether the depth is so noisy that its normals only find the pose and matching surfaces must settle it, because
+    /// that averages the noise of whole surfaces. False under an unknown light, where the image's surface follows the
+    /// pose and settles nothing.
     pub const fn is_coarse(&self) -> bool {
         self.is_coarse
     }
 
-    /// Whether the depth is clean enough for its normals to tell paint: noisy ones leave as much of the colours.
+    /// Whether the depth is clean enough for its normals to reveal varying albedo: noisy ones leave residuals as large.
     pub fn has_clean_normals(&self) -> bool {
         self.sharp.noise <= LARGEST_NOISE
     }
 
-    /// The last registration; none before the first.
+    /// The last registration; `None` before the first.
     pub const fn found(&self) -> Option<&PhotometricReport> {
         self.found.as_ref()
     }
 
-    /// Gives away the last registration.
+    /// Gives up the last registration.
     pub fn take_found(&mut self) -> Option<PhotometricReport> {
         self.found.take()
     }
 
-    /// Takes over a registration that the search has made.
+    /// Adopts a registration made by the search.
     pub fn adopt(&mut self, found: PhotometricReport) {
         self.found = Some(found);
     }
 
-    /// Whether the last registration has ended in `pose`. t_z may have been settled since: it is a gauge.
+    /// Whether the last registration ended in `pose`. t_z may have changed since, because it is a gauge.
     pub fn ended_in(&self, pose: &Similarity) -> bool {
         let free = |pose: &Similarity| (pose.scale, pose.rotation, pose.translation.xy());
         self.found.as_ref().is_some_and(|found| !found.sampled && free(&found.pose) == free(pose))
@@ -182,7 +182,7 @@ impl ColourRegistration {
     /// normals do not change, so neither would its end.
     pub fn register(&mut self, pair: &ViewPair, start: &Similarity) -> Result<&PhotometricReport> {
         let is_done = self.ended_in(start);
-        // A registration by a sample of the points ends so near that the sharp level is enough for all of them.
+        // A registration by a sample of the points ends so close that the sharp level is enough for all of them.
         let first_level = match &self.found {
             Some(found) if found.sampled => 0,
             _ => options(pair).first_level,
@@ -194,7 +194,7 @@ impl ColourRegistration {
         Ok(self.found.insert(found))
     }
 
-    /// The best pose near that of a registration by a sample of the points, by all of them.
+    /// Registers all points, from the pose of a registration by a sample of them.
     pub fn register_all(&mut self, pair: &ViewPair, sampled: PhotometricReport) -> Result<PhotometricReport> {
         let pose = sampled.pose;
         self.found = Some(sampled);
@@ -217,8 +217,8 @@ impl ColourRegistration {
         }
     }
 
-    /// A cloud that shrinks onto a few pixels is easily explained, and on its way from a coarse level a registration
-    /// may get there: so everything else goes first, and the scale follows at the noise of the sharp image.
+    /// Registers everything else first, and the scale last at the noise of the sharp image: on its way from a coarse
+    /// level, a registration may shrink the cloud onto a few pixels, where it fits easily.
     fn register_scale_last(
         &mut self,
         pair: &ViewPair,
@@ -230,14 +230,15 @@ impl ColourRegistration {
         self.photometric.register(&self.sharp.problem(pair, is_scale_held(pair), self.near), &near.pose, &options)
     }
 
-    /// A step of the registration of a candidate, `anew` the first. Near an initial pose it begins with an image that is little blurred:
-    /// candidates are many and close to one another, and much blurred all of them would lead to one place.
+    /// A step of a candidate's registration, the first if `anew`. Near an initial pose it begins with a slightly
+    /// blurred image: candidates are many and close together, and in a strongly blurred one they would all end in one
+    /// place.
     pub fn step_candidate(&mut self, pair: &ViewPair, start: &Similarity, anew: bool) -> Attempt {
         let first_level = if self.near.is_some() { FIRST_LEVEL_NEAR } else { options(pair).first_level };
         self.step_from(pair, start, first_level, anew)
     }
 
-    /// The same from a level of the image.
+    /// The same, beginning at a level of the image.
     pub fn step_from(&mut self, pair: &ViewPair, start: &Similarity, first_level: usize, anew: bool) -> Attempt {
         let outcome = if anew { self.begin(pair, start, first_level).map(|()| None) } else { self.advance(pair) };
         match outcome {
@@ -249,7 +250,7 @@ impl ColourRegistration {
         }
     }
 
-    /// All steps of the registration of a candidate.
+    /// Runs all steps of a candidate's registration.
     pub fn register_candidate(&mut self, pair: &ViewPair, start: &Similarity) -> Option<Box<PhotometricReport>> {
         let mut attempt = self.step_candidate(pair, start, true);
         while matches!(attempt, Attempt::Ongoing) {
@@ -259,7 +260,7 @@ impl ColourRegistration {
         found
     }
 
-    /// What the colours say of a pose as it is, the light fitted to it.
+    /// The photometric report of a pose that stays as it is, with the light fitted to it.
     pub fn judge(&mut self, pair: &ViewPair, pose: &Similarity) -> Option<Box<PhotometricReport>> {
         let options =
             PhotometricOptions { most_points: CANDIDATE_POINTS, first_level: 0, jackknife: false, ..options(pair) };
@@ -268,7 +269,7 @@ impl ColourRegistration {
         self.photometric.report(&problem).ok().map(Box::new)
     }
 
-    /// Registers relief so many times as deep by the points that take part, in so many rounds at most.
+    /// Registers relief scaled by `unit`, on the points that take part, in at most this many rounds.
     pub fn register_relief(
         &mut self,
         pair: &ViewPair,
@@ -304,7 +305,7 @@ impl ColourRegistration {
         self.photometric.begin(&self.sharp.problem(pair, is_scale_held(pair), self.near), start, &options)
     }
 
-    /// One step; the report, which takes about as long, once there is none left.
+    /// One step, or the report once no step is left; the report takes about as long as a step.
     fn advance(&mut self, pair: &ViewPair) -> Result<Option<PhotometricReport>> {
         let problem = self.sharp.problem(pair, is_scale_held(pair), self.near);
         if self.photometric.is_done() {
@@ -314,7 +315,7 @@ impl ColourRegistration {
     }
 }
 
-/// The object would be far off or near: that explains anything by a few pixels.
+/// The object moved very far away or close, where a few pixels explain anything.
 fn collapsed() -> Error {
     Error::new(ErrorKind::Degenerate, "start", "the colours pull the object along the line of sight")
 }

@@ -1,10 +1,11 @@
-//! A painted object's pose and its paint in turn (docs/method/registration.md).
+//! Alternates between pose and albedo if the albedo varies (docs/method/registration.md).
 //!
-//! The search by contrast can take out no paint but what shows at edges, since it has no pose yet. Under its pose the light
-//! stage tells more: a palette and soft changes ([`PaintStage`]). Without these the contrast is compared once more, from
-//! where the pose is, which moves the pose, and paint is looked for anew: coordinate descent, for a few rounds.
+//! The search by contrast can remove only the albedo that shows at edges, because it has no pose yet. Under its pose
+//! the light stage finds more: a palette and gradual changes ([`PaintStage`]). Without these, contrast is compared once
+//! more from that pose, which moves the pose, and the albedo is fitted again: coordinate descent for a few rounds.
 //!
-//! Limits: cast shadows pass for paint. So a round counts only where shading explains more of what is left than before.
+//! Limits: cast shadows are mistaken for albedo, so a round counts only if shading explains more of the remainder than
+//! before.
 
 use super::colours::ColourRegistration;
 use super::paint::PaintStage;
@@ -12,33 +13,33 @@ use crate::estimator::finder::TrustRegion;
 use crate::estimator::pair::ViewPair;
 use crate::pose::{ContrastReport, Similarity, register_again};
 
-/// Rounds at most. Of twenty photographs most stand after the first, since E rises in the second; two go on to the third.
+/// Most rounds. Set on photographs at 20 and 60 degrees (docs/lab/thresholds.md).
 const ROUNDS: usize = 3;
 
-/// A pose by contrast, and how many rounds it may still follow its paint.
+/// A pose from contrast, and how many rounds it may still follow the albedo.
 pub struct Contrasted {
-    /// What the search has found. Its sigmas and its E stay as they are when the pose moves: paint that was found by the same
-    /// colours is no evidence of its own.
+    /// The result of the search. Its sigmas and its E stay when the pose moves: albedo found from the same colours is
+    /// no independent evidence.
     pub report: ContrastReport,
-    /// E of the pose without its paint.
+    /// E of the pose without the albedo found so far.
     objective: f64,
     rounds: usize,
 }
 
 impl Contrasted {
-    /// Before the first round.
+    /// The state before the first round.
     pub const fn new(report: ContrastReport) -> Self {
         let objective = report.objective;
         Self { report, objective, rounds: ROUNDS }
     }
 
-    /// Whether the pose will not move any more.
+    /// Whether the pose has settled.
     pub const fn stands(&self) -> bool {
         self.rounds == 0
     }
 
-    /// A round: the pose by what is left without the paint that was found under it; nothing where it stands, or would leave the trust region
-    /// of an initial pose.
+    /// One round: the pose from the image without the albedo found under the current one. `None` if the pose has
+    /// settled, if E does not fall, or if the pose would leave the trust region of an initial one.
     pub fn follow(
         &mut self,
         pair: &ViewPair,

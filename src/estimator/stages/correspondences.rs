@@ -1,14 +1,14 @@
-//! Which depth point is which pixel under the pose of a solution.
+//! Correspondences of depth points and pixels under the pose of a solution.
 
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
 use crate::estimator::solution::Solution;
 use crate::pose::CorrespondenceProblem;
 
-/// A correspondence is accepted within this multiple of the robust spread of the surfaces' distances.
+/// Correspondences are accepted within this multiple of the robust spread of the distances between the surfaces.
 const SPREADS: f64 = 3.0;
 
-/// Projects the depth points, hides what is occluded, and drops what is too far from the image surface.
+/// The problem that projects the depth points, hides the occluded ones, and drops those too far from the image surface.
 pub fn correspondence_problem<'a>(pair: &'a ViewPair, solution: &'a Solution) -> CorrespondenceProblem<'a> {
     let pixel_length = gauge::pixel_length(&pair.image, solution);
     CorrespondenceProblem {

@@ -1,4 +1,4 @@
-//! The light stage (Eq. 2): the light from the depth view's normals where the present pose puts them.
+//! The light stage (Eq. 2): fits the light to the depth view's normals under the current pose.
 
 use super::paint::PaintStage;
 use crate::diagnosis::MIXED_NOISE;
@@ -10,13 +10,13 @@ use crate::pose::{Correspondences, Similarity};
 use crate::shape::first_exposure;
 use crate::view::{ColourView, Normals};
 
-/// What the stages after the light look at besides the solution.
+/// Input of the stages after the light, besides the solution.
 #[derive(Clone, Copy)]
 pub struct Inputs<'a> {
     pub pair: &'a ViewPair,
-    /// The image that shape is found from: without paint.
+    /// The image from which shape is found: without the albedo.
     pub colours: &'a ColourView,
-    /// The light stage, for the depth view's normals at the image's pixels and the variance of the colours.
+    /// The light stage, which has the depth view's normals at the image's pixels and the variance of the colours.
     pub fitted: &'a LightStage,
     pub correspondences: &'a Correspondences,
     /// Whether this is the first iteration.
@@ -24,7 +24,7 @@ pub struct Inputs<'a> {
 }
 
 impl<'a> Inputs<'a> {
-    /// Of an iteration, by its number from zero.
+    /// The input of an iteration, numbered from zero.
     pub fn of(
         pair: &'a ViewPair,
         paint: &'a PaintStage,
@@ -36,19 +36,20 @@ impl<'a> Inputs<'a> {
     }
 }
 
-/// Fits the light, and says how far the normals' other terms can rely on it.
+/// Fits the light, and derives how much the colours weigh against the priors.
 pub struct LightStage {
     fitter: LightFitter,
-    /// R n_R of Eq. 9: normals of the depth view at the image's pixels, colour view's frame, NaN where it sees nothing.
+    /// R n_R of Eq. 9: normals of the depth view at the image's pixels, colour view's frame, NaN where no depth point
+    /// falls.
     depth_normals: Normals,
-    /// Exposure of a known light by the colours alone, before any normal is known.
+    /// Exposure of a known light from the colours alone, before any normal is known.
     first_exposure: f64,
-    /// Median log residual that the fitted light leaves; zero for a known light.
+    /// Median log residual under the fitted light; zero for a known light.
     residual: f64,
 }
 
 impl LightStage {
-    /// Memory for so many image pixels.
+    /// Allocates for this number of image pixels.
     pub fn new(pixels: usize) -> Self {
         Self {
             fitter: LightFitter::default(),
@@ -58,14 +59,14 @@ impl LightStage {
         }
     }
 
-    /// The exposure that a known light starts from.
+    /// The initial exposure of a known light.
     pub fn find_first_exposure(&mut self, pair: &ViewPair) -> f64 {
         self.first_exposure = pair.known_light().map_or(0.0, |light| first_exposure(light, pair.log()));
         self.first_exposure
     }
 
-    /// Brings the depth view's normals to the image's pixels and fits the light to them and the colours without paint;
-    /// `None` where it is known: its exposure follows with the normals.
+    /// Transfers the depth view's normals to the image's pixels, and fits the light to them and to the colours without
+    /// the albedo. `None` for a known light, whose exposure is found with the normals.
     pub fn fit(
         &mut self,
         pair: &ViewPair,
@@ -84,7 +85,7 @@ impl LightStage {
         Ok(Some(fit.light))
     }
 
-    /// Brings `normals` of the depth view to the image's pixels.
+    /// Transfers `normals` of the depth view to the image's pixels.
     pub fn bring_normals(
         &mut self,
         pair: &ViewPair,
@@ -99,23 +100,23 @@ impl LightStage {
         }
     }
 
-    /// Normals of the depth view at the image's pixels, colour view's frame, as the last fit saw them.
+    /// Normals of the depth view at the image's pixels, colour view's frame, as used by the last fit.
     pub const fn depth_normals(&self) -> &Normals {
         &self.depth_normals
     }
 
-    /// By how much an exposure differs from the one that the colours alone suggest.
+    /// Difference of an exposure from the one that the colours alone suggest.
     pub fn exposure_change(&self, exposure: f64) -> f64 {
         exposure - self.first_exposure
     }
 
-    /// Median log residual that the fitted light leaves; zero for a known light.
+    /// Median log residual under the fitted light; zero for a known light.
     pub const fn residual(&self) -> f64 {
         self.residual
     }
 
-    /// By how much the variance of the colours exceeds what is usual. Colours that even the fitted light leaves
-    /// unexplained (texture, cast shadows) weigh less, which is to say that priors weigh more.
+    /// Factor by which the variance of the colours exceeds its usual value. Colours that even the fitted light does not
+    /// explain (texture, cast shadows) weigh less, so priors weigh more.
     pub fn variance_inflation(&self) -> f64 {
         (self.residual / MIXED_NOISE).max(1.0).powi(2)
     }

@@ -1,5 +1,5 @@
-//! The stages of an iteration. Each owns what it remembers from one iteration to the next, reads the [`ViewPair`] and
-//! parts of the [`Solution`], and writes nothing but what its signature lends it mutably or what it returns.
+//! The stages of an iteration. Each owns what it remembers between iterations, reads the [`ViewPair`] and parts of the
+//! [`Solution`], and writes only what its signature borrows mutably or returns.
 //!
 //! [`ViewPair`]: super::pair::ViewPair
 //! [`Solution`]: super::solution::Solution
@@ -22,7 +22,7 @@ pub use refinement::{RefinementStage, RefinementTask, terms_from_numbers};
 pub use registration::{Registered, Registering, RegistrationStage};
 pub use shape::ShapeStage;
 
-/// All stages of an iteration, in their order but for paint, which is looked for under a pose that has settled.
+/// All stages of an iteration, in order, except that the albedo is fitted only under a settled pose.
 pub struct Stages {
     pub light: LightStage,
     pub paint: PaintStage,

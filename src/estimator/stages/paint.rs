@@ -1,8 +1,8 @@
-//! Paint, once the pose is settled: what the colours are without it, and what is shown of it.
+//! Albedo, fitted once the pose has settled: the image without it, and the part that is reported.
 //!
-//! Under a wrong pose the wrong normals explain the colours, and what they leave looks like paint. So it is looked for
-//! where the pose will not move any more, by the measured normals: refined ones have followed the colours already. The
-//! paper's own registration, which never comes to rest, has one albedo, as in the paper.
+//! Under a wrong pose, the wrong normals explain the image, and the residuals look like albedo. Albedo is therefore
+//! fitted only if the pose will not move any more, and to the measured normals, because refined ones already follow the
+//! colours. The paper's own registration never settles and assumes a single albedo, as in the paper.
 
 use crate::estimator::pair::ViewPair;
 use crate::estimator::solution::ExposedLight;
@@ -10,23 +10,24 @@ use crate::light::{Paint, PaintFitter};
 use crate::pose::Similarity;
 use crate::view::{ColourView, Normals};
 
-/// Looks for paint; owns what it finds.
+/// Fits the albedo; owns the result.
 pub struct PaintStage {
     fitter: PaintFitter,
-    /// The pose that it was looked for under.
+    /// The pose under which it was fitted.
     pose: Option<Similarity>,
     found: Option<FoundPaint>,
 }
 
-/// A light and the paint under it, pixel by pixel.
+/// A light and the albedo under it, pixel by pixel.
 pub struct FoundPaint {
     pub light: ExposedLight,
-    /// What is added to log S of R, G, B under a known light, whose colour is not its own: zero where it was estimated.
+    /// Offset of log S in R, G, B under a known light, whose colour may differ from the image's; zero if the light was
+    /// estimated.
     pub tint: [f64; 3],
-    /// Log paint of R, G, B, mean zero over the mask, NaN off it.
+    /// Log albedo of R, G, B, mean zero over the mask, NaN off it.
     pub albedo: [Vec<f32>; 3],
-    /// The image without the paint of its regions: what shape is found from. Finer paint stays in, for it may as well
-    /// be shape.
+    /// The image without the albedo of its regions, from which shape is found. Finer albedo stays, because it may be
+    /// shape.
     colours: ColourView,
 }
 
@@ -35,7 +36,7 @@ impl PaintStage {
         Self { fitter: PaintFitter::new(), pose: None, found: None }
     }
 
-    /// Whether paint has been looked for under this pose; t_z of an orthographic image is a gauge.
+    /// Whether the albedo was fitted under this pose; t_z of an orthographic image is ignored as a gauge.
     pub fn knows(&self, pair: &ViewPair, pose: &Similarity) -> bool {
         let free = |pose: &Similarity| {
             let z = if pair.image.camera.is_orthographic() { 0.0 } else { pose.translation.z };
@@ -44,7 +45,7 @@ impl PaintStage {
         self.pose.as_ref().is_some_and(|known| free(known) == free(pose))
     }
 
-    /// Looks for paint under `pose`, by the measured `normals` of the image's pixels.
+    /// Fits the albedo under `pose`, with the measured `normals` of the image's pixels.
     pub fn find(&mut self, pair: &ViewPair, pose: &Similarity, normals: &Normals) {
         let prior = (&pair.prior, pair.options.weights.light);
         let paint = self.fitter.fit(normals, pair.log(), prior, pair.known_light());
@@ -52,12 +53,12 @@ impl PaintStage {
         self.found = paint.map(|paint| FoundPaint::of(pair, normals, &paint));
     }
 
-    /// What there is of paint, where there is any.
+    /// The varying albedo, if there is any.
     pub const fn found(&self) -> Option<&FoundPaint> {
         self.found.as_ref()
     }
 
-    /// The image without all of its paint, where there is any.
+    /// The image without any of its albedo, if that varies.
     pub fn without_albedo(&self, pair: &ViewPair) -> Option<ColourView> {
         let albedo = &self.found.as_ref()?.albedo;
         let mut image = pair.image.clone();
@@ -67,7 +68,7 @@ impl PaintStage {
         Some(image)
     }
 
-    /// The image as shape is found from it: without paint.
+    /// The image from which shape is found: without the albedo.
     pub fn colours<'a>(&'a self, pair: &'a ViewPair) -> &'a ColourView {
         self.found.as_ref().map_or(&pair.image, |found| &found.colours)
     }
@@ -100,7 +101,7 @@ impl FoundPaint {
     }
 }
 
-/// The light that carries the `mean` of the paint. A known one takes its exposure; its colour is left to a tint.
+/// The light with the `mean` of the albedo. A known light takes its exposure, and its colour becomes the tint.
 fn split(pair: &ViewPair, paint: &Paint, mean: [f64; 3]) -> (ExposedLight, [f64; 3]) {
     let total = paint.light().tinted(mean);
     let Some(&light) = pair.known_light() else { return (ExposedLight { light: total, exposure: 0.0 }, [0.0; 3]) };

@@ -1,10 +1,10 @@
 //! The refinement of the depth view (Eq. 17 to 19) as a stage of the loop, here or in another thread.
 //!
-//! Where the pose will not move, the refinement of an iteration looks at the solution that the iteration starts from:
-//! its light, the normals of its image surface, and where its depth pixels fall. So it asks nothing of the other stages
-//! of the iteration, and a [`Worker`](crate::Worker) may make it while they run: the same to the bit. Both surfaces
-//! settle as before, only that one of them sees the other an iteration late. Where the registration may still move the
-//! pose, the refinement comes after it and looks at what its own iteration found.
+//! If the pose will not move, the refinement of an iteration uses the solution at its beginning: the light, the normals
+//! of the image surface, and the positions of the depth pixels in the image. It then needs nothing from the other
+//! stages of the iteration, and a [`Worker`](crate::Worker) may run it beside them with the same result to the bit.
+//! Both surfaces settle all the same; one of them merely sees the other an iteration late. If the registration may
+//! still move the pose, the refinement follows it and uses the results of the same iteration.
 
 use nalgebra::Matrix3;
 
@@ -20,7 +20,7 @@ use super::light::Inputs;
 
 /// A refinement for a [`Worker`](crate::Worker).
 pub struct RefinementTask<'a> {
-    /// The shape that it starts from, by its number: each refinement makes the next one.
+    /// Number of the shape from which it starts: each refinement makes the next one.
     pub shape: u32,
     /// Light, rotation and weights.
     pub numbers: Vec<f64>,
@@ -29,17 +29,16 @@ pub struct RefinementTask<'a> {
     pub planes: Vec<&'a [f32]>,
 }
 
-/// Refines the depth view; owns what lasts from iteration to iteration.
+/// Refines the depth view; owns what persists between iterations.
 pub struct RefinementStage {
     refiner: Refiner,
-    /// What the next refinement looks at, where that is known before its iteration; none where it looks at what its own
-    /// iteration finds.
+    /// Terms of the next refinement, if known before its iteration; `None` if it uses the results of the same iteration.
     terms: Option<RefinementTerms>,
-    /// Image column and row of each depth pixel, likewise.
+    /// Image column and row of each depth pixel, also known in advance.
     position: [Vec<f32>; 2],
     /// Whether a worker has made the next refinement.
     made_by_worker: bool,
-    /// Refined shapes so far, those that were taken back included.
+    /// Number of refined shapes so far, including those taken back.
     shapes: u32,
 }
 
@@ -55,12 +54,12 @@ impl RefinementStage {
         })
     }
 
-    /// Where the heights of the depth view are unknown.
+    /// Domain of the depth view's unknown heights.
     pub const fn domain(&self) -> &HeightDomain {
         self.refiner.domain()
     }
 
-    /// Guesses the holes of the measured depth.
+    /// Fills the holes of the measured depth.
     pub fn fill_holes(&self, pair: &ViewPair, scratch: &mut Scratch, shape: &mut Shape) -> Result<()> {
         scratch.resize(pair.depth.size.len());
         self.refiner.fill(scratch, &pair.depth, &mut shape.points.z)?;
@@ -68,7 +67,7 @@ impl RefinementStage {
         Ok(())
     }
 
-    /// At the end of an iteration after which the pose will not move: keeps what the next refinement looks at.
+    /// Called after an iteration if the pose will not move: keeps the input of the next refinement.
     pub fn prepare_next(&mut self, inputs: Inputs<'_>, solution: &Solution) {
         for (kept, found) in self.position.iter_mut().zip(inputs.correspondences.position()) {
             kept.clear();
@@ -77,23 +76,23 @@ impl RefinementStage {
         self.terms = Some(terms(inputs, solution));
     }
 
-    /// The next refinement looks at what its own iteration finds.
+    /// Makes the next refinement use the results of the same iteration.
     pub const fn discard_prepared(&mut self) {
         self.terms = None;
     }
 
-    /// To be called when the refined shape is replaced: what was prepared belongs to the one before.
+    /// Called when the refined shape is replaced, because prepared input belongs to the previous one.
     pub const fn shape_changed(&mut self) {
         (self.terms, self.made_by_worker) = (None, false);
         self.shapes = self.shapes.wrapping_add(1);
     }
 
-    /// Whether a worker may make the next refinement.
+    /// Whether a worker may run the next refinement.
     pub const fn can_be_shared(&self) -> bool {
         self.terms.is_some() && !self.made_by_worker
     }
 
-    /// The next refinement, for a worker that holds the shape of number `held`.
+    /// The next refinement, for a worker that holds the shape numbered `held`.
     pub fn task<'a>(
         &'a self,
         accepted: &'a Accepted,
@@ -113,15 +112,15 @@ impl RefinementStage {
         Some(RefinementTask { shape: self.shapes, numbers: terms_to_numbers(self.terms.as_ref()?), planes })
     }
 
-    /// Whether a worker's refinement of the shape of number `shape` is what is asked for; then it counts as made.
+    /// Whether a worker's refinement of the shape numbered `shape` is the one required; if so, it counts as made.
     pub fn accept(&mut self, shape: u32) -> bool {
         let is_wanted = self.can_be_shared() && self.shapes == shape;
         self.made_by_worker |= is_wanted;
         is_wanted
     }
 
-    /// Normals and depth of the depth view (Eq. 17 to 19), unless a worker has made them. Writes the depth view's shape
-    /// in `solution` and nothing else of it.
+    /// Normals and depth of the depth view (Eq. 17 to 19), unless a worker has made them. Writes only the depth view's
+    /// shape in `solution`.
     pub fn refine(&mut self, inputs: Inputs<'_>, accepted: &Accepted, scratch: &mut Scratch, solution: &mut Solution) {
         let Inputs { pair, colours, correspondences, .. } = inputs;
         if !self.made_by_worker {
@@ -151,14 +150,14 @@ fn terms(Inputs { pair, fitted, .. }: Inputs<'_>, solution: &Solution) -> Refine
     }
 }
 
-/// Light, rotation, the weights of prior and unit length, the colours' error.
+/// Light, rotation, weights of prior and unit length, and the error of the colours.
 fn terms_to_numbers(terms: &RefinementTerms) -> Vec<f64> {
     let RefinementTerms { light, rotation, weights, colour_error } = terms;
     let rest = [f64::from(weights.prior), f64::from(weights.unit), *colour_error];
     [&light.flat()[..], rotation.as_slice(), &rest].concat()
 }
 
-/// The terms of a [`RefinementTask`]'s numbers.
+/// The terms from the numbers of a [`RefinementTask`].
 pub fn terms_from_numbers(numbers: &[f64]) -> Result<RefinementTerms> {
     let (light, rest) = numbers.split_at(COEFFICIENTS.min(numbers.len()));
     let &[xx, yx, zx, xy, yy, zy, xz, yz, zz, prior, unit, colour_error] = rest else {

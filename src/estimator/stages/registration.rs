@@ -1,4 +1,4 @@
-//! The registration stage: runs the finder or the matching of surfaces, as the options say, and keeps what it found.
+//! The registration stage: runs the finder or matches the surfaces, depending on the options, and keeps the result.
 
 use crate::estimator::finder::{Decision, Finder, Method, Staying, TrustRegion, explains};
 use crate::estimator::gauge;
@@ -16,23 +16,23 @@ use super::light::Inputs;
 use super::paint::PaintStage;
 use super::surfaces::{Matched, SurfaceRegistration};
 
-/// What a registration found: a pose, and what came with it.
+/// Result of a registration: a pose, and what was found with it.
 pub struct Registered {
     pub pose: Similarity,
-    /// Light, where it was found together with the pose.
+    /// Light, if found with the pose.
     pub light: Option<Light>,
-    /// Exposure, likewise.
+    /// Exposure, if found with the pose.
     pub exposure: Option<f64>,
-    /// None of a pose that never moved: what says nothing of the pose says nothing of its error.
+    /// `None` for a pose that never moved: data that cannot determine it do not determine its error either.
     pub uncertainty: Option<Uncertainty>,
     /// Whether the pose is better than its start.
     pub improved: bool,
-    /// Other poses that the data can't tell from it, where they were looked for.
+    /// Other poses that the data cannot distinguish from it, if they were looked for.
     pub rivals: Option<Vec<Similarity>>,
 }
 
 impl Registered {
-    /// A better pose, and nothing else.
+    /// A better pose and nothing else.
     const fn of_pose(pose: Similarity) -> Self {
         Self { pose, light: None, exposure: None, uncertainty: None, improved: true, rivals: None }
     }
@@ -42,12 +42,12 @@ impl Registered {
     }
 }
 
-/// Registers the depth view to the image, by colours or by surfaces.
+/// Registers the depth view to the image, photometrically or by matching surfaces.
 pub struct RegistrationStage {
-    /// Only where the options ask for it: it holds splines of the image.
+    /// Present only if the options require it, because it holds splines of the image.
     colours: Option<ColourRegistration>,
     surfaces: SurfaceRegistration,
-    /// Where the pose may be, if there is an initial one.
+    /// Region around the initial pose, if there is one.
     region: Option<TrustRegion>,
     /// What the pose rests on, once the finder has decided.
     decided: Option<Decided>,
@@ -58,14 +58,14 @@ enum Decided {
     Image,
     Contrast(Box<Contrasted>),
     Silhouettes(Box<OutlineReport>),
-    /// Nothing better was found: the initial pose stays.
+    /// No better pose was found; the initial pose stays.
     Initial(Staying),
 }
 
-/// What a stage has come to.
+/// Result of the stage.
 pub enum Registering {
     Done(Option<Box<Registered>>),
-    /// A pose has to be found first.
+    /// A finder must find the pose first.
     Finding(Box<Finder>),
 }
 
@@ -76,7 +76,7 @@ impl Registering {
 }
 
 impl RegistrationStage {
-    /// Without the registration by colours where `colours_wait` for the search to end; the finder makes it then.
+    /// Leaves photometric registration out if `colours_wait`; the finder then makes it after the search.
     pub fn new(pair: &ViewPair, colours_wait: bool) -> Self {
         let by_colours = pair.options.start == Start::Search || pair.options.registration == Registration::Joint;
         let by_colours = by_colours && !colours_wait;
@@ -88,12 +88,12 @@ impl RegistrationStage {
         }
     }
 
-    /// The registration by colours, for a finder, which makes it where it is not there yet.
+    /// The photometric registration, for a finder to use or to make.
     pub const fn memory(&mut self) -> &mut Option<ColourRegistration> {
         &mut self.colours
     }
 
-    /// The registration that this pair asks for now: noisy depth is found by its colours and settled by its surface.
+    /// The registration that this pair needs now: with noisy depth, colours find the pose and surfaces settle it.
     pub fn kind(&self, pair: &ViewPair) -> Registration {
         let settled_by_surface = |colours: &ColourRegistration| colours.is_coarse() && colours.found().is_some();
         match pair.options.registration {
@@ -102,20 +102,21 @@ impl RegistrationStage {
         }
     }
 
-    /// What the registration by colours has found, where pose and light are its own to settle.
+    /// Result of the photometric registration, unless depth noise leaves pose and light to other stages.
     pub fn found_by_colours(&self) -> Option<&PhotometricReport> {
         self.colours.as_ref().filter(|colours| !colours.is_coarse()).and_then(ColourRegistration::found)
     }
 
-    /// The measured normals of the depth view, the best there are.
+    /// The best measured normals of the depth view.
     pub fn measured_normals<'a>(&'a self, pair: &'a ViewPair) -> &'a Normals {
         self.colours.as_ref().map_or(&pair.depth.normals, ColourRegistration::normals)
     }
 
-    /// Takes over what the finder has decided.
+    /// Adopts the finder's decision.
     ///
     /// # Errors
-    /// Where nothing could be registered, or the size has run away from the initial pose's.
+    /// [`Reason::NoPose`] if nothing could be registered, [`Reason::SizeRunsAway`] if the size departs from the initial
+    /// pose's.
     pub fn adopt(
         &mut self,
         pair: &ViewPair,
@@ -154,7 +155,7 @@ impl RegistrationStage {
         Ok(Some(Registered { rivals, ..registered }))
     }
 
-    /// Whether the initial pose may be used, where it was kept because no pose near it fits the image better.
+    /// Whether the initial pose is usable, if it was kept because no pose near it fits the image better.
     pub const fn staying(&self) -> Option<Staying> {
         match self.decided {
             Some(Decided::Initial(staying)) => Some(staying),
@@ -174,7 +175,7 @@ impl RegistrationStage {
         }
     }
 
-    /// What outlines have found, where they decide.
+    /// The report of the silhouettes, if they decide.
     pub const fn found_by_outlines(&self) -> Option<&OutlineReport> {
         match &self.decided {
             Some(Decided::Silhouettes(found)) => Some(found),
@@ -182,7 +183,7 @@ impl RegistrationStage {
         }
     }
 
-    /// What local contrast has found, where it decides.
+    /// The report of local contrast, if it decides.
     pub const fn found_by_contrast(&self) -> Option<&ContrastReport> {
         match &self.decided {
             Some(Decided::Contrast(found)) => Some(&found.report),
@@ -190,7 +191,7 @@ impl RegistrationStage {
         }
     }
 
-    /// Whether the next registration will leave `pose` as it is, whatever the shapes become.
+    /// Whether the next registration will leave `pose` unchanged, whatever the shapes become.
     pub fn keeps(&self, pair: &ViewPair, pose: &Similarity) -> bool {
         match self.kind(pair) {
             Registration::Fixed => true,
@@ -206,13 +207,13 @@ impl RegistrationStage {
         }
     }
 
-    /// Whether paint is looked for under `pose`: it stands, or waits for nothing but that.
+    /// Whether the albedo is to be fitted under `pose`: the pose has settled, or waits only for the albedo.
     pub fn asks_for_paint(&self, pair: &ViewPair, pose: &Similarity) -> bool {
         matches!(self.decided, Some(Decided::Contrast(_))) || self.keeps(pair, pose)
     }
 
-    /// The pose from the present one, without the paint that was found under it; nothing where it is fixed. Around an initial pose that does
-    /// not explain the image a finder has to be asked.
+    /// Registers from the current pose, without the albedo found under it; finds nothing if the pose is fixed. If an
+    /// initial pose does not explain the image, a finder is required.
     pub fn register(
         &mut self,
         inputs: Inputs<'_>,
@@ -238,7 +239,8 @@ impl RegistrationStage {
         }
     }
 
-    /// From the initial pose: what explains the image from there is the answer, or else a finder looks around.
+    /// Registers from the initial pose. A result that explains the image is the answer; otherwise a finder searches
+    /// around it.
     fn register_initial(&mut self, pair: &ViewPair, present: &Similarity) -> Result<Registering, Reason> {
         let (Some(colours), Some(region)) = (&mut self.colours, &self.region) else {
             return Ok(Registering::Done(None));
@@ -256,7 +258,7 @@ impl RegistrationStage {
         }
     }
 
-    /// Pose and light together from the colours, or the pose of what else decides.
+    /// Finds pose and light together photometrically, or keeps the pose of the method that decided.
     fn register_colours(
         &mut self,
         pair: &ViewPair,
@@ -280,7 +282,7 @@ impl RegistrationStage {
 
     fn registered(&self, pair: &ViewPair, found: &PhotometricReport, present: &Similarity) -> Registered {
         let pose = with_gauge_of(pair, found.pose, present);
-        // Normals that noise has flattened mislead about the exposure; the stages find it anew.
+        // Normals flattened by noise bias the exposure, so the stages find it again.
         let is_coarse = self.colours.as_ref().is_some_and(ColourRegistration::is_coarse);
         Registered {
             pose,
@@ -293,13 +295,13 @@ impl RegistrationStage {
     }
 }
 
-/// The apparent size may not run away from that of another pose.
+/// An error if the apparent size departs from that of another pose.
 fn check_size(pair: &ViewPair, pose: &Similarity, other: &Similarity) -> Result<(), Reason> {
     let keeps = gauge::keeps_size(pair, pose, other);
     keeps.then_some(()).ok_or_else(|| Reason::SizeRunsAway { times: gauge::growth(pair, pose, other).exp() })
 }
 
-/// A pose with the present t_z before an orthographic image: there it is a gauge, which the loop has settled already.
+/// A pose with the current t_z for an orthographic image, where it is a gauge that the loop has already set.
 fn with_gauge_of(pair: &ViewPair, mut pose: Similarity, present: &Similarity) -> Similarity {
     if pair.image.camera.is_orthographic() {
         pose.translation.z = present.translation.z;

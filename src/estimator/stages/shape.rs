@@ -10,14 +10,14 @@ use crate::view::Normals;
 
 use super::light::Inputs;
 
-/// Solves of normals and exposure in the first iteration, which starts from a look at the colours alone.
+/// Solves of normals and exposure in the first iteration, whose exposure comes from the colours alone.
 const FIRST_EXPOSURE_ROUNDS: usize = 4;
 
 /// Finds the normals and the surface of the image.
 pub struct ShapeStage(ImageShapeSolver);
 
 impl ShapeStage {
-    /// Memory for the surface that the options ask for.
+    /// Allocates for the surface that the options require.
     pub fn new(pair: &ViewPair) -> Result<Self> {
         Ok(Self(match pair.options.shading {
             Shading::Surface => ImageShapeSolver::as_a_whole(&pair.image)?,
@@ -25,13 +25,13 @@ impl ShapeStage {
         }))
     }
 
-    /// Where the heights of the image are unknown, if they are solved as a whole.
+    /// Domain of the image's unknown heights, if they are solved as a whole.
     pub fn domain(&self) -> Option<&HeightDomain> {
         self.0.domain()
     }
 
-    /// Normals of the image (Eq. 6 to 9), and the exposure of a known light where `exposure_is_free`: in turn, several
-    /// times in the first iteration.
+    /// Normals of the image (Eq. 6 to 9), and the exposure of a known light if `exposure_is_free`. They are solved in
+    /// turn, several times in the first iteration.
     pub fn find_normals(
         &mut self,
         inputs: Inputs<'_>,
@@ -51,8 +51,8 @@ impl ShapeStage {
         }
     }
 
-    /// Depth of the image from its normals and colours; the normals become those of the surface where it is solved as a
-    /// whole. The gauge of the depth is left to the caller.
+    /// Depth of the image from its normals and colours. If the surface is solved as a whole, the normals become those
+    /// of the surface. The caller fixes the gauge of the depth.
     pub fn find_surface(
         &mut self,
         inputs: Inputs<'_>,

@@ -1,4 +1,4 @@
-//! The registration of both surfaces as a stage of the loop: ICP, then the consensus of its pairs (Eq. 12 to 16).
+//! Registration of both surfaces as a stage of the loop: ICP, then the consensus of its pairs (Eq. 12 to 16).
 
 use nalgebra::Vector3;
 
@@ -9,19 +9,19 @@ use crate::estimator::objective::{self, Trial};
 use crate::estimator::solution::Solution;
 use crate::pose::{Icp, IcpOptions, IcpProblem, RansacOptions, Similarity, Uncertainty, ransac};
 
-/// ICP pairs points up to this distance at first, image pixels, once there is a pose to start from.
+/// Largest distance of ICP's pairs at first, image pixels, after the first iteration.
 const FIRST_DISTANCE: f64 = 8.0;
-/// ICP pairs points up to this distance in the end, image pixels: twice the paper's threshold, weighted robustly.
+/// Largest distance of ICP's pairs in the end, image pixels: twice the paper's threshold, weighted robustly.
 const FINAL_DISTANCE: f64 = 2.0;
 /// Pairs within this distance agree with a pose, image pixels: the paper's threshold.
 const CONSENSUS_DISTANCE: f64 = 1.0;
-/// Most pairs that are asked for a consensus, evenly spread.
+/// Most pairs in the consensus, evenly spread.
 const MOST_CONSENSUS_PAIRS: usize = 2000;
 
-/// What matching both surfaces has found.
+/// Result of matching both surfaces.
 pub struct Matched {
     pub pose: Similarity,
-    /// Whether the pose is better than its start; else it is the start.
+    /// Whether the pose is better than its start; otherwise it is the start.
     pub improved: bool,
     pub uncertainty: Uncertainty,
 }
@@ -38,7 +38,7 @@ impl SurfaceRegistration {
         Self { icp: Icp::new(), paired_points: [Vec::new(), Vec::new()] }
     }
 
-    /// ICP, then the consensus of its pairs: of both poses the one with the lower objective over the same points.
+    /// ICP, then the consensus of its pairs: takes the pose with the lower objective over the same points.
     pub fn register(&mut self, inputs: Inputs<'_>, solution: &Solution) -> Result<Matched> {
         let pair = inputs.pair;
         let (start, pixel) = (solution.pose, gauge::pixel_length(&pair.image, solution));
@@ -59,7 +59,7 @@ impl SurfaceRegistration {
         };
         let found = self.icp.register(&problem, &options)?;
         let mut uncertainty = found.information.uncertainty(found.rms, &found.pose, &pair.image.camera);
-        // Behind a pinhole image the matching frees a scale that is the surface's, not the pose's.
+        // Behind a pinhole, the matching frees a scale that belongs to the surface, not to the pose.
         uncertainty.scale = uncertainty.scale.filter(|_| gauge::held_scale(pair).is_none());
         let [depth_points, image_points] = &mut self.paired_points;
         self.icp.paired_points(&problem, depth_points, image_points, MOST_CONSENSUS_PAIRS);
@@ -69,7 +69,7 @@ impl SurfaceRegistration {
             seed: pair.options.seed,
             ..RansacOptions::default()
         };
-        // Pairs that agree on nothing leave the pose to ICP.
+        // If the pairs agree on nothing, ICP's pose stays.
         let agreed = ransac(depth_points, image_points, &consensus).map_or(found.pose, |report| report.pose);
         let (pose, improved) = better(inputs, solution, [&agreed, &found.pose]);
         let improved = improved && !found.information.is_degenerate();
@@ -77,8 +77,8 @@ impl SurfaceRegistration {
     }
 }
 
-/// The better of two poses, and whether it is better than that of the solution. All are compared over the points that
-/// the solution sees.
+/// The better of two poses, and whether it is better than the solution's. All are compared over the points visible in
+/// the solution.
 fn better(
     Inputs { pair, colours, correspondences, .. }: Inputs<'_>,
     solution: &Solution,

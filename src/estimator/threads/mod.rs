@@ -1,4 +1,4 @@
-//! Threads of this process that share an estimator's work, as the page's workers do.
+//! Threads of this process that share an estimator's work.
 
 mod pool;
 mod sharing;

@@ -5,19 +5,20 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use crate::estimator::pair::ViewPair;
 use crate::estimator::workers::Worker;
 
-/// Threads, and what they work with.
+/// The threads and their workers.
 pub struct Threads {
     pub pool: ThreadPool,
-    /// One for each thread; the first alone once the search is over.
+    /// One for each thread; only the first once the search is over.
     pub workers: Vec<Worker>,
-    /// The number of the refined shape that the first worker holds.
+    /// Number of the refined shape that the first worker holds.
     pub held: Option<u32>,
-    /// How many threads there are.
+    /// Number of threads.
     pub count: usize,
 }
 
 impl Threads {
-    /// `None` where `count` is less than two, for one thread has nobody to share with, and where the system grants none.
+    /// `None` if `count` is less than two, since a single thread has none to share with, or if the system grants no
+    /// threads.
     pub fn new(pair: &ViewPair, count: usize) -> Option<Self> {
         if count < 2 {
             return None;

@@ -1,9 +1,9 @@
-//! How an estimator shares its work with its threads.
+//! Sharing of an estimator's work among its threads.
 //!
-//! The search falls into rounds: all threads take tasks until there are none for the moment or the round has had its
-//! number. In the loop one thread refines the depth view while another one finds the image's surface. What the threads
-//! find depends on the pair and the task alone and counts in the order of the tasks ([`Worker`]), so the outcome is the
-//! same to the bit for any number of threads.
+//! The search proceeds in rounds: all threads take tasks until none are ready or the round has reached its number. In
+//! the loop, one thread refines the depth view while another finds the image's surface. Results depend only on the pair
+//! and the task, and count in the order of the tasks ([`Worker`]), so the outcome is the same to the bit for any number
+//! of threads.
 
 use std::sync::Mutex;
 
@@ -11,16 +11,16 @@ use super::pool::Threads;
 use crate::estimator::{Estimator, Run, Task, Worker};
 use crate::report::Status;
 
-/// Tasks of a round for each thread: some tenths of a second, after which there is progress to show.
+/// Tasks of a round for each thread: some tenths of a second, after which progress is reported.
 const TASKS: usize = 32;
 
 impl Estimator {
-    /// The same estimator with so many threads that share its work: all of them the search, two of them the loop. The
-    /// outcome is the same to the bit for any number, and one thread is as good as none.
+    /// The same estimator with this many threads to share its work: all of them in the search, two in the loop. The
+    /// outcome is the same to the bit for any number. With one, the estimator works alone.
     ///
-    /// Large views get fewer threads ([`workers_afforded`](Self::workers_afforded)), for each needs memory of its own;
-    /// where the system grants no threads, the estimator works alone. [`step`](Self::step) and
-    /// [`reset`](Self::reset) keep them, [`step_stage`](Self::step_stage) makes no use of them.
+    /// Large views get fewer threads ([`workers_afforded`](Self::workers_afforded)), because each needs separate
+    /// memory. If the system grants no threads, the estimator works alone. [`step`](Self::step) and
+    /// [`reset`](Self::reset) keep the threads; [`step_stage`](Self::step_stage) does not use them.
     ///
     /// ```
     /// use bimodal_stereo::{Estimator, Options, Status, scenes};
@@ -41,13 +41,13 @@ impl Estimator {
         self
     }
 
-    /// With as many threads as another estimator has.
+    /// The same estimator with as many threads as another one has.
     pub(in crate::estimator) fn with_threads_of(self, other: &Self) -> Self {
         let count = other.threads.as_ref().map_or(1, |threads| threads.count);
         self.with_threads(count)
     }
 
-    /// A step in the threads, if there are any; whether there are.
+    /// Runs a step in the threads, if there are any; returns whether there are.
     pub(in crate::estimator) fn step_in_threads(&mut self) -> bool {
         let Some(mut threads) = self.threads.take() else { return false };
         if self.is_searching() {
@@ -59,7 +59,7 @@ impl Estimator {
         true
     }
 
-    /// A round of the search, or a slice of what cannot be shared.
+    /// Runs a round of the search, or a slice of work that cannot be shared.
     fn search_in(&mut self, threads: &mut Threads) {
         let most = TASKS * threads.workers.len();
         let round = Mutex::new(Round { estimator: self, left: most });
@@ -76,7 +76,7 @@ impl Estimator {
         }
     }
 
-    /// An iteration.
+    /// Runs an iteration.
     fn iterate_in(&mut self, threads: &mut Threads) {
         let iteration = self.report.iteration;
         while self.report.status == Status::Running && self.report.iteration == iteration {
@@ -91,14 +91,14 @@ impl Estimator {
         }
     }
 
-    /// The stages before a refinement, and beside them the refinement, where it can be made already.
+    /// Runs the stages before a refinement, and beside them the refinement itself if its input is known.
     fn refine_in(&mut self, threads: &mut Threads) {
-        // A finder wants all of them, and nothing is refined beside the other stages before it is done.
+        // The search around an initial pose uses all workers, and no refinement is shared before it ends.
         threads.workers.truncate(1);
         let Threads { pool, workers, held, .. } = threads;
         let (Some(worker), Some(task)) = (workers.first_mut(), self.refinement_task(held.take())) else { return };
         let (shape, numbers) = (task.shape, task.numbers);
-        // Copies, because the stages write where the planes lie.
+        // Copies, because the stages overwrite the planes.
         let planes: Vec<Vec<f32>> = task.planes.into_iter().map(<[f32]>::to_vec).collect();
         let (refined, ()) = pool.join(
             || worker.refine(&numbers, |own| copy(&planes, own)),
@@ -117,14 +117,14 @@ impl Estimator {
     }
 }
 
-/// What the threads of a round share.
+/// State shared by the threads of a round.
 struct Round<'a> {
     estimator: &'a mut Estimator,
-    /// Tasks that may still be begun.
+    /// Number of tasks that may still begin.
     left: usize,
 }
 
-/// Takes and does tasks until there are none. A task that fails is left to the estimator itself.
+/// Takes and performs tasks until none are left. A task that fails is left to the estimator itself.
 fn perform_tasks(worker: &mut Worker, round: &Mutex<Round<'_>>) {
     while let Some(task) = next_task(round) {
         let Ok(finding) = worker.perform(&task) else { return };
@@ -137,7 +137,7 @@ fn next_task(round: &Mutex<Round<'_>>) -> Option<Task> {
     let mut round = round.lock().ok()?;
     round.left = round.left.checked_sub(1)?;
     let task = round.estimator.take_task();
-    // What was not begun is not counted.
+    // A task that was not begun does not count.
     round.left += usize::from(task.is_none());
     task
 }

@@ -1,5 +1,5 @@
-//! What an estimator gives to workers and takes from them. Whatever they do or fail to do, the outcome is the same to
-//! the bit.
+//! Exchange of work between an estimator and its workers. Whether they succeed or fail, the outcome is the same to the
+//! bit.
 
 use crate::estimator::stages::Inputs;
 use crate::estimator::{Estimator, RefinementTask, Run, memory};
@@ -9,13 +9,13 @@ use crate::view::Normals;
 use super::task::{Finding, Task};
 
 impl Estimator {
-    /// How many [`Worker`](crate::Worker)s may work beside this estimator within the memory of a pair.
+    /// Number of [`Worker`](crate::Worker)s that fit in memory beside this estimator.
     #[must_use]
     pub fn workers_afforded(&self) -> u32 {
         memory::workers_afforded(self.pair.image.size, self.pair.depth.size)
     }
 
-    /// A part of the initialisation for a [`Worker`](crate::Worker); `None` while there is none to give away.
+    /// A task of the search for a [`Worker`](crate::Worker); `None` if none is ready.
     pub fn take_task(&mut self) -> Option<Task> {
         match &mut self.run {
             Run::Searching(finder) => finder.take(),
@@ -23,29 +23,28 @@ impl Estimator {
         }
     }
 
-    /// Takes in what a worker has found. What is no longer needed is passed over.
+    /// Takes in a worker's finding, and ignores it if it is no longer needed.
     pub fn accept_finding(&mut self, finding: Finding) {
         if let Run::Searching(finder) = &mut self.run {
             finder.accept(&self.pair, finding);
         }
     }
 
-    /// The next refinement, for a worker that holds the shape of number `held`; `None` where it depends on what is
-    /// still to be found.
+    /// The next refinement, for a worker that holds the shape numbered `held`; `None` if its input is not known yet.
     #[must_use]
     pub fn refinement_task(&self, held: Option<u32>) -> Option<RefinementTask<'_>> {
         self.stages.refinement.task(&self.accepted, &self.solution.depth, held)
     }
 
-    /// Whether there are stages left before a refinement that a worker may be making.
+    /// Whether stages remain before a refinement that a worker may run.
     #[must_use]
     pub fn precedes_refinement(&self) -> bool {
         matches!(self.run, Run::Iterating(stage) if stage != Stage::Refinement)
             && self.stages.refinement.can_be_shared()
     }
 
-    /// Where to put the shape that a worker has made of the one with number `shape`: refined depth and normals (x, y,
-    /// z). `None` unless the next stage asks for it.
+    /// Where to put a worker's refinement of the shape numbered `shape`: refined depth and normals (x, y, z). `None`
+    /// unless the next stage needs it.
     pub fn accept_refinement(&mut self, shape: u32) -> Option<[&mut [f32]; 4]> {
         if !matches!(self.run, Run::Iterating(Stage::Refinement)) || !self.stages.refinement.accept(shape) {
             return None;
@@ -55,9 +54,9 @@ impl Estimator {
         Some([&mut depth.points.z, x, y, z])
     }
 
-    /// What the next refinement looks at, where that is known: then a worker may make it while the other stages run.
+    /// Keeps the input of the next refinement if it is known, so that a worker may run it beside the other stages.
     pub(in crate::estimator) fn prepare_next_refinement(&mut self) {
-        // A worker has the image with its paint.
+        // The worker's image still contains the albedo.
         let is_known = self.report.status == Status::Running
             && !self.settling.keeps_depth()
             && self.stages.paint.found().is_none()

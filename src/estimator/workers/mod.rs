@@ -1,4 +1,4 @@
-//! Workers: another thread's part in the initialisation and in the loop. They hand over numbers, and planes: rasters of
+//! Workers: another thread's part in the search and in the loop. They exchange numbers and planes, which are rasters of
 //! one number for each pixel.
 
 mod exchange;

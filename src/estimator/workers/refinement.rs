@@ -1,4 +1,4 @@
-//! Refinements of one depth view in a worker, one after the other.
+//! Successive refinements of one depth view in a worker.
 
 use crate::error::Result;
 use crate::estimator::pair::ViewPair;
@@ -17,7 +17,7 @@ pub struct RefinementWorker {
 }
 
 impl RefinementWorker {
-    /// For one pair, whose shapes are refined already.
+    /// For one pair, whose shapes have already been refined.
     pub fn new(pair: &ViewPair) -> Result<Self> {
         let [pixels, points] = pair.lengths();
         let refiner = Refiner::new(&pair.depth, &pair.image)?.resumed();
@@ -31,7 +31,7 @@ impl RefinementWorker {
         })
     }
 
-    /// Where to put the planes of the next task, in their order.
+    /// The planes of the next task, in order, for the caller to fill.
     pub fn planes(&mut self) -> [&mut [f32]; 9] {
         let [columns, rows] = &mut self.position;
         let Normals { x, y, z } = &mut self.image_normals;
@@ -39,7 +39,7 @@ impl RefinementWorker {
         [columns, rows, x, y, z, &mut self.refined_depth, refined_x, refined_y, refined_z]
     }
 
-    /// Refines the shape by what the planes hold and the task's numbers: depth and normals (x, y, z).
+    /// Refines the shape, given the filled planes and the task's numbers: depth and normals (x, y, z).
     pub fn refine(&mut self, pair: &ViewPair, numbers: &[f64]) -> Result<[&[f32]; 4]> {
         let problem = RefinementProblem {
             depth: &pair.depth,

@@ -1,35 +1,34 @@
-//! Parts of the initialisation that a worker may do, what becomes of them, and both as plain numbers: that is all that
-//! threads without shared memory have to tell each other. An f64 holds every number here to the bit.
+//! Tasks of the search that a worker may perform, their findings, and both as plain numbers, the only form in which
+//! threads without shared memory can exchange them. An f64 holds every number here to the bit.
 
 use nalgebra::{Matrix3, Vector3};
 
 use crate::estimator::finder::local_optima::RegisteredCandidate;
 use crate::pose::{Candidate, Hypothesis, SearchFinding, SearchTask, Similarity};
 
-/// A part of the initialisation. It depends on the pair, the options and itself alone, so that whoever has these gets
-/// the same.
+/// A part of the search. It depends only on the pair, the options and itself, so every worker gets the same result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Task(pub(in crate::estimator) Work);
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::estimator) enum Work {
     Search(SearchTask),
-    /// The registration of a candidate, by its number, from its pose; kept near the initial pose or not.
+    /// Registration of a candidate, given by its number and pose, and whether it is held near the initial pose.
     Register(usize, Similarity, bool),
 }
 
-/// What became of a [`Task`].
+/// The result of a [`Task`].
 #[derive(Clone, Debug)]
 pub struct Finding(pub(in crate::estimator) Found);
 
 #[derive(Clone, Debug)]
 pub(in crate::estimator) enum Found {
     Search(SearchFinding),
-    /// `None` where the candidate could not be registered.
+    /// `None` if the candidate could not be registered.
     Registered(usize, Option<RegisteredCandidate>),
 }
 
-/// First number of each kind of task or finding.
+/// The first number identifies the kind of task or finding.
 const SWEEP: f64 = 0.0;
 const ASCEND: f64 = 1.0;
 const REGISTER: f64 = 2.0;
@@ -50,7 +49,7 @@ impl Task {
         }
     }
 
-    /// From [`to_numbers`](Self::to_numbers); `None` from any others.
+    /// Inverse of [`to_numbers`](Self::to_numbers); `None` for any other numbers.
     #[must_use]
     pub fn from_numbers(numbers: &[f64]) -> Option<Self> {
         let (&[kind, index], rest) = numbers.split_first_chunk()?;
@@ -85,7 +84,7 @@ impl Finding {
         numbers
     }
 
-    /// From [`to_numbers`](Self::to_numbers); `None` from any others.
+    /// Inverse of [`to_numbers`](Self::to_numbers); `None` for any other numbers.
     #[must_use]
     pub fn from_numbers(numbers: &[f64]) -> Option<Self> {
         let (&[kind, index], rest) = numbers.split_first_chunk()?;

@@ -1,4 +1,4 @@
-//! Does parts of an estimator's work for it, in another thread with an instance of its own.
+//! Performs parts of an estimator's work in another thread, with a separate instance of the module.
 
 use crate::error::Result;
 use crate::estimator::finder::local_optima::RegisteredCandidate;
@@ -12,7 +12,7 @@ use crate::view::{ColourImage, DepthMap};
 use super::refinement::RefinementWorker;
 use super::task::{Finding, Found, Task, Work};
 
-/// What is searched, and whose candidates are registered.
+/// The views that are searched and whose candidates are registered.
 enum Searched {
     Views(Box<ColourRegistration>),
     Opening(Box<Opening>),
@@ -26,7 +26,7 @@ impl Searched {
         }
     }
 
-    /// The pair and the registration by its colours.
+    /// The pair and its photometric registration.
     fn parts<'a>(&'a mut self, pair: &'a ViewPair) -> (&'a ViewPair, &'a mut ColourRegistration) {
         match self {
             Self::Views(colours) => (pair, colours),
@@ -35,11 +35,12 @@ impl Searched {
     }
 }
 
-/// Does tasks of the initialisation, and later refinements, for an [`Estimator`](crate::Estimator) of the same pair and
-/// options. What it finds does not depend on what it did before, but for the shape that its last refinement has left.
+/// Performs tasks of the search, and later refinements, for an [`Estimator`](crate::Estimator) of the same pair and
+/// options. Its findings do not depend on earlier ones, except that a refinement may start from the shape of the last
+/// one.
 pub struct Worker {
     pair: ViewPair,
-    /// Memory of the initialisation and of refinements: each is given back before the other is taken.
+    /// Memory of the search and of refinements; each is freed before the other is allocated.
     initialisation: Option<(Searched, Search)>,
     refinement: Option<RefinementWorker>,
 }
@@ -48,20 +49,20 @@ impl Worker {
     /// A worker for one pair.
     ///
     /// # Errors
-    /// Those of [`Estimator::new`](crate::Estimator::new).
+    /// The errors of [`Estimator::new`](crate::Estimator::new).
     pub fn new(image: ColourImage, depth: &DepthMap, options: Options) -> Result<Self> {
         Ok(Self::of(ViewPair::new(image, depth, options)?))
     }
 
-    /// A worker for a pair that has been read.
+    /// A worker for checked views.
     pub(in crate::estimator) const fn of(pair: ViewPair) -> Self {
         Self { pair, initialisation: None, refinement: None }
     }
 
-    /// Does one task of the initialisation, however long it takes.
+    /// Performs one task of the search, however long it takes.
     ///
     /// # Errors
-    /// Those of the search.
+    /// The errors of the search.
     pub fn perform(&mut self, task: &Task) -> Result<Finding> {
         let Self { pair, initialisation, refinement } = self;
         *refinement = None;
@@ -86,11 +87,11 @@ impl Worker {
         }))
     }
 
-    /// Makes a refinement: `load` puts the planes of its [`RefinementTask`](crate::RefinementTask) in their places, of
-    /// which those of the shape hold what the last one has left. Refined depth and normals (x, y, z).
+    /// Performs a refinement. `load` fills the planes of its [`RefinementTask`](crate::RefinementTask); those of the
+    /// shape initially hold the result of the last refinement. Returns refined depth and normals (x, y, z).
     ///
     /// # Errors
-    /// [`ErrorKind::Size`](crate::ErrorKind::Size) where `numbers` are not those of a task.
+    /// [`ErrorKind::Size`](crate::ErrorKind::Size) if `numbers` are not those of a task.
     pub fn refine(&mut self, numbers: &[f64], load: impl FnOnce([&mut [f32]; 9])) -> Result<[&[f32]; 4]> {
         let Self { pair, initialisation, refinement } = self;
         *initialisation = None;

@@ -1,16 +1,16 @@
 //! Two-dimensional Fourier transforms of a square: down the columns, transposed, down the columns again.
 //!
-//! Real and imaginary parts are planes of their own, and each butterfly works on two whole lines of them: straight
-//! loops, four numbers at a time under simd128. The forward transform decimates in frequency and leaves a spectrum
-//! transposed and in bit-reversed order, which products of two spectra do not mind; the inverse decimates in time and
-//! takes the same steps back. Neither direction divides by the number of cells.
+//! Real and imaginary parts are separate planes, and each butterfly works on two whole lines of them in straight loops,
+//! which simd128 runs four numbers at a time. The forward transform decimates in frequency and leaves the spectrum
+//! transposed and in bit-reversed order, which does not affect products of two spectra. The inverse decimates in time
+//! and takes the same steps backwards. Neither direction divides by the number of cells.
 //!
 //! Why not rustfft (6.4): a square of 32x32 and back takes 12.6 us instead of 7.6 with simd128 (Node 20). Its own SIMD for
-//! WebAssembly brings that to 6.9 us, but the module for engines without SIMD must not contain it.
+//! WebAssembly takes 6.9 us, but the module for engines without SIMD must not contain that code.
 
 use super::roots::{Root, root};
 
-/// The same line of the real and of the imaginary part.
+/// One line of the real part and the same line of the imaginary part.
 type Lines<'a, const SIDE: usize> = [&'a mut [f32; SIDE]; 2];
 
 /// A complex field or its spectrum, row by row.
@@ -21,7 +21,7 @@ pub struct Field {
 }
 
 impl Field {
-    /// Zeros over as many cells.
+    /// A field of zeros with this many cells.
     pub fn zero(cells: usize) -> Self {
         Self { re: vec![0.0; cells], im: vec![0.0; cells] }
     }
@@ -32,7 +32,7 @@ impl Field {
     }
 }
 
-/// Transforms of squares with this side in cells, a power of two; owns its roots and its scratch.
+/// Transforms of squares with this side in cells, a power of two; owns its roots and scratch memory.
 pub struct PlaneFourier<const SIDE: usize> {
     /// exp(-2 pi i k / SIDE) for k < SIDE / 2.
     roots: Vec<Root>,
@@ -75,7 +75,7 @@ impl<const SIDE: usize> PlaneFourier<SIDE> {
         }
     }
 
-    /// All butterflies of lines that are `half` apart.
+    /// Applies a butterfly to all pairs of lines that are `half` apart.
     fn butterflies(&self, field: &mut Field, half: usize, one: impl Fn(Lines<'_, SIDE>, Lines<'_, SIDE>, Root)) {
         let (re, im) = (field.re.as_chunks_mut().0, field.im.as_chunks_mut().0);
         for (re, im) in re.chunks_exact_mut(2 * half).zip(im.chunks_exact_mut(2 * half)) {
@@ -98,7 +98,7 @@ impl<const SIDE: usize> PlaneFourier<SIDE> {
     }
 }
 
-/// Where a spectrum holds the frequency opposite to the one at `index`.
+/// Index at which a spectrum holds the frequency opposite to the one at `index`.
 pub fn opposite<const SIDE: usize>(index: usize) -> usize {
     let reversed = |k: usize| k.reverse_bits() >> (usize::BITS - SIDE.trailing_zeros());
     let of = |k: usize| reversed((SIDE - reversed(k)) % SIDE);
@@ -138,7 +138,7 @@ mod tests {
     const SIDE: usize = 32;
     const CELLS: usize = SIDE * SIDE;
 
-    /// exp(-2 pi i (3 column + 5 row) / SIDE) back and forth, and its single frequency.
+    /// The wave exp(-2 pi i (3 column + 5 row) / SIDE), forwards and backwards, and its single frequency.
     #[test]
     fn a_wave_has_one_frequency_and_comes_back() {
         let mut field = Field::zero(CELLS);

@@ -1,36 +1,36 @@
 //! Fourier transforms of complex rows, four side by side in lanes.
 //!
-//! Method: Stockham's, decimation in frequency: each stage takes a factor out of the length, reads one buffer and
-//! writes the other in an order that leaves the spectrum sorted. Factors of four come first, as they need the fewest
-//! products; others are 2 and 3.
+//! Method: Stockham's, decimation in frequency. Each stage takes a factor out of the length, reads one buffer and
+//! writes the other in an order that leaves the spectrum sorted. Factors of four come first because they need the
+//! fewest products; the others are 2 and 3.
 //!
 //! Why no library: see [`cosine`](crate::numeric::cosine).
 
 use super::roots::{Root, root};
 use crate::numeric::{Lanes, Real};
 
-/// Real and imaginary part of four numbers.
+/// Real and imaginary parts of four numbers.
 pub(crate) type Complex = [Lanes; 2];
 
 /// sin(2 pi / 3).
 const SINE_OF_A_THIRD: f32 = 0.866_025_4;
 
-/// A transform of one length; owns its roots and its scratch.
+/// A transform of one length; owns its roots and scratch memory.
 pub(crate) struct RowFourier {
     stages: Vec<Pass>,
     spare: Vec<Complex>,
 }
 
-/// One factor of the length.
+/// The stage of one factor of the length.
 struct Pass {
     factor: usize,
-    /// Sequences that are transformed side by side by now: the product of the factors before.
+    /// Number of sequences that this stage transforms side by side: the product of the earlier factors.
     stride: usize,
-    /// exp(-2 pi i p k / n) for k = 1 .. factor - 1 (fast) and p (slow), n the length that is left.
+    /// exp(-2 pi i p k / n) for k = 1 .. factor - 1 (fast index) and p (slow index), where n is the remaining length.
     roots: Vec<Root>,
 }
 
-/// The shortest length from `least` on that is a multiple of four and has no factor but 2 and 3.
+/// The shortest length of at least `least` that is a multiple of four and has no prime factors but 2 and 3.
 pub(crate) fn fast_length(least: usize) -> usize {
     (least.next_multiple_of(4)..)
         .step_by(4)
@@ -38,7 +38,7 @@ pub(crate) fn fast_length(least: usize) -> usize {
         .unwrap_or(least)
 }
 
-/// The factors of a length that are 4, 2 or 3, with repetition.
+/// Factors of a length that are 4, 2 or 3, with repetition.
 fn factors(mut length: usize) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
         let factor = [4, 2, 3].into_iter().find(|factor| length.is_multiple_of(*factor) && length > 0)?;
@@ -48,7 +48,7 @@ fn factors(mut length: usize) -> impl Iterator<Item = usize> {
 }
 
 impl RowFourier {
-    /// A transform of `length` numbers, a [`fast_length`].
+    /// A transform of `length` numbers; `length` must be a [`fast_length`].
     pub fn new(length: usize) -> Self {
         let (mut stages, mut left) = (Vec::new(), length);
         for factor in factors(length) {
@@ -58,7 +58,7 @@ impl RowFourier {
         Self { stages, spare: vec![[Lanes::splat(0.0); 2]; length] }
     }
 
-    /// Replaces `values` by sum_n values_n exp(-2 pi i k n / length), for each k.
+    /// Replaces `values` by sum_n values_n exp(-2 pi i k n / length) for each k.
     pub fn transform(&mut self, values: &mut Vec<Complex>) {
         for stage in &self.stages {
             match stage.factor {
@@ -77,7 +77,7 @@ impl Pass {
         Self { factor, stride, roots }
     }
 
-    /// `to` = the shorter transforms of `from`, times the roots.
+    /// Sets `to` to the shorter transforms of `from` times the roots.
     #[inline(always)]
     fn run<const F: usize>(
         &self,
@@ -99,7 +99,7 @@ impl Pass {
     }
 }
 
-/// Times a root.
+/// Multiplies by a root.
 #[inline(always)]
 fn multiply([re, im]: Complex, [cos, sin]: Root) -> Complex {
     let (cos, sin) = (Lanes::splat(cos), Lanes::splat(sin));

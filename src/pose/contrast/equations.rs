@@ -1,28 +1,29 @@
-//! The equations of a pose whose light follows it: each channel has a light of its own, over the same weights.
+//! The equations of a pose with the light eliminated. Each channel has a separate light; all channels share their
+//! weights.
 
 use nalgebra::{SMatrix, SVector};
 
 use crate::pose::increment::{PoseMatrix, PoseVector, UNKNOWNS, damped_step};
 
-/// Harmonics of order one and two: the constant one has no contrast.
+/// Number of harmonics of orders one and two; the constant one has no contrast.
 pub(super) const SHADES: usize = 8;
 
 /// Light of the three channels over the harmonics of the depth view's own normals.
 pub(super) type Lights = [SVector<f64, SHADES>; 3];
 type Gram = SMatrix<f64, SHADES, SHADES>;
-/// A row for each unknown of the pose, a column for each harmonic.
+/// One row for each unknown of the pose, one column for each harmonic.
 type Cross = SMatrix<f64, UNKNOWNS, SHADES>;
 
-/// A share of the trace that keeps harmonics that the points do not tell apart from growing without bound.
+/// Share of the trace on the diagonal, which bounds combinations of harmonics that the points cannot distinguish.
 const RIDGE: f64 = 1e-4;
 
-/// What a channel of a point is made of: derivatives by the pose, harmonics, residual, side by side.
+/// Length of the vector of one channel at a point: derivatives by the pose, harmonics, residual.
 const NUMBERS: usize = UNKNOWNS + SHADES + 1;
 const RESIDUAL: usize = NUMBERS - 1;
-/// Points whose products are added up in single precision before they join the sums.
+/// Number of points whose products are summed in single precision before they are added to the sums.
 const BATCH: usize = 64;
 
-/// Sums over points of the products of those numbers, for one channel.
+/// Sums over points of the products of these numbers, for one channel.
 struct Products {
     batch: [[f32; NUMBERS]; NUMBERS],
     sums: [[f64; NUMBERS]; NUMBERS],
@@ -50,7 +51,7 @@ impl Products {
 pub(super) struct Equations {
     channels: [Products; 3],
     entered: usize,
-    /// What the light has no part in.
+    /// Matrix and gradient of the residuals that do not depend on the light.
     pose: PoseMatrix,
     gradient: PoseVector,
 }
@@ -60,7 +61,7 @@ impl Equations {
         Self { channels: [Products::ZERO; 3], entered: 0, pose: PoseMatrix::zeros(), gradient: PoseVector::zeros() }
     }
 
-    /// Enters a point: its harmonics and, for each channel, residual and derivative by the pose.
+    /// Adds a point: its harmonics, and for each channel its residual and derivative by the pose.
     pub fn add(&mut self, shades: &[f32; SHADES], residual: [f64; 3], by_pose: &[[f32; UNKNOWNS]], weight: f64) {
         for ((products, residual), row) in self.channels.iter_mut().zip(residual).zip(by_pose) {
             let mut numbers = [residual as f32; NUMBERS];
@@ -71,7 +72,7 @@ impl Equations {
         self.count();
     }
 
-    /// Enters a point for the light alone.
+    /// Adds a point to the equations of the light alone.
     pub fn add_shades(&mut self, shades: &[f32; SHADES], residual: [f64; 3], weight: f64) {
         for (products, residual) in self.channels.iter_mut().zip(residual) {
             let mut numbers = [0.0; NUMBERS];
@@ -89,13 +90,13 @@ impl Equations {
         }
     }
 
-    /// Enters a residual that the light has no part in.
+    /// Adds a residual that does not depend on the light.
     pub fn add_row(&mut self, row: &PoseVector, residual: f64, weight: f64) {
         self.pose.ger(weight, row, row, 1.0);
         self.gradient.axpy(weight * residual, row, 1.0);
     }
 
-    /// D^-1 of a channel: all three have the same weights.
+    /// D^-1 of a channel; all three have the same weights.
     fn inverse_gram(&mut self) -> Option<Gram> {
         self.channels.iter_mut().for_each(Products::flush);
         let sums = &self.channels[0].sums;
@@ -108,13 +109,13 @@ impl Equations {
         [0, 1, 2].map(|channel: usize| SVector::from_fn(|k, _| self.channels[channel].sums[RESIDUAL][UNKNOWNS + k]))
     }
 
-    /// The step of the light alone; r = v - B L, so that its derivative is -B.
+    /// The step of the light alone. The residual is r = v - B L, so its derivative is -B.
     pub fn light_step(&mut self) -> Option<Lights> {
         let inverse = self.inverse_gram()?;
         Some(self.shade_gradients().map(|gradient| inverse * gradient))
     }
 
-    /// The matrix and gradient of the pose once the light follows it.
+    /// Matrix and gradient of the pose with the light eliminated.
     pub fn reduced(&mut self) -> Option<Reduced> {
         let inverse_gram = self.inverse_gram()?;
         let shade_gradient = self.shade_gradients();
@@ -132,7 +133,7 @@ impl Equations {
     }
 }
 
-/// The pose's own system.
+/// The equations of the pose alone.
 pub(super) struct Reduced {
     pub matrix: PoseMatrix,
     gradient: PoseVector,
@@ -143,7 +144,7 @@ pub(super) struct Reduced {
 }
 
 impl Reduced {
-    /// The damped step of the pose, and that of the light which follows it.
+    /// The damped step of the pose, and the step of the light that follows from it.
     pub fn step(&self, damping: f64, held: &[bool; UNKNOWNS]) -> Option<(PoseVector, Lights)> {
         let step = damped_step(self.matrix, self.gradient, damping, held)?;
         let light = |channel: usize| {
@@ -152,7 +153,7 @@ impl Reduced {
         Some((step, [light(0), light(1), light(2)]))
     }
 
-    /// A point's share of the gradient per weight, once the light has followed.
+    /// A point's contribution to the gradient per weight, with the light eliminated.
     pub fn score(&self, shades: &[f32; SHADES], residual: [f64; 3], by_pose: &[[f32; UNKNOWNS]]) -> PoseVector {
         let shades = SVector::from(shades.map(f64::from));
         let mut score = PoseVector::zeros();

@@ -8,13 +8,15 @@ use crate::pose::increment::{PoseMatrix, PoseVector};
 use crate::pose::jackknife::{SECTORS, covariance, sectors};
 use crate::pose::similarity::Similarity;
 
-/// Steps without a sector, from the end: more than for a photometric registration, because the local means converge slowly.
+/// Number of steps without a sector, from the end: more than for photometric registration, because the local means
+/// converge slowly.
 const STEPS: usize = 8;
-/// Factor on the weight of samples that are left out. With zero weights around it a sample would have no local mean.
+/// Factor on the weight of samples that are left out. With only zero weights around it, a sample would have no local
+/// mean.
 const LEFT_OUT: f32 = 1e-4;
 
 impl ContrastRegistration {
-    /// The covariance of the sectors at a pose.
+    /// The covariance of a pose from its sectors.
     pub(super) fn jackknife(&mut self, problem: &ContrastProblem<'_>, pose: &Similarity) -> PoseMatrix {
         let samples = &self.objective.samples;
         let points = samples.list.iter().map(|sample| pose.apply(sample.point));

@@ -1,31 +1,33 @@
-//! H: what values on a raster differ by from the weighted mean around them,
+//! H, the difference of values on a raster from the weighted mean around them,
 //!
 //! (H a)_p = a_p - sum_q g(p - q) w_q a_q / sum_q g(p - q) w_q,
 //!
-//! with a Gaussian g. What changes slowly over the surface, the slopes of a badly modelled light as well as most of
-//! paint, is gone; edges and small relief stay. H is linear while the weights stay, so derivatives go through it as
-//! values do.
+//! with a Gaussian g. It removes slow changes over the surface, such as the slopes of an imprecise light and most of
+//! the varying albedo; edges and small relief remain. H is linear for fixed weights, so it applies to derivatives as it
+//! does to values.
 
-/// Reach of the Gaussian in sigmas: what lies beyond weighs 4 %, and a window of constant values is constant anyway.
+/// Reach of the Gaussian in sigmas. Its weight has fallen to 4 % there, and the mean of constant values is exact
+/// anyway.
 const REACH: f64 = 2.5;
 
-/// Values of a pixel, at most.
+/// Maximum number of values of a pixel.
 const MOST: usize = 21;
 
-/// The operator on one raster; owns its memory. Values of a pixel lie side by side, so that all are worked on at once.
+/// The operator on one raster; owns its memory. The values of a pixel lie side by side, so that all are processed at
+/// once.
 pub(in crate::pose) struct LocalMeans {
     width: usize,
     /// The Gaussian from -reach to reach.
     kernel: Vec<f32>,
     weights: Vec<f32>,
-    /// One over the sum of the weights around each pixel, zero where the pixel itself has none.
+    /// Inverse of the sum of the weights around each pixel; zero where the pixel itself has no weight.
     normaliser: Vec<f32>,
     /// Sums along rows.
     along: Vec<f32>,
 }
 
 impl LocalMeans {
-    /// On `width` columns of as many pixels as `length` holds; sigma in pixels.
+    /// For a raster of `length` pixels with `width` columns; sigma in pixels.
     pub fn new(width: usize, length: usize, sigma: f64) -> Self {
         let reach = (REACH * sigma).ceil() as usize;
         let bell = |k: usize| (-0.5 * (k.abs_diff(reach) as f64 / sigma).powi(2)).exp() as f32;
@@ -38,7 +40,7 @@ impl LocalMeans {
         }
     }
 
-    /// Takes other weights.
+    /// Sets other weights.
     pub fn weigh(&mut self, weights: &[f32]) {
         self.weights.copy_from_slice(weights);
         self.normaliser.fill(1.0);
@@ -49,7 +51,7 @@ impl LocalMeans {
         }
     }
 
-    /// H of the values, in place. Those of pixels without weight count for nothing and are left as they are.
+    /// Applies H to the values in place. Values of pixels without weight have no influence and do not change.
     pub fn remove<const N: usize>(&mut self, values: &mut [[f32; N]]) {
         self.sum_along(values.len(), |pixel| values[pixel]);
         for pixel in 0..values.len() {
@@ -63,7 +65,7 @@ impl LocalMeans {
         }
     }
 
-    /// The means themselves, of pixels that have a weight: what is blurred.
+    /// The weighted means themselves, that is the blurred values, at pixels with a weight.
     pub fn smoothed<const N: usize>(&mut self, weights: &[f32], values: &[[f32; N]]) -> Vec<[f32; N]> {
         self.weigh(weights);
         let mut off = values.to_vec();
@@ -71,7 +73,7 @@ impl LocalMeans {
         values.iter().zip(off).map(|(value, off)| std::array::from_fn(|k| value[k] - off[k])).collect()
     }
 
-    /// Weighted sums along rows.
+    /// Computes the weighted sums along rows.
     fn sum_along<const N: usize>(&mut self, length: usize, value: impl Fn(usize) -> [f32; N]) {
         let reach = self.kernel.len() / 2;
         let (sums, _) = self.along.as_chunks_mut::<N>();
@@ -94,7 +96,7 @@ impl LocalMeans {
         }
     }
 
-    /// The sum down a column of those along rows, around a pixel.
+    /// Sum down the column of a pixel over the sums along rows.
     fn sum_down<const N: usize>(&self, pixel: usize) -> [f32; N] {
         let reach = self.kernel.len() / 2;
         let (row, column) = (pixel / self.width, pixel % self.width);
@@ -123,7 +125,7 @@ mod tests {
     #[test]
     fn constants_go_slopes_go_inside_and_edges_stay() {
         let mut means = LocalMeans::new(WIDTH, WIDTH * WIDTH, 2.0);
-        // Pixels without weight, however wild, count for nothing.
+        // Pixels without weight have no influence, whatever their values.
         let hole = |k: usize| k.is_multiple_of(7);
         let weights: Vec<f32> = (0..WIDTH * WIDTH).map(|k| if hole(k) { 0.0 } else { 0.5 }).collect();
         means.weigh(&weights);

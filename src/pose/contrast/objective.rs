@@ -1,7 +1,7 @@
-//! E of a pose and its light, and its equations: contrast, silhouette, contour generator, apparent size.
+//! E of a pose and its light, and its equations: local contrast, mask, occluding contour, apparent size.
 //!
-//! A round fixes what is discrete, the visible samples, their weights in the local means, the contour generator; E is
-//! smooth then.
+//! A round fixes everything discrete: the visible samples, their weights in the local means, and the occluding contour.
+//! E is then smooth.
 
 use nalgebra::Vector3;
 
@@ -18,78 +18,80 @@ use crate::pose::silhouette::{OUTSIDE_WEIGHT, SLACK, Silhouette};
 use crate::pose::similarity::Similarity;
 use crate::pose::spline_image::SplineImage;
 
-/// Robust scale of points beside the mask, pixels.
+/// Robust scale of points off the mask, pixels.
 const BESIDE_SCALE: f64 = 3.0;
-/// The same of the contour generator off the outline. Its scale is tighter: contours inside the mask, where one part of
-/// the object hides another, are no part of the outline.
+/// Weight and robust scale (pixels) of the occluding contour off the silhouette. The scale is tighter, because contours
+/// inside the mask, where one part of the object hides another, do not belong to the silhouette.
 const LIMB_WEIGHT: f64 = 1.0;
 const LIMB_SCALE: f64 = 1.5;
-/// The same once instruments settle the pose: outlines bring it home, but they are off by part of a pixel to one side,
-/// and pulled photographs by half a degree.
+/// The weight during the instrumental rounds. Silhouettes bring the pose close, but their bias of part of a pixel would
+/// then pull it off (docs/lab/thresholds.md).
 const SETTLING_LIMB_WEIGHT: f64 = 0.1;
-/// Weight of log^2 of the apparent size over that of the start: 20 % more costs as much as a fifth of the contrast. Without
-/// it a registration slides to where the object is small.
+/// Weight of ln^2 of the apparent size relative to the initial one: 20 % more costs about a sixth of the contrast.
+/// Without it a registration slides to where the object is small.
 const SIZE_WEIGHT: f64 = 5.0;
-/// The same over that of the units, where poses are compared: a view may be a quarter larger or smaller than they say.
+/// Weight of ln^2 of the scale relative to that of the units, where poses are compared: loose enough for a quarter more
+/// or less.
 const UNIT_WEIGHT: f64 = 1.0;
-/// The robust scale over the noise: three sigmas of three channels.
+/// Ratio of the robust scale to the noise of a channel: three sigmas of three channels.
 const SCALE_OVER_NOISE: f64 = robust::SCALE_IN_SIGMAS * robust::NORM_OF_CHANNELS;
-/// The least share of its weight that a sample keeps in the local means: one that has none would have no mean.
+/// Smallest share of its weight that a sample keeps in the local means; without any weight it would have no mean.
 const LEAST_SHARE: f64 = 1e-4;
-/// Fits of the light, each reweighted, at the beginning of a round.
+/// Number of reweighted fits of the light at the beginning of a round.
 const LIGHT_FITS: usize = 3;
-/// Samples, at least.
+/// Minimum number of samples.
 const FEWEST: u32 = 30;
 
-/// v of three channels, and their derivatives.
+/// Number of values v, one for each channel, and of their derivatives by the pose.
 const CHANNELS: usize = 3;
 const DERIVATIVES: usize = CHANNELS * UNKNOWNS;
 
-/// Pose and light at one moment.
+/// A pose and its light.
 #[derive(Clone, Copy)]
 pub(super) struct State {
     pub pose: Similarity,
     pub light: Lights,
 }
 
-/// One resolution of image and means.
+/// One resolution of image and local means.
 pub(super) struct Level {
     pub image: SplineImage,
     pub means: LocalMeans,
-    /// The harmonics, as blurred as the image.
+    /// The harmonics, blurred like the image.
     pub shades: Vec<[f32; SHADES]>,
 }
 
-/// What E is made of, one round after the other; owns its memory.
+/// E and its parts, for one round after the other; owns its memory.
 pub(super) struct Objective {
     pub samples: Samples,
     pub seen: Seen,
     silhouette: Silhouette,
-    /// Pixels on the mask's border, over which limbs are averaged.
+    /// Number of pixels on the mask's border, by which the sum over contour points is divided.
     border: f64,
-    /// Of each grid pixel: its weight in the local means, zero where it takes no part; the harmonics with their local
-    /// means removed; v as last seen, and with its local means removed; its derivatives.
+    /// For each grid pixel: its weight in the local means, zero if it takes no part; the harmonics with their local
+    /// means removed; v as last seen; v with its local means removed; the derivatives of v.
     weights: Vec<f32>,
     shades: Vec<[f32; SHADES]>,
     seen_values: Vec<[f32; CHANNELS]>,
     values: Vec<[f32; CHANNELS]>,
     derivatives: Vec<[f32; DERIVATIVES]>,
     prediction: Prediction,
-    /// Whether derivatives are those of the prediction; the shading then determines the pose rather than the silhouette.
+    /// Whether the derivatives are those of the prediction; shading then determines the pose rather than the
+    /// silhouette.
     has_instruments: bool,
     squares: Vec<f32>,
-    /// Sum of the weights of samples on and beside the mask, and of those beside it.
+    /// Sum of the weights of samples on and off the mask, and of those off it.
     all: f64,
     beside: f64,
-    /// The robust scale, squared.
+    /// The squared robust scale.
     scale: f64,
-    /// Apparent size of the start.
+    /// Apparent size of the initial pose.
     size: f64,
     unit: f64,
 }
 
 impl Objective {
-    /// `unit` is the length, in pixels, that distances to the outline are counted in.
+    /// `unit` is the length, in pixels, in which distances to the silhouette are counted.
     pub fn new(problem: &ContrastProblem<'_>, samples: Samples, silhouette: Silhouette, seen: Seen, unit: f64) -> Self {
         let length = samples.grid.len();
         Self {
@@ -113,7 +115,7 @@ impl Objective {
         }
     }
 
-    /// The apparent size of a start is what is held to.
+    /// Sets the apparent size of a pose as the one that E expects.
     pub fn expect_size(&mut self, problem: &ContrastProblem<'_>, start: &Similarity) {
         self.size = self.apparent_size(problem, start);
     }
@@ -123,22 +125,22 @@ impl Objective {
         if problem.is_metric() { pose.scale / pose.apply(self.samples.centre).z } else { pose.scale }
     }
 
-    /// Length that distances are counted in, pixels.
+    /// Length in which distances are counted, pixels.
     pub const fn unit(&self) -> f64 {
         self.unit
     }
 
-    /// Whether the equations have the gradient of the prediction as instruments in place of that of the image.
+    /// Selects whether the equations use the gradient of the prediction as instruments instead of that of the image.
     pub fn use_instruments(&mut self, has_instruments: bool) {
         self.has_instruments = has_instruments;
     }
 
-    /// Takes the robust scale of a noise, log units.
+    /// Sets the robust scale for a noise, log units.
     pub fn set_noise(&mut self, noise: f64) {
         self.scale = (SCALE_OVER_NOISE * noise).powi(2);
     }
 
-    /// Fixes what is seen from a pose and fits its light; `None` where too little is seen.
+    /// Fixes the samples that are visible from a pose and fits its light; `None` if too few are visible.
     pub fn begin(&mut self, problem: &ContrastProblem<'_>, level: &mut Level, state: &mut State) -> Option<Frame> {
         self.seen.look(problem, &self.samples, &state.pose);
         let (mut middle, mut square, mut count) = (Vector3::zeros(), 0.0, 0);
@@ -168,7 +170,7 @@ impl Objective {
         Some(Frame { centre: state.pose.apply(middle), length: (state.pose.scale * radius).max(f64::MIN_POSITIVE) })
     }
 
-    /// Light, noise and weights in turn.
+    /// Updates light, noise and weights in turn.
     fn fit(&mut self, level: &mut Level, state: &mut State) {
         for _ in 0..LIGHT_FITS {
             self.take_means(level);
@@ -187,7 +189,7 @@ impl Objective {
         self.take_means(level);
     }
 
-    /// Local means of what was seen, under the present weights.
+    /// Recomputes the local means of the values last seen, under the present weights.
     fn take_means(&mut self, level: &mut Level) {
         level.means.weigh(&self.weights);
         self.shades.copy_from_slice(&level.shades);
@@ -227,7 +229,7 @@ impl Objective {
         }
     }
 
-    /// Robust standard deviation of a channel's residuals.
+    /// Robust standard deviation of the residuals of a channel.
     pub fn noise(&mut self, light: &Lights) -> f64 {
         let mut squares = std::mem::take(&mut self.squares);
         squares.clear();
@@ -237,7 +239,7 @@ impl Objective {
         (f64::from(median).sqrt() / robust::MEDIAN_OF_THREE).max(LEAST_NOISE)
     }
 
-    /// The contrast's share of E: 0 where shading explains all, 1 where nothing.
+    /// The contrast term of E: 0 if shading explains everything, 1 if it explains nothing.
     fn unexplained(&self, light: &Lights) -> f64 {
         let cost =
             |cell| f64::from(self.samples.weight[cell]) * robust::saturated(self.square(cell, light) / self.scale);
@@ -259,15 +261,14 @@ impl Objective {
         self.unexplained(&state.light) + self.outlines(problem, &state.pose) + self.size_term(problem, &state.pose)
     }
 
-    /// E with the apparent size held to what the units give, where they give one.
+    /// E with an additional term that holds the scale near that of the units, if it is free.
     pub fn compared(&mut self, problem: &ContrastProblem<'_>, level: &mut Level, state: &State) -> f64 {
         self.expect_size(problem, &state.pose);
         self.value(problem, level, state) + units_term(problem, &state.pose)
     }
 
-    /// The same with what shading leaves of the contrast taken as a share of what there is without any shading: what poses
-    /// are ranked by. By E alone a cloud gains that shrinks to where the image has little contrast, though no light explains
-    /// any of it there.
+    /// The same with the contrast term divided by its value without any light; poses are ranked by it. By E alone, a
+    /// cloud that shrinks to where the image has little contrast would win, although no light explains that contrast.
     pub fn ranked(&mut self, problem: &ContrastProblem<'_>, level: &mut Level, state: &State) -> f64 {
         let value = self.compared(problem, level, state);
         let left = self.unexplained(&state.light);
@@ -279,7 +280,7 @@ impl Objective {
         SIZE_WEIGHT * (self.apparent_size(problem, pose) / self.size).ln().powi(2)
     }
 
-    /// Points beside the mask, and the contour generator off its border.
+    /// Cost of points off the mask, and of the occluding contour off its border.
     fn outlines(&self, problem: &ContrastProblem<'_>, pose: &Similarity) -> f64 {
         let rho = |u: f64, scale: f64| robust::rho(u * u, (u / scale).powi(2));
         let beside = |sample: &super::samples::Sample| match problem.place(pose, &sample.point) {
@@ -295,13 +296,13 @@ impl Objective {
         OUTSIDE_WEIGHT * beside / self.samples.list.len() as f64 + self.limb_weight() * limbs
     }
 
-    /// Weight of one limb: there are as many more of them as samples lie closer.
+    /// Weight of one contour point. It grows with the stride, because wider strides yield fewer points.
     fn limb_weight(&self) -> f64 {
         let weight = if self.has_instruments { SETTLING_LIMB_WEIGHT } else { LIMB_WEIGHT };
         weight * self.samples.stride as f64 / self.border
     }
 
-    /// The equations of a step, the light eliminated.
+    /// The equations of a step with the light eliminated.
     pub fn linearise(
         &mut self,
         problem: &ContrastProblem<'_>,
@@ -332,7 +333,7 @@ impl Objective {
         equations.reduced()
     }
 
-    /// v and its derivatives.
+    /// Stores v and its derivatives.
     fn enter_samples(&mut self, problem: &ContrastProblem<'_>, level: &Level, frame: &Frame, state: &State) {
         for sample in &self.samples.list {
             let point = state.pose.apply(sample.point);
@@ -353,7 +354,8 @@ impl Objective {
         }
     }
 
-    /// Calls `visit` with the place, derivative, residual and weight of each point beside the mask and of each limb.
+    /// Calls `visit` with position, derivative, residual and weight of each point off the mask and of each contour
+    /// point.
     pub fn for_each_outline(
         &self,
         problem: &ContrastProblem<'_>,
@@ -380,7 +382,7 @@ impl Objective {
         }
     }
 
-    /// Calls `visit` with the grid pixel, residuals, weight and derivatives of each sample that takes part.
+    /// Calls `visit` with grid pixel, residuals, weight and derivatives of each sample that takes part.
     pub fn for_each_score(
         &self,
         light: &Lights,
@@ -395,19 +397,19 @@ impl Objective {
         }
     }
 
-    /// The harmonics of a grid pixel with their local means removed.
+    /// Harmonics of a grid pixel with their local means removed.
     pub fn shades(&self, cell: usize) -> &[f32; SHADES] {
         &self.shades[cell]
     }
 }
 
-/// The cost of a size that is not that of the units, where poses are compared.
+/// Cost of a scale that differs from that of the units, where poses are compared.
 fn units_term(problem: &ContrastProblem<'_>, pose: &Similarity) -> f64 {
     let growth = (pose.scale / problem.unit_scale).ln();
     if problem.is_metric() || problem.scale_is_held { 0.0 } else { UNIT_WEIGHT * growth * growth }
 }
 
-/// Where a point of the colour view is seen, and how that place moves with each unknown.
+/// Position in the image of a point of the colour view, and its derivative by each unknown.
 fn by_pose(problem: &ContrastProblem<'_>, point: &Vector3<f64>, frame: &Frame) -> Option<([f64; 2], [PoseVector; 2])> {
     let (place, by_point) =
         problem.image.camera.project_with_gradient(problem.image.size, [point.x, point.y, point.z])?;

@@ -1,45 +1,45 @@
-//! The shading that a light predicts on the samples, and its gradient in the image.
+//! Shading that a light predicts at the samples, and its gradient in the image.
 //!
-//! The gradient of the image carries what shading does not explain, shadows and paint, and so does the residual: their
-//! product has a mean, and the pose a bias. The gradient of the prediction has no part in them. Taken as instruments (the
-//! Z of sum w Z^T r = 0, as in the last rounds of the registration by colours) it leaves a pose that only what is
-//! explained decides.
+//! The gradient of the image contains shadows and albedo, which shading does not explain, and so does the residual.
+//! Their product has a nonzero mean, which biases the pose. The gradient of the prediction contains neither. As an
+//! instrument (the Z of sum w Z^T r = 0, as in the last rounds of photometric registration) it lets only the explained
+//! part of the image determine the pose.
 //!
-//! Limits: it is the gradient of a light that fits, so it serves near the pose alone.
+//! Limits: the gradient belongs to a light that fits, so it serves only near the pose.
 
 use super::equations::{Lights, SHADES};
 use super::problem::ContrastProblem;
 use super::samples::Samples;
 use crate::pose::similarity::Similarity;
 
-/// Least area, in the image, of the square between neighbouring samples, over that in the depth view: where the surface is
-/// seen so flatly its gradient says nothing.
+/// Smallest area, in the image, of the square between neighbouring samples, relative to that in the depth view. At a
+/// more grazing angle the gradient of the surface carries no information.
 const LEAST_AREA: f32 = 0.1;
 
 const CHANNELS: usize = 3;
 
-/// Where a sample is seen, and the shade of each channel there.
+/// Image position of a sample, and its shade in each channel.
 type Seen = [f32; 2 + CHANNELS];
 
-/// Prediction on a grid of samples; owns its memory.
+/// The prediction on a grid of samples; owns its memory.
 pub(super) struct Prediction {
-    /// NaN where nothing is seen.
+    /// NaN where no sample is visible.
     seen: Vec<Seen>,
     gradients: Vec<[[f32; 2]; CHANNELS]>,
 }
 
 impl Prediction {
-    /// On so many grid pixels.
+    /// For a grid of `length` pixels.
     pub fn new(length: usize) -> Self {
         Self { seen: vec![[f32::NAN; 2 + CHANNELS]; length], gradients: vec![[[0.0; 2]; CHANNELS]; length] }
     }
 
-    /// Derivatives of a grid pixel's shades by column and row of the image; zero where neighbours do not tell.
+    /// Derivatives of a grid pixel's shades by image column and row; zero where the neighbours do not determine them.
     pub fn gradient(&self, cell: usize) -> [[f64; 2]; CHANNELS] {
         self.gradients[cell].map(|gradient| gradient.map(f64::from))
     }
 
-    /// Predicts anew; `shades` are the harmonics of each grid pixel.
+    /// Predicts the shading of a pose and light; `shades` are the harmonics of each grid pixel.
     pub fn predict(
         &mut self,
         problem: &ContrastProblem<'_>,
@@ -67,7 +67,7 @@ impl Prediction {
         let width = samples.grid.width;
         let across = self.difference(cell, column > 0, column + 1 < width, 1)?;
         let down = self.difference(cell, row > 0, row + 1 < samples.grid.height, width)?;
-        // Of places and shades by steps on the grid; so the shades' by places follow by the chain rule.
+        // These are differences of position and shade per grid step; the chain rule yields the derivatives by position.
         let area = across[0] * down[1] - across[1] * down[0];
         let enough = area.abs() >= LEAST_AREA * (samples.stride * samples.stride) as f32;
         enough.then(|| {
@@ -78,7 +78,7 @@ impl Prediction {
         })
     }
 
-    /// Central difference for one step on the grid, or that to the one neighbour which is seen.
+    /// Central difference per grid step, or a one-sided one if only one neighbour is visible.
     fn difference(&self, cell: usize, has_before: bool, has_after: bool, step: usize) -> Option<Seen> {
         let is_seen = |cell: &usize| !self.seen[*cell][0].is_nan();
         is_seen(&cell).then_some(())?;

@@ -1,4 +1,4 @@
-//! What goes into a registration by local contrast, and what comes out.
+//! Input and output of a registration by local contrast.
 
 use nalgebra::Vector3;
 
@@ -7,27 +7,28 @@ use crate::pose::similarity::Similarity;
 use crate::pose::uncertainty::Uncertainty;
 use crate::view::{ColourView, DepthView, Normals};
 
-/// What is registered. Points and normals (depth view's frame) are NaN where missing.
+/// Input of the registration. Points and normals (depth view's frame) are NaN where missing.
 #[derive(Clone, Copy)]
 pub struct ContrastProblem<'a> {
     /// The colour view.
     pub image: &'a ColourView,
-    /// Where the object is in it, pixels without a usable colour included.
+    /// Mask of the object in the image, including pixels without a usable colour.
     pub object: &'a [bool],
     /// The depth view.
     pub depth: &'a DepthView,
-    /// Its normals.
+    /// Normals of the depth view.
     pub normals: &'a Normals,
-    /// One sigma of each normal in radians; NaN leaves the point out.
+    /// One sigma of each normal in radians; points with NaN are left out.
     pub normal_error: &'a [f32],
-    /// The scale that the units of both views give, where it is not known: the prior's middle.
+    /// The scale given by the units of both views, mean of the prior over an unknown scale.
     pub unit_scale: f64,
-    /// Whether the scale of the start is kept.
+    /// Whether the scale keeps its initial value.
     pub scale_is_held: bool,
 }
 
 impl ContrastProblem<'_> {
-    /// Unknowns that keep their values: t_z of an orthographic image, which is a gauge, and a scale that is held.
+    /// Unknowns that keep their values: t_z of an orthographic image, which is a gauge, and a held scale, which
+    /// includes that of every pinhole image.
     pub(super) fn held(&self) -> [bool; UNKNOWNS] {
         let gauge = self.image.camera.is_orthographic();
         [false, false, false, false, false, gauge, self.scale_is_held || !gauge]
@@ -38,7 +39,7 @@ impl ContrastProblem<'_> {
         !self.image.camera.is_orthographic()
     }
 
-    /// Where the image sees a point of the depth view.
+    /// Image position of a point of the depth view.
     pub(super) fn place(&self, pose: &Similarity, point: &Vector3<f64>) -> Option<[f64; 2]> {
         self.image.camera.project(self.image.size, pose.apply(*point).into())
     }
@@ -46,21 +47,21 @@ impl ContrastProblem<'_> {
 
 #[cfg(test)]
 impl<'a> ContrastProblem<'a> {
-    /// Of two views as they are, both in pixels.
+    /// A problem of two views as they are, both in pixels.
     pub fn of_views(image: &'a ColourView, depth: &'a DepthView, normal_error: &'a [f32]) -> Self {
         let (object, normals) = (image.object(), &depth.normals);
         Self { image, object, depth, normals, normal_error, unit_scale: 1.0, scale_is_held: false }
     }
 }
 
-/// What the registration found.
+/// Result of the registration.
 #[derive(Clone, Debug)]
 pub struct ContrastReport {
-    /// The pose; its t_z is that of the start for an orthographic image.
+    /// The pose; for an orthographic image t_z keeps its initial value.
     pub pose: Similarity,
-    /// E, as all ends of the search are compared by it: 0 where shading and outline explain all, about 1 where shading
-    /// explains nothing.
+    /// E with the term of the units: 0 if shading and silhouette explain everything, about 1 if shading explains
+    /// nothing.
     pub objective: f64,
-    /// One sigma of the pose's own numbers.
+    /// One sigma of each number of the pose.
     pub uncertainty: Uncertainty,
 }

@@ -15,63 +15,63 @@ use crate::pose::similarity::Similarity;
 use crate::pose::spline_image::SplineImage;
 use crate::pose::uncertainty::Uncertainty;
 
-/// The finest, whose blur is the caller's, and one that is blurred by so many pixels ..
+/// Number of levels: the finest, whose blur the caller chooses, and one with a blur of this many pixels. Blurs and
+/// means are for objects of up to 64x64 depth pixels and grow with larger ones.
 const LEVELS: usize = 2;
 const BLUR: f64 = 1.5;
-/// .. with local means over a Gaussian of this sigma, depth pixels; that of 2 to 5 serve alike. Both for objects as
-/// large as those that they were measured on, views of 96x96; on larger ones they grow with it.
+/// Sigma of the local means on each level, depth pixels (docs/lab/thresholds.md).
 const MEANS: [f64; LEVELS] = [3.0, 5.0];
-/// Blur of the sharp image in strides beyond the first: what lies between samples would be noise.
+/// Blur of the sharp image in strides beyond the first, because detail between samples would be noise.
 const BLUR_OF_STRIDE: f64 = 0.4;
 /// v = log(I + 0.1 median I).
 const LIFT: f32 = 0.1;
-/// Gauss-Newton steps of a round, and attempts to find the damping of each.
+/// Maximum number of Gauss-Newton steps of a round, and of attempts to damp each.
 const MOST_STEPS: usize = 4;
 const MOST_ATTEMPTS: usize = 6;
-/// A step below this, in radians and object sizes, changes nothing that matters: a thousandth of a degree.
+/// A step below this, in radians and object sizes, is negligible: a thousandth of a degree.
 const SETTLED_STEP: f64 = 2e-5;
-/// A level is done when a round rotates by less, degrees.
+/// A level ends with a round that rotates by less, degrees.
 const SETTLED_ROUND: [f64; LEVELS] = [0.02, 0.3];
 
-/// Damping of a step by instruments, as a share of the diagonal.
+/// Damping of an instrumental step, as a share of the diagonal.
 const INSTRUMENT_DAMPING: f64 = 1e-3;
-/// The rounds by instruments are undone where they raise E by more than this share: they are no descent, and from a pose
-/// that does not fit they lead anywhere. Right ends rise by up to 4 %.
+/// The instrumental rounds are undone if they raise E by more than this share. They are no descent, and from a pose
+/// that does not fit they lead anywhere.
 const LARGEST_RISE: f64 = 0.1;
 
-/// How much work a registration may be.
+/// Limits on the work of a registration.
 #[derive(Clone, Copy, Debug)]
 pub struct ContrastEffort {
-    /// The first level: 1 from afar, 0 from nearby.
+    /// The first level: 1 from a distant initial pose, 0 from a close one.
     pub first_level: usize,
     /// The last level: 1 to end with the blurred image.
     pub last_level: usize,
-    /// Rounds of each level at most.
+    /// Maximum number of rounds of each level.
     pub rounds: usize,
-    /// Rounds by instruments at most, after those.
+    /// Maximum number of instrumental rounds after those.
     pub instrument_rounds: usize,
 }
 
 impl ContrastEffort {
     /// Down to the sharp image.
     pub const FULL: Self = Self { first_level: 1, last_level: 0, rounds: 14, instrument_rounds: 0 };
-    /// On the blurred image alone: enough to see whether a start is worth more.
+    /// On the blurred image alone: enough to see whether an initial pose deserves more work.
     pub const COARSE: Self = Self { first_level: 1, last_level: 1, rounds: 3, instrument_rounds: 0 };
 }
 
-/// A registration under way.
+/// A registration in progress.
 struct Course {
     state: State,
     effort: ContrastEffort,
     level: usize,
     round: usize,
-    /// Whose robust scale the present round has; infinite before the first.
+    /// The noise that the robust scale of the present round assumes; infinite before the first round.
     noise: f64,
-    /// Where the descent ended, with its E, once it has.
+    /// The end of the descent and its E, once reached.
     descended: Option<(Similarity, f64)>,
 }
 
-/// Registers one depth view to one image again and again; owns all memory.
+/// Registers one depth view to one image repeatedly; owns all memory.
 pub struct ContrastRegistration {
     levels: [Level; LEVELS],
     pub(super) objective: Objective,
@@ -79,13 +79,13 @@ pub struct ContrastRegistration {
 }
 
 impl ContrastRegistration {
-    /// By every `stride`-th depth pixel. On the finest level image and prediction are blurred by a Gaussian whose sigma is `blur`
-    /// depth pixels; zero leaves them sharp.
+    /// A registration on every `stride`-th depth pixel. On the finest level a Gaussian with a sigma of `blur` depth
+    /// pixels blurs image and prediction; zero leaves them sharp.
     #[must_use]
     pub fn new(problem: &ContrastProblem<'_>, stride: usize, blur: f64) -> Self {
         let samples = Samples::new(problem, stride.max(1));
         let unit = ((problem.depth.valid() as f64).sqrt() / MEASURED_SIDE).max(1.0);
-        // Noise reaches as far in large views as in small ones.
+        // The noise of normals reaches equally far in large and small views.
         let finest = blur / unit;
         let lifted = problem.image.lifted(LIFT);
         let between = BLUR_OF_STRIDE * (samples.stride as f64 / unit - 1.0).max(0.0);
@@ -107,7 +107,7 @@ impl ContrastRegistration {
         Self { levels, objective: Objective::new(problem, samples, silhouette, seen, unit), course: None }
     }
 
-    /// Starts anew.
+    /// Begins a registration.
     pub fn begin(&mut self, problem: &ContrastProblem<'_>, start: &Similarity, effort: ContrastEffort) {
         self.objective.expect_size(problem, start);
         let state = State { pose: *start, light: Lights::default() };
@@ -115,7 +115,7 @@ impl ContrastRegistration {
             Some(Course { state, effort, level: effort.first_level, round: 0, noise: f64::INFINITY, descended: None });
     }
 
-    /// One round; whether it was the last.
+    /// Runs one round. Returns whether it was the last.
     pub fn step(&mut self, problem: &ContrastProblem<'_>) -> bool {
         let Some(mut course) = self.course.take() else { return true };
         let last = match course.descended {
@@ -129,7 +129,7 @@ impl ContrastRegistration {
         last
     }
 
-    /// A round of descent; `None` where too little is seen.
+    /// Runs one round of descent. Returns whether it was the last, or `None` if too few samples are visible.
     fn descend_a_round(&mut self, problem: &ContrastProblem<'_>, course: &mut Course) -> Option<bool> {
         let Course { level, effort, .. } = *course;
         let before = course.state.pose;
@@ -159,7 +159,7 @@ impl ContrastRegistration {
         Some(course.descended.is_none())
     }
 
-    /// A round by instruments; whether it was the last.
+    /// Runs one instrumental round. Returns whether it was the last.
     fn follow_instruments(
         &mut self,
         problem: &ContrastProblem<'_>,
@@ -178,7 +178,7 @@ impl ContrastRegistration {
         true
     }
 
-    /// One step by instruments; `None` where there is none.
+    /// Takes one instrumental step; `None` if the equations determine none.
     pub(super) fn step_by_instruments(
         &mut self,
         problem: &ContrastProblem<'_>,
@@ -203,13 +203,13 @@ impl ContrastRegistration {
         reduced
     }
 
-    /// The present pose, where enough is seen from it.
+    /// The present pose, if enough samples are visible from it.
     #[must_use]
     pub fn pose(&self) -> Option<Similarity> {
         self.course.as_ref().map(|course| course.state.pose)
     }
 
-    /// One sigma of a pose, by what its contrast leaves; `None` where too little is seen.
+    /// One sigma of a pose, from its residuals; `None` if too few samples are visible.
     pub fn uncertainty(&mut self, problem: &ContrastProblem<'_>, pose: &Similarity) -> Option<Uncertainty> {
         let mut state = State { pose: *pose, light: Lights::default() };
         self.objective.expect_size(problem, pose);
@@ -224,14 +224,14 @@ impl ContrastRegistration {
         uncertainty
     }
 
-    /// E of a pose on the sharp image at the robust scale of a noise, its light at its best.
+    /// E of a pose on the sharp image, with its optimal light and the robust scale of a noise.
     pub fn evaluate(&mut self, problem: &ContrastProblem<'_>, pose: &Similarity, noise: f64) -> Option<f64> {
         let mut state = State { pose: *pose, light: Lights::default() };
         self.look(problem, &mut state, Some(noise))?;
         Some(self.objective.compared(problem, &mut self.levels[0], &state))
     }
 
-    /// What poses are ranked by, likewise.
+    /// The value by which poses are ranked, under the same conditions.
     pub fn rank(&mut self, problem: &ContrastProblem<'_>, pose: &Similarity, noise: f64) -> Option<f64> {
         let mut state = State { pose: *pose, light: Lights::default() };
         self.look(problem, &mut state, Some(noise))?;
@@ -279,10 +279,10 @@ mod tests {
     use crate::view::{ColourImage, ColourSamples, ColourView, DepthMap, DepthSamples, DepthView};
 
     const SIDE: usize = 64;
-    /// Pixels by which the texture below is blurred: as soft as shading, and sharper than local means.
+    /// Blur of the texture below, pixels: as soft as shading, and sharper than the local means.
     const TEXTURE_BLUR: usize = 2;
 
-    /// A dome with bumps and its gradient, pixels.
+    /// A dome with bumps, and its gradient, pixels.
     fn relief(x: f64, y: f64) -> (f64, [f64; 2]) {
         let (k, bump) = (0.35, 1.6);
         let [sx, cx] = [(k * x).sin(), (k * x).cos()];
@@ -295,7 +295,7 @@ mod tests {
         x * x + y * y < 27.0 * 27.0
     }
 
-    /// Noise of this amplitude, log units, blurred by a box three times.
+    /// Noise of this amplitude, log units, blurred three times by a box.
     fn texture(seed: u64, amplitude: f64) -> Vec<f64> {
         let mut dice = noise::white_noise(seed);
         let mut field: Vec<f64> = (0..SIDE * SIDE).map(|_| dice()).collect();
@@ -312,7 +312,7 @@ mod tests {
         field.iter().map(|value| amplitude * value / spread).collect()
     }
 
-    /// Image and depth of one view: the pose between them is the identity.
+    /// Image and depth of one view; the pose between them is the identity.
     fn views(texture: &[f64]) -> (ColourView, DepthView) {
         let (mut data, mut depth, mut mask) = (Vec::new(), Vec::new(), Vec::new());
         for index in 0..SIDE * SIDE {
@@ -333,7 +333,7 @@ mod tests {
         (ColourView::new(image).unwrap(), DepthView::new(&map, true).unwrap())
     }
 
-    /// Degrees off at the end of a registration from 3 degrees off.
+    /// Error in degrees at the end of a registration from 3 degrees off.
     fn off((image, depth): &(ColourView, DepthView), instrument_rounds: usize) -> f64 {
         let normal_error = vec![0.0; depth.size.len()];
         let problem = ContrastProblem::of_views(image, depth, &normal_error);
@@ -359,7 +359,7 @@ mod tests {
         assert!(instruments < 0.8 * descent, "{instruments} instead of {descent}");
     }
 
-    /// One sigma of the rotation about each axis at the true pose, with the mask as given.
+    /// One sigma of the rotation about each axis at the true pose, with the given mask.
     fn sigmas((image, depth): &(ColourView, DepthView), object: &[bool]) -> [f64; 3] {
         let normal_error = vec![0.0; depth.size.len()];
         let problem = ContrastProblem { object, ..ContrastProblem::of_views(image, depth, &normal_error) };
@@ -371,7 +371,7 @@ mod tests {
     fn an_outline_that_does_not_fit_widens_sigmas() {
         let views = views(&texture(9, 0.03));
         let mask = &views.0.mask;
-        // Sides that are cut off the mask alone, by four pixels each: their pulls cancel, and the image is the same.
+        // Four pixels are cut off the mask alone on two sides: their pulls cancel, and the image is the same.
         let cut = |index: usize| (index % SIDE).abs_diff(SIDE / 2) > 22;
         let frayed: Vec<bool> = (0..mask.len()).map(|index| mask[index] && !cut(index)).collect();
         let [clean, frayed] = [mask, &frayed].map(|object| sigmas(&views, object));
@@ -384,7 +384,7 @@ mod tests {
     #[test]
     fn a_cloud_that_shrinks_onto_bare_paint_ranks_behind_one_that_shading_explains() {
         let (centre, bare) = ((SIDE - 1) as f64 / 2.0, 13.0);
-        // Shading and soft paint, but for a label in the middle that shows hardly anything.
+        // Shading and soft albedo, except for a label in the middle with hardly any contrast.
         let (mut image, depth) = views(&texture(7, 0.12));
         let grain = texture(8, 0.004);
         for (index, grain) in grain.iter().enumerate() {
@@ -407,7 +407,7 @@ mod tests {
         assert!(by_truth[1] + 0.1 < by_shrunk[1], "{by_truth:?} {by_shrunk:?}");
     }
 
-    /// The share of contrast that shading leaves at the true pose, by normals with so much noise about each axis.
+    /// Share of the contrast that shading leaves at the true pose, with normals of this much noise about each axis.
     fn share_left(noise: f64, blur: f64) -> f64 {
         let (image, depth) = views(&[0.0; SIDE * SIDE]);
         let mut dice = noise::white_noise(11);

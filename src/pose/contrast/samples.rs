@@ -1,4 +1,4 @@
-//! The depth view as a registration by contrast sees it: every stride-th pixel with its point, its normal and the
+//! The depth view as registration by contrast samples it: every stride-th pixel with its point, its normal, and the
 //! harmonics of that normal in the depth view's own frame, which no pose changes.
 
 use nalgebra::Vector3;
@@ -10,7 +10,7 @@ use crate::numeric::robust;
 use crate::pose::residuals::NORMAL_ERROR;
 use crate::view::{Size, extent};
 
-/// A pixel of the grid that has a point and a normal.
+/// A grid pixel with a point and a normal.
 pub(super) struct Sample {
     /// Its index on the grid.
     pub cell: usize,
@@ -21,20 +21,20 @@ pub(super) struct Sample {
 /// Points on a grid.
 pub(super) struct Samples {
     pub grid: Size,
-    /// Depth pixels from one to the next.
+    /// Number of depth pixels from one sample to the next.
     pub stride: usize,
-    /// Those that there are, row by row.
+    /// The existing samples, row by row.
     pub list: Vec<Sample>,
-    /// Neighbours right and below of each, as pairs of places in the list.
+    /// Pairs of neighbours, right of or below each other, as indices in the list.
     pub neighbours: Vec<[u32; 2]>,
-    /// Weight of each grid pixel by the error of its normal, zero where there is no sample.
+    /// Weight of each grid pixel from the error of its normal; zero without a sample.
     pub weight: Vec<f32>,
-    /// Harmonics of each grid pixel, zero where there is no sample.
+    /// Harmonics of each grid pixel; zero without a sample.
     pub shades: Vec<[f32; SHADES]>,
     /// Mean of the points, and their root mean square distance from it.
     pub centre: Vector3<f64>,
     pub radius: f64,
-    /// Median distance of neighbours.
+    /// Median distance between neighbours.
     pub step: f64,
 }
 
@@ -91,7 +91,7 @@ impl Samples {
         }
     }
 
-    /// Middle, size and spacing.
+    /// Measures centre, size and spacing.
     fn measure(&mut self) {
         let (centre, radius) = extent(self.list.iter().map(|sample| sample.point));
         (self.centre, self.radius) = (centre, radius.max(f64::MIN_POSITIVE));
@@ -101,7 +101,7 @@ impl Samples {
         }
     }
 
-    /// Distance of two neighbours.
+    /// Distance between two neighbours.
     pub fn distance(&self, [a, b]: [u32; 2]) -> f64 {
         (self.list[a as usize].point - self.list[b as usize].point).norm()
     }

@@ -1,17 +1,17 @@
-//! From many starts to one pose and its rivals, coarse to fine, in slices: few samples and rounds for all of them, then
-//! more for the best, at last by as many as there are.
+//! Search from many initial poses to one pose and its rivals, coarse to fine, in slices. All begin with few samples and
+//! rounds; the best get more, and the last stages use up to 10000 samples.
 //!
-//! At each stage the ends are ranked by E on the sharp image at one robust scale, the contrast's part of it as a share of
-//! what there is without light, so that they can be compared. On ten photographed objects seen from 0 to 60 degrees off an
-//! end near the right one was among the first eight after the first stages wherever it was found at all. Noisy depth tells no
-//! details that the sharp image could be compared with: there both are blurred as widely as the noise asks for, and the best
-//! end alone is registered on the sharp image, in a stage of its own.
+//! At each stage the ends are ranked by E on the sharp image at one robust scale, with the contrast term relative to
+//! that without light, so that they are comparable. Noisy depth has no details to compare with the sharp image. The
+//! stages then blur image and prediction by the sigma that the noise requires, and the best end alone is registered to
+//! the sharp image in an additional stage.
 
 use super::problem::{ContrastProblem, ContrastReport};
 use super::registration::{ContrastEffort, ContrastRegistration};
 use crate::pose::similarity::Similarity;
 
-/// A stage: samples, what a registration may take, how many ends go on and how far apart they are, degrees.
+/// A stage: number of samples, limits of a registration, number of ends that go on, and their least distance in
+/// degrees.
 struct Stage {
     samples: f64,
     effort: ContrastEffort,
@@ -31,7 +31,7 @@ const STAGES: [Stage; 5] = [
     LAST,
     LAST,
 ];
-/// The last of them is the sharp image's, for what noisy depth was too soft for; the one before finds the rivals.
+/// The last stage registers to the sharp image if noisy depth required blurring; the one before it finds the rivals.
 const SHARP_STAGE: usize = STAGES.len() - 1;
 const LAST: Stage = Stage {
     samples: 10_000.0,
@@ -39,27 +39,26 @@ const LAST: Stage = Stage {
     kept: 6,
     apart: RIVAL_APART,
 };
-/// Noise, in log units, whose robust scale ends are ranked at: sharper than photographs leave, so that the details
-/// decide, and far above that of renders.
+/// Noise, in log units, whose robust scale ranks the ends: below what photographs leave, so that details decide, and
+/// far above that of renders.
 const RANKING_NOISE: f64 = 0.05;
-/// An end whose rank is larger by less than this is a rival: 0.03 of E, by which found poses of photographs had none but for
-/// one or two and lost ones mostly one, over a contrast of 0.3 without light.
+/// An end whose rank is larger by less than this is a rival (docs/lab/thresholds.md).
 const RIVAL_MARGIN: f64 = 0.1;
-/// A rival is at least so far away, degrees.
+/// Smallest distance of a rival, degrees.
 const RIVAL_APART: f64 = 3.0;
-/// Ends of one rotation and unlike sizes are two: so much in log size, half a step between the sizes of the starts. A wrong
-/// size that looks better at first would hide the right one.
+/// Ends of one rotation count as two if their log sizes differ by more than this, half a step between the initial
+/// sizes. Otherwise a wrong size that ranks better at first would hide the right one.
 const SIZE_APART: f64 = 0.1;
 
-/// An end of a registration with its rank.
+/// An end of a registration, with its rank.
 type End = (f64, Similarity);
 
-/// The pose found and those that E hardly tells from it, best first.
+/// The best pose, and those that E hardly distinguishes from it, best first.
 #[derive(Clone, Debug)]
 pub struct ContrastOutcome {
     /// The best end.
     pub best: ContrastReport,
-    /// Poses that explain the contrast as well.
+    /// Poses that fit the contrast equally well.
     pub rivals: Vec<Similarity>,
 }
 
@@ -75,14 +74,14 @@ pub struct ContrastSearch {
 }
 
 impl ContrastSearch {
-    /// From these starts.
+    /// A search from these initial poses.
     #[must_use]
     pub fn new(problem: &ContrastProblem<'_>, starts: Vec<Similarity>) -> Self {
         let registration = registration(problem, &STAGES[0], problem.depth.noise.window());
         Self { stage: 0, starts, next: 0, ends: Vec::new(), rivals: Vec::new(), registration, under_way: false }
     }
 
-    /// One round of one registration; whether all are done.
+    /// Runs one round of one registration. Returns whether all are done.
     pub fn advance(&mut self, problem: &ContrastProblem<'_>) -> bool {
         let Some(stage) = STAGES.get(self.stage) else { return true };
         let Some(start) = self.starts.get(self.next) else {
@@ -102,11 +101,11 @@ impl ContrastSearch {
         false
     }
 
-    /// Share of the work that is done, more or less.
+    /// Approximate share of the work that is done.
     #[must_use]
     pub fn share(&self) -> f64 {
         let within = self.next as f64 / self.starts.len().max(1) as f64;
-        // One registration, where there is any: hardly work beside the others.
+        // The sharp stage, if any, is a single registration, hardly any work beside the others.
         ((self.stage as f64 + within) / SHARP_STAGE as f64).min(1.0)
     }
 
@@ -131,7 +130,8 @@ impl ContrastSearch {
         self.next = 0;
     }
 
-    /// Keeps the start of the sharp stage where its end is further off: that has slid into another optimum.
+    /// Keeps the initial pose of the sharp stage if its end is farther away than a rival may be, having slid into
+    /// another optimum.
     fn stay_near(&mut self, problem: &ContrastProblem<'_>) {
         let Some(&start) = self.starts.first() else { return };
         self.ends.retain(|(_, end)| end.degrees_to(&start) <= RIVAL_APART);
@@ -140,13 +140,13 @@ impl ContrastSearch {
         }
     }
 
-    /// Whether another pose explains the contrast as well as the best end.
+    /// Whether another pose fits the contrast as well as the best end.
     pub fn is_explained_by(&mut self, problem: &ContrastProblem<'_>, pose: &Similarity) -> bool {
         let value = self.registration.rank(problem, pose, RANKING_NOISE);
         self.ends.first().is_some_and(|(best, _)| value.is_some_and(|value| value <= best + RIVAL_MARGIN))
     }
 
-    /// What was found, once all is done; `None` where no registration saw enough of the object.
+    /// The result, once all is done; `None` if no registration saw enough of the object.
     pub fn outcome(&mut self, problem: &ContrastProblem<'_>) -> Option<ContrastOutcome> {
         let &(_, pose) = self.ends.first()?;
         let objective = self.registration.evaluate(problem, &pose, RANKING_NOISE)?;
@@ -155,8 +155,8 @@ impl ContrastSearch {
     }
 }
 
-/// Registers from `start`, which is near the end already, as the last stage of the search does, by another version of the
-/// image; the pose and its E.
+/// Registers to another version of the image from `start`, which is already close, as the last stage of the search
+/// does. Returns the pose and its E.
 #[must_use]
 pub fn register_again(problem: &ContrastProblem<'_>, start: &Similarity) -> Option<(Similarity, f64)> {
     let mut registration = registration(problem, &LAST, 0.0);
@@ -166,7 +166,7 @@ pub fn register_again(problem: &ContrastProblem<'_>, start: &Similarity) -> Opti
     Some((pose, registration.evaluate(problem, &pose, RANKING_NOISE)?))
 }
 
-/// The best ends of a stage, best first, of which no two are one.
+/// The best ends of a stage, best first, without duplicates.
 fn best_apart(mut ends: Vec<End>, stage: &Stage) -> Vec<End> {
     ends.sort_by(|(a, _), (b, _)| a.total_cmp(b));
     let mut kept: Vec<End> = Vec::with_capacity(stage.kept);
@@ -181,14 +181,14 @@ fn best_apart(mut ends: Vec<End>, stage: &Stage) -> Vec<End> {
     kept
 }
 
-/// Ends that explain the contrast as well as the first, and are no part of its optimum.
+/// Ends that fit the contrast as well as the first one and do not belong to its optimum.
 fn rivals(ends: &[End]) -> Vec<Similarity> {
     let Some((&(value, pose), others)) = ends.split_first() else { return Vec::new() };
     let is_rival = |end: &&End| end.0 <= value + RIVAL_MARGIN && end.1.degrees_to(&pose) >= RIVAL_APART;
     others.iter().filter(is_rival).map(|(_, pose)| *pose).collect()
 }
 
-/// The registration of a stage: by about so many samples, blurred by so many pixels on the finest level.
+/// The registration of a stage: by about `stage.samples` samples, blurred by `blur` depth pixels on the finest level.
 fn registration(problem: &ContrastProblem<'_>, stage: &Stage, blur: f64) -> ContrastRegistration {
     let stride = (problem.depth.valid() as f64 / stage.samples).sqrt().round();
     ContrastRegistration::new(problem, stride as usize, blur)

@@ -1,4 +1,4 @@
-//! What the image sees of the samples under one pose: which of them are visible, and where the surface turns away.
+//! Samples that the image sees under a pose, and the contour where the surface turns away.
 
 use nalgebra::Vector3;
 
@@ -8,23 +8,24 @@ use crate::pose::similarity::Similarity;
 use crate::pose::visibility::HIDDEN_BEHIND;
 use crate::view::Size;
 
-/// Cosine at the rim: flatter views of a surface have no reliable pixel.
+/// Smallest cosine between normal and ray of a visible sample; at a more grazing angle no pixel is reliable.
 const RIM: f64 = 0.05;
 /// Neighbours farther apart than this many median steps do not belong to one surface.
 const JUMP: f64 = 4.0;
 
-/// Visible samples and contour generator under one pose; owns its memory.
+/// Visible samples and occluding contour under one pose; owns its memory.
 pub(super) struct Seen {
-    /// Nearest depth in each cell of the image, as wide as samples lie apart.
+    /// Nearest depth in each cell of the image; cells are as wide as the spacing of samples.
     buffer: Vec<f64>,
     size: Size,
-    /// Pixels of the image to a cell.
+    /// Width of a cell in image pixels.
     cell: f64,
-    /// Whether each sample is visible, were the mask everywhere.
+    /// Whether each sample is visible, regardless of the mask.
     pub visible: Vec<bool>,
-    /// Cosine of each sample between its normal and the ray towards it, negative where it faces the camera.
+    /// Cosine between each sample's normal and the ray towards it, negative if it faces the camera.
     facing: Vec<f64>,
-    /// Points of the depth view where the surface turns away from the image's camera: they are seen on the outline.
+    /// Points of the depth view where the surface turns away from the image's camera; they have to lie on the
+    /// silhouette.
     pub limbs: Vec<Vector3<f64>>,
 }
 
@@ -44,7 +45,7 @@ impl Seen {
         }
     }
 
-    /// Looks anew from a pose.
+    /// Updates visible samples and contour for a pose.
     pub fn look(&mut self, problem: &ContrastProblem<'_>, samples: &Samples, pose: &Similarity) {
         self.buffer.fill(f64::INFINITY);
         let camera = &problem.image.camera;
@@ -72,7 +73,7 @@ impl Seen {
         Some(self.buffer[pixel])
     }
 
-    /// Enters a depth at the four cells around a place, so that gaps let nothing through.
+    /// Enters a depth at the four cells around a position, so that gaps between samples are closed.
     fn enter(&mut self, [column, row]: [f64; 2], depth: f64) {
         let (column, row) = (column / self.cell, row / self.cell);
         for (right, down) in [(-0.5, -0.5), (0.5, -0.5), (-0.5, 0.5), (0.5, 0.5)] {
@@ -82,7 +83,7 @@ impl Seen {
         }
     }
 
-    /// Where the facing changes its sign between neighbours on one surface.
+    /// Finds where the facing changes its sign between neighbours on one surface.
     fn find_limbs(&mut self, samples: &Samples) {
         self.limbs.clear();
         for &pair in &samples.neighbours {

@@ -1,4 +1,4 @@
-//! Covariance of a pose from contrast: the sandwich over tiles (docs/method/uncertainty.md).
+//! Covariance of a pose from local contrast: the sandwich over tiles (docs/method/uncertainty.md).
 
 use super::equations::Reduced;
 use super::objective::{Objective, State};
@@ -8,8 +8,9 @@ use crate::pose::sandwich::Scores;
 use crate::pose::uncertainty::{Uncertainty, describe, weakest_of};
 use crate::view::Size;
 
-/// Side of the tiles of the depth map whose scores count as one observation, depth pixels: three sigmas of the local means. Like these, it
-/// grows with the object. Scores of the silhouette are summed by tiles of the image of the same side.
+/// Side of the tiles of the depth map whose scores count as one observation, depth pixels: three sigmas of the local
+/// means. It grows with the object, as they do. Scores of the silhouette are summed over tiles of the image with the
+/// same side.
 const TILE: f64 = 9.0;
 
 /// The linearised problem whose covariance is computed.
@@ -22,7 +23,7 @@ pub(super) struct Linearised<'a> {
 }
 
 impl Linearised<'_> {
-    /// Sums of the scores of each tile: contrast's on the depth map, the outline's on the image.
+    /// Sums of the scores of each tile: of the contrast on the depth map, and of the silhouette on the image.
     fn tiles(&self) -> [Vec<PoseVector>; 2] {
         let (samples, size) = (&self.objective.samples, self.problem.image.size);
         let tile = ((TILE * self.objective.unit()).ceil() as usize).div_ceil(samples.stride);
@@ -49,8 +50,9 @@ impl Linearised<'_> {
     }
 }
 
-/// The covariance of the linearisation that the objective holds, zero for held unknowns. The silhouette adds to the scores as it does to the
-/// information, because its errors are as real as those of the contrast. Student's correction is left out: the jackknife has one.
+/// The covariance of the linearisation in the objective, zero for held unknowns. The silhouette adds to the scores as
+/// it does to the information, because its errors are as real as those of the contrast. Student's correction is
+/// omitted, because the jackknife has one.
 fn covariance(linearised: &Linearised<'_>, held: &[bool; UNKNOWNS]) -> PoseMatrix {
     let [contrast, outline] = linearised.tiles();
     let mut scores = Scores::of(contrast.iter());

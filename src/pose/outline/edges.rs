@@ -1,23 +1,23 @@
-//! Edges of the image next to a line: the strongest gradient along its normal.
+//! Edges of the image near a line: the strongest gradient along its normal.
 //!
-//! Limits: brightness alone; an edge of print is one as well, which rounds and robust weights have to tell.
+//! Limits: only brightness is used. Printed edges count as well; the rounds and the robust weights have to reject them.
 
 use crate::view::{Gaussian, Size};
 
-/// Gaussian blurs, pixels, and how far along the normal an edge is looked for on each.
+/// For each level: Gaussian blur, and the reach of the search for an edge along the normal, pixels.
 pub const LEVELS: [(f64, f64); 3] = [(3.0, 14.0), (1.5, 7.0), (0.8, 3.5)];
-/// Steps along the normal, pixels.
+/// Step along the normal, pixels.
 const STEP: f64 = 0.5;
-/// Gradient that is no edge, brightness of 0 .. 1 for each pixel: two levels of 8 bit.
+/// Smallest gradient of an edge, brightness of 0 .. 1 per pixel: two levels of 8 bits.
 const LEAST_GRADIENT: f64 = 0.008;
 
-/// The brightness of a frame, blurred.
+/// Blurred brightness of a frame.
 pub struct Edges {
     size: Size,
     levels: Vec<Vec<f32>>,
 }
 
-/// An edge: how far along the normal, and how clear it is, 0 .. 1.
+/// An edge: its distance along the normal, and how clear it is, 0 .. 1.
 #[derive(Clone, Copy)]
 pub struct Edge {
     pub offset: f64,
@@ -29,8 +29,8 @@ impl Edges {
         Self { size, levels: LEVELS.iter().map(|&(blur, _)| blurred(size, grey, blur)).collect() }
     }
 
-    /// The strongest edge across a line through `place` with this unit normal; `None` where the frame ends or nothing
-    /// stands out.
+    /// The strongest edge along this unit normal of a line through `place`; `None` beyond the frame or without a clear
+    /// edge.
     pub fn nearest(&self, level: usize, place: [f64; 2], normal: [f64; 2]) -> Option<Edge> {
         let reach = (LEVELS[level].1 / STEP) as i32;
         let (mut best, mut sum, mut count) = (Edge { offset: 0.0, strength: 0.0 }, 0.0, 0.0);
@@ -45,7 +45,7 @@ impl Edges {
                 continue;
             }
             (sum, count) = (sum + slope, count + 1.0);
-            // Of two that are alike the nearer one.
+            // Of two similar edges the nearer one is taken.
             let weighed = slope * (1.0 - 0.5 * (offset / LEVELS[level].1).abs());
             if weighed > best.strength {
                 best = Edge { offset, strength: weighed };
@@ -54,7 +54,7 @@ impl Edges {
         if best.strength < LEAST_GRADIENT {
             return None;
         }
-        // One where it holds all of the contrast, zero where it is like its surroundings.
+        // One if the edge holds all of the contrast, zero if it is like its surroundings.
         let mean = sum / count;
         Some(Edge { strength: (1.0 - mean / best.strength).max(0.0), ..best })
     }

@@ -1,4 +1,4 @@
-//! What goes into a registration by outlines, and what comes out.
+//! Input and output of a registration from silhouettes.
 
 use nalgebra::Vector3;
 
@@ -7,29 +7,29 @@ use crate::pose::similarity::Similarity;
 use crate::pose::uncertainty::Uncertainty;
 use crate::view::{ColourView, DepthView, Normals};
 
-/// Two views whose outlines shall agree.
+/// Two views whose silhouettes have to agree.
 #[derive(Clone, Copy)]
 pub struct OutlineProblem<'a> {
     pub image: &'a ColourView,
     pub depth: &'a DepthView,
     /// Normals of the depth view's points.
     pub normals: &'a Normals,
-    /// What is told.
+    /// Prior about the initial pose.
     pub prior: PosePrior,
 }
 
-/// What outlines say.
+/// Result of a registration from silhouettes.
 #[derive(Clone, Debug)]
 pub struct OutlineReport {
     pub pose: Similarity,
-    /// Robust standard deviation of the rims about the mask's outline, pixels.
+    /// Robust standard deviation of the depth discontinuities about silhouette and edges, pixels.
     pub noise: f64,
     pub uncertainty: Uncertainty,
-    /// Whether its weakest rotation is as good as unseen: what was told of it is kept.
+    /// Whether the silhouettes do not constrain the weakest rotation, which then keeps its initial value.
     pub unseen: bool,
     /// The objective at the finest scale.
     pub cost: f64,
-    /// Number of rims.
+    /// Number of depth discontinuities.
     pub rims: usize,
 }
 

@@ -1,4 +1,4 @@
-//! The rounds of a registration by outlines.
+//! The rounds of a registration from silhouettes.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -16,55 +16,54 @@ use crate::pose::sums::Sums;
 use crate::pose::uncertainty::{Direction, describe};
 use crate::view::extent;
 
-/// Weights of rims off the mask's outline, and of outline that nothing covers.
+/// Weights of depth discontinuities off the silhouette, and of uncovered silhouette.
 const RIM: f64 = 1.0;
 const BARE: f64 = 0.3;
-/// Weight of rims beside edges of the image, which may be print: of 0.3 to 2 on the first frames of the captures 0.3 to 0.5
-/// leave least.
+/// Weight of depth discontinuities against edges of the image, which may be print (docs/lab/thresholds.md).
 const EDGE: f64 = 0.4;
 /// Weight of the prior.
 const PRIOR: f64 = 0.1;
-/// One sigma of the loss of outlines, pixels.
+/// One sigma of the edge bias, pixels.
 const LOSS_SIGMA: f64 = 2.0;
-/// Robust scales, pixels, and rounds of each.
+/// Robust scales, pixels, and number of rounds at each.
 const SCALES: [f64; 4] = [40.0, 14.0, 7.0, 3.5];
 const ROUNDS: usize = 6;
-/// Steps of a round.
+/// Number of steps of a round.
 const STEPS: usize = 3;
 /// Damping as a share of the diagonal.
 const DAMPING: f64 = 1e-3;
-/// Points that ask whether they leave the mask at most; outline pixels and rims at most.
+/// Maximum number of points that are tested against the mask, and of silhouette pixels and discontinuities.
 const MOST_POINTS: usize = 4000;
 const MOST_OUTLINE: usize = 1000;
 /// The last robust scale.
 const FINEST: f64 = SCALES[SCALES.len() - 1];
-/// Length of outline that errs together, pixels, and by how much errors exceed what residuals tell: masks, registration
-/// of the sensors and loss of outlines are wrong all one way.
+/// Length of silhouette, in pixels, whose errors count as one, and the factor by which errors exceed the residuals,
+/// because errors of masks, of the sensors' registration and of the edge bias all go one way.
 const CORRELATED: f64 = 8.0;
 const SIGMA_INFLATION: f64 = 3.0;
-/// Least noise of rims, pixels: a third of one.
+/// Smallest noise of the discontinuities, pixels.
 const LEAST_NOISE: f64 = 0.3;
-/// Variance of a rotation as a share of the prior's above which outlines do not see it.
+/// Variance of a rotation, as a share of the prior's, above which the silhouettes do not constrain it.
 const UNSEEN: f64 = 0.8;
 
-/// The unknowns: those of a pose without its scale, and the loss in the scale's place.
+/// Index of the edge bias, which takes the place of the scale among the unknowns.
 const LOSS: usize = SCALE;
 
-/// Registers by outlines; owns its memory.
+/// Registers from silhouettes; owns its memory.
 pub struct Outline {
-    /// Where there is a mask.
+    /// Present if the image has a mask.
     silhouette: Option<Silhouette>,
     edges: Edges,
-    /// The edge next to each rim, where there is one.
+    /// The edge beside each discontinuity, if there is one.
     matches: Vec<Option<([f64; 2], Edge)>>,
-    /// Pixels of the mask beside the outside.
+    /// Pixels of the mask next to a pixel off it.
     outline: Vec<[f64; 2]>,
     rims: Rims,
-    /// Places of the depth points in the image.
+    /// Image positions of the depth points.
     pixels: Vec<[f32; 2]>,
-    /// Points that ask whether they leave the mask.
+    /// Points that are tested against the mask.
     sample: Vec<u32>,
-    /// Outline pixels that nothing covers, and the point next to each.
+    /// Uncovered silhouette pixels, and the discontinuity nearest to each.
     bare: Vec<([f64; 2], u32)>,
     middle: Vector3<f64>,
     size: f64,
@@ -100,7 +99,7 @@ impl Outline {
         }
     }
 
-    /// The pose from `start`.
+    /// Registers from the pose `start`.
     pub fn register(&mut self, problem: &OutlineProblem<'_>, start: &Similarity) -> OutlineReport {
         let (mut pose, mut loss) = (*start, 0.0);
         for (stage, scale) in SCALES.into_iter().enumerate() {
@@ -127,7 +126,7 @@ impl Outline {
         Frame { centre: pose.apply(self.middle), length: pose.scale * self.size }
     }
 
-    /// Where the points fall, which of them are rims, and what of the outline is bare.
+    /// Finds the image positions of the points, the discontinuities, and the uncovered silhouette pixels.
     fn freeze(&mut self, problem: &OutlineProblem<'_>, pose: &Similarity) {
         let image = problem.image;
         for index in 0..self.pixels.len() {
@@ -153,7 +152,7 @@ impl Outline {
         }
     }
 
-    /// The edges next to the rims on a level of the image; none before the first.
+    /// Matches the discontinuities to edges on a level of the image; clears the matches without a level.
     fn match_edges(&mut self, level: Option<usize>, loss: f64) {
         self.matches.clear();
         let Some(level) = level else { return };
@@ -167,7 +166,7 @@ impl Outline {
         }));
     }
 
-    /// How a point's place in the image changes with the unknowns.
+    /// Derivatives of a point's image position by the unknowns.
     fn rows(
         &self,
         problem: &OutlineProblem<'_>,
@@ -185,7 +184,7 @@ impl Outline {
         Some((pixel, slopes.map(row)))
     }
 
-    /// The residual of a point against the mask's outline.
+    /// Residual of a point against the silhouette.
     fn against_mask(
         &self,
         problem: &OutlineProblem<'_>,
@@ -262,7 +261,7 @@ impl Outline {
         sums.add(&row, loss / LOSS_SIGMA, PRIOR, f64::INFINITY);
     }
 
-    /// What is said of the end.
+    /// The report on a pose and its edge bias.
     fn report(&mut self, problem: &OutlineProblem<'_>, pose: Similarity, loss: f64) -> OutlineReport {
         self.freeze(problem, &pose);
         self.match_edges(Some(LEVELS.len() - 1), loss);
@@ -290,12 +289,12 @@ impl Outline {
         }
     }
 
-    /// What outlines say of a pose as it is.
+    /// The report on a given pose, without an edge bias.
     pub fn judge(&mut self, problem: &OutlineProblem<'_>, pose: &Similarity) -> OutlineReport {
         self.report(problem, *pose, 0.0)
     }
 
-    /// Robust standard deviation of the rims about outline and edges.
+    /// Robust standard deviation of the discontinuities about silhouette and edges.
     fn noise(&self, problem: &OutlineProblem<'_>, pose: &Similarity, loss: f64) -> f64 {
         let rims = self.rims.rims.iter().filter(|rim| rim.is_outer);
         let against_mask = rims.filter_map(|rim| self.against_mask(problem, pose, loss, rim.index as usize));
@@ -308,7 +307,7 @@ impl Outline {
     }
 }
 
-/// The rotation that is known least, and its variance as a share of the prior's.
+/// The least determined rotation, and its variance as a share of the prior's.
 fn weakest_turn(covariance: &PoseMatrix, prior: f64) -> (Direction, f64) {
     let turns: Matrix3<f64> = covariance.fixed_view::<3, 3>(0, 0).into();
     let Some(eigen) = symmetric_eigen(&turns) else {

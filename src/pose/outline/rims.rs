@@ -1,9 +1,10 @@
-//! Which points of the depth map draw the object's outline under a pose.
+//! Depth discontinuities (`Rim`): the points of the depth map on the object's silhouette under a pose.
 //!
-//! Method: the points on a raster of cells as wide as the points are apart, nearest first; rims are the points of covered
-//! cells beside bare ones. Where the data end is not always where the object ends: a sharp rim of the depth map, where the
-//! surface faces the sensor and then stops, is one in every view; a soft limb, where the surface turns away, is one only
-//! in the view that it turns away from.
+//! Method: draws the points on a raster of cells as wide as the spacing of the points, nearest first. Discontinuities
+//! are the points of covered cells next to empty or much farther ones. The end of the data is not always the end of the
+//! object. A sharp edge of the depth map, where the surface faces the sensor and then stops, lies on the silhouette in
+//! every view. An occluding contour, where the surface turns away, lies on it only in the view from which it turns
+//! away.
 
 use nalgebra::Vector3;
 
@@ -11,43 +12,43 @@ use super::problem::OutlineProblem;
 use crate::pose::similarity::Similarity;
 use crate::view::Size;
 
-/// Neighbours in the depth map whose distance differs by more than this share of it are no neighbours on the surface: 15
-/// mm at 0.75 m, where the sensors of the captures stand.
+/// Neighbours in the depth map whose distances differ by more than this share do not belong to one surface: 15 mm at
+/// 0.75 m.
 const JUMP: f64 = 0.02;
-/// Cosine between normal and sight of the depth camera above which a rim is sharp, and where half of it is; normals of
-/// real sensors at a limb do not fall below 0.3.
+/// Cosines between normal and ray of the depth camera at which a discontinuity begins to count as sharp, and from which
+/// it does fully; normals of real sensors at an occluding contour do not fall below 0.3.
 const SHARP: [f64; 2] = [0.35, 0.7];
-/// Cosine between normal and sight of the colour camera below which a surface turns away, and what such a rim weighs.
+/// Cosine between normal and ray of the colour camera below which a surface turns away, and the weight of such a point.
 const LIMB: f64 = 0.45;
 const LIMB_WEIGHT: f64 = 0.5;
 
-/// A point of the depth map on the outline.
+/// A depth discontinuity: a point of the depth map on the object's silhouette.
 #[derive(Clone, Copy)]
 pub struct Rim {
     pub index: u32,
     pub weight: f64,
-    /// Outward, in the image.
+    /// Outward unit normal in the image.
     pub normal: [f64; 2],
-    /// Whether background is beside it; else another part of the object.
+    /// Whether background is beside the point rather than another part of the object.
     pub is_outer: bool,
 }
 
-/// Finds rims; owns its memory.
+/// Finds depth discontinuities; owns its memory.
 pub struct Rims {
     raster: Size,
-    /// Pixels of a cell's edge.
+    /// Width of a cell in image pixels.
     cell: f64,
-    /// The nearest point of each cell and its distance.
+    /// Nearest point of each cell, and its depth.
     owners: Vec<u32>,
     depths: Vec<f32>,
-    /// How sharp the depth map's own rim is at each point; zero inside.
+    /// Sharpness of the depth map's own edge at each point; zero inside.
     sharpness: Vec<f32>,
     pub rims: Vec<Rim>,
 }
 
-/// Cells around a rim that tell its normal.
+/// Reach, in cells, of the neighbourhood that determines the normal of a discontinuity.
 const AROUND: usize = 5;
-/// No point.
+/// Marks a cell without a point.
 const BARE: u32 = u32::MAX;
 
 impl Rims {
@@ -67,7 +68,7 @@ impl Rims {
         }
     }
 
-    /// The rims under a pose. `pixels` are the places of the points, NaN where missing.
+    /// Finds the discontinuities under a pose. `pixels` are the image positions of the points, NaN where missing.
     pub fn update(&mut self, problem: &OutlineProblem<'_>, pose: &Similarity, pixels: &[[f32; 2]]) {
         self.draw(problem, pose, pixels);
         self.rims.clear();
@@ -83,12 +84,12 @@ impl Rims {
         }
     }
 
-    /// Whether a cell is bare or much farther than another one.
+    /// Whether the other cell is empty or much farther away.
     fn is_beyond(&self, cell: usize, other: usize) -> bool {
         f64::from(self.depths[other]) > (1.0 + JUMP) * f64::from(self.depths[cell])
     }
 
-    /// The direction of what is beyond a cell, and whether most of that is bare.
+    /// Direction towards the cells beyond a cell, and whether most of them are empty.
     fn outward(&self, cell: usize) -> Option<([f64; 2], bool)> {
         let (column, row) = self.raster.position(cell);
         let (mut sum, mut bare, mut count) = ([0.0; 2], 0, 0);
@@ -106,12 +107,12 @@ impl Rims {
         (length > 0.0).then(|| (sum.map(|part| part / length), 2 * bare > count))
     }
 
-    /// Pixels of a cell's edge: how far apart rims are.
+    /// Width of a cell in image pixels: the spacing of discontinuities.
     pub const fn cell(&self) -> f64 {
         self.cell
     }
 
-    /// Whether a pixel of the image is covered.
+    /// Whether a point covers a pixel of the image.
     pub fn covers(&self, [column, row]: [f64; 2]) -> bool {
         let at = self.raster.nearest((column / self.cell) as f32, (row / self.cell) as f32);
         at.is_some_and(|cell| self.owners[cell] != BARE)
@@ -135,7 +136,7 @@ impl Rims {
     }
 }
 
-/// How sharp the depth map's own rim is at a point: nothing inside, nothing at the frame, where it is cut.
+/// Sharpness of the depth map's own edge at a point; zero inside and at the frame, where the map is cut off.
 fn sharpness(problem: &OutlineProblem<'_>, index: usize) -> f32 {
     let depth = problem.depth;
     if !depth.points.is_valid(index) {
@@ -154,14 +155,14 @@ fn sharpness(problem: &OutlineProblem<'_>, index: usize) -> f32 {
     ((cosine(problem, index, &sight) - none) / (full - none)).clamp(0.0, 1.0) as f32
 }
 
-/// The weight of a surface that turns away from the colour camera at `eye`.
+/// Weight of a surface that turns away from the colour camera at `eye`.
 fn limb(problem: &OutlineProblem<'_>, pose: &Similarity, eye: &Vector3<f64>, index: usize) -> f64 {
     let is_parallel = problem.image.camera.is_orthographic();
     let sight = if is_parallel { pose.rotation.tr_mul(&Vector3::z()) } else { problem.point(index) - eye };
     LIMB_WEIGHT * (1.0 - cosine(problem, index, &sight) / LIMB).max(0.0)
 }
 
-/// |cosine| between normal and sight; one where there is no normal.
+/// |cosine| between normal and ray; one without a normal.
 fn cosine(problem: &OutlineProblem<'_>, index: usize, sight: &Vector3<f64>) -> f64 {
     let normal = Vector3::from(problem.normals.get(index).map(f64::from));
     let cosine = normal.dot(sight).abs() / sight.norm();

@@ -1,4 +1,4 @@
-//! Annealing: rounds of damped Gauss-Newton whose robust scale shrinks to that of the noise, from coarse to fine.
+//! Annealing: rounds of damped Gauss-Newton, coarse to fine, whose robust scale shrinks to that of the noise.
 
 use super::phase::{Descent, Phase};
 use super::points::Sampling;
@@ -9,24 +9,24 @@ use crate::error::Result;
 use crate::pose::descent::{Damping, Lowered};
 use crate::pose::residuals::SHRINKING;
 
-/// Gauss-Newton steps of a round, and attempts to find the damping of each.
+/// Maximum number of Gauss-Newton steps of a round, and of attempts to damp each.
 const MOST_STEPS: usize = 6;
 const MOST_ATTEMPTS: usize = 8;
-/// A round on the way to the robust scale of the noise is done with a step below this, in the same units: the next one moves
-/// the pose by as much or more.
+/// A round before the final robust scale ends with a step below this, in radians and object sizes, because the next
+/// round moves the pose by as much or more.
 const SMALL_STEP: f64 = 1e-3;
-/// A round at that scale is done with a step below this, 0.002 degrees: less than [`FINE_SETTLED`].
+/// A round at the final scale ends with a step below this, 0.002 degrees: less than [`FINE_SETTLED`].
 const SMALL_FINE_STEP: f64 = 3e-5;
-/// A coarse level is done when a round rotates by less, degrees.
+/// A coarse level ends with a round that rotates by less, degrees.
 const COARSE_SETTLED: f64 = 0.3;
-/// Annealing is done when a round at the final scale rotates by less, degrees: points that appear and disappear at the
-/// rim change the pose by more than that.
+/// Annealing ends with a round at the final scale that rotates by less, degrees: points that appear and disappear at
+/// the occluding contour change the pose by more than that.
 const FINE_SETTLED: f64 = 3e-3;
-/// Rounds at the final scale after which only such points still change the pose.
+/// Number of rounds at the final scale after which only such points still change the pose.
 const MOST_FINE_ROUNDS: usize = 4;
 
 impl Photometric {
-    /// The beginning of a round of annealing: its points, their light, its robust scale.
+    /// Begins a round of annealing: chooses its points, their light and its robust scale.
     pub(super) fn begin_annealing(
         &mut self,
         problem: &PhotometricProblem<'_>,
@@ -52,7 +52,7 @@ impl Photometric {
         }))
     }
 
-    /// A step of pose and light that lowers the objective.
+    /// Takes a step of pose and light that lowers the objective.
     pub(super) fn descend(&mut self, problem: &PhotometricProblem<'_>, mut descent: Descent) -> Result<Phase> {
         let Descent { level, frame, .. } = descent;
         self.iterations += 1;
@@ -77,7 +77,7 @@ impl Photometric {
         Ok(if ends { self.after_annealing_round(&descent) } else { Phase::AnnealingStep(descent) })
     }
 
-    /// What follows a round of annealing.
+    /// The phase after a round of annealing.
     fn after_annealing_round(&mut self, &Descent { level, fine_rounds, before, at_noise, .. }: &Descent) -> Phase {
         let change = before.degrees_to(&self.state.pose);
         match level {

@@ -1,13 +1,14 @@
-//! Covariance of the pose: the [sandwich](crate::pose::sandwich) over tiles of the depth map (docs/method/uncertainty.md).
+//! Covariance of the pose: the [sandwich](crate::pose::sandwich) over tiles of the depth map
+//! (docs/method/uncertainty.md).
 //!
-//! M is the matrix of the pose's equations with the light eliminated, and so is the score of a tile. The
-//! [jackknife](super::jackknife) adds the errors that correlate over more than a tile.
+//! M is the matrix of the pose's equations with the light eliminated, and the score of a tile is that of the same
+//! equations. The [jackknife](super::jackknife) adds the errors that correlate over more than a tile.
 //!
-//! M itself is in part an effect of noise: gradients of a noisy image are noisy as well, and noise squared looks like
-//! information. A sphere, whose colours tell nothing of its rotation, has as much of it as F = sum w s^2 k D^T D with s
-//! the noise of the image, D = d pixel / d unknowns and k the covariance of the two gradients of white noise. So the
-//! eigenvalues lambda of M over F (one where there is nothing but noise, 12 to 900 on the built-in surfaces) say what
-//! the colours tell, and sigmas grow by lambda / (lambda - 1) along each of their directions.
+//! Noise contributes to M itself: gradients of a noisy image are noisy as well, and squared noise looks like
+//! information. On a sphere, whose colours carry no information about its rotation, M amounts to F = sum w s^2 k D^T D
+//! with the noise s of the image, D = d pixel / d unknowns, and the covariance k of the two gradients of white noise.
+//! The eigenvalues lambda of M over F (one where there is nothing but noise, 12 to 900 on the built-in surfaces)
+//! therefore measure the information of the colours, and sigmas grow by lambda / (lambda - 1) along each eigenvector.
 
 use super::equations::{ReducedSystem, SquareSums, add_product, folded, no_sums, scaled};
 use super::evaluation::Evaluation;
@@ -21,25 +22,26 @@ use crate::view::Size;
 /// Side of the tiles of the depth map whose scores count as one observation, pixels: twice the reach of normals and
 /// splines.
 const TILE: usize = 8;
-/// Factor on the sigma from tiles where model errors, not noise, make the residuals. Set on photographs under one lamp: those with residuals
-/// above twice their noise end 4 to 17 sigmas off, the others 1 to 3.
+/// Factor on the sigma from tiles where the residuals are model errors instead of noise; set on photographs under one
+/// lamp (docs/lab/thresholds.md).
 const MODEL_SIGMA_INFLATION: f64 = 2.0;
-/// k: covariance of the gradients of white noise of variance one, once of the image's spline and once of the slightly
-/// blurred one's, mean over the positions in a cell (by quadrature over both splines' responses to one pixel).
+/// k: covariance of the gradients of white noise of variance one, by the image's spline and by that of the slightly
+/// blurred image, averaged over the positions in a cell (by quadrature over both splines' responses to one pixel).
 const GRADIENT_COVARIANCE: f64 = 0.144;
-/// Least lambda - 1: chance puts lambda of a ball to 0.85 .. 1.15, and a sigma a thousand times as large is unknown.
+/// Smallest lambda - 1. By chance lambda is 0.85 to 1.15 on a ball, and a sigma enlarged a thousandfold counts as
+/// unknown.
 const LEAST_SIGNAL: f64 = 1e-3;
-/// Standard deviations, those of colours per channel and in log units.
+/// Standard deviations per channel, log units.
 #[derive(Clone, Copy)]
 pub(super) struct Noise {
     /// Of the residuals at the present pose.
     pub residuals: f64,
-    /// Of the image itself, whatever the pose.
+    /// Of the image, regardless of the pose.
     pub image: f64,
 }
 
 impl Noise {
-    /// Factor on one sigma for residuals above the noise of the image.
+    /// Factor on sigmas for residuals above the noise of the image.
     fn sigma_inflation(&self) -> f64 {
         let of_model = share_of_model(self.residuals, self.image);
         (1.0 + (MODEL_SIGMA_INFLATION * MODEL_SIGMA_INFLATION - 1.0) * of_model).sqrt()
@@ -50,7 +52,7 @@ impl Noise {
 #[derive(Clone, Copy, Default)]
 struct Tile {
     score: PoseVector,
-    /// Weighted residuals of the three channels, and the weights.
+    /// Sums of the weighted residuals of the three channels and of the weights.
     shared: [f64; 4],
 }
 
@@ -62,7 +64,7 @@ pub(super) struct Tiles {
 }
 
 impl Tiles {
-    /// Memory for the tiles of a depth map.
+    /// Allocates the tiles of a depth map.
     pub fn new(depth: Size) -> Self {
         Self { tiles: vec![Tile::default(); depth.width.div_ceil(TILE) * depth.height.div_ceil(TILE)], structure: 0.0 }
     }
@@ -88,13 +90,13 @@ impl Tiles {
         scores.covariance(gain.as_ref(), noise.sigma_inflation() * growth, &held)
     }
 
-    /// Root mean covariance of residuals of one tile, log units, by the last sums: what the model leaves out reaches over
-    /// neighbours, white noise does not.
+    /// Spatial covariance of the residuals by the last sums, as a root mean within tiles, log units: errors of the
+    /// model extend over neighbours, white noise does not.
     pub const fn structure(&self) -> f64 {
         self.structure
     }
 
-    /// Sums the scores and residuals of each tile, and F.
+    /// Sums the scores and residuals of each tile. Returns F.
     fn sum_scores(
         &mut self,
         evaluation: &Evaluation<'_>,
@@ -102,13 +104,13 @@ impl Tiles {
         reduced: &ReducedSystem,
         noise: Noise,
     ) -> SquareSums {
-        // Three channels.
+        // For three channels.
         let gradient_variance = 3.0 * GRADIENT_COVARIANCE * noise.image.powi(2);
         let mut noise_information = no_sums();
         let size = evaluation.problem.depth_size;
         let across = size.width.div_ceil(TILE);
         self.tiles.fill(Tile::default());
-        // Products of a point with itself, which are no pairs: of residuals, of weights.
+        // Products of each point with itself, which are not pairs: of residuals, and of weights.
         let mut own = [Doubles::splat(0.0); 2];
         evaluation.for_each_linearised(frame, |indices, points, weight| {
             let score = scaled(&reduced.score(points), weight).map(Doubles::array);
@@ -131,14 +133,14 @@ impl Tiles {
             residuals += red * red + green * green + blue * blue;
             weights += weight * weight;
         }
-        // 0 / 0 where no tile has a pair.
+        // This is 0 / 0 if no tile has a pair.
         self.structure = (residuals / (3.0 * weights)).max(0.0).sqrt();
         noise_information
     }
 }
 
 /// The map of steps that stretches each eigenvector of `matrix` over `noise_information` by lambda / (lambda - 1);
-/// `None` where the points do not move in every direction.
+/// `None` if the points do not move in every direction.
 fn sigma_growth(matrix: &PoseMatrix, noise_information: &PoseMatrix) -> Option<PoseMatrix> {
     let root = noise_information.cholesky()?.l();
     let inverse = inverse(&root)?;

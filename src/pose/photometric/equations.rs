@@ -1,11 +1,11 @@
-//! The equations of pose and light, the light projected out.
+//! The equations of pose and light, with the light eliminated.
 //!
-//! With r the residuals, J = dr/dpose, K = dr/dlight, weights w, and Z the instrumental variables (Z = J for least
-//! squares) the joint system is [A C; E^T D] [x; y] = -[a; d], A = sum w Z^T J, C = sum w
-//! Z^T K, E = sum w J^T K, D = sum w K^T K + precision of the light, a = sum w Z^T r, d = sum w K^T r. Eliminating y
-//! leaves the Schur complement (A - C D^-1 E^T) x = -(a - C D^-1 d), the system of the pose where the light follows it
-//! at its best; then y = -D^-1 (d + E^T x). A known light has one unknown only, the exposure: it takes the first place
-//! of y, and K = -1 in all channels.
+//! Let r be the residuals, J = dr/dpose, K = dr/dlight, w the weights, and Z the instrumental variables (Z = J for
+//! least squares). The joint system is [A C; E^T D] [x; y] = -[a; d] with A = sum w Z^T J, C = sum w Z^T K, E = sum w
+//! J^T K, D = sum w K^T K + precision of the light, a = sum w Z^T r, d = sum w K^T r. Eliminating y leaves the Schur
+//! complement (A - C D^-1 E^T) x = -(a - C D^-1 d), the system of the pose with the light at its optimum; then y =
+//! -D^-1 (d + E^T x). A known light has a single unknown, the exposure, which takes the first place of y with K = -1 in
+//! all channels.
 
 use nalgebra::{Cholesky, Const, SMatrix};
 
@@ -16,18 +16,18 @@ use crate::numeric::{Doubles, Real};
 use crate::pose::increment::{PoseMatrix, PoseVector, UNKNOWNS, fix_unknowns, inverse};
 use crate::pose::sums::Sums;
 
-/// A row for each unknown of the pose, a column for each of the light.
+/// One row for each unknown of the pose, one column for each of the light.
 type PoseByLight = SMatrix<f64, UNKNOWNS, COEFFICIENTS>;
 
 /// Relative damping of unknowns without any information, so that the factorisation exists: rounding of 10^6 terms.
 const LEAST_DAMPING: f64 = 1e-12;
 
-/// Sums over points: those of the light, and those that a pose adds.
+/// Sums over points: those of the light, and those for the pose.
 pub(super) struct Equations {
     light: LightEquations,
     /// A.
     pose: SquareSums,
-    /// C^T where Z is not J; else it is E^T.
+    /// C^T if Z is not J; otherwise C^T is E^T.
     instrument_cross: Option<CrossSums>,
     /// E^T.
     cross: CrossSums,
@@ -35,32 +35,32 @@ pub(super) struct Equations {
     score: Derivative,
 }
 
-/// Sums of points side by side, each lane by itself.
+/// Sums over points side by side; each lane has separate sums.
 pub(super) type SquareSums = [Derivative; UNKNOWNS];
 type CrossSums = [Derivative; COEFFICIENTS];
 
 /// Sums over points for the light alone: D and d.
 pub(super) struct LightEquations {
-    /// One channel's block of D up to its diagonal: all three have the same weights.
+    /// One channel's block of D up to its diagonal; all three channels have the same weights.
     gram: [[Doubles; HARMONICS]; HARMONICS],
-    /// The points' share of d, channel by channel.
+    /// Contribution of the points to d, channel by channel.
     point_gradient: [[Doubles; HARMONICS]; 3],
-    /// The prior's share of D and d.
+    /// Contribution of the prior to D and d.
     precision: CoefficientMatrix,
     prior_gradient: Coefficients,
-    /// Whether only the exposure is unknown of the light.
+    /// Whether the exposure is the only unknown of the light.
     is_known: bool,
 }
 
-/// The pose's own system after the elimination of the light.
+/// The equations of the pose alone, after the elimination of the light.
 pub(super) struct ReducedSystem {
-    /// A - C D^-1 E^T: the information of the pose where Z = J.
+    /// A - C D^-1 E^T: the information of the pose if Z = J.
     pub matrix: PoseMatrix,
     /// a - C D^-1 d.
     score: PoseVector,
     /// C D^-1.
     score_by_light: PoseByLight,
-    /// D^-1 E^T: how the light follows a step of the pose.
+    /// D^-1 E^T: response of the light to a step of the pose.
     light_by_pose: SMatrix<f64, COEFFICIENTS, UNKNOWNS>,
     /// D^-1 d.
     light: Coefficients,
@@ -78,7 +78,7 @@ impl LightEquations {
         }
     }
 
-    /// Enters points by the harmonics of their normals.
+    /// Adds points, given the harmonics of their normals.
     #[inline(always)]
     pub fn add(&mut self, basis: &[Doubles; HARMONICS], residual: &[Doubles; 3], weight: Doubles) {
         if self.is_known {
@@ -100,7 +100,7 @@ impl LightEquations {
         }
     }
 
-    /// Enters the prior of an unknown light; `weight` is its share against squared residuals, `off` the light less the
+    /// Adds the prior of an unknown light; `weight` is relative to squared residuals, `off` is the light minus the
     /// mean.
     pub fn add_prior(&mut self, prior: &LightPrior, weight: f64, off: &Coefficients) {
         if !self.is_known {
@@ -109,7 +109,7 @@ impl LightEquations {
         }
     }
 
-    /// The light's step; `None` where the points do not determine it.
+    /// The step of the light; `None` if the points do not determine it.
     pub fn step(&self) -> Option<Coefficients> {
         self.factor().map(|factor| -factor.solve(&self.gradient()))
     }
@@ -142,7 +142,7 @@ impl LightEquations {
 }
 
 impl Equations {
-    /// No points yet.
+    /// Equations without points.
     pub fn new(light_is_known: bool, has_instruments: bool) -> Self {
         Self {
             light: LightEquations::new(light_is_known),
@@ -153,7 +153,7 @@ impl Equations {
         }
     }
 
-    /// Enters points.
+    /// Adds points.
     #[inline(always)]
     pub fn add(&mut self, points: &LinearisedPoints, weight: Doubles) {
         self.light.add(&points.basis, &points.residual, weight);
@@ -171,16 +171,16 @@ impl Equations {
         }
     }
 
-    /// Enters the prior of an unknown light, see [`LightEquations::add_prior`].
+    /// Adds the prior of an unknown light, see [`LightEquations::add_prior`].
     pub fn add_prior(&mut self, prior: &LightPrior, weight: f64, off: &Coefficients) {
         self.light.add_prior(prior, weight, off);
     }
 
-    /// Takes off what the noise of normals added: `noise` is that of products of harmonics, and shading, its turns and K
-    /// are their sums under this light.
+    /// Subtracts the contribution of noisy normals. `noise` is the contribution to products of harmonics; shading, its
+    /// derivatives by rotation, and K are linear combinations of the harmonics under this light.
     #[inline(never)]
     pub fn take_off(&mut self, noise: SMatrix<f64, HARMONICS, HARMONICS>, light: &Light) {
-        // In one of the lanes.
+        // The value in one of the lanes.
         let once = |value: f64| Doubles::from(std::array::from_fn(|lane| if lane == 0 { value } else { 0.0 }));
         for (channel, coefficients) in light.0.iter().enumerate() {
             let shade = SMatrix::<f64, HARMONICS, 1>::from(*coefficients);
@@ -210,10 +210,10 @@ impl Equations {
         }
     }
 
-    /// Eliminates the light; `None` where the points do not determine it.
+    /// Eliminates the light; `None` if the points do not determine it.
     pub fn reduce(&self) -> Option<ReducedSystem> {
         let factor = self.light.factor()?;
-        // E^T and C^T: a row for each coefficient.
+        // E^T and C^T: one row for each coefficient.
         let cross = folded(&self.cross);
         let instrument_cross = self.instrument_cross.as_ref().map(folded);
         let light_by_pose = factor.solve(&cross);
@@ -231,14 +231,14 @@ impl Equations {
 }
 
 impl ReducedSystem {
-    /// Enters sums that the light has no part in.
+    /// Adds sums that do not depend on the light.
     pub fn add(&mut self, sums: &Sums) {
         self.matrix += sums.symmetric();
         self.score += sums.gradient;
     }
 
-    /// The step of pose and light, the pose's damped by a share of its diagonal; `held` unknowns stay. `None` where it
-    /// is not finite.
+    /// The step of pose and light, with the pose damped by a share of its diagonal; `held` unknowns do not move. `None`
+    /// if the step is not finite.
     pub fn step(&self, damping: f64, held: &[bool; UNKNOWNS]) -> Option<Step> {
         let mut matrix = self.matrix;
         let mut score = self.score;
@@ -253,7 +253,8 @@ impl ReducedSystem {
         (pose.norm().is_finite() && light.norm().is_finite()).then_some(Step { pose, light })
     }
 
-    /// The score of points, their share of the reduced system's right side: sum over channels of (Z - C D^-1 K^T) r.
+    /// Scores of points, their contributions to the right-hand side of the reduced system: sum over channels of (Z - C
+    /// D^-1 K^T) r.
     pub fn score(&self, points: &LinearisedPoints) -> Derivative {
         let [mut sum] = no_sums();
         for (channel, &residual) in points.residual.iter().enumerate() {
@@ -275,7 +276,7 @@ impl ReducedSystem {
     }
 }
 
-/// Sums of nothing yet.
+/// Sums before any points.
 pub(super) fn no_sums<const ROWS: usize>() -> [Derivative; ROWS] {
     [[Doubles::splat(0.0); UNKNOWNS]; ROWS]
 }
@@ -302,13 +303,13 @@ pub(super) fn scaled(row: &Derivative, share: Doubles) -> Derivative {
     scaled
 }
 
-/// The sums over all lanes.
+/// Sums over all lanes.
 #[inline(never)]
 pub(super) fn folded<const ROWS: usize>(sums: &[Derivative; ROWS]) -> SMatrix<f64, ROWS, UNKNOWNS> {
     SMatrix::from_fn(|row, column| sums[row][column].sum())
 }
 
-/// Adds K^T row with K = -basis of this channel, or -1 where only the exposure is unknown.
+/// Adds K^T row, where K = -basis of this channel, or -1 if the exposure is the only unknown.
 #[inline(always)]
 fn add_cross(
     sums: &mut CrossSums,

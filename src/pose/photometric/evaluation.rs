@@ -1,5 +1,5 @@
-//! Sums over the points of a registration at one state of pose and light: the objective, the linearised equations, the
-//! noise and the share of inliers.
+//! Sums over the points of a registration at one state of pose and light: objective, linearised equations, noise, share
+//! of inliers.
 
 use super::equations::{Equations, LightEquations, ReducedSystem};
 use super::normal_noise::NormalNoise;
@@ -13,7 +13,7 @@ use crate::light::{Coefficients, basis};
 use crate::numeric::{DOUBLE_LANES, Doubles, Real, dot, quantile, robust};
 use crate::pose::increment::Frame;
 
-/// Points whose weight is below this are left out of the noise: their residuals come from their normals, not from the
+/// Points with a smaller weight do not count for the noise: their residuals come from their normals, not from the
 /// image.
 const LEAST_WEIGHT_FOR_NOISE: f64 = 0.25;
 
@@ -22,15 +22,16 @@ pub(super) struct Evaluation<'a> {
     pub problem: &'a PhotometricProblem<'a>,
     pub points: &'a VisiblePoints,
     pub relief: Option<&'a Relief>,
-    /// The image under the light of the state.
+    /// The image model under the light of the state.
     pub model: ColourModel<'a>,
     pub state: &'a State,
     pub weighting: Weighting,
 }
 
-/// Variance of a normal along each of two tangents over the square of the error that its cubic claims: the error is that
-/// of both together, and counts the Gaussian weights of a window as if they were inverse variances. That makes it 1 / 0.62 of the
-/// variance that white noise leaves (0.617 to 0.634 for windows of 2 to 8 pixels, by summation).
+/// Ratio of the variance of a normal along each of two tangents to the square of the error that its cubic fit reports.
+/// That error covers both tangents together, and treats the Gaussian weights of a window as inverse variances, so that
+/// its square is 1 / 0.62 of the variance that white noise leaves (0.617 to 0.634 for windows of 2 to 8 pixels, by
+/// summation).
 const NOISE_VARIANCE: f64 = 0.31;
 
 impl Evaluation<'_> {
@@ -43,7 +44,7 @@ impl Evaluation<'_> {
         sum + self.weighting.prior * self.problem.prior.squared_distance(&self.state.light)
     }
 
-    /// Sum of w rho; a point that left the mask counts with the largest rho, the square of the robust scale.
+    /// Sum of w rho. A point that left the mask counts with the largest rho, the square of the robust scale.
     pub fn data_term(&self) -> f64 {
         let largest = self.largest_rho();
         let mut sum = Doubles::splat(0.0);
@@ -78,19 +79,20 @@ impl Evaluation<'_> {
         f64::from(quantile(scratch, 0.5)) / robust::MEDIAN_OF_THREE
     }
 
-    /// The equations of the pose, the light eliminated; `None` where the points do not determine the light.
+    /// The equations of the pose with the light eliminated; `None` if the points do not determine the light.
     pub fn reduced_system(&self, frame: &Frame) -> Option<ReducedSystem> {
         self.system_without_noise(frame, None)
     }
 
-    /// The same by instrumental variables, without what white noise of the normals adds: normals that are off bend the light
-    /// towards less contrast, and the pose follows. With it where what is left would not determine the light.
+    /// The same by instrumental variables, minus the contribution of white noise of the normals, which biases the light
+    /// towards less contrast, and with it the pose. The contribution stays in if the light would be undetermined
+    /// without it.
     pub fn unbiased_system(&self, frame: &Frame) -> Option<ReducedSystem> {
         let noise = self.problem.depth_noise;
         self.system_without_noise(frame, self.problem.normal_error.filter(|_| noise.is_white && noise.is_visible()))
     }
 
-    // One copy of it: visitors download each.
+    // Not inlined, because every copy adds to the download.
     #[inline(never)]
     fn system_without_noise(&self, frame: &Frame, errors: Option<&[f32]>) -> Option<ReducedSystem> {
         let (problem, pose) = (self.problem, &self.state.pose);
@@ -122,7 +124,7 @@ impl Evaluation<'_> {
         samples.extend(points.map(|points| self.model.sample(points)));
     }
 
-    /// The equations of the light alone; `samples` are those of the same points under the same pose.
+    /// The equations of the light alone; `samples` belong to the same points under the same pose.
     pub fn light_equations(&self, samples: &[Samples]) -> LightEquations {
         let mut equations = LightEquations::new(self.problem.light.is_some());
         for ((indices, weight), samples) in self.points.lane_groups().zip(samples) {
@@ -135,7 +137,7 @@ impl Evaluation<'_> {
         equations
     }
 
-    /// Visits the points side by side with their indices and weights: their own times the robust ones.
+    /// Visits the points side by side with their indices and weights: each point's weight times its robust weight.
     #[inline(always)]
     pub fn for_each_linearised(&self, frame: &Frame, mut visit: impl FnMut(&Indices, &LinearisedPoints, Doubles)) {
         let (problem, pose) = (self.problem, &self.state.pose);
@@ -147,7 +149,7 @@ impl Evaluation<'_> {
         }
     }
 
-    /// Visits the points with their weights, whether the image shows them (one or zero) and |r|^2.
+    /// Visits the points with their weights, whether the image shows them (one or zero), and |r|^2.
     #[inline(always)]
     fn for_each_square(&self, mut visit: impl FnMut(Doubles, Doubles, Doubles)) {
         let (problem, pose) = (self.problem, &self.state.pose);
@@ -159,7 +161,7 @@ impl Evaluation<'_> {
         }
     }
 
-    /// Sums of a fit of the albedo that goes with the relief.
+    /// Sums for a fit of the albedo that follows the relief.
     pub fn relief_sums(&self, samples: &[Samples]) -> ReliefSums {
         let mut sums = ReliefSums::new();
         let Some(relief) = self.relief else { return sums };
@@ -180,7 +182,7 @@ impl Evaluation<'_> {
         sums
     }
 
-    /// Residuals less the albedo that goes with the relief.
+    /// Residuals minus the albedo that follows the relief.
     #[inline(always)]
     fn less_albedo(&self, indices: &Indices, residual: [Doubles; 3]) -> [Doubles; 3] {
         let Some(relief) = self.relief else { return residual };

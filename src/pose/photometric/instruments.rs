@@ -1,5 +1,5 @@
-//! Rounds with instrumental variables: sum w Z^T r = 0 in place of sum w J^T r = 0, because the gradients J of a noisy image are noisy
-//! as well (docs/method/registration.md).
+//! Rounds with instrumental variables: sum w Z^T r = 0 instead of sum w J^T r = 0, because the gradients J of a noisy
+//! image are noisy as well (docs/method/registration.md).
 
 use super::phase::Phase;
 use super::points::Sampling;
@@ -9,21 +9,22 @@ use super::state::State;
 use crate::error::Result;
 use crate::pose::increment::Frame;
 
-/// A step below this, in radians and object sizes, changes nothing: 1e-5 degrees.
+/// A step below this, in radians and object sizes, is negligible: 1e-5 degrees.
 const SETTLED_STEP: f64 = 1e-7;
-/// Rounds with instrumental variables: the visible points follow in the first, and stay in the others.
+/// Maximum number of rounds with instrumental variables. The first chooses the visible points; the others keep them.
 const INSTRUMENTAL_ROUNDS: usize = 3;
 const MOST_INSTRUMENTAL_STEPS: usize = 12;
-/// Where there are more points than annealing needs, these rounds go first with the points of the annealing and then with
-/// all of them, and end when no unknown moves by more than this share of its sigma: steps halve, so that as much is left.
+/// If there are more points than annealing needs, these rounds run first on the points of the annealing and then on all
+/// of them. They end when no unknown moves by more than this share of its sigma; because steps halve, about as much
+/// remains.
 const SETTLED_SIGMAS: f64 = 0.02;
-/// These rounds are undone when they raise the objective by more than this share: they should only trade noise. Least squares
-/// seek places between pixels, where a cubic spline leaves 0.572 of the variance of white noise, 0.756 along either axis;
-/// what they find there is lost again on the pixels.
+/// These rounds are undone if they raise the objective by more than this share, because they should only trade noise.
+/// Least squares favours positions between pixels, where a cubic spline leaves 0.572 of the variance of white noise
+/// (0.756 along either axis), and loses that gain at the pixels.
 const LARGEST_RISE: f64 = 1.0 / 0.572 - 1.0;
 
 impl Photometric {
-    /// The beginning of a round of sum w Z^T r = 0: the visible points follow in the first.
+    /// Begins a round of sum w Z^T r = 0; the first round chooses the visible points.
     pub(super) fn begin_instrumental(&mut self, problem: &PhotometricProblem<'_>, round: usize) -> Result<Phase> {
         self.rounds += 1;
         let frame = match round {
@@ -38,9 +39,9 @@ impl Photometric {
         Ok(Phase::InstrumentalStep { round, frame, steps: 0, last: f64::INFINITY })
     }
 
-    /// A step of such a round: undamped, for there is no objective that it has to lower. After the first round, whose steps may
-    /// grow on their way, one that is longer than the one before is not taken: the pose sought may repel what rounding puts
-    /// beside it, by a third with each step.
+    /// Takes a step of such a round, undamped because there is no objective to lower. Steps of the first round may
+    /// grow. Later rounds reject a step longer than the previous one, because the solution may repel a pose that
+    /// rounding puts beside it, by a third with each step.
     pub(super) fn step_by_instruments(
         &mut self,
         problem: &PhotometricProblem<'_>,

@@ -8,10 +8,9 @@ use crate::error::Result;
 use crate::pose::increment::{Frame, PoseMatrix, PoseVector};
 use crate::pose::jackknife::{SECTORS, covariance, sectors};
 
-/// Points that take part at most, spread evenly. Model errors do not average out over more of them.
+/// Maximum number of points, evenly spread; model errors do not average out over more of them.
 const MOST_POINTS: usize = 20_000;
-/// Gauss-Newton steps without a sector, from the end. Set on 149 random scenes of three surfaces under natural lights (96x96): with 1, 2, 3, 5
-/// and 8 steps the three-sigma intervals of tiles and sectors contain the truth on all axes in 87, 91, 95, 96 and 95 % of them.
+/// Number of Gauss-Newton steps without a sector, from the end; set on random scenes (docs/lab/thresholds.md).
 const STEPS: usize = 3;
 
 impl Photometric {
@@ -43,7 +42,7 @@ impl Photometric {
         covariance(&moves)
     }
 
-    /// Takes a few steps; their sum.
+    /// Takes a few steps. Returns their sum.
     fn refit(&mut self, problem: &PhotometricProblem<'_>, frame: &Frame) -> PoseVector {
         let mut moved = PoseVector::zeros();
         for _ in 0..STEPS {

@@ -1,12 +1,12 @@
-//! Terms of the pose alone beside the colours, around an initial pose that is trusted so far: the object's points lie on the image's mask,
-//! and a Gaussian about the pose.
+//! Terms of the pose alone, in addition to the image residuals, about an initial pose that is trusted to some degree:
+//! the object's points have to lie on the image's mask, and a Gaussian holds the pose.
 //!
-//! A point that lies off the mask is a residual like any other: far off, it costs a share of what a point costs whose colours do not fit
-//! at all, the square of the robust scale. Pixels of the mask that no point covers cost nothing, because the depth camera may not have seen
-//! what is there.
+//! A point off the mask is a residual like any other. Far off, it costs a fixed share of the square of the robust
+//! scale, which is the cost of a point whose colours do not fit at all. Pixels of the mask that no point covers cost
+//! nothing, because the depth camera may not have seen that part of the object.
 //!
-//! An object that goes farther away shrinks into its mask and onto pixels that are easily explained. So its distance goes last: above the
-//! sharp image the Gaussian all but holds it.
+//! An object that recedes shrinks into its mask and onto pixels that are easily explained. Its distance is therefore
+//! freed last: above the sharp image the Gaussian all but holds it.
 
 use nalgebra::Vector3;
 
@@ -19,28 +19,29 @@ use crate::pose::similarity::Similarity;
 use crate::pose::sums::Sums;
 use crate::view::extent;
 
-/// Points that are held against the mask at most.
+/// Maximum number of points that are tested against the mask.
 const MOST_POINTS: usize = 2000;
-/// Weight of a point off the mask over that of one whose colours do not fit; set on pairs of a statue; 2 gives the same poses.
+/// Weight of a point off the mask relative to one whose colours do not fit; set on pairs of a statue
+/// (docs/lab/thresholds.md).
 const OFF_WEIGHT: f64 = 0.5;
-/// Distance off the mask at which a point's weight has fallen to a quarter on each level of the image, pixels: as far as the level is to
-/// reach, since a sharp one comes after the others.
+/// Distance off the mask at which a point's weight has fallen to a quarter on each level of the image, pixels: the
+/// reach of the level, because a sharper one follows.
 const SCALES: [f64; 4] = [6.0, 6.0, 12.0, 20.0];
-/// Sigma of the distance on levels above the sharp one, over that of the prior.
+/// Sigma of the distance on levels above the sharp one, relative to that of the prior.
 const DISTANCE_FIRST: f64 = 0.1;
 
-/// What is held against the mask; owns its memory.
+/// The mask and the points tested against it; owns its memory.
 pub(super) struct NearTerms {
-    /// `None` where the whole image is the object.
+    /// `None` if the whole image is the object.
     silhouette: Option<Silhouette>,
     points: Vec<Vector3<f64>>,
     middle: Vector3<f64>,
 }
 
-/// How much the terms count at one moment.
+/// Weights of the terms at one state.
 #[derive(Clone, Copy)]
 pub(super) struct NearWeights {
-    /// Of all points together.
+    /// Sum of the weights of all points.
     pub points: f64,
     /// The robust scale, log units.
     pub robust_scale: f64,
@@ -51,7 +52,7 @@ pub(super) struct NearWeights {
 }
 
 impl NearTerms {
-    /// Of the mask and the points of a problem.
+    /// From the mask and the points of a problem.
     pub fn new(problem: &PhotometricProblem<'_>) -> Self {
         let object = &problem.image.whole.object;
         let stride = problem.points.valid().count().div_ceil(MOST_POINTS).max(1);
@@ -62,7 +63,7 @@ impl NearTerms {
         }
     }
 
-    /// The terms at a pose, derivatives by the unknowns of a frame.
+    /// The terms at a pose, with derivatives by the unknowns of `frame`.
     pub fn sums(
         &self,
         problem: &PhotometricProblem<'_>,
@@ -81,7 +82,7 @@ impl NearTerms {
         sums
     }
 
-    /// Points off the mask.
+    /// Adds the points off the mask.
     fn add_mask(
         &self,
         problem: &PhotometricProblem<'_>,
@@ -129,7 +130,7 @@ mod tests {
         (0..SIDE * SIDE).map(inside).collect()
     }
 
-    /// A disc at one metre before a mask of another size.
+    /// A disc at one metre in front of a mask of another size.
     fn views(mask: f64, object: f64) -> (ColourView, DepthView) {
         let image = ColourImage {
             width: SIDE,
@@ -195,7 +196,7 @@ mod tests {
                 step[k] = by;
                 cost(&FRAME.change(&step).after(&pose))
             };
-            // Half of the derivative of the cost; that of the distance is taken over several pixels.
+            // Half of the derivative of the cost; the derivative of the distance is taken over several pixels.
             let slope = (moved(small) - moved(-small)) / (4.0 * small);
             let off = (gradient[k] - slope).abs();
             assert!(off < 0.2 * gradient.norm(), "{k}: {} {slope}", gradient[k]);

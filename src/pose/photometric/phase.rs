@@ -1,14 +1,14 @@
-//! What a photometric registration does next.
+//! The next piece of work of a photometric registration.
 
 use super::problem::PhotometricTermination;
 use crate::pose::descent::Damping;
 use crate::pose::increment::Frame;
 use crate::pose::similarity::Similarity;
 
-/// What the next piece of work is.
+/// The next piece of work.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Phase {
-    /// The beginning of a round of annealing: its visible points, their light, its robust scale.
+    /// The beginning of a round of annealing, which chooses its visible points, their light and its robust scale.
     AnnealingRound {
         level: usize,
         fine_rounds: usize,
@@ -24,7 +24,7 @@ pub(super) enum Phase {
         round: usize,
         frame: Frame,
         steps: usize,
-        /// Length of the step before.
+        /// Length of the previous step.
         last: f64,
     },
     Done(PhotometricTermination),
@@ -34,7 +34,7 @@ pub(super) enum Phase {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Descent {
     pub level: usize,
-    /// Rounds at the robust scale of the noise before this one.
+    /// Number of earlier rounds at the robust scale of the noise.
     pub fine_rounds: usize,
     pub frame: Frame,
     /// The pose at the beginning of the round.

@@ -1,4 +1,4 @@
-//! The depth points that take part in a round.
+//! The depth points of a round.
 
 use nalgebra::Vector3;
 
@@ -11,22 +11,22 @@ use crate::pose::spline_image::SplineImage;
 use crate::pose::visibility::{Visibility, VisibilityProblem};
 use crate::view::{Size, extent};
 
-/// Distance from the border of the mask within which points stay out, image pixels: they would enter and leave with
-/// every step, and the spline is continued there.
+/// Distance from the border of the mask within which points are left out, image pixels: they would enter and leave with
+/// every step, and the spline is only a continuation there.
 const MARGIN: usize = 1;
-/// Points that a coarse level needs: 20 for each unknown of the pose, 30 where the light's 27 unknowns come in as well,
-/// which may fit the colours in a wrong pose. Measured on Mozart at 64x64, starts 20 and 30 degrees off.
+/// Minimum number of points for a coarse level: about 15 for each unknown of the pose, and 30 for each unknown
+/// if the 27 of the light are added, which may fit the image under a wrong pose (docs/lab/thresholds.md).
 const ENOUGH_KNOWN: usize = 100;
 const ENOUGH_UNKNOWN: usize = 1000;
 /// (5^(1/2) - 1) / 2.
 const GOLDEN_SECTION: f64 = 0.618_033_988_749_895;
 
-/// How many of the visible points take part.
+/// Thinning of the visible points.
 #[derive(Clone, Copy)]
 pub(super) struct Sampling {
-    /// Every 2^level-th along both axes, more where that leaves too few.
+    /// Takes every 2^level-th point along both axes, more if too few are left.
     pub level: usize,
-    /// About so many at most.
+    /// Approximate maximum number of points.
     pub most: usize,
 }
 
@@ -59,12 +59,12 @@ impl VisiblePoints {
         self.indices.iter().map(|&index| index as usize)
     }
 
-    /// The most that there can be.
+    /// Maximum number of points: all valid ones.
     pub fn capacity(&self) -> usize {
         self.indices.capacity()
     }
 
-    /// Chooses anew among the points that the image shows under `pose`.
+    /// Chooses among the points that the image shows under `pose`.
     pub fn update(
         &mut self,
         problem: &PhotometricProblem<'_>,
@@ -93,12 +93,12 @@ impl VisiblePoints {
         self.thin(problem.depth_size, sampling.most);
     }
 
-    /// Whether the points are a sample of those that are visible.
+    /// Whether the points are a sample of the visible ones.
     pub fn are_sampled(&self) -> bool {
         self.sampled
     }
 
-    /// Leaves every k-th point, so that `most` or fewer are left of evenly spread ones: on a lattice, whose rows are
+    /// Keeps every k-th point, so that at most about `most` are left, evenly spread: on a lattice whose rows are
     /// shifted by the golden section of k.
     fn thin(&mut self, size: Size, most: usize) {
         let every = self.indices.len().div_ceil(most.max(1)).max(1);
@@ -119,7 +119,7 @@ impl VisiblePoints {
         self.weights.truncate(kept);
     }
 
-    /// Every `stride`-th visible point.
+    /// Lists every `stride`-th visible point along both axes.
     fn list(&mut self, problem: &PhotometricProblem<'_>, image: &SplineImage, stride: usize) {
         self.indices.clear();
         self.weights.clear();
@@ -138,7 +138,7 @@ impl VisiblePoints {
         }
     }
 
-    /// The points side by side with their own weights. An odd last one comes twice, once without weight.
+    /// The points side by side with their own weights. An odd last one comes twice, once with weight zero.
     pub fn lane_groups(&self) -> impl Iterator<Item = (Indices, Doubles)> {
         self.indices.chunks(DOUBLE_LANES).zip(self.weights.chunks(DOUBLE_LANES)).map(|(some, weights)| {
             let (mut indices, mut lanes) = ([some[0]; DOUBLE_LANES], [0.0; DOUBLE_LANES]);

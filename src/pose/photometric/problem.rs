@@ -1,4 +1,4 @@
-//! What goes into a photometric registration, and what comes out.
+//! Input and output of a photometric registration.
 
 use nalgebra::Matrix3;
 
@@ -14,38 +14,38 @@ use crate::view::{ColourView, DepthNoise, Normals, Points, Size};
 
 /// The coarsest level of the image.
 pub(super) const COARSEST: usize = 2;
-/// The same around an initial pose, which keeps an unknown light from explaining a blurred image in any pose.
+/// The same about an initial pose, which prevents an unknown light from fitting a blurred image under any pose.
 pub(crate) const COARSEST_NEAR: usize = 3;
 
-/// Depth pixels whose points are worked on side by side.
+/// Depth pixels whose points are processed side by side.
 pub(super) type Indices = [u32; DOUBLE_LANES];
 
-/// What is registered. Points and normals (depth view's frame) are NaN where missing.
+/// Input of the registration. Points and normals (depth view's frame) are NaN where missing.
 #[derive(Clone, Copy)]
 pub struct PhotometricProblem<'a> {
     /// The colour view.
     pub image: &'a ColourView,
     /// Size of the depth view.
     pub depth_size: Size,
-    /// Its points, measured or refined.
+    /// Points of the depth view, measured or refined.
     pub points: &'a Points,
-    /// Their normals.
+    /// Normals of these points.
     pub normals: &'a Normals,
-    /// One sigma of each normal in radians, see [`crate::cubic_normals`]; NaN leaves the point out. `None`: all are
-    /// exact.
+    /// One sigma of each normal in radians, see [`crate::cubic_normals`]; points with NaN are left out. `None` means
+    /// that all are exact.
     pub normal_error: Option<&'a [f32]>,
-    /// The noise of the depth that the normals follow from.
+    /// Noise of the depth from which the normals were computed.
     pub depth_noise: DepthNoise,
-    /// The light where it is known, but for its exposure.
+    /// The light if it is known up to its exposure.
     pub light: Option<&'a Light>,
     /// Prior of an unknown light.
     pub prior: &'a LightPrior,
-    /// Weight of the prior: one is that of Bayes' rule.
+    /// Weight of the prior; one is the weight of Bayes' rule.
     pub prior_weight: f64,
-    /// Whether the scale of the start is kept.
+    /// Whether the scale keeps its initial value; behind a pinhole image it always does.
     pub scale_is_held: bool,
-    /// An initial pose that is trusted so far. Points are then held on the image's mask as well, and albedo that goes with the
-    /// curvature of the depth map is allowed for.
+    /// An initial pose that is trusted to some degree. With it, points are also held on the image's mask, and the
+    /// albedo may follow the curvature of the depth map.
     pub near: Option<PosePrior>,
 }
 
@@ -64,7 +64,8 @@ impl PhotometricProblem<'_> {
         rotated(&pose.rotation, gathered(self.normals, indices))
     }
 
-    /// Unknowns that keep their values: t_z of an orthographic image, which is a gauge, and a scale that is held.
+    /// Unknowns that keep their values: t_z of an orthographic image, which is a gauge, and a held scale, which
+    /// includes that of every pinhole image.
     pub(super) fn held(&self) -> [bool; UNKNOWNS] {
         let gauge = self.image.camera.is_orthographic();
         [false, false, false, false, false, gauge, self.scale_is_held || !gauge]
@@ -113,28 +114,30 @@ fn rotated(rotation: &Matrix3<f64>, vector: [Doubles; 3]) -> [Doubles; 3] {
     [row(0), row(1), row(2)]
 }
 
-/// Points that annealing needs: with 14 to 34 unknowns 5000 average noise to a twentieth of its size or less, and the rounds after
-/// it end where they do from 20000 (22 scenes of 640x480, 64 of 128x128).
+/// Number of points that annealing needs. With 14 to 34 unknowns, 5000 points average noise to a twentieth of its size
+/// or less, and more do not change where the later rounds end (docs/lab/thresholds.md).
 const ENOUGH_ANNEALED: usize = 5000;
 
-/// How far from the pose a registration may start, and how long it may take.
+/// Options of a registration: its reach and its cost.
 #[derive(Clone, Copy, Debug)]
 pub struct PhotometricOptions {
-    /// First level, 0 to 3, as far as a problem has one: the coarsest from afar, 0 from a pose that is right to a degree.
+    /// First level, 0 to 3, limited to those that a problem has: the coarsest from afar, 0 from a pose that is right to
+    /// a degree.
     pub first_level: usize,
     /// Cap on the rounds.
     pub most_rounds: usize,
-    /// Points that take part at most, spread evenly over those that are visible.
+    /// Maximum number of points, evenly spread over the visible ones.
     pub most_points: usize,
-    /// Points that take part in the annealing at most: the rounds after it, with instrumental variables, end at the
-    /// same pose from wherever nearby they start.
+    /// Maximum number of points of the annealing. The rounds after it, with instrumental variables, end at the same
+    /// pose from any pose nearby.
     pub annealed_points: usize,
-    /// Whether the robust scale shrinks from round to round; else it is the final one from the first round on.
+    /// Whether the robust scale shrinks from round to round; otherwise it is the final one from the first round on.
     pub annealing: bool,
-    /// Whether the points are those of the registration before, in place of those that each round shows: several problems are
-    /// compared on the same ones, and only these need points and normals.
+    /// Whether the points of the previous registration stay, instead of those visible in each round. Several problems
+    /// can then be compared on the same points, and only these need points and normals.
     pub points_stay: bool,
-    /// Whether the covariance includes the jackknife over sectors, which a registration that is only compared with others does not need.
+    /// Whether the covariance includes the jackknife over sectors; registrations that are only compared with others do
+    /// not need it.
     pub jackknife: bool,
 }
 
@@ -157,32 +160,32 @@ impl Default for PhotometricOptions {
 pub enum PhotometricTermination {
     /// Another round would change nothing.
     Settled,
-    /// The last rounds, with instrumental variables, would have raised the objective: the pose of least squares was
-    /// kept. Usable, with the bias of the noise.
+    /// The last rounds, with instrumental variables, would have raised the objective, so the pose of least squares was
+    /// kept. It is usable but has the bias of the noise.
     Annealed,
     /// The cap on the rounds came first.
     MostRounds,
 }
 
-/// What the registration found.
+/// Result of the registration.
 #[derive(Clone, Debug)]
 pub struct PhotometricReport {
-    /// The pose; its t_z is that of the start for an orthographic image.
+    /// The pose; for an orthographic image t_z keeps its initial value.
     pub pose: Similarity,
-    /// The light, without the exposure of a known one.
+    /// The light; for a known one, without the exposure.
     pub light: Light,
-    /// Offset of log S on top of a known light; zero where the light was free.
+    /// Offset of log S relative to a known light; zero if the light was free.
     pub exposure: f64,
     /// Mean of rho over the visible points as a share of its largest value, 0 .. 1, at the robust scale of the noise.
     pub objective: f64,
     /// Robust standard deviation of a channel's residuals, log units.
     pub noise: f64,
-    /// What residuals of neighbours have in common: root mean covariance within tiles of the depth map, log units. Shadows, paint
-    /// and light from other parts of the object have some, white noise of any size none.
+    /// Spatial covariance of the residuals: root mean covariance within tiles of the depth map, log units. Shadows,
+    /// varying albedo and light from other parts of the object cause some, white noise of any size none.
     pub structure: f64,
     /// Number of visible points.
     pub visible: usize,
-    /// Whether these are a sample only, see [`PhotometricOptions::most_points`].
+    /// Whether these are only a sample, see [`PhotometricOptions::most_points`].
     pub sampled: bool,
     /// Share of them within the robust scale.
     pub inliers: f64,
@@ -190,11 +193,12 @@ pub struct PhotometricReport {
     pub iterations: usize,
     /// Why it ended.
     pub termination: PhotometricTermination,
-    /// Information of rotation (radians), translation (object sizes) and log scale once light is eliminated, over the
-    /// noise's variance: what white noise of that size would leave.
+    /// Information of rotation (radians), translation (object sizes) and log scale after elimination of the light, over
+    /// the variance of the noise: the inverse of the covariance under white noise of that size.
     pub information: PoseMatrix,
-    /// Covariance of the same, from the scores of tiles and from the jackknife over sectors; held unknowns have none.
+    /// Covariance of the same unknowns, from the scores of tiles and from the jackknife over sectors; held unknowns
+    /// have none.
     pub covariance: PoseMatrix,
-    /// One sigma of the pose's own numbers.
+    /// One sigma of each number of the pose.
     pub uncertainty: Uncertainty,
 }

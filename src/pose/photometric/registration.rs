@@ -17,8 +17,9 @@ impl Photometric {
     /// The pose from `start`: [`begin`](Self::begin), [`step`](Self::step) to the end, [`report`](Self::report).
     ///
     /// # Errors
-    /// [`Size`](crate::ErrorKind::Size) where lengths disagree, [`Range`](crate::ErrorKind::Range) for an invalid initial pose,
-    /// [`Degenerate`](crate::ErrorKind::Degenerate) where fewer than 14 points are visible or they do not determine the pose.
+    /// [`Size`](crate::ErrorKind::Size) if lengths disagree, [`Range`](crate::ErrorKind::Range) if the initial pose is
+    /// invalid, [`Degenerate`](crate::ErrorKind::Degenerate) if fewer than 14 points are visible or they do not
+    /// determine the pose.
     pub fn register(
         &mut self,
         problem: &PhotometricProblem<'_>,
@@ -30,7 +31,7 @@ impl Photometric {
         self.report(problem)
     }
 
-    /// Starts anew.
+    /// Begins a registration.
     ///
     /// # Errors
     /// Those of [`register`](Self::register).
@@ -44,7 +45,7 @@ impl Photometric {
         start.validate("start")?;
         self.prepare_near(problem);
         let level = options.first_level.min(coarsest(problem)).min(self.levels.len() - 1);
-        // From the image's own brightness, so that a change of exposure changes nothing that follows.
+        // Starts from the image's own brightness, so that a change of exposure has no effect on the rest.
         let brightness = problem.image.log_mean();
         self.state = match problem.light {
             Some(light) => State { pose: *start, light: *light, exposure: brightness },
@@ -67,10 +68,11 @@ impl Photometric {
         Ok(())
     }
 
-    /// A piece of a round, one Gauss-Newton step at most, so that a page stays alive; whether it was the last.
+    /// Runs a part of a round, at most one Gauss-Newton step, so that a page stays responsive. Returns whether it was
+    /// the last.
     ///
     /// # Errors
-    /// [`Degenerate`](crate::ErrorKind::Degenerate) where too few points are visible or they do not determine the pose.
+    /// [`Degenerate`](crate::ErrorKind::Degenerate) if too few points are visible or they do not determine the pose.
     pub fn step(&mut self, problem: &PhotometricProblem<'_>) -> Result<bool> {
         self.phase = match self.phase {
             Phase::AnnealingStep(descent) => self.descend(problem, descent)?,
@@ -85,23 +87,24 @@ impl Photometric {
         Ok(self.is_done())
     }
 
-    /// Whether there is nothing left to [`step`](Self::step).
+    /// Whether nothing is left to [`step`](Self::step).
     #[must_use]
     pub const fn is_done(&self) -> bool {
         matches!(self.phase, Phase::Done(_))
     }
 
-    /// What was found so far.
+    /// The result so far.
     ///
     /// # Errors
-    /// [`Degenerate`](crate::ErrorKind::Degenerate) where the visible points do not determine the pose.
+    /// [`Degenerate`](crate::ErrorKind::Degenerate) if the visible points do not determine the pose.
     pub fn report(&mut self, problem: &PhotometricProblem<'_>) -> Result<PhotometricReport> {
         let frame = self.evaluate_end(problem, self.options.most_points)?;
         let by_sectors = if self.options.jackknife { self.jackknife(problem, &frame)? } else { PoseMatrix::zeros() };
         let reduced = self.reduce_by_instruments(problem, &frame)?;
         let held = problem.held();
         let mut covariance = self.covariance(problem, &frame, &reduced) + by_sectors;
-        // The prior may keep the pose away from where the residuals alone would take it. That distance is an error, too.
+        // The prior may hold the pose back from where the residuals alone would take it. That distance counts as an
+        // error, too.
         if let Some(step) = problem.near.and_then(|_| reduced.step(0.0, &held)) {
             covariance.ger(1.0, &step.pose, &step.pose, 1.0);
         }

@@ -1,7 +1,8 @@
-//! Albedo that goes with the relief: dirt and ambient shadow lie in hollows, wear on ridges.
+//! Albedo that follows the relief: dirt and ambient shadow lie in hollows, wear on ridges.
 //!
-//! Curvature of the depth map at two scales, and its squares, are regressors of the log albedo beside the light. Their coefficients are
-//! fitted to the residuals at the beginning of a round, in turn with the light, and the albedo that they give stays during the round.
+//! Curvature of the depth map at two scales, and its squares, are regressors of the log albedo in addition to the
+//! light. At the beginning of a round their coefficients are fitted to the residuals in alternation with the light; the
+//! resulting albedo stays fixed during the round.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -11,19 +12,19 @@ use crate::pose::contrast::LocalMeans;
 use crate::pose::residuals::MEASURED_SIDE;
 use crate::view::{Normals, Size};
 
-/// Regressors of a point.
+/// Number of regressors of a point.
 const REGRESSORS: usize = 4;
 type Gram = SMatrix<f64, REGRESSORS, REGRESSORS>;
 type Coefficients = SVector<f64, REGRESSORS>;
 
-/// Sigmas of the Gaussians, depth pixels of an object as large as that of [`MEASURED_SIDE`].
+/// Sigmas of the Gaussians, depth pixels of an object of the size of [`MEASURED_SIDE`].
 const SCALES: [f64; 2] = [1.5, 4.0];
-/// Curvatures beyond so many standard deviations count as that.
+/// Curvatures are clamped to this many standard deviations.
 const LARGEST: f32 = 2.5;
-/// One sigma of a coefficient, log units a standard deviation of its regressor.
+/// One sigma of a coefficient, log units per standard deviation of its regressor.
 const PRIOR: f64 = 0.3;
 
-/// Regressors, their coefficients, and the albedo that they give; owns its memory.
+/// Regressors, their coefficients, and the resulting albedo; owns its memory.
 pub(super) struct Relief {
     regressors: Vec<[f32; REGRESSORS]>,
     coefficients: [Coefficients; 3],
@@ -37,7 +38,7 @@ pub(super) struct ReliefSums {
 }
 
 impl Relief {
-    /// Of the normals of a problem.
+    /// From the normals of a problem.
     pub fn new(problem: &PhotometricProblem<'_>) -> Self {
         let size = problem.depth_size;
         let [fine, coarse] = SCALES.map(|scale| curvature(size, problem.normals, scale));
@@ -45,7 +46,7 @@ impl Relief {
         Self { regressors, coefficients: [Coefficients::zeros(); 3], albedo: vec![[0.0; 3]; size.len()] }
     }
 
-    /// Forgets what was fitted.
+    /// Resets coefficients and albedo.
     pub fn clear(&mut self) {
         self.coefficients = [Coefficients::zeros(); 3];
         self.albedo.fill([0.0; 3]);
@@ -56,7 +57,7 @@ impl Relief {
         self.albedo[index]
     }
 
-    /// Enters the residual of a point, whose own albedo is off already.
+    /// Adds the residual of a point, from which the present albedo has already been subtracted.
     pub fn add(&self, sums: &mut ReliefSums, index: usize, residual: [f64; 3], weight: f64) {
         let regressors = SVector::from(self.regressors[index].map(f64::from));
         sums.gram.ger(weight, &regressors, &regressors, 1.0);
@@ -65,7 +66,7 @@ impl Relief {
         }
     }
 
-    /// Takes a step of the coefficients; `ridge` is the weight of their prior.
+    /// Takes a step of the coefficients; `noise` is the standard deviation of the residuals, log units.
     pub fn step(&mut self, mut sums: ReliefSums, noise: f64) {
         let ridge = CORRELATED * (noise / PRIOR).powi(2);
         sums.gram += Gram::identity() * ridge;
@@ -118,7 +119,7 @@ mod tests {
 
     const SIZE: Size = Size { width: 60, height: 60 };
 
-    /// Normals of a ball's front, which face the camera; a bowl's with the opposite sign of x and y.
+    /// Normals of the front of a ball, which face the camera; those of a bowl have the opposite sign of x and y.
     fn ball(sign: f32) -> Normals {
         let mut normals = Normals::missing(SIZE.len());
         for index in 0..SIZE.len() {

@@ -1,9 +1,8 @@
-//! Residuals of depth points, two side by side: r = log S(pi(T P)) - B(R n) L and its derivatives.
+//! Residuals of depth points, several side by side: r = log S(pi(T P)) - B(R n) L and its derivatives.
 //!
-//! The unknowns are those of every registration here: P' -> c + e^u exp([w]) (P' - c) + l v of the transformed point
-//! P' = T P, n' -> exp([w]) n' of its rotated normal. With g = d log S / d P' and b = d (B L) / d n', both of one
-//! channel, dr/dw = (P'
-//! - c) x g - n' x b, dr/dv = l g, dr/du = (P' - c) . g, and dr/dL = -B.
+//! The unknowns are those of every registration here: P' -> c + e^u exp([w]) (P' - c) + l v for the transformed point
+//! P' = T P, and n' -> exp([w]) n' for its rotated normal. With g = d log S / d P' and b = d (B L) / d n' of one
+//! channel, the derivatives are dr/dw = (P' - c) x g - n' x b, dr/dv = l g, dr/du = (P' - c) . g and dr/dL = -B.
 
 use crate::light::{HARMONICS, Light, Polynomial, basis};
 use crate::numeric::{DOUBLE_LANES, Doubles, Real, dot};
@@ -11,7 +10,7 @@ use crate::pose::increment::{Frame, UNKNOWNS};
 use crate::pose::spline_image::{ImagePoint, SplineImage};
 use crate::view::Camera;
 
-/// A derivative by the unknowns of the pose.
+/// Derivative by the unknowns of the pose.
 pub(super) type Derivative = [Doubles; UNKNOWNS];
 
 /// The colours of one image, and those that one light predicts (Eq. 3 and 5).
@@ -27,20 +26,20 @@ pub(super) struct ColourModel<'a> {
 /// log S at points side by side, zero where the image does not show them.
 #[derive(Clone, Copy)]
 pub(super) struct Samples {
-    /// One where the image shows the point.
+    /// One if the image shows the point, otherwise zero.
     pub shown: Doubles,
     /// log S of the three channels.
     pub log: [Doubles; 3],
 }
 
-/// Residuals of points side by side with what the equations need of them.
+/// Residuals of points side by side, with the quantities that the equations need.
 pub(super) struct LinearisedPoints {
     pub shown: Doubles,
     /// One for each channel.
     pub residual: [Doubles; 3],
-    /// d r / d unknowns, a row for each channel.
+    /// d r / d unknowns, one row for each channel.
     pub jacobian: [Derivative; 3],
-    /// Z, the same by the gradients of another image, where the model has one.
+    /// Z, the same by the gradients of another image, if the model has one.
     instruments: Option<[Derivative; 3]>,
     /// d column, d row / d unknowns.
     pub pixel_derivatives: [Derivative; 2],
@@ -56,7 +55,7 @@ impl LinearisedPoints {
 }
 
 impl<'a> ColourModel<'a> {
-    /// A model for least squares; `light` with its exposure.
+    /// A model for least squares; `light` includes its exposure.
     pub fn new(image: &'a SplineImage, camera: &'a Camera, light: &Light) -> Self {
         Self { image, instruments: None, camera, light: Polynomial::of(light) }
     }
@@ -71,7 +70,7 @@ impl<'a> ColourModel<'a> {
         self.instruments.is_some()
     }
 
-    /// r of sampled points with their rotated normals.
+    /// r of sampled points, given their rotated normals.
     #[inline(always)]
     pub fn residual(&self, samples: &Samples, normals: [Doubles; 3]) -> [Doubles; 3] {
         let [red, green, blue] = &self.light;
@@ -79,8 +78,8 @@ impl<'a> ColourModel<'a> {
         [log_red - red.shade(normals), log_green - green.shade(normals), log_blue - blue.shade(normals)]
     }
 
-    /// log S where transformed points are seen.
-    // One copy of it: visitors download each.
+    /// log S at the image positions of transformed points.
+    // Not inlined, because every copy adds to the download.
     #[inline(never)]
     pub fn sample(&self, points: [Doubles; 3]) -> Samples {
         let (mut shown, mut log) = ([0.0; DOUBLE_LANES], [[0.0; DOUBLE_LANES]; 3]);
@@ -94,7 +93,7 @@ impl<'a> ColourModel<'a> {
     }
 
     /// r and its derivatives.
-    // As above.
+    // Not inlined, like `sample`.
     #[inline(never)]
     pub fn linearise(&self, points: [Doubles; 3], normals: [Doubles; 3], frame: &Frame) -> LinearisedPoints {
         let mut sampled = SampledGradients::default();
@@ -122,7 +121,7 @@ impl<'a> ColourModel<'a> {
         }
     }
 
-    /// Samples the image at one point, for its lane.
+    /// Samples the image at one point for its lane.
     fn sample_gradients(&self, point: [f64; 3], lane: usize, sampled: &mut SampledGradients) {
         let Some((pixel, by_point)) = self.camera.project_with_gradient(self.image.size(), point) else { return };
         let Some(ImagePoint { log, gradient }) = self.image.at(pixel) else { return };
@@ -147,7 +146,7 @@ impl<'a> ColourModel<'a> {
 struct SampledGradients {
     shown: [f64; DOUBLE_LANES],
     log: [[f64; DOUBLE_LANES]; 3],
-    /// d log S / d (column, row) of each channel, and the same of the image of the instruments.
+    /// d log S / d (column, row) of each channel, and the same for the image of the instruments.
     gradient: [[[f64; DOUBLE_LANES]; 2]; 3],
     instruments: [[[f64; DOUBLE_LANES]; 2]; 3],
     /// d (column, row) / d point.
@@ -168,7 +167,7 @@ fn pixel_derivatives(points: [Doubles; 3], sampled: &SampledGradients, frame: &F
     [by(0), by(1)]
 }
 
-/// d r / d unknowns of one channel: by its pixel, less by its rotated normal.
+/// d r / d unknowns of one channel: by its pixel, minus that by its rotated normal.
 #[inline(always)]
 fn row(pixel: &[Derivative; 2], gradient: &[[f64; DOUBLE_LANES]; 2], by_rotation: [Doubles; 3]) -> Derivative {
     let [by_column, by_row] = [Doubles::from(gradient[0]), Doubles::from(gradient[1])];
@@ -222,14 +221,14 @@ mod tests {
         let lens = Lens::brown(&[0.1, -0.05, 0.003, -0.002, 0.0]).unwrap();
         let pinhole = Camera::Pinhole(Pinhole { fx: 50.0, fy: 48.0, cx: 19.0, cy: 15.0, lens });
         let normal = Vector3::new(0.36, -0.48, -0.8);
-        // Colours are those of f32: a difference of smaller steps would be their rounding.
+        // Colours are rounded to f32, so the difference over a smaller step would be rounding.
         let small = 3e-3;
         for (camera, point, length) in
             [(Camera::Orthographic, Vector3::new(3.3, -4.2, 7.0), 9.0), (pinhole, Vector3::new(0.21, -0.13, 1.2), 0.2)]
         {
             let model = ColourModel::new(&image, &camera, &COLOURFUL);
             let frame = Frame { centre: 0.7 * point, length };
-            // The point itself in the last lane, another one beside it.
+            // The point itself in the last lane, other points beside it.
             let lanes = |vector: Vector3<f64>| {
                 [0, 1, 2].map(|axis: usize| {
                     let mut numbers = [0.9 * vector[axis]; DOUBLE_LANES];
@@ -249,7 +248,7 @@ mod tests {
                 let difference = (moved(small) - moved(-small)) / (2.0 * small);
                 for channel in 0..3 {
                     let jacobian = PoseVector::from(linearised.jacobian[channel].map(last));
-                    // Relative to the row: a single entry may be zero.
+                    // Relative to the row, because a single entry may be zero.
                     let error = (jacobian[k] - difference[channel]).abs() / jacobian.norm();
                     assert!(error <= 1e-4, "{k}: {} {difference} {error}", jacobian[k]);
                 }

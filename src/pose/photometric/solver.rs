@@ -21,35 +21,34 @@ use crate::view::Size;
 
 /// Gaussian blur of each level's image, pixels; a level takes every 2^level-th point.
 const BLURS: [f64; COARSEST_NEAR + 1] = [0.0, 1.5, 3.0, 6.0];
-/// Coarsest level under an unknown light: a light that follows explains strongly blurred colours in any pose. From 20
-/// degrees off level 1 always converged on Mozart at 64x64, level 2 in a third of the cases; a known light converges
-/// from 30 by level 2.
+/// Coarsest level under an unknown light: a light that follows the pose fits strongly blurred colours under any pose
+/// (docs/lab/thresholds.md).
 const COARSEST_UNKNOWN: usize = 1;
-/// Blur of the image whose gradients are the instrumental variables, pixels: 0.7 to 1.5 serve alike.
+/// Blur of the image whose gradients are the instrumental variables, pixels (docs/lab/thresholds.md).
 pub(super) const INSTRUMENT_BLUR: f64 = 1.0;
-/// Reweightings of the light at the start of a round.
+/// Number of reweighted fits of the light at the start of a round.
 const LIGHT_ROUNDS: usize = 6;
-/// Fewest points: two for each unknown of the pose.
+/// Minimum number of points: two for each unknown of the pose.
 const FEWEST_POINTS: usize = 14;
 
-/// What an initial pose brings in.
+/// Terms and albedo for a problem with an initial pose.
 struct Near {
     terms: NearTerms,
     relief: Relief,
 }
 
-/// Registers one depth view to one image again and again; owns all memory.
+/// Registers one depth view to one image repeatedly; owns all memory.
 pub struct Photometric {
     pub(super) sizes: [Size; 2],
-    /// The image sharp and blurred, down to the coarsest level that is used.
+    /// The image sharp and blurred, down to the coarsest level in use.
     pub(super) levels: Vec<SplineImage>,
     /// The image whose gradients are the instrumental variables.
     instruments: SplineImage,
     pub(super) points: VisiblePoints,
-    /// What an initial pose brings in, once there is one.
+    /// Present once a problem has an initial pose.
     near: Option<Box<Near>>,
     pub(super) tiles: Tiles,
-    /// log S at the points while the pose stays.
+    /// log S at the points as long as the pose stays.
     samples: Vec<Samples>,
     magnitudes: Vec<f32>,
     pub(super) state: State,
@@ -61,14 +60,15 @@ pub struct Photometric {
     pub(super) rounds: usize,
     pub(super) options: PhotometricOptions,
     pub(super) iterations: usize,
-    /// Whether the rounds with instrumental variables are those of the annealing's points, of which there are more.
+    /// Whether the rounds with instrumental variables still run on the points of the annealing although there are more.
     pub(super) thinned: bool,
-    /// Steps, for each unknown, that change nothing that matters; where there are so many points.
+    /// Negligible steps of each unknown, if there are more points than annealing needs.
     pub(super) settled_step: Option<PoseVector>,
 }
 
 impl Photometric {
-    /// Splines of the image's levels, as many as a light that is known or not asks for, and memory for both views.
+    /// Prepares the splines of the image's levels, as many as a known or unknown light requires, and the memory for
+    /// both views.
     #[must_use]
     pub fn new(problem: &PhotometricProblem<'_>) -> Self {
         let light = problem.prior.mean();
@@ -100,7 +100,7 @@ impl Photometric {
         }
     }
 
-    /// Depth pixels of the points that take part at present.
+    /// Depth pixels of the present points.
     pub fn points(&self) -> impl Iterator<Item = usize> {
         self.points.indices()
     }
@@ -122,7 +122,7 @@ impl Photometric {
         Ok(self.points.frame(problem, &self.state.pose))
     }
 
-    /// The points, noise and weights of the end, for at most so many points.
+    /// Chooses the final points, at most `most`, with their noise and weights.
     pub(super) fn evaluate_end(&mut self, problem: &PhotometricProblem<'_>, most: usize) -> Result<Frame> {
         let frame = self.choose_points(problem, Sampling { level: 0, most })?;
         self.measure_noise(problem, 0);
@@ -130,7 +130,7 @@ impl Photometric {
         Ok(frame)
     }
 
-    /// The light alone, reweighted.
+    /// Fits the light alone, with reweighting.
     pub(super) fn fit_light(&mut self, problem: &PhotometricProblem<'_>, level: usize) -> Result<()> {
         let mut samples = std::mem::take(&mut self.samples);
         self.evaluation(problem, level, &self.state).sample(&mut samples);
@@ -144,7 +144,7 @@ impl Photometric {
         Ok(())
     }
 
-    /// Memory for what an initial pose brings in, and levels of the image that are as coarse as it allows.
+    /// Prepares the terms about an initial pose, and the coarser levels of the image that it permits.
     pub(super) fn prepare_near(&mut self, problem: &PhotometricProblem<'_>) {
         if problem.near.is_none() {
             return;
@@ -158,7 +158,7 @@ impl Photometric {
         }
     }
 
-    /// The albedo that goes with the relief, around an initial pose and once the noise is known.
+    /// Fits the albedo that follows the relief, if there is an initial pose and the noise is known.
     pub(super) fn fit_relief(&mut self, problem: &PhotometricProblem<'_>, level: usize, samples: &[Samples]) {
         if problem.near.is_none() || !self.noise.residuals.is_finite() {
             return;
@@ -169,7 +169,7 @@ impl Photometric {
         }
     }
 
-    /// The noise of the residuals.
+    /// Measures the noise of the residuals.
     pub(super) fn measure_noise(&mut self, problem: &PhotometricProblem<'_>, level: usize) {
         let mut magnitudes = std::mem::take(&mut self.magnitudes);
         let noise = self.evaluation(problem, level, &self.state).noise(&mut magnitudes);
@@ -177,13 +177,13 @@ impl Photometric {
         self.magnitudes = magnitudes;
     }
 
-    /// Takes a robust scale, and the prior's weight at the present light.
+    /// Sets a robust scale, and the prior's weight at the present light.
     pub(super) fn weigh(&mut self, problem: &PhotometricProblem<'_>, robust_scale: f64) {
         let prior = prior_weight(problem, &self.state.light, self.noise.residuals);
         self.weighting = Weighting { robust_scale, prior };
     }
 
-    /// The terms of the pose alone, where there are any.
+    /// The terms of the pose alone, if there are any.
     pub(super) fn near_terms(
         &self,
         problem: &PhotometricProblem<'_>,
@@ -209,7 +209,7 @@ impl Photometric {
         self.evaluation(problem, level, state).objective() + near_terms
     }
 
-    /// The points at one level of the image under a state, derivatives for least squares.
+    /// The points at one level of the image under a state, with derivatives for least squares.
     pub(super) fn evaluation<'a>(
         &'a self,
         problem: &'a PhotometricProblem<'a>,
@@ -248,7 +248,7 @@ impl Photometric {
     }
 }
 
-/// The coarsest level that serves a problem.
+/// The coarsest level that a problem permits.
 pub(super) const fn coarsest(problem: &PhotometricProblem<'_>) -> usize {
     match (problem.near, problem.light) {
         (Some(_), _) => COARSEST_NEAR,

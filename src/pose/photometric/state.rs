@@ -1,19 +1,19 @@
-//! Pose and light of a registration at one moment, and a step of both.
+//! State of a registration, pose and light, and a step of both.
 
 use crate::light::{COEFFICIENTS, Coefficients, HARMONICS, Light};
 use crate::pose::increment::{Frame, PoseVector};
 use crate::pose::similarity::Similarity;
 
-/// Pose and light at one moment.
+/// A pose and its light.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct State {
     pub pose: Similarity,
     pub light: Light,
-    /// Offset of log S on top of a known light; zero where the light is free.
+    /// Offset of log S relative to a known light; zero if the light is free.
     pub exposure: f64,
 }
 
-/// A step of pose and light together. Of a known light the first coefficient is the exposure, the others are zero.
+/// A step of pose and light together. For a known light the first coefficient is the exposure, and the others are zero.
 pub(super) struct Step {
     pub pose: PoseVector,
     pub light: Coefficients,

@@ -1,33 +1,33 @@
-//! How much residuals and prior count in the objective, by the noise that is left.
+//! Weights of residuals and prior in the objective, from the noise that is left.
 
 use super::problem::PhotometricProblem;
 use crate::diagnosis::excess;
 use crate::light::{COEFFICIENTS, Light};
 use crate::numeric::robust;
 
-/// By how much the scale grows at most where residuals are more than noise: a narrow scale would settle on a part of the object that
-/// light and normals happen to explain.
+/// Largest factor on the robust scale if residuals exceed the noise: a narrow scale would settle on a part of the
+/// object that light and normals happen to fit.
 const LARGEST_WIDENING: f64 = 2.0;
-/// Degrees of freedom of the prior's tails: coloured lamps lie far outside the Gaussian, and it would bend them by
+/// Degrees of freedom of the prior's tails: coloured lamps lie far outside the Gaussian, which would bias poses by
 /// degrees.
 const PRIOR_DEGREES_OF_FREEDOM: f64 = 5.0;
 
-/// Number of residuals that count as one independent error where the albedo varies; it weighs other terms against sums over residuals. Set on
-/// pairs of a statue among 64, 192, 640 and 1920.
+/// Number of residuals that count as one independent error if the albedo varies; it weighs other terms against sums
+/// over residuals. Set on pairs of a statue (docs/lab/thresholds.md).
 pub(super) const CORRELATED: f64 = 640.0;
 
-/// How much residuals and prior count.
+/// Weights of residuals and prior.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Weighting {
     /// |r| at which a point's weight has fallen to a quarter, log units.
     pub robust_scale: f64,
-    /// Weight of the light's prior against squared residuals.
+    /// Weight of the light's prior relative to squared residuals.
     pub prior: f64,
 }
 
 impl Weighting {
-    /// For the very first fit of the light, when nothing is known of the residuals: no residual is near the scale, so
-    /// that all points count alike.
+    /// For the first fit of the light, before the residuals are known: the scale exceeds all residuals, so that all
+    /// points count alike.
     pub const FIRST: Self = Self { robust_scale: 1e3, prior: 1e-2 };
 }
 

@@ -1,4 +1,4 @@
-//! The ascent of a hypothesis to the local maximum of its score: coordinate search in rotation and size, with halved
+//! Ascent of a hypothesis to the local maximum of its score: coordinate search over rotation and size with halved
 //! steps.
 
 use nalgebra::Vector3;
@@ -6,13 +6,13 @@ use nalgebra::Vector3;
 use super::hypothesis::Hypothesis;
 use super::matcher::Matcher;
 
-/// Steps in degrees, one round each.
+/// Steps of the rotation in degrees, one for each round.
 const ROTATION_STEPS: [f64; 2] = [8.0, 4.0];
-/// Growth of the size that goes with them, natural logarithm.
+/// Corresponding steps of the size, natural logarithm.
 const GROWTH_STEPS: [f64; 2] = [0.07, 0.035];
 
-/// The local maximum near `start`: three rotations, and the size where it varies. Each is tried one step to either
-/// side, then the vertex of the parabolas through these scores.
+/// The local maximum near `start`, over three rotations and, if it varies, the size. Each round tries one step to
+/// either side along every unknown, then the vertex of the parabolas through these scores.
 pub fn ascend(matcher: &mut Matcher, start: Hypothesis, size_varies: bool) -> Hypothesis {
     let mut best = start;
     for steps in ROTATION_STEPS.into_iter().zip(GROWTH_STEPS) {
@@ -35,12 +35,12 @@ pub fn ascend(matcher: &mut Matcher, start: Hypothesis, size_varies: bool) -> Hy
     best
 }
 
-/// Rotated about x, y, z and grown by as many steps.
+/// Rotated about x, y and z, and grown, by these numbers of steps.
 fn moved(hypothesis: &Hypothesis, [x, y, z, grown]: [f64; 4], (degrees, growth): (f64, f64)) -> Hypothesis {
     hypothesis.moved(Vector3::new(x, y, z) * degrees.to_radians(), grown * growth)
 }
 
-/// Where the parabola through scores at -1, 0 and 1 is highest, within these bounds.
+/// Position of the maximum of the parabola through scores at -1, 0 and 1, clamped to these bounds.
 fn peak(before: f64, here: f64, after: f64) -> f64 {
     let bend = before - 2.0 * here + after;
     if bend < 0.0 && bend.is_finite() {

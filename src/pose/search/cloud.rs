@@ -1,9 +1,8 @@
-//! The depth view as a thin cloud of small patches: position, normal and area of each.
+//! The depth view as a sparse cloud of small patches, each with a position, a normal and an area.
 //!
-//! Method: means over square blocks of pixels, so that noise averages out; the area of a patch is |dP/drow x
-//! dP/dcolumn| between neighbouring blocks, times the share of the block that is there. It works for any camera and for
-//! organised clouds. Limits: a block across a jump of depth floats between both sides; where its normals cancel it is
-//! dropped.
+//! Method: means over square blocks of pixels, which average out noise. The area of a patch is |dP/drow x dP/dcolumn|
+//! between neighbouring blocks, times the share of the block that has data. This works for any camera and for organised
+//! clouds. Limits: a block across a depth discontinuity floats between both sides; it is dropped if its normals cancel.
 
 use nalgebra::Vector3;
 
@@ -11,25 +10,25 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::numeric::quantile;
 use crate::view::{Normals, Points, Size};
 
-/// Patches at most: about four for each cell of the grid that an object covers.
+/// Maximum number of patches: about four for each cell of the grid that an object covers.
 const MOST_PATCHES: usize = 1000;
-/// Fewest patches that tell one rotation from another.
+/// Minimum number of patches that distinguish rotations.
 const FEWEST_PATCHES: usize = 16;
-/// Mean of the unit normals of a block below which they disagree too much to have a direction.
+/// A block whose mean unit normal is shorter than this has no direction, because its normals disagree.
 const LEAST_AGREEMENT: f64 = 0.3;
-/// Largest area of a patch in medians: steeper patches are seen edge on by the depth camera, or span a jump.
+/// Largest area of a patch in medians: steeper patches are seen edge on by the depth camera, or span a discontinuity.
 const LARGEST_AREA: f64 = 5.0;
 
 /// A patch of the surface, in the depth camera's frame and unit.
 #[derive(Clone, Copy, Debug)]
 pub struct Patch {
-    /// From the centre of the cloud.
+    /// Relative to the centre of the cloud.
     pub position: [f32; 3],
     pub normal: [f32; 3],
     pub area: f32,
 }
 
-/// The thinned depth view.
+/// The sparse cloud of the depth view.
 #[derive(Clone, Debug)]
 pub struct Cloud {
     pub patches: Vec<Patch>,
@@ -52,7 +51,7 @@ impl Block {
 
 impl Cloud {
     /// # Errors
-    /// [`ErrorKind::Empty`] where too little of the view has a normal.
+    /// [`ErrorKind::Empty`] if too little of the view has a normal.
     pub fn new(size: Size, points: &Points, normals: &Normals) -> Result<Self> {
         let usable = |&index: &usize| points.is_valid(index) && normals.is_valid(index);
         let count = (0..size.len()).filter(usable).count();
@@ -94,7 +93,7 @@ impl Cloud {
     }
 }
 
-/// Area between neighbouring blocks; `None` where an axis has no neighbour.
+/// Area between neighbouring blocks; `None` if there is no neighbour along an axis.
 fn area(blocks: &[Block], raster: Size, index: usize) -> Option<f64> {
     let here = blocks[index].mean()?;
     let (column, row) = raster.position(index);

@@ -1,4 +1,4 @@
-//! The search in slices: a sweep over all rotations and sizes, then ascents from the best of them.
+//! The search in slices: a sweep over all rotations and sizes, then ascents from the best hypotheses.
 
 use nalgebra::Matrix3;
 
@@ -12,22 +12,22 @@ use crate::check::positive;
 use crate::error::Result;
 use crate::pose::similarity::Similarity;
 
-/// Ascents at most.
+/// Maximum number of ascents.
 const MOST_ASCENTS: usize = 96;
-/// Hypotheses of the sweep that are nearer to a better one than this many degrees are left out: an ascent goes farther.
+/// Hypotheses of the sweep closer than this to a better one are left out, degrees, because an ascent reaches farther.
 const SWEEP_SEPARATION: f64 = 10.0;
-/// Candidates kept.
+/// Maximum number of candidates.
 const MOST_CANDIDATES: usize = 40;
-/// Candidates that are nearer to a better one than this many degrees are duplicates: a refinement would join them.
+/// Candidates closer than this to a better one are duplicates, degrees, because registration would join them.
 const CANDIDATE_SEPARATION: f64 = 5.0;
 
-/// A search in slices; owns all its memory.
+/// A search in slices; owns its memory.
 pub struct Search {
     matcher: Matcher,
     sweep: Sweep,
     /// Best hypotheses of each slice of the sweep.
     swept: TaskResults<Vec<Hypothesis>>,
-    /// Where ascents start, chosen once the sweep is done, and where they end.
+    /// Initial hypotheses of the ascents, chosen after the sweep, and the ends of the ascents.
     starts: Vec<Hypothesis>,
     ascents: TaskResults<Candidate>,
     candidates: Vec<Candidate>,
@@ -35,12 +35,13 @@ pub struct Search {
     best: Option<Candidate>,
 }
 
-/// A slice of the search, which needs nothing but the search's own problem: whoever has the same can do it.
+/// A slice of the search. It depends only on the problem of the search, so that another search of the same problem can
+/// run it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum SearchTask {
-    /// Some pairs of rotation and size, by the number of their slice.
+    /// Some pairs of rotation and size, by the index of their slice.
     Sweep(usize),
-    /// The ascent from one hypothesis, and its number.
+    /// An ascent, by its index, from one hypothesis.
     Ascend(usize, Hypothesis),
 }
 
@@ -49,7 +50,7 @@ pub(crate) enum SearchTask {
 pub(crate) enum SearchFinding {
     /// The best hypotheses of a slice of the sweep.
     Swept(usize, Vec<Hypothesis>),
-    /// Where an ascent ended.
+    /// The end of an ascent.
     Ascended(usize, Candidate),
 }
 
@@ -57,13 +58,13 @@ impl Search {
     /// Prepares a search.
     ///
     /// # Errors
-    /// [`Range`](crate::ErrorKind::Range) for a scale out of range, [`Empty`](crate::ErrorKind::Empty) where too few
-    /// pixels have a normal, [`Degenerate`](crate::ErrorKind::Degenerate) where all colours are the same.
+    /// [`Range`](crate::ErrorKind::Range) for a scale out of range, [`Empty`](crate::ErrorKind::Empty) if too few
+    /// pixels have a normal, [`Degenerate`](crate::ErrorKind::Degenerate) if all colours are the same.
     pub fn new(problem: &SearchProblem<'_>) -> Result<Self> {
         Self::with_grid(problem, ImageGrid::new(problem.image)?)
     }
 
-    /// [`new`](Self::new) with the grid of its image made beforehand: half of the preparation.
+    /// [`new`](Self::new) with a grid of its image prepared in advance, which is half of the preparation.
     pub(crate) fn with_grid(problem: &SearchProblem<'_>, grid: ImageGrid) -> Result<Self> {
         positive("scale", problem.scale.unwrap_or(problem.unit_scale))?;
         let matcher = Matcher::new(problem, grid)?;
@@ -79,15 +80,15 @@ impl Search {
         })
     }
 
-    /// Leaves the rotations within so many degrees of a pose that is told, and looks at its distance. Before the first
-    /// slice.
+    /// Restricts the search to rotations within `degrees` of a given pose, and takes the distance from that pose. To be
+    /// called before the first slice.
     pub(crate) fn narrow(&mut self, told: &Similarity, degrees: f64) {
         self.matcher.place_at(told);
         self.sweep.narrow(&told.rotation, degrees);
         self.swept = TaskResults::new(self.sweep.slices());
     }
 
-    /// The best translation for a rotation as it is; `None` where too little of the cloud is visible.
+    /// The best translation for a fixed rotation; `None` if too little of the cloud is visible.
     pub(crate) fn shifted(&mut self, rotation: &Matrix3<f64>) -> Option<Similarity> {
         let Self { matcher, sweep, .. } = self;
         let shifted = sweep.sizes().iter().filter_map(|&size| matcher.best_shift(*rotation, size));
@@ -95,7 +96,7 @@ impl Search {
         Some(self.matcher.candidate(&best).pose)
     }
 
-    /// One bounded slice of work: a few rotations of the sweep, or one ascent. Does nothing once all is done.
+    /// Runs one bounded slice of work: a few rotations of the sweep, or one ascent. Does nothing once all is done.
     pub fn advance(&mut self) -> Progress {
         let sweep = self.swept.next(|_| true).map(SearchTask::Sweep);
         let task = sweep.or_else(|| self.ascents.next(|_| true).map(|index| self.ascent(index)));
@@ -106,14 +107,14 @@ impl Search {
         self.progress()
     }
 
-    /// How much is done.
+    /// The progress so far.
     #[must_use]
     pub fn progress(&self) -> Progress {
         let done = self.swept.done() + self.ascents.done();
         Progress { share: done as f64 / (self.swept.len() + self.ascents.len()) as f64 }
     }
 
-    /// A slice for a worker; `None` while none can be begun.
+    /// A slice for a worker; `None` if none can begin at present.
     pub(crate) fn take(&mut self) -> Option<SearchTask> {
         if !self.swept.is_complete() {
             return self.swept.take(|_| true).map(SearchTask::Sweep);
@@ -125,7 +126,7 @@ impl Search {
         SearchTask::Ascend(index, self.starts[index])
     }
 
-    /// Does a slice, of this search or of another one of the same problem.
+    /// Runs a slice of this search, or of another one of the same problem.
     pub(crate) fn perform(&mut self, task: &SearchTask) -> SearchFinding {
         match *task {
             SearchTask::Sweep(slice) => SearchFinding::Swept(slice, self.best_of_slice(slice)),
@@ -136,7 +137,7 @@ impl Search {
         }
     }
 
-    /// Takes in the result of a slice, in any order.
+    /// Stores the result of a slice; results may come in any order.
     pub(crate) fn accept(&mut self, finding: SearchFinding) {
         let sweeping = !self.swept.is_complete();
         match finding {
@@ -157,7 +158,7 @@ impl Search {
         }
     }
 
-    /// Remembers a hypothesis that is better than all before.
+    /// Stores a hypothesis that is better than all earlier ones.
     fn compare(&mut self, candidate: Candidate) {
         if candidate.score.is_finite() && self.best.is_none_or(|best| candidate.score > best.score) {
             self.best = Some(candidate);
@@ -174,25 +175,25 @@ impl Search {
         self.swept.is_complete() && self.ascents.is_complete()
     }
 
-    /// The poses found, best first; none before the search is done.
+    /// The poses found, best first; empty until the search is done.
     #[must_use]
     pub fn candidates(&self) -> &[Candidate] {
         &self.candidates
     }
 
-    /// The poses of the sweep, each rotation once, before any ascent: the better of its sizes.
+    /// The poses of the sweep before any ascent, each rotation once, with the better of its sizes.
     #[must_use]
     pub fn swept_poses(&self) -> Vec<Similarity> {
         self.swept_rotations().iter().map(|hypothesis| self.matcher.candidate(hypothesis).pose).collect()
     }
 
-    /// Every rotation so far, of the sweep and of the ends of ascents, and its score.
+    /// All rotations so far, of the sweep and of the ends of ascents, with their scores.
     pub(crate) fn scores(&self) -> Vec<(Matrix3<f64>, f64)> {
         let swept = self.swept_rotations().into_iter().map(|hypothesis| (hypothesis.rotation, hypothesis.score));
         swept.chain(self.ascents.results().map(|end| (end.pose.rotation, end.score))).collect()
     }
 
-    /// The hypotheses of the sweep, each rotation once: the better of its sizes.
+    /// The hypotheses of the sweep, each rotation once, with the better of its sizes.
     fn swept_rotations(&self) -> Vec<Hypothesis> {
         let mut rotations: Vec<Hypothesis> = Vec::new();
         for hypothesis in self.swept.results().flatten() {
@@ -204,13 +205,13 @@ impl Search {
         rotations
     }
 
-    /// For each pair of a slice the best translation.
+    /// The best translation for each pair of a slice.
     fn best_of_slice(&mut self, slice: usize) -> Vec<Hypothesis> {
         let Self { matcher, sweep, .. } = self;
         sweep.slice(slice).filter_map(|(rotation, size)| matcher.best_shift(rotation, size)).collect()
     }
 
-    /// The best hypotheses of the sweep, no two rotations alike.
+    /// Chooses the best hypotheses of the sweep, without similar rotations.
     fn choose_starts(&mut self) {
         self.starts = self.swept.results().flatten().copied().collect();
         self.starts.sort_by(|a, b| b.score.total_cmp(&a.score));
@@ -218,7 +219,7 @@ impl Search {
         self.ascents = TaskResults::new(self.starts.len());
     }
 
-    /// The best ends of the ascents, no two rotations alike.
+    /// Chooses the best ends of the ascents, without similar rotations.
     fn choose_candidates(&mut self) {
         let ends = self.ascents.results().filter(|candidate| candidate.score.is_finite());
         self.candidates = ends.copied().collect();
@@ -227,7 +228,8 @@ impl Search {
     }
 }
 
-/// Non-maximum suppression: of a list sorted by score keeps the first `most` whose rotations are `degrees` apart.
+/// Non-maximum suppression: from a list sorted by score, keeps the first `most` whose rotations are at least `degrees`
+/// apart.
 fn suppress_duplicates<T>(list: &mut Vec<T>, most: usize, degrees: f64, rotation: impl Fn(&T) -> &Matrix3<f64>) {
     // |R - R'|_F^2 = 8 sin^2(angle / 2)
     let least = 8.0 * (degrees.to_radians() / 2.0).sin().powi(2);

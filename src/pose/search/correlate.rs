@@ -1,11 +1,11 @@
 //! Scores of a template at all translations at once, by correlation: (T * I)(tau) = sum_x T(x) I(x + tau).
 //!
-//! Unknown light: with harmonics q_k made orthonormal over the whole template, the explained sum of squares is
+//! Unknown light: with harmonics q_k that are orthonormal over the whole template, the explained sum of squares is
 //! sum_k |q_k * y|^2 for k > 0, out of N * |y|^2 - |q_0 * y|^2. Known light: the squares of y - p expand into five
-//! correlations. Both only propose translations: orthonormal over the whole template is not orthonormal over an
-//! overlap, so that the exact [`score`](super::score) chooses among them. Two real fields share each transform: the one
-//! of f_0 + i f_1, correlated with a real field, is that of f_0 in its real and of f_1 in its imaginary part, the
-//! latter negated.
+//! correlations. Both only propose translations, because harmonics orthonormal over the whole template are not
+//! orthonormal over an overlap; the exact [`score`](super::score) chooses among the proposals. Two real fields share
+//! each transform: the transform of f_0 + i f_1, correlated with a real field, holds the correlation of f_0 in its real
+//! part and that of f_1, negated, in its imaginary part.
 //!
 //! Cost: 21 transforms for an unknown light, 5 for a known one.
 
@@ -16,18 +16,18 @@ use crate::light::HARMONICS;
 use crate::numeric::fourier::planes::{Field, opposite};
 use nalgebra::Complex;
 
-/// 1 / number of cells: neither a transform nor its inverse divides by it.
+/// 1 / number of cells, because neither a transform nor its inverse divides by it.
 const NORM: f32 = 1.0 / CELLS as f32;
-/// Translations proposed for each rotation; the exact score picks one of them.
+/// Number of translations proposed for each rotation, among which the exact score chooses.
 const PROPOSALS: usize = 3;
-/// Least share of the template, or of the mask where that is smaller, that a translation has to bring into overlap.
+/// Smallest share of the template, or of the mask if that is smaller, that a translation has to bring into overlap.
 const LEAST_OVERLAP: f32 = 0.15;
-/// Complex fields that hold the nine harmonics, two in each.
+/// Number of complex fields for the nine harmonics, two in each.
 const PAIRS: usize = HARMONICS.div_ceil(2);
-/// Keeps logarithm and quotient of squares finite, in squares of balanced colours.
+/// Keeps logarithm and quotient of squares finite; in squares of balanced colours.
 const LEAST_SQUARE: f32 = 1e-3;
 
-/// Memory of the correlations.
+/// Correlates templates with a target; owns its memory.
 pub struct Correlator {
     fourier: Fourier,
     /// Index of the opposite frequency.
@@ -71,7 +71,7 @@ impl Correlator {
         peaks.into_iter().flatten().map(move |cell| [signed(cell as i32 % side), signed(cell as i32 / side)])
     }
 
-    /// Scores of all translations under an unknown light.
+    /// Computes the scores of all translations under an unknown light.
     fn score_fits(&mut self, template: &Template, target: &Target) -> Option<()> {
         let weight = self.whitened(template)?;
         self.fields.iter_mut().for_each(|field| self.fourier.forward(field));
@@ -102,7 +102,8 @@ impl Correlator {
         Some(())
     }
 
-    /// Harmonics made orthonormal over the template, two in each field; returns the root of the template's weight.
+    /// Fills the fields with harmonics that are orthonormal over the template, two in each. Returns the root of the
+    /// template's weight.
     fn whitened(&mut self, template: &Template) -> Option<f32> {
         let mut gram = [0.0_f32; PRODUCTS];
         for products in &template.products {
@@ -110,7 +111,7 @@ impl Correlator {
         }
         let lower = regularised(&gram).cholesky()?.unpack();
         let inverse = lower.solve_lower_triangular(&Gram::identity())?.map(|value| value as f32);
-        // Columns of the inverse over as many places as the pairs have.
+        // Columns of the inverse, padded to the number of places in the pairs.
         let mut columns = [[0.0; 2 * PAIRS]; HARMONICS];
         (0..HARMONICS).for_each(|k| columns[k][..HARMONICS].copy_from_slice(inverse.column(k).as_slice()));
         self.fields.iter_mut().for_each(Field::clear);
@@ -139,8 +140,8 @@ impl Correlator {
         squares(&mut self.scores, &product.im);
     }
 
-    /// Scores of all translations under a known light. Fields w p_0 + i w p_1, w p_2 + i w and w |p|^2 + i w u . p,
-    /// with u the direction of the exposure.
+    /// Computes the scores of all translations under a known light. The fields are w p_0 + i w p_1, w p_2 + i w and w
+    /// |p|^2 + i w u . p, where u is the direction of the exposure.
     fn score_prediction(&mut self, template: &Template, prediction: &Prediction, target: &Target) {
         let exposure = prediction.exposure.map(|value| value as f32);
         self.fields[..3].iter_mut().for_each(Field::clear);
@@ -209,7 +210,7 @@ impl Correlator {
     }
 }
 
-/// Cells that have to overlap.
+/// Smallest number of overlapping cells.
 fn least_cover(template: &Template, target: &Target) -> f32 {
     (LEAST_OVERLAP * template.visible.min(target.covered)).max(FEWEST_CELLS)
 }
@@ -224,19 +225,19 @@ fn multiply_conjugate(f: &Field, g: &Field, product: &mut Field) {
     }
 }
 
-/// The conjugate spectrum of the real part of a field, from the spectrum of the whole.
+/// The conjugate spectrum of the real part of a field, from the spectrum of the field.
 fn even(field: &Field, index: usize, mirror: u32) -> (f32, f32) {
     let mirror = mirror as usize;
     (0.5 * (field.re[index] + field.re[mirror]), 0.5 * (field.im[mirror] - field.im[index]))
 }
 
-/// The same of its imaginary part.
+/// The same for the imaginary part.
 fn odd(field: &Field, index: usize, mirror: u32) -> (f32, f32) {
     let mirror = mirror as usize;
     (0.5 * (field.im[index] + field.im[mirror]), 0.5 * (field.re[index] - field.re[mirror]))
 }
 
-/// a + i b of two spectra.
+/// Spectrum of a + i b from the spectra of a and b.
 fn plus_i(a: &Field, b: &Field, index: usize) -> (f32, f32) {
     (a.re[index] - b.im[index], a.im[index] + b.re[index])
 }

@@ -1,7 +1,7 @@
-//! From hypotheses on the grid to poses: a colour camera without intrinsics sees parallel rays, and a pose moves in the
-//! image plane, its centre at z = 0. With intrinsics the centre moves in the plane of its starting distance: that of
-//! the depth camera, or where the silhouettes are as large. There scale and distance look alike: the scale is held and
-//! the distance varies instead.
+//! From hypotheses on the grid to poses. A colour camera without intrinsics sees parallel rays, and the centre of a
+//! pose moves in the image plane at z = 0. With intrinsics the centre moves in the plane of its initial distance: that
+//! from the depth camera, or the one at which the silhouettes have the same area. Scale and distance then cannot be
+//! distinguished, so the scale is held and the distance varies.
 
 use nalgebra::Vector3;
 
@@ -13,13 +13,13 @@ use super::template::GridProjection;
 use crate::pose::similarity::Similarity;
 use crate::view::{Camera, Size};
 
-/// The cameras and the first guess of scale and distance.
+/// The cameras and the initial values of scale and distance.
 pub struct Geometry {
     camera: Camera,
     image: Size,
-    /// s where the apparent size is one.
+    /// s at an apparent size of one.
     scale: f64,
-    /// Of the centre of the cloud from a pinhole, in units of the colour view.
+    /// Distance of the cloud's centre from a pinhole, in units of the colour view.
     distance: Option<f64>,
     ray: [f64; 2],
 }
@@ -38,17 +38,17 @@ impl Geometry {
         Self { camera: image.camera, image: image.size, scale, distance, ray }
     }
 
-    /// Takes the distance of the centre from a pose that is told.
+    /// Takes the distance of the centre from a given pose.
     pub fn place_at(&mut self, told: &Similarity, cloud: &Cloud) {
         self.distance = self.distance.map(|_| told.apply(cloud.centre).z);
     }
 
-    /// Whether the distance varies in the scale's place: behind a pinhole.
+    /// Whether the distance varies instead of the scale, which is so behind a pinhole.
     pub const fn has_distance(&self) -> bool {
         self.distance.is_some()
     }
 
-    /// How the cloud falls on a grid with such cells, at an apparent size.
+    /// Projection of the cloud onto a grid with cells of `cell` pixels, at an apparent size.
     pub fn projection(&self, size: f64, cell: f64) -> GridProjection {
         let (pixels, inverse_distance) = match (self.camera.focal_length(), self.distance) {
             (Some(focal_length), Some(distance)) => (focal_length * self.scale / distance, self.scale / distance),

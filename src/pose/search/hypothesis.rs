@@ -1,8 +1,8 @@
-//! A pose as the search knows it.
+//! A pose in terms of the search.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
-/// A rotation, an apparent size relative to the start's, a translation in cells of the grid, and how well it scores.
+/// A rotation, an apparent size relative to the initial one, a translation in cells of the grid, and their score.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Hypothesis {
     pub rotation: Matrix3<f64>,
@@ -12,13 +12,13 @@ pub(crate) struct Hypothesis {
 }
 
 impl Hypothesis {
-    /// Rotated about x, y and z by so many radians, and grown by the natural logarithm of a factor.
+    /// Rotated about x, y and z by these angles in radians, and grown by this natural logarithm of a factor.
     pub fn moved(&self, rotation: Vector3<f64>, growth: f64) -> Self {
         let rotation = Rotation3::new(rotation).into_inner() * self.rotation;
         Self { rotation, size: self.size * growth.exp(), ..*self }
     }
 
-    /// The one with the higher score.
+    /// The hypothesis with the higher score.
     pub fn better(self, other: Self) -> Self {
         if other.score > self.score { other } else { self }
     }

@@ -1,5 +1,4 @@
-//! Matches the cloud of the depth view with the grid of the image: the score of a hypothesis, and the best
-//! translations.
+//! Matches the cloud of the depth view to the grid of the image: the score of a hypothesis, and the best translations.
 
 use nalgebra::Matrix3;
 
@@ -15,7 +14,7 @@ use crate::error::Result;
 use crate::pose::similarity::Similarity;
 use crate::view::ColourView;
 
-/// Moves by one cell after each change of rotation or size, at most.
+/// Maximum number of moves by one cell after each change of rotation or size.
 const MOST_MOVES: usize = 3;
 
 /// The image on the search grid, and the memory of its transforms.
@@ -26,7 +25,7 @@ pub(crate) struct ImageGrid {
 
 impl ImageGrid {
     /// # Errors
-    /// [`Degenerate`](crate::ErrorKind::Degenerate) where all colours are the same.
+    /// [`Degenerate`](crate::ErrorKind::Degenerate) if all colours are the same.
     pub fn new(image: &ColourView) -> Result<Self> {
         let mut fourier = Fourier::new();
         Ok(Self { target: Target::new(image, SIDE, &mut fourier)?, fourier })
@@ -39,14 +38,14 @@ pub struct Matcher {
     cloud: Cloud,
     target: Target,
     template: Template,
-    /// Of a known light.
+    /// Present if the light is known.
     prediction: Option<Prediction>,
     correlator: Correlator,
 }
 
 impl Matcher {
     /// # Errors
-    /// [`Empty`](crate::ErrorKind::Empty) where too few pixels have a normal.
+    /// [`Empty`](crate::ErrorKind::Empty) if too few pixels have a normal.
     pub fn new(problem: &SearchProblem<'_>, ImageGrid { target, fourier }: ImageGrid) -> Result<Self> {
         let cloud = Cloud::new(problem.depth.size, &problem.depth.points, problem.normals)?;
         Ok(Self {
@@ -59,17 +58,17 @@ impl Matcher {
         })
     }
 
-    /// Takes the distance from a pose that is told.
+    /// Takes the distance from a given pose.
     pub fn place_at(&mut self, told: &Similarity) {
         self.geometry.place_at(told, &self.cloud);
     }
 
-    /// Whether the distance varies in the scale's place.
+    /// Whether the distance varies instead of the scale.
     pub const fn has_distance(&self) -> bool {
         self.geometry.has_distance()
     }
 
-    /// The best translation of a rotation and a size; `None` where too little of the cloud is visible.
+    /// The best translation for a rotation and a size; `None` if too little of the cloud is visible.
     pub fn best_shift(&mut self, rotation: Matrix3<f64>, size: f64) -> Option<Hypothesis> {
         if !self.draw(&rotation, size) {
             return None;
@@ -79,7 +78,7 @@ impl Matcher {
         scored.max_by(|a, b| a.score.total_cmp(&b.score)).filter(|best| best.score.is_finite())
     }
 
-    /// The hypothesis with its score, moved to the best translation next to it.
+    /// Scores the hypothesis and moves it to the best translation nearby.
     pub fn best_shift_nearby(&mut self, mut hypothesis: Hypothesis) -> Hypothesis {
         hypothesis.score = f64::NEG_INFINITY;
         if !self.draw(&hypothesis.rotation, hypothesis.size) {
@@ -105,7 +104,7 @@ impl Matcher {
         Candidate { pose, score: hypothesis.score }
     }
 
-    /// Draws the rotated cloud as a template; whether enough of it is visible.
+    /// Draws the rotated cloud as a template. Returns whether enough of it is visible.
     fn draw(&mut self, rotation: &Matrix3<f64>, size: f64) -> bool {
         self.template.draw(&self.cloud, rotation, &self.geometry.projection(size, self.target.cell));
         if self.template.visible < FEWEST_CELLS {

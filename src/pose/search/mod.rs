@@ -1,36 +1,32 @@
-//! Initialisation: poses worth refining when nothing is known of where the views stand, the light known or not
+//! Search over all poses: candidates without an initial pose, under a known or an unknown light
 //! (docs/method/search.md).
 //!
-//! maximise over R, s, tau: N (N / V) ln( det T / det E ) / 3, see [`score`]: how much better the rotated depth
-//! normals explain the image's log colours than a constant does.
+//! The objective, maximised over R, s and tau, is N (N / V) ln( det T / det E ) / 3, see [`score`]: how much better the
+//! rotated depth normals explain the image's log colours than a constant does.
 //!
-//! Method: depth and image on a coarse grid. First a sweep: for rotations spread evenly, and scales where they are
-//! free, the rotated, visible cloud is drawn on the grid and all translations are correlated by FFT; the best few are
-//! scored exactly. Then the best rotations, no two alike, ascend to their local maxima, halving their steps. What is
-//! left after suppression of duplicates is sorted by score. Order-2 harmonics are closed under rotation: for an
-//! unknown light any rotation explains any colours of the same normals, so that only where the normals lie speaks for a
-//! pose.
+//! Method: depth map and image are put on a coarse grid. First comes a sweep. For rotations spread evenly, and several
+//! scales if the scale is free, the visible part of the rotated cloud is drawn on the grid. FFT correlates all
+//! translations at once, and the best few are scored exactly. Then the best rotations, no two of them similar, ascend
+//! to their local maxima with halved steps. Their ends without duplicates, sorted by score, are the candidates.
+//! Harmonics of order two are closed under rotation: under an unknown light every rotation of the same normals explains
+//! the same colours, so only the positions of the normals in the image support a pose.
 //!
-//! | file | what it holds |
+//! | file | content |
 //! |---|---|
-//! | `problem` | what goes in, what comes out |
-//! | `coarse_search` | [`Search`]: its slices, and which results are kept |
-//! | `sweep`, `rotations` | the rotations and sizes that are tried |
+//! | `problem` | input and output |
+//! | `coarse_search` | [`Search`]: its slices, and the results that are kept |
+//! | `sweep`, `rotations` | the rotations and sizes of the sweep |
 //! | `ascent` | from a hypothesis to its local maximum |
 //! | `matcher` | the score of a hypothesis, the best translation of a rotation |
-//! | `cloud`, `template` | the depth view as patches, and what the colour camera would see of them |
+//! | `cloud`, `template` | the depth view as patches, and their appearance to the colour camera |
 //! | `target` | the colour view on the grid |
-//! | `score`, `correlate` | how well a template explains a target: at one translation exactly, at all at once |
+//! | `score`, `correlate` | fit of a template to a target: at one translation exactly, at all translations at once |
 //! | `geometry` | from hypotheses to poses |
 //! | `task_results` | results that may come in any order |
 //!
-//! Measured on 160 scenes of 64x64 (eight surfaces, natural and colourful lights, up to 75 degrees with roll, 0.4 to
-//! all of the columns, free scale, 1 % noise): a candidate within 10 degrees of the truth is first in 73 %, among the
-//! first ten in 92 % and among all in 98 % for an unknown light; in 88, 98 and 100 % for a known one.
-//!
-//! Limits: tilt up to 100 degrees with roll up to 32, or any rotation up to 76 degrees. Poses end a few degrees from
-//! the truth. What is lost are tilts beyond 60 degrees of half a depth map: too little is seen twice. Overlaps under
-//! 0.15 are not seen. No shadows, one albedo.
+//! Limits: tilt up to 100 degrees with roll up to 32, or any rotation up to 76 degrees. Candidates end a few degrees
+//! from the truth. The search misses tilts beyond 60 degrees of half a depth map, where the views share too little, and
+//! overlaps below 0.15. It models neither shadows nor varying albedo.
 
 mod ascent;
 mod cloud;

@@ -1,12 +1,12 @@
-//! Rotations spread evenly over those that two views of one object can have between them.
+//! Rotations spread evenly over those that are possible between two views of one object.
 //!
-//! Method: the super-Fibonacci spiral (Alexa, CVPR 2022): unit quaternions
-//! q_i = (sqrt t sin a, sqrt t cos a, sqrt(1-t) sin b, sqrt(1-t) cos b) with t = (i + 1/2) / n, a = 2 pi (i + 1/2) /
-//! phi and b = 2 pi (i + 1/2) / psi. All of them are rotated by one rotation that the seed draws, which leaves them as
-//! even; those inside the domain are kept.
+//! Method: the super-Fibonacci spiral (Alexa, CVPR 2022) of unit quaternions q_i = (sqrt t sin a, sqrt t cos a,
+//! sqrt(1-t) sin b, sqrt(1-t) cos b) with t = (i + 1/2) / n, a = 2 pi (i + 1/2) / phi and b = 2 pi (i + 1/2) / psi. A
+//! rotation drawn from the seed rotates all of them, which does not change their spacing; those inside the domain are
+//! kept.
 //!
-//! Limits: the spacing is the edge of the cube that each rotation stands for; the farthest rotation is about 0.9 of it
-//! away from the next.
+//! Limits: the spacing is the edge of the cube that each rotation represents. The rotation farthest from all members is
+//! about 0.9 spacings away from the nearest one.
 
 use std::f64::consts::{PI, SQRT_2, TAU};
 
@@ -14,13 +14,13 @@ use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use crate::numeric::random::Random;
 
-/// Largest tilt between both lines of sight in degrees: beyond a right angle views of a relief share almost nothing.
+/// Largest tilt between both lines of sight in degrees; beyond a right angle views of a relief share almost nothing.
 const LARGEST_TILT: f64 = 100.0;
-/// Largest roll about the line of sight in degrees that goes with any tilt: cameras are held upright, by and large.
+/// Largest roll about the line of sight in degrees at any tilt, because most cameras are held upright.
 const LARGEST_ROLL: f64 = 32.0;
-/// Every rotation by less than this many degrees belongs to the domain, whatever its axis.
+/// Every rotation by less than this many degrees belongs to the domain, about any axis.
 const LARGEST_ANGLE: f64 = 76.0;
-/// The spiral's constants: phi = sqrt 2 and psi, the positive root of psi^4 = psi + 4.
+/// Constants of the spiral: phi = sqrt 2, and psi, the positive root of psi^4 = psi + 4.
 const PSI: f64 = 1.533_751_168_755_204_3;
 
 /// The rotations of the domain, about `spacing` degrees apart.
@@ -29,7 +29,7 @@ pub fn spread(spacing: f64, seed: u64) -> Vec<Matrix3<f64>> {
     let mut uniform = || random.uniform();
     // Shoemake's uniform rotation has the form of the spiral's members.
     let drawn = member(uniform(), TAU * uniform(), TAU * uniform());
-    // All rotations together measure 8 pi^2 cubic radians.
+    // The volume of all rotations is 8 pi^2 cubic radians.
     let count = (8.0 * PI.powi(2) / spacing.to_radians().powi(3)).ceil() as usize;
     let along = |index: usize| {
         let i = index as f64 + 0.5;
@@ -45,7 +45,7 @@ fn member(t: f64, a: f64, b: f64) -> UnitQuaternion<f64> {
 
 fn in_domain(rotation: &UnitQuaternion<f64>) -> bool {
     let tilt = (rotation * Vector3::z()).angle(&Vector3::z()).to_degrees();
-    // atan of the ratio, not atan2: a quaternion and its negative are one rotation.
+    // atan of the ratio, not atan2, because a quaternion and its negative are the same rotation.
     let roll = 2.0 * (rotation.k / rotation.w).atan().to_degrees();
     (tilt <= LARGEST_TILT && roll.abs() <= LARGEST_ROLL) || rotation.angle().to_degrees() <= LARGEST_ANGLE
 }

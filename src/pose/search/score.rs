@@ -1,13 +1,13 @@
-//! How well a template explains the colours under it, at one translation, exactly.
+//! Exact score of a template at one translation: how well it explains the colours under it.
 //!
-//! score = N (N / V) (1/3) ln( det(T + e) / det(E + e) ): N cells of overlap out of V visible ones, T the covariance of
-//! the balanced colours y in the overlap, E that of what the template leaves of them. With an unknown light E is the
-//! residual of a linear fit of the nine harmonics in each channel; with a known one it is y - W B(n) L, free of a
-//! common exposure. It is the gain of log likelihood over a constant colour, so that exposure and white balance cancel;
-//! N / V is the share of the visible cells that lie on the mask: points that should be visible off the object speak
+//! score = N (N / V) (1/3) ln( det(T + e) / det(E + e) ), with N cells of overlap out of V visible ones, the covariance
+//! T of the balanced colours y in the overlap, and the covariance E of their residuals. Under an unknown light E
+//! belongs to a linear fit of the nine harmonics in each channel, under a known one to y - W B(n) L without a common
+//! exposure. The score is the gain of log likelihood over a constant colour, so exposure and white balance cancel. N /
+//! V is the share of the visible cells that lie on the mask: points that should be visible but lie off the object count
 //! against the pose.
 //!
-//! Limits: every cell counts as independent, and shadows and albedo are not modelled.
+//! Limits: every cell counts as independent, and shadows and varying albedo are not modelled.
 
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
@@ -15,23 +15,23 @@ use super::target::Target;
 use super::template::{PADDED, PRODUCTS, Products, Sums, Template, row_start};
 use crate::light::{HARMONICS, Light, basis};
 
-/// Variance e added to the balanced colours, whose first axis has variance one: what a tilt by half the spacing of the
-/// rotations leaves unexplained at best. Ten times as much ranks candidates alike.
+/// Variance e added to the balanced colours, whose first axis has variance one: the part that a tilt by half the
+/// spacing of the rotations leaves unexplained at best (docs/lab/thresholds.md).
 const UNEXPLAINED: f64 = 1e-3;
-/// Share added to the diagonal of the harmonics' Gram matrix, and of the weight: harmonics that hardly vary over the
-/// overlap must not be fitted with huge coefficients.
+/// Shares added to the diagonal of the harmonics' Gram matrix: of the entry itself, and of the weight. They prevent
+/// large coefficients of harmonics that hardly vary over the overlap.
 const RIDGE: f64 = 1e-3;
 const RIDGE_OF_WEIGHT: f64 = 1e-4;
-/// Fewest cells of an overlap: nine harmonics fit any colours of nine cells.
+/// Smallest number of cells of an overlap: nine harmonics fit any colours of nine cells.
 pub const FEWEST_CELLS: f32 = 12.0;
 
 /// Products of the harmonics over some cells.
 pub type Gram = SMatrix<f64, HARMONICS, HARMONICS>;
 
-/// The balanced colours of a known light at every cell of a template, their mean along the exposure taken out.
+/// Balanced colours of a known light at every cell of a template, without their mean along the exposure.
 pub struct Prediction {
     light: Light,
-    /// W (1, 1, 1) at length one: what another exposure adds.
+    /// W (1, 1, 1) at length one: the direction in which the exposure moves the colours.
     pub exposure: Vector3<f64>,
     /// In the order of the template's cells.
     pub colours: Vec<[f32; 3]>,
@@ -65,7 +65,7 @@ impl Prediction {
     }
 }
 
-/// The score of a template moved by whole cells; `None` where too little overlaps.
+/// The score of a template moved by whole cells; `None` if too little overlaps.
 pub fn score(template: &Template, prediction: Option<&Prediction>, target: &Target, shift: [i32; 2]) -> Option<f64> {
     let (total, residual, cells) = match prediction {
         None => squares_of_fit(template, target, shift)?,
@@ -76,10 +76,10 @@ pub fn score(template: &Template, prediction: Option<&Prediction>, target: &Targ
     gain.is_finite().then(|| gain * cells * cells / f64::from(template.visible))
 }
 
-/// Sums of squares of the colours about their mean, those of the residual, and the number of cells.
+/// Sums of squares of the colours about their mean and of the residuals, and the number of cells.
 type Squares = (Matrix3<f64>, Matrix3<f64>, f64);
 
-/// The cells that a moved template and the target share: number in the template's list, sums, index in the target.
+/// The cells that a moved template and the target share: index in the template's list, sums, index in the target.
 fn overlap<'a>(
     template: &'a Template,
     target: &'a Target,
@@ -155,7 +155,7 @@ fn squares_of_prediction(
         return None;
     }
     let (sum, off, cells) = (Vector3::from(sum.map(f64::from)), Vector3::from(off.map(f64::from)), f64::from(cells));
-    // Taking the mean m out along the unit vector u: sum of (d - m u)(d - m u)^T with m = u . d / N.
+    // The mean m along the unit vector u is removed: sum of (d - m u)(d - m u)^T with m = u . d / N.
     let exposure = prediction.exposure;
     let mean = exposure.dot(&off) / cells;
     let mixed = off * exposure.transpose() * mean;

@@ -4,18 +4,17 @@ use nalgebra::Matrix3;
 
 use super::rotations;
 
-/// Distance of neighbouring rotations in degrees. On 160 scenes with unknown light, before any ascent, one within 15
-/// degrees of the truth was among the first 40 in 99 % at 17 and in 96 % at 20.
+/// Distance between neighbouring rotations in degrees; set on 160 scenes with unknown light (docs/lab/thresholds.md).
 const SPACING: f64 = 16.0;
-/// Scales of a free scale relative to s0, a cell apart at either end of the object; the ascent reaches 0.7 and 1.4 and
-/// closes the gaps. Six of them rank alike and take half as long again.
+/// Scales relative to s0 if the scale is free, one cell apart at the ends of the object. The ascent reaches 0.7 and 1.4
+/// and closes the gaps (docs/lab/thresholds.md).
 const FREE_SCALES: [f64; 4] = [0.74, 0.90, 1.09, 1.32];
-/// Apparent sizes behind a pinhole whose scale is held: the distance is known only roughly.
+/// Apparent sizes behind a pinhole with a held scale, where the distance is known only roughly.
 const NEAR_SIZES: [f64; 3] = [0.87, 1.0, 1.15];
-/// Pairs of a rotation and a size in one slice.
+/// Number of pairs in one slice.
 const SWEPT_AT_ONCE: usize = 8;
-/// Slices of a single pair at the beginning: the very first call compiles what it needs, and until engines have
-/// optimised that, a pair takes several times as long.
+/// Number of slices of a single pair at the beginning. The first call compiles the code, and until engines have
+/// optimised it, a pair takes several times as long.
 const WARMING_SLICES: usize = 30;
 
 /// All pairs of a rotation and a size.
@@ -35,7 +34,7 @@ impl Sweep {
         Self { rotations: rotations::spread(SPACING, seed), sizes }
     }
 
-    /// Leaves the rotations within so many degrees of one that is told, and that one.
+    /// Restricts the sweep to rotations within `degrees` of a given one, and adds that one.
     pub fn narrow(&mut self, told: &Matrix3<f64>, degrees: f64) {
         let least_trace = 1.0 + 2.0 * degrees.min(180.0).to_radians().cos();
         self.rotations.retain(|turn| turn.trace() >= least_trace);
@@ -43,7 +42,7 @@ impl Sweep {
         self.rotations.push(*told);
     }
 
-    /// The apparent sizes that are tried.
+    /// The apparent sizes of the sweep.
     pub const fn sizes(&self) -> &'static [f64] {
         self.sizes
     }
@@ -58,7 +57,7 @@ impl Sweep {
         slices(self.pairs())
     }
 
-    /// The pairs of a slice; none beyond the last.
+    /// The pairs of a slice; empty beyond the last slice.
     pub fn slice(&self, slice: usize) -> impl Iterator<Item = (Matrix3<f64>, f64)> {
         let start = |slice| slice_start(slice).min(self.pairs());
         let pair = |pair: usize| (self.rotations[pair / self.sizes.len()], self.sizes[pair % self.sizes.len()]);
@@ -70,7 +69,7 @@ impl Sweep {
     }
 }
 
-/// Slices of a sweep over so many pairs of rotation and size.
+/// Number of slices of a sweep over this many pairs.
 const fn slices(pairs: usize) -> usize {
     match pairs.checked_sub(WARMING_SLICES) {
         Some(others) => WARMING_SLICES + others.div_ceil(SWEPT_AT_ONCE),
@@ -78,7 +77,7 @@ const fn slices(pairs: usize) -> usize {
     }
 }
 
-/// The first pair of a slice.
+/// Index of the first pair of a slice.
 const fn slice_start(slice: usize) -> usize {
     match slice.checked_sub(WARMING_SLICES) {
         Some(others) => WARMING_SLICES.saturating_add(others.saturating_mul(SWEPT_AT_ONCE)),

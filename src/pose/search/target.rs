@@ -1,10 +1,10 @@
 //! The colour view on the search grid: coverage and balanced, mean-free log colours of each cell, and their spectra.
 //!
-//! y = W (log S - mean), W the principal axes of the object's colours, each divided by the root of its standard
-//! deviation: half-way between plain differences, where grey light is all there is, and whitened ones, where the faint
-//! hues of natural light count as much as its brightness, and so does noise.
+//! y = W (log S - mean), where W holds the principal axes of the object's colours, each divided by the root of its
+//! standard deviation. This is half-way between plain differences, which only see grey light, and whitened ones, in
+//! which the faint chromaticity of natural light counts as much as its brightness, but so does noise.
 //!
-//! Limits: the grid spans the mask. Where the mask is the whole frame, an object that is small in it has few cells.
+//! Limits: the grid spans the mask. If the mask is the whole frame, a small object has few cells.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -13,41 +13,43 @@ use crate::numeric::eigen::symmetric_eigen;
 use crate::numeric::fourier::planes::{Field, PlaneFourier};
 use crate::view::ColourView;
 
-/// Side of the grid in cells: the mask spans 18, so that the template may move by 14 before it comes in again on the
-/// other side, where next to nothing overlaps.
+/// Side of the grid in cells. The mask spans 18, so the template can move by 14 before it enters again on the other
+/// side, where the overlap is negligible.
 pub const SIDE: usize = 32;
-/// Cells of the grid.
+/// Number of cells of the grid.
 pub const CELLS: usize = SIDE * SIDE;
 /// The transform of the grid.
 pub type Fourier = PlaneFourier<SIDE>;
-/// Cells across the longer side of the mask: a tilt by the spacing of the rotations moves features by about two.
+/// Number of cells across the longer side of the mask; a tilt by the spacing of the rotations moves features by about
+/// two.
 const ACROSS: f64 = 18.0;
-/// Least share of a cell that carries a colour: less is a rim of interpolated pixels.
+/// Smallest covered share of a cell with a colour; less is a border of interpolated pixels.
 const LEAST_COVER: f32 = 0.05;
-/// Standard deviation in log units below which a colour axis is not amplified further: noise of a good camera, twice.
+/// Standard deviation in log units below which a colour axis is not amplified further: twice the noise of a good
+/// camera.
 const NOISE: f64 = 0.02;
 
 /// The colour view on a square grid. Empty cells hold zeros.
 pub struct Target {
     pub side: usize,
-    /// Pixels of a cell's edge.
+    /// Width of a cell in pixels.
     pub cell: f64,
-    /// Column and row of the pixel at the middle of cell (side / 2, side / 2): the middle of the mask.
+    /// Column and row of the pixel at the centre of cell (side / 2, side / 2), which is the centre of the mask.
     pub middle: [f64; 2],
     /// Share of each cell that the mask covers.
     pub mask: Vec<f32>,
-    /// Cells covered in all.
+    /// Sum of these shares.
     pub covered: f32,
     /// y.
     pub colour: [Vec<f32>; 3],
-    /// W and the mean that it is applied to.
+    /// W, and the mean that is subtracted before it is applied.
     pub balance: Matrix3<f64>,
     pub mean: Vector3<f64>,
     /// Spectra of the mask, of mask |y|^2 and of mask y.
     pub spectra: Spectra,
 }
 
-/// Spectra of real fields, as [`Fourier`] leaves them.
+/// Spectra of real fields, in the order of [`Fourier`].
 pub struct Spectra {
     pub mask: Field,
     /// Of mask |y|^2.
@@ -57,9 +59,9 @@ pub struct Spectra {
 
 impl Target {
     /// # Errors
-    /// [`ErrorKind::Degenerate`] where all colours are the same.
+    /// [`ErrorKind::Degenerate`] if all colours are the same.
     pub fn new(view: &ColourView, side: usize, fourier: &mut Fourier) -> Result<Self> {
-        // Asked of the pixels: their means over cells differ by rounding. Bright colours have large logarithms.
+        // Tested on pixels, because their means over cells differ by rounding. Bright colours have large logarithms.
         if view.log_spread() <= f64::from(f32::EPSILON) * (1.0 + view.log_mean().abs()) {
             return Err(flat());
         }
@@ -89,7 +91,7 @@ impl Target {
     }
 }
 
-/// Pixels of a cell's edge and the middle of the mask.
+/// Width of a cell in pixels, and the centre of the mask.
 fn frame(view: &ColourView) -> (f64, [f64; 2]) {
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     for index in (0..view.size.len()).filter(|&index| view.mask[index]) {
@@ -103,7 +105,7 @@ fn frame(view: &ColourView) -> (f64, [f64; 2]) {
     (extent / ACROSS, [0, 1].map(|axis| (low[axis] + high[axis]) / 2.0))
 }
 
-/// Coverage and mean log colours of the cells; each pixel is spread over the four around it.
+/// Coverage and mean log colours of the cells; each pixel is distributed over the four cells around it.
 fn cells(view: &ColourView, side: usize, cell: f64, middle: [f64; 2]) -> (Vec<f32>, [Vec<f32>; 3]) {
     let mut mask = vec![0.0_f32; side * side];
     let mut colour = [(); 3].map(|()| vec![0.0_f32; side * side]);
@@ -148,7 +150,7 @@ fn flat() -> Error {
     Error::new(ErrorKind::Degenerate, "image", "all colours are the same")
 }
 
-/// W: principal axes over the fourth root of their variance, the first of them scaled to variance one.
+/// W: principal axes over the fourth root of their variance, scaled so that the first has variance one.
 fn balance(covariance: &Matrix3<f64>) -> Result<Matrix3<f64>> {
     let eigen = symmetric_eigen(covariance).ok_or_else(flat)?;
     let largest = eigen.eigenvalues.max();

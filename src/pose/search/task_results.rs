@@ -1,4 +1,4 @@
-//! Results of tasks that several workers share: they come in any order and are used in the order of the tasks.
+//! Results of tasks that several workers share. They arrive in any order and are used in the order of the tasks.
 
 /// The state of each task.
 #[derive(Debug)]
@@ -7,7 +7,7 @@ pub struct TaskResults<T>(Vec<TaskState<T>>);
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum TaskState<T> {
     Open,
-    /// A worker has it.
+    /// Given to a worker.
     Taken,
     Done(T),
 }
@@ -17,16 +17,15 @@ impl<T> TaskResults<T> {
         Self((0..count).map(|_| TaskState::Open).collect())
     }
 
-    /// The first open task that `is_wanted`, for a worker.
+    /// The first open task for which `is_wanted` holds, to be given to a worker.
     pub fn take(&mut self, is_wanted: impl Fn(usize) -> bool) -> Option<usize> {
         let index = self.first_open(is_wanted)?;
         self.0[index] = TaskState::Taken;
         Some(index)
     }
 
-    /// The task to do in this thread: the first open one, or else the last one that a worker has not returned. Workers
-    /// take the first ones first, so the last is the least likely to be under way; and a worker that never returns is
-    /// not waited for.
+    /// The task for this thread: the first open one, otherwise the last one that a worker has not returned. Workers
+    /// take the first tasks first, so the last is the least likely to be in progress, and no worker is waited for.
     pub fn next(&self, is_wanted: impl Fn(usize) -> bool) -> Option<usize> {
         self.first_open(&is_wanted).or_else(|| {
             let is_taken = |state: &TaskState<T>| matches!(state, TaskState::Taken);
@@ -38,7 +37,7 @@ impl<T> TaskResults<T> {
         (0..self.0.len()).find(|&index| matches!(self.0[index], TaskState::Open) && is_wanted(index))
     }
 
-    /// Keeps the first result of a task: whoever does it gets the same.
+    /// Stores the first result of a task; later ones are the same.
     pub fn put(&mut self, index: usize, result: T) {
         if let Some(state @ (TaskState::Open | TaskState::Taken)) = self.0.get_mut(index) {
             *state = TaskState::Done(result);
@@ -56,7 +55,7 @@ impl<T> TaskResults<T> {
         self.0.len()
     }
 
-    /// How many are done.
+    /// Number of tasks that are done.
     pub fn done(&self) -> usize {
         self.results().count()
     }
@@ -65,7 +64,7 @@ impl<T> TaskResults<T> {
         self.done() == self.len()
     }
 
-    /// What is there, in the order of the tasks.
+    /// Available results, in the order of the tasks.
     pub fn results(&self) -> impl Iterator<Item = &T> {
         (0..self.len()).filter_map(|index| self.get(index))
     }
@@ -84,7 +83,7 @@ mod tests {
         tasks.put(1, 'b');
         tasks.put(3, 'd');
         assert!(!tasks.is_complete());
-        // No worker has returned the first, so it is done here; what comes later is the same and ignored.
+        // No worker has returned the first task, so it is done here; a later result is the same and ignored.
         assert_eq!(tasks.next(|_| true), Some(0));
         tasks.put(0, 'a');
         tasks.put(0, 'x');

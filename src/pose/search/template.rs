@@ -1,48 +1,49 @@
-//! What the colour camera would see of the rotated cloud, on the search grid.
+//! Appearance of the rotated cloud to the colour camera, on the search grid.
 //!
 //! Each patch that faces the camera and is not hidden spreads its projected area w over the four cells around it, with
 //! the nine harmonics of its rotated normal: a cell holds w and w B_k(n). Coverage is at most one.
 //!
-//! Limits: hidden is what lies behind the nearest patch of the same cell or its neighbours by more than a tolerance, so
-//! that thin structures one behind the other show through. What leaves the grid is not seen.
+//! Limits: a patch is hidden if it lies behind the nearest patch of its cell or of the neighbouring cells by more than
+//! a tolerance, so thin structures close behind each other show through. Patches off the grid are not seen.
 
 use nalgebra::Matrix3;
 
 use super::cloud::Cloud;
 use crate::light::{HARMONICS, basis};
 
-/// Least cosine between a normal and the direction to the camera: shallower patches are slivers on the grid.
+/// Smallest cosine between a normal and the direction to the camera; more oblique patches are slivers on the grid.
 const GRAZING: f32 = 0.1;
-/// Depth in cells behind the nearest patch of a cell at which a patch is hidden: the slope of a visible surface within
-/// a cell and its neighbours.
+/// Depth in cells behind the nearest patch of a cell at which a patch is hidden: the slope of a visible surface over a
+/// cell and its neighbours.
 const HIDDEN: f32 = 2.5;
 
-/// Numbers that are added and multiplied at once.
+/// Number of values that are added and multiplied at once.
 const LANES: usize = 4;
-/// Harmonics rounded up to whole lanes.
+/// Number of harmonics rounded up to whole lanes.
 pub const PADDED: usize = HARMONICS.next_multiple_of(LANES);
 
 /// Weight w, then w B_k for the harmonics after the constant one, then zeros.
 pub type Sums = [f32; PADDED];
 
-/// Where a row of the lower triangle of products begins: rows are as many lanes as reach the diagonal.
+/// Start of a row of the lower triangle of products; a row has as many lanes as reach the diagonal.
 pub const fn row_start(row: usize) -> usize {
     let lanes = row / LANES;
     LANES * (lanes + 1) * (row - LANES * lanes + LANES * lanes / 2)
 }
 
-/// Products of two harmonics.
+/// Number of products of two harmonics.
 pub const PRODUCTS: usize = row_start(HARMONICS - 1) + PADDED;
 /// w B_k B_l.
 pub type Products = [f32; PRODUCTS];
 
-/// How patches fall on the grid: a camera that looks along `ray` (x and y at z = 1) at the centre of the cloud.
+/// Projection of patches onto the grid, by a camera that looks along `ray` (x and y at z = 1) at the centre of the
+/// cloud.
 #[derive(Clone, Copy, Debug)]
 pub struct GridProjection {
-    /// Cells for each unit of the depth view at the centre of the cloud.
+    /// Cells per unit of the depth view at the centre of the cloud.
     pub magnification: f32,
     pub ray: [f32; 2],
-    /// One over the distance of the centre in units of the depth view; zero for parallel rays.
+    /// Inverse of the distance of the centre in units of the depth view; zero for parallel rays.
     pub inverse_distance: f32,
 }
 
@@ -53,9 +54,9 @@ pub struct Template {
     pub sums: Vec<Sums>,
     /// Indices of the cells that are not empty.
     pub cells: Vec<u32>,
-    /// Products of the harmonics in those cells, in their order.
+    /// Products of the harmonics in those cells, in the same order.
     pub products: Vec<Products>,
-    /// Cells covered in all.
+    /// Sum of the cells' coverage.
     pub visible: f32,
     /// The nearest depth in every cell, cells.
     nearest: Vec<f32>,
@@ -76,7 +77,7 @@ impl Template {
         }
     }
 
-    /// Draws the cloud under `rotation` in place of whatever was drawn before. Allocates nothing.
+    /// Draws the cloud under `rotation`, replacing the previous drawing. Allocates nothing.
     pub fn draw(&mut self, cloud: &Cloud, rotation: &Matrix3<f64>, projection: &GridProjection) {
         let rotation = rows(rotation);
         self.clear();
@@ -130,7 +131,7 @@ impl Template {
         self.visible = 0.0;
     }
 
-    /// Column, row and depth of every patch in cells, and the nearest depth of every cell.
+    /// Computes column, row and depth of every patch in cells, and the nearest depth of every cell.
     fn project(&mut self, cloud: &Cloud, rotation: &[[f32; 3]; 3], projection: &GridProjection) {
         let middle = (self.side / 2) as f32;
         let last = (self.side - 2) as f32;
@@ -149,7 +150,7 @@ impl Template {
             if column >= 1.0 && row >= 1.0 && column <= last && row <= last {
                 let cell = nearest(row) * self.side + nearest(column);
                 for cell in [cell, cell - 1, cell + 1, cell - self.side, cell + self.side] {
-                    // Written out: `min` is a call on some targets.
+                    // Written out because `min` is a function call on some targets.
                     if depth < self.nearest[cell] {
                         self.nearest[cell] = depth;
                     }
@@ -158,7 +159,7 @@ impl Template {
         }
     }
 
-    /// The upper left of the four cells around a patch, `None` where it is hidden or off the grid.
+    /// Index of the upper left of the four cells around a patch; `None` if the patch is hidden or off the grid.
     fn visible_corner(&self, index: usize) -> Option<usize> {
         let [x, y, z] = self.positions[index];
         let last = (self.side - 2) as f32;
@@ -194,7 +195,7 @@ impl Template {
     }
 }
 
-/// The cell nearest to a coordinate that is not negative; `round` is a call on some targets.
+/// The cell nearest to a nonnegative coordinate; `round` is a function call on some targets.
 fn nearest(place: f32) -> usize {
     (place + 0.5) as usize
 }
@@ -204,7 +205,7 @@ fn rows(rotation: &Matrix3<f64>) -> [[f32; 3]; 3] {
 }
 
 fn times(m: &[[f32; 3]; 3], [x, y, z]: [f32; 3]) -> [f32; 3] {
-    // Written out: a map over an array stays a call.
+    // Written out because a map over an array remains a function call.
     [
         m[0][0] * x + m[0][1] * y + m[0][2] * z,
         m[1][0] * x + m[1][1] * y + m[1][2] * z,

@@ -1,4 +1,4 @@
-//! The rig of a seed: two cameras, what is between them, and the flaws of the depth sensor.
+//! The rig of a seed: two cameras, the pose between them, and the projector of the depth sensor.
 
 use nalgebra::{Rotation3, Unit, Vector3};
 
@@ -12,13 +12,14 @@ const DEPTH_SIZES: [Size; 2] = [Size { width: 512, height: 424 }, Size { width: 
 /// Focal lengths relative to the width: 53 to 67 degrees across for colour, 56 to 71 for depth.
 const COLOUR_FOCAL: [f64; 2] = [0.75, 1.0];
 const DEPTH_FOCAL: [f64; 2] = [0.7, 0.95];
-/// Distance between the cameras in metres, mostly sideways, and the turn between them in degrees at most.
+/// Range of the distance between the cameras in metres, mostly sideways, and the largest rotation between them in
+/// degrees.
 const BASELINE: [f64; 2] = [0.02, 0.08];
 const LARGEST_TURN: f64 = 3.0;
-/// Distance from projector to depth camera in metres: that of structured-light sensors.
+/// Range of the distance from projector to depth camera in metres: that of structured-light sensors.
 const PROJECTOR: [f64; 2] = [0.05, 0.08];
 
-/// What stays the same in all frames of a rig.
+/// Properties that all frames of a rig share.
 #[derive(Clone, Debug)]
 pub struct Rig {
     pub colour_size: Size,
@@ -27,7 +28,7 @@ pub struct Rig {
     pub depth: Pinhole,
     /// P_colour = R P_depth + t, metres.
     pub pose: Similarity,
-    /// Place of the projector on the depth camera's x axis, metres.
+    /// Position of the projector on the depth camera's x axis, metres.
     pub projector: f64,
 }
 
@@ -43,7 +44,7 @@ impl Rig {
         let turn = chance.between([0.0, LARGEST_TURN]).to_radians();
         let rotation = Rotation3::from_axis_angle(&Unit::new_normalize(axis), turn).into_inner();
         let translation = chance.between(BASELINE) * aside;
-        // Next to the depth camera, on the side of the colour camera or on the other one.
+        // Next to the depth camera, on the side of the colour camera or on the opposite one.
         let side = if chance.uniform() < 0.5 { -1.0 } else { 1.0 };
         let pose = Similarity { scale: 1.0, rotation, translation };
         Self { colour_size, colour, depth_size, depth, pose, projector: side * chance.between(PROJECTOR) }
@@ -55,7 +56,8 @@ fn camera(size: Size, focal: [f64; 2], chance: &mut Chance) -> Pinhole {
     let fy = fx * chance.between([0.99, 1.01]);
     let [cx, cy] =
         [size.width, size.height].map(|side| 0.5 * (side as f64 - 1.0) + side as f64 * chance.between([-0.02, 0.02]));
-    // A barrel or a cushion of up to a tenth at slope one, the next order against it, as in usual lenses.
+    // Barrel or pincushion distortion of up to about a tenth at slope one, partly compensated by the next order, as in
+    // typical lenses.
     let k1 = chance.between([-0.12, 0.12]);
     let k2 = -0.4 * k1 + chance.between([-0.02, 0.02]);
     let [p1, p2] = [0; 2].map(|_| chance.between([-0.001, 0.001]));

@@ -1,4 +1,4 @@
-//! The colour sensor: box-filtered light, noise that grows with it, 8-bit sRGB.
+//! The colour sensor: box-filtered light, noise that grows with the signal, 8-bit sRGB.
 
 use super::illumination::Illumination;
 use super::raster::{Hits, NOTHING, Rays};
@@ -9,15 +9,15 @@ use crate::view::{Size, to_srgb};
 
 /// Rays along a side of a pixel.
 pub const SAMPLES: usize = 2;
-/// The exposure puts this quantile of the green values there (1 is white).
+/// The exposure maps this quantile of the green values to this value (1 is white).
 const EXPOSED_QUANTILE: f64 = 0.97;
 const EXPOSED: f64 = 0.8;
-/// Every so many values are asked for the exposure.
+/// Stride of the values from which the exposure is computed.
 const EXPOSURE_STRIDE: usize = 7;
-/// Noise of a value v: variance READ^2 + SHOT^2 v, a usual camera's at ISO 400.
+/// Noise of a value v has the variance READ^2 + SHOT^2 v, that of a typical camera at ISO 400.
 const READ: f64 = 0.002;
 const SHOT: f64 = 0.012;
-/// Where nothing is.
+/// Light of a ray that meets nothing.
 const BACKGROUND: f64 = 0.02;
 
 /// Linear light of each pixel, R, G, B interleaved, before exposure.
@@ -33,7 +33,7 @@ pub fn radiance(
     for (index, value) in values.chunks_exact_mut(3).enumerate() {
         let (column, row) = size.position(index);
         let mut sum = [0.0; 3];
-        // The sky changes little over a pixel: once for each triangle in it.
+        // The sky changes little over a pixel, so it is evaluated only when the triangle changes.
         let mut sky = (NOTHING, [0.0; 3]);
         for part in 0..SAMPLES * SAMPLES {
             let sample = rays.size.index(SAMPLES * column + part % SAMPLES, SAMPLES * row + part / SAMPLES);
@@ -55,7 +55,7 @@ pub fn radiance(
     values
 }
 
-/// RGBA with 8 bits of sRGB, `noise` times the usual noise.
+/// RGBA with 8 bits of sRGB, with `noise` times the typical noise.
 pub fn develop(radiance: &[f32], noise: f64, chance: &mut Chance) -> Vec<u8> {
     let mut greens: Vec<f32> = radiance.iter().skip(1).step_by(3 * EXPOSURE_STRIDE).copied().collect();
     greens.sort_by(f32::total_cmp);

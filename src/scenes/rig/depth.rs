@@ -1,8 +1,9 @@
-//! The depth sensor: a camera beside a projector of structured light, with the flaws that such sensors have.
+//! The depth sensor: a camera beside a projector of structured light, with the flaws of such sensors.
 //!
-//! Noise of depth grows with its square (Nguyen, Izadi and Lovell 2012), neighbours share a part of it, rims waver by
-//! half a pixel, disparities come in steps; nothing is measured in the projector's shadow, where the surface is seen
-//! or lit at a grazing angle, and out of range; some pixels at rims lie between both surfaces.
+//! The noise of depth grows with the square of depth (Nguyen, Izadi and Lovell 2012), and neighbours share part of it.
+//! Depth discontinuities waver by half a pixel, and disparities come in steps. Nothing is measured in the projector's
+//! shadow, at grazing angles of sight or light, and out of range. Some pixels at discontinuities lie between both
+//! surfaces.
 
 use nalgebra::Vector3;
 
@@ -17,37 +18,38 @@ use crate::view::Size;
 const RANGE: [f64; 2] = [0.35, 8.0];
 /// Sigma of depth in metres: a + b (z - c)^2 (Nguyen et al., Eq. 3).
 const SIGMA: [f64; 3] = [0.0012, 0.0019, 0.4];
-/// Sigma in pixels of the smoothing that neighbours' noise has gone through.
+/// Sigma in pixels of the smoothing that correlates the noise of neighbours.
 const NOISE_SMOOTHING: f64 = 0.8;
-/// Sigma in pixels by which rims waver.
+/// Sigma in pixels by which depth discontinuities waver.
 const LATERAL: f64 = 0.5;
-/// Disparity z = f b / d of the sensor: f b in pixel metres for 640 columns, and its steps in pixels (Kinect).
+/// Disparity d of the sensor, with z = f b / d: f b in pixel metres for 640 columns, and the steps of d in pixels
+/// (Kinect).
 const DISPARITY: f64 = 580.0 * 0.075;
 const DISPARITY_STEP: f64 = 0.125;
-/// Cosine between surface and line of sight below which nothing comes back, and that where everything does.
+/// Cosine between surface and line of sight up to which no light returns, and from which all of it does.
 const GRAZING: [f64; 2] = [0.08, 0.18];
-/// A jump of depth between neighbours, as a share of it, that is a rim.
+/// Relative jump of depth between neighbours that counts as a discontinuity.
 const RIM: f64 = 0.03;
-/// Shares of the pixels at rims that are lost, and that lie between both surfaces.
+/// Shares of the pixels at discontinuities that are lost, and that lie between both surfaces.
 const LOST: f64 = 0.25;
 const FLYING: f64 = 0.15;
-/// A point lies in the projector's shadow of what is nearer by this share.
+/// A point lies in the projector's shadow if another one is nearer by more than this share.
 const SHADOW_BIAS: f64 = 0.008;
-/// Samples of the projector's view for each pixel of the camera, and how much wider it looks.
+/// Samples of the projector's view for each pixel of the camera, and the factor by which its view is wider.
 const PROJECTOR_SAMPLES: f64 = 1.5;
 const PROJECTOR_REACH: f64 = 1.3;
 
-/// What the depth camera would see without flaws.
+/// The depth camera's view without flaws.
 pub struct Seen {
-    /// Metres, NaN where nothing is.
+    /// Metres, NaN for background.
     pub depth: Vec<f32>,
     /// Cosine between the surface and the line of sight.
     pub cosine: Vec<f32>,
-    /// Whether the projector reaches the point.
+    /// Whether the projector lights the point.
     pub is_lit: Vec<bool>,
 }
 
-/// The depth camera's view of a stage that `placement` puts into its frame.
+/// The depth camera's view of a stage that `placement` transforms into its frame.
 pub fn look(stage: &Stage, placement: &Similarity, rig: &Rig) -> Seen {
     let size = rig.depth_size;
     let rays = Rays::new(&rig.depth, size, 1);
@@ -80,8 +82,8 @@ fn is_lit(point: Vector3<f64>, projector: &Rays, lit: &Hits) -> bool {
     index.is_some_and(|index| f64::from(lit.depth[index]) > point.z * (1.0 - SHADOW_BIAS))
 }
 
-/// Millimetres as the sensor gives them, 0 where it measures nothing; `noise` times the usual noise. Without any only
-/// what has no light or comes back at a grazing angle is lost.
+/// Output of the sensor in millimetres, 0 where it measures nothing, with `noise` times the typical noise. Without
+/// noise only points out of range, unlit or at a grazing angle are lost.
 pub fn measure(seen: &Seen, size: Size, noise: f64, chance: &mut Chance) -> Vec<u16> {
     let shared = smooth_noise(size, chance);
     (0..size.len())
@@ -110,14 +112,14 @@ fn millimetres(depth: f64) -> u16 {
     (1000.0 * depth).round() as u16
 }
 
-/// The pixel so many columns and rows beside, within the view.
+/// The pixel displaced by these columns and rows, clamped to the view.
 fn displaced(size: Size, index: usize, jitter: [f64; 2]) -> usize {
     let (column, row) = size.position(index);
     let move_by = |at: usize, by: f64, length: usize| ((at as f64 + by).round().max(0.0) as usize).min(length - 1);
     size.index(move_by(column, jitter[0], size.width), move_by(row, jitter[1], size.height))
 }
 
-/// The depth at a pixel which may be at a rim: lost, between both surfaces, or as it is.
+/// The depth at a pixel that may lie at a discontinuity: lost, between both surfaces, or unchanged.
 fn at_rim(seen: &Seen, size: Size, index: usize, depth: f64, draw: f64) -> Option<f64> {
     let jump = |near: usize| f64::from(seen.depth[near]) - depth;
     let other = size.neighbours(index).find(|&near| jump(near).abs() > RIM * depth);
@@ -128,14 +130,14 @@ fn at_rim(seen: &Seen, size: Size, index: usize, depth: f64, draw: f64) -> Optio
     }
 }
 
-/// Gaussian noise of variance one whose neighbours resemble each other.
+/// Gaussian noise of variance one that is correlated between neighbours.
 fn smooth_noise(size: Size, chance: &mut Chance) -> Vec<f64> {
     let reach = (3.0 * NOISE_SMOOTHING).ceil() as isize;
     let kernel: Vec<f64> = (-reach..=reach).map(|k| (-0.5 * (k as f64 / NOISE_SMOOTHING).powi(2)).exp()).collect();
     let length = kernel.iter().map(|weight| weight * weight).sum::<f64>().sqrt();
     let kernel: Vec<f64> = kernel.iter().map(|weight| weight / length).collect();
     let white: Vec<f64> = (0..size.len()).map(|_| chance.gaussian()).collect();
-    // Borders take the noise of the other side, so that the variance is one there, too.
+    // Borders wrap around, so that the variance is one there, too.
     let along = |values: &[f64], step: [usize; 2]| -> Vec<f64> {
         let mut sums = vec![0.0; values.len()];
         for (index, sum) in sums.iter_mut().enumerate() {
@@ -179,12 +181,12 @@ mod tests {
                 pairs.map(|(a, b)| (a - mean) * (b - mean)).sum::<f64>() / (off.len() - by) as f64
             };
             let sigma = SIGMA[0] + SIGMA[1] * (z - SIGMA[2]).powi(2);
-            // Steps add a twelfth of their square, the steps of disparity and those of a millimetre.
+            // Quantisation adds a twelfth of the squared step, for the steps of disparity and those of a millimetre.
             let step = z * z * DISPARITY_STEP / DISPARITY;
             let expected = (sigma * sigma + (step * step + 1e-6) / 12.0).sqrt();
             assert!((variance(0).sqrt() / expected - 1.0).abs() < 0.1, "{depth}: {} {expected}", variance(0).sqrt());
             assert!(mean.abs() < 0.1 * expected + 0.5 * step * step / z, "{depth}: {mean}");
-            // Two Gaussians of that sigma, a pixel apart: exp(-1 / (4 sigma^2)) of the smooth part.
+            // Two Gaussians of that sigma, one pixel apart: exp(-1 / (4 sigma^2)) of the smooth part.
             let shared = (-0.25 / (NOISE_SMOOTHING * NOISE_SMOOTHING)).exp() * sigma * sigma;
             assert!((variance(1) - shared).abs() < 0.1 * variance(0), "{depth}: {} {shared}", variance(1));
             assert!(variance(10).abs() < 0.05 * variance(0));
@@ -219,13 +221,13 @@ mod tests {
         let share = |count: usize| count as f64 / (2 * SIZE.height) as f64;
         let lost = share(rim().filter(|&value| value == 0).count());
         let flying = share(rim().filter(|value| (1050..1450).contains(value)).count());
-        // Where rims waver, a pixel beside one may be measured in a column off it.
+        // Since discontinuities waver, a pixel beside one may be measured one column away from it.
         assert!((lost / LOST - 0.8).abs() < 0.4 && (flying / FLYING - 0.7).abs() < 0.5, "{lost} {flying}");
         assert!(at(50).chain(at(150)).all(|value| (950..1050).contains(&value) || (1450..1550).contains(&value)));
     }
 
-    /// A square at 0.8 m before a wall at 1.6 m: its shadow on the wall is f b (1 / 0.8 - 1 / 1.6) pixels wide, on the
-    /// side away from the projector.
+    /// A square at 0.8 m in front of a wall at 1.6 m: its shadow on the wall is f b (1 / 0.8 - 1 / 1.6) pixels wide, on
+    /// the side away from the projector.
     #[test]
     fn the_shadow_of_the_projector_lies_where_geometry_says() {
         for projector in [0.06, -0.08] {
@@ -243,7 +245,7 @@ mod tests {
             let dark: Vec<usize> = (0..SIZE.width).filter(|&column| !seen.is_lit[SIZE.index(column, 75)]).collect();
             let width = camera.fx * projector.abs() * (1.0 / 0.8 - 1.0 / 1.6);
             assert!((dark.len() as f64 - width).abs() <= 2.0, "{dark:?} {width}");
-            // The square's own rims are 33.75 pixels from the middle.
+            // The square's own borders are 33.75 pixels from the middle.
             let rim = 99.5 - f64::signum(projector) * 33.75;
             assert!(dark.iter().all(|&column| (column as f64 - rim) * -projector.signum() > -1.0), "{dark:?}");
             assert!(dark.iter().all(|&column| (column as f64 - rim).abs() < width + 2.0), "{dark:?}");

@@ -14,7 +14,7 @@ use crate::scenes::flaws::Chance;
 use crate::scenes::{LARGEST_VIEW, SMALLEST_VIEW};
 use crate::view::{Pinhole, Size};
 
-/// Streams of random numbers of each frame; the rig has one of its own, beyond those of any frame.
+/// Streams of random numbers of each frame; the rig has a separate one, beyond those of any frame.
 #[derive(Clone, Copy)]
 enum Stream {
     Layout,
@@ -25,32 +25,32 @@ enum Stream {
 const STREAMS: u64 = 4;
 const RIG_STREAM: u64 = 1 << 40;
 
-/// Which frame of which rig to make.
+/// Selects a frame of a rig.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RigRequest {
-    /// What is seen.
+    /// Kind of scene.
     pub kind: RigKind,
-    /// Of the rig: cameras, lenses and extrinsics.
+    /// Seed of the rig: cameras, lenses and extrinsics. It also enters the frames.
     pub seed: u64,
-    /// Frames of one seed share the rig; what is seen, its light and the noise are others.
+    /// Frames of one seed share the rig; scene, light and noise differ.
     pub frame: u32,
-    /// Sides of 16 to 1024 pixels; without one, 640x480 or 960x540 by the seed.
+    /// Sides of 16 to 1024 pixels; `None` is 640x480 or 960x540, depending on the seed.
     pub colour_size: Option<Size>,
-    /// Sides of 16 to 1024 pixels; without one, 512x424 or 640x480 by the seed.
+    /// Sides of 16 to 1024 pixels; `None` is 512x424 or 640x480, depending on the seed.
     pub depth_size: Option<Size>,
-    /// Factor of either sensor's noise; with 0 depth is exact to half a millimetre, with holes.
+    /// Factor on the noise of both sensors. With 0, depth is exact to half a millimetre and still has holes.
     pub noise: f64,
 }
 
 impl RigRequest {
-    /// A frame with the sensors' own noise and sizes.
+    /// A frame with typical noise and default sizes.
     #[must_use]
     pub const fn new(kind: RigKind, seed: u64, frame: u32) -> Self {
         Self { kind, seed, frame, colour_size: None, depth_size: None, noise: 1.0 }
     }
 
     /// # Errors
-    /// [`ErrorKind::Size`] or [`ErrorKind::Range`] naming the first field out of range.
+    /// [`ErrorKind::Size`] or [`ErrorKind::Range`] with the first field out of range.
     pub fn validate(&self) -> Result<()> {
         let sides = SMALLEST_VIEW..=LARGEST_VIEW;
         for (field, size) in [("colourSize", self.colour_size), ("depthSize", self.depth_size)] {
@@ -71,33 +71,33 @@ impl RigRequest {
     }
 }
 
-/// What both cameras of a rig give, and the truth.
+/// Outputs of both cameras of a rig, and the true values.
 #[derive(Clone, Debug)]
 pub struct RigFrame {
-    /// What is seen.
+    /// Kind of scene.
     pub kind: RigKind,
     /// RGBA, 8 bits of sRGB each, row-major.
     pub colour: Vec<u8>,
     /// Columns and rows of the colour image.
     pub colour_size: Size,
-    /// Its camera.
+    /// Camera of the colour image.
     pub colour_camera: Pinhole,
     /// Millimetres along z, 0 where nothing was measured.
     pub depth: Vec<u16>,
     /// Columns and rows of the depth map.
     pub depth_size: Size,
-    /// Its camera.
+    /// Camera of the depth map.
     pub depth_camera: Pinhole,
     /// The extrinsics: P_colour = R P_depth + t, metres, scale 1.
     pub pose: Similarity,
-    /// Depth of the surfaces at the pixels' centres without any flaw, metres; NaN where nothing is.
+    /// Depth of the surfaces at the pixels' centres without any flaw, metres; NaN for background.
     pub true_depth: Vec<f32>,
 }
 
-/// Makes a frame.
+/// Renders a frame.
 ///
 /// # Errors
-/// As [`RigRequest::validate`].
+/// Those of [`RigRequest::validate`].
 pub fn render(request: &RigRequest) -> Result<RigFrame> {
     request.validate()?;
     let Views { rig, stage, view, light, rays, hits, seen } = Views::of(request);
@@ -115,7 +115,7 @@ pub fn render(request: &RigRequest) -> Result<RigFrame> {
     })
 }
 
-/// Both views before their sensors, and what they are views of.
+/// Both views before their sensors, with the rig and the scene.
 struct Views {
     rig: Rig,
     stage: Stage,
@@ -145,8 +145,8 @@ mod tests {
 
     use super::*;
 
-    /// Points of the depth camera, carried by the true pose into the colour image, have the colours that paint and
-    /// light give them there; by a pose two degrees off they have not.
+    /// Points of the depth camera, transformed by the true pose into the colour image, have the colours that albedo and
+    /// light give them there. Under a pose two degrees off they do not.
     #[test]
     fn both_views_agree_under_the_true_pose_alone() {
         for (kind, seed) in RigKind::ALL.into_iter().zip(3..) {
@@ -168,7 +168,7 @@ mod tests {
                     let Some(pixel) = rig.colour_size.nearest(right as f32, down as f32) else { continue };
                     let Some([sample, line]) = rays.position(carried) else { continue };
                     let Some(sample) = rays.size.nearest(sample as f32, line as f32) else { continue };
-                    // What is hidden from the colour camera is not there.
+                    // Points hidden from the colour camera are skipped.
                     if f64::from(hits.depth[sample]) < 0.99 * carried.z {
                         continue;
                     }
@@ -187,7 +187,7 @@ mod tests {
                 same as f64 / f64::from(all.max(1))
             };
             let [right, wrong] = [agreement(&true_pose), agreement(&off)];
-            // What is left are pixels that paints or things share.
+            // The rest are pixels that several albedos or things share.
             assert!(right > 0.93 && wrong < right - 0.04, "{kind:?}: {right} {wrong}");
         }
     }

@@ -1,4 +1,4 @@
-//! The light of a frame: a natural light of order 2, or a part of it and one or two lamps with cast shadows.
+//! The light of a frame: a natural light of order 2, or part of one with one or two lamps that cast shadows.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
@@ -12,17 +12,18 @@ use crate::view::Size;
 
 /// Share of frames with lamps.
 const LAMP_SHARE: f64 = 0.5;
-/// What is left of the natural light beside lamps.
+/// Range of the share of the natural light if there are lamps.
 const AMBIENT: [f64; 2] = [0.15, 0.4];
-/// Samples of a side of a shadow map, and the tangent of half the angle that it covers.
+/// Samples along a side of a shadow map, and the tangent of half of its field of view.
 const MAP_SIDE: usize = 1536;
 const MAP_REACH: f64 = 1.2;
-/// A point is in the shadow of what is nearer to the lamp by this share of its distance ..
+/// A point lies in shadow if another one is nearer to the lamp by more than this share of its distance. The point is
+/// first moved off its surface by [`SURFACE_STEP`].
 const SHADOW_BIAS: f64 = 0.004;
-/// .. after a step of so many metres off its surface.
+/// Step off the surface before the shadow test, metres.
 const SURFACE_STEP: f64 = 0.004;
 
-/// What lights the stage.
+/// The light of a stage.
 pub struct Illumination {
     sky: Light,
     /// From normals of the world to those of the natural light.
@@ -33,7 +34,7 @@ pub struct Illumination {
 
 struct Lamp {
     position: Vector3<f64>,
-    /// At the distance of the scene's middle.
+    /// Colour of the lamp at the distance of the scene's centre.
     colour: [f64; 3],
     distance: f64,
     placement: Similarity,
@@ -42,10 +43,10 @@ struct Lamp {
 }
 
 impl Illumination {
-    /// A light for a stage whose middle is `target`.
+    /// A light for a stage whose centre is `target`.
     pub fn random(stage: &Stage, target: Vector3<f64>, chance: &mut Chance) -> Self {
         let sky = [lights::COLOURFUL, lights::WINDOW, lights::OVERCAST][chance.below(3)];
-        // Coloured lamps at half their saturation: whole scenes are rarely so colourful.
+        // Coloured lamps are taken at half their saturation, because whole scenes are rarely so colourful.
         let sky = if sky == lights::COLOURFUL { towards_grey(&sky) } else { sky };
         let turn = Rotation3::from_axis_angle(&Vector3::y_axis(), chance.between([-1.0, 1.0])).into_inner();
         let lamps = if chance.uniform() < LAMP_SHARE { 1 + chance.below(2) } else { 0 };
@@ -54,7 +55,7 @@ impl Illumination {
         Self { sky, turn, sky_share, lamps }
     }
 
-    /// Light of the sky by the normal.
+    /// Light of the sky on a surface with this normal.
     pub fn sky(&self, normal: Vector3<f64>) -> [f64; 3] {
         self.sky.shade((self.turn * normal).into()).map(|log| self.sky_share * log.exp())
     }
@@ -80,7 +81,7 @@ impl Illumination {
 }
 
 impl Lamp {
-    /// Above and beside the rig, or behind it.
+    /// Above and beside the rig, possibly behind it.
     fn random(stage: &Stage, target: Vector3<f64>, chance: &mut Chance) -> Self {
         let side = if chance.uniform() < 0.5 { -1.0 } else { 1.0 };
         let reach = target.norm();
@@ -100,7 +101,7 @@ impl Lamp {
         Self { position, colour, distance: (target - position).norm(), placement, rays, nearest }
     }
 
-    /// Light that arrives, relative to a surface that faces the lamp in the scene's middle.
+    /// Arriving light relative to that on a surface at the scene's centre that faces the lamp.
     fn share(&self, point: Vector3<f64>, normal: Vector3<f64>) -> f64 {
         let to_lamp = self.position - point;
         let cosine = normal.dot(&to_lamp) / to_lamp.norm();
@@ -118,7 +119,7 @@ impl Lamp {
     }
 }
 
-/// Half way to the mean of its channels.
+/// Moves each channel half-way to the mean of the channels.
 fn towards_grey(light: &Light) -> Light {
     let [r, g, b] = light.0;
     Light(light.0.map(|channel| std::array::from_fn(|k| 0.5 * channel[k] + (r[k] + g[k] + b[k]) / 6.0)))
@@ -142,7 +143,7 @@ mod tests {
         })
     }
 
-    /// Shadow maps against rays to the lamp through every triangle.
+    /// Compares shadow maps with rays to the lamp through every triangle.
     #[test]
     fn shadows_lie_where_something_is_in_the_way() {
         let (mut same, mut dark, mut all) = (0, 0, 0);
@@ -163,7 +164,7 @@ mod tests {
                 }
             }
         }
-        // Rims of shadows differ by the step off the surface and the map's samples.
+        // Borders of shadows differ by the step off the surface and by the samples of the map.
         assert!(all > 500 && dark > all / 20 && dark < all / 2, "{dark} of {all}");
         assert!(same as f64 > 0.97 * all as f64, "{same} of {all}");
     }

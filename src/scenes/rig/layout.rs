@@ -1,4 +1,4 @@
-//! What stands where: the four kinds of scenes. World frame: x right, y down along gravity, z forward, metres.
+//! Arrangement of the four kinds of scenes. World frame: x right, y down along gravity, z forward, metres.
 
 use std::f64::consts::PI;
 
@@ -11,24 +11,24 @@ use super::stage::Stage;
 use crate::pose::Similarity;
 use crate::scenes::flaws::Chance;
 
-/// Half the side of a wall or a floor that is to fill the view, metres.
+/// Half the side of a wall or a floor that has to fill the view, metres.
 const WALL_REACH: f64 = 3.0;
-/// Size of objects and their distance, metres.
+/// Ranges of the size of objects and of their distance, metres.
 const OBJECT_SIZE: [f64; 2] = [0.08, 0.25];
 const OBJECT_DISTANCE: [f64; 2] = [0.6, 1.2];
-/// Distance from the farthest object to the wall behind it, metres.
+/// Range of the distance from the farthest object to the wall behind it, metres.
 const BACKGROUND: [f64; 2] = [0.3, 0.7];
-/// How far aside of the middle objects reach, metres.
+/// Lateral reach of objects from the middle, metres.
 const ASIDE: f64 = 0.62;
-/// Attempts at a free place for an object.
+/// Maximum number of attempts to place objects.
 const ATTEMPTS: usize = 40;
 
-/// What is seen.
+/// Kind of scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RigKind {
-    /// Three to six bodies of 8 to 25 cm at 0.6 to 1.2 m, a wall 0.3 m or more behind them.
+    /// Three to six bodies of 8 to 25 cm at 0.6 to 1.2 m, with a wall at least 0.3 m behind them.
     Objects,
-    /// A crumpled sheet or a draped cloth before a wall.
+    /// A crumpled sheet or a draped cloth in front of a wall.
     Sheet,
     /// Boxes on a table, some on top of others.
     Boxes,
@@ -37,7 +37,7 @@ pub enum RigKind {
 }
 
 impl RigKind {
-    /// All of them.
+    /// All kinds.
     pub const ALL: [Self; 4] = [Self::Objects, Self::Sheet, Self::Boxes, Self::Room];
 
     /// Lower-case name.
@@ -52,7 +52,7 @@ impl RigKind {
     }
 }
 
-/// A stage, the rig's place in it and the scene's middle.
+/// A stage, the rig's pose in it, and the scene's centre.
 pub struct Layout {
     pub stage: Stage,
     /// From the world to the colour camera.
@@ -69,7 +69,7 @@ pub fn layout(kind: RigKind, chance: &mut Chance) -> Layout {
     }
 }
 
-/// The rig at the origin, looking down by `pitch` radians and rolled a little.
+/// The rig at the origin, looking down by `pitch` radians and slightly rolled.
 fn view(pitch: f64, chance: &mut Chance) -> Similarity {
     let roll = chance.between([-0.06, 0.06]);
     let rotation =
@@ -95,7 +95,7 @@ impl Stage {
         self.put(solid, placement, Paint::random(size, placement, chance));
     }
 
-    /// A wall at `distance` before the rig, turned about the vertical by `angle`.
+    /// A wall at `distance` in front of the rig, turned about the vertical by `angle`.
     fn put_wall(&mut self, distance: f64, angle: f64, chance: &mut Chance) {
         let side = 2.0 * WALL_REACH;
         let wall = Solid::face(Vector3::new(-WALL_REACH, -WALL_REACH, 0.0), side * Vector3::x(), side * Vector3::y());
@@ -103,7 +103,7 @@ impl Stage {
         self.put_background(&wall, &placement, chance);
     }
 
-    /// A floor so far below the rig, ending at z = `end`.
+    /// A floor this far below the rig, ending at z = `end`.
     fn put_floor(&mut self, below: f64, end: f64, chance: &mut Chance) {
         let side = 2.0 * WALL_REACH;
         let corner = Vector3::new(-WALL_REACH, 0.0, 0.0);
@@ -121,7 +121,7 @@ impl Stage {
     }
 }
 
-/// A body whose largest side is `size`, and its half height.
+/// A body whose largest side is `size`, and half its height.
 fn body(size: f64, chance: &mut Chance) -> (Solid, f64) {
     let [a, b] = [0; 2].map(|_| chance.between([0.5, 1.0]));
     let half = 0.5 * size;
@@ -171,7 +171,7 @@ fn body(size: f64, chance: &mut Chance) -> (Solid, f64) {
     }
 }
 
-/// Three to six bodies, hanging or standing on a table, before a wall.
+/// Three to six bodies, floating or standing on a table, in front of a wall.
 fn objects(chance: &mut Chance) -> Layout {
     let mut stage = Stage::default();
     let table = (chance.uniform() < 0.5).then(|| chance.between([0.25, 0.4]));
@@ -195,7 +195,7 @@ fn objects(chance: &mut Chance) -> Layout {
     }
     let farthest = placed.iter().map(|(place, radius)| place.z + radius).fold(0.0, f64::max);
     let angle = chance.between([-0.35, 0.35]);
-    // The wall comes nearer on one side, over the part where objects are.
+    // The wall is nearer on one side, within the lateral reach of the objects.
     let distance = farthest + chance.between(BACKGROUND) + ASIDE * angle.abs().tan();
     stage.put_wall(distance, angle, chance);
     let pitch = match table {
@@ -209,7 +209,7 @@ fn objects(chance: &mut Chance) -> Layout {
     Layout { stage, view: view(pitch, chance), target }
 }
 
-/// A crumpled sheet or a draped cloth before a wall.
+/// A crumpled sheet or a draped cloth in front of a wall.
 fn crumpled(chance: &mut Chance) -> Layout {
     let mut stage = Stage::default();
     let sides = [chance.between([0.4, 0.7]), chance.between([0.35, 0.6])];
@@ -222,7 +222,7 @@ fn crumpled(chance: &mut Chance) -> Layout {
     );
     let target = Vector3::new(chance.between([-0.1, 0.1]), chance.between([-0.06, 0.06]), distance);
     let placement = at(turn, target);
-    // A sheet of one colour is what one is told to take; some are printed.
+    // Users are advised to choose a sheet of one colour; some sheets are printed nevertheless.
     let paint =
         if chance.uniform() < 0.6 { Paint::plain(&placement, chance) } else { Paint::random(0.4, &placement, chance) };
     stage.put(&solid, &placement, paint);
@@ -243,7 +243,7 @@ fn boxes(chance: &mut Chance) -> Layout {
     stage.put_background(&Solid::cuboid(slab), &table, chance);
     stage.put_floor(below + 0.7, ahead + 2.0, chance);
     stage.put_wall(ahead + chance.between([0.8, 1.6]), chance.between([-0.3, 0.3]), chance);
-    // Place on the table, radius, and height of the top.
+    // Position on the table, radius, and height of the top.
     let mut piled: Vec<([f64; 2], f64, f64)> = Vec::new();
     for _ in 0..6 + chance.below(6) {
         let sides =
@@ -260,7 +260,7 @@ fn boxes(chance: &mut Chance) -> Layout {
     Layout { stage, view: view(pitch, chance), target: Vector3::new(0.0, below - 0.1, ahead) }
 }
 
-/// Floor, walls, and furniture of 1.5 to 4 metres away.
+/// Floor, walls, and furniture 1.5 to 4 metres away.
 fn room(chance: &mut Chance) -> Layout {
     let mut stage = Stage::default();
     let below = chance.between([1.1, 1.4]);
@@ -280,7 +280,7 @@ fn room(chance: &mut Chance) -> Layout {
     for _ in 0..5 + chance.below(5) {
         let sides = Vector3::new(chance.between([0.3, 1.1]), chance.between([0.35, 1.7]), chance.between([0.3, 0.6]));
         let z = chance.between([1.6, end - 0.2]);
-        // Low things stand before the high ones.
+        // Low things stand in front of high ones.
         let sides = if z < 2.3 { Vector3::new(sides.x, 0.5 * sides.y, sides.z) } else { sides };
         let place = Vector3::new(chance.between([-0.6, 0.6]) * z.min(half / 0.6), below - 0.5 * sides.y, z);
         let own = yaw(if chance.uniform() < 0.6 { 0.0 } else { chance.between([-0.8, 0.8]) });
@@ -298,7 +298,7 @@ fn room(chance: &mut Chance) -> Layout {
 mod tests {
     use super::*;
 
-    /// Least distance along z from what stands before the wall to the wall, and how many things do.
+    /// Smallest distance along z between the things in front of the wall and the wall, and the number of things.
     fn clearance(stage: &Stage) -> (f64, usize) {
         let corners = |paint: usize| {
             let own = stage.triangles.iter().filter(move |triangle| triangle.paint as usize == paint);

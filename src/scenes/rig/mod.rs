@@ -1,8 +1,8 @@
-//! Rigs with a known answer: a colour and a depth camera, seen scenes of solids before their backgrounds, and what
-//! both sensors make of them (docs/lab/protocols.md).
+//! Rigs with a known calibration: a colour and a depth camera, scenes of solids in front of backgrounds, and the
+//! outputs of both sensors (docs/lab/protocols.md).
 //!
-//! [`render`] draws cameras and extrinsics from the seed, a scene from seed and frame (`layout`, of `solids` and
-//! `sheet`, with `paint`), and passes it through two z-buffers (`raster`) to both sensors (`colour`, `depth`).
+//! [`render`] draws cameras and extrinsics from the seed and a scene from seed and frame (`layout`, of `solids` and
+//! `sheet`, with `paint`), and passes the scene through two z-buffers (`raster`) to both sensors (`colour`, `depth`).
 
 mod cameras;
 mod colour;

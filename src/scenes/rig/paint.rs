@@ -1,4 +1,4 @@
-//! What things are painted with: patterns in the space of the thing, so that they need no map of its surface.
+//! Albedo of things: patterns in the space of the thing, which need no parametrisation of its surface.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -7,13 +7,13 @@ use crate::scenes::flaws::Chance;
 
 /// Share of things without a pattern.
 const PLAIN_SHARE: f64 = 0.35;
-/// Albedos of paints, least and most, before one channel is lowered.
+/// Range of albedos before one or two channels are lowered.
 const ALBEDO: [f64; 2] = [0.12, 0.85];
-/// Finest detail of a pattern relative to the size of its thing, least and most.
+/// Range of the finest detail of a pattern relative to the size of its thing.
 const DETAIL: [f64; 2] = [0.08, 0.3];
-/// Finest detail in metres: three pixels at a metre and more.
+/// Finest detail in metres: at least three pixels at a distance of one metre.
 const FINEST: f64 = 0.012;
-/// Octaves of the noise that prints are cut from.
+/// Number of octaves of the noise from which prints are cut.
 const OCTAVES: usize = 3;
 
 #[derive(Clone, Copy, Debug)]
@@ -25,7 +25,7 @@ enum Pattern {
     Print,
 }
 
-/// The paint of one thing.
+/// The albedo of one thing.
 #[derive(Clone, Debug)]
 pub struct Paint {
     pattern: Pattern,
@@ -37,7 +37,7 @@ pub struct Paint {
 }
 
 impl Paint {
-    /// A paint for a thing of that size in metres, which is put into the world by `placement`.
+    /// A random albedo for a thing of this size in metres, which `placement` puts into the world.
     pub fn random(size: f64, placement: &Similarity, chance: &mut Chance) -> Self {
         let pattern = if chance.uniform() < PLAIN_SHARE {
             Pattern::Plain
@@ -47,14 +47,14 @@ impl Paint {
         Self::with(pattern, size, placement, chance)
     }
 
-    /// One colour all over.
+    /// A single albedo.
     pub fn plain(placement: &Similarity, chance: &mut Chance) -> Self {
         Self::with(Pattern::Plain, 1.0, placement, chance)
     }
 
     fn with(pattern: Pattern, size: f64, placement: &Similarity, chance: &mut Chance) -> Self {
         let cell = (size * chance.between(DETAIL)).max(FINEST);
-        // Patterns are aligned with their thing; a shift keeps its faces off the borders between cells.
+        // Patterns are aligned with their thing; the shift keeps its faces off the borders between cells.
         let shift = Vector3::from_fn(|_, _| chance.between([0.0, 64.0]) + 64.0);
         let rotation = placement.rotation.transpose() / cell;
         Self {
@@ -91,7 +91,7 @@ impl Paint {
         }
     }
 
-    /// Values of lattice points, joined smoothly, at three scales; 0 to 1.
+    /// Smoothly interpolated values of lattice points at three scales; 0 to 1.
     fn noise(&self, place: Vector3<f64>) -> f64 {
         let (mut sum, mut weight, mut scale) = (0.0, 1.0, 0.25);
         let mut weights = 0.0;
@@ -126,7 +126,7 @@ fn lattice(place: Vector3<f64>, seed: u32) -> f64 {
     mix(mix(edge(0, 0), edge(1, 0), share.y), mix(edge(0, 1), edge(1, 1), share.y), share.z)
 }
 
-/// A number from 0 to 1 for a lattice point: the same on every machine.
+/// A number from 0 to 1 for a lattice point, the same on every machine.
 fn hash(x: u32, y: u32, z: u32, seed: u32) -> f64 {
     let mut h = seed ^ x.wrapping_mul(0x8da6_b343) ^ y.wrapping_mul(0xd816_3841) ^ z.wrapping_mul(0xcb1a_b31f);
     // The finaliser of MurmurHash3.

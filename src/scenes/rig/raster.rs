@@ -1,8 +1,8 @@
-//! Which triangle each ray of a camera meets first: a z-buffer in the plane of the rays' slopes, where straight lines
-//! stay straight whatever the lens does.
+//! The first triangle that each ray of a camera meets: a z-buffer in the plane of the rays' slopes, where straight
+//! lines stay straight behind any lens.
 //!
-//! Limits: triangles that reach behind the near plane or beyond the fold of the lens are not seen, so that surfaces
-//! around the camera are cut into small ones (`solids`).
+//! Limits: triangles that reach behind the near plane or beyond the fold of the lens are dropped. Surfaces around the
+//! camera are therefore cut into small ones (`solids`).
 
 use nalgebra::Vector3;
 
@@ -11,34 +11,36 @@ use crate::pose::Similarity;
 use crate::scenes::render::EDGE_TOLERANCE;
 use crate::view::{Lens, Pinhole, Size};
 
-/// Nearest depth that is drawn, metres.
+/// Smallest depth that is drawn, metres.
 const NEAR: f64 = 0.1;
-/// Rays are found exactly at every so many samples of a row, and by cubic polynomials in between: 1e-4 pixels off at 160 columns, far less at 640.
+/// Distance, in samples of a row, between exactly computed rays. Cubic polynomials interpolate between them, with an
+/// error of 1e-4 pixels at 160 columns and far less at 640.
 const NODES: usize = 8;
-/// Samples around the corners of a triangle in which it may show: a constant for rounding, and a share of its size for
-/// the bend of its edges behind a lens.
+/// Margin in samples around the corners of a triangle in which it may show: a constant for rounding, and a share of its
+/// size for the bending of its edges by a lens.
 const MARGIN: f64 = 0.5;
 const MARGIN_SHARE: f64 = 0.05;
-/// A ray that meets nothing.
+/// Marks a ray that meets nothing.
 pub const NOTHING: u32 = u32::MAX;
 
 /// The rays of a camera, `samples` x `samples` for each pixel.
 pub struct Rays {
     camera: Pinhole,
     samples: f64,
-    /// Of the samples.
+    /// Size of the raster of samples.
     pub size: Size,
     /// x / z and y / z; NaN where the lens lets no ray through.
     slopes: Vec<[f32; 2]>,
-    /// Least and largest of either slope: what lies beyond is not seen, wherever the lens model would put it.
+    /// Smallest and largest value of either slope. Points beyond are not visible, wherever the lens model would project
+    /// them.
     bounds: [[f64; 2]; 2],
 }
 
-/// What the rays of a camera meet first.
+/// First hits of the rays of a camera.
 pub struct Hits {
     /// Index of the triangle, or [`NOTHING`].
     pub triangles: Vec<u32>,
-    /// Depth along z in metres, infinite where there is nothing.
+    /// Depth along z in metres, infinite for background.
     pub depth: Vec<f32>,
 }
 
@@ -46,9 +48,9 @@ pub struct Hits {
 pub struct Hit {
     pub triangle: usize,
     pub point: Vector3<f64>,
-    /// Unit, facing the camera.
+    /// Unit normal facing the camera.
     pub normal: Vector3<f64>,
-    /// Of the angle between normal and line of sight.
+    /// Cosine of the angle between normal and line of sight.
     pub cosine: f64,
 }
 
@@ -74,7 +76,7 @@ impl Rays {
             }
         }
         for (axis, [least, largest]) in rays.bounds.iter_mut().enumerate() {
-            // The least of a number and NaN is the number.
+            // The minimum of a number and NaN is the number.
             for slope in rays.slopes.iter().map(|slopes| f64::from(slopes[axis])) {
                 (*least, *largest) = (least.min(slope), largest.max(slope));
             }
@@ -82,7 +84,7 @@ impl Rays {
         rays
     }
 
-    /// A view without a lens, of one sample a pixel: that of a lamp or a projector.
+    /// A view without a lens and with one sample a pixel, for a lamp or a projector.
     pub fn straight(focal_length: f64, size: Size) -> Self {
         let [cx, cy] = [size.width, size.height].map(|side| 0.5 * (side as f64 - 1.0));
         Self::new(&Pinhole { fx: focal_length, fy: focal_length, cx, cy, lens: Lens::None }, size, 1)
@@ -95,13 +97,13 @@ impl Rays {
         (z > 0.0).then(|| [x / z, y / z])
     }
 
-    /// Where among the samples a point of the camera's frame is seen.
+    /// Position among the samples of a point in the camera's frame.
     pub fn position(&self, point: Vector3<f64>) -> Option<[f64; 2]> {
         let pixel = self.camera.project(point.into()).filter(|_| point.z > NEAR)?;
         Some(pixel.map(|part| (part + 0.5) * self.samples - 0.5))
     }
 
-    /// What is seen of a stage that `placement` puts into the camera's frame.
+    /// First hits on a stage that `placement` transforms into the camera's frame.
     pub fn meet(&self, stage: &Stage, placement: &Similarity) -> Hits {
         let mut hits = Hits { triangles: vec![NOTHING; self.size.len()], depth: vec![f32::INFINITY; self.size.len()] };
         let corners: Vec<Option<Corner>> = stage.points.iter().map(|&p| self.corner(placement.apply(p))).collect();
@@ -152,7 +154,7 @@ impl Rays {
         }
     }
 
-    /// The point that sample `index` sees, by what `meet` found with the same placement.
+    /// The point that sample `index` sees, from the result of `meet` with the same placement.
     pub fn hit(&self, stage: &Stage, placement: &Similarity, hits: &Hits, index: usize) -> Option<Hit> {
         let triangle = hits.triangles[index];
         if triangle == NOTHING {
@@ -174,11 +176,11 @@ struct Corner {
     slopes: [f64; 2],
     /// 1 / z, which is linear over the slopes.
     inverse: f64,
-    /// Among the samples.
+    /// Position among the samples.
     position: [f64; 2],
 }
 
-/// The barycentric coordinates of a triangle as linear functions a x + b y + c; `None` where it is seen edge on.
+/// The barycentric coordinates of a triangle as linear functions a x + b y + c; `None` if it is seen edge on.
 fn barycentric([a, b, c]: [[f64; 2]; 3]) -> Option<[[f64; 3]; 3]> {
     let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
     let side = |from: [f64; 2], to: [f64; 2]| {
@@ -207,12 +209,12 @@ fn cubic(t: f64) -> [f64; 4] {
     ]
 }
 
-/// Samples of a side of `length` that a triangle with these coordinates may cover.
+/// Samples along a side of `length` that a triangle with these coordinates may cover.
 fn span(coordinates: [f64; 3], length: usize) -> std::ops::Range<usize> {
     let [a, b, c] = coordinates;
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));
     let margin = MARGIN + MARGIN_SHARE * (high - low);
-    // Before the casts, which would saturate.
+    // Clamped before the casts, which would saturate.
     let within = |position: f64| position.max(0.0).min(length as f64) as usize;
     within((low - margin).ceil())..within((high + margin).floor() + 1.0)
 }
@@ -228,7 +230,7 @@ mod tests {
 
     const SIZE: Size = Size { width: 160, height: 120 };
 
-    /// A camera with all of Brown's terms, and one pixel of a square wall that it sees askew.
+    /// A camera with all of Brown's terms, and a square wall that it sees obliquely.
     fn wall() -> (Pinhole, Stage, Similarity) {
         let lens = Lens::Brown([0.1, -0.06, 0.001, -0.0008, 0.004, 0.0, 0.0, 0.0]);
         let camera = Pinhole { fx: 130.0, fy: 131.0, cx: 81.0, cy: 58.5, lens };
@@ -256,7 +258,7 @@ mod tests {
             let (column, row) = SIZE.position(index);
             let ray = camera.ray([column as f64, row as f64]).unwrap();
             let expected = depth_of_plane(ray, point, normal);
-            // Depth is kept in 32 bits, and the slopes of the rays are.
+            // Depth and the slopes of the rays are stored in f32.
             let found = f64::from(hits.depth[index]);
             assert!((found - expected).abs() < 1e-6 * expected, "{column} {row}: {found} {expected}");
             let hit = rays.hit(&stage, &placement, &hits, index).unwrap();
@@ -280,7 +282,7 @@ mod tests {
         }
     }
 
-    /// Rays against every triangle, one by one.
+    /// Compares with the intersections of every ray with every triangle.
     #[test]
     fn the_nearest_triangle_is_met() {
         let (camera, mut stage, placement) = wall();

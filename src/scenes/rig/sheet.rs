@@ -5,23 +5,24 @@ use nalgebra::{Vector2, Vector3};
 use super::solids::Solid;
 use crate::scenes::flaws::Chance;
 
-/// Cells along the longer side: 4 mm of a sheet of 0.8 m.
+/// Number of cells along the longer side: 4 mm on a sheet of 0.8 m.
 const CELLS: usize = 192;
-/// Long creases of crumpled paper, at least and at most, and the bend at one in radians at most.
+/// Range of the number of long creases of crumpled paper, and the largest bend at a crease in radians.
 const CREASES: [f64; 2] = [4.0, 10.0];
 const BEND: f64 = 0.5;
-/// Facets between its short creases: their size in metres, and the height of their corners relative to it at most.
+/// Facets between the short creases: range of their size in metres, and of the largest height of their corners relative
+/// to it.
 const FACET: [f64; 2] = [0.05, 0.11];
 const STEEPNESS: [f64; 2] = [0.15, 0.35];
-/// Corners along a side of the lattice that repeats.
+/// Number of corners along a side of the repeating lattice.
 const CORNERS: usize = 32;
-/// Folds of a cloth, at least and at most, and their depth in metres at most.
+/// Range of the number of folds of a cloth, and their largest depth in metres.
 const FOLDS: [f64; 2] = [5.0, 10.0];
 const FOLD_DEPTH: f64 = 0.05;
-/// Depth of either in metres at most: more would reach the background.
+/// Largest depth of either kind in metres; more would reach the background.
 const DEPTH: f64 = 0.16;
 
-/// A sheet of that width and height in metres, about the plane z = 0.
+/// A sheet of these sides in metres (width, height), about the plane z = 0.
 pub fn sheet(sides: [f64; 2], chance: &mut Chance) -> Solid {
     let height: Box<dyn Fn(Vector2<f64>) -> f64> =
         if chance.uniform() < 0.5 { Box::new(crumpled(sides, chance)) } else { Box::new(draped(sides, chance)) };
@@ -42,7 +43,7 @@ pub fn sheet(sides: [f64; 2], chance: &mut Chance) -> Solid {
     solid.stretched(Vector3::new(1.0, 1.0, shrink))
 }
 
-/// Flat facets between short creases, over long ones: the sum of bends a |n.p - c|, mountains and valleys.
+/// Flat facets between short creases, added to long creases: a sum of bends a |n.p - c|, mountains and valleys.
 fn crumpled(sides: [f64; 2], chance: &mut Chance) -> impl Fn(Vector2<f64>) -> f64 + use<> {
     let reach = 0.5 * sides[0].hypot(sides[1]);
     let facets = [1.0, 0.45].map(|share| facets(share * chance.between(FACET), chance));
@@ -58,7 +59,7 @@ fn crumpled(sides: [f64; 2], chance: &mut Chance) -> impl Fn(Vector2<f64>) -> f6
     }
 }
 
-/// Triangles between the corners of a lattice that is turned and bent, their heights random.
+/// Triangles between the corners of a rotated and bent lattice with random heights.
 fn facets(cell: f64, chance: &mut Chance) -> impl Fn(Vector2<f64>) -> f64 + use<> {
     let (sin, cos) = chance.between([0.0, 1.5]).sin_cos();
     let phase = chance.between([0.0, 6.0]);
@@ -84,7 +85,7 @@ fn facets(cell: f64, chance: &mut Chance) -> impl Fn(Vector2<f64>) -> f64 + use<
     }
 }
 
-/// Round folds that run mostly downwards and open on their way.
+/// Round folds that run mostly downwards and widen on their way.
 fn draped(sides: [f64; 2], chance: &mut Chance) -> impl Fn(Vector2<f64>) -> f64 + use<> {
     let folds: Vec<[f64; 5]> = (0..chance.between(FOLDS) as usize)
         .map(|_| {

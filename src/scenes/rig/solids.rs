@@ -4,8 +4,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 
-/// Sides of a triangle of a flat face in metres at most: edges are straight only where the lens does not distort, and
-/// over so short a way it does not by much.
+/// Largest side of a cell of a flat face in metres: a lens bends edges, but hardly over so short a distance.
 const LONGEST_SIDE: f64 = 0.1;
 
 /// Triangles with normals at their corners, which need not face outwards.
@@ -17,7 +16,7 @@ pub struct Solid {
 }
 
 impl Solid {
-    /// A parallelogram from `corner` along two sides, in cells.
+    /// A parallelogram from `corner` along two sides, divided into cells.
     pub fn face(corner: Vector3<f64>, a: Vector3<f64>, b: Vector3<f64>) -> Self {
         let cells = |side: &Vector3<f64>| (side.norm() / LONGEST_SIDE).ceil().max(1.0) as usize;
         Self::net([cells(&a), cells(&b)], |[u, v]| corner + u * a + v * b)
@@ -57,8 +56,8 @@ impl Solid {
         solid
     }
 
-    /// Bodies of revolution about y: each profile from (radius, y) to (radius, y), round between them, sharp where one
-    /// ends and the next begins.
+    /// A body of revolution about y. Each profile maps 0 .. 1 to (radius, y); the surface is smooth along a profile and
+    /// sharp between one and the next.
     pub fn revolved(profiles: &[&dyn Fn(f64) -> [f64; 2]], [around, along]: [usize; 2]) -> Self {
         let mut solid = Self::default();
         for profile in profiles {
@@ -97,7 +96,7 @@ impl Solid {
         self
     }
 
-    /// Area-weighted mean normals.
+    /// Computes area-weighted mean normals.
     fn smooth(&mut self) {
         let mut normals = vec![Vector3::zeros(); self.points.len()];
         for corners in &self.triangles {
@@ -109,7 +108,7 @@ impl Solid {
     }
 }
 
-/// A prism with a regular base of so many corners, of radius and height one.
+/// A prism whose regular base has this many corners, of radius and height one.
 pub fn prism(corners: usize) -> Solid {
     let at = |k: usize, y: f64| {
         let (sin, cos) = (TAU * k as f64 / corners as f64).sin_cos();
@@ -127,7 +126,7 @@ pub fn prism(corners: usize) -> Solid {
     solid
 }
 
-/// Twenty triangles in a ball of radius one.
+/// An icosahedron in a ball of radius one.
 pub fn icosahedron() -> Solid {
     const GOLDEN: f64 = 1.618_033_988_749_895;
     let mut points = Vec::new();
@@ -150,7 +149,7 @@ pub fn icosahedron() -> Solid {
     Solid::faceted(&points, &triangles)
 }
 
-/// A ring of radius one and of that thickness about the y axis.
+/// A ring of radius one and this thickness about the y axis.
 pub fn torus(thickness: f64) -> Solid {
     Solid::net([64, 24], |[u, v]| {
         let [(sin, cos), (up, out)] = [(TAU * u).sin_cos(), (TAU * v).sin_cos()];

@@ -1,4 +1,4 @@
-//! All that is there to be seen in one frame: placed triangles, each with its paint.
+//! Everything that is visible in one frame: placed triangles, each with its albedo.
 
 use nalgebra::Vector3;
 
@@ -6,11 +6,11 @@ use super::paint::Paint;
 use super::solids::Solid;
 use crate::pose::Similarity;
 
-/// Triangles of the world frame: x right, y down along gravity, z forward, metres; the rig is near the origin.
+/// Triangles in the world frame: x right, y down along gravity, z forward, metres; the rig is near the origin.
 #[derive(Clone, Debug, Default)]
 pub struct Stage {
     pub points: Vec<Vector3<f64>>,
-    /// Unit, one for each point; either side of the surface.
+    /// Unit normals, one for each point, on either side of the surface.
     pub normals: Vec<Vector3<f64>>,
     pub triangles: Vec<Triangle>,
     pub paints: Vec<Paint>,

@@ -1,7 +1,7 @@
 //! The brightness terms of shape from shading for heights, as functions of the surface's two slopes in a cell, four
 //! cells side by side (docs/method/heights.md).
 //!
-//! N = a + p b + q c points at the camera; n = N / |N|; dn/dp = (b - n (n . b)) / |N|, and so for q.
+//! N = a + p b + q c points at the camera; n = N / |N|; dn/dp = (b - n (n . b)) / |N|, and likewise for q.
 
 use std::borrow::Cow;
 
@@ -14,8 +14,8 @@ use crate::view::Size;
 /// (a, b, c) of four pixels in the light's frame.
 type Frames = [[Lanes; 3]; 3];
 
-/// The shading of one problem, its normals rotated into the light's frame. Everything is of four pixels, or cells right
-/// of and below them, from the one that is named.
+/// The shading of one problem, with its normals rotated into the light's frame. All functions treat four pixels from
+/// the given index on, or the cells to the right of and below them.
 pub(super) struct CellTerms<'a> {
     pub(super) problem: HeightProblem<'a>,
     polynomials: [Polynomial; 3],
@@ -55,7 +55,7 @@ impl<'a> CellTerms<'a> {
         frames.lanes(index).map(|vector| rotate(&self.rotation, vector))
     }
 
-    /// log S in the middle of the cells.
+    /// log S at the centre of the cells.
     #[inline(always)]
     pub(super) fn cell_log(&self, source: usize) -> [Lanes; 3] {
         let (here, below) = (source as isize, (source + self.view_width) as isize);
@@ -73,7 +73,7 @@ impl<'a> CellTerms<'a> {
         [red, green, blue]
     }
 
-    /// Robust brightness term of those of the cells that have a colour.
+    /// Robust brightness term of those `cells` that have a colour.
     #[inline(never)]
     pub(super) fn objective(&self, frames: &Frames, log: [Lanes; 3], slopes: [Lanes; 2], cells: Mask) -> Lanes {
         let residuals = self.residuals(NormalWithDerivatives::at(frames, slopes).normal, log);
@@ -92,7 +92,7 @@ impl<'a> CellTerms<'a> {
         robust::attenuation(squared * self.inverse_square_scale)
     }
 
-    /// The terms of `cells` as functions of their slopes, where `log` is to be explained.
+    /// The terms of `cells` as functions of their slopes, with residuals relative to `log`.
     pub(super) fn linearise(
         &self,
         frames: &Frames,
@@ -125,7 +125,7 @@ impl<'a> CellTerms<'a> {
         }
     }
 
-    /// How well a pixel alone, its colours and the weight of its normal, fixes its slopes: the smaller eigenvalue of
+    /// How well a single pixel's colours and the weight of its normal determine its slopes: the smaller eigenvalue of
     /// its matrix. Zero unless `wanted`.
     pub(super) fn confidence(&self, frames: &Frames, source: usize, slopes: [Lanes; 2], wanted: Mask) -> Lanes {
         let at = NormalWithDerivatives::at(frames, slopes);
@@ -143,7 +143,7 @@ impl<'a> CellTerms<'a> {
     }
 }
 
-/// The brightness terms of four cells around their slopes; all zero where one has no colour.
+/// The brightness terms of four cells around their slopes; all zero for a cell without a colour.
 pub(super) struct LinearisedCells {
     pub(super) objective: Lanes,
     /// Gauss-Newton matrix: pp, pq, qq.

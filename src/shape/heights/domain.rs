@@ -1,4 +1,4 @@
-//! Where heights are unknown: the mask of one view, its neighbours, the rays of its pixels.
+//! The domain of unknown heights: the mask of one view, the neighbours of its pixels, their rays.
 
 use super::ray_frames::RayFrames;
 use crate::error::{Error, ErrorKind, Result};
@@ -6,7 +6,8 @@ use crate::numeric::cosine::CosineSolver;
 use crate::numeric::{LANES, Mask};
 use crate::view::{Camera, Size};
 
-/// Bits of a pixel: inside the mask; the cell of four pixels right of and below it as well; its neighbours inside.
+/// Bits of a pixel: whether it is inside the mask, whether the cell of four pixels to its right and below is, and which
+/// neighbours are.
 pub(super) const INSIDE: u8 = 1;
 pub(super) const CELL: u8 = 2;
 pub(super) const LEFT: u8 = 4;
@@ -14,15 +15,15 @@ pub(super) const RIGHT: u8 = 8;
 pub(super) const ABOVE: u8 = 16;
 pub(super) const BELOW: u8 = 32;
 
-/// The pixels of one mask, over its bounding box: all that stays the same from solve to solve.
+/// The pixels of one mask over its bounding box: everything that stays the same between solves.
 pub struct HeightDomain {
     pub(super) size: Size,
     /// Left column and top row of the mask's bounding box.
     corner: [usize; 2],
-    /// Of the box; the rows of the rasters over it are `width` long, a multiple of [`LANES`].
+    /// Columns of the box; the rows of the rasters over it have length `width`, a multiple of [`LANES`].
     pub(super) columns: usize,
     pub(super) width: usize,
-    /// Which pixels are inside, and which of their neighbours: bits of [`INSIDE`] and so on.
+    /// Which pixels and neighbours are inside: bits of [`INSIDE`] and the following.
     pub(super) flags: Vec<u8>,
     pub(super) pixels: usize,
     pub(super) cosine: CosineSolver,
@@ -31,10 +32,10 @@ pub struct HeightDomain {
 }
 
 impl HeightDomain {
-    /// The pixels of `mask`.
+    /// The domain of the pixels of `mask`.
     ///
     /// # Errors
-    /// [`ErrorKind::Empty`] where the mask holds no pixel.
+    /// [`ErrorKind::Empty`] if the mask holds no pixel.
     pub fn new(size: Size, camera: Camera, mask: &[bool]) -> Result<Self> {
         let inside_view = || (0..size.len()).filter(|&index| mask[index]).map(|index| size.position(index));
         let bounds = |values: &mut dyn Iterator<Item = usize>| {
@@ -46,7 +47,7 @@ impl HeightDomain {
             return Err(Error::new(ErrorKind::Empty, "mask", "holds no pixel"));
         }
         let (columns, height) = (rightmost - left + 1, bottom - top + 1);
-        // Blocks of four must not reach into the next row.
+        // Blocks of four must not extend into the next row.
         let width = columns.next_multiple_of(LANES);
         let length = width * height;
         let is_inside =
@@ -75,20 +76,20 @@ impl HeightDomain {
         self.flags.len()
     }
 
-    /// The rows of the box: where each starts here and in the view.
+    /// The rows of the box: the index at which each starts here and in the view.
     pub(super) fn rows(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
         let ([left, top], width, view_width) = (self.corner, self.width, self.size.width);
         (0..self.flags.len() / width).map(move |row| (row * width, (top + row) * view_width + left))
     }
 
-    /// Which of a block of [`LANES`] pixels have one of `wanted`.
+    /// Which of a block of [`LANES`] pixels have any of the `wanted` bits.
     #[inline(always)]
     pub(super) fn flagged(&self, index: usize, wanted: u8) -> Mask {
         let flags = self.flags.get(index..).and_then(|flags| flags.first_chunk());
         Mask::with_bits(flags.copied().unwrap_or_default(), wanted)
     }
 
-    /// The pixels on the mask, here and in the view.
+    /// The pixels inside the mask: their indices here and in the view.
     pub(super) fn inside(&self) -> impl Iterator<Item = (usize, usize)> {
         let pixels = self.rows().flat_map(|(here, source)| (0..self.columns).map(move |k| (here + k, source + k)));
         pixels.filter(|&(index, _)| self.flags[index] & INSIDE != 0)

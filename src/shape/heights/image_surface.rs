@@ -1,16 +1,15 @@
-//! The image surface from shading as a whole: heights with integrability built in, from several starts, coarse to fine
+//! The image surface from shading as a whole: integrable heights, from several starts, coarse to fine
 //! (docs/method/heights.md).
 //!
-//! Under natural light three colours hardly tell one normal from another, but the normals of one surface are not free.
-//! The heights of [`HeightSolver`] are solved at falling robust scales from several starts: the surface integrated from
-//! the pixels' own normals, a flat one and a dome over the mask. Shading is ambiguous and not convex; of the local
-//! optima the one of least objective was the best one each time it was measured (Mozart at 64x64 under the lights A, B
-//! and C), so that one is taken. Each call tries one start more, so that none lasts long, and goes on from the best
-//! surface so far.
+//! Under natural light, three colours hardly distinguish one normal from another, but the normals of a surface are not
+//! independent. [`HeightSolver`] solves the heights at falling robust scales from several starts: the surface
+//! integrated from the pixels' own normals, a flat one and a dome over the mask. Shading is ambiguous and not convex;
+//! the local optimum with the lowest objective is taken, which was the best one on Mozart at 64x64 under the lights A,
+//! B and C. Each call tries one more start, so that none takes long, and continues from the best surface so far.
 //!
-//! A large image is halved until a level is small: the starts are tried there, and the best surface goes up from
-//! level to level, a few steps at each. Limits: orthographic or pinhole alike, but parts of the mask that are not
-//! joined are solved on their own, each at any level; detail whose shading is ambiguous is decided where it is coarse.
+//! A large image is halved until a level is small. The starts are tried at that level, and the best surface moves up
+//! from level to level, with a few steps at each. It serves both cameras. Limits: unconnected parts of the mask are
+//! solved independently, each at an arbitrary offset; detail with ambiguous shading is decided at the coarsest level.
 
 use super::domain::HeightDomain;
 use super::problem::LAST_SCALE;
@@ -20,18 +19,18 @@ use crate::error::Result;
 use crate::light::Light;
 use crate::view::ColourView;
 
-/// Object pixels up to which all starts are tried at full resolution: an object that fills half of 96x96 is solved as
-/// it is.
+/// Most object pixels at which all starts are tried at full resolution: an object that fills half of 96x96 is not
+/// halved.
 const MOST_PIXELS: usize = 6000;
 
-/// Solves one image again and again. Owns what lasts from call to call; the memory of a solve is the caller's.
+/// Solves one image repeatedly. Owns what persists between calls; the caller owns the memory of a solve.
 pub struct ImageSurfaceSolver {
     domain: HeightDomain,
     /// Heights of a large image; those of a small one are in `starts`.
     surface: Vec<f32>,
-    /// The image halved again and again, the smallest last; empty for a small image.
+    /// The image, halved repeatedly, the smallest last; empty for a small image.
     coarser: Vec<Level>,
-    /// The starts compete at the smallest level.
+    /// The starts, which compete at the smallest level.
     starts: MultiStart,
 }
 
@@ -39,7 +38,7 @@ impl ImageSurfaceSolver {
     /// A solver for one colour view.
     ///
     /// # Errors
-    /// [`crate::ErrorKind::Empty`] where the view's mask is empty.
+    /// [`crate::ErrorKind::Empty`] if the view's mask is empty.
     pub fn new(image: &ColourView) -> Result<Self> {
         let mut coarser: Vec<Level> = Vec::new();
         loop {
@@ -67,7 +66,7 @@ impl ImageSurfaceSolver {
     /// `heights` (pixels, or f log Z) of the image surface, NaN off the mask.
     ///
     /// # Errors
-    /// Those of the integration, whose surface is one of the starts.
+    /// The errors of the integration, whose surface is one of the starts.
     pub fn solve(
         &mut self,
         solver: &mut HeightSolver,
@@ -92,7 +91,8 @@ impl ImageSurfaceSolver {
         Ok(())
     }
 
-    /// The next start at the smallest level, if there is one; if it is the best so far, its surface goes up. Whether it did.
+    /// Tries the next start at the smallest level, if there is one. If it is the best so far, its surface moves up;
+    /// returns whether it did.
     fn solve_coarse(&mut self, solver: &mut HeightSolver, problem: ImageSurfaceProblem<'_>) -> Result<bool> {
         if !self.starts.has_next() {
             return Ok(false);
@@ -114,7 +114,7 @@ impl ImageSurfaceSolver {
         Ok(true)
     }
 
-    /// Halves the problem from level to level.
+    /// Halves the problem level by level.
     fn load_coarser(&mut self, problem: ImageSurfaceProblem<'_>) {
         for index in 0..self.coarser.len() {
             let (finer, level) = self.coarser.split_at_mut(index);
@@ -144,7 +144,7 @@ impl Level {
     }
 }
 
-/// What a surface of half the resolution has to explain.
+/// The data of a surface at half the resolution.
 struct HalvedProblem {
     image: ColourView,
     slopes: [Vec<f32>; 2],
@@ -166,7 +166,7 @@ impl HalvedProblem {
     }
 }
 
-/// A surface of half the resolution over the pixels of `image`, zero off its mask.
+/// A surface of half the resolution, interpolated over the pixels of `image`; zero off its mask.
 fn upsample(coarse: &[f32], image: &ColourView, fine: &mut [f32]) {
     image.size.double(coarse, fine);
     for (height, &inside) in fine.iter_mut().zip(&image.mask) {

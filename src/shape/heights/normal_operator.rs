@@ -1,40 +1,40 @@
 //! The Gauss-Newton matrix of the heights, A = D^T H D + S^T kappa S + E^T w E + diag a + damping L, applied to a
 //! direction (docs/method/heights.md).
 //!
-//! D takes the slopes p, q in the middle of each cell of four pixels, H is the 2x2 matrix of its brightness terms; S
+//! D takes the slopes p, q at the centre of each cell of four pixels; H is the 2x2 matrix of its brightness terms. S
 //! takes second differences along rows and columns, E first differences along the edges; a are the anchors' weights, L
-//! is the Laplacian. Each product works in two passes: differences of the direction times their weights (fluxes), then
-//! the transposed differences of these. All weights are rasters that hold zero wherever a neighbour is missing, the
-//! ends of the rows included, so that the raster is one line with neighbours 1 and `width` apart: every loop runs
-//! straight through and fills vector registers.
+//! is the Laplacian. Each product takes two passes: differences of the direction times their weights (fluxes), then the
+//! transposed differences of the fluxes. All weight rasters are zero wherever a neighbour is missing, also at the ends
+//! of rows, so that the raster is one line with neighbours 1 and `width` apart: every loop runs straight through and
+//! fills vector registers.
 
 use super::cell_terms::LinearisedCells;
 use super::rasters::{padded, resize, resize_to_zeros};
 use crate::numeric::{Lanes, Real};
 use crate::shape::integration::Edges;
 
-/// Weights of one matrix and the scratch of its products.
+/// Weights of one matrix and the scratch memory of its products.
 #[derive(Default)]
 pub(super) struct NormalOperator {
     width: usize,
-    /// H of the cell right of and below each pixel: pp, pq, qq; zero where there is no cell.
+    /// H of the cell to the right of and below each pixel: pp, pq, qq; zero if there is no cell.
     pub stiffness: [Vec<f32>; 3],
     /// kappa of the second differences along rows and columns.
     pub smoothness: [Vec<f32>; 2],
     /// Weights of the differences to the right and to the lower neighbour: edges and damping together.
     edge_weight: [Vec<f32>; 2],
-    /// Weighted differences, with a margin of zeros of a row and a pixel at both ends. Of cells, from H (p, q): half
-    /// the sum and half the difference of both components.
+    /// Weighted differences, with a margin of zeros of one row and one pixel at both ends. For cells, from H (p, q):
+    /// half the sum and half the difference of both components.
     cell_sum: Vec<f32>,
     cell_difference: Vec<f32>,
-    /// Of edges: weight times first difference.
+    /// For edges: weight times first difference.
     edge_flux: [Vec<f32>; 2],
-    /// Of the smoothness: kappa times second difference.
+    /// For the smoothness: kappa times second difference.
     second_difference: [Vec<f32>; 2],
 }
 
 impl NormalOperator {
-    /// Makes it the zero matrix of `length` pixels in rows of `width`; there will be `room` for more.
+    /// Resets to the zero matrix of `length` pixels in rows of `width`, with capacity for `room`.
     pub fn resize(&mut self, width: usize, length: usize, room: usize) {
         self.width = width;
         let [pp, pq, qq] = &mut self.stiffness;
@@ -51,8 +51,8 @@ impl NormalOperator {
         }
     }
 
-    /// Takes over the edges' weights, and a damping between all neighbours inside: a pixel whose `flags` contain the
-    /// first of `neighbours` has one to the right, with the second one below.
+    /// Adopts the edges' weights, and adds a damping between all neighbours inside: a pixel whose `flags` contain the
+    /// first of `neighbours` has one to the right, and with the second one below.
     pub fn set_edges(&mut self, edges: &[Edges; 2], flags: &[u8], neighbours: [u8; 2], damping: f32) {
         for ((sum, edges), neighbour) in self.edge_weight.iter_mut().zip(edges).zip(neighbours) {
             for ((sum, weight), flags) in sum.iter_mut().zip(&edges.weight).zip(flags) {
@@ -61,8 +61,8 @@ impl NormalOperator {
         }
     }
 
-    /// product = A direction. Off the mask all weights are zero, so the direction may be anything finite there, and the
-    /// product is zero.
+    /// product = A direction. Off the mask all weights are zero, so the direction may hold any finite value there, and
+    /// the product is zero.
     pub fn apply(&mut self, anchor_weight: &[f32], direction: &[f32], product: &mut [f32]) {
         self.apply_cells(direction);
         for axis in 0..2 {
@@ -71,8 +71,8 @@ impl NormalOperator {
         self.gather(anchor_weight, direction, product);
     }
 
-    /// Takes over the brightness terms of the cells right of and below some pixels, their gradients for
-    /// [`downhill`](Self::downhill).
+    /// Adopts the brightness terms of the cells to the right of and below the pixels from `index` on, and their
+    /// gradients for [`downhill`](Self::downhill).
     pub fn set_cells(&mut self, index: usize, shading: &LinearisedCells) {
         for (raster, value) in self.stiffness.iter_mut().zip(shading.matrix) {
             value.store(&mut raster[index..]);
@@ -83,7 +83,8 @@ impl NormalOperator {
     }
 
     /// right = minus half the gradient of the objective at the heights `z`: the right-hand side of a Gauss-Newton step.
-    /// The cells' share comes from [`set_cells`](Self::set_cells), the anchors' from `off`, which is z less the anchor.
+    /// The cells' share comes from [`set_cells`](Self::set_cells), the anchors' from `off`, which is z minus the
+    /// anchor.
     pub fn downhill(&mut self, edges: &[Edges; 2], z: &[f32], anchor_weight: &[f32], off: &[f32], right: &mut [f32]) {
         for (axis, edges) in edges.iter().enumerate() {
             self.edge_weight[axis].copy_from_slice(&edges.weight);
@@ -163,7 +164,7 @@ impl NormalOperator {
 mod tests {
     use super::*;
 
-    /// An odd raster with a ragged mask; weights from a sine, so that none is like another.
+    /// An odd-sized raster with a ragged mask, and weights from a sine, so that all differ.
     fn system(width: usize, height: usize) -> (NormalOperator, Vec<bool>, Vec<f32>, f64, [Edges; 2]) {
         let length = width * height;
         let weight = |seed: usize, index: usize| 1.1 + (1.7 * index as f32 + seed as f32).sin();
@@ -254,7 +255,7 @@ mod tests {
                     moved[index] += step;
                     quadratic_form(&operator, &inside, &anchors, damping, &edges, &moved)
                 };
-                // Half the difference quotient of a quadratic is its gradient, exactly.
+                // Half the difference quotient of a quadratic equals half its gradient exactly.
                 let slope = (by(0.5) - by(-0.5)) / 2.0;
                 assert!((slope - f64::from(image[index])).abs() < 1e-3, "{width}x{height} at {index}");
             }

@@ -1,14 +1,15 @@
-//! How a normal follows from the slopes of a surface at a pixel (docs/method/heights.md).
+//! The normal at a pixel as a function of the surface's slopes (docs/method/heights.md).
 
 use nalgebra::Vector3;
 
 use crate::numeric::{LANES, Lanes};
 use crate::view::{Camera, Size};
 
-/// (a, b, c) of N = a + p b + q c: N points at the camera, p and q are slopes per pixel in pixels of height.
+/// (a, b, c) of N = a + p b + q c: N points at the camera; p and q are slopes per pixel in pixels of height.
 ///
 /// Orthographic: z is depth in pixels and N = (p, q, -1). Pinhole: z = f log Z, so that slopes are alike, and with the
-/// ray r(u, v): a = r_v x r_u, b = (r_v x r) / f, c = (r x r_u) / f; times f^2, so that N has length of order one.
+/// ray r(u, v): a = r_v x r_u, b = (r_v x r) / f, c = (r x r_u) / f; multiplied by f^2, so that N has a length of order
+/// one.
 pub(super) type RayFrame = [[f32; 3]; 3];
 
 /// The frame of every pixel of an orthographic camera.
@@ -17,26 +18,27 @@ pub(super) const ORTHOGRAPHIC: RayFrame = [[0.0, 0.0, -1.0], [1.0, 0.0, 0.0], [0
 /// The frames of the pixels of a box.
 pub(super) enum RayFrames {
     Orthographic,
-    /// Without distortion a ray is made of its column's x and its row's y: here both with their change to the next
+    /// Without distortion, a ray consists of its column's x and its row's y: here, each with its change to the next
     /// pixel.
     Pinhole {
         columns: Vec<[f64; 2]>,
         rows: Vec<[f64; 2]>,
         focal_length: f64,
     },
-    /// With distortion each pixel has its own.
+    /// With distortion, each pixel has its own frame.
     Distorted(Vec<RayFrame>),
 }
 
 impl RayFrames {
-    /// Of a box of `sides` columns and rows from the pixel `corner` on. Columns beyond the view repeat its last one.
+    /// Frames of a box of `sides` columns and rows from the pixel `corner` on. Columns beyond the view repeat its last
+    /// one.
     pub fn new(camera: &Camera, size: Size, corner: [usize; 2], sides: [usize; 2]) -> Self {
         let Some(focal_length) = camera.focal_length() else { return Self::Orthographic };
         let last = [size.width - 1, size.height - 1];
         let place = |axis: usize, index: usize| (corner[axis] + index).min(last[axis]) as f64;
         if camera.is_straight() {
             let line = |axis: usize| {
-                // Without distortion the other axis does not matter.
+                // Without distortion, the other axis does not matter.
                 let ray = |place: f64| camera.ray(size, [place; 2])[axis];
                 let places = (0..sides[axis]).map(|index| place(axis, index));
                 places.map(|place| [ray(place), ray(place + 0.5) - ray(place - 0.5)]).collect()
@@ -73,7 +75,7 @@ impl RayFrames {
     }
 }
 
-/// [`frame_of`] where x changes along a row alone, and y down a column.
+/// [`frame_of`] if x changes only along a row and y only along a column.
 #[inline(never)]
 fn pinhole_frame([x, along_column]: [f64; 2], [y, along_row]: [f64; 2], focal_length: f64) -> RayFrame {
     let scale = focal_length * focal_length;
@@ -105,7 +107,7 @@ mod tests {
     use super::*;
     use crate::view::{Lens, Pinhole};
 
-    /// What is made of columns and rows is what each pixel's own rays make.
+    /// Frames built from columns and rows equal those of each pixel's own rays.
     #[test]
     fn frames_of_rows_and_columns_are_those_of_the_rays() {
         let size = Size { width: 23, height: 17 };

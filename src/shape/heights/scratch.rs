@@ -1,7 +1,7 @@
-//! Rasters that a stage fills for itself.
+//! Rasters that each stage fills itself.
 //!
-//! None outlives its stage, and no two stages run at once: so the image's surface and the depth view's refinement take
-//! turns at one scratch, and normals pixel by pixel are solved in bands.
+//! None of them outlives its stage, and no two stages run at once. The image's surface and the depth view's refinement
+//! therefore share one scratch alternately; normals of single pixels are solved in bands.
 
 use std::ops::Range;
 
@@ -9,20 +9,20 @@ use super::domain::HeightDomain;
 use super::solver::HeightSolver;
 use crate::view::{Normals, Size};
 
-/// Pixels of a band: many enough for the shading solver's own preparation not to count.
+/// Pixels of a band: enough to make the shading solver's setup negligible.
 const BAND: usize = 1 << 15;
 
 /// Memory for the stages of both views.
 pub struct Scratch {
     /// Solves the heights of either view.
     pub heights: HeightSolver,
-    /// Slopes of normals: along columns and along rows.
+    /// Slopes of normals, along columns and along rows.
     pub slopes: [Vec<f32>; 2],
     /// Weights of priors or anchors.
     pub weight: Vec<f32>,
-    /// Anything else.
+    /// For any other use.
     pub spare: Vec<f32>,
-    /// Prior normals of a band of pixels, and those that are to be found.
+    /// Prior normals of a band of pixels, and those to be found.
     pub prior: Normals,
     pub found: Normals,
 }
@@ -43,7 +43,7 @@ impl Scratch {
         }
     }
 
-    /// Makes the rasters those of a view of so many pixels; they hold anything.
+    /// Resizes the rasters to a view of this many pixels; their contents are arbitrary.
     pub fn resize(&mut self, pixels: usize) {
         let [p, q] = &mut self.slopes;
         [p, q, &mut self.weight, &mut self.spare].into_iter().for_each(|raster| raster.resize(pixels, 0.0));
@@ -55,7 +55,7 @@ impl Scratch {
         (0..size.len()).step_by(band).map(move |start| start..(start + band).min(size.len()))
     }
 
-    /// Makes the normals those of a band.
+    /// Resizes the normals to those of a band.
     pub fn resize_band(&mut self, band: &Range<usize>) {
         self.prior.resize(band.len());
         self.found.resize(band.len());

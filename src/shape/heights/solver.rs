@@ -3,15 +3,15 @@
 //! + sum_i kappa_i (second differences of z)^2 (docs/method/heights.md).
 //!
 //! The unknown is the surface, so every normal is integrable by construction: under natural light, where three colours
-//! hardly tell one normal from another, this is what a pixel alone does not know. n is the unit vector of
-//! N = a + p b + q c in the middle of a cell of four pixels, with p, q the slopes of z there and (a, b, c) fixed
-//! vectors of the pixel's ray (`ray_frames`); rho is Geman-McClure. The edges hold the slopes of the pixels' own
-//! normals (trapezoidal rule, as in the integration), with a weight that says how well the colours of one pixel fix its
-//! normal: under colourful light they decide, to the rim of the mask, under natural light they hardly weigh.
+//! hardly distinguish one normal from another, this is what a single pixel lacks. n is the unit vector of
+//! N = a + p b + q c at the centre of a cell of four pixels, with p, q the slopes of z there and (a, b, c) fixed vectors of the
+//! pixel's ray (`ray_frames`); rho is Geman-McClure. The edges hold the slopes of the pixels' own normals (trapezoidal
+//! rule, as in the integration), weighted by how well the colours of a single pixel determine its normal: under
+//! colourful light they decide, up to the border of the mask; under natural light they hardly weigh.
 //!
-//! Method: Gauss-Newton on z, damped by the Laplacian (Levenberg-Marquardt); each step by conjugate gradients,
-//! matrix-free, preconditioned by the cosine solve of the enclosing rectangle. Limits: not convex, so the start
-//! matters; across an occlusion edge the slope is wrong and rho has to discard it.
+//! Method: Gauss-Newton on z, damped by the Laplacian (Levenberg-Marquardt). Each step uses matrix-free conjugate
+//! gradients, preconditioned by the cosine solve of the enclosing rectangle. Limits: the problem is not convex, so the
+//! start matters; across an occlusion edge the slope is wrong, and rho must discard it.
 
 use super::cell_terms::CellTerms;
 use super::domain::{ABOVE, BELOW, CELL, HeightDomain, INSIDE, LEFT, RIGHT};
@@ -23,30 +23,29 @@ use crate::numeric::cosine::CosineSolver;
 use crate::numeric::{LANES, Lanes, Real, robust};
 use crate::shape::integration::Edges;
 
-/// kappa, squared log residual per squared second difference in pixels. Chosen on Mozart at 64x64 with 2 % noise under
-/// the lights A, B and C, the light known; docs/accuracy.md tells what larger ones did.
+/// kappa, squared log residual per squared second difference in pixels. Set on Mozart at 64x64 with 2 % noise under the
+/// lights A, B and C, with the light known (docs/lab/thresholds.md).
 const SMOOTHNESS: f32 = 1e-3;
 /// Bounds of the damping, relative to the mean stiffness of the terms.
 const DAMPING: [f32; 2] = [1e-4, 1e4];
 /// Divisor of the damping after a step that lowered the objective, and factor after one that did not.
 const DAMPING_DIVISOR: f32 = 5.0;
 const DAMPING_FACTOR: f32 = 10.0;
-/// Least stiffness of the preconditioner, squared log residual per squared slope: dark pixels must not make it
+/// Least stiffness of the preconditioner, squared log residual per squared slope, so that dark pixels do not make it
 /// singular.
 const LEAST_STIFFNESS: f64 = 1e-6;
 /// The solve has converged when a step lowers the objective by less than this share.
 const SMALLEST_DECREASE: f64 = 1e-4;
-/// The conjugate gradients of a step end with the iteration that lowers the linearised objective by less than this
-/// share.
+/// The conjugate gradients of a step end when an iteration lowers the linearised objective by less than this share.
 const SMALLEST_GAIN: f64 = 1e-5;
 
-/// Solves one domain or another, again and again. No two solves run at once, so that all levels of both views share
-/// this one's memory; it is allocated by the first solve, for the largest domain.
+/// Solves several domains repeatedly. No two solves run at once, so all levels of both views share this memory; the
+/// first solve allocates it for the largest domain.
 pub struct HeightSolver {
-    /// Most values that a raster will have to hold.
+    /// Largest number of values in a raster.
     room: usize,
     z: Vec<f32>,
-    /// Heights after a step; while the step is found, its residual.
+    /// Heights after a step; while the step is computed, its residual.
     trial: Vec<f32>,
     anchor: Vec<f32>,
     anchor_weight: Vec<f32>,
@@ -54,19 +53,19 @@ pub struct HeightSolver {
     anchors_weight: f64,
     edges_weight: f64,
     operator: NormalOperator,
-    /// Suggested height differences to the right and lower neighbour, and their weights.
+    /// Suggested height differences to the right and lower neighbours, and their weights.
     edges: [Edges; 2],
     step: Vec<f32>,
     right: Vec<f32>,
     direction: Vec<f32>,
-    /// The operator's product with the direction, and before there is one the pixels' confidence.
+    /// The operator's product with the direction; before there is one, the pixels' confidence.
     product: Vec<f32>,
-    /// Scratch of the preconditioner.
+    /// Scratch memory of the preconditioner.
     spectrum: Vec<f32>,
 }
 
 impl HeightSolver {
-    /// A solver whose domains are `domains`. It takes others, too, and allocates again for one that is larger.
+    /// A solver for `domains`. It accepts others as well, and reallocates for a larger one.
     #[inline(never)]
     pub fn new(domains: &[&HeightDomain]) -> Self {
         let room = |domain: &&HeightDomain| padded(domain.len(), domain.width).max(domain.cosine.len());
@@ -88,7 +87,7 @@ impl HeightSolver {
         }
     }
 
-    /// Makes the rasters those of `domain`, with anything in them: a solve writes them before it reads them.
+    /// Resizes the rasters to `domain`, with arbitrary contents: a solve writes them before it reads them.
     fn resize(&mut self, domain: &HeightDomain) {
         let (length, room) = (domain.len(), self.room);
         for raster in [&mut self.z, &mut self.trial, &mut self.anchor, &mut self.anchor_weight] {
@@ -105,8 +104,7 @@ impl HeightSolver {
         self.operator.resize(domain.width, length, room);
     }
 
-    /// Improves `z` (depth in pixels, or f log Z; finite on the mask) in place; the objective that it ends with, per
-    /// pixel.
+    /// Improves `z` (depth in pixels, or f log Z; finite on the mask) in place; returns the final objective per pixel.
     pub fn solve(&mut self, domain: &mut HeightDomain, problem: HeightProblem<'_>, z: &mut [f32]) -> f64 {
         self.resize(domain);
         self.load(domain, problem, z);
@@ -132,8 +130,8 @@ impl HeightSolver {
         objective / domain.pixels as f64
     }
 
-    /// One step that lowers the objective, damped as strongly as that takes; the objective after it. `None` where there
-    /// is none, or too little is expected of it.
+    /// Takes one step that lowers the objective, with as much damping as necessary, and returns the new objective.
+    /// `None` if there is no such step or its expected gain is too small.
     fn descend(
         &mut self,
         domain: &mut HeightDomain,
@@ -180,7 +178,7 @@ impl HeightSolver {
         self.anchors_weight = sum;
     }
 
-    /// Edges between neighbours with slopes of their own (trapezoidal rule), weighted by the lesser confidence of the
+    /// Edges between neighbours that have their own slopes (trapezoidal rule), weighted by the lower confidence of the
     /// two.
     fn load_edges(&mut self, domain: &HeightDomain, terms: &CellTerms<'_>) {
         let (zero, slopes) = (Lanes::splat(0.0), terms.problem.slopes);
@@ -204,8 +202,8 @@ impl HeightSolver {
         }
     }
 
-    /// Edges and smoothness along one axis, whose neighbours are so far apart here and in the view; the sum of the
-    /// edges' weights.
+    /// Edges and smoothness along one axis, with the distance of neighbours here and in the view; returns the sum of
+    /// the edges' weights.
     fn load_axis(
         &mut self,
         domain: &HeightDomain,
@@ -231,7 +229,7 @@ impl HeightSolver {
                 let gradient = half * (Lanes::load(slopes, source) + Lanes::load(slopes, source + view_stride));
                 weight.store(&mut self.edges[axis].weight[index..]);
                 zero.less(weight).select(gradient, zero).store(&mut self.edges[axis].gradient[index..]);
-                // kappa: less where a pixel's colours fix its normal.
+                // kappa is smaller where a pixel's colours determine its normal.
                 let (z, here) = (&self.z, Lanes::load(&self.z, place));
                 let second = Lanes::load(z, place + stride) - (here + here) + Lanes::load(z, place - stride);
                 let bend = known / (doubted + confidence) * robust::weight(second * second * inverse_square);
@@ -266,7 +264,7 @@ impl HeightSolver {
         total
     }
 
-    /// All terms but the colours' in a block: anchors, edges and smoothness.
+    /// All terms of a block except the colours': anchors, edges and smoothness.
     #[inline(never)]
     fn regularisation(&self, z: &[f32], at: isize, width: usize) -> Lanes {
         let here = Lanes::load(z, at);
@@ -309,7 +307,7 @@ impl HeightSolver {
         (objective, ((stiffness + 0.5 * self.edges_weight) / domain.pixels as f64).max(LEAST_STIFFNESS))
     }
 
-    /// step = solution of the linearised system. Returns by how much the linearised objective falls.
+    /// step = solution of the linearised system. Returns the decrease of the linearised objective.
     fn find_step(&mut self, domain: &mut HeightDomain, damping: f32, stiffness: f64, limits: Limits) -> f64 {
         domain.cosine.set(stiffness + f64::from(damping), self.anchors_weight / domain.pixels as f64);
         self.operator.set_edges(&self.edges, &domain.flags, [RIGHT, BELOW], damping);
@@ -342,7 +340,7 @@ fn limits(effort: Effort, objective: f64) -> Limits {
 }
 
 /// The matrix of a step and its preconditioner. Off the mask the right-hand side is zero and no weight reads a height,
-/// so that extension and restriction need no code.
+/// so extension and restriction need no code.
 struct HeightSystem<'a> {
     operator: &'a mut NormalOperator,
     anchor_weight: &'a [f32],
@@ -360,14 +358,14 @@ impl System for HeightSystem<'_> {
     }
 }
 
-/// Weight times square; `off` may be anything where there is no weight.
+/// Weight times square; `off` may hold anything where the weight is zero.
 #[inline(always)]
 fn weighted_square(weight: &[f32], at: isize, off: Lanes) -> Lanes {
     let (weight, zero) = (Lanes::load(weight, at), Lanes::splat(0.0));
     zero.less(weight).select(weight * off * off, zero)
 }
 
-/// p and q in the middle of the cells right of and below some pixels.
+/// p and q at the centre of the cells to the right of and below the pixels from `index` on.
 #[inline(always)]
 fn cell_slopes(z: &[f32], index: usize, width: usize) -> [Lanes; 2] {
     let (here, below) = (index as isize, (index + width) as isize);
@@ -385,7 +383,7 @@ mod tests {
     use crate::shape::integration::{AnchorWeight, Anchors};
     use crate::view::{Camera, Size};
 
-    /// A used solver gives what a new one gives.
+    /// A reused solver gives the same result as a new one.
     #[test]
     fn anchors_of_an_earlier_solve_are_forgotten() {
         let size = Size { width: 9, height: 7 };
@@ -416,7 +414,7 @@ mod tests {
         };
         let mut used = HeightSolver::new(&[&other]);
         let (objective, anchored) = solve(&mut used, &mut domain, HeightProblem { anchors, ..free });
-        // Flat heights cost 5 * 40^2.
+        // Flat heights would cost 5 * 40^2.
         assert!(objective < 100.0 && anchored[0] > 30.0, "{objective} {}", anchored[0]);
         solve(&mut used, &mut other, free);
         let mut fresh = HeightSolver::new(&[&domain]);

@@ -1,4 +1,5 @@
-//! Several starts at one resolution, of which the local optimum of least objective is kept (docs/method/heights.md).
+//! Several starts at one resolution, of which the local optimum with the lowest objective is kept
+//! (docs/method/heights.md).
 
 use nalgebra::Matrix3;
 
@@ -12,27 +13,28 @@ use crate::view::{ColourView, Size};
 
 /// Work on a start at each scale.
 const FROM_START: Effort = Effort { steps: 15, iterations: 40, tolerance: 0.03, damping: FAR_DAMPING };
-/// Work on a surface that has changed resolution, or that is the best while there are starts left.
+/// Work on a surface that has changed resolution, or on the best one while starts are left.
 pub const INTERMEDIATE: Effort = Effort { steps: 5, iterations: 20, tolerance: 0.03, damping: FAR_DAMPING };
-/// Work on a large surface that stays the best while there are starts left: it is near its optimum, so that two steps of little
-/// damping bring what [`INTERMEDIATE`] brings, in two thirds of the time. After a single one shapes count as settled too early.
+/// Work on a large surface that stays the best while starts are left. It is close to its optimum, so two steps with
+/// little damping achieve as much as [`INTERMEDIATE`] in less time. With a single step, shapes would count as settled
+/// too early.
 pub const EARLY_CALL: Effort = Effort { steps: 2, iterations: 30, tolerance: 0.03, damping: 1e-3 };
-/// Work on one that every call improves a little: four iterations bring four fifths of what ten would, at any size, and
-/// the next call linearises anew.
+/// Work on a surface that every call improves a little: the next call linearises again, so a few iterations achieve
+/// most of the gain. Set by the gain per round at 64x64 to 640x480 (docs/lab/thresholds.md).
 pub const EVERY_CALL: Effort = Effort { steps: 1, iterations: 4, tolerance: 0.1, damping: FAR_DAMPING };
 
-/// A start is another optimum where its objective is less than the best one's by this share: ends of one optimum differ by some
-/// 0.1 % (Mozart at 640x480, light A), for which a large image would be refined anew from level to level.
+/// A start has found another optimum if its objective is lower than the best one's by this share. Ends in one optimum
+/// differ by about a tenth of it, and adopting one would refine a large image again level by level.
 const LEAST_GAIN: f64 = 0.01;
-/// Calls after which all starts have been tried.
+/// Number of calls after which all starts have been tried.
 pub const STARTS: u32 = 3;
 
-/// What the surface has to explain.
+/// The data of the surface.
 #[derive(Clone, Copy)]
 pub struct ImageSurfaceProblem<'a> {
     /// The colour view.
     pub image: &'a ColourView,
-    /// The light, exposure included.
+    /// The light, with exposure.
     pub light: &'a Light,
     /// Slopes of the pixels' own normals, pixels of height per pixel, NaN where unknown.
     pub slopes: [&'a [f32]; 2],
@@ -41,7 +43,7 @@ pub struct ImageSurfaceProblem<'a> {
 }
 
 impl<'a> ImageSurfaceProblem<'a> {
-    /// Improves the heights `z`; their objective.
+    /// Improves the heights `z`; returns their objective.
     #[inline(never)]
     pub fn improve(
         &self,
@@ -70,7 +72,7 @@ pub struct MultiStart {
     /// The integrated surface, a flat one and a dome over the mask.
     starts: [Vec<f32>; STARTS as usize],
     surface: Vec<f32>,
-    /// Starts that were tried, and the least objective of their optima.
+    /// Number of starts tried, and the lowest objective of their optima.
     tried: usize,
     least: f64,
 }
@@ -86,15 +88,16 @@ impl MultiStart {
         &self.surface
     }
 
-    /// Whether there are starts left.
+    /// Whether any starts are left.
     pub const fn has_next(&self) -> bool {
         self.tried < STARTS as usize
     }
 
-    /// Improves the best surface so far and tries the next start; whether the surface is now another.
+    /// Improves the best surface so far and tries the next start; returns whether the best surface has changed to that
+    /// of the new start.
     ///
     /// # Errors
-    /// Those of the integration, which makes the first start.
+    /// The errors of the integration, which computes the first start.
     pub fn advance(
         &mut self,
         solver: &mut HeightSolver,
@@ -126,7 +129,7 @@ impl MultiStart {
     }
 }
 
-/// A dome over the mask: elliptic across the narrowest way to the border, as high as that way is long.
+/// A dome over the mask: its profile is a circle in the distance to the border, as high as the largest distance.
 fn dome(size: Size, mask: &[bool]) -> Vec<f32> {
     let distance = distance_to_border(size, mask);
     let radius = distance.iter().copied().fold(0.0, f32::max);

@@ -1,13 +1,13 @@
-//! Connected components of the pixels that edges join, and the level of those that no anchor holds.
+//! Connected components of the pixels that edges join, and the level of components without anchors.
 //!
-//! Method: union-find over the edges in raster order, the smallest index as root, so that one more ascending pass turns
-//! parents into labels. Near linear in the number of pixels.
+//! Method: union-find over the edges in raster order, with the smallest index as root, so that a further ascending pass
+//! turns parents into labels. Nearly linear in the number of pixels.
 
 use super::terms::Edges;
 
-/// Labels and per-component sums; memory for the worst case (pairs of pixels) is taken once.
+/// Labels and sums of the components; memory for the worst case (pairs of pixels) is allocated once.
 pub struct Components {
-    /// Parents while joining, labels after; a pixel without edges is a component of its own and gets [`ALONE`].
+    /// Parents while joining, labels afterwards; a pixel without edges is a component by itself and gets [`ALONE`].
     labels: Vec<u32>,
     count: usize,
     sums: Vec<f64>,
@@ -36,12 +36,12 @@ impl Components {
         self.count
     }
 
-    /// Whether an edge touches the pixel.
+    /// Whether the pixel has an edge.
     pub fn is_joined(&self, index: usize) -> bool {
         self.labels[index] != ALONE
     }
 
-    /// Labels the pixels of a raster of `width` columns by the edges of positive weight.
+    /// Labels the pixels of a raster of `width` columns, joined by the edges of positive weight.
     pub fn label(&mut self, width: usize, right: &Edges, down: &Edges) {
         for (index, parent) in self.labels.iter_mut().enumerate() {
             *parent = index as u32;
@@ -57,7 +57,7 @@ impl Components {
         self.count = 0;
         for index in 0..self.labels.len() {
             let parent = self.labels[index] as usize;
-            // Parents come first in raster order, so theirs is a label by now.
+            // Parents come first in raster order, so the parent's entry is already a label.
             self.labels[index] = if parent != index {
                 self.labels[parent]
             } else if right.weight[index] > 0.0 || down.weight[index] > 0.0 {
@@ -76,7 +76,7 @@ impl Components {
     }
 
     fn root(&mut self, mut index: usize) -> usize {
-        // Ends: a parent is never larger than its child.
+        // Terminates, because a parent is never larger than its child.
         while self.labels[index] as usize != index {
             let parent = self.labels[index] as usize;
             self.labels[index] = self.labels[parent];
@@ -85,7 +85,7 @@ impl Components {
         index
     }
 
-    /// Takes the mean off each component without an anchor of positive weight.
+    /// Subtracts the mean from each component without an anchor of positive weight.
     pub fn level(&mut self, z: &mut [f32], anchor_weight: &[f32]) {
         let count = self.count;
         self.sums[..count].fill(0.0);

@@ -1,22 +1,22 @@
 //! min over z of sum_e w_e (z_j - z_i - (g_i + g_j)/2)^2 + sum_i a_i (z_i - anchor_i)^2: a surface from its gradients
-//! (docs/method/normals.md; the paper's "integration", there after Harker & O'Leary).
+//! (docs/method/normals.md; the paper's "integration", which follows Harker & O'Leary).
 //!
-//! Method: an edge e joins neighbours i and j (right or below) inside the mask; the trapezoidal rule on the gradients
-//! g = p (along a row) or q (down a column) predicts its height difference, exactly for quadratics, with an error of
-//! z'''/12 for anything else. Harker & O'Leary minimise the same functional on the full rectangle with wider
-//! differences, as a Sylvester equation; on a mask their equation is not separable, so we iterate (see `poisson`).
-//! Robust weights (iteratively reweighted least squares after Geman & McClure, w = (1 + (r/s)^2)^-2) cut the edges that
-//! cross a discontinuity. The scale s follows the noise, read off the gradients' curl, and is never below a share of
-//! the mean gradient, so that discretisation errors of smooth data are no outliers; a cold start comes down to it by
-//! halves.
+//! Method: an edge e joins neighbours i and j (right or below) inside the mask. The trapezoidal rule on the gradients
+//! g = p (along a row) or q (down a column) predicts its height difference, exactly for quadratics and otherwise with
+//! an error of z'''/12. Harker & O'Leary minimise the same functional on the full rectangle with wider differences, as a
+//! Sylvester equation. On a mask their equation is not separable, so this solver iterates (see `poisson`). Robust
+//! weights (iteratively reweighted least squares after Geman & McClure, w = (1 + (r/s)^2)^-2) cut the edges that cross
+//! a discontinuity. The scale s follows the noise, estimated from the gradients' curl, and is never below a share of
+//! the mean gradient, so that discretisation errors of smooth data are not outliers. A cold start approaches this scale
+//! by halves.
 //!
 //! Perspective views pass gradients of log Z (see [`gradients`](super::gradients())) and take exp of the result.
 //!
-//! Limits: gradients say nothing about levels: each connected component without anchors has mean zero. A pixel that no
-//! edge (unknown gradient) and no anchor touches is not determined and comes out NaN. Robust weights are
-//! not convex: the surface they find depends on the start (least squares when cold, the previous surface when that was
-//! robust), and a discontinuity whose edges outnumber the good ones that hold it is smeared. Gradients that are not
-//! integrable on the large (not noise, not jumps) converge slowly: `max_rounds` bounds the time.
+//! Limits: gradients do not determine levels, so each connected component without anchors has mean zero. A pixel that
+//! has no edge (unknown gradient) and no anchor is undetermined and comes out NaN. Robust weights are not convex: the
+//! surface depends on the start (least squares when cold, the previous surface when that was robust), and a
+//! discontinuity is smeared if its edges outnumber the good ones that hold it. Gradients that are not integrable at
+//! large scale (rather than by noise or jumps) converge slowly; `max_rounds` bounds the time.
 
 use super::components::Components;
 use super::poisson::{IntegrationTermination, Poisson, PoissonReport};
@@ -26,27 +26,26 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::numeric::{quantile, robust};
 use crate::view::Size;
 
-/// Gradients beyond this (height per pixel) count as unknown: beside heights of 1e6 an f32 has no digits left for a
+/// Gradients beyond this (height per pixel) count as unknown: next to heights of 1e6, an f32 has no digits left for a
 /// shape.
 const LARGEST_GRADIENT: f32 = 1e6;
 /// sigma of one edge's noise in medians of |curl|: a curl sums four edges, which doubles sigma.
 const SIGMA_OF_CURL: f64 = robust::SIGMA_OF_MEDIAN / 2.0;
-/// Least s as a share of the mean |gradient|: a few times the trapezoidal error of a surface sampled well.
+/// Least s as a share of the mean |gradient|: a few times the trapezoidal error of a well-sampled surface.
 const LEAST_SCALE: f64 = 0.05;
-/// Least weight of an edge: keeps pixels whose every edge is an outlier attached to their neighbours.
+/// Least weight of an edge: keeps pixels attached to their neighbours if all their edges are outliers.
 const LEAST_WEIGHT: f32 = 1e-4;
-/// Reweighting ends when the weights change by less than this on average: as if three edges in a thousand changed
-/// sides.
+/// Reweighting ends when the mean change of the weights is below this: as if three edges in a thousand changed sides.
 const SMALLEST_CHANGE: f64 = 3e-3;
-/// Relative error of the solves between two reweightings, well under the least robust scale; the last one is exact.
+/// Relative error of the solves between two reweightings, well below the least robust scale; the last solve is exact.
 const ROUND_TOLERANCE: f64 = 1e-3;
-/// Factor on the scale from round to round of a cold start, from the residuals' root mean square down: least squares
-/// smears a jump over its neighbours, which a small scale would cut as well before the jump alone is left.
+/// Factor on the scale between rounds of a cold start, from the root mean square residual down: least squares smears a
+/// jump over its neighbours, and a small scale would cut those as well before only the jump is left.
 const ANNEALING: f64 = 0.5;
-/// The median is taken over at most so many cells, evenly spread: its own error is then below one percent.
+/// Most cells in the median, evenly spread: its error is then below one percent.
 const MOST_SAMPLES: usize = 1 << 15;
 
-/// How outliers among the gradients are met.
+/// Treatment of outliers among the gradients.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Robustness {
     /// Plain least squares.
@@ -57,28 +56,28 @@ pub enum Robustness {
     Scale(f64),
 }
 
-/// How an integration runs.
+/// Options of an integration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IntegrationOptions {
-    /// Outliers among the gradients.
+    /// Treatment of outliers among the gradients.
     pub robustness: Robustness,
     /// Relative error at which a solve ends, in the norm that is minimised.
     pub tolerance: f64,
-    /// Cap on the conjugate-gradient iterations of all rounds together.
+    /// Largest number of conjugate-gradient iterations in all rounds together.
     pub max_iterations: u32,
-    /// Cap on the rounds of reweighting.
+    /// Largest number of reweighting rounds.
     pub max_rounds: u32,
 }
 
 impl Default for IntegrationOptions {
-    /// Least squares to 1e-5 in at most 400 iterations; at most 10 rounds where `robustness` is switched on.
+    /// Least squares to 1e-5 in at most 400 iterations; at most 10 rounds if `robustness` is switched on.
     fn default() -> Self {
         Self { robustness: Robustness::Off, ..Self::ROBUST }
     }
 }
 
 impl IntegrationOptions {
-    /// Outliers among the gradients cut, at the scale that these have.
+    /// Robust weights with the scale estimated from the gradients.
     pub(in crate::shape) const ROBUST: Self =
         Self { robustness: Robustness::Estimated, tolerance: 1e-5, max_iterations: 400, max_rounds: 10 };
 
@@ -91,7 +90,7 @@ impl IntegrationOptions {
     }
 }
 
-/// What an integration did.
+/// Report of an integration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IntegrationReport {
     /// Conjugate-gradient iterations of all rounds.
@@ -104,13 +103,13 @@ pub struct IntegrationReport {
     pub scale: Option<f64>,
     /// Connected components of the pixels that edges join.
     pub components: usize,
-    /// Mask pixels that neither an edge nor an anchor determines.
+    /// Mask pixels determined by neither an edge nor an anchor.
     pub undetermined: usize,
     /// Why it ended.
     pub termination: IntegrationTermination,
 }
 
-/// Integrates gradients over one mask again and again; owns all memory, and starts from its previous surface.
+/// Integrates gradients over one mask repeatedly; owns all memory, and starts from its previous surface.
 pub struct Integrator {
     size: Size,
     /// Left column and top row of the mask's bounding box.
@@ -123,9 +122,9 @@ pub struct Integrator {
     system: Poisson,
     components: Components,
     samples: Vec<f32>,
-    /// Mean of the anchors, taken off before solving: f32 keeps its digits for the shape.
+    /// Mean of the anchors, subtracted before solving so that f32 keeps its digits for the shape.
     level: f64,
-    /// Whether the heights come from robust weights, so that their residuals tell outliers at once.
+    /// Whether the heights come from robust weights, so that their residuals reveal outliers at once.
     robust: bool,
 }
 
@@ -133,7 +132,7 @@ impl Integrator {
     /// An integrator for the pixels of `mask` (row-major, as long as the raster).
     ///
     /// # Errors
-    /// [`ErrorKind::Size`] where the mask is not as long as the raster, [`ErrorKind::Empty`] where it holds no pixel.
+    /// [`ErrorKind::Size`] if the mask is not as long as the raster, [`ErrorKind::Empty`] if it holds no pixel.
     pub fn new(size: Size, mask: &[bool]) -> Result<Self> {
         same_length("mask", size, mask.len())?;
         let Some(([left, top], [right, bottom])) = bounding_box(size, mask) else {
@@ -161,7 +160,7 @@ impl Integrator {
         })
     }
 
-    /// Forgets the previous surface: the next integration starts flat, as the first one did.
+    /// Forgets the previous surface: the next integration starts flat, like the first one.
     pub fn reset(&mut self) {
         self.system.z.fill(0.0);
         self.robust = false;
@@ -170,11 +169,12 @@ impl Integrator {
     /// Finds the heights `z` whose differences follow `p` = dz/dcolumn and `q` = dz/drow, and the anchors.
     ///
     /// All slices are row-major over the raster; gradients in height per pixel, NaN where unknown. `z` is NaN off the
-    /// mask and where nothing determines it; without anchors each connected component has mean zero. Allocates nothing.
+    /// mask and where nothing determines it; without anchors, each connected component has mean zero. Allocates
+    /// nothing.
     ///
     /// # Errors
-    /// [`ErrorKind::Size`] where a slice is not as long as the raster, [`ErrorKind::Range`] for bad options. Solver
-    /// trouble is no error but a [`IntegrationTermination`] in the report.
+    /// [`ErrorKind::Size`] if a slice is not as long as the raster, [`ErrorKind::Range`] for invalid options. A solver
+    /// failure is not an error, but an [`IntegrationTermination`] in the report.
     pub fn integrate(
         &mut self,
         p: &[f32],
@@ -211,7 +211,7 @@ impl Integrator {
         Ok(report)
     }
 
-    /// Pixels of the mask's bounding box: index in the system and in the raster.
+    /// Pixels of the mask's bounding box: their indices in the system and in the raster.
     fn window(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
         let ([left, top], [columns, rows], width, size) = (self.corner, self.sides, self.system.width, self.size);
         (0..rows).flat_map(move |row| {
@@ -220,7 +220,7 @@ impl Integrator {
         })
     }
 
-    /// Edges of weight one between mask pixels of known gradient; tells whether they differ from the last ones.
+    /// Sets edges of weight one between mask pixels of known gradient; returns whether they differ from the last ones.
     fn load_gradients(&mut self, p: &[f32], q: &[f32]) -> bool {
         let mut changed = false;
         let width = self.system.width;
@@ -237,7 +237,7 @@ impl Integrator {
         changed
     }
 
-    /// Anchors about their mean. Those of pixels without edges stand for themselves and stay out of the system.
+    /// Loads the anchors relative to their mean. Anchors of pixels without edges stay out of the system.
     fn load_anchors(&mut self, anchors: Option<Anchors<'_>>) {
         self.system.anchor.fill(0.0);
         self.system.anchor_weight.fill(0.0);
@@ -259,7 +259,7 @@ impl Integrator {
         }
     }
 
-    /// Least squares, then rounds of reweighting where asked for.
+    /// Least squares, preceded by rounds of reweighting if the options require them.
     fn solve(&mut self, options: &IntegrationOptions) -> IntegrationReport {
         let mut report = IntegrationReport {
             iterations: 0,
@@ -313,7 +313,7 @@ impl Integrator {
         report.termination = termination;
     }
 
-    /// Both kinds of edges with the distance of the pixels that they join.
+    /// Both kinds of edges, with the index distance of the pixels that they join.
     fn edges(&self) -> [(&Edges, usize); 2] {
         [(&self.system.right, 1), (&self.system.down, self.system.width)]
     }
@@ -341,8 +341,9 @@ impl Integrator {
         (sum / count.max(1) as f64).sqrt()
     }
 
-    /// Three sigma of the edges' noise, from what the gradients sum to around each cell of four pixels. That is zero
-    /// for integrable gradients and independent of the surface found so far, so that reweighting can't narrow it.
+    /// Three sigma of the edges' noise, from the sums of the gradients around each cell of four pixels. They are zero
+    /// for integrable gradients and independent of the surface found so far, so that reweighting can't narrow the
+    /// scale.
     fn noise_scale(&mut self) -> f64 {
         let (right, down, width) = (&self.system.right, &self.system.down, self.system.width);
         let samples = &mut self.samples;
@@ -373,7 +374,7 @@ impl Integrator {
                 let old = edges.weight[index];
                 if old > 0.0 {
                     let ratio = residual(edges, offset, &self.system.z, index) * per_scale;
-                    // NaN is 0/0, a flat surface with scale zero.
+                    // NaN is 0/0: a flat surface with scale zero.
                     let new = if ratio.is_nan() { 1.0 } else { robust::weight(ratio * ratio).max(LEAST_WEIGHT) };
                     edges.weight[index] = new;
                     change += f64::from((new - old).abs());
@@ -384,7 +385,7 @@ impl Integrator {
         change / count.max(1) as f64
     }
 
-    /// Writes the raster; returns the number of mask pixels that nothing determines.
+    /// Writes the raster; returns the number of undetermined mask pixels.
     fn store(&self, anchors: Option<Anchors<'_>>, z: &mut [f32]) -> usize {
         z.fill(f32::NAN);
         let mut undetermined = 0;
@@ -402,12 +403,12 @@ impl Integrator {
     }
 }
 
-/// z_j - z_i - g of an edge that exists.
+/// z_j - z_i - g of an existing edge.
 fn residual(edges: &Edges, offset: usize, z: &[f32], index: usize) -> f32 {
     z[index + offset] - z[index] - edges.gradient[index]
 }
 
-/// Sets an edge to weight one, or to none where its gradient is unknown; tells whether that is news.
+/// Sets an edge to weight one, or to zero if its gradient is unknown; returns whether that is a change.
 fn set_edge(edges: &mut Edges, index: usize, gradient: f32) -> bool {
     let known = gradient.abs() <= LARGEST_GRADIENT;
     let news = known != (edges.weight[index] > 0.0);
@@ -424,7 +425,7 @@ fn same_length(field: &'static str, size: Size, length: usize) -> Result<()> {
     Err(Error::new(ErrorKind::Size, field, format!("{width}x{height} pixels need as many values, not {length}")))
 }
 
-/// First and last column and row of the mask, inclusive; `None` where it is empty.
+/// First and last column and row of the mask, inclusive; `None` if it is empty.
 fn bounding_box(size: Size, mask: &[bool]) -> Option<([usize; 2], [usize; 2])> {
     let mut inside = mask.iter().enumerate().filter(|(_, inside)| **inside).map(|(index, _)| size.position(index));
     let (column, row) = inside.next()?;

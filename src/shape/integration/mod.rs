@@ -1,4 +1,4 @@
-//! Integration: the surface that has given gradients in the least-squares sense, and the gradients of normals.
+//! Integration: the surface with given gradients in the least-squares sense, and the gradients of normals.
 
 mod components;
 mod gradients_to_heights;

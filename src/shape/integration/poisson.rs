@@ -2,15 +2,15 @@
 //! a weighted discrete Poisson equation (docs/method/normals.md).
 //!
 //! Method: conjugate gradients on the normal equations (L_w + diag a) z = b, preconditioned by the rectangle: extend
-//! the residual by zero, solve (c L + s) there by [`CosineSolver`], restrict; c is the mean weight of the edges and s
-//! the mean weight of the anchors. On a full rectangle with equal weights that is the inverse and one iteration is the
-//! answer. On a mask the condition number does not grow with the resolution, only with how ragged the mask is: 5 to 10
-//! iterations for compact objects with holes, 20 for scattered pixels. Weights near zero along a line (a discontinuity
-//! of n pixels) act as a crack the rectangle knows nothing of; the condition then grows with n, the iterations with its
-//! root.
+//! the residual by zero, solve (c L + s) there by [`CosineSolver`], restrict. Here c is the mean weight of the edges
+//! and s the mean weight of the anchors. On a full rectangle with equal weights this is the inverse, and one iteration
+//! gives the answer. On a mask, the condition number does not grow with the resolution, only with the raggedness of the
+//! mask: 5 to 10 iterations for compact objects with holes, 20 for scattered pixels. Weights near zero along a line (a
+//! discontinuity of n pixels) act as a crack unknown to the rectangle; the condition number then grows with n, and the
+//! iterations with its square root.
 //!
-//! Limits: what no edge and no anchor touches is not determined and keeps whatever it holds; each component without
-//! anchors is determined up to a constant. Pixels are f32, sums f64: relative tolerances below 1e-6 are not reached.
+//! Limits: a pixel without edge and anchor is undetermined and keeps its value; each component without anchors is
+//! determined up to a constant. Pixels are f32, sums f64: relative tolerances below 1e-6 are not reached.
 
 use super::terms::Edges;
 use crate::numeric::LANES;
@@ -23,15 +23,15 @@ use crate::numeric::vector::{dot, sum_of};
 pub enum IntegrationTermination {
     /// The relative residual is within the tolerance.
     Converged,
-    /// The cap on iterations came first; the heights are the best so far and usable.
+    /// The cap on iterations was reached; the heights are the best so far and usable.
     IterationCap,
-    /// There was no edge and no anchor to work on.
+    /// There was no edge and no anchor.
     Empty,
-    /// Numbers ran out of range; the heights are not to be used.
+    /// Numbers overflowed; the heights are unusable.
     Breakdown,
 }
 
-/// What one solve did.
+/// Report of one solve.
 #[derive(Clone, Copy, Debug)]
 pub struct PoissonReport {
     pub iterations: u32,
@@ -39,9 +39,9 @@ pub struct PoissonReport {
     pub termination: IntegrationTermination,
 }
 
-/// The system on a rectangle and the memory of its solver.
+/// The system on a rectangle, with the memory of its solver.
 pub struct Poisson {
-    /// Columns of the raster, at least those asked for.
+    /// Columns of the raster, at least as many as requested.
     pub width: usize,
     pub right: Edges,
     pub down: Edges,
@@ -91,10 +91,10 @@ impl Poisson {
         self.cosine.set(stiffness, anchors / pixels.max(1) as f64);
     }
 
-    /// Conjugate gradients from the current heights until the error is below `tolerance`, or `cap` iterations.
+    /// Runs conjugate gradients from the current heights until the error is below `tolerance`, or for `cap` iterations.
     ///
     /// The error is measured in the norm that is minimised, estimated by the preconditioner, relative to that of the
-    /// data (sum w g^2 + sum a t^2)^(1/2).
+    /// data, (sum w g^2 + sum a t^2)^(1/2).
     pub fn solve(&mut self, tolerance: f64, cap: u32) -> PoissonReport {
         let data = self.squared_data();
         self.find_residual();
@@ -138,7 +138,7 @@ impl Poisson {
             + term(&self.anchor_weight, &self.anchor)
     }
 
-    /// residual = b - (L_w + a) z: half the downhill gradient of what is minimised.
+    /// residual = b - (L_w + a) z: minus half the gradient of the objective.
     fn find_residual(&mut self) {
         self.flux.divergence([&self.right, &self.down], true, &self.z, &mut self.residual);
         let anchors = self.anchor_weight.iter().zip(&self.anchor).zip(&self.z);
@@ -148,8 +148,8 @@ impl Poisson {
     }
 }
 
-/// L_w + diag a and its preconditioner. Off the domain the residual is zero and no edge reads a height, so that
-/// extension and restriction need no code.
+/// L_w + diag a and its preconditioner. Off the domain the residual is zero and no edge reads a height, so extension
+/// and restriction need no code.
 struct PoissonSystem<'a> {
     edges: [&'a Edges; 2],
     anchor_weight: &'a [f32],
@@ -193,7 +193,7 @@ impl Flux {
         }
     }
 
-    /// out_i = sum of w (z_j - z_i - g) over the edges that leave i minus those that enter it; g counts
+    /// out_i = sum of w (z_j - z_i - g) over the edges that leave i, minus those that enter it; g is included if
     /// `with_gradient`.
     fn divergence(&mut self, [right, down]: [&Edges; 2], with_gradient: bool, z: &[f32], out: &mut [f32]) {
         let width = self.width;
@@ -220,7 +220,7 @@ impl Flux {
     }
 }
 
-/// out = w (next - here - g), as long as the shortest.
+/// out = w (next - here - g), up to the length of the shortest slice.
 fn flux(weight: &[f32], here: &[f32], next: &[f32], gradient: &[f32], out: &mut [f32]) {
     let ends = here.iter().zip(next).zip(gradient);
     for ((out, w), ((here, next), g)) in out.iter_mut().zip(weight).zip(ends) {

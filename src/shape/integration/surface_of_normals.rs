@@ -1,18 +1,18 @@
-//! The surface of given normals, in one call: for those who want to see what integration does to them, and for lessons.
+//! The surface of given normals in one call, for lessons and for studying the integration.
 //!
-//! Limits: an orthographic view. Without anchors the parts of the surface that no edge joins have mean zero each.
+//! Limits: an orthographic view. Without anchors, each unconnected part of the surface has mean zero.
 
 use super::gradients_to_heights::{IntegrationOptions, Integrator, Robustness};
 use super::normals_to_gradients::find_slopes;
 use crate::error::Result;
 use crate::view::{Camera, Normals, Size};
 
-/// Depth in pixels of the surface that has these normals in the least-squares sense, NaN where there is none; `robust`
-/// cuts what crosses a discontinuity, as the loop does.
+/// Depth in pixels of the surface with these normals in the least-squares sense, NaN where missing; `robust` cuts
+/// edges across a discontinuity, as the loop does.
 ///
 /// # Errors
-/// [`ErrorKind::Size`](crate::ErrorKind::Size) where there are not as many normals as pixels,
-/// [`ErrorKind::Empty`](crate::ErrorKind::Empty) where there is none at all.
+/// [`ErrorKind::Size`](crate::ErrorKind::Size) if there are not as many normals as pixels,
+/// [`ErrorKind::Empty`](crate::ErrorKind::Empty) if no normal is valid.
 pub fn surface_of_normals(size: Size, normals: &Normals, robust: bool) -> Result<Vec<f32>> {
     let mask: Vec<bool> = (0..normals.len()).map(|index| normals.is_valid(index)).collect();
     let mut slopes = [(); 2].map(|()| vec![f32::NAN; size.len()]);

@@ -1,11 +1,11 @@
-//! The data of a surface's equations: edges, which suggest differences between neighbours, and anchors, which suggest
-//! heights.
+//! The data of a surface's equations: edges, which prescribe differences between neighbours, and anchors, which
+//! prescribe heights.
 
 use crate::numeric::{Lanes, Mask, Real};
 
 /// Edge e from a pixel to its right or lower neighbour, stored at the pixel.
 pub struct Edges {
-    /// w_e >= 0; zero where there is no edge, which includes the last column (row).
+    /// w_e >= 0; zero without an edge, as in the last column (row).
     pub weight: Vec<f32>,
     /// g_e.
     pub gradient: Vec<f32>,
@@ -26,17 +26,17 @@ pub enum AnchorWeight<'a> {
     PerPixel(&'a [f32]),
 }
 
-/// Heights that the surface is drawn to.
+/// Heights towards which the surface is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Anchors<'a> {
-    /// Target height of each pixel of the raster, NaN where there is none.
+    /// Target height of each pixel of the raster, NaN if it has none.
     pub height: &'a [f32],
-    /// a_i against edges of weight one; an anchor whose weight is not finite or not above zero is ignored.
+    /// a_i relative to edges of weight one; an anchor whose weight is not finite or not above zero is ignored.
     pub weight: AnchorWeight<'a>,
 }
 
 impl Anchors<'_> {
-    /// Target and weight, zero weight where there is no anchor.
+    /// Target and weight; zero weight without an anchor.
     pub(super) fn get(&self, index: usize) -> (f32, f32) {
         let weight = match self.weight {
             AnchorWeight::Uniform(weight) => weight,
@@ -46,7 +46,7 @@ impl Anchors<'_> {
         if height.is_finite() && weight.is_finite() && weight > 0.0 { (height, weight) } else { (0.0, 0.0) }
     }
 
-    /// The same of those of four pixels that are `wanted`.
+    /// The same for four pixels, restricted to those that are `wanted`.
     #[inline(always)]
     pub(crate) fn four(&self, start: isize, wanted: Mask) -> (Lanes, Lanes) {
         let zero = Lanes::splat(0.0);

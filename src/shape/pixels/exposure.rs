@@ -1,10 +1,11 @@
 //! The exposure of a known light (docs/method/image-model.md).
 //!
-//! A light is known only up to the exposure of the camera: log S = c + [n;1]^T M [n;1] with one c for all pixels.
-//! First c comes from the colours alone: the colours of the hemisphere are a surface in log RGB, and c shifts the
-//! image's colours onto it. Then each solve of the normals improves c by variable projection: the normals follow c, so
-//! that dF/dc = -2 sum r and d2F/dc2 = 2 sum (3 - 1^T J H^-1 J^T 1), F the objective, H the pixel's own Gauss-Newton
-//! matrix. Under a light of one hue that surface is a line along c itself, and only the prior fixes it.
+//! A light is known only up to the exposure of the camera: log S = c + [n;1]^T M [n;1] with one c for all pixels. The
+//! first c comes from the colours alone: the colours of the hemisphere form a surface in log RGB, and c shifts the
+//! image's colours onto it. Each solve of the normals then improves c by variable projection. The normals follow c, so
+//! dF/dc = -2 sum r and d2F/dc2 = 2 sum (3 - 1^T J H^-1 J^T 1), where F is the objective and H the pixel's own
+//! Gauss-Newton matrix. Under a light of a single chromaticity that surface is a line along c itself, and only the
+//! prior determines c.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -13,29 +14,29 @@ use crate::light::{Light, Polynomial};
 use crate::numeric::{LANES, Lanes, Real, quantile, robust};
 use crate::view::Normals;
 
-/// Most pixels, and directions on the hemisphere, that the first exposure is found from: enough for two digits.
+/// Most pixels, and number of directions on the hemisphere, for the first exposure: enough for two digits.
 const MOST_PIXELS: usize = 400;
 const DIRECTIONS: usize = 300;
-/// The first exposure is the best of a grid: its step in log units (a parabola then leaves a fifth of it), and the
-/// number of steps to either side of equal medians.
+/// The first exposure is the best of a grid: its step in log units (a parabola then reduces the error to a fifth of
+/// it), and the number of steps to either side of equal medians.
 const GRID_STEP: f64 = 0.05;
 const GRID_STEPS: i32 = 60;
 /// Robust scale of the grid's objective in log units.
 const GRID_SCALE: f64 = 0.1;
-/// Weight of the squared distance from equal medians, against an objective of at most one: it decides only where the
-/// colours do not.
+/// Weight of the squared distance from equal medians, relative to an objective of at most one: it decides only where
+/// the colours do not.
 const GRID_PRIOR: f64 = 1e-3;
-/// Longest step in log units: the first exposure is nearer than that.
+/// Longest step in log units: the first exposure is closer than that.
 const LONGEST_STEP: f64 = 0.2;
 /// Robust scale of a step: the residual, log units, at which a pixel keeps a quarter of its weight.
 const STEP_SCALE: f32 = 0.1;
-/// Weight of each pixel for the first exposure, in squared log residual: a light of almost one hue leaves the exposure
-/// almost free, and a step must not run away along it.
+/// Weight of each pixel for the first exposure, in squared log residual: a light of almost a single chromaticity leaves
+/// the exposure almost free, and a step must not run away along it.
 const STEP_PRIOR: f64 = 1e-3;
 
-/// The offset of log S that puts the image's colours onto those of the light.
+/// The offset of log S that shifts the image's colours onto those of the light.
 ///
-/// `log` holds R, G, B with NaN off the mask; an empty image gives zero.
+/// `log` holds R, G, B, with NaN off the mask; an empty image gives zero.
 #[must_use]
 pub fn first_exposure(light: &Light, log: [&[f32]; 3]) -> f64 {
     let usable: Vec<usize> = (0..log[0].len()).filter(|&index| !log[0][index].is_nan()).collect();
@@ -57,7 +58,7 @@ pub fn first_exposure(light: &Light, log: [&[f32]; 3]) -> f64 {
     centre + GRID_STEP * (best as f64 - f64::from(GRID_STEPS) + vertex(&grid, best))
 }
 
-/// Where the parabola through a value and its neighbours has its minimum, in steps from there; zero at the ends.
+/// Minimum of the parabola through a value and its neighbours, in steps from that value; zero at the ends.
 fn vertex(grid: &[f64], best: usize) -> f64 {
     if best == 0 || best + 1 >= grid.len() {
         return 0.0;
@@ -67,7 +68,7 @@ fn vertex(grid: &[f64], best: usize) -> f64 {
     if curvature > 0.0 { 0.5 * (before - after) / curvature } else { 0.0 }
 }
 
-/// Colours of directions spread over the visible hemisphere as a sphere shows them: evenly over the disc.
+/// Colours of directions over the visible hemisphere, spread as on the image of a sphere: evenly over the disc.
 fn projected_hemisphere(light: &Light) -> Vec<[f64; 3]> {
     let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
     (0..DIRECTIONS)
@@ -91,7 +92,7 @@ fn misfit(colour: [f64; 3], offset: f64, shades: &[[f64; 3]]) -> f64 {
     robust::saturated(nearest)
 }
 
-/// The change of the exposure after a solve of `normals`; `moved` is how far it is from the first one already.
+/// The change of the exposure after a solve of `normals`; `moved` is its distance from the first one so far.
 #[must_use]
 pub fn exposure_step(problem: ShadingProblem<'_>, weights: ShadingWeights, normals: &Normals, moved: f64) -> f64 {
     let polynomials = Polynomial::of(problem.light);
@@ -116,8 +117,8 @@ pub fn exposure_step(problem: ShadingProblem<'_>, weights: ShadingWeights, norma
                 sum + Vector3::from(polynomial.gradient(normal)).map(f64::from)
             });
             let Some(inverse) = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz).try_inverse() else { continue };
-            // Zero where the normal's own solve has ended at a minimum; at the rim it ends at the border of the
-            // visible.
+            // Zero if the normal's own solve ended at a minimum; near an occluding contour it ends at the border of the
+            // visible hemisphere.
             let remaining = derivative.dot(&(inverse * gradient));
             slope += weight * (remaining - f64::from(residuals.iter().sum::<f32>()));
             curvature += weight * (3.0 - (derivative.transpose() * inverse * derivative)[0]).max(0.0);

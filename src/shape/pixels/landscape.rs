@@ -1,8 +1,9 @@
-//! The objective of one pixel over all normals that a camera can see (Eq. 6; docs/method/normals.md), to look at: its
+//! The objective of one pixel over all normals that a camera can see (Eq. 6; docs/method/normals.md), for display: its
 //! values, its minima with the share of the hemisphere that leads to each, and the steps of one descent.
 //!
-//! Terms, descent and starts are those of [`ShadingSolver`]. Limits: the values are those of unit normals, while a
-//! descent is held to them by lambda_3 alone; under one colour minima are a curve, of which some points are told.
+//! Terms, descent and starts are those of [`ShadingSolver`]. Limits: the values are those of unit normals, whereas a
+//! descent is held to unit length only by lambda_3; under a single colour the minima form a curve, of which some points
+//! are reported.
 
 use super::shading::{
     LinearisedPixels, MOST_STEPS, Pixels, RIM, ShadingProblem, ShadingReport, ShadingSolver, ShadingWeights, normalise,
@@ -11,8 +12,8 @@ use crate::light::{Light, Polynomial};
 use crate::numeric::{LANES, Lanes, Mask};
 use crate::view::Normals;
 
-/// Closer than this (3 degrees) two ends of descents are one minimum: a descent stops within a tenth of
-/// a degree of it, and minima of a quadratic form of second order are tens of degrees apart.
+/// Two ends of descents closer than this (3 degrees) are one minimum: a descent stops within a tenth of a degree of it,
+/// and minima of a quadratic form of second order are tens of degrees apart.
 const SAME: f32 = 0.05;
 
 /// A local minimum of a pixel's objective.
@@ -22,24 +23,24 @@ pub struct Minimum {
     pub normal: [f32; 3],
     /// The objective there.
     pub objective: f32,
-    /// Share of the hemisphere's directions whose descent ends there.
+    /// Share of the hemisphere's directions from which the descent ends there.
     pub share: f32,
 }
 
 /// The objective of one pixel.
 #[derive(Clone, Debug)]
 pub struct PixelLandscape {
-    /// Its values seen from the camera, `side` rows of `side`: n_x grows with the column and n_y with the row, both from -1
-    /// to 1. NaN where no normal is.
+    /// Its values seen from the camera, `side` rows of `side`: n_x grows with the column and n_y with the row, both
+    /// from -1 to 1. NaN where there is no normal.
     pub objective: Vec<f32>,
-    /// The lowest first.
+    /// The minima, lowest first.
     pub minima: Vec<Minimum>,
-    /// Normals from step to step of the descent from the start; the last one is where it ends.
+    /// Normals from step to step of the descent from the start; the last one is its end.
     pub path: Vec<[f32; 3]>,
 }
 
 impl PixelLandscape {
-    /// The landscape of a pixel with these logarithms of R, G, B, and a `prior` of NaN where there is none.
+    /// The landscape of a pixel with these logarithms of R, G, B; a `prior` of NaN means no prior.
     #[must_use]
     pub fn new(
         log: [f32; 3],
@@ -59,7 +60,7 @@ impl PixelLandscape {
     }
 }
 
-/// Four normals side by side, the first one again for those that are missing.
+/// Four normals side by side, with the first one in place of missing ones.
 #[inline(never)]
 fn four(normals: &[[f32; 3]]) -> [Lanes; 3] {
     let normal = |lane: usize| normals.get(lane).or(normals.first()).copied().unwrap_or([f32::NAN; 3]);
@@ -73,7 +74,7 @@ fn values(pixel: &Pixels<'_>, side: usize) -> Vec<f32> {
         let normals: [[f32; 3]; LANES] = std::array::from_fn(|lane| {
             let place = block * LANES + lane;
             let (x, y) = (coordinate(place % side), coordinate(place / side));
-            // No normal beyond the hemisphere's edge: the root is NaN there.
+            // There is no normal beyond the hemisphere's edge: the root is NaN there.
             [x, y, -(1.0 - x * x - y * y).sqrt()]
         });
         objective(pixel, four(&normals)).store(values);
@@ -81,7 +82,7 @@ fn values(pixel: &Pixels<'_>, side: usize) -> Vec<f32> {
     values
 }
 
-/// Where the descents from all over the hemisphere end, but for those that the rim stops; the lowest first.
+/// Ends of the descents from all over the hemisphere, except those stopped at its edge; the lowest first.
 fn minima(pixel: &Pixels<'_>) -> Vec<Minimum> {
     let directions = ShadingSolver::new().directions;
     let share = 1.0 / directions.len() as f32;
@@ -98,7 +99,7 @@ fn minima(pixel: &Pixels<'_>) -> Vec<Minimum> {
             match found.iter_mut().find(|minimum| is_same(minimum.normal, normal)) {
                 Some(minimum) => minimum.share += share,
                 None => {
-                    // In its place at once: they are few.
+                    // Inserted in order, because there are only a few.
                     let place = found.iter().take_while(|minimum| minimum.objective <= objective).count();
                     found.insert(place, Minimum { normal, objective, share });
                 }
@@ -108,7 +109,7 @@ fn minima(pixel: &Pixels<'_>) -> Vec<Minimum> {
     found
 }
 
-/// The objective of four normals. Not inlined: it is called in two places, and visitors download each copy.
+/// The objective of four normals. Not inlined: it has two callers, and each copy adds to the download.
 #[inline(never)]
 fn objective(pixel: &Pixels<'_>, normals: [Lanes; 3]) -> Lanes {
     pixel.objective(normals)
@@ -118,7 +119,7 @@ fn is_same(a: [f32; 3], b: [f32; 3]) -> bool {
     (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f32>() < SAME * SAME
 }
 
-/// The descent broken off after one trial, two trials, and so on; trials that were refused leave the normal in place.
+/// The descent stopped after one trial, two trials, and so on; rejected trials leave the normal in place.
 fn path(pixel: &Pixels<'_>, start: [f32; 3]) -> Vec<[f32; 3]> {
     let mut path = vec![start];
     for steps in 1..=MOST_STEPS {
@@ -134,7 +135,7 @@ fn path(pixel: &Pixels<'_>, start: [f32; 3]) -> Vec<[f32; 3]> {
     path
 }
 
-/// Where descents are after so many trials, and whether all of them have ended.
+/// Ends of descents after this many trials, and whether all of them have ended.
 #[inline(never)]
 fn descend(pixel: &Pixels<'_>, start: [Lanes; 3], steps: usize) -> ([Lanes; 3], bool) {
     let mut counts = ShadingReport::default();

@@ -1,4 +1,4 @@
-//! One normal for each pixel (Eq. 6 to 9), and the exposure, the one unknown that all pixels share.
+//! One normal for each pixel (Eq. 6 to 9), and the exposure, the one unknown shared by all pixels.
 
 mod exposure;
 mod landscape;

@@ -2,37 +2,37 @@
 //!
 //! For each pixel: min over n of
 //! sum_j (log S_j - [n;1]^T M_j [n;1])^2 + lambda_2 rho(|n - m|^2) + lambda_3 (n^T n - 1)^2,
-//! m the normal that the other view sees there, rho the identity or Geman-McClure. The paper writes the two prior
-//! terms without a square and lambda_3 linear; a least-squares solver squares them, and so do we.
+//! where m is the other view's normal there, and rho is the identity or Geman-McClure. The paper writes the two prior
+//! terms without a square and lambda_3 linear; a least-squares solver squares them, as this one does.
 //!
-//! Three colours give up to eight solutions, so each pixel first compares directions all over the visible hemisphere,
-//! then descends by damped Gauss-Newton, [`LANES`] pixels side by side. The same code refines the depth view (Eq. 17,
-//! 18): its normals, rotated into the colour view's frame, are pixels like any other. Limits: normals have n_z < 0, and
-//! under a light of one hue the colours of a pixel do not determine its normal.
+//! Three colours give up to eight solutions. Each pixel therefore first compares directions over the whole visible
+//! hemisphere, then descends by damped Gauss-Newton, [`LANES`] pixels side by side. The same code refines the depth
+//! view (Eq. 17, 18): its normals, rotated into the colour view's frame, are pixels like any other. Limits: normals
+//! have n_z < 0, and under a light of a single chromaticity, the colours of a pixel do not determine its normal.
 
 use crate::light::{Light, Polynomial};
 use crate::numeric::{LANES, Lanes, Mask, Real, dot, robust};
 use crate::view::Normals;
 
-/// What surrounds the unknown normals: all slices have one length, one element for each pixel.
+/// The data for the unknown normals: all slices have one length, with one element for each pixel.
 #[derive(Clone, Copy)]
 pub struct ShadingProblem<'a> {
-    /// log S of R, G, B; NaN leaves the pixel to its prior.
+    /// log S of R, G, B; a pixel with NaN depends on its prior alone.
     pub log: [&'a [f32]; 3],
-    /// The other view's normals in this frame, NaN where it sees nothing.
+    /// The other view's normals in this frame, NaN where it has none.
     pub prior: &'a Normals,
-    /// The light, exposure included.
+    /// The light, with exposure.
     pub light: &'a Light,
 }
 
-/// Weights of the terms against squared log-colour residuals.
+/// Weights of the terms relative to squared log-colour residuals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShadingWeights {
     /// lambda_2.
     pub prior: f32,
     /// lambda_3.
     pub unit: f32,
-    /// Scale of rho, the distance |n - m| at which the prior keeps a quarter of its weight; `None` for the identity.
+    /// Scale of rho: the distance |n - m| at which the prior keeps a quarter of its weight; `None` for the identity.
     pub robust: Option<f32>,
 }
 
@@ -40,7 +40,7 @@ pub struct ShadingWeights {
 const PRIOR_SCALE: f32 = 0.4;
 
 impl ShadingWeights {
-    /// Weights with a robust prior: a prior normal that is far off, such as one of a wrong correspondence, loses its
+    /// Weights with a robust prior: a prior normal that is far away, such as that of a wrong correspondence, loses its
     /// weight.
     #[must_use]
     pub const fn with_robust_prior(prior: f32, unit: f32) -> Self {
@@ -48,7 +48,7 @@ impl ShadingWeights {
     }
 }
 
-/// For how many pixels the solver ended for which reason.
+/// Number of pixels by the reason for which the solver ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ShadingReport {
     /// The step fell below `SMALLEST_STEP`.
@@ -57,32 +57,32 @@ pub struct ShadingReport {
     pub stalled: usize,
     /// `MOST_STEPS` were not enough.
     pub capped: usize,
-    /// Neither colour nor prior: no normal.
+    /// Neither colour nor prior, so no normal.
     pub skipped: usize,
 }
 
-/// Solver with its table of directions; holds no pixel.
+/// Solver with its table of directions; holds no pixels.
 #[derive(Clone, Debug)]
 pub struct ShadingSolver {
     pub(super) directions: Vec<[f32; 3]>,
     shades: Vec<[f32; 3]>,
 }
 
-/// Directions on the hemisphere that are compared: 5 degrees apart, well inside the basin of the local solve.
+/// Number of directions on the hemisphere that are compared: 5 degrees apart, well within the basin of the local solve.
 const DIRECTIONS: usize = 600;
-/// n_z of the flattest of them: nearer the rim a surface is too steep to be seen in a pixel.
+/// n_z of the flattest direction: closer to the edge of the hemisphere, a surface is too steep to be seen in a pixel.
 pub(super) const RIM: f32 = -0.05;
-/// Trials of one pixel in one solve; the paper allows 1000 and needs 300, Gauss-Newton needs about five.
+/// Most trials of one pixel in one solve. The paper allows 1000 and needs 300; Gauss-Newton needs about five.
 pub(super) const MOST_STEPS: usize = 30;
-/// A step that short (in units of a unit normal, 0.06 degrees) is the last one: it is taken, and leaves a tenth of
-/// itself at most, a hundredth of the best normals' error.
+/// A step this short (in units of a unit normal, 0.06 degrees) is the last one: it is taken, and leaves an error of at
+/// most a tenth of itself, a hundredth of the best normals' error.
 const SMALLEST_STEP: f32 = 1e-3;
 /// First damping, relative to the diagonal.
 const FIRST_DAMPING: f32 = 1e-3;
-/// Damping beyond which no step is worth trying.
+/// Damping beyond which no step is tried.
 const LARGEST_DAMPING: f32 = 1e6;
-/// Added to the diagonal, in squared log residuals per squared unit of a normal: a flat light must not make the system
-/// singular.
+/// Added to the diagonal, in squared log residuals per squared unit of a normal, so that a flat light does not make the
+/// system singular.
 const LEAST_DIAGONAL: f32 = 1e-9;
 
 impl Default for ShadingSolver {
@@ -109,7 +109,8 @@ impl ShadingSolver {
         Self { directions, shades }
     }
 
-    /// Solves every pixel of `normals`, from its present value where it has one, else from the best of the hemisphere.
+    /// Solves every pixel of `normals`, from its current value if it has one, else from the best direction of the
+    /// hemisphere.
     pub fn solve(
         &mut self,
         problem: ShadingProblem<'_>,
@@ -140,8 +141,8 @@ impl ShadingSolver {
         counts
     }
 
-    /// The best of the present normal, the prior and, where there is no present one, the hemisphere; the objective
-    /// around it; and which pixels have one.
+    /// The best of the current normal, the prior and, without a current normal, the hemisphere; the objective around
+    /// it; and which pixels have one.
     fn start(&self, pixels: &Pixels<'_>, present: [Lanes; 3]) -> ([Lanes; 3], LinearisedPixels, Mask) {
         let (zero, far) = (Lanes::splat(0.0), Lanes::splat(f32::INFINITY));
         let facing = present[2].less(zero);
@@ -166,17 +167,17 @@ impl ShadingSolver {
     }
 }
 
-/// The terms of [`LANES`] pixels. What is missing is zero and weighs nothing.
+/// The terms of [`LANES`] pixels. Missing values are zero and have no weight.
 pub(super) struct Pixels<'a> {
     log: [Lanes; 3],
     prior: [Lanes; 3],
     pub(super) has_colour: Mask,
     has_prior: Mask,
-    /// One with a colour, lambda_2 with a prior.
+    /// One for a pixel with a colour; below, lambda_2 for a pixel with a prior.
     colour_weight: Lanes,
     prior_weight: Lanes,
     unit_weight: Lanes,
-    /// 1 / scale^2 of rho; zero where it is the identity.
+    /// 1 / scale^2 of rho; zero for the identity.
     inverse_square_scale: Lanes,
     polynomials: &'a [Polynomial; 3],
 }
@@ -229,7 +230,7 @@ impl<'a> Pixels<'a> {
         self.colour_weight * dot(residuals, residuals) + self.prior_term(normal) + self.unit_weight * unit * unit
     }
 
-    /// The objective around a normal.
+    /// Linearises the objective around a normal.
     #[inline(never)]
     pub(super) fn linearise(&self, normal: [Lanes; 3]) -> LinearisedPixels {
         let (zero, one, two) = (Lanes::splat(0.0), Lanes::splat(1.0), Lanes::splat(2.0));
@@ -252,8 +253,8 @@ impl<'a> Pixels<'a> {
         sums
     }
 
-    /// Damped Gauss-Newton; a step to a normal that faces away from the camera counts as no descent. The loop goes on
-    /// until the last of the four has converged, the others keep their normals.
+    /// Damped Gauss-Newton; a step to a normal that faces away from the camera is rejected. The loop runs until the
+    /// last of the four has converged; the others keep their normals.
     #[inline(never)]
     pub(super) fn descend(
         &self,
@@ -274,7 +275,7 @@ impl<'a> Pixels<'a> {
             let converged = moving & dot(step, step).less(shortest);
             counts.converged += converged.count();
             let facing = trial[2].less(zero);
-            // In f32 the last digits of the objective are noise, so the last step is not compared.
+            // The last step is not compared, because the last digits of an objective in f32 are noise.
             normal = (converged & facing).select3(trial, normal);
             moving = moving & !converged;
             if !moving.any() {
@@ -371,7 +372,7 @@ mod tests {
         ])
     }
 
-    /// Normals over the hemisphere off the solver's own directions, and their colours.
+    /// Normals over the hemisphere between the solver's own directions, and their colours.
     fn sphere(light: &Light) -> (Normals, [Vec<f32>; 3]) {
         let count = 500;
         let mut normals = Normals::missing(count);

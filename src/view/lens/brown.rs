@@ -1,6 +1,7 @@
-//! Brown's distortion as OpenCV writes it: the rational model of eight coefficients, of which the usual five are a part.
+//! Brown's distortion as defined by OpenCV: the rational model of eight coefficients, which includes the usual five.
 //!
-//! Rays are found by Newton's method inside a bracket along the radius, then in two dimensions for what is not radial.
+//! Rays are found by Newton's method: within a bracket along the radius, then in two dimensions for the tangential
+//! terms.
 
 use super::inverse::{FOLD_SAMPLES, LARGEST_SLOPE, MOST_ROUNDS, RETURN_DISTANCE, inverse, pixels};
 use crate::numeric::{Lanes, Real};
@@ -8,17 +9,17 @@ use crate::numeric::{Lanes, Real};
 /// A distorted point, and its derivative by the slopes of the ray.
 pub type Distorted = ([f64; 2], [[f64; 2]; 2]);
 
-/// A ray has been found when its pixel is within [`RETURN_DISTANCE`] or so near relative to its distance from the middle:
-/// what 64 bits leave of pixels millions beyond the picture.
+/// A ray has been found when its pixel is within [`RETURN_DISTANCE`], or this close relative to its distance from the
+/// centre, which is the rounding of 64 bits for pixels millions beyond the picture.
 const ROUNDING: f64 = 1e-13;
 
-/// The distorted slopes of a ray before the first fold of the lens, and their derivative by them.
+/// The distorted slopes of a ray before the first fold of the lens, and their derivative by the slopes.
 pub fn project(coefficients: &[f64; 8], ray: [f64; 2]) -> Option<Distorted> {
     let (distorted, gradient) = distort(coefficients, ray);
     is_unfolded(coefficients, ray, gradient).then_some((distorted, gradient))
 }
 
-/// The slopes of the ray that is distorted to `target`, where there is one.
+/// The slopes of the ray that is distorted to `target`, if there is one.
 pub fn ray(coefficients: &[f64; 8], target: [f64; 2], focal: [f64; 2]) -> Option<[f64; 2]> {
     let radius = target[0].hypot(target[1]);
     let radial = |radius: f64| {
@@ -44,11 +45,11 @@ pub fn ray(coefficients: &[f64; 8], target: [f64; 2], focal: [f64; 2]) -> Option
     None
 }
 
-/// Factor of the radius by its square, and the derivative of that.
+/// The radial factor as a function of the squared radius, and its derivative.
 fn radial([k1, k2, _, _, k3, k4, k5, k6]: &[f64; 8], square: f64) -> [f64; 2] {
     let above = 1.0 + square * (k1 + square * (k2 + square * k3));
     let above_slope = k1 + square * (2.0 * k2 + 3.0 * square * k3);
-    // The usual five coefficients need no division, which takes as long as all the rest.
+    // The usual five coefficients need no division, which would take as long as everything else.
     if *k4 == 0.0 && *k5 == 0.0 && *k6 == 0.0 {
         return [above, above_slope];
     }
@@ -58,7 +59,7 @@ fn radial([k1, k2, _, _, k3, k4, k5, k6]: &[f64; 8], square: f64) -> [f64; 2] {
     [factor, (above_slope - factor * below_slope) / below]
 }
 
-/// The distorted slopes of a ray and their derivative by them.
+/// The distorted slopes of a ray and their derivative by the slopes.
 fn distort(coefficients: &[f64; 8], [x, y]: [f64; 2]) -> Distorted {
     let [_, _, p1, p2, ..] = coefficients;
     let square = x * x + y * y;
@@ -77,16 +78,16 @@ fn distort(coefficients: &[f64; 8], [x, y]: [f64; 2]) -> Distorted {
     (distorted, gradient)
 }
 
-/// Whether a ray lies before the first fold of the lens: its image is not mirrored, and its radius has grown all the
-/// way.
+/// Whether a ray lies before the first fold of the lens: its image is not mirrored, and the distorted radius has grown
+/// all the way.
 fn is_unfolded(coefficients: &[f64; 8], [x, y]: [f64; 2], [[a, b], [c, d]]: [[f64; 2]; 2]) -> bool {
     let square = x * x + y * y;
     let bends = square < LARGEST_SLOPE * LARGEST_SLOPE && a * d - b * c > 0.0 && a + d > 0.0;
     bends && grows(coefficients, square)
 }
 
-/// Whether the distorted radius grows up to the radius of that square. Small coefficients cannot keep it from that;
-/// where they could, radii in between are asked.
+/// Whether the distorted radius grows monotonically up to the radius with this square. Small coefficients cannot
+/// prevent it; otherwise radii in between are sampled.
 fn grows(coefficients: &[f64; 8], square: f64) -> bool {
     let [k1, k2, _, _, k3, k4, k5, k6] = coefficients.map(f64::abs);
     let below = square * (k4 + square * (k5 + square * k6));
@@ -99,13 +100,13 @@ fn grows(coefficients: &[f64; 8], square: f64) -> bool {
     (1..=FOLD_SAMPLES).all(|k| {
         let square = square * k as f64 / FOLD_SAMPLES as f64;
         let [factor, slope] = radial(coefficients, square);
-        // A pole between two samples turns the sign of the factor.
+        // A pole between two samples flips the sign of the factor.
         factor > 0.0 && factor + 2.0 * square * slope > 0.0
     })
 }
 
-/// The distorted slopes of four rays under the usual five coefficients, NaN where the radius shrinks: behind the fold, where the
-/// image is mirrored.
+/// The distorted slopes of four rays under the usual five coefficients; NaN where the radius shrinks, behind the fold,
+/// where the image is mirrored.
 #[inline(never)]
 pub fn distort_lanes(coefficients: [f64; 5], [x, y]: [Lanes; 2]) -> [Lanes; 2] {
     let [k1, k2, p1, p2, k3] = coefficients.map(|value| Lanes::splat(value as f32));

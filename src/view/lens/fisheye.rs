@@ -1,4 +1,5 @@
-//! The fisheye of Kannala and Brandt (2006) with OpenCV's four coefficients: the radius by the angle to the optical axis.
+//! The fisheye of Kannala and Brandt (2006) with OpenCV's four coefficients: the radius as a function of the angle to
+//! the optical axis.
 
 use std::f64::consts::PI;
 
@@ -7,11 +8,11 @@ use super::inverse::{FOLD_SAMPLES, LARGEST_SLOPE, RETURN_DISTANCE, inverse, pixe
 /// A distorted point, and its derivative by x, y, z.
 pub type Projection = ([f64; 2], [[f64; 3]; 2]);
 
-/// A point this near to the axis, relative to its distance, has the axis' own derivative: its square is lost in
-/// rounding.
+/// A point this close to the axis, relative to its distance, gets the derivative on the axis, because rounding loses
+/// its squared radius.
 const ON_AXIS: f64 = 1e-8;
 
-/// Where the lens puts a point before its first fold.
+/// The distorted position of a point before the first fold of the lens.
 pub fn project(coefficients: &[f64; 4], point: [f64; 3]) -> Option<[f64; 2]> {
     let [radius, angle] = polar(point)?;
     grows(coefficients, angle).then_some(())?;
@@ -33,7 +34,7 @@ pub fn project_with_gradient(coefficients: &[f64; 4], point: [f64; 3]) -> Option
     }
     let [cos, sin] = [x / radius, y / radius];
     let square = radius * radius + z * z;
-    // Along the radius and across it.
+    // Along the radius and perpendicular to it.
     let (along, across) = (slope * z / square, distorted / radius);
     let mixed = cos * sin * (along - across);
     let by_z = -slope * radius / square;
@@ -44,8 +45,8 @@ pub fn project_with_gradient(coefficients: &[f64; 4], point: [f64; 3]) -> Option
     Some(([distorted * cos, distorted * sin], gradient))
 }
 
-/// Direction of the ray that the lens puts at `target`, where there is one: with z = 1 where it runs ahead, a unit vector where
-/// it looks aside or back.
+/// Direction of the ray that the lens maps to `target`, if there is one: with z = 1 if it points forward, a unit vector
+/// if it points sideways or backward.
 pub fn ray(coefficients: &[f64; 4], target: [f64; 2], focal: [f64; 2]) -> Option<[f64; 3]> {
     let radius = target[0].hypot(target[1]);
     let radial = |angle: f64| {
@@ -60,19 +61,19 @@ pub fn ray(coefficients: &[f64; 4], target: [f64; 2], focal: [f64; 2]) -> Option
     let off = (distorted - radius) / radius;
     let returns = pixels(focal, target.map(|part| part * off)) < RETURN_DISTANCE;
     (returns && grows(coefficients, angle)).then_some(())?;
-    // Where rays run aside the slope is infinite.
+    // The slope of rays that point sideways is infinite.
     let (sin, cos) = angle.sin_cos();
     let [aside, ahead] = if cos > 1.0 / LARGEST_SLOPE { [sin / cos, 1.0] } else { [sin, cos] };
     Some([aside / radius * target[0], aside / radius * target[1], ahead])
 }
 
-/// Distance from the axis and angle to it; `None` in the camera and on the axis behind it.
+/// Distance from the axis and angle to it; `None` at the camera's centre and on the axis behind it.
 fn polar([x, y, z]: [f64; 3]) -> Option<[f64; 2]> {
     let radius = x.hypot(y);
     (radius > 0.0 || z > 0.0).then(|| [radius, radius.atan2(z)])
 }
 
-/// The distorted radius by the angle to the axis, and its derivative.
+/// The distorted radius at an angle to the axis, and its derivative.
 fn distort([k1, k2, k3, k4]: &[f64; 4], angle: f64) -> [f64; 2] {
     let square = angle * angle;
     [
@@ -81,8 +82,8 @@ fn distort([k1, k2, k3, k4]: &[f64; 4], angle: f64) -> [f64; 2] {
     ]
 }
 
-/// Whether the distorted radius grows up to that angle. Small coefficients cannot keep it from that; where they could, angles
-/// in between are asked.
+/// Whether the distorted radius grows monotonically up to this angle. Small coefficients cannot prevent it; otherwise
+/// angles in between are sampled.
 fn grows(coefficients: &[f64; 4], angle: f64) -> bool {
     let shrinking = distort(&coefficients.map(|value| -value.abs()), angle);
     let limit = angle < PI;

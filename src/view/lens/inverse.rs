@@ -1,21 +1,22 @@
-//! Where a distorted radius is reached: what both lens models share.
+//! Inversion of the distorted radius, shared by both lens models.
 
-/// Most rounds of Newton's method; usual lenses take three, halving the bracket down to rounding takes fifty.
+/// Most rounds of Newton's method; usual lenses take three, and halving the bracket down to rounding takes fifty.
 pub(super) const MOST_ROUNDS: usize = 60;
-/// A ray has been found when its pixel is this near, in pixels: a hundredth of the step between coordinates in f32.
+/// A ray has been found when its pixel is this close, pixels: a hundredth of the step between coordinates in f32.
 pub(super) const RETURN_DISTANCE: f64 = 1e-7;
-/// Largest slope of a ray behind Brown's lens, 89.4 degrees off the axis: the model knows no ray at 90.
+/// Largest slope of a ray behind Brown's lens, 89.4 degrees off the axis: the model has no ray at 90.
 pub(super) const LARGEST_SLOPE: f64 = 100.0;
-/// Radii at which the growth of the distorted radius is asked, evenly spread in their squares.
+/// Number of radii at which the growth of the distorted radius is checked, evenly spaced in their squares.
 pub(super) const FOLD_SAMPLES: usize = 16;
 
-/// How far a step in the plane of the slopes is in pixels, by the focal lengths along x and y.
+/// Length in pixels of a step in the plane of the slopes, given the focal lengths along x and y.
 pub(super) fn pixels([fx, fy]: [f64; 2], [right, down]: [f64; 2]) -> f64 {
     (fx * right).hypot(fy * down)
 }
 
-/// Where a function that grows from zero, up to its first fold, reaches `target`: Newton's method inside a bracket.
-/// `function` gives value, derivative, and whether it has grown all the way. Beyond its reach: the fold, or `most`.
+/// Argument at which a function that grows from zero up to its first fold reaches `target`, by Newton's method within a
+/// bracket. `function` returns its value, its derivative, and whether it has grown all the way. Beyond the function's
+/// range: the fold, or `most`.
 pub(super) fn inverse(function: impl Fn(f64) -> (f64, f64, bool), target: f64, most: f64) -> f64 {
     let (mut low, mut high) = (0.0, most);
     let mut at = target.min(0.5 * most);

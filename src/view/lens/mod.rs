@@ -1,10 +1,10 @@
-//! What bends the rays between a pinhole and its pixels, in focal lengths off the principal point.
+//! Lens distortion between a pinhole and its pixels, in focal lengths off the principal point.
 //!
-//! Points are distorted in closed form; rays are found by Newton's method inside a bracket along the radius.
+//! Points are distorted in closed form; rays are found by Newton's method within a bracket along the radius.
 //!
-//! A lens model folds: from some radius on the distorted one shrinks, and perhaps grows again further out. What lies
-//! beyond the first fold is seen by no lens, so it has neither pixel nor ray. Limits: between sixteen radii a fold can be
-//! missed; it is then so shallow that it moves no pixel by much.
+//! A lens model folds: beyond some radius the distorted radius shrinks, and perhaps grows again farther out. No lens
+//! sees what lies beyond the first fold, so it has neither pixel nor ray. Limits: a fold between the sixteen sampled
+//! radii can be missed; it is then so shallow that it hardly moves a pixel.
 
 mod brown;
 mod fisheye;
@@ -15,36 +15,36 @@ use crate::numeric::{LANES, Lanes};
 use brown::Distorted;
 use fisheye::Projection;
 
-/// The lens of a camera, as calibration tools write it.
+/// The lens of a camera, as calibration tools define it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lens {
     /// Straight lines stay straight.
     None,
     /// OpenCV's k1, k2, p1, p2, k3, k4, k5, k6; models of five coefficients have zeros for the last three.
     Brown([f64; 8]),
-    /// OpenCV's fisheye, k1 to k4: the radius by the angle to the optical axis.
+    /// OpenCV's fisheye, k1 to k4: the radius as a function of the angle to the optical axis.
     Fisheye([f64; 4]),
 }
 
 impl Lens {
-    /// Brown's lens by 4, 5 or 8 coefficients in OpenCV's order. None of them, or zeros alone, are no lens.
+    /// Brown's lens from 4, 5 or 8 coefficients in OpenCV's order. No coefficients, or only zeros, mean no lens.
     ///
     /// # Errors
-    /// [`ErrorKind::Size`] of `distortion` for any other number of them.
+    /// [`ErrorKind::Size`] of `distortion` for any other number of coefficients.
     pub fn brown(coefficients: &[f64]) -> Result<Self> {
         match coefficients.len() {
             0 => Ok(Self::None),
-            // OpenCV writes up to 14, of which those of thin prisms and tilted sensors are not known here.
+            // OpenCV defines up to 14; those of thin prisms and tilted sensors are not supported here.
             4.. if coefficients.iter().all(|value| *value == 0.0) => Ok(Self::None),
             4 | 5 | 8 => Ok(Self::Brown(std::array::from_fn(|k| coefficients.get(k).copied().unwrap_or(0.0)))),
             count => Err(wrong_size("4, 5 or 8", count)),
         }
     }
 
-    /// A fisheye by its 4 coefficients in OpenCV's order. Without any the radius is the angle.
+    /// A fisheye from its 4 coefficients in OpenCV's order. Without any, the radius equals the angle.
     ///
     /// # Errors
-    /// [`ErrorKind::Size`] of `distortion` for any other number of them.
+    /// [`ErrorKind::Size`] of `distortion` for any other number of coefficients.
     pub fn fisheye(coefficients: &[f64]) -> Result<Self> {
         let given = if coefficients.is_empty() { &[0.0; 4] } else { coefficients };
         given.try_into().map(Self::Fisheye).map_err(|_| wrong_size("4", coefficients.len()))
@@ -60,7 +60,7 @@ impl Lens {
         }
     }
 
-    /// The name of the model, "brown" or "fisheye"; no lens is one of Brown's.
+    /// The name of the model, "brown" or "fisheye"; no lens counts as Brown's.
     #[must_use]
     pub const fn model(&self) -> &'static str {
         if matches!(self, Self::Fisheye(_)) { "fisheye" } else { "brown" }
@@ -75,8 +75,8 @@ impl Lens {
         }
     }
 
-    /// Where the lens puts a point; `None` behind the camera, beyond the fold, and in the camera itself. A fisheye sees points
-    /// beside and behind it as far as it does not fold.
+    /// The distorted position of a point; `None` behind the camera, beyond the fold, and at the camera's centre. A
+    /// fisheye sees points beside and behind it as far as it does not fold.
     pub(super) fn project(&self, point: [f64; 3]) -> Option<[f64; 2]> {
         match self {
             Self::None => slopes(point),
@@ -85,7 +85,7 @@ impl Lens {
         }
     }
 
-    /// [`project`](Self::project) with its derivative by x, y, z of the point.
+    /// [`project`](Self::project) with the derivatives by x, y, z of the point.
     pub(super) fn project_with_gradient(&self, point: [f64; 3]) -> Option<Projection> {
         match self {
             Self::None => through_slopes(point, |ray| Some((ray, [[1.0, 0.0], [0.0, 1.0]]))),
@@ -94,8 +94,9 @@ impl Lens {
         }
     }
 
-    /// Direction of the ray that the lens puts at `target`, found to a ten-millionth of a pixel by these focal lengths. With
-    /// z = 1 where it runs ahead; a unit vector (z below 0.01) where a fisheye looks aside or back.
+    /// Direction of the ray that the lens maps to `target`, accurate to a ten-millionth of a pixel at these focal
+    /// lengths. It has z = 1 if it points forward; for a fisheye it is a unit vector (z below 0.01) if it points
+    /// sideways or backward.
     pub(super) fn ray(&self, target: [f64; 2], focal: [f64; 2]) -> Option<[f64; 3]> {
         match self {
             Self::None => Some([target[0], target[1], 1.0]),
@@ -104,7 +105,7 @@ impl Lens {
         }
     }
 
-    /// Where the lens puts the points of four slopes, NaN beyond its fold.
+    /// Distorted positions of the points with four slopes; NaN beyond the fold.
     #[inline(always)]
     pub(super) fn distort_lanes(&self, ray: [Lanes; 2]) -> [Lanes; 2] {
         match *self {

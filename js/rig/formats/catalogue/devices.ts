@@ -17,7 +17,7 @@ const REALSENSE: readonly Row[] = [
   },
   {
     product: "RealSense (pyrealsense2)",
-    file: "what `print` writes of intrinsics and extrinsics",
+    file: "the output of `print` for intrinsics and extrinsics",
     modules: ["realsense"],
     reader: "a print of pyrealsense2",
     sample: "realsense-print",
@@ -37,7 +37,7 @@ const REALSENSE: readonly Row[] = [
     reads: "cameras",
     warnings: ["lens-approximated"],
     taken: "One camera; the size of the raw depth map beside it.",
-    guessed: "The file has no coefficients of the lens: it is read without distortion, with a warning.",
+    guessed: "The file has no lens coefficients, so it is read without distortion, with a warning.",
     exported: "The Snapshot button (a camera) above the stream, in 2D",
   },
 ];
@@ -51,7 +51,7 @@ const MICROSOFT: readonly Row[] = [
     sample: "azure-json",
     reads: "cameras",
     warnings: ["pose-left-out"],
-    taken: "Both cameras in every mode, of which the size of the pictures selects one; the pose between them.",
+    taken: "Both cameras in every mode; the size of the pictures selects one. The pose between them.",
     guessed: NOTHING,
     exported:
       "`k4a_device_get_raw_calibration()`, or the attachment `calibration.json` of a recording by `k4arecorder`",
@@ -64,7 +64,7 @@ const MICROSOFT: readonly Row[] = [
     sample: "azure-print",
     reads: "cameras",
     warnings: [],
-    taken: "The depth camera in the mode that was printed; both cameras where each print has a heading.",
+    taken: "The depth camera in the printed mode; both cameras if each print has a heading.",
     guessed: "Without a heading the camera is the depth camera, as in the SDK's example.",
     exported: "`calibration_info > calibration.txt`, built from the SDK's examples",
   },
@@ -104,8 +104,8 @@ const OTHERS: readonly Row[] = [
     sample: "depthai",
     reads: "cameras",
     warnings: ["pose-assumed"],
-    taken: "Cameras by socket; poses, from centimetres, also by way of another camera to the colour camera.",
-    guessed: "The camera that the depth map belongs to: the rectified right or left one, or the colour camera.",
+    taken: "Cameras by socket; poses, from centimetres, chained through other cameras to the colour camera.",
+    guessed: "The camera of the depth map: the rectified right or left one, or the colour camera.",
     exported: '`device.readCalibration().eepromToJsonFile("calib.json")`, or `eepromToJson()`',
   },
   {
@@ -155,7 +155,7 @@ const OTHERS: readonly Row[] = [
     taken: "Cameras whose lens is linear or Kannala-Brandt's, and their poses in the device.",
     guessed: "Nothing. Aria's own lens model is named and its camera left out.",
     exported:
-      "Of a recording, `get_device_calibration()` of projectaria_tools; for its file see the product's documentation",
+      "`get_device_calibration()` of projectaria_tools reads it from a recording; see the product's documentation for the file",
   },
   {
     product: "Record3D",
@@ -201,7 +201,7 @@ const OTHERS: readonly Row[] = [
     sample: "arkit",
     reads: "cameras",
     warnings: ["camera-to-world"],
-    taken: "The camera. Where it stood is not used as extrinsics.",
+    taken: "The camera. Its place is not used as extrinsics.",
     guessed: NOTHING,
     exported: SEE_PRODUCT,
   },

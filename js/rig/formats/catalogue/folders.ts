@@ -2,7 +2,7 @@
 import { NOTHING, type Row } from "./row.js";
 
 const DOWNLOAD = "Comes with the dataset";
-const UNIT = "The unit, where no file of the folder gives it.";
+const UNIT = "The unit, if no file of the folder gives it.";
 
 export const FOLDERS: readonly Row[] = [
   {
@@ -114,7 +114,7 @@ export const FOLDERS: readonly Row[] = [
     reads: "folder",
     warnings: ["unit-guessed", "file-left-out"],
     taken: "Pairs whose depths are EXR or `.npy`; both cameras.",
-    guessed: "That floats are metres.",
+    guessed: "Floats are metres.",
     exported:
       "Unpack the `.r3d`, which is a ZIP archive; its `.depth` files are compressed by LZFSE (liblzfse unpacks them)",
   },

@@ -3,7 +3,7 @@ import { NOTHING, type Row, SEE_PRODUCT } from "./row.js";
 
 const UNIT =
   "The unit, from the values, unless a text beside the maps, a tag of the file or the option `unit` gives it.";
-const METRES = "That floats are metres.";
+const METRES = "Floats are metres.";
 
 export const DEPTHS: readonly Row[] = [
   {
@@ -26,7 +26,7 @@ export const DEPTHS: readonly Row[] = [
     sample: "depth-kitti",
     reads: "depth",
     warnings: [],
-    taken: "Depths of 256 units to the metre, which the names say.",
+    taken: "Depths of 256 units to the metre, by the names.",
     guessed: NOTHING,
     exported: "Comes with the dataset",
   },
@@ -62,7 +62,7 @@ export const DEPTHS: readonly Row[] = [
     sample: "depth-pfm",
     reads: "depth",
     warnings: ["unit-guessed"],
-    taken: "Depths, infinity and zero being holes. Names of disparities are refused.",
+    taken: "Depths; infinity and zero are holes. Disparities by name are refused.",
     guessed: METRES,
     exported: '`cv2.imwrite("depth.pfm", depth)`',
   },
@@ -122,7 +122,7 @@ export const DEPTHS: readonly Row[] = [
     sample: "depth-npz",
     reads: "depth",
     warnings: ["unit-guessed"],
-    taken: "The array that is called depth, or the only one.",
+    taken: "The array named depth, or the only one.",
     guessed: UNIT,
     exported: '`numpy.savez_compressed("frame.npz", depth=depth)`',
   },
@@ -146,7 +146,7 @@ export const DEPTHS: readonly Row[] = [
     sample: "depth-raw",
     reads: "depth",
     warnings: ["unit-guessed"],
-    taken: "Pixels of the `size` that is given or stands in a text beside the map.",
+    taken: "Pixels of the `size` that is given, or found in a text beside the map.",
     guessed: "The unit; integers or floats of 32 bits by their values.",
     exported: SEE_PRODUCT,
   },
@@ -159,7 +159,7 @@ export const DEPTHS: readonly Row[] = [
     reads: "depth",
     warnings: ["unit-guessed"],
     taken: "Depths. Normal maps are refused by name.",
-    guessed: "The scale, which in COLMAP is that of the reconstruction: give the unit.",
+    guessed: "The scale is that of COLMAP's reconstruction: give the unit.",
     exported: "`colmap patch_match_stereo` writes it",
   },
   {
@@ -198,7 +198,7 @@ export const COLOURS: readonly Row[] = [
     reads: "colour",
     warnings: [],
     taken: "Pixels in sRGB, by the file's profile or gamma; 16 bits are kept.",
-    guessed: "sRGB where no profile is given.",
+    guessed: "sRGB, unless a profile is given.",
     exported: "-",
   },
   {
@@ -210,7 +210,7 @@ export const COLOURS: readonly Row[] = [
     reads: "colour",
     warnings: [],
     taken: "Pixels in sRGB. CMYK and lossless JPEG are refused.",
-    guessed: "sRGB where no profile is given.",
+    guessed: "sRGB, unless a profile is given.",
     exported: "-",
   },
   {
@@ -222,7 +222,7 @@ export const COLOURS: readonly Row[] = [
     reads: "colour",
     warnings: ["image-turned"],
     taken: "The upright picture.",
-    guessed: "Whether intrinsics and depth map are those of the upright picture: a warning says so.",
+    guessed: "That intrinsics and depth map belong to the upright picture, with a warning.",
     exported: "-",
   },
   {
@@ -296,8 +296,8 @@ export const MASKS: readonly Row[] = [
     sample: "mask",
     reads: "mask",
     warnings: [],
-    taken: "Where the object is: above half of the levels. It belongs to the picture whose size it has.",
-    guessed: "That a picture of two levels is a mask. A warning where it is empty or full.",
+    taken: "The object, above half of the levels. A mask belongs to the picture of its size.",
+    guessed: "That a picture of two levels is a mask, with a warning if it is empty or full.",
     exported: "-",
   },
 ];

@@ -2,7 +2,7 @@
 import { NOTHING, type Row, SEE_PRODUCT } from "./row.js";
 
 const ROWS = "Points, intensities and rings, sorted into rows and columns in the scan's own axes.";
-const NO_RINGS = "Rows from the order or the elevations of the points.";
+const NO_RINGS = "Rows, from the order or the elevations of the points.";
 const UNIT = `${NO_RINGS} Metres or millimetres, from the distances.`;
 
 export const SCANS: readonly Row[] = [
@@ -124,7 +124,7 @@ export const SCANS: readonly Row[] = [
     warnings: [],
     taken: "Nothing.",
     guessed: NOTHING,
-    exported: "Save a scan as PCD by the maker's viewer or driver",
+    exported: "Save a scan as PCD with the maker's viewer or driver",
   },
   {
     product: "Ouster",

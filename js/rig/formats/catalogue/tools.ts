@@ -11,7 +11,7 @@ const CALIBRATORS: readonly Row[] = [
     reads: "cameras",
     warnings: [],
     taken:
-      "Pinhole cameras with radtan or equidistant lenses; the pose from each camera to the next, and by way of the inertial unit.",
+      "Pinhole cameras with radtan or equidistant lenses; poses from each camera to the next, and through the inertial unit.",
     guessed: "Nothing. Cameras of the models omni, ds and eucm are named and left out.",
     exported: "`kalibr_calibrate_cameras` writes it beside the bag",
   },
@@ -72,7 +72,7 @@ const CALIBRATORS: readonly Row[] = [
     reads: "cameras",
     warnings: [],
     taken: "Cameras, lenses, sizes; R and T of a stereo calibration.",
-    guessed: "A translation whose length fits millimetres alone is read as such, with a warning.",
+    guessed: "A translation that is too long for metres is read in millimetres, with a warning.",
     exported: "`cv::FileStorage`, or `cv.FileStorage` in Python",
   },
   {
@@ -168,8 +168,8 @@ const CALIBRATORS: readonly Row[] = [
     reads: "cameras",
     warnings: [],
     taken:
-      "Cameras, with pixels counted from 0; the pose, with row vectors turned to columns, in the unit that stands in the file.",
-    guessed: "Millimetres, MATLAB's own unit, where none stands there.",
+      "Cameras, with pixels counted from 0; the pose, with row vectors converted to columns, in the unit of the file.",
+    guessed: "Millimetres, MATLAB's unit, if the file has none.",
     exported: "`jsonencode(toStruct(stereoParams))`, written to a file",
   },
   {
@@ -285,7 +285,7 @@ const ANY: readonly Row[] = [
     taken:
       "Cameras and poses by the names of their members (`camera_matrix`, `K`, `fx`, `intrinsics`, `R` and `T`, `T_a_b`, `depth_to_color`).",
     guessed:
-      "Where a rotation can be read in two ways, the way that makes a rig, with a warning. Lenses, sizes and poses that were not used have one as well.",
+      "If a rotation can be read in two ways, the way that makes a rig, with a warning. Unused lenses, sizes and poses have a warning as well.",
     exported: "-",
   },
   {
@@ -320,7 +320,7 @@ const ANY: readonly Row[] = [
     sample: "matrix-text",
     reads: "cameras",
     warnings: [],
-    taken: "Intrinsics or a motion; its direction from the file's name (`depth_to_color.txt`).",
+    taken: "Intrinsics, or a motion whose direction is in the file's name (`depth_to_color.txt`).",
     guessed: NOTHING,
     exported: "`numpy.savetxt`",
   },
