@@ -12,6 +12,7 @@ use super::health::Health;
 use super::input::RigView;
 use super::optima::{self, Optimum};
 use super::planes::Planes;
+use super::readings::Rereading;
 use super::reason::{CheckReason, Warning, WarningKind};
 use super::registration::{
     ARRIVED, Findings, MOST_RIMS_OF_STARTS, MOST_SETTLING, Round, SIGMAS, SURVIVORS, Scene, Start,
@@ -35,8 +36,6 @@ const SAME_START: f64 = 1.5;
 const FINDING_ANEW: [usize; 2] = [1, 3];
 /// The level at which candidates come in once more, with windows of some pixels.
 const ENTERING: usize = 2;
-/// Variance where nothing at all is known, squared pixels.
-const FARTHEST: f64 = 1e6;
 
 /// How far an entry of a rotation may be from the nearest rotation's: trackers write matrices that have drifted by 1e-3.
 const ROTATION_TOLERANCE: f64 = 0.01;
@@ -52,23 +51,24 @@ enum Stage {
     Approaching { level: usize, index: usize, planes: Vec<Planes> },
     Settling { rounds: Vec<Round>, at: usize, done: usize, planes: Vec<Planes> },
     Judging { rounds: Vec<Round>, planes: Vec<Planes> },
+    Rereading { search: Box<Rereading>, planes: Vec<Planes> },
     Curves { planes: Vec<Planes>, findings: Box<Findings>, done: usize },
     Done,
 }
 
 /// A check under way.
 pub struct CalibrationCheck {
-    scene: Scene,
-    candidates: Vec<(String, State)>,
-    warnings: Vec<Warning>,
+    pub(super) scene: Scene,
+    pub(super) candidates: Vec<(String, State)>,
+    pub(super) warnings: Vec<Warning>,
     /// Width of the first image as it was given.
-    width: f64,
+    pub(super) width: f64,
     /// Best first once they have arrived.
     starts: Vec<Start>,
     best: Round,
     stage: Stage,
     /// A distortion that seems to have been left out.
-    lens: Option<f64>,
+    pub(super) lens: Option<f64>,
     report: Option<CheckReport>,
 }
 
@@ -135,6 +135,7 @@ impl CalibrationCheck {
                 (0.7 + 0.15 * share, "refining with all cues")
             }
             Stage::Judging { .. } => (0.85, "judging the candidates"),
+            Stage::Rereading { .. } => (0.86, "reading the candidate in other conventions"),
             Stage::Curves { done, .. } => {
                 (0.88 + 0.12 * *done as f64 / self.scene.cues.len() as f64, "measuring sensitivity")
             }
@@ -157,14 +158,13 @@ impl CalibrationCheck {
             }
             Stage::Approaching { level, index, planes } => self.approach(level, index, planes),
             Stage::Settling { rounds, at, done, planes } => self.settle(rounds, at, done, planes),
-            Stage::Judging { rounds, planes } => {
-                let mut optima = optima::ranked(&self.scene, &rounds, &planes);
-                if std::env::var("DBG").is_ok() { for o in &optima { eprintln!("OPT behind {:.1} apart {:.1}", o.behind, optima[0].findings.units.between(&optima[0].round.state, &o.round.state).norm()); } }
-                self.best = optima[0].round;
-                self.lens = distortion::left_out(&mut self.scene, &self.best);
-                self.report = Some(self.judge(&optima));
-                let findings = optima.swap_remove(0).findings;
-                Stage::Curves { planes, findings: Box::new(findings), done: 0 }
+            Stage::Judging { rounds, planes } => self.judge(&rounds, planes),
+            Stage::Rereading { mut search, planes } => {
+                if search.step(&self.scene, &planes) {
+                    self.adopt(search, planes)
+                } else {
+                    Stage::Rereading { search, planes }
+                }
             }
             Stage::Curves { planes, findings, done } => {
                 let (cue, _, weight) = &findings.cues[done];
@@ -265,6 +265,40 @@ impl CalibrationCheck {
         self.starts = kept;
     }
 
+    /// The first report; where the first candidate does not pass, other readings of it come next.
+    fn judge(&mut self, rounds: &[Round], planes: Vec<Planes>) -> Stage {
+        let optima = optima::ranked(&self.scene, rounds, &planes);
+        self.best = optima[0].round;
+        self.lens = distortion::left_out(&mut self.scene, &self.best);
+        let report = self.conclude(&optima, None);
+        let first = report.candidates.first().map(|first| (first.verdict, first.reason.code()));
+        self.report = Some(report);
+        match (first, self.candidates.first()) {
+            (Some((verdict, code)), Some((_, candidate)))
+                if verdict != CheckVerdict::Consistent && code != "misread" =>
+            {
+                let search = Box::new(Rereading::new(&self.scene, candidate, optima));
+                Stage::Rereading { search, planes }
+            }
+            _ => curves_of(optima, planes),
+        }
+    }
+
+    /// The report with the best reading, if that fits clearly better than what was found near the candidate.
+    fn adopt(&mut self, search: Box<Rereading>, planes: Vec<Planes>) -> Stage {
+        let mut optima = search.end(&self.scene, &planes);
+        let likely = self.judge_of(&optima[0]).0.likely();
+        let is_clear = optima.iter().all(|other| other.reading.is_some() || other.behind > likely);
+        match optima[0].reading {
+            Some(reading) if is_clear => {
+                self.best = optima[0].round;
+                self.report = Some(self.conclude(&optima, Some(reading)));
+            }
+            _ => optima.retain(|optimum| optimum.reading.is_none()),
+        }
+        curves_of(optima, planes)
+    }
+
     /// One round of one of the states; after the last of all the verdict.
     fn settle(&mut self, mut rounds: Vec<Round>, at: usize, done: usize, planes: Vec<Planes>) -> Stage {
         let moved = self.scene.settle(&mut rounds[at], &planes);
@@ -276,112 +310,10 @@ impl CalibrationCheck {
             Stage::Judging { rounds, planes }
         }
     }
+}
 
-    /// The distribution about an optimum, and its covariance in its units.
-    fn judge_of(&self, Optimum { round, findings, .. }: &Optimum) -> (Judge, Matrix) {
-        let state = round.state;
-        let frame = &self.scene.frames[0];
-        let cloud = self.scene.cloud(&state);
-        let scale = self.scale(findings, &state, &cloud);
-        let judge = Judge::new(findings.units, &state.camera(&frame.camera), &cloud, &scale, frame.pixel, self.width)
-            .explaining(if self.scene.focal_is_free { guessed::explains(self.width) } else { 0.0 });
-        (judge, scale * Judge::VARIANCE)
-    }
-
-    fn judge(&self, optima: &[Optimum]) -> CheckReport {
-        let Optimum { findings, .. } = &optima[0];
-        let (units, state) = (findings.units, self.best.state);
-        let frame = &self.scene.frames[0];
-        let (judge, covariance) = self.judge_of(&optima[0]);
-        let mut candidates = self.candidate_reports(&judge, findings, &covariance);
-        self.allow_other_optima(&mut candidates, &judge, &optima[1..]);
-        let warnings = self.all_warnings(&judge);
-        let health = if self.scene.is_seen(&state) { judge.estimate() } else { Judge::blind(self.width) };
-        let (verdict, reason) = first_verdict(&candidates, &warnings, health);
-        let scaled = Matrix::from_diagonal(&units.of);
-        let metric = scaled * covariance * scaled;
-        CheckReport {
-            verdict,
-            reason,
-            warnings,
-            estimate: state.pose,
-            middle: units.middle.into(),
-            covariance: metric.fixed_view::<POSE, POSE>(0, 0).into(),
-            focal: self.scene.focal_is_free.then(|| [state.focal, metric[(7, 7)].sqrt()]),
-            health,
-            candidates,
-            cues: CueReport::all(findings, frame.pixel),
-            frames: FrameReport::all(&self.scene, findings),
-            sensitivity: vec![],
-        }
-    }
-
-    /// A candidate that another optimum explains is not off if that optimum is as likely as the best one's own distribution is wide.
-    fn allow_other_optima(&self, reports: &mut [CandidateReport], judge: &Judge, others: &[Optimum]) {
-        for other in others.iter().filter(|other| other.behind <= judge.likely() && self.scene.is_seen(&other.round.state)) {
-            let (judge, _) = self.judge_of(other);
-            for (report, (name, candidate)) in reports.iter_mut().zip(&self.candidates) {
-                let own = judge.judge(name, &other.round.state, candidate, None);
-                if report.verdict == CheckVerdict::Off && own.verdict != CheckVerdict::Off {
-                    report.verdict = CheckVerdict::Undecided;
-                }
-            }
-        }
-    }
-
-    fn candidate_reports(&self, judge: &Judge, findings: &Findings, covariance: &Matrix) -> Vec<CandidateReport> {
-        let estimate = self.best.state;
-        let weakest = judge.weakest(covariance);
-        let is_seen = self.scene.is_seen(&estimate);
-        let is_silent = findings.cues.iter().all(|(.., weight)| *weight == 0.0);
-        let report = |(name, candidate): &(String, State)| {
-            let mut report = judge.judge(name, &estimate, candidate, weakest);
-            if is_silent {
-                report.without_evidence();
-            }
-            if !is_seen || !self.scene.is_seen(candidate) {
-                report.without_points(is_seen, self.width);
-            }
-            report
-        };
-        self.candidates.iter().map(report).collect()
-    }
-
-    fn all_warnings(&self, judge: &Judge) -> Vec<Warning> {
-        let mut warnings = self.warnings.clone();
-        self.warn_of_inverses(judge, &mut warnings);
-        if let Some(term) = self.lens {
-            let kind = WarningKind::LensLeftOut { k1: term };
-            warnings.push(Warning { name: String::new(), field: "frames".into(), kind });
-        }
-        warnings
-    }
-
-    /// Of the estimate's distribution; where sums are beyond rounding nothing is known but what was told.
-    fn scale(&self, findings: &Findings, state: &State, cloud: &[Vector3<f64>]) -> Matrix {
-        let told = || findings.prior.cholesky().map_or(Matrix::identity() * FARTHEST, |c| c.inverse());
-        let scale = findings.total.covariance(&findings.prior).unwrap_or_else(told);
-        if !self.scene.focal_is_free {
-            return scale;
-        }
-        let frame = &self.scene.frames[0];
-        let (camera, width) = (state.camera(&frame.camera), frame.planes.size.width as f64);
-        scale + guessed::covariance(&findings.units, &camera, cloud, width, &findings.prior)
-    }
-
-    /// The commonest mistake: P_depth = R P_colour + t.
-    fn warn_of_inverses(&self, judge: &Judge, warnings: &mut Vec<Warning>) {
-        for (name, candidate) in &self.candidates {
-            let inverse = State::at(candidate.pose.inverse());
-            let [as_it_is, inverted] =
-                [candidate, &inverse].map(|state| judge.judge(name, &self.best.state, state, None));
-            let fits = inverted.verdict != CheckVerdict::Off && as_it_is.verdict != CheckVerdict::Consistent;
-            if fits && 3.0 * inverted.health.pixels < as_it_is.health.pixels {
-                let [pixels, inverted_pixels] = [as_it_is, inverted].map(|report| report.health.pixels);
-                warnings.push(of_candidate(name, WarningKind::FitsInverted { pixels, inverted_pixels }));
-            }
-        }
-    }
+fn curves_of(mut optima: Vec<Optimum>, planes: Vec<Planes>) -> Stage {
+    Stage::Curves { planes, findings: Box::new(optima.swap_remove(0).findings), done: 0 }
 }
 
 /// A pose with the rotation nearest to the matrix that was given.
@@ -400,25 +332,6 @@ pub(super) fn rigid(pose: &Similarity) -> Result<State> {
     Ok(State::at(Similarity { scale: 1.0, ..nearest }))
 }
 
-/// The verdict on the first candidate. A warning caps it, because the inputs may have been misread.
-fn first_verdict(candidates: &[CandidateReport], warnings: &[Warning], health: Health) -> (CheckVerdict, CheckReason) {
-    let (verdict, reason) = match candidates.first() {
-        Some(first) => (first.verdict, first.reason.clone()),
-        None => (CheckVerdict::Undecided, CheckReason::NoCandidate { pixels: health.pixels }),
-    };
-    match (warnings.first(), verdict) {
-        (Some(warning), CheckVerdict::Consistent) => {
-            let reason = CheckReason::Doubtful { warning: Box::new(warning.clone()), reason: Box::new(reason) };
-            (CheckVerdict::Undecided, reason)
-        }
-        _ => (verdict, reason),
-    }
-}
-
-fn of_candidate(name: &str, kind: WarningKind) -> Warning {
-    Warning { name: name.to_owned(), field: format!("candidates.{name}"), kind }
-}
-
 /// Millimetres where metres were asked for.
 fn warn_of_translations(candidates: &[(String, State)], warnings: &mut Vec<Warning>) {
     /// Metres: farther apart than any rig.
@@ -426,7 +339,7 @@ fn warn_of_translations(candidates: &[(String, State)], warnings: &mut Vec<Warni
     for (name, candidate) in candidates {
         let length = candidate.pose.translation.norm();
         if length > FARTHEST_APART {
-            warnings.push(of_candidate(name, WarningKind::FarApart { metres: length }));
+            warnings.push(Warning::of_candidate(name, WarningKind::FarApart { metres: length }));
         }
     }
 }

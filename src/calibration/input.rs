@@ -3,8 +3,8 @@
 use super::ahead::Ahead;
 use super::frame::Frame;
 use super::planes::Planes;
-use super::sampling::gathered;
 use super::reason::{Warning, WarningKind};
+use super::sampling::gathered;
 use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
 use crate::view::{ColourSamples, DepthSamples, Lens, Pinhole, Size, Transfer, to_srgb, transfer_of};

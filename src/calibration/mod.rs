@@ -21,6 +21,7 @@
 
 mod ahead;
 mod check;
+mod conclusion;
 mod cue;
 mod differences;
 mod distortion;
@@ -35,6 +36,7 @@ mod optima;
 mod overlay;
 mod patches;
 mod planes;
+mod readings;
 mod reason;
 mod registration;
 mod report;
@@ -56,6 +58,7 @@ pub use cue::Cue;
 pub use health::Health;
 pub use input::RigView;
 pub use overlay::{Overlay, overlay};
+pub use readings::Reading;
 pub use reason::{CheckReason, Margin, Offset, Warning, WarningKind};
 pub use report::{CheckReport, CueReport, FrameReport};
 pub use sensitivity::Sensitivity;

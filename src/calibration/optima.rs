@@ -4,32 +4,45 @@
 //! elsewhere. Their log likelihoods are compared with one set of weights, those of the best.
 
 use super::planes::Planes;
+use super::readings::Reading;
 use super::registration::{Findings, Round, Scene};
 
 /// A settled round.
 pub(super) struct Optimum {
     pub round: Round,
     pub findings: Findings,
+    /// How the first candidate was read to begin there, if not as it is.
+    pub reading: Option<Reading>,
     /// Log posterior of the best optimum over that of this one.
     pub behind: f64,
 }
 
 /// The settled rounds, best first.
 pub(super) fn ranked(scene: &Scene, rounds: &[Round], planes: &[Planes]) -> Vec<Optimum> {
-    let optimum = |round: &Round| Optimum { round: *round, findings: scene.findings(round, planes), behind: 0.0 };
-    let mut optima: Vec<Optimum> = rounds.iter().map(optimum).collect();
-    rank(&mut optima);
-    // Once more, because the weights are now those of the best.
+    let mut optima: Vec<Optimum> = rounds.iter().map(|round| Optimum::at(scene, *round, None, planes)).collect();
     rank(&mut optima);
     optima
 }
 
+impl Optimum {
+    pub fn at(scene: &Scene, round: Round, reading: Option<Reading>, planes: &[Planes]) -> Self {
+        Self { round, findings: scene.findings(&round, planes), reading, behind: 0.0 }
+    }
+}
+
+/// Sorts by the posterior with the weights of the first, then with those of the best.
+pub(super) fn rank(optima: &mut [Optimum]) {
+    rank_as_first(optima);
+    rank_as_first(optima);
+}
+
 /// Sorts by the posterior with the weights of the first.
-fn rank(optima: &mut [Optimum]) {
+fn rank_as_first(optima: &mut [Optimum]) {
     let Some(first) = optima.first() else { return };
     let weights: Vec<f64> = first.findings.cues.iter().map(|cue| cue.2).collect();
     let posterior = |Optimum { findings, .. }: &Optimum| {
-        let likelihood: f64 = findings.cues.iter().zip(&weights).map(|((_, cue, _), weight)| weight * cue.value()).sum();
+        let likelihood: f64 =
+            findings.cues.iter().zip(&weights).map(|((_, cue, _), weight)| weight * cue.value()).sum();
         likelihood - 0.5 * findings.back.dot(&(findings.prior * findings.back))
     };
     let posteriors: Vec<f64> = optima.iter().map(posterior).collect();

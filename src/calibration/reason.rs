@@ -4,6 +4,7 @@
 use std::fmt;
 
 use super::health::Health;
+use super::readings::Reading;
 use crate::pose::{Axis, Unknown};
 use crate::text::{Brief, Fixed};
 
@@ -28,8 +29,17 @@ pub enum CheckReason {
         /// By how much.
         offset: Offset,
     },
+    /// Off: the candidate fits if it is read in another convention.
+    Misread {
+        /// Which.
+        reading: Reading,
+        /// Its error in that convention.
+        margin: Margin,
+    },
     /// Off: the candidate puts no points onto the image.
     NoPointsOnImage,
+    /// Undecided: poses that fit about as well contradict each other on the candidate.
+    BetweenOptima(Margin),
     /// Undecided: behind a colour camera that was guessed.
     GuessedCamera {
         /// Its error.
@@ -110,7 +120,16 @@ impl fmt::Display for CheckReason {
                 margin.passes()
             ),
             Self::OffTarget { margin, offset } => write!(f, "Off by about {offset}: {margin}; {}.", margin.passes()),
-            Self::NoPointsOnImage => f.write_str("Off: it puts no points onto the image."),
+            Self::Misread { reading, margin } => {
+                write!(f, "Off as it is. Read {reading}, it fits: its error is then {margin}; {}.", margin.passes())
+            }
+            Self::NoPointsOnImage => {
+                f.write_str("Off, or read in a wrong convention: it puts no points onto the image.")
+            }
+            Self::BetweenOptima(margin) => write!(
+                f,
+                "Its error is {margin} from the best fit, but another pose, nearer to it or farther from it, fits about as well."
+            ),
             Self::GuessedCamera { margin, explained } => write!(
                 f,
                 "Behind a guessed camera its error is {margin}, around the {} px that pass.",
@@ -219,6 +238,12 @@ pub enum WarningKind {
         /// Its first radial coefficient.
         k1: f64,
     },
+}
+
+impl Warning {
+    pub(super) fn of_candidate(name: &str, kind: WarningKind) -> Self {
+        Self { name: name.to_owned(), field: format!("candidates.{name}"), kind }
+    }
 }
 
 impl WarningKind {

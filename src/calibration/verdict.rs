@@ -196,6 +196,11 @@ impl Judge {
         0.5 * f64::from(quantile(&mut distances, INSIDE))
     }
 
+    /// Reprojection error that passes, pixels of the image.
+    pub const fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
     /// Nothing is known of a pose that puts hardly any point onto the image.
     pub fn blind(width: f64) -> Health {
         Health { pixels: width, interval: [0.0, width] }
@@ -273,6 +278,12 @@ impl CandidateReport {
     pub(super) fn without_evidence(&mut self) {
         self.verdict = CheckVerdict::Undecided;
         self.reason = CheckReason::NoEvidence;
+    }
+
+    /// What is said where optima that are about as likely contradict each other.
+    pub(super) fn between_optima(&mut self, tolerance: f64) {
+        self.verdict = CheckVerdict::Undecided;
+        self.reason = CheckReason::BetweenOptima(Margin { health: self.health, tolerance });
     }
 
     /// What is said where the check's end or the candidate puts hardly any point onto the image.

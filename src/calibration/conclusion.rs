@@ -1,0 +1,167 @@
+//! From the optima of a check to its report: the estimate's distribution, and what it says about each candidate.
+
+use nalgebra::Vector3;
+
+use super::check::CalibrationCheck;
+use super::guessed;
+use super::health::Health;
+use super::optima::Optimum;
+use super::readings::Reading;
+use super::reason::{CheckReason, Margin, Warning, WarningKind};
+use super::registration::Findings;
+use super::report::{CheckReport, CueReport, FrameReport};
+use super::unknowns::{Matrix, POSE, State};
+use super::verdict::{CandidateReport, CheckVerdict, Judge};
+
+/// Variance where nothing at all is known, squared pixels.
+const FARTHEST: f64 = 1e6;
+/// A reading of a candidate fits clearly better if the candidate's error is so many times its own.
+const CLEARLY: f64 = 3.0;
+
+impl CalibrationCheck {
+    /// The report on the settled optima, best first, and on another reading of the first candidate if that is the best.
+    pub(super) fn conclude(&self, optima: &[Optimum], reading: Option<Reading>) -> CheckReport {
+        let Optimum { findings, round, .. } = &optima[0];
+        let (units, state) = (findings.units, round.state);
+        let frame = &self.scene.frames[0];
+        let (judge, covariance) = self.judge_of(&optima[0]);
+        let mut candidates = self.candidate_reports(&judge, &optima[0], &covariance);
+        self.hear_other_optima(&mut candidates, &judge, &optima[1..]);
+        self.name_reading(&mut candidates, &judge, state, reading);
+        let warnings = self.all_warnings(&judge, &state);
+        let health = if self.scene.is_seen(&state) { judge.estimate() } else { Judge::blind(self.width) };
+        let (verdict, reason) = first_verdict(&candidates, &warnings, health);
+        let scaled = Matrix::from_diagonal(&units.of);
+        let metric = scaled * covariance * scaled;
+        CheckReport {
+            verdict,
+            reason,
+            warnings,
+            estimate: state.pose,
+            middle: units.middle.into(),
+            covariance: metric.fixed_view::<POSE, POSE>(0, 0).into(),
+            focal: self.scene.focal_is_free.then(|| [state.focal, metric[(7, 7)].sqrt()]),
+            health,
+            candidates,
+            cues: CueReport::all(findings, frame.pixel),
+            frames: FrameReport::all(&self.scene, findings),
+            sensitivity: vec![],
+        }
+    }
+
+    /// Where optima that are about as likely contradict each other on a candidate, it is undecided.
+    fn hear_other_optima(&self, reports: &mut [CandidateReport], judge: &Judge, others: &[Optimum]) {
+        let likely = judge.likely();
+        for other in others.iter().filter(|other| other.behind <= likely && self.scene.is_seen(&other.round.state)) {
+            let (judge, _) = self.judge_of(other);
+            for (report, (name, candidate)) in reports.iter_mut().zip(&self.candidates) {
+                let own = judge.judge(name, &other.round.state, candidate, None).verdict;
+                let is_contradicted = match report.verdict {
+                    CheckVerdict::Off => own != CheckVerdict::Off,
+                    CheckVerdict::Consistent => own == CheckVerdict::Off,
+                    CheckVerdict::Undecided => false,
+                };
+                if is_contradicted {
+                    report.between_optima(judge.tolerance());
+                }
+            }
+        }
+    }
+
+    /// Says of a first candidate that is off in which other reading it fits.
+    fn name_reading(&self, reports: &mut [CandidateReport], judge: &Judge, best: State, found: Option<Reading>) {
+        let (Some(report), Some((name, candidate))) = (reports.first_mut(), self.candidates.first()) else { return };
+        if report.verdict != CheckVerdict::Off {
+            return;
+        }
+        let error = |reading: Reading| {
+            let state = State::at(reading.of(&candidate.pose)?);
+            let own = judge.judge(name, &best, &state, None);
+            let fits = found == Some(reading) || own.verdict != CheckVerdict::Off;
+            (fits && CLEARLY * own.health.pixels < report.health.pixels).then_some((own.health, reading))
+        };
+        let fitting = Reading::ALL.into_iter().filter_map(error);
+        if let Some((health, reading)) = fitting.min_by(|a, b| a.0.pixels.total_cmp(&b.0.pixels)) {
+            report.reason = CheckReason::Misread { reading, margin: Margin { health, tolerance: judge.tolerance() } };
+        }
+    }
+
+    /// The distribution about an optimum, and its covariance in its units.
+    pub(super) fn judge_of(&self, Optimum { round, findings, .. }: &Optimum) -> (Judge, Matrix) {
+        let state = round.state;
+        let frame = &self.scene.frames[0];
+        let cloud = self.scene.cloud(&state);
+        let scale = self.scale(findings, &state, &cloud);
+        let judge = Judge::new(findings.units, &state.camera(&frame.camera), &cloud, &scale, frame.pixel, self.width)
+            .explaining(if self.scene.focal_is_free { guessed::explains(self.width) } else { 0.0 });
+        (judge, scale * Judge::VARIANCE)
+    }
+
+    fn candidate_reports(&self, judge: &Judge, best: &Optimum, covariance: &Matrix) -> Vec<CandidateReport> {
+        let estimate = best.round.state;
+        let weakest = judge.weakest(covariance);
+        let is_seen = self.scene.is_seen(&estimate);
+        let is_silent = best.findings.cues.iter().all(|(.., weight)| *weight == 0.0);
+        let report = |(name, candidate): &(String, State)| {
+            let mut report = judge.judge(name, &estimate, candidate, weakest);
+            if is_silent {
+                report.without_evidence();
+            }
+            if !is_seen || !self.scene.is_seen(candidate) {
+                report.without_points(is_seen, self.width);
+            }
+            report
+        };
+        self.candidates.iter().map(report).collect()
+    }
+
+    fn all_warnings(&self, judge: &Judge, best: &State) -> Vec<Warning> {
+        let mut warnings = self.warnings.clone();
+        self.warn_of_inverses(judge, best, &mut warnings);
+        if let Some(term) = self.lens {
+            let kind = WarningKind::LensLeftOut { k1: term };
+            warnings.push(Warning { name: String::new(), field: "frames".into(), kind });
+        }
+        warnings
+    }
+
+    /// Of the estimate's distribution; where sums are beyond rounding nothing is known but what was told.
+    fn scale(&self, findings: &Findings, state: &State, cloud: &[Vector3<f64>]) -> Matrix {
+        let told = || findings.prior.cholesky().map_or(Matrix::identity() * FARTHEST, |c| c.inverse());
+        let scale = findings.total.covariance(&findings.prior).unwrap_or_else(told);
+        if !self.scene.focal_is_free {
+            return scale;
+        }
+        let frame = &self.scene.frames[0];
+        let (camera, width) = (state.camera(&frame.camera), frame.planes.size.width as f64);
+        scale + guessed::covariance(&findings.units, &camera, cloud, width, &findings.prior)
+    }
+
+    /// The commonest mistake: P_depth = R P_colour + t.
+    fn warn_of_inverses(&self, judge: &Judge, best: &State, warnings: &mut Vec<Warning>) {
+        for (name, candidate) in &self.candidates {
+            let inverse = State::at(candidate.pose.inverse());
+            let [as_it_is, inverted] = [candidate, &inverse].map(|state| judge.judge(name, best, state, None));
+            let fits = inverted.verdict != CheckVerdict::Off && as_it_is.verdict != CheckVerdict::Consistent;
+            if fits && CLEARLY * inverted.health.pixels < as_it_is.health.pixels {
+                let [pixels, inverted_pixels] = [as_it_is, inverted].map(|report| report.health.pixels);
+                warnings.push(Warning::of_candidate(name, WarningKind::FitsInverted { pixels, inverted_pixels }));
+            }
+        }
+    }
+}
+
+/// The verdict on the first candidate. A warning caps it, because the inputs may have been misread.
+fn first_verdict(candidates: &[CandidateReport], warnings: &[Warning], health: Health) -> (CheckVerdict, CheckReason) {
+    let (verdict, reason) = match candidates.first() {
+        Some(first) => (first.verdict, first.reason.clone()),
+        None => (CheckVerdict::Undecided, CheckReason::NoCandidate { pixels: health.pixels }),
+    };
+    match (warnings.first(), verdict) {
+        (Some(warning), CheckVerdict::Consistent) => {
+            let reason = CheckReason::Doubtful { warning: Box::new(warning.clone()), reason: Box::new(reason) };
+            (CheckVerdict::Undecided, reason)
+        }
+        _ => (verdict, reason),
+    }
+}

@@ -1,0 +1,183 @@
+//! Other ways to read a candidate: what files of extrinsics are commonly taken for.
+//!
+//! A candidate that the frames contradict may be right in another convention. Each reading is registered from where it
+//! puts the depth camera, with the candidate's own prior, and has to fit clearly better than what was found near the
+//! candidate itself.
+
+use std::fmt;
+
+use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
+
+use super::optima::{self, Optimum};
+use super::planes::Planes;
+use super::registration::{ARRIVED, MOST_RIMS_OF_STARTS, MOST_SETTLING, Round, SIGMAS, Scene, Start};
+use super::unknowns::State;
+use crate::pose::{Similarity, rotation_vector};
+
+/// How many readings go on after each level, the best by score.
+const SURVIVORS: [usize; 4] = [6, 3, 2, 1];
+
+/// From x forward, y left, z up to x right, y down, z forward.
+const OPTICAL_OF_BODY: Matrix3<f64> = Matrix3::new(0.0, -1.0, 0.0, 0.0, 0.0, -1.0, 1.0, 0.0, 0.0);
+
+/// A convention that a candidate may follow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reading {
+    /// P_depth = R P_colour + t.
+    Inverse,
+    /// The rotation is stored column by column.
+    TransposedRotation,
+    /// The translation is the colour camera's place in the depth camera's frame.
+    CameraCentre,
+    /// The quaternion's scalar comes first, and was read last.
+    ScalarFirst,
+    /// The quaternion's scalar comes last, and was read first.
+    ScalarLast,
+    /// Both frames have x forward, y left, z up.
+    BodyFrames,
+    /// The depth frame has.
+    BodyDepth,
+    /// The colour frame has.
+    BodyColour,
+    /// The translation is in millimetres.
+    Millimetres,
+    /// Angles are in radians, and were read in degrees.
+    Radians,
+    /// The depth map is registered to the colour image.
+    Registered,
+    /// The colour image is turned by a quarter, clockwise.
+    QuarterTurn,
+    /// The colour image is upside down.
+    HalfTurn,
+    /// The colour image is turned by a quarter, counter-clockwise.
+    QuarterBack,
+}
+
+impl Reading {
+    /// All conventions that are tried.
+    pub(super) const ALL: [Self; 14] = [
+        Self::Inverse,
+        Self::TransposedRotation,
+        Self::CameraCentre,
+        Self::ScalarFirst,
+        Self::ScalarLast,
+        Self::BodyFrames,
+        Self::BodyDepth,
+        Self::BodyColour,
+        Self::Millimetres,
+        Self::Radians,
+        Self::Registered,
+        Self::QuarterTurn,
+        Self::HalfTurn,
+        Self::QuarterBack,
+    ];
+
+    /// The pose that a candidate stands for if it follows this convention; `None` if it cannot.
+    pub(super) fn of(self, pose: &Similarity) -> Option<Similarity> {
+        let Similarity { rotation, translation, .. } = *pose;
+        let rigid = |rotation, translation| Some(Similarity { scale: 1.0, rotation, translation });
+        let body = OPTICAL_OF_BODY;
+        match self {
+            Self::Inverse => Some(pose.inverse()),
+            Self::TransposedRotation => rigid(rotation.transpose(), translation),
+            Self::CameraCentre => rigid(rotation, -(rotation * translation)),
+            Self::ScalarFirst => rigid(requaternion(&rotation, |[x, y, z, w]| [y, z, w, x])?, translation),
+            Self::ScalarLast => rigid(requaternion(&rotation, |[x, y, z, w]| [w, x, y, z])?, translation),
+            Self::BodyFrames => rigid(body * rotation * body.transpose(), body * translation),
+            Self::BodyDepth => rigid(rotation * body.transpose(), translation),
+            Self::BodyColour => rigid(body * rotation, body * translation),
+            Self::Millimetres => rigid(rotation, translation / 1000.0),
+            Self::Radians => {
+                let turn = rotation_vector(&rotation).map(f64::to_degrees);
+                let is_turn = turn.norm() <= std::f64::consts::PI;
+                is_turn.then(|| rigid(Rotation3::new(turn).into_inner(), translation)).flatten()
+            }
+            Self::Registered => Some(Similarity::identity()),
+            Self::QuarterTurn => Some(about_axis(90.0).after(pose)),
+            Self::HalfTurn => Some(about_axis(180.0).after(pose)),
+            Self::QuarterBack => Some(about_axis(-90.0).after(pose)),
+        }
+    }
+}
+
+impl fmt::Display for Reading {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Inverse => "as its inverse, from colour to depth",
+            Self::TransposedRotation => "with its rotation transposed",
+            Self::CameraCentre => "with its translation as the place of the colour camera",
+            Self::ScalarFirst => "with its quaternion as w x y z",
+            Self::ScalarLast => "with its quaternion as x y z w",
+            Self::BodyFrames => "between frames with x forward, y left and z up",
+            Self::BodyDepth => "from a depth frame with x forward, y left and z up",
+            Self::BodyColour => "to a colour frame with x forward, y left and z up",
+            Self::Millimetres => "with its translation in millimetres",
+            Self::Radians => "with its angles in radians instead of degrees",
+            Self::Registered => "as the identity, the depth map being registered to the colour image",
+            Self::QuarterTurn => "for a colour image turned by 90 degrees clockwise",
+            Self::HalfTurn => "for a colour image turned by 180 degrees",
+            Self::QuarterBack => "for a colour image turned by 90 degrees counter-clockwise",
+        })
+    }
+}
+
+/// A rotation whose quaternion x y z w is put in another order.
+fn requaternion(rotation: &Matrix3<f64>, order: fn([f64; 4]) -> [f64; 4]) -> Option<Matrix3<f64>> {
+    let quaternion = UnitQuaternion::from_matrix(rotation);
+    let [x, y, z, w] = order([quaternion.i, quaternion.j, quaternion.k, quaternion.w]);
+    UnitQuaternion::try_new(Quaternion::new(w, x, y, z), 1e-9).map(|turned| turned.to_rotation_matrix().into_inner())
+}
+
+fn about_axis(degrees: f64) -> Similarity {
+    let turn = Vector3::new(0.0, 0.0, degrees.to_radians());
+    Similarity { scale: 1.0, rotation: Rotation3::new(turn).into_inner(), translation: Vector3::zeros() }
+}
+
+/// The search over readings of one candidate, level by level.
+pub(super) struct Rereading {
+    /// Poses found near the candidate itself.
+    optima: Vec<Optimum>,
+    starts: Vec<(Reading, Start)>,
+    level: usize,
+}
+
+impl Rereading {
+    /// Readings that put points onto the image.
+    pub fn new(scene: &Scene, candidate: &State, optima: Vec<Optimum>) -> Self {
+        let start = |reading: Reading| {
+            let state = State::at(reading.of(&candidate.pose)?);
+            let round = Round { state, told: state, sigma: 0.0 };
+            scene.is_seen(&state).then(|| (reading, Start { round, found: state, rims: vec![], score: 0.0 }))
+        };
+        Self { optima, starts: Reading::ALL.into_iter().filter_map(start).collect(), level: 0 }
+    }
+
+    /// One level for all that are left, in the end with all cues; whether it is over.
+    pub fn step(&mut self, scene: &Scene, planes: &[Planes]) -> bool {
+        if self.level == SIGMAS.len() {
+            let settle = |round: &mut Round| (0..MOST_SETTLING).any(|_| scene.settle(round, planes) < ARRIVED);
+            self.starts.iter_mut().for_each(|(_, start)| _ = settle(&mut start.round));
+            return true;
+        }
+        let sigma = SIGMAS[self.level] * scene.scale;
+        let planes = scene.planes(sigma);
+        for (_, start) in &mut self.starts {
+            start.found = start.round.state;
+            start.rims = scene.rims(&start.found, MOST_RIMS_OF_STARTS);
+            scene.approach(start, sigma, &planes);
+        }
+        self.starts.sort_by(|a, b| b.1.score.total_cmp(&a.1.score));
+        self.starts.truncate(SURVIVORS[self.level]);
+        self.level += 1;
+        false
+    }
+
+    /// All optima, best first.
+    pub fn end(self, scene: &Scene, planes: &[Planes]) -> Vec<Optimum> {
+        let Self { mut optima, starts, .. } = self;
+        optima
+            .extend(starts.into_iter().map(|(reading, start)| Optimum::at(scene, start.round, Some(reading), planes)));
+        optima::rank(&mut optima);
+        optima
+    }
+}
