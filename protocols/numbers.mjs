@@ -75,7 +75,7 @@ export function mean(values) {
   return all.length === 0 ? null : all.reduce((sum, value) => sum + value, 0) / all.length;
 }
 
-/** Share of the items that pass; null if there are none. */
+/** Share of the items that pass; null for an empty list. */
 export const share = (items, passes) => (items.length === 0 ? null : items.filter(passes).length / items.length);
 
 export const rms = (values) => (values.length === 0 ? null : Math.sqrt(mean(values.map((value) => value * value))));

@@ -194,7 +194,7 @@ function distances(edges, { width, height }) {
   return far;
 }
 
-/** Costs of poses for one frame whose depth camera is at `motion` of its own origin; lower is better. */
+/** Costs of poses for one frame whose depth camera is at `motion` in the frame of its cloud; lower is better. */
 export function costs({ image, grid, points }, motion) {
   const eye = motion.translation;
   const light = grey(image);

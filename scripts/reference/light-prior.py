@@ -12,7 +12,7 @@ the distances of the test lights in ../shared/data if they are there. Nothing is
 
 One light is a panorama at one azimuth: its irradiance on the normals that a camera sees (optical frame: x right, y down,
 n_z < 0), the logarithm of that, and for each channel the nine coefficients that fit the logarithm best. Normals are the
-nodes of a product quadrature over the hemisphere, weighted by the area that they cover in an image, |n_z|, plus LIMB, so
+nodes of a product quadrature over the hemisphere, weighted by the area that they cover in an image, |n_z|, plus `LIMB`, so
 that normals near the occluding contour count.
 
 The Gaussian has the first and second moments over

@@ -13,7 +13,7 @@ import { freshProject } from "./fresh.mjs";
 
 /**
  * Native code and wasm sum in different orders and compute other sines. Limits of the differences between their reports: for the estimate in
- * units of its own sigma, for other numbers relative to the largest of their list, and likewise for the curves of the likelihood.
+ * units of its sigma, for other numbers relative to the largest of their list, and likewise for the curves of the likelihood.
  */
 const ROUNDING = { sigmas: 1e-4, relative: 1e-4, curves: 0.01 };
 /** On some rendered rigs, rounding decides whether a point counts, and the estimate moves by up to a hundredth of a sigma. */
