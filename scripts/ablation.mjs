@@ -1,6 +1,6 @@
 // npm run ablation: measures the contribution of each part of the method with builds in which that part is switched off.
 //   --only a,b       only these parts (scripts/ablation/parts.mjs), next to the whole method
-//   --quick          two photographs, a painted and a plain render
+//   --quick          two photographs, a render with varying albedo and one with a single albedo
 //   --known          prints what has been measured so far, "-" for missing cells; builds and runs nothing
 //   --json FILE      the rows as JSON
 //   --docs           the table into the marked region of docs/lab/results.md
