@@ -1,5 +1,6 @@
 // What the terms of the method mean, on one rendered bust: an occluding contour, a depth discontinuity, tiles, local contrast.
 import { aboutY, product, turn } from "../../protocols/rotations.mjs";
+import { lookUp } from "../thresholds.mjs";
 import { boxAround, byteOf, indices, median, picture, tint, triple } from "./raster.mjs";
 import { BLUE, GREEN, INK, ORANGE, SOFT, figure, key, line, placed, strokes, text } from "./svg.mjs";
 import { fallsOn, jumps, moved, neighbours, pixelAt, pointOf, sideOf } from "./views.mjs";
@@ -9,9 +10,8 @@ const BETA = 40;
 /** Stains: log albedo between its ends, and the wavelengths across and down, pixels. */
 const STAIN = [-0.12, -0.3, -0.4];
 const WAVES = [52, 64];
-/** As `TURNED` in src/view/limbs.rs and `TILE` in src/pose/photometric/covariance.rs. */
-const TURNED = 0.6;
-const TILE = 8;
+const TURNED = Number(lookUp("TURNED", "src/view/limbs.rs").value);
+const TILE = Number(lookUp("TILE", "src/pose/photometric/covariance.rs").value);
 /** A jump of the depth, pixel lengths. */
 const JUMP = 8;
 /** Sigma of the window of local contrast, depth pixels, and the pose beside the true one, degrees. */
@@ -147,86 +147,102 @@ function strongest({ width }, residuals) {
   return best.split(" ").map(Number);
 }
 
-export function terms(api) {
-  const made = scene(api);
-  const { image, depth, truth } = made;
-  const inImage = boxAround(image, (index) => image.mask[index]);
-  const inDepth = boxAround(depth, (index) => Number.isFinite(truth.depth[index]));
+const tall = (box, height) => (height * box.width) / box.height;
+const titled = (x, y, words) => text(x, y, words, { size: 15, bold: true });
+
+function contourPanel(made) {
+  const { image } = made;
+  const box = boxAround(image, (index) => image.mask[index]);
   const brightest = image.data.reduce((a, b) => Math.max(a, b), 0);
   const coloured = (index) =>
     image.mask[index] ? triple(image.data, index).map((value) => byteOf(value / brightest)) : undefined;
+  const { turned, cut } = contours(made);
+  return [
+    titled(20, 26, "Occluding contour (image)"),
+    placed(picture(image, box, coloured), 80, 38, tall(box, 200), [
+      strokes(cut, BLUE, 1),
+      strokes(turned, ORANGE, 1.4),
+    ]),
+    key(20, 262, ORANGE, "the surface turns away from the camera"),
+    key(20, 281, BLUE, "border where it does not (shoulders)"),
+  ];
+}
+
+function discontinuityPanel({ depth, truth }, box) {
   const depths = truth.depth.filter(Number.isFinite);
   const [near, far] = [depths.reduce((a, b) => Math.min(a, b)), depths.reduce((a, b) => Math.max(a, b))];
   const byDepth = (index) => {
     const share = (truth.depth[index] - near) / (far - near);
     return Number.isFinite(share) ? Array(3).fill(240 - 190 * share) : undefined;
   };
-  const right = compared(api, made, made.pose);
-  const offset = median([...right.seen].map((value, at) => value - right.predicted[at]).filter(Number.isFinite));
-  const residuals = right.seen.map((value, at) => value - right.predicted[at] - offset);
+  const { ahead, ofNothing } = jumps(depth, truth.depth, JUMP);
+  return [
+    titled(370, 26, "Depth discontinuity (depth map)"),
+    placed(picture(depth, box, byDepth), 440, 38, tall(box, 200), [
+      strokes(ofNothing, GREEN, 1),
+      strokes(ahead, ORANGE, 1.6),
+    ]),
+    key(370, 262, ORANGE, "a near surface ends in front of a farther one"),
+    key(370, 281, GREEN, "it ends in front of nothing"),
+  ];
+}
+
+function tilePanel({ depth }, box, { seen, predicted }) {
+  const differences = seen.map((value, at) => value - predicted[at]);
+  const offset = median([...differences.filter(Number.isFinite)]);
+  const residuals = differences.map((value) => value - offset);
+  const coloured = picture(depth, box, (index) => signed(residuals[index], 0.35));
+  return [
+    titled(20, 330, "Tiles of the covariance (residuals)"),
+    placed(coloured, 80, 342, tall(box, 200), tiles(box, strongest(depth, residuals))),
+    text(250, 380, ["orange: image", "brighter than", "the prediction;", "blue: darker"], { colour: SOFT }),
+    text(20, 566, [
+      `Residuals in a tile of ${TILE}x${TILE} depth pixels`,
+      "add up to one score. Noise cancels;",
+      "varying albedo does not (thick frame):",
+      "it shows as spatial covariance.",
+    ]),
+  ];
+}
+
+function contrastPanel(api, made, box, right) {
+  const { depth } = made;
   const level = median([...right.seen].filter(Number.isFinite));
   const contrast = normalised(depth, right.seen);
+  const coloured = (values, range) => picture(depth, box, (index) => signed(values[index], range));
+  const [x, y] = fallsOn(depth, [0, 0]);
+  const circle = `<circle cx="${x}" cy="${y}" r="${2 * WINDOW}" fill="none" stroke="${INK}" stroke-width="1"/>`;
   const [here, beside] = [right, compared(api, made, turnedPose(made))].map((pair) => gain(depth, pair).toFixed(2));
-  const { turned, cut } = contours(made);
-  const { ahead, ofNothing } = jumps(depth, truth.depth, JUMP);
-  const window = fallsOn(depth, [0, 0]);
-  const circle = `<circle cx="${window[0]}" cy="${window[1]}" r="${2 * WINDOW}" fill="none" stroke="${INK}" stroke-width="1"/>`;
-  const half = (values, range) => picture(depth, inDepth, (index) => signed(values[index], range));
-  const tall = (box, height) => (height * box.width) / box.height;
+  const centred = right.seen.map((value) => value - level);
+  return [
+    titled(370, 330, "Local contrast and its gain"),
+    placed(coloured(centred, 0.6), 370, 342, tall(box, 150)),
+    placed(coloured(contrast, 0.3), 530, 342, tall(box, 150), [circle]),
+    text(370, 512, "log intensity v", { colour: SOFT }),
+    text(530, 512, "v minus its local mean", { colour: SOFT }),
+    text(370, 547, [
+      "Circle: two sigmas of the window. Gain: ln of",
+      "the spread of the right picture over the part",
+      `that shading leaves: ${here} at the true pose,`,
+      `${beside} at a pose ${BESIDE} degrees beside it.`,
+    ]),
+  ];
+}
+
+export function terms(api) {
+  const made = scene(api);
+  const box = boxAround(made.depth, (index) => Number.isFinite(made.truth.depth[index]));
+  const right = compared(api, made, made.pose);
   return figure(
     700,
     640,
     "Four panels on a rendered bust: its occluding contour in the image, discontinuities of its depth map, tiles of the residuals, local contrast",
     [
-      text(20, 26, "Occluding contour (image)", { size: 15, bold: true }),
-      placed(picture(image, inImage, coloured), 80, 38, tall(inImage, 200), [
-        strokes(cut, BLUE, 1),
-        strokes(turned, ORANGE, 1.4),
-      ]),
-      key(20, 262, ORANGE, "the surface turns away from the camera"),
-      key(20, 281, BLUE, "border where it does not (shoulders)"),
-      text(370, 26, "Depth discontinuity (depth map)", { size: 15, bold: true }),
-      placed(picture(depth, inDepth, byDepth), 440, 38, tall(inDepth, 200), [
-        strokes(ofNothing, GREEN, 1),
-        strokes(ahead, ORANGE, 1.6),
-      ]),
-      key(370, 262, ORANGE, "a near surface ends in front of a farther one"),
-      key(370, 281, GREEN, "it ends in front of nothing"),
+      ...contourPanel(made),
+      ...discontinuityPanel(made, box),
       line(20, 302, 680, 302, { colour: "#d0d7de" }),
-      text(20, 330, "Tiles of the covariance (residuals)", { size: 15, bold: true }),
-      placed(
-        picture(depth, inDepth, (index) => signed(residuals[index], 0.35)),
-        80,
-        342,
-        tall(inDepth, 200),
-        tiles(inDepth, strongest(depth, residuals)),
-      ),
-      text(250, 380, ["orange: image", "brighter than", "the prediction;", "blue: darker"], { colour: SOFT }),
-      text(20, 566, [
-        "Residuals in a tile of 8x8 depth pixels",
-        "add up to one score. Noise cancels;",
-        "varying albedo does not (thick frame):",
-        "it shows as spatial covariance.",
-      ]),
-      text(370, 330, "Local contrast and its gain", { size: 15, bold: true }),
-      placed(
-        half(
-          right.seen.map((value) => value - level),
-          0.6,
-        ),
-        370,
-        342,
-        tall(inDepth, 150),
-      ),
-      placed(half(contrast, 0.3), 530, 342, tall(inDepth, 150), [circle]),
-      text(370, 512, "log intensity v", { colour: SOFT }),
-      text(530, 512, "v minus its local mean", { colour: SOFT }),
-      text(370, 547, [
-        "Circle: two sigmas of the window. Gain: ln of",
-        "the spread of the right picture over the part",
-        `that shading leaves: ${here} at the true pose,`,
-        `${beside} at a pose ${BESIDE} degrees beside it.`,
-      ]),
+      ...tilePanel(made, box, right),
+      ...contrastPanel(api, made, box, right),
     ],
   );
 }

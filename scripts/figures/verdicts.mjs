@@ -21,6 +21,7 @@ const SCALE = { most: 18, left: 372, width: 300 };
 const STEP = 6;
 const PINK = "#d1006c";
 const TALL = 186;
+const APART = TALL + 22;
 
 /** Words in lines of at most so many letters. */
 const wrapped = (words) =>
@@ -67,49 +68,46 @@ const isInside =
 
 const pairs = (values) => Array.from({ length: values.length / 2 }, (_, at) => [values[2 * at], values[2 * at + 1]]);
 
+/** One candidate: its edges over the picture, its verdict and its interval. */
+function row({ colour, degrees, millimetres, verdict }, { found, edges, box, wide, passing }, y) {
+  if (found.verdict !== verdict) throw new Failure(`The check says "${found.verdict}" where "${verdict}" is expected.`);
+  // The centre of a pixel is half a pixel from its corner.
+  const inside = pairs(edges)
+    .map(([column, row]) => [column + 0.5, row + 0.5])
+    .filter(isInside(box));
+  const turned = `turned by ${degrees} ${degrees === 1 ? "degree" : "degrees"}, shifted by ${millimetres} mm`;
+  const left = SCALE.left - 14;
+  return [
+    `<use href="#frame" y="${y}"/>`,
+    over(box, 20, y, wide, [dots(inside, PINK, 2.2)]),
+    text(left, y + 16, verdict, { size: 17, bold: true, colour }),
+    text(left, y + 36, degrees > 0 ? turned : "the true calibration", { colour: SOFT }),
+    text(left, y + 60, wrapped(found.reason), { colour: INK }),
+    ...scale(y + 154, found, passing, colour),
+  ];
+}
+
 export async function verdicts(api) {
   const frame = await api.sampleRig(RIG);
-  const named = CANDIDATES.map(({ verdict, ...error }) => [
-    verdict,
-    wrong(frame.pose, error, chance(RIG.seed).direction),
-  ]);
-  const { candidates } = await api.checkCalibration([frame], Object.fromEntries(named));
+  const poses = CANDIDATES.map((error) => wrong(frame.pose, error, chance(RIG.seed).direction));
+  const named = Object.fromEntries(CANDIDATES.map(({ verdict }, at) => [verdict, poses[at]]));
+  const { candidates } = await api.checkCalibration([frame], named);
   const passing = (Number(lookUp("TOLERANCE", "src/calibration/verdict.rs").value) * frame.image.width) / 640;
   const shown = part(frame.image);
   const wide = (TALL * shown.box.width) / shown.box.height;
   // The picture stands in the file once.
   const parts = [`<defs><g id="frame">${placed(shown, 20, 0, wide)}</g></defs>`];
-  for (const [at, [name, pose]] of named.entries()) {
-    const found = candidates[name];
-    if (found.verdict !== name) throw new Failure(`The check says "${found.verdict}" of the candidate for "${name}".`);
-    const { degrees, millimetres, colour } = CANDIDATES[at];
-    const y = 20 + (TALL + 22) * at;
-    const { edges } = await api.projectFrame(frame, pose);
-    // The centre of a pixel is half a pixel from its corner.
-    const inside = pairs(edges)
-      .map(([column, row]) => [column + 0.5, row + 0.5])
-      .filter(isInside(shown.box));
-    const error =
-      degrees > 0
-        ? `turned by ${degrees} ${degrees === 1 ? "degree" : "degrees"}, shifted by ${millimetres} mm`
-        : "the true calibration";
-    parts.push(
-      `<use href="#frame" y="${y}"/>`,
-      over(shown.box, 20, y, wide, [dots(inside, PINK, 2.2)]),
-      text(SCALE.left - 14, y + 16, name, { size: 17, bold: true, colour }),
-      text(SCALE.left - 14, y + 36, error, { colour: SOFT }),
-      text(SCALE.left - 14, y + 60, wrapped(found.reason), { colour: INK }),
-      ...scale(y + 154, found, passing, colour),
-    );
+  for (const [at, candidate] of CANDIDATES.entries()) {
+    const { edges } = await api.projectFrame(frame, poses[at]);
+    const answer = { found: candidates[candidate.verdict], edges, box: shown.box, wide, passing };
+    parts.push(...row(candidate, answer, 20 + APART * at));
   }
-  const bottom = 20 + (TALL + 22) * named.length + 12;
+  const bottom = 32 + APART * CANDIDATES.length;
   parts.push(
-    text(
-      20,
-      bottom,
+    text(20, bottom, [
       "Pink: depth discontinuities, laid on the image by the candidate. Dot and bar: its error and the 95 %",
-    ),
-    text(20, bottom + 17, `interval, pixels. Green: errors that pass, up to ${passing.toFixed(1)} pixels.`),
+      `interval, pixels. Green: errors that pass, up to ${passing.toFixed(1)} pixels.`,
+    ]),
   );
   return figure(
     700,

@@ -46,6 +46,20 @@ test("values and meanings of the page are those of the code", (t) => {
   t.diagnostic(`${without.length} of ${all.length} scalar constants of src have no row`);
 });
 
+test("the table in the comment of src/diagnosis.rs has the values of its constants", () => {
+  const path = "src/diagnosis.rs";
+  const rows = readFileSync(inRoot(path), "utf8").matchAll(/^\/\/! \| (\[?`[A-Z][^|]*) \| ([^|]*) \|/gm);
+  const compared = [...rows].flatMap(([, names, values]) => {
+    const numbers = values.match(/\d+(?:\.\d+)?/g) ?? [];
+    return [...names.matchAll(/`(\w+)`/g)].flatMap(([, name], at) =>
+      // "twice that" has no number.
+      numbers.length > 0 ? [[name, numbers[at], lookUp(name, path).value]] : [],
+    );
+  });
+  assert.ok(compared.length > 10, `${compared.length} values`);
+  for (const [name, written, value] of compared) assert.equal(written, value, name);
+});
+
 test("a value that differs, and a row of a constant that does not exist, are found", () => {
   const row = (value) => pageOf(`| \`MIXED\` | \`a.rs\` | ${value} | \`NOISE\` | data | none |`);
   assert.notEqual(filled(row("3"), look), row("3"));
