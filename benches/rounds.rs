@@ -1,9 +1,9 @@
 //! The native half of `npm run bench`: answers requests line by line, so that its runs alternate with those of the
-//! browser and a busy machine slows both alike.
+//! browser and a busy machine slows both equally.
 //!
 //! `scene PATH` reads a scene, `run START SHADING MOST` runs the loop from "near" or "search" with "surface" or "pixel"
-//! through at most so many iterations; each answer is one line of JSON. Called without the word `requests`, as by a
-//! plain `cargo bench`, it does nothing: no requests would come.
+//! through at most MOST iterations; each answer is one line of JSON. Without the argument `requests`, as in a plain
+//! `cargo bench`, it does nothing, since there are no requests.
 
 mod common;
 
@@ -17,7 +17,7 @@ use nalgebra::{Matrix3, Vector3};
 
 type Outcome<T> = Result<T, Box<dyn Error>>;
 
-/// Numbers of a pose in a scene's file: s, R row by row, t.
+/// Number of values of a pose in a scene's file: s, R row by row, t.
 const POSE: usize = 13;
 
 fn main() -> Outcome<()> {

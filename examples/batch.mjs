@@ -1,4 +1,4 @@
-// Finds the poses of many pairs of a colour image and a depth map, on all processors, and writes them as a table.
+// Finds the poses of many pairs of a colour image and a depth map, on all processors, and writes them to a table.
 //
 // npm run build && node examples/batch.mjs --help
 import { appendFileSync, existsSync, readFileSync, readdirSync, statSync, truncateSync, writeFileSync } from "node:fs";
@@ -36,7 +36,7 @@ const COLUMNS = [
   ...["sigma_x_degrees", "sigma_y_degrees", "sigma_z_degrees", "iterations", "residual", "message"],
 ];
 
-/** What the user can mend: its message says it all. */
+/** An error that the user can fix; its message suffices. */
 class Mistake extends Error {}
 
 function parsed(args) {
@@ -55,7 +55,7 @@ function parsed(args) {
 
 const PICTURE = /\.(png|npy)$/i;
 const ROLES = { depth: /depth/i, mask: /mask/i, colour: /colou?r|rgb|image/i };
-/** What a file is, by its own name or else by its folder's, and what is left of its path without that word: the pair's name. */
+/** The kind of a file, from its own name or else its folder's, and the pair's name: the rest of the path without that word. */
 function told(path) {
   const parts = path.replace(PICTURE, "").split("/");
   for (let k = parts.length - 1; k >= 0; k--) {
@@ -111,7 +111,7 @@ function settingsOf(path) {
 }
 
 const HEAD = `${COLUMNS.join(",")}\n`;
-/** What spreadsheets would run: they take words behind an apostrophe as they are. */
+/** The start of a cell that spreadsheets would run as a formula; after an apostrophe they take it as text. */
 const FORMULA = /^(?=[=+\-@\t\r])/;
 function cell(value) {
   const text = typeof value === "string" ? value.replace(FORMULA, "'") : String(value ?? "");
@@ -119,7 +119,7 @@ function cell(value) {
 }
 const lineOf = (row) => `${COLUMNS.map((column) => cell(row[column])).join(",")}\n`;
 
-/** The rows of a table that was begun, name and status of each; a line that was cut off in the middle is taken away. */
+/** Name and status of the rows in an unfinished table; a last line that was cut off is removed. */
 function begun(path) {
   if (!existsSync(path)) writeFileSync(path, HEAD);
   const text = readFileSync(path, "utf8");
@@ -132,7 +132,7 @@ function begun(path) {
   });
 }
 
-/** Hands the pairs to threads; `done` gets a row for each. A thread that dies costs its pair alone. */
+/** Distributes the pairs over threads and calls `done` with each row. A thread that dies only costs its pair. */
 function onThreads(count, pairs, data, done) {
   const waiting = [...pairs];
   const threads = new Set();
@@ -206,7 +206,7 @@ async function run(args) {
   process.exitCode = failures > 0 ? FAILED : 0;
 }
 
-/** One pair, from its files to its row. */
+/** Takes one pair from its files to its row. */
 async function registered({ name, colour, depth, mask }) {
   const { folder, settings } = workerData;
   const bytes = (path) => readFileSync(join(folder, path));

@@ -1,4 +1,4 @@
-//! Files of one's own: a colour image (PNG) and a depth map (PNG of 16 bits, or .npy of float32) to the pose and the refined depth.
+//! Reads a colour image (PNG) and a depth map (16-bit PNG, or .npy of float32); finds the pose and the refined depth.
 //!
 //! cargo run --release --example files -- IMAGE.png DEPTH.png|DEPTH.npy [REFINED.npy]
 //!
@@ -15,7 +15,7 @@ use npyz::WriterBuilder;
 
 type Outcome<T> = Result<T, Box<dyn Error>>;
 
-/// Width, height, colour type and samples of a PNG; those of 16 bits keep all of them.
+/// Width, height, colour type and samples of a PNG; 16-bit samples are kept in full.
 fn read_png(path: &str) -> Outcome<(usize, usize, png::ColorType, png::BitDepth, Vec<u8>)> {
     let mut decoder = png::Decoder::new(BufReader::new(File::open(path)?));
     decoder.set_transformations(png::Transformations::ALPHA);
@@ -55,7 +55,7 @@ fn read_depth(path: &str) -> Outcome<DepthMap> {
         if (kind, bits) != (png::ColorType::GrayscaleAlpha, png::BitDepth::Sixteen) {
             return Err("a depth map is grey and has 16 bits".into());
         }
-        // Every other number is the alpha.
+        // Every second number is the alpha.
         (width, height, DepthSamples::Integer(words(&bytes).step_by(2).collect()))
     };
     Ok(DepthMap { width, height, samples, unit: None, mask: None, camera: None, normals: None })

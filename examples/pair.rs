@@ -1,4 +1,4 @@
-//! The smallest use: a made pair of views, the loop, the pose. Run it with `cargo run --example pair`.
+//! The smallest use: a rendered pair of views, the loop, the pose. Run it with `cargo run --example pair`.
 
 use bimodal_stereo::{Angles, Estimator, LightSource, Options, Result, Status, scenes};
 

@@ -1,4 +1,4 @@
-/** A bar that moves on a terminal, and a line for each tenth elsewhere. */
+/** A progress bar on a terminal, and a line for each tenth elsewhere. */
 export function progress(stream) {
   const width = 24;
   let tenth = -1;

@@ -1,5 +1,5 @@
-// The estimator in a thread of its own, which draws by itself on canvases that the page has handed over.
-// Import maps do not reach workers, so that this is the file's path; bundlers take "bimodal-stereo".
+// Runs the estimator in a separate thread, which draws on canvases that the page has transferred.
+// Import maps do not apply to workers, so this is the file's path; bundlers accept "bimodal-stereo".
 import init, { Estimator, sample } from "../pkg/index.js";
 
 const stop = new AbortController();

@@ -1,4 +1,4 @@
-// What the project has set out to reach, computed from the rows of the tables and never from anything else.
+// The project's aims, computed from the rows of the tables and nothing else.
 import { FOUND_WITHIN, coverage3, isConfidentlyWrong, isFlagged, isFound, isFoundOrFlagged } from "./counts.mjs";
 import { IMAGES } from "./reals.mjs";
 import { CONDITIONS } from "./conditions.mjs";
@@ -9,7 +9,7 @@ import { degreesBetween } from "./rotations.mjs";
 
 const least = (values) => (values.length === 0 ? null : Math.min(...values));
 
-/** One aim: `at most` or `at least` a limit; without rows nothing is said. */
+/** One aim: a measured value against a limit, in the sense "<=" or ">="; without rows, the verdict is null. */
 function aim(table, what, measured, sense, limit, rows) {
   const known = typeof measured === "number" && rows > 0;
   const ok = known ? (sense === "<=" ? measured <= limit : measured >= limit) : null;
@@ -264,7 +264,7 @@ function rgbdAims(rows = []) {
   ];
 }
 
-/** Starts that end this near to the search's own end, degrees, end like it. */
+/** An initial pose counts as ending like the search if the two final poses are closer than this, degrees. */
 const SAME_END = 0.5;
 
 function pinholeAims(rows = []) {
@@ -359,7 +359,7 @@ function paintedAims(table, row) {
   ];
 }
 
-/** Of the whole and of each kind; those that are found have sigmas to be judged by. */
+/** Aims for all cases and for each kind; found poses are judged by their sigmas. */
 function honestyAims(row) {
   if (!row) return [];
   const each = row.kinds.filter(({ cases }) => cases > 0);
@@ -384,7 +384,7 @@ function honestyAims(row) {
   ];
 }
 
-/** In 95 % of the cases a pose moves by less than its sigma. */
+/** A pose must move by less than its sigma in 95 % of the cases. */
 const perturbationAims = (rows = []) => [
   aim(
     "perturbation",
@@ -407,7 +407,7 @@ const exposureAims = (rows = []) => [
   ),
 ];
 
-/** Every aim of the tables that are there. */
+/** Every aim of the tables that are present. */
 export const aims = (json) =>
   [
     ...(json.table1 ? table1Aims(json.table1) : []),

@@ -1,4 +1,4 @@
-// Random scenes with nothing known, the same ones brighter and darker, and without one part of the method at a time.
+// Random scenes with nothing known, the same scenes brighter and darker, and ablations of one part of the method at a time.
 import { FROM_ANYWHERE, NOISE } from "./scenes.mjs";
 import { aboutAxis, anglesOf, degreesBetween, product } from "./rotations.mjs";
 import { chance, drawGaussian } from "./numbers.mjs";
@@ -13,14 +13,14 @@ const SCALES = [0.8, 1.25];
 const LEAST_OVERLAP = 0.4;
 const SIZE = 96;
 
-/** A direction, evenly over the sphere. */
+/** A direction, uniform over the sphere. */
 export function direction({ gaussian }) {
   const vector = [gaussian(), gaussian(), gaussian()];
   const length = Math.hypot(...vector);
   return vector.map((part) => part / length);
 }
 
-/** A random scene. Its overlap is P_w, as everywhere: of what the depth camera sees the image sees nearly all. */
+/** A random scene. Its overlap is P_w, as in all tables: the image sees nearly all that the depth map shows. */
 export function drawScene(dice, { surfaces, naturals }, gaussian) {
   const surface = surfaces[dice.below(surfaces.length)];
   const tilt = aboutAxis(direction(dice), dice.uniform(0, MOST_TILT));
@@ -37,7 +37,7 @@ export function drawScene(dice, { surfaces, naturals }, gaussian) {
   };
 }
 
-/** Scene `seed` of the random ones; `changes` make a variant of it. */
+/** Random scene number `seed`; `changes` make a variant of it. */
 const randomCell = (kit, seed, { id = "random", row = {}, options = {}, ...changes } = {}) => ({
   id: `${id}/${seed}`,
   kind: "random",
@@ -48,7 +48,7 @@ const randomCell = (kit, seed, { id = "random", row = {}, options = {}, ...chang
   ...changes,
 });
 
-/** The scene of any cell: written down, or drawn from its seed. */
+/** The scene of any cell: given, or drawn from its seed. */
 export const sceneOf = (cell, library) =>
   cell.kind === "random"
     ? { ...drawScene(chance(cell.seed), cell.kit, library.gaussian), seed: cell.seed }
@@ -85,10 +85,10 @@ export const exposure = {
       }),
 };
 
-/** What is left out, and how the public contract leaves it out. */
+/** The parts that are left out, and the options that leave them out. */
 const ABLATIONS = [
   { without: "search", options: { start: "identity" } },
-  // Pose and light in turn, from where the search ends.
+  // Pose and light in turn, beginning at the pose of the search.
   { without: "projection of the light", alternations: 8 },
   { without: "light prior", options: { lambda: { light: 0 } } },
   { without: "shape prior", options: { lambda: { prior: 0 } } },

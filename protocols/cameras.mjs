@@ -1,4 +1,4 @@
-// Renders as a camera's lens and sensor leave them: darker towards the corners, noise that grows with the signal, one colour a pixel.
+// Renders with the flaws of a camera's lens and sensor: vignetting, noise that grows with the signal, one colour per pixel.
 import { drawScene } from "./anywhere.mjs";
 import { chance } from "./numbers.mjs";
 import { randomRow } from "./counts.mjs";
@@ -9,11 +9,11 @@ const SCENES = 60;
 const QUICK_SCENES = 3;
 /** Half the diagonal field of view, degrees: that of a phone's camera. */
 const HALF_FIELD = 35;
-/** Sigmas of shot noise at full signal and of reading, shares of full signal: a small sensor indoors. */
+/** Sigmas of shot noise at full signal and of read noise, shares of full signal: a small sensor indoors. */
 const SHOT = 0.02;
 const READING = 0.004;
 
-/** cos^4 of the angle to the axis. */
+/** Vignetting: cos^4 of the angle to the axis. */
 function vignetted({ width, height, data }) {
   const slope = Math.tan((Math.PI / 180) * HALF_FIELD) / Math.hypot(width / 2, height / 2);
   return data.map((value, index) => {
@@ -23,7 +23,7 @@ function vignetted({ width, height, data }) {
   });
 }
 
-/** Variance proportional to the signal, and a constant. */
+/** Adds shot noise, whose variance is proportional to the signal, and read noise, which is constant. */
 function grained({ data }, dice) {
   const full = data.reduce((most, value) => Math.max(most, value), 0);
   return data.map((value) =>
@@ -31,7 +31,7 @@ function grained({ data }, dice) {
   );
 }
 
-/** Each pixel measures one colour, red, green, green, blue in squares; the others are means of its neighbours', near ones twice. */
+/** A Bayer pattern: each pixel measures red, green or blue; the other two are weighted means of neighbours, with nearer ones counted twice. */
 function mosaicked({ width, height, data }) {
   const measured = (column, row) => (column % 2 === row % 2 ? 2 * (row % 2) : 1);
   return data.map((value, index) => {
@@ -68,7 +68,7 @@ export const cameras = {
       seed: index + 1,
       options: FROM_ANYWHERE,
     })),
-  /** The row of all, and one for each kind. */
+  /** One row for all cells, and one for each kind. */
   rows: (results) => {
     const rows = results.map(({ cell, result }) => ({ ...cell.row, ...result }));
     const kinds = NAMES.map((flaw) => ({

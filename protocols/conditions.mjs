@@ -1,15 +1,15 @@
-// Photographs in other ways than one by one with nothing known: told a start, three lamps at once, natural light, larger.
+// Photographs under other conditions: with an initial pose, with three lamps as channels, under natural light, at a larger size.
 import { PHOTOGRAPH_BETAS, PHOTOGRAPH_SIZE } from "./reals.mjs";
 import { FROM_ANYWHERE } from "./scenes.mjs";
 
-/** Objects that were photographed under single lamps as well. */
+/** Objects that were also photographed under single lamps. */
 const UNDER_LAMPS = ["turtle", "squirrel", "deer", "paper1"];
 const LAMPS = ["lab_light01", "lab_light05", "lab_light09"];
-/** Degrees that a told start is off, about the object's middle. */
+/** Error of a given initial pose about the object's middle, degrees. */
 const OFF = 8;
 const LARGE = 128;
 
-/** What is told, lit or sized otherwise; the kind is what the aims know it by. */
+/** The changes of each condition; the aims refer to its kind. */
 export const CONDITIONS = [
   { condition: "told 8 degrees off", kind: "told", changes: { photograph: "lab_diffuse", off: OFF } },
   { condition: "three lamps", kind: "lamps", changes: { lamps: LAMPS }, objects: UNDER_LAMPS },

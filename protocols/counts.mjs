@@ -1,7 +1,7 @@
-// What counts as found, as flagged and as wrong, and how many of each there are.
+// Defines found, flagged and confidently wrong poses, and counts them.
 import { mean, median, share } from "./numbers.mjs";
 
-/** A pose this near, in degrees, is found. */
+/** A pose within this many degrees counts as found. */
 export const FOUND_WITHIN = 3;
 
 export const isFound = ({ degrees }) => typeof degrees === "number" && degrees < FOUND_WITHIN;
@@ -9,20 +9,20 @@ export const isFound = ({ degrees }) => typeof degrees === "number" && degrees <
 export const isFlagged = ({ status, rivals }) =>
   status === "ambiguous" || status === "lost" || (status === "max-iterations" && rivals > 0);
 export const isConfidentlyWrong = (row) => !isFound(row) && !isFlagged(row);
-/** Near, or flagged. */
+/** Found or flagged. */
 export const isFoundOrFlagged = (row) => isFound(row) || isFlagged(row);
 
 const AXES = [0, 1, 2];
 
-/** Whether each axis of the rotation lies within so many of its own sigmas; undefined without sigmas. */
+/** Whether the error about each axis lies within `count` sigmas of that axis; undefined without sigmas. */
 const within = ({ rotationOff, sigmas }, count) =>
   sigmas && AXES.map((axis) => Math.abs(rotationOff[axis]) <= count * sigmas[axis]);
 
-/** Share of the found whose rotation is within three sigma on all axes; one without sigmas is not. */
+/** Share of the found poses whose rotation is within three sigma on all axes; a pose without sigmas counts as outside. */
 export const coverage3 = (rows) =>
   share(rows.filter(isFound), (row) => Boolean(row.sigmas) && within(row, 3).every(Boolean));
 
-/** The row of the random scenes: counts; coverages are shares of the found. */
+/** The row of random scenes: counts; coverages are shares of the found poses. */
 export function randomRow(rows) {
   const found = rows.filter(isFound);
   const measured = found.filter((row) => row.sigmas);
@@ -34,7 +34,7 @@ export function randomRow(rows) {
     confidentlyWrong: rows.filter(isConfidentlyWrong).length,
     flaggedThoughFound: found.filter(isFlagged).length,
     medianDegrees: median(found.map(({ degrees }) => degrees)),
-    /** Single axes within one sigma, all of them and each by itself. */
+    /** Share of single axes within one sigma, over all axes and for each. */
     coverage1: share(within1.flat(), Boolean),
     coverage1PerAxis: AXES.map((axis) => share(within1, (axes) => axes[axis])),
     coverage3: coverage3(rows),

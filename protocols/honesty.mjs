@@ -1,4 +1,4 @@
-// Inputs that are worse than they say, or not what they say: whether the report knows. Random scenes, nothing known.
+// Inputs that are worse than they claim, or not what they claim: does the report notice? Random scenes, nothing known.
 import { drawScene } from "./anywhere.mjs";
 import { chance } from "./numbers.mjs";
 import { randomRow } from "./counts.mjs";
@@ -10,33 +10,36 @@ import { judged, optionsOf, withRun } from "./runs.mjs";
 
 const PER_KIND = 84;
 const QUICK_PER_KIND = 1;
-/** Seeds that no other table has. What noisy depth adds to sigmas was set on scenes 1 to 36, what a hollow map is on all of them. */
+/**
+ * First seed; no other table uses these seeds. The contribution of noisy depth to sigmas was set on scenes 1 to 36, the test for inverted
+ * depth on all scenes.
+ */
 const FIRST_SEED = 5000;
 const SIDES = [32, 256];
-/** Sigmas on log S, and of depth in pixels. */
+/** Sigmas of the noise on log S, and of the depth in pixels. */
 const IMAGE_NOISE = [0.01, 0.03];
 const DEPTH_NOISE = [0, 1];
-/** Steps that a depth map's range is divided into: 8 bits at most. */
+/** Number of steps into which a depth map's range is divided: 8 bits at most. */
 const STEPS = [32, 255];
 const QUALITIES = [60, 95];
-/** Share of the object's columns or rows that the image's frame keeps. */
+/** Share of the object's columns or rows that the cropped image keeps. */
 const KEPT = [0.4, 0.9];
-/** Sides of the depth map over those of the image. */
+/** Side of the depth map divided by that of the image. */
 const RESOLUTIONS = [0.3, 0.8];
-/** Metres read as pixels, millimetres as metres, and tenths. */
+/** Wrong units: metres read as pixels, millimetres as metres, and factors of ten. */
 const UNITS = [1e-3, 0.1, 10, 1000];
 /** Share of the pixels that are clipped. */
 const CLIPPED = [0.05, 0.4];
-/** Size of the second object over that of the first, and how far off its middle is, in sides of the frame. */
+/** Size of the second object relative to the first, and distance of its middle from the frame's, in sides of the frame. */
 const SECOND = { size: [0.4, 0.7], off: 0.35 };
 const BRIGHT = 0.9;
 
-/** Evenly in the logarithm. */
+/** A random number, uniform in the logarithm. */
 const logUniform = (dice, [low, high]) => Math.exp(dice.uniform(Math.log(low), Math.log(high)));
 const pixelsOf = ({ width, height }) => Array.from({ length: width * height }, (_, index) => index);
 const brightest = ({ data }, index) => Math.max(data[3 * index], data[3 * index + 1], data[3 * index + 2]);
 
-/** The level that so large a share of the object's pixels stays below. */
+/** The level that this share of the object's pixels does not reach. */
 function level(image, share) {
   const levels = pixelsOf(image)
     .filter((index) => image.mask[index])
@@ -45,14 +48,14 @@ function level(image, share) {
   return levels[Math.min(levels.length - 1, Math.floor(share * levels.length))];
 }
 
-/** 8 bits of sRGB, clipped. */
+/** The image as 8 bits of sRGB, clipped. */
 function exposed(image, gain) {
   const level = (at) => Math.round(encoded(Math.min(1, Math.max(0, gain * image.data[3 * (at >> 2) + (at % 4)]))));
   const data = Uint8Array.from({ length: 4 * image.width * image.height }, (_, at) => (at % 4 === 3 ? 255 : level(at)));
   return { ...image, data };
 }
 
-/** The image's frame cut at one of its sides, through the object. */
+/** The image cropped at one of its sides, through the object. */
 function cropped({ image, depth }, dice) {
   const inside = pixelsOf(image).filter((index) => image.mask[index]);
   const at = (index) => [index % image.width, Math.floor(index / image.width)];
@@ -81,7 +84,7 @@ function cropped({ image, depth }, dice) {
   };
 }
 
-/** Another object where the first is not: in the image, and in every other scene in the depth map as well. */
+/** Adds another object beside the first: to the image, and at random to every other depth map as well. */
 function withSecond({ image, depth }, dice, { api, library, kit, scene }) {
   const size = Math.max(16, Math.round(scene.size * dice.uniform(...SECOND.size)));
   const other = api.sample(
@@ -128,21 +131,21 @@ function inSteps({ image, depth }, dice) {
   return { image, depth: { ...depth, data: depth.data.map((z) => nearest + step * Math.round((z - nearest) / step)) } };
 }
 
-/** Larger is nearer instead of farther. */
+/** Inverts the depth: larger values become nearer. */
 function flipped({ image, depth }) {
   const values = depth.data.filter((z) => Number.isFinite(z) && z > 0);
   const sum = values.reduce((a, b) => Math.min(a, b)) + values.reduce((a, b) => Math.max(a, b));
   return { image, depth: { ...depth, data: depth.data.map((z) => sum - z) } };
 }
 
-/** The same scene with a coarser depth map: everything is in its own view's pixels, so the scale is another. */
+/** The same scene with a coarser depth map. Each view counts in its own pixels, so the scale differs. */
 function unlike({ image }, dice, { api, library, scene }) {
   const size = Math.round(scene.size * dice.uniform(...RESOLUTIONS));
   const coarse = api.sample(requestOf({ ...scene, size }, library));
   return { image, depth: coarse.depth };
 }
 
-/** How a scene is drawn, and what becomes of its pair. */
+/** How a scene is drawn, and the changes to its pair. */
 const KINDS = {
   "image noise": { scene: (dice) => ({ noise: dice.uniform(...IMAGE_NOISE) }) },
   "depth noise": {
@@ -174,7 +177,7 @@ const KINDS = {
     }),
   },
 };
-/** Two pinhole cameras, one of them of another focal length than it says. */
+/** Two pinhole cameras, one of which states a wrong focal length. */
 const INTRINSICS = "wrong intrinsics";
 const FOCAL_OFF = [0.01, 0.05];
 const NAMES = [...Object.keys(KINDS), INTRINSICS];
@@ -186,7 +189,7 @@ export const honesty = {
     "image noise 1 to 3 %; depth noise to 1 pixel beside it; 32 to 255 steps; JPEG 60 to 95; 32 to 256 pixels; image cut to 40 to 90 % of the object; depth at 0.3 to 0.8 of the image's resolution",
     "unit wrong by 10 and 1000; larger depth nearer; a second object in the image, in half of them in the depth map; 5 to 40 % of the pixels clipped at 8 bits; a focal length wrong by 1 to 5 %",
   ],
-  // One of each kind after the other, so that a run that is broken off has seen all of them.
+  // One scene of each kind in turn, so that an interrupted run has covered all kinds.
   cells: (kit, quick) =>
     Array.from({ length: quick ? QUICK_PER_KIND : PER_KIND }, (_, index) => index + 1).flatMap((scene) =>
       NAMES.map((kind) => ({
@@ -201,7 +204,7 @@ export const honesty = {
         ...(kind === INTRINSICS ? { ...PINHOLE, focalOff: FOCAL_OFF } : {}),
       })),
     ),
-  /** The row of all, and one for each kind. */
+  /** One row for all cells, and one for each kind. */
   rows: (results) => {
     const rows = results.map(({ cell, result }) => ({ ...cell.row, ...result }));
     const kinds = NAMES.map((kind) => ({

@@ -1,4 +1,4 @@
-// All tables and figures. Pure definitions: what imports them (the command, a page) brings the package and the data.
+// All tables and figures. Pure definitions: the importing program (the command, a page) brings the package and the data.
 import { ablation, exposure, random } from "./anywhere.mjs";
 import { cameras } from "./cameras.mjs";
 import { conditions } from "./conditions.mjs";
@@ -13,7 +13,7 @@ import { statue } from "./statue.mjs";
 import { stress } from "./stress.mjs";
 import { figure4, figure5, refinement } from "./shapes.mjs";
 
-/** In the order in which they are printed. */
+/** In the order of printing. */
 export const TABLES = [
   ...[table1, table2A, table2B, table3, figure4, figure5, figure6, figure7],
   ...[
@@ -36,6 +36,6 @@ export const TABLES = [
   ],
 ];
 
-/** The rows of a table as the JSON has them: what the cell says of itself, which nothing measured may overwrite, and the rest. */
+/** The rows of a table for the JSON: the cell's own keys, which measured values may not overwrite, and the measured values. */
 export const rowsOf = (table, results) =>
   table.rows ? table.rows(results) : results.map(({ cell, result }) => ({ ...cell.row, ...result, ...cell.row }));

@@ -1,5 +1,5 @@
-// What an 8-bit JPEG leaves of an image: sRGB, chroma at half the resolution, 8x8 cosine blocks in steps (Annex K of ITU-T T.81,
-// scaled by quality as the IJG's library does). Entropy coding loses nothing, so that there is none here.
+// The losses of an 8-bit JPEG: sRGB, chroma at half the resolution, 8x8 cosine blocks in steps (Annex K of ITU-T T.81, scaled by quality
+// as in the IJG's library). Entropy coding is lossless and therefore left out.
 
 const BLOCK = 8;
 const LUMA = [
@@ -30,7 +30,7 @@ const scaled = (table, quality) => {
   return table.map((step) => Math.min(255, Math.max(1, Math.floor((step * scale + 50) / 100))));
 };
 
-/** Rows of a block times the cosines, then its columns; `inverse` goes the other way. */
+/** The cosine transform of a block's rows, then of its columns; `inverse` reverses it. */
 function transformed(block, inverse) {
   let values = block;
   for (let pass = 0; pass < 2; pass++) {
@@ -41,7 +41,7 @@ function transformed(block, inverse) {
         for (let from = 0; from < BLOCK; from++) {
           sum += values[line * BLOCK + from] * (inverse ? COSINES[from][to] : COSINES[to][from]);
         }
-        // Transposed, so that the second pass takes the columns.
+        // Transposed, so that the second pass transforms the columns.
         next[to * BLOCK + line] = sum;
       }
     }
@@ -50,7 +50,7 @@ function transformed(block, inverse) {
   return values;
 }
 
-/** A plane in blocks, each rounded to the table's steps; at the frame's edge the last pixel repeats. */
+/** A plane in blocks, each rounded to the steps of the table; the last pixel repeats at the frame's edge. */
 function quantised({ width, height, data }, table) {
   const out = new Float64Array(data.length);
   for (let top = 0; top < height; top += BLOCK) {
@@ -70,7 +70,7 @@ function quantised({ width, height, data }, table) {
   return { width, height, data: out };
 }
 
-/** Means of two by two pixels. */
+/** Means of 2x2 pixels. */
 function halved({ width, height, data }) {
   const [columns, rows] = [Math.ceil(width / 2), Math.ceil(height / 2)];
   const at = (column, row) => data[Math.min(row, height - 1) * width + Math.min(column, width - 1)];
@@ -81,7 +81,7 @@ function halved({ width, height, data }) {
   return { width: columns, height: rows, data: means };
 }
 
-/** Twice as large, bilinear between the pixels' middles. */
+/** Doubles the size by bilinear interpolation between pixel centres. */
 function doubled({ width, height, data }, size) {
   const at = (column, row) =>
     data[Math.min(Math.max(row, 0), height - 1) * width + Math.min(Math.max(column, 0), width - 1)];
@@ -94,7 +94,7 @@ function doubled({ width, height, data }, size) {
   });
 }
 
-/** A linear level, 0 .. 1, as sRGB of 255 levels. */
+/** sRGB value of a linear level, 0 .. 1, in 255 steps. */
 export const encoded = (linear) => 255 * (linear <= 0.0031308 ? 12.92 * linear : 1.055 * linear ** (1 / 2.4) - 0.055);
 
 /** Linear RGB, 0 .. 1, as the R, G, B, A of a decoded JPEG of this quality. */

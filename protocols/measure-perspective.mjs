@@ -1,12 +1,12 @@
-// Pairs of two pinhole cameras: made, told a start that is off, run, and how far their ends are off.
+// Pairs of two pinhole cameras: makes them, runs them from an inaccurate initial pose or from none, and measures the errors.
 import { chance, drawGaussian, seedOf } from "./numbers.mjs";
 import { meshOf, middleOf, moved, pointAt, seen, shade, times } from "./perspective.mjs";
 import { IDENTITY, aboutAxis, aboutY, degreesBetween, offBy, product, transpose, turn } from "./rotations.mjs";
 import { judged, optionsOf, withRun } from "./runs.mjs";
 
-/** Neighbours of a depth map farther apart than this belong to different parts, metres. */
+/** Neighbouring points of a depth map farther apart than this belong to different parts, metres. */
 const JUMP = 0.01;
-/** Side of the raster that a surface's mesh is made from, and the jump that a mesh does not bridge, in its samples. */
+/** Side of the raster for a surface's mesh, and the smallest jump in depth that the mesh does not bridge, in samples. */
 const RASTER = 256;
 const RELIEF_JUMP = 12;
 /** Limits of a pinhole scene, degrees. */
@@ -18,13 +18,13 @@ function direction({ gaussian }) {
   return times(vector, 1 / Math.hypot(...vector));
 }
 
-/** The pose whose rotation about a point leaves the point where it is. */
+/** The pose that rotates about a point and leaves that point in place. */
 const about = (middle, rotation) => ({
   rotation,
   translation: middle.map((value, axis) => value - turn(rotation, middle)[axis]),
 });
 
-/** A start that is off by a turn about the depth camera and a shift; chance follows from the cell's name. */
+/** An initial pose that is rotated about the depth camera and shifted; the seed follows from the cell's name. */
 function startOff(truth, { degrees, metres }, name) {
   const dice = chance(seedOf(name));
   const rotation = product(truth.rotation, aboutAxis(direction(dice), degrees));
@@ -32,7 +32,7 @@ function startOff(truth, { degrees, metres }, name) {
   return { scale: 1, rotation, translation: truth.translation.map((value, axis) => value + shift[axis]) };
 }
 
-/** How far the object's middle and its turn are off: in the image's plane, and out of it. */
+/** Errors of the object's middle and of its rotation, in the image plane and out of it. */
 function offsets(pose, truth, middle) {
   const [x, y, z] = moved(pose, middle).map((value, axis) => 1000 * (value - moved(truth, middle)[axis]));
   const turned = offBy(pose.rotation, truth.rotation);
@@ -59,7 +59,7 @@ function run(cell, api, { image, depth, truth }) {
   }));
 }
 
-/** The depth of a capture as from `degrees` further left, about the object's middle. */
+/** The depth of a capture as seen from `degrees` further left, about the object's middle. */
 function seenFrom(depth, _degrees, truth) {
   const { width, height, data, camera, unit, mask } = depth;
   const points = Array.from(data, (value, index) =>
@@ -79,13 +79,13 @@ export async function measureCapture(cell, api, library) {
   return run(cell, api, { image, depth: cell.turned === 0 ? depth : seenFrom(depth, cell.turned, truth), truth });
 }
 
-/** Colour and depth of a statue, whose truth is in the library. */
+/** A statue's colour and depth; the library has the true pose. */
 export async function measureStatue(cell, api, library) {
   const { view, ...pair } = library.statue(cell.pair);
   return { view, ...(await run(cell, api, pair)) };
 }
 
-/** A surface's mesh, metres: `height` high, its middle at the origin. */
+/** A surface's mesh in metres, `height` high, with its middle at the origin. */
 function meshOfSurface(api, library, surface, height) {
   const { depth } = api.sample({
     surface: library.surface(surface),
@@ -104,7 +104,7 @@ function meshOfSurface(api, library, surface, height) {
   return meshOf(RASTER, centred, RELIEF_JUMP * metres);
 }
 
-/** What the files say of two cameras, one of which has another focal length by a share between two. */
+/** Two cameras as the files state them: one of them, at random, has a focal length that is wrong by a share in the given range. */
 function misstated(camera, [least, most], dice) {
   const factor = 1 + (dice.below(2) === 1 ? 1 : -1) * dice.uniform(least, most);
   const other = { ...camera, fx: factor * camera.fx, fy: factor * camera.fy };

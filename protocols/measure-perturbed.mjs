@@ -1,29 +1,29 @@
-// A run, and the same run on slightly changed input.
+// A run, and the same run with slightly changed input.
 import { chance, seedOf } from "./numbers.mjs";
 import { degreesBetween } from "./rotations.mjs";
 
-/** Share of the depth pixels that is left out. */
+/** Share of the depth pixels that are removed. */
 const LEFT_OUT = 0.01;
 
-/** Without some depth pixels, chosen at random. */
+/** Removes depth pixels at random. */
 function withoutPoints({ image, depth }, dice) {
   const data = depth.data.map((value) => (dice.uniform() < LEFT_OUT ? 0 : value));
   return { image, depth: { ...depth, data } };
 }
 
-/** With the mask of the image, or else that of the depth map, shifted right by a pixel. */
+/** Shifts the mask of the image, or else of the depth map, right by a pixel. */
 function withShiftedMask({ image, depth }) {
   const shifted = (view) => ({
     ...view,
     mask: view.mask.map((_, index) => (index % view.width > 0 ? view.mask[index - 1] : 0)),
   });
   if (image.mask) return { image: shifted(image), depth };
-  // Without any mask the change would be none, and the pose could not move.
+  // Without any mask nothing would change, and the pose could not move.
   if (!depth.mask) throw new Error("neither view has a mask to shift");
   return { image, depth: shifted(depth) };
 }
 
-/** Without the first row of the image. */
+/** Removes the first row of the image. */
 function withoutRow({ image, depth }) {
   const { width, height, data, mask, camera } = image;
   const channels = data.length / (width * height);
@@ -35,7 +35,7 @@ function withoutRow({ image, depth }) {
 
 const CHANGES = { points: withoutPoints, mask: withShiftedMask, row: withoutRow };
 
-/** The package with an estimator that changes its input first. */
+/** The package with an estimator that first changes its input. */
 function changing(api, change, seed) {
   class Estimator extends api.Estimator {
     constructor(image, depth, options) {
@@ -46,7 +46,7 @@ function changing(api, change, seed) {
   return { ...api, Estimator };
 }
 
-/** How far each change moves the rotation, and whether that is less than its sigma: the norm of the axes' sigmas. `measure` runs any cell. */
+/** How far each change rotates the pose, and whether by less than its sigma, the norm of the axes' sigmas. `measure` runs any cell. */
 export async function measurePerturbed({ id, of }, api, library, measure) {
   const plain = await measure(of, api, library);
   const sigma = plain.sigmas ? Math.hypot(...plain.sigmas) : null;

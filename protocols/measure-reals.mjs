@@ -1,4 +1,4 @@
-// Real pairs and photographs: what a library hands over, turned, resampled and run.
+// Real pairs and photographs from a library: turned, resampled and run.
 import { direction } from "./anywhere.mjs";
 import { chance, seedOf } from "./numbers.mjs";
 import { aboutAxis, aboutY, degreesBetween, product, transpose, turn } from "./rotations.mjs";
@@ -6,7 +6,7 @@ import { requestOf } from "./scenes.mjs";
 import { judged, optionsOf, withRun } from "./runs.mjs";
 import { normalDegrees } from "./measure-shapes.mjs";
 
-/** The points of a depth map in metres, NaN where there is none. */
+/** The points of a depth map in metres; NaN where depth is missing. */
 function cloudOf({ width, height, data, camera, unit, mask }) {
   const points = new Float32Array(3 * width * height).fill(NaN);
   for (let index = 0; index < width * height; index++) {
@@ -18,7 +18,7 @@ function cloudOf({ width, height, data, camera, unit, mask }) {
   return points;
 }
 
-/** The depth view as from `degrees` further left: an organised cloud, turned about the mean of its points. */
+/** The depth view as seen from `degrees` further left: an organised cloud, rotated about the mean of its points. */
 function turnedDepth({ width, height, ...depth }, degrees) {
   const points = cloudOf({ width, height, ...depth });
   const measured = [...Array(width * height).keys()].filter((index) => Number.isFinite(points[3 * index]));
@@ -63,14 +63,14 @@ export async function measurePair(cell, api, library) {
   return withRun(api, { image, depth: given }, optionsOf(cell.options, {}), look, atStart);
 }
 
-/** Least share of a pixel's footprint on the photograph's object. */
+/** Smallest share of a pixel's footprint that must lie on the photographed object. */
 const COVERED = 0.5;
 
-/** The photograph on the pixels of the made view: means over what each pixel covers. */
+/** The photograph resampled to the pixels of the rendered view: means over each pixel's footprint. */
 export function onto(size, { width, height, data, mask, place }, made) {
   const colours = new Float32Array(3 * size * size);
   const inside = new Uint8Array(size * size);
-  // The relief spans 256 samples, the view `size` pixels; the library says where a sample lies in the photograph.
+  // The relief spans 256 samples, the view `size` pixels; the library gives the position of a sample in the photograph.
   const step = 256 / size;
   const reach = (0.5 * step) / place.samplesPerPixel;
   for (let index = 0; index < size * size; index++) {
@@ -101,7 +101,7 @@ export function onto(size, { width, height, data, mask, place }, made) {
 /** Luminance of linear R, G, B. */
 const LUMINANCE = [0.2126, 0.7152, 0.0722];
 
-/** Photographs under one lamp each as the channels of one image. */
+/** Combines photographs under one lamp each as the channels of one image. */
 function channels(photographs) {
   const grey = ({ data }, index) =>
     LUMINANCE.reduce((sum, weight, channel) => sum + weight * data[3 * index + channel], 0);
@@ -109,7 +109,7 @@ function channels(photographs) {
   return { ...photographs[0], data };
 }
 
-/** A start turned by so many degrees about the object's middle; chance follows from the cell's name. */
+/** An initial pose that is rotated about the object's middle; the seed follows from the cell's name. */
 function startOff({ rotation, scale, translation }, depth, degrees, name) {
   const [middle, { width, height }] = [[0, 0, 0], depth];
   let count = 0;
@@ -138,7 +138,7 @@ export async function measurePhotograph(cell, api, library) {
   );
 }
 
-/** Correlation of two fields of log colours and their root mean square difference, each channel less its mean over the pixels. */
+/** Correlation of two fields of log colours and their root mean square difference, after removing each channel's mean over the pixels. */
 function compared(found, truth, pixels) {
   const squares = { both: 0, found: 0, truth: 0, off: 0 };
   const mean = (field, channel) => pixels.reduce((sum, pixel) => sum + field[3 * pixel + channel], 0) / pixels.length;
@@ -161,7 +161,7 @@ export async function measureAlbedo(cell, api, library) {
   const { size, surface } = cell.scene;
   const image = onto(size, library.photograph(surface, cell.photograph), made);
   const paint = onto(size, library.photograph(surface, "lab_reflectance"), made);
-  // Of a picture of the shading alone all is one paint.
+  // A picture of the shading alone has a single albedo.
   const isPainted = cell.photograph !== "lab_shading";
   const truth = paint.data.map((value) => (isPainted ? Math.log(value) : 0));
   return withRun(

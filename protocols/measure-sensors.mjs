@@ -1,18 +1,18 @@
-// Depth with the flaws of sensors, refined at the known pose, against its truth.
+// Depth with the flaws of sensors, refined at the known pose and compared with its truth.
 import { chance, mean, median, seedOf } from "./numbers.mjs";
 import { onto } from "./measure-reals.mjs";
 import { requestOf } from "./scenes.mjs";
 import { optionsOf, withRun } from "./runs.mjs";
 
-/** A structured-light sensor: focal length in pixels, baseline in metres, steps of its disparity in a pixel. */
+/** A structured-light sensor: focal length in pixels, baseline in metres, disparity steps per pixel. */
 export const SENSOR = { focalLength: 580, baseline: 0.075, steps: 8 };
-/** Width and distance of the objects before it, metres; the objects span so much of their view. */
+/** Width and distance of the objects, metres, and the share of their view that they span. */
 const OBJECT = { width: 0.2, distance: 0.8, span: 230 / 256 };
-/** Noise of the scans in pixel lengths, how far it is smoothed sideways and its steps; and the noise of log S. */
+/** Noise of the scans in pixel lengths, its lateral blur in pixels, and the depth steps; noise of log S. */
 const SCAN = { noise: 0.7, blur: 0.8, step: 0.8, colour: 0.01 };
-/** The mitten's truth is smoothed by this many pixels: it comes in the steps of the frames. */
+/** Blur of the mitten's truth, pixels: the truth has the same depth steps as the frames. */
 const TRUTH_BLUR = 1.5;
-/** Harmonics: constants of the image model. */
+/** Constants of the image model's harmonics. */
 const [C1, C2, C3, C4, C5] = [0.429043, 0.511664, 0.743125, 0.886227, 0.247708];
 
 const IDENTITY = { scale: 1, rotation: [1, 0, 0, 0, 1, 0, 0, 0, 1], translation: [0, 0, 0] };
@@ -41,7 +41,7 @@ export function blurred({ width, height, data }, sigma) {
   return Float64Array.from(data, (value, index) => (Number.isFinite(value) ? values[index] / shares[index] : NaN));
 }
 
-/** Errors before and after over the pixels that were measured and have a truth. */
+/** Errors before and after refinement, over measured pixels with a truth. */
 async function refined(api, image, depth, truth, unit, options) {
   const known = [...truth.keys()].filter(
     (index) => Number.isFinite(truth[index]) && depth.data[index] > 0 && (!depth.mask || depth.mask[index]),
@@ -92,7 +92,7 @@ export async function measureKinect(cell, api, library) {
   );
 }
 
-/** log S of the image model: nine coefficients for each channel. */
+/** log S by the image model: nine coefficients for each channel. */
 function logShading([x, y, z], light) {
   const basis = [
     C4,

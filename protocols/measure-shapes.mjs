@@ -1,13 +1,13 @@
-// Normals and depth against the truth of a made scene.
+// Compares normals and depth with the truth of a rendered scene.
 import { chance, mean, median, rms } from "./numbers.mjs";
 import { angleBetween, degreesBetween } from "./rotations.mjs";
 import { requestOf } from "./scenes.mjs";
 import { judged, optionsOf, withRun } from "./runs.mjs";
 
-/** Beyond any distance in a view: a prior is given where it is given, however wrong the surface still is. */
+/** Larger than any distance in a view: a given prior applies however wrong the surface still is. */
 const ANYWHERE = 1e6;
 
-/** Depth error, root mean square, up to the constant that parallel rays cannot see. */
+/** Root mean square depth error, up to a constant that parallel rays do not determine. */
 export function depthRmse(found, truth) {
   const off = [...truth.keys()].map((index) => found[index] - truth[index]).filter(Number.isFinite);
   const middle = median(off);
@@ -33,7 +33,7 @@ export async function measureIterations(cell, { sample, Estimator }, library) {
     let { report } = estimator;
     while (report.status === "running") {
       report = estimator.step();
-      // Slices of the search are no iterations.
+      // Slices of the search are not iterations.
       if (report.iteration === (iterations.at(-1)?.iteration ?? 0)) continue;
       iterations.push({
         iteration: report.iteration,
@@ -47,7 +47,7 @@ export async function measureIterations(cell, { sample, Estimator }, library) {
   }
 }
 
-/** The same pixels come first for every share, so that more of them is never less. */
+/** Chooses pixels at random in an order that does not depend on the share, so that a larger share contains a smaller one. */
 export function chosenPixels(mask, share, seed) {
   const dice = chance(seed);
   const order = [...mask.keys()].filter((index) => mask[index]).map((index) => [dice.uniform(), index]);
@@ -57,10 +57,10 @@ export function chosenPixels(mask, share, seed) {
   return chosen;
 }
 
-/** Figure 5: the true normals go in as the depth view's own, in some pixels, under a pose that is known and held. */
+/** Figure 5: the depth view gets the true normals in some pixels; the pose is known and fixed. */
 export async function measureShading(cell, api, library) {
   const made = api.sample(requestOf(cell.scene, library));
-  // A depth map without a pixel is refused: for none of them the prior's weight is zero.
+  // A depth map without pixels is refused; with a share of zero, the prior's weight is zero instead.
   const none = cell.fraction === 0;
   const mask = none ? made.depth.mask : chosenPixels(made.depth.mask, cell.fraction, cell.scene.seed);
   const depth = { ...made.depth, mask, normals: made.truth.depthNormals };
@@ -68,7 +68,7 @@ export async function measureShading(cell, api, library) {
     ...optionsOf({ ...cell.options, start: "truth" }, made),
     ...(none ? { lambda: { prior: 0 } } : {}),
     correspondenceDistance: ANYWHERE,
-    // Single pixels are what trimming is against.
+    // Trimming would remove single pixels.
     trim: false,
   };
   return withRun(api, { image: made.image, depth }, options, (report, estimator, milliseconds) => ({

@@ -1,4 +1,4 @@
-// Runs one cell through the public contract and measures what came out. `api` is the package, `library` has the data.
+// Runs one cell through the public contract and measures the results. `api` is the package, `library` has the data.
 import { sceneOf } from "./anywhere.mjs";
 import { judged, optionsOf, withRun } from "./runs.mjs";
 import { requestOf } from "./scenes.mjs";
@@ -37,7 +37,7 @@ async function measureRandom(cell, api, library) {
 
 const keep = (report, _, milliseconds) => ({ report, milliseconds });
 
-/** Pose under the present light, light under the present pose, and again, from where the search ends. */
+/** Alternates between the pose for the present light and the light for the present pose, beginning at the pose of the search. */
 async function alternate(api, pair, options, rounds) {
   const start = performance.now();
   const opening = new api.Estimator(pair.image, pair.depth, options);
@@ -82,6 +82,6 @@ const KINDS = {
   scan: measureScan,
 };
 
-/** The figures of a cell, as plain JSON; whatever goes wrong is thrown. */
+/** The figures of a cell as plain JSON; any error is thrown. */
 export const measure = (cell, api, library) =>
   cell.kind === "perturbed" ? measurePerturbed(cell, api, library, measure) : KINDS[cell.kind](cell, api, library);

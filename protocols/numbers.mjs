@@ -1,4 +1,4 @@
-// Chance that follows from a seed, and the statistics that the tables speak of. Nothing here knows where it runs.
+// Random numbers from a seed, and the statistics of the tables. Independent of the platform.
 
 /** Random numbers that are the same everywhere: sfc32, seeded by splitmix. */
 export function chance(seed) {
@@ -27,14 +27,14 @@ export function chance(seed) {
   };
 }
 
-/** A seed of its own for each name (FNV-1a), so that no two cells share their noise. */
+/** A separate seed for each name (FNV-1a), so that no two cells share their noise. */
 export function seedOf(name) {
   let hash = 0x811c9dc5;
   for (const letter of name) hash = Math.imul(hash ^ letter.charCodeAt(0), 0x01000193) >>> 0;
   return hash;
 }
 
-/** Lower triangle of a symmetric positive definite matrix, rows in lists. */
+/** Lower triangle of the Cholesky factor of a symmetric positive definite matrix, as a list of rows. */
 function cholesky(matrix) {
   const lower = matrix.map((row) => row.map(() => 0));
   for (let i = 0; i < matrix.length; i++) {
@@ -55,10 +55,10 @@ export function drawGaussian({ mean, covariance }, { gaussian }) {
 
 const isNumber = (value) => typeof value === "number" && Number.isFinite(value);
 
-/** Sorted, without those that have no value. */
+/** The values in order, without missing ones. */
 const sorted = (values) => values.filter(isNumber).sort((a, b) => a - b);
 
-/** Linear between neighbours; null where there is no value. */
+/** The quantile, interpolated linearly; null if there are no values. */
 export function quantile(values, share) {
   const all = sorted(values);
   if (all.length === 0) return null;
@@ -75,7 +75,7 @@ export function mean(values) {
   return all.length === 0 ? null : all.reduce((sum, value) => sum + value, 0) / all.length;
 }
 
-/** Share of the items that pass; null where there are none. */
+/** Share of the items that pass; null for an empty list. */
 export const share = (items, passes) => (items.length === 0 ? null : items.filter(passes).length / items.length);
 
 export const rms = (values) => (values.length === 0 ? null : Math.sqrt(mean(values.map((value) => value * value))));

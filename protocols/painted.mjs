@@ -1,4 +1,4 @@
-// Renders of painted objects: two to eight colours in stripes or patches, nothing known.
+// Renders of objects with varying albedo: two to eight colours in stripes or patches, nothing known.
 import { drawScene } from "./anywhere.mjs";
 import { chance } from "./numbers.mjs";
 import { randomRow } from "./counts.mjs";
@@ -7,11 +7,11 @@ import { judged, optionsOf, withRun } from "./runs.mjs";
 
 const SCENES = 60;
 const QUICK_SCENES = 2;
-/** Paints of an object, their darkest channel, and the width of a stripe in pixels. */
+/** Number of albedos of an object, their darkest channel, and the width of a stripe in pixels. */
 const PAINTS = [2, 8];
 const DARKEST = 0.15;
 const STRIPES = [5, 20];
-/** Share of the objects that have stripes; the others have patches. */
+/** Share of the objects with stripes; the others have patches. */
 const STRIPED = 0.4;
 
 export const painted = {
@@ -29,7 +29,7 @@ export const painted = {
   rows: (results) => randomRow(results.map(({ cell, result }) => ({ ...cell.row, ...result }))),
 };
 
-/** Paints the linear RGB colours of an image so wide, in place; stripes, or patches, or either of them by chance. */
+/** Multiplies linear RGB colours by varying albedo, in place, for an image of this width; `striped` undefined chooses at random. */
 export function paint(colours, width, dice, striped) {
   const palette = Array.from({ length: PAINTS[0] + dice.below(PAINTS[1] - PAINTS[0] + 1) }, () =>
     [0, 1, 2].map(() => dice.uniform(DARKEST, 1)),

@@ -1,4 +1,4 @@
-// Meshes before pinhole cameras: what a depth camera sees of them from elsewhere. Plain numbers, metres and pixels.
+// Views of meshes by pinhole cameras. Plain numbers, metres and pixels.
 import { turn } from "./rotations.mjs";
 
 const cross = ([a, b, c], [d, e, f]) => [b * f - c * e, c * d - a * f, a * e - b * d];
@@ -7,10 +7,10 @@ const plus = (a, b) => a.map((value, axis) => value + b[axis]);
 export const times = (a, factor) => a.map((value) => value * factor);
 const unit = (a) => times(a, 1 / Math.hypot(...a));
 
-/** Where a point goes under a pose. */
+/** A point transformed by a pose. */
 export const moved = ({ rotation, translation }, point) => plus(turn(rotation, point), translation);
 
-/** The point that a pixel sees at a depth. */
+/** The point at a depth on a pixel's ray. */
 export const pointAt = ({ fx, fy, cx, cy }, [column, row], z) => [((column - cx) * z) / fx, ((row - cy) * z) / fy, z];
 
 /** The mean of a depth map's points. */
@@ -24,7 +24,7 @@ export function middleOf({ width, data, camera, unit: length = 1, mask }) {
   return times(sum, 1 / count);
 }
 
-/** The mesh of a raster of points, null where there is none: two triangles a cell, none across a jump along z. */
+/** The mesh of a raster of points (null where missing): two triangles a cell, none across a jump along z. */
 export function meshOf(width, points, jump) {
   const triangles = [];
   const add = (...corners) => {
@@ -39,14 +39,14 @@ export function meshOf(width, points, jump) {
   const normals = points.map(() => [0, 0, 0]);
   for (const corners of triangles) {
     const [a, b, c] = corners.map((corner) => points[corner]);
-    // Towards the camera of the raster, by its winding; as long as twice the area.
+    // Points towards the raster's camera, by the winding; its length is twice the area.
     const normal = cross(minus(c, a), minus(b, a));
     for (const corner of corners) normals[corner] = plus(normals[corner], normal);
   }
   return { points, normals, triangles };
 }
 
-/** Depth, NaN where nothing is seen, and unit normals, by a z-buffer; interpolated as perspective asks for. */
+/** Depth (NaN where nothing is seen) and unit normals, by a z-buffer, with perspective-correct interpolation. */
 export function seen({ points, normals, triangles }, { fx, fy, cx, cy }, { width, height }, pose) {
   const placed = points.map((point) => point && moved(pose, point));
   const turned = normals.map((normal) => turn(pose.rotation, normal));

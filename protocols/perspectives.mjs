@@ -1,7 +1,7 @@
-// Two pinhole cameras: rendered pairs, and registered captures whose depth is seen again from elsewhere.
+// Two pinhole cameras: rendered pairs, and registered captures whose depth is rendered again from elsewhere.
 import { FROM_ANYWHERE, NOISE } from "./scenes.mjs";
 
-/** Of `rgbd_object` two frames of each; colour and depth of one frame belong together. Outlines were tuned on `tuned`. */
+/** Two frames of each object of `rgbd_object`; colour and depth of one frame belong together. Silhouette registration was tuned on `tuned`. */
 export const CAPTURES = [
   ...["coffee_mug_1", "bowl_1", "cap_1", "cereal_box_1"].flatMap((object) =>
     [1, 2].map((frame) => ({ name: object, frame, tuned: frame === 1 })),
@@ -11,9 +11,9 @@ export const CAPTURES = [
   { name: "mitten_rgbd", frame: 1, tuned: true },
   { name: "mitten_rgbd", frame: 14, tuned: false },
 ];
-/** Degrees from which the depth is seen. */
+/** Rotations of the depth's viewpoint, degrees. */
 const TURNS = [0, 20, 40];
-/** How far a told start is off: about the sensor, and in a straight line. */
+/** Error of a given initial pose: a rotation about the sensor, and a shift. */
 const OFF_DEGREES = 3;
 const OFF_METRES = 0.02;
 
@@ -42,15 +42,15 @@ export const rgbd = {
 
 const SCENES = 50;
 const QUICK_SCENES = 2;
-/** Degrees about the sensor that a told start is off by; null: nothing is told. */
+/** Errors of a given initial pose about the sensor, degrees; null: no initial pose. */
 export const STARTS = [null, 1, 2, 4, 8];
-/** The object's height and its distance, metres; noise of its depth. */
+/** The object's height and distance, metres; noise of its depth, metres. */
 const HEIGHT = 0.2;
 const DISTANCE = 0.8;
 const DEPTH_NOISE = 0.0005;
 const SIZE = { width: 160, height: 120 };
 
-/** A scene of two pinhole cameras, but for its seed. */
+/** A scene of two pinhole cameras without its seed. */
 export const PINHOLE = { size: SIZE, height: HEIGHT, distance: DISTANCE, noise: NOISE, depthNoise: DEPTH_NOISE };
 
 const pinholeCell = (kit, seed, degrees) => ({

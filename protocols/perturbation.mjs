@@ -1,11 +1,11 @@
-// Runs of other tables, and the same runs without one per cent of the depth pixels, with a shifted mask, or without a row of the image.
+// Runs of other tables, repeated without one per cent of the depth pixels, with a shifted mask, and without a row of the image.
 import { random } from "./anywhere.mjs";
 import { painted } from "./painted.mjs";
 import { pinhole, rgbd } from "./perspectives.mjs";
 import { photographs } from "./reals.mjs";
 import { statue } from "./statue.mjs";
 
-/** What takes part of each kind: the cells that fit, every so many-th of them, and so many at most. */
+/** The cells of each kind: those that fit, every n-th of them, up to a maximum. */
 const KINDS = [
   { kind: "random", table: random, fits: () => true, every: 25, most: 12 },
   { kind: "painted", table: painted, fits: () => true, every: 10, most: 6 },

@@ -1,15 +1,15 @@
-// Tables 1 and 2 and Figure 6: one pose to find in each cell.
+// Tables 1 and 2 and Figure 6: each cell has one pose to find.
 import { BETAS, COLOURFUL, FROM_ANYWHERE, NOISE, OVERLAPS, PAPER_TABLE_1, paperTable2 } from "./scenes.mjs";
 import { paperError } from "./rotations.mjs";
 import { seedOf } from "./numbers.mjs";
 
-/** The paper's own side of a view. */
+/** Side of a view in the paper. */
 const SMALL = 32;
 const SIZES = [128, 64];
-/** The light is told: the paper can't do without. */
+/** With the light known, which the paper requires. */
 const TOLD = { ...FROM_ANYWHERE, light: "known", scale: 1 };
 
-/** Either reading of the paper's protocol: "2A" the bare grid, "2B" what a camera sees. */
+/** Both readings of the paper's protocol: "2A" the bare grid, "2B" what a camera sees. */
 function table1Cell({ main }, protocol, sign) {
   const view = protocol === "2A" ? { protocol: "grid" } : { size: SMALL };
   return {
@@ -17,7 +17,7 @@ function table1Cell({ main }, protocol, sign) {
     kind: "pose",
     row: { protocol, sign, paper: { ...PAPER_TABLE_1, beta: sign * PAPER_TABLE_1.beta } },
     scene: { surface: main, light: COLOURFUL, ...view, angles: { beta: 20 * sign } },
-    // The paper solves for the scale as well.
+    // The paper also solves for the scale.
     options: { ...TOLD, scale: "free" },
   };
 }
@@ -68,7 +68,7 @@ function table2BCell({ main }, size, lightName, light, beta, overlap) {
 
 const lightsOf = (kit) => [COLOURFUL, ...kit.naturals];
 
-/** A corner of the table at 64x64: both kinds of knowledge, easy and natural light, tilted a little and a lot. */
+/** A corner of the table at 64x64: light known and unknown, easy and natural, small and large tilt. */
 const quick2B = (kit) =>
   [COLOURFUL, kit.naturals[0]].flatMap((lightName) =>
     ["known", "unknown"].flatMap((light) =>
@@ -95,13 +95,13 @@ export const table2B = {
   cells: (kit, quick) => (quick ? quick2B(kit) : full2B(kit)),
 };
 
-/** Figure 6 runs along a row of Table 2; the paper's reading, and beside it what a camera sees. */
+/** Figure 6 runs along a row of Table 2: in the paper's reading, and next to it as a camera sees it. */
 const FIGURE_6_BETA = 40;
 
 export const figure6 = {
   name: "figure6",
   title: `Figure 6: error against overlap at beta = ${FIGURE_6_BETA}`,
-  // The same cells as in Table 2, so that they run once.
+  // The same cells as in Table 2, so that they run only once.
   cells: (kit, quick) =>
     (quick ? [0.25, 1] : OVERLAPS).flatMap((overlap) => [
       table2ACell(kit, FIGURE_6_BETA, overlap),

@@ -1,14 +1,14 @@
-// What cameras have taken: Table 3 and Figure 7 on real pairs, and real photographs of scanned objects.
+// Camera images: Table 3 and Figure 7 on real pairs, and real photographs of scanned objects.
 import { FROM_ANYWHERE, PAPER_TABLE_3 } from "./scenes.mjs";
 
-/** The paper's frames are not public; these stand in, cereal_box for its food_box. */
+/** Replacements for the paper's frames, which are not public; cereal_box stands for its food_box. */
 const PAIRS = ["cereal_box_1", "coffee_mug_1", "bowl_1", "cap_1", "vase_rgbd"];
 /**
- * Degrees between colour and depth, as the two frames of a pair already have them (registered for the vase): consecutive frames
- * are so close that no estimate at all passes.
+ * Degrees between colour and depth in the two frames of a pair (registered for the vase): consecutive frames are so close that the
+ * identity, without any estimate, would pass.
  */
 const KNOWN_TURN = { coffee_mug_1: 0.15, bowl_1: 0.09, cap_1: 0.5, cereal_box_1: 2.26, vase_rgbd: 0 };
-/** So the depth is seen from further away as well: the cloud, turned about its centre. */
+/** Additional rotations of the depth's viewpoint, degrees: the cloud is rotated about its centre. */
 const TURNS = [0, 20];
 
 const pairCell = (name, turned) => ({
@@ -50,7 +50,7 @@ export const table3 = {
 export const figure7 = {
   name: "figure7",
   title: "Figure 7: holes of the real depth maps, and by how many degrees the refinement turned their normals (mean)",
-  // Runs of Table 3.
+  // The runs of Table 3.
   cells: (kit, quick) => pairCells(kit, quick, [0]),
   rows: (results) =>
     results.map(({ cell, result: { holesBefore, holesAfter, normalChange, status } }) => ({
@@ -64,8 +64,8 @@ export const figure7 = {
 
 export const PHOTOGRAPH_SIZE = 96;
 /**
- * `lab_diffuse` has albedo and cast shadows, `lab_shading` cast shadows alone, `render` neither (natural light A): the
- * differences are what each of them costs.
+ * `lab_diffuse` has albedo and cast shadows, `lab_shading` only cast shadows, `render` neither (natural light A): the
+ * differences show the cost of each.
  */
 export const IMAGES = ["lab_diffuse", "lab_shading", "render"];
 export const PHOTOGRAPH_BETAS = [0, 20, 40, 60];
@@ -90,7 +90,7 @@ export const photographs = {
         ),
 };
 
-/** Albedo and shading, cast shadows included; the same shading alone, of which all is one paint; paint under an exact natural light. */
+/** Albedo and shading with cast shadows; the same shading with a single albedo; varying albedo under an exact natural light. */
 export const PAINTS = ["lab_diffuse", "lab_shading", "natural_diffuse"];
 
 const albedoCell = (object, image, pose) => ({

@@ -1,4 +1,4 @@
-// Rotations as nine numbers, row-major, and what the tables measure of them. Degrees throughout.
+// Rotations as nine numbers, row-major, and the measures of the tables. Degrees throughout.
 
 const DEGREE = Math.PI / 180;
 export const IDENTITY = [1, 0, 0, 0, 1, 0, 0, 0, 1];
@@ -24,20 +24,20 @@ export function aboutAxis([x, y, z], degrees) {
 
 export const aboutY = (degrees) => aboutAxis([0, 1, 0], degrees);
 
-/** Angles of R = Rx(alpha) Ry(beta) Rz(gamma), away from beta = 90. */
+/** Angles of R = Rx(alpha) Ry(beta) Rz(gamma); not valid at beta = 90. */
 export const anglesOf = (r) => ({
   alpha: Math.atan2(-r[5], r[8]) / DEGREE,
   beta: Math.asin(Math.min(1, Math.max(-1, r[2]))) / DEGREE,
   gamma: Math.atan2(-r[1], r[0]) / DEGREE,
 });
 
-/** Axis times angle of the rotation that leads from `truth` to `found`, in the colour view's frame. */
+/** Rotation vector (axis times angle) from `truth` to `found`, in the colour view's frame. */
 export function offBy(found, truth) {
   const r = product(found, transpose(truth));
   const axis = [r[7] - r[5], r[2] - r[6], r[3] - r[1]];
   const sine = Math.hypot(...axis) / 2;
   const angle = Math.atan2(sine, (r[0] + r[4] + r[8] - 1) / 2) / DEGREE;
-  // Near half a turn the axis fades from the differences, and no table asks for it there.
+  // Near half a turn the differences no longer determine the axis; no table needs it there.
   return axis.map((part) => (sine > 0 ? (part / (2 * sine)) * angle : 0));
 }
 
@@ -48,9 +48,9 @@ export function degreesBetween(found, truth) {
   return Math.atan2(sine, (r[0] + r[4] + r[8] - 1) / 2) / DEGREE;
 }
 
-/** The paper's error: the spectral norm of the difference of two rotations so many degrees apart. */
+/** The paper's error: the spectral norm of the difference of two rotations this many degrees apart. */
 export const paperError = (degrees) => 2 * Math.sin((degrees * DEGREE) / 2);
-/** The other way round. */
+/** The inverse. */
 export const paperDegrees = (error) => (2 * Math.asin(Math.min(1, error / 2))) / DEGREE;
 
 /** Degrees between two directions. */

@@ -1,10 +1,10 @@
-// One run of an estimator, and what its report says of a pose whose truth is known.
+// One run of an estimator, and its report compared with the true pose.
 import { degreesBetween, offBy, paperError } from "./rotations.mjs";
 
-/** A run that takes longer hangs: the slowest real pair takes a tenth of it. */
+/** Limit of a run, ms: ten times that of the slowest real pair. A run that takes longer counts as hanging. */
 const LONGEST_RUN = 600_000;
 
-/** Options of a cell for this scene: the known light is the scene's, the start may be the truth. */
+/** Options of a cell for this scene: a known light is the scene's, the initial pose may be the truth. */
 export const optionsOf = ({ light, start, scale, ...rest }, made) => ({
   ...rest,
   light: light === "known" ? made.light : light,
@@ -12,7 +12,7 @@ export const optionsOf = ({ light, start, scale, ...rest }, made) => ({
   ...(scale === "free" ? {} : { scale }),
 });
 
-/** Makes an estimator, runs it to its end and hands it over before it is freed. */
+/** Makes an estimator, runs it to its end and passes it on before freeing it. */
 export async function withRun({ Estimator }, { image, depth }, options, look, onStart = () => {}) {
   const start = performance.now();
   const estimator = new Estimator(image, depth, options);
@@ -25,7 +25,7 @@ export async function withRun({ Estimator }, { image, depth }, options, look, on
   }
 }
 
-/** What a report says of a pose whose truth is known. */
+/** Compares a report with the true pose. */
 export function judged(report, truth, milliseconds) {
   const { pose, status, uncertainty, rivals, message, iteration } = report;
   const degrees = degreesBetween(pose.rotation, truth.rotation);

@@ -1,4 +1,4 @@
-// What the tables are made of: surfaces, lights, angles, overlaps, and the paper's own figures (docs/lab/protocols.md).
+// The ingredients of the tables: surfaces, lights, angles, overlaps, and the paper's own figures (docs/lab/protocols.md).
 
 export const BETAS = [20, 40, 60, 80, 90];
 export const OVERLAPS = [0.125, 0.25, 0.375, 0.5, 0.75, 1];
@@ -26,10 +26,10 @@ export const PAPER_TABLE_3 = { scale: 0.9972, alpha: -0.4813, beta: 17.3492, gam
 
 export const COLOURFUL = "colourful";
 
-/** Noise of log S where a protocol says nothing else. */
+/** Noise of log S unless a protocol states another. */
 export const NOISE = 0.01;
 
-/** Nothing known: every option as it is left by a user who has nothing but two files. */
+/** Nothing known: the options of a user who has only two files. */
 export const FROM_ANYWHERE = {
   start: "search",
   registration: "joint",
@@ -40,13 +40,13 @@ export const FROM_ANYWHERE = {
 
 /** Objects of `mit_berkeley`. */
 export const OBJECTS = ["raccoon", "frog2", "squirrel", "turtle"];
-/** Those, and six more of which the measured paint is there as well. */
+/** The same and six more, all with measured albedo. */
 export const PAINTED = [...OBJECTS, "deer", "panther", "sun", "paper1", "cup1", "teabag1"];
 export const BUILT_IN = ["bust", "vase", "ripples"];
 
 /**
- * Names of what there is: with other people's data the paper's bust and natural lights, without it what the package brings.
- * A cell names its surface and its light; the program that runs it has a library that knows these names (`requestOf`).
+ * Names of surfaces and lights: with the data beside the project the paper's bust and natural lights, otherwise those of the package.
+ * A cell names its surface and its light; the program that runs it has a library that resolves these names (`requestOf`).
  */
 export const kit = (complete, statues = []) =>
   complete
@@ -69,7 +69,7 @@ export const kit = (complete, statues = []) =>
         statues,
       };
 
-/** A scene of a cell as a request for `sample`: names become heights and coefficients where the package lacks them. */
+/** A cell's scene as a request for `sample`: names that the package lacks become heights and coefficients. */
 export const requestOf = ({ surface, light, ...rest }, library) => ({
   surface: library.surface(surface),
   light: typeof light === "string" ? library.light(light) : light,

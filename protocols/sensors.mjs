@@ -1,10 +1,10 @@
-// Depth as sensors give it, refined at the known pose: quantised, noisy, smoothed sideways.
+// Depth with the flaws of sensors, refined at the known pose: quantised, noisy, laterally blurred.
 import { FROM_ANYWHERE } from "./scenes.mjs";
 import { median } from "./numbers.mjs";
 
-/** One second frame of three of twenty; the truth is the median of all. */
+/** Three of twenty frames; the truth is the median of all twenty. */
 const FRAMES = [1, 7, 14];
-/** Objects of `mit_berkeley`: the first half is what constants were set on, the second what they are judged by; so for scans. */
+/** Objects of `mit_berkeley`: constants were set on the first half; the second half judges them. The same holds for scans. */
 const OBJECTS = [
   ...["raccoon", "squirrel", "deer", "sun", "paper1"].map((object) => ({ object, half: "tuned" })),
   ...["frog2", "turtle", "panther", "cup1", "teabag1"].map((object) => ({ object, half: "held out" })),
@@ -63,6 +63,6 @@ export const sensors = {
   },
 };
 
-/** Rows of a sensor, of one half or of both, and the median of their ratios. */
+/** Median of the ratios of a sensor's rows, of one half or of both. */
 export const medianRatio = (rows, sensor, half) =>
   median(rows.filter((row) => row.sensor === sensor && (!half || row.half === half)).map(({ ratio }) => ratio));

@@ -1,10 +1,10 @@
-// Figures 4 and 5 and the refinement: what becomes of normals and depth.
+// Figures 4 and 5 and the refinement: the errors of normals and depth.
 import { COLOURFUL, FROM_ANYWHERE, NOISE } from "./scenes.mjs";
 import { mean } from "./numbers.mjs";
 
 const KNOWN = { ...FROM_ANYWHERE, light: "known", scale: 1 };
 
-/** Table 1's run, and what the paper's own stages make of the same views from its own start. */
+/** Table 1's run, and the paper's own stages on the same views from the paper's initial pose. */
 const RUNS = [
   { run: "search", protocol: "2A", options: KNOWN },
   { run: "search", protocol: "2B", options: KNOWN },
@@ -33,7 +33,7 @@ export const figure4 = {
     ),
 };
 
-/** Shares of the pixels that are given the true normal: the paper's P_er. */
+/** Shares of the pixels with the true normal: the paper's P_er. */
 const FRACTIONS = [0, 0.2, 0.4, 0.6, 0.8, 1];
 const SHADING_NOISE = 0.02;
 
@@ -41,7 +41,7 @@ const figure5Cell = (surface, size, lightName, shading, fraction) => ({
   id: `figure5/${size}/${lightName}/${shading}/${fraction}`,
   kind: "shading",
   row: { size, lightName, shading, fraction },
-  // One scene, one noise and one order of the pixels for each size and light: what changes is the fraction alone.
+  // One scene, one noise and one order of the pixels for each size and light, so that only the fraction changes.
   scene: { surface, light: lightName, size, angles: {}, noise: SHADING_NOISE, seed: 5 },
   fraction,
   options: { ...KNOWN, registration: "fixed", shading },
@@ -61,7 +61,7 @@ export const figure5 = {
     ),
 };
 
-/** Means over draws (docs/lab/protocols.md): one draw says as much about its noise as about the method. */
+/** Seeds to average over (docs/lab/protocols.md): a single draw shows its noise as much as the method. */
 const REFINEMENT_SEEDS = [1, 2, 3, 4, 5];
 const DEPTH_NOISE = 0.5;
 const HOLES = 0.1;
@@ -92,7 +92,7 @@ export const refinement = {
         (quick ? [1] : REFINEMENT_SEEDS).map((seed) => refinementCell(main, lightName, pose, seed)),
       ),
     ),
-  /** Root mean squares over all seeds of a light and a knowledge of the pose. */
+  /** Root mean squares over all seeds, for each light with the pose known or estimated. */
   rows: (results) => {
     const groups = grouped(results, ({ cell }) => `${cell.row.lightName}/${cell.row.pose}`);
     return [...groups.values()].map((members) => {
@@ -119,7 +119,7 @@ export const refinement = {
   },
 };
 
-/** As `Map.groupBy`, which came after Node 20. */
+/** Like `Map.groupBy`, which Node 20 lacks. */
 function grouped(items, keyOf) {
   const groups = new Map();
   for (const item of items) groups.set(keyOf(item), [...(groups.get(keyOf(item)) ?? []), item]);

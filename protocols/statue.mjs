@@ -1,19 +1,19 @@
-// Two real views of one thing: colour and depth of a statue from different places, with the pose between them known.
+// Two real views of one object: colour and depth of a statue from different places, with the pose between them known.
 import { FROM_ANYWHERE } from "./scenes.mjs";
 
-/** Constants were set on pairs of these colour views. The others informed choices of the method, and are no independent test of it. */
+/** Constants were set on pairs of these colour views. The others informed choices of the method, so they are no independent test either. */
 const TUNED = ["c10", "c52"];
-/** How far an initial pose is off: about the sensor, and in a straight line. */
+/** Error of a given initial pose: a rotation about the sensor, and a shift. */
 const OFF = { degrees: 3, metres: 0.02 };
-/** Degrees between the viewing directions below which a pair is of the first, second or third kind. */
+/** Upper limits of the angle between the viewing directions for three groups of pairs, degrees. */
 export const VIEWS = [
   { name: "10-20", below: 25 },
   { name: "30-40", below: 45 },
   { name: "50-60", below: 90 },
 ];
-/** A pair counts as registered within so many degrees and millimetres across the line of sight. */
+/** Limits for a registered pair: degrees, and millimetres across the line of sight. */
 export const REGISTERED = { degrees: 2, lateral: 5 };
-/** A search has found a pose within so many degrees. */
+/** Limit for a pose found by a search, degrees. */
 export const FOUND = 5;
 
 const STARTS = ["off", "truth", "search"];

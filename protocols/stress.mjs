@@ -1,4 +1,4 @@
-// Renders with the flaws of real pairs, nothing known: paint, lamps with shadows, JPEG, depth in noisy steps.
+// Renders with the flaws of real pairs, nothing known: varying albedo, lamps with shadows, JPEG, depth in noisy steps.
 import { drawScene } from "./anywhere.mjs";
 import { randomRow } from "./counts.mjs";
 import { throughJpeg } from "./jpeg.mjs";
@@ -12,16 +12,16 @@ const SCENES = 200;
 const QUICK_SCENES = 4;
 const SIZES = [96, 112, 128];
 const QUALITY = 85;
-/** Width of the frame and distance of the object, metres: what depth steps depend on. */
+/** Width of the frame and distance of the object, metres, which determine the depth steps. */
 const FRAME = 0.22;
 const DISTANCES = [0.5, 0.8];
-/** Noise of the disparity before it is rounded, in steps, and how far it is smoothed sideways, pixels. */
+/** Noise of the disparity before rounding, in steps, and its lateral blur, pixels. */
 const DISPARITY = { noise: 0.4, blur: 0.8 };
-/** A lamp: degrees off the line of sight, its hues, and the light from everywhere else as a share of it. */
+/** A lamp: angle to the line of sight in degrees, range of its colour channels, and ambient light as a share of it. */
 const LAMP = { off: [15, 60], hue: [0.7, 1], ambient: [0.15, 0.4] };
-/** A ray has met the surface where it is so deep behind it, pixels; it walks in steps of so many. */
+/** Depth behind the surface at which a ray counts as occluded, and its step, pixels. */
 const RAY = { bias: 0.7, step: 0.5 };
-/** Noise of a photograph in log units, and the level of what bright is. */
+/** Noise of a photograph in log units, and the level of its brightest part. */
 const NOISE = 0.01;
 const BRIGHT = 0.85;
 const BACKGROUND = [0.05, 0.6];
@@ -39,13 +39,13 @@ export const stress = {
   ],
   cells: (kit, quick) =>
     Array.from({ length: quick ? QUICK_SCENES : SCENES }, (_, index) => {
-      // Odd and even scenes have all kinds: constants are set on the odd ones and judged by the even ones.
+      // Odd and even scenes both include all kinds: constants are set on the odd scenes and judged by the even ones.
       const lit = LIGHTS[(Math.floor(index / 3) + Math.floor(index / 6)) % LIGHTS.length];
       const kinds = { paint: PAINTS[index % PAINTS.length], lit };
       const row = { scene: index + 1, ...kinds };
       return { id: `stress/${index + 1}`, kind: "stress", row, kit, seed: index + 1, options: FROM_ANYWHERE };
     }),
-  /** The row of all, and one for each kind. */
+  /** One row for all cells, and one for each kind. */
   rows: (results) => {
     const rows = results.map(({ cell, result }) => ({ ...cell.row, ...result }));
     const group = (key, value) => ({
@@ -58,7 +58,7 @@ export const stress = {
   },
 };
 
-/** Where a ray from each pixel of an orthographic depth map (larger is farther) to the lamp meets the map. */
+/** Pixels of an orthographic depth map (larger is farther) whose ray to the lamp is blocked by the map. */
 function castShadows({ width, height, depth }, lamp) {
   const across = Math.hypot(lamp[0], lamp[1]);
   const reach = across < 1e-6 ? 0 : Math.ceil(Math.hypot(width, height) / across / RAY.step);
@@ -95,7 +95,7 @@ function litByLamp({ image, truth }, dice) {
   return out;
 }
 
-/** Lines of small dark marks with gaps between them, as text has, in one ink on one paper, in place. */
+/** Multiplies the colours by printed text, in place: lines of small dark marks with gaps, in one ink on one paper. */
 function print(colours, size, dice) {
   const [paper, ink] = [dice.uniform(0.6, 1), dice.uniform(0.1, 0.35)];
   const hues = [0, 1].map(() => [0, 1, 2].map(() => dice.uniform(0.6, 1)));
@@ -112,7 +112,7 @@ function print(colours, size, dice) {
   }
 }
 
-/** As a camera with its exposure set by the object stores it, before a grey wall. */
+/** As a camera stores it whose exposure is set for the object, in front of a grey wall. */
 function photographed(image, colours, dice) {
   const { width, height, mask } = image;
   const inside = [...mask.keys()].filter((index) => mask[index]);

@@ -1,12 +1,12 @@
-// npm run ablation: what each part of the method buys, measured by builds with one part switched off.
-//   --only a,b       these parts alone (scripts/ablation/parts.mjs), beside the whole
-//   --quick          two photographs, a painted and a plain render
-//   --known          what was measured so far, "-" where nothing was; builds and runs nothing
+// npm run ablation: measures the contribution of each part of the method with builds in which that part is switched off.
+//   --only a,b       only these parts (scripts/ablation/parts.mjs), next to the whole method
+//   --quick          two photographs, a render with varying albedo and one with a single albedo
+//   --known          prints what has been measured so far, "-" for missing cells; builds and runs nothing
 //   --json FILE      the rows as JSON
 //   --docs           the table into the marked region of docs/lab/results.md
 //   --workers N      processes; the results do not depend on it
-// Each part takes a build of a minute or two and some forty runs. Broken off, it goes on where it was: builds are kept in
-// target/ablation, rows beside those of the tables.
+// Each part takes a build of one or two minutes and about forty runs. An interrupted command continues where it stopped: builds are
+// kept in target/ablation, rows in the journal of the tables.
 import { writeFileSync } from "node:fs";
 import { resolve } from "node:path";
 import { parseArgs } from "node:util";
@@ -51,7 +51,7 @@ function parsed() {
   return { ...given, workers, parts: PARTS.filter(({ name }) => wanted.includes(name)) };
 }
 
-/** The rows of a variant. A cell that fails without a part is told of and has no row. */
+/** The rows of a variant. A cell that fails without the part is reported and has no row. */
 async function measured(part, chosen, { quick = false, workers }) {
   say(`without ${part.what} (${part.name})`);
   const { wasm, gzipped } = await variant(part);
@@ -63,7 +63,7 @@ async function measured(part, chosen, { quick = false, workers }) {
   return { part: part.name, what: part.what, gzipped, rows: json.parts };
 }
 
-/** What the journal has of a variant that is built; nothing where it is not, or has not run. */
+/** The journal's rows of a variant; empty if the variant is not built or has not run. */
 function known(part, chosen) {
   const found = built(part);
   if (!found) return [];

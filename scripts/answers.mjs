@@ -1,23 +1,23 @@
-// npm run answers: whether a redesign gives the answers that were there before it.
-//   --against FOLDER  compares with the package in the pkg/ of another checkout, every pixel; else with the committed figures
-//   --write           writes the figures anew; empty scripts/answers/reasons.mjs then
-//   --scalar          the .wasm without SIMD, with --against alone: its sums run in another order, so that it has figures of its own
-//   --only WORDS      scenes whose names contain them
-//   --built           pkg/ as it is, unbuilt
+// npm run answers: checks whether a refactoring gives the same answers as the code that it replaces.
+//   --against FOLDER  compares every pixel with the package in the pkg/ of another checkout; by default with the committed figures
+//   --write           writes new figures; empty scripts/answers/reasons.mjs afterwards
+//   --scalar          uses the .wasm without SIMD, only with --against: it sums in another order, so the committed figures do not apply
+//   --only WORDS      only scenes whose names contain these words
+//   --built           uses pkg/ as it is, without building
 //   --processes N     two by default; the answers do not depend on it
 //
 // Pairs and rigs (scripts/answers/scenes.mjs) go through the package's public contract: sizes 32 to 160, every surface, light, option,
-// kind of input and way to drive the loop, one albedo and several, ends that are lost included, and every registration that a run can
-// end by; and the check of a calibration. Two packages side by side differ by nothing where nothing
-// was reordered, and have to agree on status, iterations, missing values and correspondences, on the pose within 1e-6 degrees, and on
-// heights (pixels), normals, light and residuals within 1e-5 (scripts/answers/compare.mjs has all limits). A sum that was reordered
-// and moved more has its line in scripts/answers/reasons.mjs, up to 1e-3 degrees. The wording of a message may change, its numbers may not.
-// The committed figures keep of each raster the pixels that have values, mean, spread and some samples. They are of the .wasm with SIMD,
-// which computes the same on any processor that has it; on one without it --against is the way to compare. So it is where another
-// version of Node rounds Math.exp, log, sin, cos or ** otherwise (the figures are of Node 20): the scenes are rendered partly in
-// JavaScript, and "the pair itself" differs. How much the order of sums can do: between the two .wasm files rotations differ by 1e-8 to
-// 1e-4 degrees, heights by up to 1e-2 pixels, and one run of the paper's loop ends after 4 iterations instead of 8.
-// It takes minutes of computing for each package, which is why `npm test` leaves it out.
+// kind of input and way to drive the loop, one albedo and several, lost runs, every registration that a run can end with, and the check
+// of a calibration. Two packages side by side are identical where no sum was reordered. They must agree on status, iterations, missing
+// values and correspondences, on the pose within 1e-6 degrees, and on heights (pixels), normals, light and residuals within 1e-5
+// (scripts/answers/compare.mjs has all limits). A reordered sum that moves a result further has a line in scripts/answers/reasons.mjs,
+// up to 1e-3 degrees. The wording of a message may change, its numbers may not. For each raster, the committed figures keep the pixels
+// that have values, the mean, the spread and some samples. They were computed by the .wasm with SIMD, which gives the same result on any
+// processor with SIMD; on other processors use --against. The same holds where another version of Node rounds Math.exp, log, sin, cos
+// or ** differently (the figures are from Node 20): the scenes are rendered partly in JavaScript, and "the pair itself" differs.
+// The order of sums alone can do this much: between the two .wasm files rotations differ by 1e-8 to 1e-4 degrees, heights by up to
+// 1e-2 pixels, and one run of the paper's loop ends after 4 iterations instead of 8.
+// The command computes for minutes for each package, which is why `npm test` leaves it out.
 import { existsSync, readFileSync, writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { parseArgs } from "node:util";
@@ -34,7 +34,7 @@ import { runCells } from "./tables/pool.mjs";
 import { columns } from "./tables/columns.mjs";
 
 const FIGURES = inRoot("scripts/answers/figures.json");
-/** Progress is told after so many scenes. */
+/** Number of scenes between two progress reports. */
 const TOLD_EVERY = 10;
 
 function parsed() {
@@ -92,7 +92,7 @@ async function answers({ scenes, against, scalar, processes }) {
   throw new Failure(`${failed.length} scenes failed:\n${lines.join("\n")}`);
 }
 
-/** "same", "within", "moved" where a reason says why, or "OVER". */
+/** "same", "within", "moved" if a reason explains the change, or "OVER". */
 function verdict(name, { columns: measured, disagreements }) {
   if (disagreements.length > 0) return "OVER";
   const moved = REASONS.filter(({ scene }) => scene === name).flatMap((reason) => reason.moved);
@@ -104,7 +104,7 @@ function verdict(name, { columns: measured, disagreements }) {
 
 const shown = (value) => (value === 0 ? "0" : Number.isFinite(value) ? value.toExponential(1) : "missing");
 
-/** Prints a line for each scene and what there is to say about some; returns how many are over the limits. */
+/** Prints a line for each scene, with remarks on some; returns how many exceed the limits. */
 function report(rows) {
   const names = Object.keys(LIMITS);
   const line = (name, status, values, found) => [name, status, ...names.map((column) => shown(values[column])), found];
@@ -141,7 +141,7 @@ function checkCoverage(results) {
   if (rare.length > 0) throw new Failure(`Too few scenes make use of ${list}.`);
 }
 
-/** How many scenes there were, and what their poses rest on. */
+/** Reports how many scenes there were and which registrations determined their poses. */
 function coverage(scenes, results) {
   const rigs = scenes.filter(({ rig }) => rig).length;
   const ends = [...results.values()].map(({ endedBy }) => endedBy);
@@ -149,11 +149,11 @@ function coverage(scenes, results) {
   return `${scenes.length - rigs} pairs, ${rigs} rigs; ended by: ${counts.join(", ")}`;
 }
 
-/** A scene a line, so that a change shows where it is. */
+/** One scene a line, so that a diff shows which scene changed. */
 const written = (figures) =>
   `{\n${figures.map(([name, figure]) => `${JSON.stringify(name)}: ${JSON.stringify(figure)}`).join(",\n")}\n}\n`;
 
-/** Figures as they are once written and read. */
+/** Figures as they are after being written and read back. */
 const asWritten = (figure) => JSON.parse(JSON.stringify(figure));
 
 function againstFigures(scenes, results) {

@@ -1,6 +1,6 @@
-// npm run bench: how fast the built package is in a browser's worker, and the same work native, run by run in turn.
+// npm run bench: times the built package in a browser's worker and the same work natively, with runs alternating.
 //   --quick          fewer sizes and samples, under a minute
-//   --sizes a,b      these sizes alone, as 64x64,640x480
+//   --sizes a,b      only these sizes, as 64x64,640x480
 //   --json FILE      the numbers as JSON
 //   --docs           medians and aims into the marked region of docs/performance.md
 //   --browser-only, --native-only
@@ -23,15 +23,15 @@ import { Failure, must, say, script, seconds } from "./shell.mjs";
 import { buildPage, sizes as measureSizes } from "./sizes.mjs";
 
 const SIZES = ["32x32", "64x64", "128x128", "256x256", "640x480"];
-/** A median of fewer says little on a machine that does other things as well. */
+/** A median of fewer samples is unreliable on a busy machine. */
 const SAMPLES = 20;
-/** Searches of one scene: three up to this many pixels, one beyond, where each takes its time. */
+/** Limit of pixels up to which one scene is searched three times; larger views take long and are searched once. */
 const SOON = 128 * 128;
-/** Pixels from which on iterations are shared (js/estimator.ts), rounded up to a size that is timed. */
+/** Number of pixels from which workers share iterations (js/estimator.ts), rounded up to a size that is timed. */
 const SHARED = 128 * 128;
 const RANDOM_SIZES = ["64x64", "128x128"];
 const RANDOM_SCENES = 8;
-/** Where memory is measured, and where a frame's transfer is. */
+/** The size for which memory and the transfer of a frame are measured. */
 const LARGEST = "640x480";
 const STARTED = "64x64";
 
@@ -68,7 +68,7 @@ function parsed() {
   }
 }
 
-/** The loop itself: stages, ends, random scenes, and the memory that the largest run leaves. */
+/** The loop itself: stages, complete runs, random scenes, and the memory after the largest run. */
 async function loops(sides, made, plan) {
   const found = { samples: [], ends: [], converged: [], searches: [], memory: undefined };
   for (const size of plan.sizes) {
@@ -96,7 +96,7 @@ async function loops(sides, made, plan) {
   return found;
 }
 
-/** What surrounds the loop in a browser. */
+/** The work around the loop in a browser. */
 async function around(chromium, address, side, made, plan) {
   const startScene = made.plain(STARTED);
   const startUp = { size: STARTED, times: await startUps(chromium, address, startScene, plan.samples) };

@@ -4,7 +4,7 @@ import { Failure, ask, must, say, watch } from "./shell.mjs";
 
 const INSTALL = "apt-get update && apt-get install -y chromium chromium-driver";
 
-/** Where macOS keeps browsers: they are not in PATH. */
+/** The folders of browsers on macOS, which are not in PATH. */
 const APPLICATIONS = [
   "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome",
   "/Applications/Chromium.app/Contents/MacOS/Chromium",
@@ -29,31 +29,31 @@ function find() {
   return { chromium, chromedriver };
 }
 
-/** Debian's Firefox and its driver; the second engine is looked for and not installed. */
+/** Debian's Firefox and its driver. The second engine is used if present and never installed. */
 export const firefox = () => ({
   firefox: named("FIREFOX") ?? ["firefox-esr", "firefox"].map(inPath).find(Boolean),
   geckodriver: named("GECKODRIVER") ?? inPath("geckodriver"),
 });
 
-/** Chromium without the windows and menus that no test looks at, for three fifths of the processor's time. Same release, same engine. */
+/** Chromium without windows and menus, which no test needs: the same release and engine for three fifths of the processor time. */
 const SHELL = "chromium-headless-shell";
 
 /**
- * The browser of the page's tests: the one that CHROMIUM names, or the shell, which as root on Debian is installed. Where there is none
- * it is Chromium as a whole, which only takes longer.
+ * The browser of the page's tests: the one that CHROMIUM names, or the headless shell, which is installed when run as root on Debian.
+ * Without it, the tests use the whole Chromium, which only takes longer.
  */
 export async function headless() {
   if (!process.env.CHROMIUM && !inPath(SHELL) && canInstall()) {
     say(`${SHELL}: installing Debian's package`);
-    // Whatever is there already stays: a shell of another release than its common files would have them exchanged.
+    // Without removals: a shell of another release than the installed common files would replace them.
     const installed = () => watch("apt-get", ["install", "-y", "--no-remove", "--no-install-recommends", SHELL], QUIET);
-    // The lists of packages may be there already, or too old.
+    // The lists of packages may be missing or too old.
     if ((await installed()).code !== 0 && (await watch("apt-get", ["update"], QUIET)).code === 0) await installed();
   }
   return named("CHROMIUM") ?? inPath(SHELL) ?? (await browser()).chromium;
 }
 
-/** Paths of both, installed by Debian's own means where that is possible without asking for more rights. */
+/** Paths of both. Debian's package manager installs them if that needs no further rights. */
 export async function browser() {
   let found = find();
   if (found.chromium && found.chromedriver) return found;

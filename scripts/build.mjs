@@ -1,4 +1,4 @@
-// npm run build: leaves the installable package in pkg/.
+// npm run build: writes the installable package to pkg/.
 import {
   chmodSync,
   cpSync,
@@ -18,7 +18,7 @@ import { ALL, GLUE, NUMERICS, allNumerics, node } from "./numerics.mjs";
 import { setup } from "./setup.mjs";
 import { inRoot, say, script, seconds, stamp } from "./shell.mjs";
 
-/** The package's own; the project's speaks to those who work on it. */
+/** The package's README; the project's README addresses its developers. */
 const README = "js/README.md";
 const COPIED = ["CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE"];
 const SOURCES = [
@@ -31,7 +31,7 @@ const SOURCES = [
   "scripts/notices",
 ];
 const MARK = "pkg/.stamp";
-/** One for programs, one for images and depth maps, three for what reads and writes a rig's files and reads its recordings, one for what writes a run's, two for the page's fields and its visitor's files, one for the threads of workers, and one for shells. */
+/** Entries for programs, for files of images and depth maps, for a rig's files (reading, recordings, writing), for writing a run's files, for the page's fields and its visitor's files, for the threads of workers, and for shells. */
 const ENTRIES = {
   index: "index",
   files: "files",
@@ -44,7 +44,7 @@ const ENTRIES = {
   thread: "workers/thread",
   cli: "cli/main",
 };
-/** What the package says about itself; name, version, licence, authors and addresses come from Cargo.toml alone. */
+/** The package's manifest; name, version, licence, authors and addresses come from Cargo.toml alone. */
 function manifest() {
   const cargo = readFileSync(inRoot("Cargo.toml"), "utf8");
   const field = (name) => new RegExp(`^${name} = "(.+)"$`, "m").exec(cargo)[1];
@@ -70,7 +70,7 @@ function manifest() {
       "./rig-recordings": { types: "./rig/recordings/index.d.ts", default: "./rig-recordings.js" },
       "./write": { types: "./write/index.d.ts", default: "./write.js" },
       "./rig-write": { types: "./rig/write/index.d.ts", default: "./rig-write.js" },
-      // By path, for bundlers that have to be told of them.
+      // By path, for bundlers that need to know these files.
       ...Object.fromEntries(["thread.js", ...ALL.map(({ file }) => file)].map((file) => [`./${file}`, `./${file}`])),
       "./package.json": "./package.json",
     },
@@ -81,13 +81,13 @@ function manifest() {
   };
 }
 
-/** What the scripts contain, and what the .wasm files do, which is written down beside Cargo.toml (scripts/notices.mjs). */
+/** Notices of the code in the scripts, followed by those of the .wasm files, which are kept beside Cargo.toml (scripts/notices.mjs). */
 const notices = (entries) =>
   [section("Contained in the scripts of bimodal-stereo:", entries), readFileSync(inRoot(NOTICES), "utf8")].join("\n");
 
 /**
- * parse-exr 1.0.2 decodes for ever where a stream holds more values than its picture: its function for a code then returns without having
- * moved on. Here it throws.
+ * parse-exr 1.0.2 loops forever if a stream holds more values than its picture, because its function for a code then returns without
+ * advancing. This patch makes it throw.
  */
 const endingExr = {
   name: "ending-exr",
@@ -101,8 +101,8 @@ const endingExr = {
 };
 
 /**
- * @foxglove/rosbag brings readers that are compiled out of a recording's own definitions (`eval`, `new Function`), for those who ask it to
- * decode messages. Here nobody does, and no code is made of what a file holds.
+ * @foxglove/rosbag compiles readers from a recording's own definitions (`eval`, `new Function`) for callers who let it decode messages.
+ * This package does not decode with it, so no code is made from the contents of a file.
  */
 const withoutEval = {
   name: "without-eval",
@@ -113,8 +113,8 @@ const withoutEval = {
 };
 
 /**
- * laz-perf's code inside the script that uses it: by itself, an application would have to serve one more file for a format that few have. Its
- * glue for browsers asks whether it is in one, because it would fetch that file, and for Node's `require`; here it runs in Node as well.
+ * Puts laz-perf's code inside the script that uses it; otherwise an application would have to serve one more file for a rare format. Its
+ * glue checks for a browser, where it would fetch that file, and for Node's `require`; this version runs in Node as well.
  */
 const lazInside = {
   name: "laz-inside",
@@ -131,7 +131,7 @@ const lazInside = {
   },
 };
 
-/** One file for each entry and one for what they share, with the PNG decoder in the files module alone. */
+/** One file for each entry and one for their shared code, with the PNG decoder only in the files module. */
 async function facade() {
   const { rolldown } = await import("rolldown");
   const npm = collector();
@@ -141,10 +141,10 @@ async function facade() {
     platform: "neutral",
     plugins: [npm.plugin, endingExr, withoutEval, lazInside],
     resolve: { mainFields: ["module", "main"] },
-    // What the splitting below needs; set in silence it is warned of.
+    // The code splitting below needs this setting; leaving it implicit gives a warning.
     preserveEntrySignatures: "allow-extension",
   });
-  // In a file of its own: who only checks a rig downloads nothing of the loop's bindings, which share it.
+  // A separate file: users who only check a rig share it with the loop and download nothing of the loop's bindings.
   const codeSplitting = {
     groups: [{ name: "border", test: /js\/(border|breathe|node)\.ts$/ }],
     includeDependenciesRecursively: false,
@@ -156,9 +156,9 @@ async function facade() {
   await declarations();
 }
 
-/** The types of all that the entries name; the others stay inside, those of the generated bindings among them. */
+/** The types reachable from the entries; the others stay inside, including those of the generated bindings. */
 async function declarations() {
-  // Imported late, as the bundler is: before the set-up there are no node_modules.
+  // Imported late, like the bundler: before the set-up there are no node_modules.
   const { reachable } = await import("./imports.mjs");
   const all = inRoot("target/declarations");
   rmSync(all, { recursive: true, force: true });
@@ -177,7 +177,7 @@ const sizes = (file) => {
   return [bytes.length, gzipSync(bytes).length].map(kilobytes);
 };
 
-/** Sizes are filled in, so that they are this build's. */
+/** Fills in the sizes of this build. */
 function readme() {
   const text = readFileSync(inRoot(README), "utf8");
   return text
@@ -185,7 +185,7 @@ function readme() {
     .replaceAll(/\{gzipped size of (.+?)\}/g, (_, file) => sizes(file)[1]);
 }
 
-/** The examples import the package by its name, as they would anywhere else; npm knows nothing of it. */
+/** Links the package, because the examples import it by name, as any application does; npm does not know the link. */
 function link() {
   const at = inRoot("node_modules/bimodal-stereo");
   rmSync(at, { recursive: true, force: true });
@@ -216,7 +216,7 @@ export async function build() {
   }
 }
 
-// Node names this module by its real path, and the command by the path it was given.
+// `import.meta` has the real path, the command line the path that was given.
 if (import.meta.filename === realpathSync(process.argv[1])) {
   await script(async () => {
     await setup();

@@ -1,9 +1,9 @@
-// npm run captures: the check of a calibration on other people's captures, whose truth is hidden behind a known motion.
+// npm run captures: checks calibrations of other people's captures, with the true pose hidden behind a known motion.
 //
-// --draws N    of each pair (default 20); a fifth of it of each small object
+// --draws N    draws of each pair (default 20); a fifth as many of each small object
 // --only A,B   of room, scenes, objects
 // --json FILE  one row for each check or candidate
-// --folder DIR --calibration FILE   the room's draws on a rig of your own, whose calibration is taken as true
+// --folder DIR --calibration FILE   the draws of the room on your own rig, whose calibration is taken as true
 import { writeFileSync } from "node:fs";
 import { parseArgs } from "node:util";
 import { build } from "./build.mjs";

@@ -1,5 +1,5 @@
-// node scripts/codes.mjs: writes docs/codes.md, what every code means and what may help, from src/codes.json, which the page and the
-// command line read as well. tests/contract/codes.test.mjs holds that both say the same.
+// node scripts/codes.mjs: writes docs/codes.md, the meaning and the remedy of every code, from src/codes.json, which the page and the
+// command line also read. tests/contract/codes.test.mjs checks that both agree.
 import { readFileSync, realpathSync, writeFileSync } from "node:fs";
 import { inRoot, say } from "./shell.mjs";
 
@@ -32,11 +32,11 @@ const GROUPS = {
   ],
 };
 
-/** Of readers a row says as well whether a check's verdict is capped. */
+/** Rows of readers also state whether the code caps a check's verdict. */
 const row = ([code, { cause, remedy, harmless }]) =>
   `| \`${code}\` | ${cause}${harmless ? " Caps no verdict." : ""} | ${remedy} |`;
 
-/** The document that a table of codes makes. */
+/** The document for a table of codes. */
 export function documentOf(table) {
   const sections = Object.entries(GROUPS).flatMap(([group, [title, words]]) => [
     `## ${title}`,

@@ -1,6 +1,6 @@
-// The regions of docs/*.md that commands fill: `npm run tables -- --docs` and `npm run bench -- --docs`.
+// The regions of docs that commands fill: `npm run tables -- --docs`, `npm run bench -- --docs` and `npm run ablation -- --docs`.
 //
-// A region lies between two comments, and whatever stands there is replaced as a whole; its figures are of one run, as its first line says.
+// A region lies between two comments and is replaced as a whole. Its figures come from one run, which its first line describes.
 import { readFileSync, writeFileSync } from "node:fs";
 import { Failure, inRoot, say } from "./shell.mjs";
 import { fixed } from "./tables/columns.mjs";
@@ -8,7 +8,7 @@ import { fixed } from "./tables/columns.mjs";
 const begin = (name) => `<!-- begin: ${name} (written by npm run ${name} -- --docs) -->`;
 const end = (name) => `<!-- end: ${name} -->`;
 
-/** A text with its region filled. */
+/** A text with its region filled in. */
 export function filled(text, name, lines) {
   const [from, to] = [text.indexOf(begin(name)), text.indexOf(end(name))];
   if (from < 0 || to < from) throw new Failure(`There is no region between "${begin(name)}" and "${end(name)}".`);
@@ -20,7 +20,7 @@ export function fill(path, name, lines) {
   say(`wrote the region "${name}" of ${path}`);
 }
 
-/** Rows of words; numbers stand to the right. */
+/** Rows of a Markdown table; numbers are aligned to the right. */
 function table(head, alignments, rows) {
   const line = (cells) => `| ${cells.map((cell) => String(cell).replaceAll("|", "\\|")).join(" | ")} |`;
   return [line(head), `|${alignments.map((right) => (right ? "---:" : "---")).join("|")}|`, ...rows.map(line)];
@@ -51,7 +51,7 @@ export function tablesLines({ aims, quick, data }) {
 const milliseconds = (value) => fixed(value, value < 10 ? 2 : value < 100 ? 1 : 0);
 const unique = (values) => [...new Set(values)];
 
-/** Medians of the stages and the aims, from the JSON of the benches. */
+/** Medians of the stages and the aims, from the JSON of the bench. */
 export function benchLines({ rows, aims, machine, surface, lightName, quick }) {
   const from = `Version ${version()}${quick ? ", the quick selection (`--quick`)" : ""}; ${surface}, light ${lightName}; ${machine}. Milliseconds, medians.`;
   const sizes = unique(rows.map(({ size }) => size));

@@ -1,6 +1,6 @@
 /**
- * The comments of the package's types: which members have none, and which lines of them follow from the rows of js/options.ts.
- * `node scripts/documented.mjs` writes these lines into js/types/, from pkg/ as it is built; the contract tests hold that they are there.
+ * The comments of the package's types: finds members without one, and the lines of comments that follow from the rows of js/options.ts.
+ * `node scripts/documented.mjs` writes these lines into js/types/, from pkg/ as it is built; the contract tests check that they are there.
  */
 import { readFileSync, readdirSync, realpathSync, writeFileSync } from "node:fs";
 import { inRoot } from "./shell.mjs";
@@ -22,12 +22,12 @@ const DECLARATIONS = [
 ];
 
 const isCommented = (node) => {
-  // The comment of a constant stands on its statement.
+  // The comment of a constant belongs to its statement.
   const carrier = ts.isVariableDeclaration(node) ? node.parent.parent : node;
   return ts.getJSDocCommentsAndTags(carrier).length > 0;
 };
 
-/** Every member of a declaration, those of types within it too, each with its path. */
+/** Every member of a declaration, including those of nested types, with its path. */
 function* membersOf(node, path) {
   for (const child of childrenOf(node)) {
     const isMember = MEMBERS.includes(child.kind) && child.name && !ts.isPrivateIdentifier(child.name);
@@ -43,7 +43,7 @@ function childrenOf(node) {
   return children;
 }
 
-/** All that some modules export, by name and member: whether it has a comment. */
+/** Everything that some modules export, by name and member, and whether it has a comment. */
 export function comments(files) {
   const program = ts.createProgram(files, {
     module: ts.ModuleKind.NodeNext,
@@ -70,7 +70,7 @@ export function comments(files) {
 const UNITS = { deg: "degrees", px: "pixels" };
 const named = (limit) => (limit === 0 ? "zero" : limit.toLocaleString("en-GB"));
 
-/** The range of a row in words. */
+/** A row's range in words. */
 function range({ kind, min, above, max, below, unit, length }) {
   if (kind === "list") return `${length} numbers`;
   if (!["number", "whole", "side"].includes(kind)) return undefined;
@@ -98,7 +98,7 @@ export function linesOf(row) {
 
 const isOurs = (line) => /^(Range: |@default )/.test(line);
 
-/** The text of a comment without its frame. */
+/** The text of a comment without its delimiters. */
 const unframed = (comment) =>
   comment
     .slice(3, -2)
@@ -106,7 +106,7 @@ const unframed = (comment) =>
     .map((line) => line.replace(/^\s*\* ?/, "").trim())
     .filter((line, index, all) => line !== "" || (index > 0 && index < all.length - 1));
 
-/** A source of types whose members say what their rows say; `rows` are by interface and path. */
+/** A source of types whose members state what their rows state; `rows` are by interface and path. */
 export function documented(text, rows) {
   const source = ts.createSourceFile("types.ts", text, ts.ScriptTarget.ES2022, true);
   const edits = [];
@@ -129,7 +129,7 @@ export function documented(text, rows) {
     .reduce((whole, [from, to, comment]) => whole.slice(0, from) + comment + whole.slice(to), text);
 }
 
-/** The rows of the options and of the requests for samples, by interface and path. */
+/** The rows of the options and of sample requests, by interface and path. */
 export async function rowsOfTypes() {
   const { OPTIONS, SAMPLE, paths } = await import("../pkg/options.js");
   return new Map([...paths(OPTIONS, "Options"), ...paths(SAMPLE, "SampleRequest")]);
@@ -138,7 +138,7 @@ export async function rowsOfTypes() {
 /** The sources of the public types. */
 export const TYPES = readdirSync(inRoot("js/types")).map((name) => inRoot("js/types", name));
 
-// Node names this module by its real path, and the command by the path it was given.
+// `import.meta` has the real path, the command line the path that was given.
 if (import.meta.filename === realpathSync(process.argv[1])) {
   const rows = await rowsOfTypes();
   for (const path of TYPES) writeFileSync(path, documented(readFileSync(path, "utf8"), rows));

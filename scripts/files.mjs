@@ -1,12 +1,12 @@
-// node scripts/files.mjs: writes docs/guide/files.md, the files that are read, from the table beside the readers (js/rig/formats/catalogue).
-// tests/contract/files-page.test.mjs holds that both say the same, and that the readers do what the table says.
+// node scripts/files.mjs: writes docs/guide/files.md, the list of supported files, from the table beside the readers
+// (js/rig/formats/catalogue). tests/contract/files-page.test.mjs checks that both agree and that the readers do what the table says.
 import { mkdirSync, realpathSync, writeFileSync } from "node:fs";
 import { dirname } from "node:path";
 import { inRoot, say } from "./shell.mjs";
 
 export const DOCUMENT = "docs/guide/files.md";
 
-/** What some sources export, which Node cannot load as they are. */
+/** The exports of some sources that Node cannot load as they are. */
 export async function loaded(source) {
   // Imported late: before the set-up there are no node_modules.
   const { build } = await import("esbuild");
@@ -32,7 +32,7 @@ const HEAD = ["| product | file | what is taken | what is guessed | how to expor
 /** A cell of a Markdown table. */
 const cell = (words) => words.replaceAll("|", "\\|");
 
-/** The document that a table makes. */
+/** The document for a table. */
 export function documentOf(groups) {
   const sections = groups.flatMap(({ title, rows }) => [
     `## ${title}`,

@@ -1,8 +1,8 @@
-// Fuzzes the readers of files: mutations of the fixtures, guided by V8's coverage of pkg/. `node scripts/fuzz-readers.mjs` takes ten minutes;
-// --minutes N, --seed N, --minimise (writes fuzz/corpus/readers, what the fixtures do not run already). What breaks a promise is left in
-// target/fuzz/findings, and the exit code is 1.
+// Fuzzes the readers of files: mutates the fixtures, guided by V8's coverage of pkg/. `node scripts/fuzz-readers.mjs` takes ten minutes;
+// --minutes N, --seed N, --minimise (writes fuzz/corpus/readers, the files that run code which the fixtures do not). Inputs that break a
+// promise are saved in target/fuzz/findings, and the exit code is 1.
 //
-// By hand, because @jazzer.js/core 4.0.0, libFuzzer for Node, brings 105 packages and binaries for glibc 2.38 and newer.
+// The fuzzer is hand-written, because @jazzer.js/core 4.0.0, libFuzzer for Node, brings 105 packages and binaries for glibc 2.38 and newer.
 import { mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { basename } from "node:path";
 import { parseArgs } from "node:util";
@@ -17,7 +17,7 @@ const CORPUS = inRoot("fuzz/corpus/readers");
 const GROWN = inRoot("target/fuzz/readers");
 const FINDINGS = inRoot("target/fuzz/findings");
 const FIXTURES = [inRoot("tests/fixtures/rig"), inRoot("tests/fixtures/run")];
-/** Megabytes of the thread's heap, and milliseconds after which a reading hangs. */
+/** Limits of the thread: megabytes of heap, and milliseconds after which a reading counts as hanging. */
 const MOST_MEGABYTES = 1024;
 const HANGS = 20_000;
 const LONGEST = 65_536;
@@ -25,7 +25,7 @@ const LONGEST = 65_536;
 const filesOf = (...folders) =>
   folders.flatMap(filesBelow).map((path) => ({ path, bytes: new Uint8Array(readFileSync(path)) }));
 
-/** One thread until its time is over, or until a file stops it; how many milliseconds it ran. */
+/** Runs one thread until its time is over or a file stops it; returns the milliseconds that it ran. */
 function run(options, told) {
   const [beat, present] = [new Int32Array(new SharedArrayBuffer(8)), new SharedArrayBuffer(LONGEST)];
   const start = Date.now();
@@ -88,7 +88,7 @@ async function fuzz(minutes, seed) {
   if (findings.length > 0) process.exitCode = 1;
 }
 
-/** What was found stays; of the others the smallest first, and of them those that run what nothing before them ran. */
+/** Keeps all findings; of the other files, smallest first, those that run code which no earlier file ran. */
 async function minimise() {
   const coverage = new Coverage();
   await coverage.start();

@@ -1,4 +1,4 @@
-/** Which files import which, by their syntax: what the package ships of its declarations, and what the tests of layers read. */
+/** The imports of files, from their syntax: for the declarations that the package ships, and for the tests of layers. */
 import { existsSync, readFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { parseAst } from "rolldown/parseAst";
@@ -11,13 +11,13 @@ function* nodes(tree) {
   for (const child of Object.values(tree).flat()) if (isNode(child)) yield* nodes(child);
 }
 
-/** The addresses that a source imports, as they are written: statements, `import("x")` in code and in types. */
+/** The addresses that a source imports, as written: in statements, and in `import("x")` in code and types. */
 export function imports(text, lang) {
   const sources = [...nodes(parseAst(text, { lang }))].map(({ source }) => source?.value);
   return [...new Set(sources.filter((source) => typeof source === "string"))];
 }
 
-/** The declarations below a folder that some of them reach by relative imports. A file that is not there is an error. */
+/** The declarations below a folder that some of them reach by relative imports. A missing file is an error. */
 export function reachable(folder, entries) {
   const found = new Set();
   const waiting = [...entries];

@@ -1,10 +1,10 @@
-// npm run lidar [-- FOLDER ..]: scans of LiDARs, from the original files to range images, and what the check of a calibration says of the
-// calibration that came with them.
+// npm run lidar [-- FOLDER ..]: converts LiDAR scans from the original files to range images, and checks the calibration that came with
+// them.
 //
-// Of each frame: how many points the camera sees, the share of them that the range image holds (aim: 99 %), the mean distance of a point to
-// its pixel's ray in units of the sampling (the distance of neighbouring rays; aim: a half) and in units of a column alone. A FOLDER is one of
-// KITTI's object detection (velodyne, image_2, calib), of OpenCalib or of nuScenes' samples, or holds such folders; without one those in
-// ../shared/data are read.
+// For each frame it prints how many points the camera sees, the share of them that the range image holds (aim: 99 %), the mean distance of
+// a point to its pixel's ray in units of the sampling (the distance of neighbouring rays; aim: a half) and in units of a column alone. A
+// FOLDER is one of KITTI's object detection (velodyne, image_2, calib), of OpenCalib or of nuScenes' samples, or holds such folders; without
+// a FOLDER, those in ../shared/data are read.
 //
 // --json FILE  one row for each frame
 import { existsSync, readFileSync, writeFileSync } from "node:fs";
@@ -21,7 +21,7 @@ const OTHERS = ["lidar_kitti", "lidar_opencalib", "lidar_nuscenes"];
 const file = (path) => ({ name: basename(path), bytes: new Uint8Array(readFileSync(path)) });
 const percent = (share) => `${(100 * share).toFixed(2)} %`;
 
-/** One frame from its files to a verdict. */
+/** Takes one frame from its files to a verdict. */
 async function tried(frame, { rangeImage, readRigFile, checkCalibration }) {
   const { scan, warnings } = await readRigFile(file(frame.scan), { as: "depth" });
   if (scan === undefined) throw new Failure(`${frame.scan} holds no points in no rows and columns.`);

@@ -1,12 +1,12 @@
-// npm run longtasks [-- --alone]: the longest tasks of the page's main thread in the Lab, in a headless browser, on site/ as it is built from pkg/.
-//   Tasks over 50 ms are printed, with the processor's time in them and when they began, and for each part the most processor's time that a
-//   task took. Nothing is judged: a busy machine makes tasks longer, so that no test is made of it; the processor's time tells how much of that is the page's.
-//   --alone   gives the main thread precedence over all else (Linux, as root). With two processors and no graphics card the browser's painting, the
-//             module's worker and this trace keep it waiting for as long as it computes; so it waits only for what it asked for itself.
-// Before it is asked for the page, the browser has shown another: no visitor's has just been started, and looks up its fonts as it lays out.
-// Told apart: the page's own start (its scripts are evaluated, three.js and uPlot among them, loaded after the first paint), and what
-// follows: steps, a run at the default pace, one view alone, the other colours. The page is asked and pressed by the browser's own
-// protocol: what Playwright brings into a page to wait for something is a script so large that it would be the longest task of the start.
+// npm run longtasks [-- --alone]: the longest tasks of the page's main thread in the Lab, in a headless browser, on site/ as built from pkg/.
+//   Prints tasks over 50 ms with their processor time and start, and the largest processor time of a task in each part. Nothing is judged,
+//   because a busy machine makes tasks longer; that is why this is not a test. The processor time shows how much the page itself causes.
+//   --alone   gives the main thread precedence over all else (Linux, as root). With two processors and no graphics card, the browser's
+//             painting, the module's worker and the trace would delay it; with precedence it waits only for its own requests.
+// The browser first shows another page: a browser that has just started looks up its fonts during the first layout, which visitors rarely meet.
+// The page's start (evaluating its scripts, three.js and uPlot among them, which load after the first paint) is reported separately from
+// what follows: steps, a run at the default pace, one view alone, the other colours. The browser's own protocol queries and clicks the
+// page, because the script that Playwright injects for waiting is so large that it would be the longest task of the start.
 import { execFileSync } from "node:child_process";
 import { chromium } from "@playwright/test";
 import { browser } from "./browser.mjs";
@@ -14,25 +14,25 @@ import { Failure, say, script } from "./shell.mjs";
 import { buildSite } from "./site/build.mjs";
 import { serveSite } from "./site/serve.mjs";
 
-/** Whether the main thread has precedence. */
+/** Whether the main thread gets precedence. */
 const ALONE = process.argv.includes("--alone");
 const SCENES = [
   { name: "128 x 128", state: "size=128" },
   { name: "640 x 480", state: "size=640x480&start=truth&lighting=known" },
 ];
-/** Steps of a run that are watched; those of a large view take long. */
+/** Number of recorded steps of a run; those of a large view take long. */
 const STEPS = 6;
-/** How long a run is watched, ms. */
+/** Recorded time of a run, ms. */
 const PLAYED = 8000;
-/** How often the page is asked whether it has come so far, and for how long at most, ms. */
+/** Interval and limit of polling the page for a state, ms. */
 const ASKED = 250;
 const LONGEST_WAIT = 240_000;
-/** From when on a task is long, ms: a press that waits for it feels late. */
+/** A task of this length or more is long, ms: a click that waits for it feels late. */
 const LONG = 50;
 /** The browser's tasks, and the marks between the parts. */
 const CATEGORIES = ["toplevel", "blink.user_timing"];
 
-/** What an expression comes to in the page. */
+/** Evaluates an expression in the page. */
 async function evaluate(session, expression) {
   const { result } = await session.send("Runtime.evaluate", { expression, returnByValue: true });
   return result.value;
@@ -50,7 +50,7 @@ async function shows(session, selector) {
   }
 }
 
-/** Begins to record the page; the end gives its main thread's tasks, ms since the navigation. */
+/** Records the page; the returned function ends it and gives the tasks of its main thread, ms since the navigation. */
 async function record(session) {
   const events = [];
   session.on("Tracing.dataCollected", ({ value }) => events.push(...value));
@@ -66,7 +66,7 @@ async function record(session) {
   };
 }
 
-/** Every renderer's main thread first: its number is its process's. */
+/** Gives precedence to every renderer's main thread, whose id is that of its process. */
 async function putFirst(program) {
   const session = await program.newBrowserCDPSession();
   const { processInfo } = await session.send("SystemInfo.getProcessInfo");

@@ -1,7 +1,7 @@
-// npm run notices: writes down the licences of the crates that .wasm files, command line and Python package contain.
+// npm run notices: writes the licences of the crates that the .wasm files, the command line and the Python package contain.
 //
-// To be run after a change of Cargo.lock, python/Cargo.lock or rust-toolchain.toml; tests/contract/notices.test.mjs misses it. Files that name
-// the right crates stay as they are; `-- --all` writes them anew. What npm's packages bring is added by the build itself (notices/bundled.mjs).
+// Run it after a change of Cargo.lock, python/Cargo.lock or rust-toolchain.toml; otherwise tests/contract/notices.test.mjs fails. Files that
+// name the right crates stay unchanged; `-- --all` rewrites them. The build adds the notices of npm packages (notices/bundled.mjs).
 import { mkdirSync, readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { isDeepStrictEqual } from "node:util";
@@ -14,7 +14,7 @@ import { Failure, ask, inRoot, must, readIfThere, say, script } from "./shell.mj
 const ABOUT = "0.9.3";
 const FOLDER = "target/notices";
 const LIBRARY = "Contained by way of Rust's standard library:";
-/** What cargo-about leaves out of the licence that it finds: the attributions that Apache-2.0 asks for. */
+/** Files that cargo-about leaves out of a licence: the attributions that Apache-2.0 requires. */
 const NOTICE = /^notice/i;
 
 async function install() {
@@ -33,10 +33,10 @@ function settings() {
   return path;
 }
 
-/** Every crate of an artefact, with the licences chosen for it; macros and what they need among them. */
+/** Every crate of an artefact, with the licences chosen for it, including macros and their dependencies. */
 async function about({ manifest, builds }, config) {
   const out = join(FOLDER, `${manifest.replaceAll(/\W/g, "-")}.json`);
-  // Offline, so that it reads what is compiled and asks no server what others think of it.
+  // Offline: it reads what is compiled and queries no server for other people's corrections of licences.
   const args = ["generate", "--format", "json", "--locked", "--offline", "--fail", "--config", config];
   await must(tool("cargo-about"), [
     ...args,
@@ -57,7 +57,7 @@ async function about({ manifest, builds }, config) {
   return entries;
 }
 
-/** A crate without a file of its licence gets the licence's general form, which leaves a place for names. */
+/** A crate without a licence file gets the licence's general form, which has a placeholder for names. */
 const signed = (text, { authors }) =>
   text.replace("<year> <copyright holders>", authors.map((author) => author.replace(/ *<.*>/, "")).join(", "));
 
@@ -74,7 +74,7 @@ function entryOf(crate, entries) {
   return { name, version, licence: [...new Set(entry.licences)].sort().join(" AND "), texts: entry.texts };
 }
 
-/** Whether the file names what is compiled, in its versions. */
+/** Whether the file names the compiled crates in their versions. */
 function isCurrent(artefact) {
   const [crates, library = ""] = (readIfThere(inRoot(artefact.file)) ?? "").split(LIBRARY);
   const named = namedIn(crates).sort();

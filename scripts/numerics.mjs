@@ -1,11 +1,11 @@
-// The .wasm files: compiled, bound, made small. Built anew where what they are made of has changed, and nowhere else.
+// The .wasm files: compiled, bound and optimised. They are rebuilt only if their sources have changed.
 import { existsSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { homedir } from "node:os";
 import { WASM, tool } from "./setup.mjs";
 import { Failure, inRoot, must, stamp } from "./shell.mjs";
 import { withoutFeature } from "./wasm-features.mjs";
 
-/** What the .wasm files are made of; the rest of the sources is bundled in a second. */
+/** Sources of the .wasm files; the other sources are bundled within a second. */
 export const NUMERICS = [
   "src",
   "Cargo.toml",
@@ -18,14 +18,14 @@ export const NUMERICS = [
 const NUMERICS_MARK = "target/.numerics-stamp";
 const MODULE = "bimodal_stereo";
 /**
- * Where it may, wasm-bindgen lets exports return references. Node 20 aborts as a whole when it throws away optimised code that is
- * inside such a call (V8 11.3, "unreachable code" in its deoptimiser), so neither the crates nor, further down, the tool are told
- * that they may.
+ * If the target has this feature, wasm-bindgen lets exports return references. Node 20 aborts when it discards optimised code that is
+ * inside such a call (V8 11.3, "unreachable code" in its deoptimiser). The feature is therefore disabled for the crates, and removed from
+ * the module before wasm-bindgen runs.
  */
 const REFERENCES = "reference-types";
 /**
- * The facade is bundled with the first one's glue. A target folder each, so that neither build throws away the other's crates.
- * Cargo appends these to the flags of .cargo/config.toml, and of two opposite features the later one counts.
+ * The facade is bundled with the first one's glue. Each has its own target folder, so that neither build discards the other's crates.
+ * Cargo appends these flags to those of .cargo/config.toml; of two opposite features, the later one counts.
  */
 const FLAVOURS = [
   { file: `${MODULE}_bg.wasm`, target: "target", flags: ["-C", `target-feature=-${REFERENCES}`] },
@@ -35,7 +35,7 @@ const FLAVOURS = [
     flags: ["-C", `target-feature=-${REFERENCES},-simd128`],
   },
 ];
-/** The calibration check: bindings of its own, loaded on demand, for machines with SIMD and without. */
+/** The calibration check: separate bindings, loaded on demand, for machines with SIMD and without. */
 const CHECK = {
   file: `${MODULE}_check_bg.wasm`,
   target: "target/check",
@@ -43,7 +43,7 @@ const CHECK = {
   features: ["--features", "bindings-check"],
   name: `${MODULE}_check`,
 };
-/** The rendered rigs of its tests and of the page's example, which nobody else downloads. */
+/** The rendered rigs of the check's tests and of the page's example; nobody else downloads them. */
 const RIGS = {
   ...CHECK,
   file: `${MODULE}_rigs_bg.wasm`,
@@ -54,21 +54,21 @@ const RIGS = {
 /** All files of the package. */
 export const ALL = [...FLAVOURS, CHECK, RIGS];
 
-/** What the facade's types come from. */
+/** The sources of the facade's types. */
 export const GLUE = ALL.map(({ target, name = MODULE }) => `${target}/wasm-bindgen/${name}.d.ts`);
 
 export const node = (module, ...args) => must(process.execPath, [inRoot("node_modules", module), ...args]);
 
 async function numerics({ file, target, flags, features = ["--features", "bindings"], name = MODULE, sources = "." }) {
-  // Messages of panics name files: without where they lie on this machine, which is nobody's business.
+  // Panic messages name files; this strips their location on the building machine.
   const registry = `${process.env.CARGO_HOME ?? `${homedir()}/.cargo`}/registry/src/`;
   const config = `target.${WASM}.rustflags=${JSON.stringify([...flags, `--remap-path-prefix=${registry}=`])}`;
-  // Level 3 unrolls and inlines for a tenth of speed and a sixth of size; see .cargo/config.toml.
+  // Level 3 would unroll and inline: a tenth faster and a sixth larger; see .cargo/config.toml.
   const crate = ["--manifest-path", `${sources}/Cargo.toml`, "-p", "bimodal-stereo", "--lib", ...features];
   await must("cargo", ["build", "--release", ...crate, "--target", WASM, "--target-dir", target, "--config", config], {
     env: { CARGO_PROFILE_RELEASE_OPT_LEVEL: "2" },
   });
-  // The standard library was compiled with references, and the linker says so of the whole.
+  // The standard library was compiled with references, so the linker declares the feature for the whole module.
   const linked = inRoot(`${target}/${MODULE}.wasm`);
   const compiled = readFileSync(inRoot(`${target}/${WASM}/release/${MODULE}.wasm`));
   writeFileSync(linked, withoutFeature(compiled, REFERENCES));
@@ -76,10 +76,10 @@ async function numerics({ file, target, flags, features = ["--features", "bindin
     ...["--target", "web", "--omit-default-module-path", "--out-dir", `${target}/wasm-bindgen`, "--out-name", name],
     linked,
   ]);
-  // Level "z" gives the last kilobyte; speed is LLVM's work. Binaryen would put functions of one caller into it, whatever their size:
-  // engines replace a function by its optimised code at its next call only, and what is one long loop would run slowly to its end.
+  // Level "z" saves the last kilobyte; speed comes from LLVM. By default, Binaryen inlines functions with one caller, whatever their size.
+  // Engines switch to a function's optimised code only at its next call, so one long loop would run slowly to its end.
   const apart = ["--one-caller-inline-max-function-size", "50"];
-  // Nothing reads or writes the first kilobyte but the stack, if it overflows: so offsets fold into addresses.
+  // Only the stack uses the first kilobyte, and only if it overflows, so offsets can fold into addresses.
   const smaller = ["-Oz", "--low-memory-unused"];
   // Repeated expressions compress better than a local variable that holds them.
   const repeated = ["--skip-pass=local-cse"];
@@ -106,19 +106,19 @@ export async function allNumerics() {
   const isMade = [NUMERICS_MARK, ...made].every((path) => existsSync(inRoot(path)));
   if (isMade && readFileSync(inRoot(NUMERICS_MARK), "utf8") === wanted) return;
   rmSync(inRoot(NUMERICS_MARK), { force: true });
-  // Side by side: the last and longest crate of each keeps one processor busy.
+  // In parallel: the last and longest crate of each build keeps one processor busy.
   await Promise.all(ALL.map(numerics));
   checkGlue();
   writeFileSync(inRoot(NUMERICS_MARK), wanted);
 }
 
-/** The .wasm with SIMD of other `sources`, as `target/{file}`; the package's own glue must be able to load it. */
+/** The .wasm with SIMD from other `sources`, as `target/{file}`; the package's own glue must be able to load it. */
 export async function numericsOf({ sources, target, file }) {
   await numerics({ ...FLAVOURS[0], sources, target, file });
   checkGlue([FLAVOURS[0], { target }]);
 }
 
-/** One glue loads either file, so both must have been given the same: its imports, and what is exported with which types. */
+/** One glue loads either file, so both builds must agree: in the glue's imports, and in the exports and their types. */
 function checkGlue(flavours = FLAVOURS) {
   for (const name of [`${MODULE}.js`, `${MODULE}.d.ts`, `${MODULE}_bg.wasm.d.ts`]) {
     const paths = flavours.map(({ target }) => `${target}/wasm-bindgen/${name}`);

@@ -1,4 +1,4 @@
-// node scripts/pairs.mjs: the loop on every real pair beside the project, as a table, and pictures in target/pairs/.
+// node scripts/pairs.mjs: runs the loop on every real pair beside the project; prints a table and saves pictures in target/pairs/.
 import { mkdirSync, writeFileSync } from "node:fs";
 import { encode } from "fast-png";
 import { build } from "./build.mjs";
@@ -6,12 +6,12 @@ import { MISSING, PAIRS, hasData, runPair, table } from "./real-pairs.mjs";
 import { Failure, inRoot, say, script } from "./shell.mjs";
 import { setup } from "./setup.mjs";
 
-/** Share of the depths at either end that the greys leave out: one flying pixel would take them all. */
+/** Share of the depths at either end that the grey scale leaves out; otherwise one flying pixel would take up the whole scale. */
 const OUTSIDE = 0.01;
-/** No value, as on the page: neither black nor any normal. */
+/** Colour of pixels without a value, as on the page: neither black nor the colour of any normal. */
 const MISSING_COLOUR = [48, 0, 0];
 
-/** A picture of `pixel(index)`, cut to the mask's bounding box. */
+/** A picture of `pixel(index)`, cropped to the mask's bounding box. */
 function picture({ width, mask }, pixel) {
   const inside = [...mask.keys()].filter((index) => mask[index]);
   const range = (values) =>
@@ -29,7 +29,7 @@ function picture({ width, mask }, pixel) {
   return { ...size, data };
 }
 
-/** Greys between two depths, near is white. */
+/** Greys between two depths; near is white. */
 const greys =
   (depth, [near, far]) =>
   (index) => {
@@ -37,7 +37,7 @@ const greys =
     return depth[index] > 0 && new Array(3).fill(255 - 215 * Math.min(1, Math.max(0, share)));
   };
 
-/** x right red, y up green, toward the camera blue. */
+/** Red is x to the right, green y upward, blue toward the camera. */
 const colours = (normals) => (index) => {
   const [x, y, z] = normals.subarray(3 * index, 3 * index + 3);
   return Number.isFinite(z) && [x, -y, -z].map((part) => 127.5 * (part + 1));

@@ -1,11 +1,11 @@
-// npm run pictures: contact sheets to look at, of the data beside the project and of a scene of our own, and the page itself.
-//   [FOLDER]         target/pictures by default: other people's pictures stay out of the project
-//   --only a,b       these objects alone, or "page"
-//   photograph-N.png photograph, albedo, shading and residual of an object, seen 20 degrees off with nothing known; where that
-//                    pose is lost the true one is told
-//   depth-N.png      a registered capture: depth as it is, the same refined, both shaded, and its colours; its pose is known
-//   painted.png      the first of these for the built-in bust, painted
-//   screenshot.png   the Lab as a first visit leaves it
+// npm run pictures: contact sheets of the data beside the project and of a built-in scene, and a screenshot of the page.
+//   [FOLDER]         target/pictures by default, so that other people's pictures stay outside the repository
+//   --only a,b       only these objects, or "page"
+//   photograph-N.png photograph, albedo, shading and residual of an object, with nothing known and 20 degrees between the views; if the
+//                    pose is not found, from the true pose
+//   depth-N.png      a registered capture: raw and refined depth, both shaded, and the image; the pose is known
+//   painted.png      photograph, albedo, shading and residual of the built-in bust with varying albedo
+//   screenshot.png   the Lab after a first visitor's run
 import { mkdirSync, writeFileSync } from "node:fs";
 import { join, relative, resolve } from "node:path";
 import { parseArgs } from "node:util";
@@ -21,25 +21,25 @@ import { quantile } from "../protocols/numbers.mjs";
 import { judged, withRun } from "../protocols/runs.mjs";
 import { PAINTED, requestOf } from "../protocols/scenes.mjs";
 
-/** Captures; the first frame of each. */
+/** Captures, of which the first frame is shown. */
 const CAPTURES = ["coffee_mug_1", "bowl_1", "cap_1", "cereal_box_1", "vase_rgbd", "android_rgbd", "mitten_rgbd"];
 const FRAME = 1;
-/** What --only calls the picture of the page. */
+/** The name of the page's picture for --only. */
 const PAGE = "page";
 const SIZE = 96;
 const BETA = 20;
-/** Pixels of a sheet for one of a photograph's view, of a capture's depth map, and between pictures. */
+/** Magnification of a photograph and of a capture's depth map, and the gap between pictures, pixels. */
 const MAGNIFIED = 4;
 const OF_DEPTH = 2;
 const GAP = 6;
-/** Log units from black to white around the middle, and of a residual from black to white. */
+/** Log units from black to white: around the middle for colours, from zero for a residual. */
 const LOG_RANGE = 3;
 const RESIDUAL_RANGE = 0.6;
-/** Of sRGB, nearly; shares of light to bytes. */
+/** Approximates sRGB: converts linear shares to bytes. */
 const GAMMA = 2.2;
 const asBytes = (share) => 255 * Math.min(1, Math.max(0, share)) ** (1 / GAMMA);
 
-/** A picture of a raster's part where `pixel` gives R, G, B, 0 to 1 linear; black elsewhere. */
+/** A crop of a raster to the pixels for which `pixel` gives R, G, B (linear, 0 to 1); other pixels are black. */
 function picture({ width, height }, pixel, magnified = MAGNIFIED) {
   const inside = Array.from({ length: width * height }, (_, index) => pixel(index));
   const filled = [...inside.keys()].filter((index) => inside[index]);
@@ -54,7 +54,7 @@ function picture({ width, height }, pixel, magnified = MAGNIFIED) {
   return { ...size, data };
 }
 
-/** Rows of pictures as one. */
+/** Joins rows of pictures into one picture. */
 function sheet(rows) {
   const columns = rows[0].map((_, column) => Math.max(...rows.map((row) => row[column].width)));
   const heights = rows.map((row) => Math.max(...row.map(({ height }) => height)));
@@ -77,7 +77,7 @@ function sheet(rows) {
 
 const triple = (raster, index) => [...raster.subarray(3 * index, 3 * index + 3)];
 
-/** R, G, B of log colours, as bright in the middle as the others. */
+/** R, G, B of log colours, with the median mapped to the same brightness. */
 function exposed(log) {
   const middle = quantile([...log].filter(Number.isFinite), 0.5);
   return (index) =>
@@ -85,7 +85,7 @@ function exposed(log) {
     triple(log, index).map((value) => 0.3 * Math.exp(Math.max(-LOG_RANGE, value - middle)));
 }
 
-/** Image, albedo, shading and residual of a run, which knows nothing but its options. */
+/** Image, albedo, shading and residual of a run with the given options. */
 const taken = (api, image, depth, options = {}) =>
   withRun(api, { image, depth }, options, (report, estimator) => {
     const residual = estimator.residual();
@@ -95,7 +95,7 @@ const taken = (api, image, depth, options = {}) =>
     return { report, row: parts.map((part) => picture(image, part)) };
   });
 
-/** A depth map under a lamp beside the camera. */
+/** A depth map lit by a lamp beside the camera. */
 function shaded({ width, height, camera }, metres) {
   const point = (column, row) => {
     const z = metres[row * width + column];
@@ -112,7 +112,7 @@ function shaded({ width, height, camera }, metres) {
   };
 }
 
-/** A photographed object; where its pose is lost the true one is told. */
+/** A photographed object; if its pose is not found, from the true pose. */
 async function photographed(api, data, surface) {
   const made = api.sample(requestOf({ surface, light: "A", size: SIZE, angles: { beta: BETA } }, data));
   const image = onto(SIZE, data.photograph(surface, "lab_diffuse"), made);
@@ -125,13 +125,13 @@ async function photographed(api, data, surface) {
   return (await taken(api, image, made.depth, { start: made.pose, registration: "fixed" })).row;
 }
 
-/** Colours of a file, 8 or 16 bits in sRGB, where the mask holds. */
+/** Colours of a file, 8 or 16 bits in sRGB, inside the mask. */
 function coloured({ data, mask }) {
   const [channels, most] = [data.length / mask.length, 2 ** (8 * data.BYTES_PER_ELEMENT) - 1];
   return (index) => mask[index] && [0, 1, 2].map((channel) => (data[channels * index + channel] / most) ** GAMMA);
 }
 
-/** Depth as it is and refined, and the colours. */
+/** Raw and refined depth, shaded, and the image. */
 const refined = (api, { image, depth }) =>
   withRun(api, { image, depth }, { start: "identity", registration: "fixed", scale: 1 }, (_, estimator) => {
     const raw = Float64Array.from(depth.data, (value, index) =>
@@ -141,7 +141,7 @@ const refined = (api, { image, depth }) =>
     return [...maps, picture(image, coloured(image), Math.max(1, Math.round((OF_DEPTH * depth.width) / image.width)))];
   });
 
-/** The built-in bust in window light, in squares of four paints. */
+/** The built-in bust in window light, in squares of four albedos. */
 function painted(api) {
   const { image, depth } = api.sample({
     surface: "bust",

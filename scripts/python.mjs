@@ -1,14 +1,14 @@
-// The Python package of the checkout, installed into an environment of its own below target/, and its tests.
+// Installs the checkout's Python package into an environment below target/ and runs its tests.
 import { existsSync, mkdirSync, readdirSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { NOTICES } from "./notices/text.mjs";
 import { ask, inRoot, must, print, readIfThere, say, stamp, watch } from "./shell.mjs";
 
 const VENV = "target/python/venv";
-/** Where the wheel is kept that was installed last. */
+/** Folder of the wheel that was installed last. */
 export const WHEELS = "target/python/wheels";
 const inVenv = (name) => inRoot(VENV, "bin", name);
-/** What the tests' pinned numpy asks for; the package itself takes older ones. */
+/** The oldest Python that the tests' pinned numpy supports; the package itself supports older ones. */
 const OLDEST = [3, 11];
 const REQUIREMENTS = "python/tests/requirements.txt";
 const PACKAGE = ["src", "bimodal_stereo", "README.md", "Cargo.toml", "Cargo.lock", NOTICES].map(
@@ -24,7 +24,7 @@ const SOURCES = [
   ...PACKAGE,
 ];
 
-/** Why Python can't be asked here; nothing where it can. */
+/** Why Python can't be used here; undefined if it can. */
 function missing() {
   const version = ask("python3", ["-c", "import venv, ensurepip, sys; print(*sys.version_info[:2])"]);
   if (version === undefined) return "needs python3 with its module venv (Debian: apt-get install python3-venv)";
@@ -33,7 +33,7 @@ function missing() {
   return isOld ? `needs Python ${OLDEST.join(".")}, this is ${version.replace(" ", ".")}` : undefined;
 }
 
-/** Runs a step of the set-up where its stamp has changed; a step that breaks off leaves no mark. */
+/** Runs a step of the set-up if its stamp has changed; a step that fails leaves no stamp. */
 async function once(mark, wanted, step) {
   const path = inRoot("target/python", mark);
   if (readIfThere(path) === wanted && existsSync(inVenv("python"))) return;
@@ -54,7 +54,7 @@ async function install() {
   await once(".package-stamp", stamp([...SOURCES, REQUIREMENTS]), async () => {
     say("Python: pip install ., by way of its wheel");
     rmSync(inRoot(WHEELS), { recursive: true, force: true });
-    // What cargo has made stays in python/target.
+    // Cargo's output stays in python/target.
     await pip("wheel", "--no-deps", "--wheel-dir", WHEELS, ".");
     await pip(
       "install",
@@ -78,16 +78,16 @@ export async function python() {
   const guard = inRoot("target/python/guard");
   const steps = [
     ["cargo", "fmt", "--check", ...manifest],
-    // The release's profile, whose macros pip has compiled.
+    // With the release profile, for which pip has already compiled the macros.
     ["cargo", "clippy", "--release", "--locked", ...manifest, "--", "-D", "warnings"],
-    // Of the standard library alone, so that nothing links Python.
+    // This file needs only the standard library, so the test does not link Python.
     ["rustc", "--edition", "2024", "--test", "python/src/guard.rs", "-o", guard],
     [guard],
     [inVenv("mypy"), "--strict", "--cache-dir", "target/python/mypy", "python/bimodal_stereo", "python/tests/typed.py"],
     [inVenv("pytest")],
   ];
   let output = "";
-  // What else is in the environment, Open3D's packages say, may bring plugins that this pytest refuses.
+  // Other packages in the environment, such as those of Open3D, may bring plugins that this pytest rejects.
   const env = { PYTEST_DISABLE_PLUGIN_AUTOLOAD: "1" };
   for (const [program, ...args] of steps) {
     const result = await watch(program, args, { env });

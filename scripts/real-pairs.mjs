@@ -1,4 +1,4 @@
-// Real pairs from the data beside the project, and how the loop fares on them; shared by `pairs.mjs`, `captures.mjs` and the tests.
+// Real pairs from the data beside the project, and the loop's results on them; shared by `pairs.mjs`, `captures.mjs` and the tests.
 import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import { inRoot } from "./shell.mjs";
@@ -15,7 +15,7 @@ export const MISSING = `no data in ${DATA}`;
 
 export const bytes = (...path) => readFileSync(join(DATA, ...path));
 
-/** Colour of one frame and depth of another one, which the same camera took a moment later, or of the same. */
+/** Colour of one frame and depth of the same frame, or of another that the same camera took a moment later. */
 function frames(object, [first, second], { decodeColour, decodeDepth, decodeMask }) {
   const frame = (number, kind) => bytes("rgbd_object", `${object}_1_${number}_${kind}`);
   const camera = (number) => {
@@ -35,7 +35,7 @@ function frames(object, [first, second], { decodeColour, decodeDepth, decodeMask
   };
 }
 
-/** Colour and depth of one moment: the true pose is the identity. */
+/** Colour and depth of one moment, so that the true pose is the identity. */
 function vase({ decodeColour, decodeDepth, decodeMask }) {
   const { fx, fy, cx, cy } = JSON.parse(bytes("vase_rgbd", "camera.json").toString());
   const shared = { mask: decodeMask(bytes("vase_rgbd", "mask.png")).data, camera: { fx, fy, cx, cy } };
@@ -45,7 +45,7 @@ function vase({ decodeColour, decodeDepth, decodeMask }) {
   };
 }
 
-/** A colour image at half its resolution: means of blocks of four pixels. */
+/** A colour image at half its resolution: means of blocks of 2x2 pixels. */
 function halved({ width, height, data, ...rest }) {
   const half = { width: width / 2, height: height / 2, data: new data.constructor(data.length / 4) };
   for (let index = 0; index < half.width * half.height; index++) {
@@ -58,7 +58,7 @@ function halved({ width, height, data, ...rest }) {
   return { ...rest, ...half };
 }
 
-/** A colour image and a mask twice as large as the depth map, registered: `android_rgbd` and a lamp of `mitten_rgbd`. */
+/** A registered colour image and mask, twice as large as the depth map: `android_rgbd`, and a lamp of `mitten_rgbd`. */
 function twofold(folder, names, camera, { decodeColour, decodeDepth, decodeMask }) {
   const [colour, depth, mask] = names.map((name) => bytes(folder, name));
   const { width, data } = decodeMask(mask);
@@ -70,7 +70,7 @@ function twofold(folder, names, camera, { decodeColour, decodeDepth, decodeMask 
   };
 }
 
-/** Colour and depth of one moment, seen by one camera: the true pose is the identity. */
+/** Colour and depth of one moment, seen by one camera, so that the true pose is the identity. */
 export function capture(name, frame, files) {
   if (name === "vase_rgbd") return vase(files);
   if (name === "android_rgbd") {
@@ -86,7 +86,7 @@ export function capture(name, frame, files) {
 
 const OBJECTS = ["coffee_mug_1", "bowl_1", "cap_1", "cereal_box_1"];
 
-/** Names of the pairs and how to read each with the package's decoders. */
+/** Names of the pairs, and how to read each with the package's decoders. */
 export const PAIRS = {
   ...Object.fromEntries(OBJECTS.map((object) => [object, (files) => frames(object, [1, 2], files)])),
   vase_rgbd: vase,
@@ -95,7 +95,7 @@ export const PAIRS = {
 /** Degrees of the rotation with this row-major matrix. */
 const degrees = ([a, , , , b, , , , c]) => (Math.acos(Math.min(1, Math.max(-1, (a + b + c - 1) / 2))) * 180) / Math.PI;
 
-/** Runs the loop to its end. Both frames are metric, so that the pose's translation is in metres. */
+/** Runs the loop to its end. Both frames are metric, so the pose's translation is in metres. */
 export async function runPair(Estimator, { image, depth }, options = {}) {
   const estimator = new Estimator(image, depth, {
     light: "estimate",

@@ -1,7 +1,8 @@
-// npm run release -- 0.2.0: a version, from the tree as it is committed. `--dry-run` prints what would change.
+// npm run release -- 0.2.0: makes a version from the committed tree. `--dry-run` prints the changes.
 //
-// The version is in the root's Cargo.toml alone, and everything else reads it there; the lock files, python/Cargo.toml, CITATION.cff and the changelog are written from it.
-// It commits and tags, and neither pushes nor publishes; the tag, once it is pushed, does (.github/workflows/release.yml). Run `npm test -- --long` before it.
+// The version is kept in the root's Cargo.toml; the lock files, python/Cargo.toml, CITATION.cff and the changelog are updated from it, and
+// everything else reads it there. The command commits and tags. It neither pushes nor publishes: pushing the tag publishes
+// (.github/workflows/release.yml). Run `npm test -- --long` before it.
 import { readFileSync, writeFileSync } from "node:fs";
 import { spawnSync } from "node:child_process";
 import { parseArgs } from "node:util";
@@ -47,15 +48,15 @@ function replaced(name, text, pattern, by) {
   return text.replace(pattern, by);
 }
 
-/** The project's own packages in a lock file, which come from no registry; what fuzzes them has no version. */
+/** The project's own packages in a lock file, which come from no registry; the fuzzer's package has no version. */
 const locked =
   (name) =>
   (text, { version }) =>
     replaced(name, text, /^(name = "bimodal-stereo(?!-fuzz).*"\nversion = )".+"$(?!\nsource)/gm, `$1"${version}"`);
 
-/** How each file changes. */
+/** The change of each file. */
 const FILES = {
-  // Once for all members, and once where the command line asks for the library.
+  // Once for all members, and once where the command line depends on the library.
   "Cargo.toml": (text, { version }) =>
     replaced(
       "Cargo.toml",
@@ -63,7 +64,7 @@ const FILES = {
       /^(bimodal-stereo(?:-files)? = .*version = )"=.+"/gm,
       `$1"=${version}"`,
     ),
-  // A workspace of its own, so that what is built for browsers never sees it.
+  // A separate workspace, so that builds for browsers never see it.
   "python/Cargo.toml": (text, { version }) => replaced("python/Cargo.toml", text, VERSION, `version = "${version}"`),
   ...Object.fromEntries(["Cargo.lock", "python/Cargo.lock", "fuzz/Cargo.lock"].map((name) => [name, locked(name)])),
   "CITATION.cff": (text, { version, date }) =>
@@ -81,7 +82,7 @@ const FILES = {
   },
 };
 
-/** The lines that one text has and the other has not, as a patch shows them. */
+/** The lines that differ between two texts, in the form of a patch. */
 function difference(before, after) {
   const [old, fresh] = [before.split("\n"), after.split("\n")];
   const less = old.filter((line) => !fresh.includes(line)).map((line) => `- ${line}`);
@@ -92,7 +93,7 @@ await script(async () => {
   const wanted = parsed();
   const { version, isDry } = wanted;
   const present = VERSION.exec(readFileSync(inRoot("Cargo.toml"), "utf8"))[1];
-  // What is there is released as it is the first time.
+  // The first release may keep the present version.
   const tags = git("tag", "--list", "v*").split("\n");
   if (tags.includes(`v${version}`)) throw new Failure(`There is a tag v${version} already.`);
   if (version !== present && !isAfter(version, present))

@@ -1,6 +1,6 @@
-// npm run rigs: how often the check of a calibration is right, on rendered rigs whose extrinsics are known.
+// npm run rigs: measures how often the check of a calibration is right, on rendered rigs with known extrinsics.
 //
-// --rigs N     rigs of each kind (default 5), seeds from --from (default 100; seeds below 20 had a part in choosing constants)
+// --rigs N     rigs of each kind (default 5), seeds from --from (default 100; seeds below 20 were used to choose constants)
 // --frames K   frames of a rig (default 1 and 3)
 // --kinds A,B  of objects, sheet, boxes, room
 // --json FILE  one row for each check
@@ -105,7 +105,7 @@ await script(async () => {
       for (let frame = 0; frame < Math.max(...counts); frame++) all.push(await sampleRig({ kind, seed, frame }));
       const truth = all[0].pose;
       for (const frames of counts) {
-        // The right one, and one that is off, each time by another size.
+        // The right candidate, and a wrong one whose size varies with the seed.
         for (const index of [0, 1 + (seed % (ERRORS.length - 1))]) {
           const error = ERRORS[index];
           const told = wrong(truth, error, chance(1000 * seed + 10 * index + KINDS.indexOf(kind)).direction);
@@ -120,7 +120,7 @@ await script(async () => {
             probability: report.candidates.told.probability,
             interval: report.health.interval,
             bounds: report.candidates.told.interval,
-            // Mean squares add up: of a right candidate what is left is the estimate's own error, pixels.
+            // Mean squares add up, so for a right candidate the difference is the estimate's own error, pixels.
             own: Math.sqrt(Math.max(0, report.candidates.told.pixels ** 2 - report.health.pixels ** 2)),
             ...sizes(d),
             pixels: report.health.pixels,

@@ -1,4 +1,4 @@
-// Everything that building and testing need, fetched once: toolchain, wasm-bindgen, node_modules.
+// Fetches everything that building and testing need, once: toolchain, wasm-bindgen, node_modules.
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { Failure, ask, inRoot, must, readIfThere, say, seconds, stamp } from "./shell.mjs";
 
@@ -11,7 +11,7 @@ function checkNode() {
   if (!enough) throw new Failure(`Node 20.19+ or 22.12+ is needed, this is ${process.versions.node}.`);
 }
 
-/** rust-toolchain.toml alone installs nothing where automatic installation is switched off. */
+/** rust-toolchain.toml installs nothing if automatic installation is switched off. */
 async function toolchain() {
   if (ask("rustup", ["--version"]) === undefined) {
     throw new Failure("Rust is needed: install it from https://rustup.rs, open a new shell and try again.");
@@ -38,13 +38,13 @@ async function toolchain() {
   ]);
 }
 
-/** The command-line tool must equal the crate's version, to the last digit. */
+/** The command-line tool must have exactly the crate's version. */
 async function wasmBindgen() {
   const version = /name = "wasm-bindgen"\nversion = "(.+)"/.exec(readFileSync(inRoot("Cargo.lock"), "utf8"))[1];
   if (ask(tool("wasm-bindgen"), ["--version"]) === `wasm-bindgen ${version}`) return;
   say(`wasm-bindgen ${version}: compiling its command-line tools (1 to 2 minutes, once)`);
-  // Without --locked: the lock file of some releases names a yanked crate. Not optimised, for less than half the time to compile: it
-  // runs for a second. Without default features: they are TLS, and its tests speak with a driver on this machine.
+  // Without --locked, because the lock file of some releases names a yanked crate. Not optimised, which halves the compile time of a tool
+  // that runs for a second. Without default features, which are TLS: its tests talk to a driver on this machine.
   const wanted = ["--no-default-features", "--bin", "wasm-bindgen", "--bin", "wasm-bindgen-test-runner"];
   await must(
     "cargo",

@@ -1,4 +1,4 @@
-// Running other programs and telling the reader about it; shared by every script here.
+// Runs other programs and reports to the reader; shared by all scripts.
 import { AsyncLocalStorage } from "node:async_hooks";
 import { spawn, spawnSync } from "node:child_process";
 import { createHash } from "node:crypto";
@@ -9,10 +9,10 @@ import { fileURLToPath } from "node:url";
 export const root = resolve(dirname(fileURLToPath(import.meta.url)), "..");
 export const inRoot = (...parts) => join(root, ...parts);
 
-/** A failure that the reader can mend: its message is all there is to say. */
+/** A failure that the reader can fix; its message suffices. */
 export class Failure extends Error {}
 
-/** What a task that runs beside another has said so far. */
+/** The output so far of a task that runs beside others. */
 const said = new AsyncLocalStorage();
 
 export function print(text) {
@@ -23,7 +23,7 @@ export function print(text) {
 
 export const say = (message) => print(`> ${message}\n`);
 
-/** Keeps what a task says until it is done, so that tasks side by side don't mix their lines. */
+/** Buffers a task's output until it is done, so that lines of parallel tasks don't mix. */
 export async function inOnePiece(task) {
   const pieces = [];
   try {
@@ -35,13 +35,13 @@ export async function inOnePiece(task) {
 
 export const seconds = (since) => `${((performance.now() - since) / 1000).toFixed(1)} s`;
 
-/** What a program prints, or undefined where it is missing or fails. */
+/** The output of a program, or undefined if it is missing or fails. */
 export function ask(program, args) {
   const answer = spawnSync(program, args, { cwd: root, encoding: "utf8" });
   return answer.status === 0 ? answer.stdout.trim() : undefined;
 }
 
-/** Runs a program, shows its output as it comes and hands it back; never waits for input. */
+/** Runs a program, shows its output as it comes and returns it; never waits for input. */
 export function watch(program, args, { env = {} } = {}) {
   return new Promise((done) => {
     const child = spawn(program, args, {
@@ -85,7 +85,7 @@ export const matching = (folders, pattern) =>
     .filter((path) => pattern.test(basename(path)))
     .map((path) => relative(root, path));
 
-/** One hash over names and contents, so that what is up to date survives a checkout's new time stamps. */
+/** One hash over names and contents. Unlike time stamps, it survives a fresh checkout. */
 export function stamp(paths) {
   const hash = createHash("sha256");
   for (const file of paths.flatMap((path) => filesBelow(inRoot(path)))) {
@@ -96,7 +96,7 @@ export function stamp(paths) {
 
 export const readIfThere = (path) => (existsSync(path) ? readFileSync(path, "utf8") : undefined);
 
-/** Runs a script's body; failures that the reader can mend are printed without a stack. */
+/** Runs a script's body; failures that the reader can fix are printed without a stack. */
 export async function script(body) {
   try {
     await body();

@@ -1,6 +1,6 @@
-// npm run site: the page as plain files in site/, for any web server and below any path of it.
-//   --serve PORT  serves them afterwards, to look at, below a path as deep as a host may choose, until ctrl-C
-// docs/hosting.md says how to put them onto a server.
+// npm run site: the page as static files in site/, for any web server, below any path.
+//   --serve PORT  serves them afterwards for a look, below as deep a path as a host may choose, until ctrl-C
+// docs/hosting.md explains how to put them on a server.
 import { parseArgs } from "node:util";
 import { build } from "./build.mjs";
 import { setup } from "./setup.mjs";

@@ -1,14 +1,14 @@
-// How much a visitor downloads, and how much it may be.
+// The sizes of a visitor's downloads, and their budgets.
 import { existsSync, readFileSync, readdirSync } from "node:fs";
 import { gzipSync } from "node:zlib";
 import { Failure, inRoot } from "./shell.mjs";
 import { SITE, buildSite } from "./site/build.mjs";
 
-/** Most bytes of either wasm, gzipped; a visitor downloads one of them: two and a half seconds on a slow phone's 1 Mbit/s. */
+/** Largest gzipped size of either wasm, of which a visitor downloads one, bytes: 3.6 seconds at 1 Mbit/s. */
 export const WASM_BUDGET = 450_000;
-/** Bytes of the page's scripts, gzipped, before anything is seen, stay below this: half a second there. */
+/** Gzipped size of the scripts before the first paint must stay below this, bytes: half a second at 1 Mbit/s. */
 export const FIRST_PAINT_BUDGET = 60_000;
-/** .. and of all that the check of a rig, its readers and its writers add to the Lab, gzipped. */
+/** Largest gzipped size of everything that the check of a rig, its readers and its writers add to the Lab, bytes. */
 export const CHECK_BUDGET = 200_000;
 
 const WASM = "pkg/bimodal_stereo_bg.wasm";
@@ -16,11 +16,11 @@ const SCALAR = "pkg/bimodal_stereo_scalar_bg.wasm";
 const PAGE = SITE;
 const zipped = (path) => gzipSync(readFileSync(path)).length;
 
-/** What the page imports at once from another file, and what it imports when it is asked for or names as a file of numerics. */
+/** Imports that load at once, and dynamic imports and .wasm files, which load on demand. */
 const AT_ONCE = /(?:^|[;}])(?:import|export)\b(?:[^"';()]*from)?\s*["']\.\/([^"']+\.js)["']/g;
 const ON_DEMAND = /import\(\s*["'`]\.\/([^"'`]+\.js)["'`]|new URL\(\s*["'`]([^"'`]+\.wasm)["'`]/g;
 
-/** All files that these lead to by imports of the kinds that the patterns find. */
+/** All files reachable from these by the kinds of imports that the patterns match. */
 function reached(first, patterns, isLeftOut = () => false) {
   const found = new Set();
   const waiting = [...first];
@@ -36,7 +36,7 @@ function reached(first, patterns, isLeftOut = () => false) {
   return [...found].sort();
 }
 
-/** Scripts that the page asks for before its first paint: those it names, and what these import at once. */
+/** Scripts that load before the first paint: those named in the page and their immediate imports. */
 function firstScripts() {
   const page = readFileSync(inRoot(PAGE, "index.html"), "utf8");
   return reached(
@@ -46,19 +46,19 @@ function firstScripts() {
 }
 
 const CHECK_WASM = /bimodal_stereo_check_bg/;
-/** A word that only those know who read or write a rig's files: Kalibr's name of its extrinsics. */
+/** Kalibr's name of its extrinsics, which only occurs in scripts that read or write a rig's files. */
 const RIG_FILES = /T_cn_cnm1/;
-/** The rendered example, which is loaded when it is asked for. */
+/** The rendered example, which loads on demand. */
 const EXAMPLE = /\/(?:rigs-|bimodal_stereo_rigs_bg)/;
 /**
- * Readers that are loaded for a file of their kind: JPEG where there is no browser, texts, YAML, TOML, JSON with comments, calibrations of
- * products, clouds of points, rare compressions of EXR and TIFF, recordings, the words for what is not read; and what makes the pair of a run
- * of the Lab's files.
+ * Readers that load only for files of their kind: JPEG without a browser, texts, YAML, TOML, JSON with comments, calibrations of products,
+ * point clouds, rare compressions of EXR and TIFF, recordings, messages about unsupported files; and the code that makes the Lab's pair from
+ * the files of a run.
  */
 const OTHERS =
   /\/(?:decoder|dist\d*|pointclouds|exr-others|products|text|tiff-codecs|js-yaml|recorded|containers|pairs)-/;
 
-/** What runs a check, reads its files and writes them, all of it on demand; and what the example takes besides. */
+/** The files that run a check, read its input and write its results, all loaded on demand, and those that only the example needs. */
 function checkFiles() {
   const scripts = readdirSync(inRoot(PAGE, "assets"))
     .filter((name) => name.endsWith(".js"))
@@ -75,7 +75,7 @@ function checkFiles() {
 /** Builds the page that is measured. */
 export const buildPage = buildSite;
 
-/** Bytes of the built package and the built page. */
+/** Sizes of the built package and the built page, bytes. */
 export function sizes() {
   for (const path of [WASM, SCALAR, `${PAGE}/index.html`])
     if (!existsSync(inRoot(path))) throw new Failure(`${path} has not been built.`);
@@ -95,7 +95,7 @@ export function sizes() {
   };
 }
 
-/** The sizes beside their budgets, one line each, and whether all are kept. */
+/** The sizes beside their budgets, one line each, and whether all stay within them. */
 export function judgeSizes({ wasmGzipBytes, scalarGzipBytes, jsGzipBytes, checkGzipBytes, exampleGzipBytes }) {
   const line = (name, bytes, kept, budget) =>
     `${name}: ${(bytes / 1000).toFixed(1)} kB gzipped, ${kept ? "within" : "OVER"} the budget of ${budget / 1000} kB`;

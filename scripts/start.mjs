@@ -1,4 +1,4 @@
-// npm start: sets up, builds and serves the page until ctrl-C. PORT names a port, else the first free one from 4173.
+// npm start: sets up, builds and serves the page until ctrl-C. PORT sets the port; by default it is the first free one from 4173.
 import { readFileSync } from "node:fs";
 import { build } from "./build.mjs";
 import { NOTICES } from "./notices/text.mjs";
@@ -7,7 +7,7 @@ import { Failure, inRoot, say, script } from "./shell.mjs";
 
 const FIRST_PORT = 4173;
 
-/** The built page has the notices of all that it contains beside it; here its link leads to those of the package. */
+/** The built page includes the notices of its contents; here, the link leads to those of the package. */
 const notices = {
   name: "notices",
   configureServer: ({ middlewares }) =>
@@ -32,13 +32,13 @@ await script(async () => {
   const server = await createServer({
     root: inRoot("www"),
     plugins: [notices],
-    // A number address: "localhost" may mean IPv6 alone, which leaves others outside.
+    // A numeric address: "localhost" may be IPv6 only, which excludes other clients.
     server: { host: "127.0.0.1", port: port ?? FIRST_PORT, strictPort: port !== undefined },
   });
   try {
     await server.listen();
   } catch (error) {
-    // Its file watchers would keep the process alive.
+    // Otherwise its file watchers keep the process alive.
     await server.close();
     throw new Failure(error.message);
   }

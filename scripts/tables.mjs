@@ -1,10 +1,10 @@
-// npm run tables: every table and figure of the paper beside our numbers, from the built package.
-//   --quick          a subset, a few minutes at most
-//   --only a,b       these tables alone
+// npm run tables: every table and figure of the paper beside this project's results, from the built package.
+//   --quick          a subset, at most a few minutes
+//   --only a,b       only these tables
 //   --json FILE      the rows as JSON
 //   --docs           the aims and their verdicts into the marked region of docs/accuracy.md
 //   --workers N      processes; the results do not depend on it
-// The environment's BIMODAL_STATUE names a folder of pairs for the table `statue`, laid out as those beside the project.
+// The environment variable BIMODAL_STATUE names a folder of pairs for the table `statue`, laid out like those beside the project.
 import { writeFileSync } from "node:fs";
 import { availableParallelism } from "node:os";
 import { resolve } from "node:path";
@@ -60,7 +60,7 @@ await script(async () => {
   const { json, failures, complete } = await collect(tables, { quick, workers });
   if (!complete) throw new Failure("Broken off; what was done is kept, and the next run goes on from there.");
 
-  // The baseline's figures are of the paper's bust.
+  // The baseline's figures are for the paper's bust.
   const open3d = hasData() ? baseline() : undefined;
   console.log();
   for (const table of tables) console.log(show(table, json[table.name], open3d).join("\n"));

@@ -1,5 +1,5 @@
-// npm test: sets up, builds, and runs every test that does not take long. `npm test -- contract page` runs these parts alone,
-// `npm test -- --long` the tests that take over three seconds as well.
+// npm test: sets up, builds, and runs every test that does not take long. `npm test -- contract page` runs only these parts,
+// `npm test -- --long` also runs the tests that take over three seconds.
 import { readFileSync, rmSync } from "node:fs";
 import { createServer } from "node:net";
 import { availableParallelism } from "node:os";
@@ -12,9 +12,9 @@ import { buildPage, judgeSizes, sizes } from "./sizes.mjs";
 import { hasData } from "./tables/library.mjs";
 import { missingKeys } from "./tables/keys.mjs";
 
-/** Whether the tests that take long run as well: those of Rust's modules called `long`, those marked LONG, and whole parts. */
+/** Whether long tests run as well: those of Rust's modules called `long`, those marked LONG, and whole parts. */
 const LONG = process.argv.includes("--long");
-/** What cargo's test programs are given to leave out. */
+/** Arguments that make cargo's test programs skip long tests. */
 const SHORT = LONG ? [] : ["--skip", "::long::"];
 const DENY = ["--", "-D", "warnings"];
 const modules = (path) => inRoot("node_modules", path);
@@ -23,13 +23,13 @@ const cargo =
   () =>
     watch("cargo", args);
 /**
- * What runs in browsers is the library; the command line in cli/ is not built for them. Whoever builds it for them has to say so: a choice
- * of packages is a choice of their crates' features, and cargo keeps one build of the library for all choices, so that another one throws it away.
+ * The library is built for browsers, the command line in cli/ is not, so builds for browsers must name the package. A choice of packages
+ * also chooses their crates' features, and cargo keeps only one build of the library: a build with another choice discards it.
  */
 const LIBRARY = ["-p", "bimodal-stereo"];
-/** A test in a browser runs to its end, too: the runner's own limit is twenty seconds. */
+/** A test in a browser runs to its end as well; the runner's own limit is twenty seconds. */
 const PATIENCE = { WASM_BINDGEN_TEST_TIMEOUT: "1800" };
-/** Modules of `tests/library` that search and sweep: they always run natively; by wasm with `--long`, as all others do each time. */
+/** Modules of `tests/library` with searches and sweeps: they always run natively, and as wasm only with `--long`. */
 const SEARCHES = [
   "initialisation",
   "opening",
@@ -47,18 +47,18 @@ const wasmTests = (where, skipped = WITHOUT_SEARCHES) =>
   watch("cargo", ["test", ...LIBRARY, "--target", WASM, "--lib", "--test", "library", "--", ...skipped], {
     env: { ...PATIENCE, ...where },
   });
-/** In Node `--long` runs all of them. A page and a worker have the same engine: what takes long would only be computed again. */
+/** In Node, `--long` runs all of them. A page and a worker have the same engine, so long tests would only repeat the computation. */
 const wasmInNode = () => wasmTests({}, LONG ? [] : WITHOUT_SEARCHES);
 const wasmIn = (variable) => async () => {
   const run = async () => wasmTests({ [variable]: "1", CHROMEDRIVER: (await browser()).chromedriver });
   const first = await run();
-  // The tests keep the page busy for a minute, in which a loaded machine may lose the driver; a test that fails is not tried again.
+  // The tests keep the page busy for a minute, in which a loaded machine may lose the driver. A failing test is not repeated.
   const isDriverLost = first.code !== 0 && /^driver status: /m.test(first.output) && !/ FAILED/.test(first.output);
   if (!isDriverLost) return first;
   say("the driver was lost before the tests ended: once more");
   return run();
 };
-/** Natively everything optional is looked at; what is built for browsers has none of it. */
+/** Native builds check all optional features; builds for browsers have none. */
 const FEATURES = ["--all-features"];
 
 /** Every TypeScript project: the facade, the page, its worker, the tests, the example in React. */
@@ -93,11 +93,11 @@ function freePort() {
   });
 }
 
-/** The documentation as docs.rs builds it: a link that leads nowhere fails. Its examples run with the tests. */
+/** The documentation as docs.rs builds it: a broken link fails. Its examples run with the tests. */
 const docs = () =>
   watch("cargo", ["doc", ...LIBRARY, "--no-deps", ...FEATURES], { env: { RUSTDOCFLAGS: "-D warnings" } });
 
-/** The files of tests/page that go to each place of the page, in its own words; the others look closer, with `--long`. */
+/** The files of tests/page that visit each place of the page; the others test details, with `--long`. */
 const PLACES = ["run", "files", "saved", "learn", "rig", "rig-frames", "report", "tables", "security", "site"];
 
 async function page() {
@@ -106,17 +106,17 @@ async function page() {
   return watch(process.execPath, [modules("@playwright/test/cli.js"), "test", ...(LONG ? [] : short)], { env });
 }
 
-/** What is optional and not there is named among what was not run. */
+/** Reports an optional tool that is missing among the tests that did not run. */
 function without(what, reason) {
   const output = `skipped: ${what} # ${reason}\n`;
   print(output);
   return { code: 0, output };
 }
 
-/** The first Firefox that knows the command network.addDataCollector, with which Playwright begins. */
+/** The first Firefox with the command network.addDataCollector, which Playwright needs. */
 const OLDEST_FIREFOX = 143;
 
-/** The page in Firefox, as far as there is one that Playwright can drive. */
+/** The page in Firefox, if Playwright can drive the installed one. */
 async function firefoxPage(program) {
   const what = "the page in Firefox";
   if (!program) return without(what, "needs firefox-esr (apt-get install firefox-esr)");
@@ -129,7 +129,7 @@ async function firefoxPage(program) {
   });
 }
 
-/** The second engine, where it is installed: a smoke of every place by Playwright, and the wasm tests by geckodriver. */
+/** The second engine, if installed: a smoke test of every place by Playwright, and the wasm tests by geckodriver. */
 async function secondEngine() {
   const found = firefox();
   const page = await firefoxPage(found.firefox);
@@ -140,18 +140,18 @@ async function secondEngine() {
   return { code: page.code || wasm.code, output: `${page.output}\n${wasm.output}` };
 }
 
-/** Licenses, doubles and sources of all crates, which needs no network. */
+/** Licences, duplicates and sources of all crates; needs no network. */
 function deny() {
   if (!ask("cargo", ["deny", "--version"]))
     return without("licenses and sources of the crates", "needs cargo-deny (cargo install cargo-deny)");
   return watch("cargo", ["deny", "--offline", "check", "licenses", "bans", "sources"]);
 }
 
-/** No test is about time: the limit, in milliseconds, ends what hangs. */
+/** No test measures time; this limit, in milliseconds, ends a test that hangs. */
 const HANGS = 1_800_000;
 const contract = () => {
   const files = matching(["tests/contract"], /\.test\.mjs$/);
-  // Two files at once: Node's own default is one on two processors.
+  // At least two files at once; Node's own default is one on two processors.
   return watch(
     process.execPath,
     [
@@ -167,10 +167,10 @@ const contract = () => {
   );
 };
 
-/** Tests that need the data beside the project are marked as ignored, with that reason, and asked for where the data are there. */
+/** Tests that need the data beside the project are marked as ignored, with that reason, and included if the data are there. */
 const rust = () => watch("cargo", ["test", ...FEATURES, "--", ...(hasData() ? ["--include-ignored"] : []), ...SHORT]);
 
-/** Not on accuracy: aims are shown with their verdicts. It fails where a cell throws or the JSON lacks a key. */
+/** Accuracy does not decide: aims are shown with their verdicts. The part fails if a cell throws or the JSON lacks a key. */
 async function tables() {
   const file = inRoot("target/tables/quick.json");
   rmSync(file, { force: true });
@@ -183,7 +183,7 @@ async function tables() {
   return { code: missing.length === 0 ? 0 : 1, output: `${result.output}\n${lines.join("\n")}\n` };
 }
 
-/** What a visitor downloads, against its budgets. */
+/** The sizes of a visitor's downloads against their budgets. */
 async function downloads() {
   await buildPage();
   const { lines, kept } = judgeSizes(sizes());
@@ -191,19 +191,19 @@ async function downloads() {
   return { code: kept ? 0 : 1, output: `${lines.join("\n")}\n` };
 }
 
-/** What a runner says last; these lines are repeated at the end. */
+/** The last lines of a runner's output, which are repeated at the end. */
 const CARGO = /^(test result: .*|error: test failed.*|error: could not compile.*)$/gm;
 const NODE = /^(?:# |ℹ )((?:tests|pass|fail|skipped) .*)$/gm;
 const PYTHON = /^(\d+ (?:passed|failed).* in .*|Found \d+ errors? .*)$/gm;
 
-/** How cargo, Node, pytest and the page's reporter (or `tables`) name a test that did not run: its name, and the reason. */
+/** How cargo, Node, pytest and the page's reporter (or `tables`) report a test that did not run: its name and the reason. */
 const NOT_RUN = [
   /^test (?<name>.+) \.\.\. ignored(?:, (?<reason>.+))?$/gm,
   /^ *﹣ (?<name>.+) \([\d.]+ms\) # (?<reason>.+)$/gm,
   /^skipped: (?<name>.+) # (?<reason>.+)$/gm,
 ];
 
-/** One line for each reason why tests did not run, with their number and names. */
+/** One line for each reason why tests did not run, with the number and names of the tests. */
 function notRun(output) {
   const names = new Map();
   const found = NOT_RUN.flatMap((pattern) => [...output.matchAll(pattern)]);
@@ -216,12 +216,12 @@ function notRun(output) {
 }
 
 /**
- * In the order in which they run. Parts with a lane keep one processor busy, so that those of the two lanes run side by side; the page is
- * built by parts of one lane alone.
+ * In the order of running. A part with a lane keeps one processor busy, so parts of the two lanes run in parallel; only parts of one lane
+ * build the page.
  */
 const PARTS = [
   { name: "format", run: cargo("fmt", "--check") },
-  // Layout and lint of everything in TypeScript and JavaScript.
+  // Layout and lint of all TypeScript and JavaScript.
   { name: "biome", run: biome, closing: /^(?:Checked \d+ files.*|Found .*)$/gm },
   { name: "clippy", run: cargo("clippy", "--all-targets", ...FEATURES, ...DENY), closing: CARGO },
   {
@@ -229,7 +229,7 @@ const PARTS = [
     run: cargo("clippy", ...LIBRARY, "--target", WASM, "--all-targets", "--features", "bindings", ...DENY),
     closing: CARGO,
   },
-  // The bindings of the calibration check and of its rendered rigs, which are files of their own.
+  // The bindings of the calibration check and of its rendered rigs, which are separate files.
   {
     name: "clippy-check",
     run: cargo("clippy", ...LIBRARY, "--target", WASM, "--lib", "--features", "bindings-check", ...DENY),
@@ -280,11 +280,11 @@ function chosen(names) {
   return PARTS.filter((part) => (names.length === 0 ? LONG || !part.long : names.includes(part.name)));
 }
 
-/** The package, which is built once for all parts that need it. */
+/** The package is built once for all parts that need it. */
 let building;
 const built = () => (building ??= build());
 
-/** Runs one part; whatever goes wrong is a failed part, so that the others still get their turn. */
+/** Runs one part. Any error makes the part fail, so that the others still run. */
 async function attempt({ name, run, needsBuild, closing }) {
   print(`\n=== ${name} ${"=".repeat(Math.max(0, 70 - name.length))}\n`);
   const start = performance.now();
@@ -308,7 +308,7 @@ async function inTurn(parts, run) {
   return results;
 }
 
-/** Parts with a lane, which follow one another in the list, side by side; the others by themselves. */
+/** Runs consecutive parts with lanes in parallel, the others alone. */
 async function attemptAll(parts) {
   const first = parts.findIndex(isInLane);
   const lanes = [0, 1].map((lane) => parts.filter((part) => part.lane === lane)).filter((lane) => lane.length > 0);

@@ -1,9 +1,9 @@
-// What a compiled module says of itself to the tools that come after the linker.
+// Edits the features that a compiled module declares to the tools after the linker.
 
 const CUSTOM = 0;
 const MAGIC = 8;
 
-/** An unsigned LEB128 number at `at`, and where it ends. */
+/** An unsigned LEB128 number at `at`, and the position after it. */
 function number(bytes, at) {
   let [value, shift] = [0, 0];
   for (;;) {
@@ -20,13 +20,13 @@ function encoded(value) {
   return [...bytes, value];
 }
 
-/** A name with its length before it. */
+/** A name with its length in front, and the position after it. */
 function name(bytes, at) {
   const [length, start] = number(bytes, at);
   return [bytes.toString("utf8", start, start + length), start + length];
 }
 
-/** The module without one entry of its section "target_features", which says what it was compiled for. */
+/** The module without one entry of its section "target_features", which declares what it was compiled for. */
 export function withoutFeature(module, feature) {
   const parts = [module.subarray(0, MAGIC)];
   for (let at = MAGIC; at < module.length; ) {
@@ -39,7 +39,7 @@ export function withoutFeature(module, feature) {
   return Buffer.concat(parts);
 }
 
-/** That section anew: its title, the number of entries, and each of them, a sign and a name. */
+/** That section, rebuilt: its title, the number of entries, and each entry as a sign and a name. */
 function without(module, start, first, feature) {
   const [count, begin] = number(module, first);
   const entries = [];

@@ -1,4 +1,4 @@
-//! After the first iteration the stages that work on every pixel allocate nothing.
+//! After the first iteration, stages that process every pixel do not allocate.
 
 #[path = "common/allocations.rs"]
 mod allocations;
@@ -12,11 +12,11 @@ use bimodal_stereo::{Camera, Estimator, Lens, LightSource, Options, Pinhole, Sta
 /// Iterations that are counted, after the first.
 const COUNTED: u32 = 4;
 
-/// Fewest allocations of each stage over the counted iterations.
+/// Smallest number of allocations of each stage over the counted iterations.
 fn fewest(request: &SampleRequest, known: bool) -> [usize; Stage::ALL.len()] {
     let sample = Scene::new(&surface("bust").expect("a name")).and_then(|scene| scene.sample(request)).expect("a pair");
     let light = if known { LightSource::Known(sample.light) } else { LightSource::Estimate };
-    // A threshold that is never met keeps the loop running.
+    // An unreachable threshold keeps the loop running.
     let options = Options { light, stop_degrees: f64::MIN_POSITIVE, ..Options::paper() };
     let mut estimator = Estimator::new(sample.colour_image(), &sample.depth_map(), options).expect("good input");
     estimator.step();
@@ -34,8 +34,8 @@ fn fewest(request: &SampleRequest, known: bool) -> [usize; Stage::ALL.len()] {
     fewest
 }
 
-// One test in this binary: nothing else runs while it counts, and it takes the least of some iterations because the
-// test harness has a thread of its own.
+// This binary has only one test, so nothing else runs during the count. The test harness has a thread too, so the smallest
+// count of several iterations is taken.
 #[test]
 fn later_iterations_allocate_nothing_for_their_pixels() {
     let camera = Camera::Pinhole(Pinhole { fx: 150.0, fy: 150.0, cx: 31.5, cy: 31.5, lens: Lens::None });

@@ -1,4 +1,4 @@
-//! The second and later integrations of one size allocate nothing.
+//! Integrations of one size do not allocate after the first.
 
 #[path = "common/allocations.rs"]
 mod allocations;
@@ -10,8 +10,8 @@ use bimodal_stereo::{
     AnchorWeight, Anchors, Camera, IntegrationOptions, Integrator, Normals, Robustness, Size, gradients, normals,
 };
 
-// One test in this binary: nothing else runs while it counts, and it takes the least of some tries because the test
-// harness has a thread of its own.
+// This binary has only one test, so nothing else runs during the count. The test harness has a thread too, so the smallest
+// count of several trials is taken.
 #[test]
 fn later_integrations_allocate_nothing() {
     let size = Size { width: 61, height: 47 };
@@ -24,7 +24,7 @@ fn later_integrations_allocate_nothing() {
     let mut integrator = Integrator::new(size, &mask).expect("a mask");
     let least = (0..5)
         .map(|round| {
-            // Other pixels are unknown and other components arise each time.
+            // Each time, other pixels are unknown and form other components.
             p[500 + 100 * round..540 + 100 * round].fill(f32::NAN);
             let before = ALLOCATIONS.load(Ordering::Relaxed);
             integrator.integrate(&p, &q, None, &options, &mut z).expect("sizes agree");

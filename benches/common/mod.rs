@@ -1,4 +1,4 @@
-//! What the benches run: one loop with the time of each stage, and the way to the end from nothing known.
+//! Shared by the benches: runs a loop to its end and times each stage.
 
 #![allow(dead_code, reason = "each bench uses a part of it")]
 
@@ -13,41 +13,41 @@ pub struct Scene {
     pub pose: Similarity,
 }
 
-/// One stage that ran, with its wall time in milliseconds.
+/// One completed stage, with its wall time in milliseconds.
 pub struct Timed {
     pub stage: Stage,
-    /// Iterations completed before it.
+    /// Iterations completed before the stage.
     pub iteration: u32,
     pub milliseconds: f64,
 }
 
-/// What a run ended with.
+/// The result of a run.
 pub struct Run {
     pub stages: Vec<Timed>,
     pub status: Status,
     pub iterations: u32,
-    /// Between the pose found and the true one.
+    /// Angle between the final pose and the true one, degrees.
     pub degrees: f64,
-    /// From the views to the end, preparation included.
+    /// From the views to the end, including the preparation, milliseconds.
     pub milliseconds: f64,
-    /// From the views to the first stage.
+    /// From the views to the first stage, milliseconds.
     pub preparation: f64,
 }
 
-/// The true pose as a start: where a search ends.
+/// The true pose as the initial pose, where a search would end.
 #[must_use]
 pub fn near(scene: &Scene) -> Start {
     let Similarity { rotation, scale, translation } = scene.pose;
     Start::Pose { rotation, scale: Some(scale), translation: Some(translation) }
 }
 
-/// A run to its end, or through `most` iterations.
+/// Runs to the end, or through `most` iterations.
 ///
 /// # Errors
-/// Those of [`Estimator::new`].
+/// The errors of [`Estimator::new`].
 pub fn run(scene: &Scene, start: Start, shading: Shading, most: u32) -> Result<Run> {
     let begun = Instant::now();
-    // Nothing is known but, where the search is left out, the pose.
+    // Nothing is known, except the pose where the search is skipped.
     let options = Options { start, shading, ..Options::default() };
     let mut estimator = Estimator::new(scene.image.clone(), &scene.depth, options)?;
     let preparation = milliseconds(begun);
@@ -69,7 +69,7 @@ pub fn run(scene: &Scene, start: Start, shading: Shading, most: u32) -> Result<R
     })
 }
 
-/// Wall time since then.
+/// Wall time since then, milliseconds.
 pub fn milliseconds(since: Instant) -> f64 {
     since.elapsed().as_secs_f64() * 1e3
 }

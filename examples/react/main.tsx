@@ -6,7 +6,7 @@ import { Pose } from "./Pose";
 function App() {
   const [beta, setBeta] = useState(20);
   const [isShown, setShown] = useState(true);
-  // The same objects as long as nothing has changed: others begin the search anew.
+  // Memoised, because a new pair object would restart the search.
   const { image, depth } = useMemo(() => sample({ surface: "bust", light: "window", angles: { beta } }), [beta]);
   return (
     <>

@@ -2,7 +2,7 @@ import { useEffect, useState } from "react";
 import init, { type ColorImage, type DepthMap, Estimator, type Options, type StepReport } from "bimodal-stereo";
 
 export interface Found {
-  /** The last step's; nothing before the first. */
+  /** The report of the last step; undefined before the first. */
   report?: StepReport;
   error?: Error;
 }
@@ -17,7 +17,7 @@ async function find(
   onStep: (report: StepReport) => void,
 ): Promise<void> {
   await init();
-  // Strict mode mounts everything twice: the first time ends here.
+  // Strict mode mounts everything twice; the first mount ends here.
   signal.throwIfAborted();
   const estimator = new Estimator(image, depth, options);
   try {
@@ -28,8 +28,8 @@ async function find(
 }
 
 /**
- * The pose between two views while it is being found. Another image, depth map or options object begins anew, so keep them from one
- * rendering to the next (`useMemo`); what is under way ends when the component goes.
+ * The pose between two views, updated while it is being found. A new image, depth map or options object restarts the run, so keep the
+ * objects between renderings (`useMemo`). A run in progress ends when the component unmounts.
  */
 export function usePose(image: ColorImage, depth: DepthMap, options = NOTHING): Found {
   const [found, setFound] = useState<Found>({});

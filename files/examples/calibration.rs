@@ -1,4 +1,4 @@
-//! Cameras and poses of files as JSON, one line each: `cargo run -p bimodal-stereo-files --example calibration -- FILE..`
+//! Prints the cameras and poses of files as JSON, one line each: `cargo run -p bimodal-stereo-files --example calibration -- FILE..`
 
 use bimodal_stereo::Lens;
 use bimodal_stereo_files::{Calibration, read_calibration, says};

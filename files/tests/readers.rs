@@ -1,4 +1,4 @@
-//! Calibrations as programs write them, and what happens to files that are damaged.
+//! Calibrations in the formats of other programs, and damaged files.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -18,13 +18,13 @@ fn found(text: &str) -> Calibration {
     read(text).unwrap_or_else(|problem| panic!("{problem}: {text}"))
 }
 
-/// A camera of these numbers and this lens.
+/// Checks a camera for these intrinsics and this lens.
 fn camera(found: &Calibration, index: usize, numbers: [f64; 4], lens: Lens) {
     let [fx, fy, cx, cy] = numbers;
     assert_eq!(found.cameras[index].camera, Pinhole { fx, fy, cx, cy, lens });
 }
 
-/// A quarter turn about z and a shift, which no order of numbers hides.
+/// A quarter turn about z and a shift, for which every order of the numbers gives a different result.
 const TURN: Matrix3<f64> = Matrix3::new(0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
 const SHIFT: Vector3<f64> = Vector3::new(0.1, -0.2, 0.3);
 
@@ -132,7 +132,7 @@ fn other_formats_are_named_with_what_reads_them() {
     assert!(message.contains("OpenEXR") && message.contains("npx bimodal-stereo"), "{message}");
 }
 
-/// A folder of two pairs, of which the second has this colour image.
+/// A folder with two pairs, the second of which has this colour image.
 fn with_second(name: &str, bytes: &[u8]) -> Vec<(&'static str, String)> {
     let folder = tempfile::tempdir().unwrap();
     let put = |name: &str, bytes: &[u8]| fs::write(folder.path().join(name), bytes).unwrap();
@@ -178,7 +178,7 @@ fn a_crop_has_its_place_beside_it() {
     assert_eq!(read_corner(Path::new("mug_1.png")).unwrap(), None);
 }
 
-/// A small generator of its own: the same mutations everywhere.
+/// A minimal random generator, for the same mutations everywhere.
 struct Random(u64);
 
 impl Random {
@@ -188,7 +188,7 @@ impl Random {
     }
 }
 
-/// Bytes that are changed, left out, repeated, or cut off.
+/// Changes, removes, repeats or cuts off bytes.
 fn mutated(bytes: &[u8], random: &mut Random) -> Vec<u8> {
     const LETTERS: &[u8] = b"0-9.eE{}[]<>/:,\"'!&*#\n\t \xff\0";
     let mut bytes = bytes.to_vec();

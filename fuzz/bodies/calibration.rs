@@ -7,7 +7,7 @@ use super::named;
 use super::numbers::{light, number, perhaps, pose, rarely, unit};
 use super::views::{depth, image, relief};
 
-/// Slices of a check: starts, levels, cues. Views that small end long before.
+/// Limit of the slices of a check (starts, levels, cues). Views this small end long before it.
 const MOST_SLICES: usize = 400;
 
 pub fn run(data: &[u8]) {
@@ -76,12 +76,12 @@ fn judge(report: &CheckReport) {
     }
 }
 
-/// A frame as it comes out of a rig: the relief a metre away, before both cameras.
+/// A frame of a rig: the relief at a distance of a metre, in front of both cameras.
 fn view(u: &mut Unstructured<'_>) -> Result<RigView> {
     let (light, relief) = (light(u)?, relief(u)?);
     let image = image(u, &relief, &light)?;
     let depth = depth(u, &relief, [16, 16])?;
-    // Pixels of the relief are centimetres here.
+    // A pixel of the relief is about a centimetre here.
     let plain = if matches!(depth.samples, DepthSamples::Integer(_)) { 0.001 } else { 0.02 };
     let sizes = [[image.width, image.height], [depth.width, depth.height]];
     Ok(RigView {

@@ -1,4 +1,4 @@
-//! The loop on arbitrary small views and options: a capped number of stages, every output, and what each of them promises.
+//! Runs the loop on arbitrary small views and options for a limited number of stages, and checks every output.
 
 use std::hint::black_box;
 
@@ -9,15 +9,15 @@ use super::numbers::{odd, rarely};
 use super::views::{Pair, options, pair};
 use super::{named, numbers};
 
-/// Stages and slices of the search that a run takes at most: five are an iteration, and a search of views that small has
-/// hundreds.
+/// Limit of the stages and search slices of a run. An iteration has five stages; a search of views this small has hundreds
+/// of slices.
 const MOST_STAGES: u16 = 30;
 const MOST_OF_A_LONG_RUN: u16 = 400;
-/// A normal's length may be off by as much, in f32.
+/// Tolerance of a normal's length, in f32.
 const UNIT: f32 = 1e-3;
 
 pub fn run(data: &[u8]) {
-    // Bytes that have run out are zeros, so that an error is none of the library's.
+    // Exhausted bytes read as zeros, so an error here does not come from the library.
     let _ = attempt(&mut Unstructured::new(data));
 }
 
@@ -56,7 +56,7 @@ fn attempt(u: &mut Unstructured<'_>) -> Result<()> {
     Ok(())
 }
 
-/// What every report promises.
+/// Checks the guarantees of every report.
 pub fn judge(report: &StepReport) {
     let StepReport { pose, objective, .. } = report;
     assert!(pose.validate("pose").is_ok(), "no similarity: {report:?}");
@@ -72,12 +72,12 @@ pub fn judge(report: &StepReport) {
     if let Some(uncertainty) = &report.uncertainty {
         let sigmas = uncertainty.rotation_degrees.into_iter();
         let sigmas = sigmas.chain(uncertainty.translation.into_iter().flatten()).chain(uncertainty.scale);
-        // An infinite sigma says that nothing is known; no number says nothing.
+        // An infinite sigma means "unknown"; NaN has no meaning.
         assert!(sigmas.into_iter().all(|sigma| sigma >= 0.0), "{uncertainty:?}");
     }
 }
 
-/// What every output promises, of views with so many pixels.
+/// Checks the guarantees of every output for views with these numbers of pixels.
 fn check(estimator: &Estimator, [pixels, points]: [usize; 2]) {
     judge(estimator.report());
     let light = estimator.light();

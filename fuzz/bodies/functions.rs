@@ -1,5 +1,5 @@
-//! Single functions of the public interface. Where a function returns a `Result`, lengths may disagree and numbers be
-//! anything; where it does not, lengths are right and numbers still anything.
+//! Single functions of the public interface. If a function returns a `Result`, lengths may disagree and numbers are
+//! arbitrary; otherwise lengths are right and numbers still arbitrary.
 
 use std::hint::black_box;
 
@@ -18,7 +18,7 @@ use super::numbers::{light, number, odd, perhaps, points, pose, rarely, rotation
 use super::views::{Pair, camera, depth, image, pair, relief};
 use super::{named, numbers};
 
-/// Slices of a search, and steps of a registration.
+/// Limit of the slices of a search and of the steps of a registration.
 const MOST_SLICES: usize = 60;
 
 pub fn run(data: &[u8]) {
@@ -36,7 +36,7 @@ pub fn run(data: &[u8]) {
         registering,
         slopes,
     ];
-    // Out of bytes: an error of the fuzzer's, none of the library's.
+    // Exhausted bytes are an error of the fuzzer, not of the library.
     let _ = u.choose(&calls).and_then(|call| call(u));
 }
 
@@ -86,7 +86,7 @@ fn consensus(u: &mut Unstructured<'_>) -> Result<()> {
 
 fn similarities(u: &mut Unstructured<'_>) -> Result<()> {
     let (a, b, place) = (pose(u)?, pose(u)?, vector(u, 1.0)?);
-    // Whatever is asked of what is no similarity: no panic.
+    // These must not panic even if the similarity is invalid.
     let made = [a.inverse(), a.after(&b), a.towards(&b, number(u, 0.5)?, place), a.orthonormal()];
     black_box((a.degrees_to(&b), a.apply(place), Angles::of(&a.rotation).rotation()));
     let moderate = |pose: &Similarity| {
@@ -143,7 +143,7 @@ fn lights(u: &mut Unstructured<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Normals over a raster, most of them unit.
+/// Normals over a raster, most of them of unit length.
 fn field(u: &mut Unstructured<'_>, size: Size) -> Result<Normals> {
     let mut field = Normals::missing(size.len());
     for index in 0..size.len() {
@@ -210,7 +210,7 @@ fn numbers(u: &mut Unstructured<'_>, count: usize) -> Result<Vec<f32>> {
 }
 
 fn integration(u: &mut Unstructured<'_>) -> Result<()> {
-    // The fields of a size are open: none of them keeps to its bounds here.
+    // The fields of `Size` are public, so bounds are not guaranteed here.
     let size = Size { width: u.int_in_range(0..=20)?, height: u.int_in_range(0..=20)? };
     let odds = u.int_in_range(0..=8)?;
     let mut mask = Vec::with_capacity(size.len());
@@ -249,7 +249,7 @@ fn integration(u: &mut Unstructured<'_>) -> Result<()> {
     Ok(())
 }
 
-/// A size that is none has no slopes, and no surface.
+/// Sizes start at one pixel, because an empty size has no slopes and no surface.
 fn slopes(u: &mut Unstructured<'_>) -> Result<()> {
     let size = Size { width: u.int_in_range(1..=20)?, height: u.int_in_range(1..=20)? };
     let known = field(u, size)?;

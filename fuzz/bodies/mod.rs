@@ -1,8 +1,8 @@
-//! What the fuzz targets do with a fuzzer's bytes: they make inputs of them, call the library, and check what must hold
-//! whatever the input. The targets of this crate and `tests/library/fuzz_corpus.rs`, which replays the committed corpus, share it.
+//! Shared by the fuzz targets of this crate and by `tests/library/fuzz_corpus.rs`, which replays the committed corpus: functions that make
+//! inputs from a fuzzer's bytes, call the library, and check what must hold for every input.
 //!
-//! Bytes that have run out read as zeros, and zero is the plainest choice everywhere: an empty input is a good pair of
-//! views with the default options, and each byte makes it stranger.
+//! Exhausted bytes read as zeros, and zero is the plainest choice everywhere: an empty input is a valid pair of views
+//! with the default options, and each byte makes it more unusual.
 
 #![allow(dead_code, reason = "each target uses a part of them")]
 
@@ -15,7 +15,7 @@ pub mod worker;
 
 use bimodal_stereo::Error;
 
-/// What every error owes: the name of the field, and words.
+/// Checks that an error has a field and a message.
 fn named(error: &Error) {
     assert!(!error.field().is_empty(), "an error without a field: {error}");
     let words = error.to_string();

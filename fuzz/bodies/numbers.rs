@@ -1,11 +1,11 @@
-//! Numbers, poses and lights, plain ones and odd ones.
+//! Numbers, poses and lights, plain and unusual.
 
 use arbitrary::{Result, Unstructured};
 use bimodal_stereo::nalgebra::{Matrix3, Vector3};
 use bimodal_stereo::{Angles, Light, Similarity, scenes};
 
-/// Where arithmetic breaks: no numbers, infinities, both zeros, denormals, numbers whose squares overflow or vanish, whole
-/// numbers that an index or a rounded f32 cannot hold.
+/// Critical values: NaN, infinities, both zeros, denormals, numbers whose squares overflow or underflow, and whole numbers
+/// that an index or a rounded f32 cannot hold.
 const ODD: [f64; 24] = [
     f64::NAN,
     f64::INFINITY,
@@ -33,7 +33,7 @@ const ODD: [f64; 24] = [
     1.844_674_407_370_955_2e19,
 ];
 
-/// Hundredths from -100 to 100, or something odd. Zero bytes give `plain`.
+/// `plain` or a number near it, a number from -100 to 100, one of [`ODD`], or any bits. Zero bytes give `plain`.
 pub fn number(u: &mut Unstructured<'_>, plain: f64) -> Result<f64> {
     Ok(match u.int_in_range(0..=7)? {
         0..=3 => plain,
@@ -44,12 +44,12 @@ pub fn number(u: &mut Unstructured<'_>, plain: f64) -> Result<f64> {
     })
 }
 
-/// A number that is not plain.
+/// One of [`ODD`], or any bits.
 pub fn odd(u: &mut Unstructured<'_>) -> Result<f64> {
     if u.arbitrary()? { Ok(f64::from_bits(u.arbitrary()?)) } else { Ok(*u.choose(&ODD)?) }
 }
 
-/// Once in `times`, and never where bytes have run out.
+/// True once in `times`, and never if the bytes are exhausted.
 pub fn rarely(u: &mut Unstructured<'_>, times: u8) -> Result<bool> {
     Ok(u.int_in_range(1..=times)? == times)
 }
@@ -59,7 +59,7 @@ pub fn perhaps(u: &mut Unstructured<'_>, plain: f64) -> Result<Option<f64>> {
     if u.arbitrary()? { number(u, plain).map(Some) } else { Ok(None) }
 }
 
-/// Numbers between -1 and 1.
+/// A number between about -1 and 1.
 pub fn unit(u: &mut Unstructured<'_>) -> Result<f64> {
     Ok(f64::from(u.arbitrary::<i8>()?) / 127.0)
 }
@@ -68,7 +68,7 @@ pub fn vector(u: &mut Unstructured<'_>, plain: f64) -> Result<Vector3<f64>> {
     Ok(Vector3::new(number(u, plain)?, number(u, plain)?, number(u, plain)?))
 }
 
-/// A rotation, mostly.
+/// Mostly a rotation.
 pub fn rotation(u: &mut Unstructured<'_>) -> Result<Matrix3<f64>> {
     let mut rotation = Matrix3::identity();
     match u.int_in_range(0..=7)? {
@@ -90,7 +90,7 @@ pub fn pose(u: &mut Unstructured<'_>) -> Result<Similarity> {
     Ok(Similarity { scale: number(u, 1.0)?, rotation: rotation(u)?, translation: vector(u, 0.0)? })
 }
 
-/// One of the built-in lights, with a few coefficients changed.
+/// A built-in light with a few coefficients changed.
 pub fn light(u: &mut Unstructured<'_>) -> Result<Light> {
     let mut light =
         scenes::light(u.choose(&["colourful", "window", "overcast"])?).unwrap_or_else(|error| panic!("{error}"));
@@ -101,7 +101,7 @@ pub fn light(u: &mut Unstructured<'_>) -> Result<Light> {
     Ok(light)
 }
 
-/// Points in a box, a few of them odd.
+/// Points in a box, a few of them unusual.
 pub fn points(u: &mut Unstructured<'_>, count: usize) -> Result<Vec<Vector3<f64>>> {
     let mut points = Vec::with_capacity(count);
     for _ in 0..count {

@@ -1,5 +1,5 @@
-//! Small views of one relief, and the options to run them with: whole at first, then with whatever sensors, files and
-//! callers get wrong.
+//! Small views of one relief, and options to run them with: valid at first, then with the mistakes of sensors, files and
+//! callers.
 
 use arbitrary::{Result, Unstructured};
 use bimodal_stereo::{
@@ -9,11 +9,11 @@ use bimodal_stereo::{
 
 use super::numbers::{light, number, odd, perhaps, pose, rarely, unit};
 
-/// Longest side, and the usual ones, in pixels.
+/// The longest side and the usual ones, pixels.
 const LONGEST: usize = 24;
 const USUAL: [usize; 2] = [12, 12];
 
-/// Two views and how to run them.
+/// Two views and the options of their run.
 pub struct Pair {
     pub image: ColourImage,
     pub depth: DepthMap,
@@ -24,7 +24,7 @@ pub fn pair(u: &mut Unstructured<'_>) -> Result<Pair> {
     let light = light(u)?;
     let relief = relief(u)?;
     let image = image(u, &relief, &light)?;
-    // The other view may see another surface.
+    // The depth view may show another surface.
     let other = if rarely(u, 4)? { self::relief(u)? } else { relief };
     let depth = depth(u, &other, [image.width, image.height])?;
     Ok(Pair { image, depth, options: options(u, &light)? })
@@ -89,7 +89,7 @@ pub fn image(u: &mut Unstructured<'_>, relief: &Relief, light: &Light) -> Result
     spoil(u, &mut colours)?;
     let samples = match u.int_in_range(0..=3)? {
         0 | 1 => ColourSamples::RgbLinear(colours.iter().map(|&value| value as f32).collect()),
-        // A cast of numbers to integers saturates, and of no number gives zero.
+        // Casts from floats to integers saturate, and NaN becomes zero.
         2 => ColourSamples::Rgba8(with_alpha(&colours, |value| (400.0 * value) as u8, u8::MAX)),
         _ => ColourSamples::Rgba16(with_alpha(&colours, |value| (60000.0 * value) as u16, u16::MAX)),
     };
@@ -139,7 +139,7 @@ pub fn depth(u: &mut Unstructured<'_>, relief: &Relief, plain: [usize; 2]) -> Re
     Ok(DepthMap { width, height, samples, unit: perhaps(u, 1.0)?, mask: mask(u, size)?, camera, normals })
 }
 
-/// Values that follow from one seed, between 0 and 1.
+/// Random values between 0 and 1 that follow from one seed.
 fn noise(u: &mut Unstructured<'_>, count: usize) -> Result<Vec<f64>> {
     let mut state = u64::from(u.arbitrary::<u16>()?) | 1 << 20;
     Ok((0..count)
@@ -152,7 +152,7 @@ fn noise(u: &mut Unstructured<'_>, count: usize) -> Result<Vec<f64>> {
         .collect())
 }
 
-/// A few runs of values are replaced by odd ones, by others, or multiplied.
+/// Replaces a few runs of values by unusual ones or by other numbers, or multiplies them.
 fn spoil<T: Copy + Into<f64> + FromNumber>(u: &mut Unstructured<'_>, values: &mut [T]) -> Result<()> {
     for _ in 0..u.int_in_range(0..=4)? {
         let Some(last) = values.len().checked_sub(1) else { return Ok(()) };
@@ -188,7 +188,7 @@ fn with_alpha<T: Copy>(colours: &[f64], level: impl Fn(f64) -> T, opaque: T) -> 
     colours.chunks_exact(3).flat_map(|rgb| [level(rgb[0]), level(rgb[1]), level(rgb[2]), opaque]).collect()
 }
 
-/// As long as it should be, with few exceptions.
+/// The right length, with few exceptions.
 fn cut<T>(u: &mut Unstructured<'_>, mut values: Vec<T>) -> Result<Vec<T>> {
     if u.int_in_range(0..=31)? == 31 {
         values.truncate(u.int_in_range(0..=values.len())?);
@@ -275,7 +275,7 @@ pub fn options(u: &mut Unstructured<'_>, of_scene: &Light) -> Result<Options> {
     })
 }
 
-/// Mean and covariance of lights: usually a diagonal, and sometimes not even of 27 coefficients.
+/// Mean and covariance of lights: usually diagonal, and sometimes with 26 coefficients instead of 27.
 fn gaussian(u: &mut Unstructured<'_>) -> Result<LightGaussian> {
     let count = if rarely(u, 8)? { 26 } else { 27 };
     let mean = (0..count).map(|_| number(u, -0.1)).collect::<Result<_>>()?;

@@ -1,4 +1,4 @@
-//! What threads tell each other: tasks, findings and refinements as plain numbers, as they are and damaged.
+//! The messages of threads: tasks, findings and refinements as plain numbers, intact and damaged.
 
 use arbitrary::{Result, Unstructured};
 use bimodal_stereo::{Estimator, Finding, Status, Task, Worker};
@@ -7,7 +7,7 @@ use super::named;
 use super::numbers::{number, odd, rarely};
 use super::views::{Pair, pair};
 
-/// Rounds of handing over.
+/// Limit of the rounds of messages.
 const MOST_ROUNDS: u8 = 24;
 
 pub fn run(data: &[u8]) {
@@ -41,7 +41,7 @@ fn attempt(u: &mut Unstructured<'_>) -> Result<()> {
     Ok(())
 }
 
-/// A task goes to the worker, and what it found comes back; numbers may be damaged on either way.
+/// Sends a task to the worker and its finding back; numbers may be damaged on either way.
 fn task(u: &mut Unstructured<'_>, estimator: &mut Estimator, worker: &mut Worker) -> Result<()> {
     let mut numbers = match estimator.take_task() {
         Some(task) => task.to_numbers(),
@@ -62,7 +62,7 @@ fn task(u: &mut Unstructured<'_>, estimator: &mut Estimator, worker: &mut Worker
     Ok(())
 }
 
-/// A finding that nobody made.
+/// A finding that no worker made.
 fn finding(u: &mut Unstructured<'_>, estimator: &mut Estimator) -> Result<()> {
     if let Some(finding) = Finding::from_numbers(&foreign(u)?) {
         estimator.accept_finding(finding);
@@ -98,7 +98,7 @@ fn refinement(u: &mut Unstructured<'_>, estimator: &mut Estimator, worker: &mut 
     Ok(())
 }
 
-/// Numbers of one of the lengths that tasks and findings have.
+/// Numbers of a length that tasks or findings have.
 fn foreign(u: &mut Unstructured<'_>) -> Result<Vec<f64>> {
     let length = *u.choose(&[15, 2, 16, 17, 28, 3, 0, 1])?;
     let mut numbers = vec![f64::from(u.int_in_range(0_u8..=3)?), f64::from(u.arbitrary::<u8>()?)];

@@ -1,4 +1,4 @@
-// node by_wasm.mjs FOLDER: runs the package in pkg/ on the pair in FOLDER and writes what comes out beside it, number by number.
+// node by_wasm.mjs FOLDER: runs the package in pkg/ on the pair in FOLDER and writes the results next to it, one file for each output.
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import init, { Estimator } from "../../pkg/index.js";
@@ -6,7 +6,7 @@ import init, { Estimator } from "../../pkg/index.js";
 const KINDS = { u1: Uint8Array, u2: Uint16Array, f4: Float32Array };
 const folder = process.argv[2];
 
-/** A typed array of its own memory, which the file's may not be aligned for. */
+/** A typed array with its own memory, because the file's memory may not be aligned. */
 function read(name, kind) {
   const bytes = readFileSync(join(folder, name));
   return new KINDS[kind](bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length));

@@ -1,11 +1,11 @@
-"""A pair that is quick to work on, and words for what did not run."""
+"""A pair that takes little time, and a report of skipped tests."""
 
 import numpy as np
 import pytest
 
 import bimodal_stereo as bimodal
 
-# Starts in reach of the answer.
+# The initial pose is near the answer.
 NEAR = {"start": "identity", "scale": 1.0}
 
 
@@ -16,7 +16,7 @@ def scene():
 
 @pytest.fixture
 def near(scene):
-    """Makes an estimator that starts in reach of the answer."""
+    """Makes an estimator whose initial pose is near the answer."""
 
     def make(image=None, depth=None, **options):
         views = (scene.image if image is None else image, scene.depth if depth is None else depth)
@@ -26,7 +26,7 @@ def near(scene):
 
 
 def outcome(estimator):
-    """All that comes out, to the bit, but for the times."""
+    """All results, bit by bit, except times."""
     report = vars(estimator.report)
     numbers = [report["iteration"], report["status"], report["residual"], report["pose"].rotation.tobytes()]
     rasters = (estimator.image_normals, estimator.image_depth, estimator.depth_normals, estimator.refined_depth)
@@ -34,7 +34,7 @@ def outcome(estimator):
 
 
 def refused(call, code, field):
-    """Checks that a call is refused with this code and this field, and that the message begins with the field."""
+    """Checks that a call is refused with this code and field, and that the message begins with the field."""
     with pytest.raises(bimodal.BimodalError) as caught:
         call()
     error = caught.value
@@ -43,7 +43,7 @@ def refused(call, code, field):
 
 
 def pytest_terminal_summary(terminalreporter):
-    """In the words that scripts/test.mjs looks for."""
+    """Reports skipped tests in the form that scripts/test.mjs recognises."""
     for report in terminalreporter.stats.get("skipped", []):
         reason = report.longrepr[2].removeprefix("Skipped: ")
         terminalreporter.write_line(f"skipped: {report.nodeid.split('::')[-1]} # {reason}")

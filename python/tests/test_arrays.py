@@ -1,4 +1,4 @@
-"""What arrays are taken for: the same numbers in another type, order or wrapping give the same bits at the start, others do not."""
+"""How arrays are read: the same numbers in another type, order or wrapping give the same bits at the start, others do not."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ CAMERA = bimodal.Pinhole(160, 160, 15.5, 15.5)
 
 @pytest.fixture(scope="module")
 def levels(scene):
-    """The scene's colours as levels of 8 bits, its depth as such of 16, each with 0 outside."""
+    """The scene's colours as 8-bit levels and its depth as 16-bit levels, each with 0 outside."""
     colours = np.asarray(scene.image.data)
     eight = (250 * (colours / colours.max()) ** (1 / 2.2)).round().astype(np.uint8)
     return eight, np.nan_to_num(100 * np.asarray(scene.depth.data)).round().astype(np.uint16)
@@ -42,7 +42,7 @@ def test_sixteen_bits_are_guessed_and_told(scene, near, levels):
     assert outcome(near(image(wide.astype(">u2"), scene))) == expected
     assert outcome(near(image(wide, scene, transfer="srgb"))) == expected
     assert outcome(near(image(wide, scene, transfer="linear"))) != expected
-    # Levels between those of 8 bits are a sensor's.
+    # Levels between those of 8 bits come from a sensor.
     fine = np.where(wide > 0, wide + 1, 0).astype(np.uint16)
     assert outcome(near(image(fine, scene))) == outcome(near(image(fine, scene, transfer="linear")))
 
@@ -124,12 +124,12 @@ def test_units_default_to_millimetres_for_integers_with_a_camera(levels):
 def test_clouds_are_points_row_by_row(scene, near):
     depth = np.asarray(scene.depth.data)
     rows, columns = np.indices(depth.shape)
-    # Without a camera x and y are counted from the raster's middle.
+    # Without a camera, x and y are counted from the raster's middle.
     points = np.dstack([columns - 15.5, rows - 15.5, depth]).astype(np.float32)
     points[np.isnan(depth)] = np.nan
     cloud = near(depth=bimodal.DepthMap(points=points, mask=scene.depth.mask))
     inside = np.isfinite(depth)
-    # But for the noise, which maps are freed of.
+    # Up to the noise, which is removed from maps.
     np.testing.assert_allclose(cloud.refined_depth()[inside], depth[inside], atol=0.1)
     np.testing.assert_allclose(cloud.points("depth")[:, :2], near().points("depth")[:, :2], atol=0.1)
     wide = points.astype(np.float64)
@@ -164,7 +164,7 @@ def test_arrays_come_out_in_their_shapes(near):
     normals = estimator.image_normals()
     assert np.isnan(normals[~inside]).all()
     np.testing.assert_allclose(np.linalg.norm(normals[inside], axis=1), 1, atol=1e-3)
-    # Rows are rows: the surface found lies where the object is, not where its transpose does.
+    # Rows are not swapped with columns: the surface lies where the object is, not where its transpose would.
     assert (np.isfinite(estimator.image_depth()) == inside).all()
 
 

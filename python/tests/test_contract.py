@@ -15,7 +15,7 @@ import bimodal_stereo as bimodal
 ROOT = Path(__file__).parents[2]
 NODE = shutil.which("node")
 
-# What has no place here, and why.
+# Names without an equivalent here, each with the reason.
 LEFT_OUT = {
     "width": "arrays have a shape",
     "height": "likewise",
@@ -41,7 +41,7 @@ TYPES = "\n".join(path.read_text() for path in sorted((ROOT / "js/types").glob("
 
 
 def members(interface):
-    """The members of an interface of js/types/."""
+    """The members of an interface in js/types/."""
     body = re.search(rf"export interface {interface}\b[^{{]*{{\n(.*?)\n}}", TYPES, re.DOTALL)
     return re.findall(r"^  (\w+)\??:", body[1], re.MULTILINE)
 
@@ -143,13 +143,13 @@ def test_options_have_the_same_ranges_and_words(near):
 
 
 def judged(row):
-    """Values with whether a row takes them: its words, and both sides of its ends."""
+    """Values, each with whether the row accepts it: its words, and both sides of its limits."""
     yield from ((word, True) for word in row.get("words", {}))
     if row["kind"] not in ("number", "whole"):
         return
     step = 1 if row["kind"] == "whole" else 1e-9
     for end, outward, inclusive in [("min", -1, True), ("max", 1, True), ("above", -1, False), ("below", 1, False)]:
-        # Beyond this a step is lost in rounding, and a seed has 64 bits here.
+        # Beyond this, a step is lost in rounding; a seed has 64 bits here.
         if abs(row.get(end, 1e9)) < 1e9:
             yield row[end], inclusive
             yield row[end] + outward * step * max(1, abs(row[end])) * (1 if inclusive else -1), not inclusive

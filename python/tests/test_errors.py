@@ -1,4 +1,4 @@
-"""Bad input is refused by name, and nothing that comes in makes the numerics break off."""
+"""Invalid input is refused by name, and no input aborts the numerics."""
 
 import itertools
 import pickle
@@ -145,7 +145,7 @@ VALUES = [0.0, -1.0, 1e-45, 1e-30, 1e30, 3e38, np.inf, -np.inf, np.nan]
 
 
 def hostile(rng, shape):
-    """Rasters that no camera makes."""
+    """Rasters that no camera produces."""
     yield from (np.full(shape, value, np.float32) for value in VALUES)
     yield rng.choice(np.asarray(VALUES, np.float32), shape)
     yield rng.normal(size=shape).astype(np.float32)
@@ -155,7 +155,7 @@ def hostile(rng, shape):
 
 
 def test_hostile_rasters_are_refused_or_worked_on(rng):
-    """No call raises anything but a BimodalError, and no such error says that the numerics broke off."""
+    """No call raises anything but a BimodalError, and no such error reports an abort of the numerics."""
     worked = 0
     plain = np.abs(rng.normal(size=(16, 16, 3)).astype(np.float32)) + 1
     pairs = [(colours, plain[..., 0]) for colours in hostile(rng, (16, 16, 3))]

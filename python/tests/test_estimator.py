@@ -1,4 +1,4 @@
-"""The loop: its steps, its end, and what else runs meanwhile."""
+"""The loop: its steps, its end, and other threads meanwhile."""
 
 import os
 import signal
@@ -27,7 +27,7 @@ def test_a_run_finds_the_pose(scene, near):
 
 
 def test_matrices_are_not_transposed(scene):
-    """A turn of the sample by beta has its sine in the first row."""
+    """A rotation of the sample by beta has its sine in the first row."""
     turned = bimodal.sample("bust", "colourful", size=32, angles={"beta": 30})
     assert turned.pose.rotation[0, 2] == pytest.approx(0.5) and turned.pose.rotation[2, 0] == pytest.approx(-0.5)
     told = bimodal.Estimator(turned.image, turned.depth, start=turned.pose, registration="fixed").report.pose
@@ -90,7 +90,7 @@ def test_reset_begins_anew(near):
     assert (estimator.report.iteration, estimator.report.status) == (0, "running")
     estimator.run()
     assert outcome(estimator) == first
-    # Options take the place of all earlier ones.
+    # Options replace all earlier ones.
     estimator.reset(light=other.light(), start="identity", scale=1.0, registration="icp", shading="pixel")
     estimator.run(3)
     other.run(3)
@@ -100,7 +100,7 @@ def test_reset_begins_anew(near):
 
 
 def test_other_threads_run_during_a_step(scene):
-    """Without a time: where a step kept the lock, the other thread would not get its turn before all steps are done."""
+    """Independent of time: if a step kept the lock, the other thread would only continue after all steps."""
     steps = 20_000
     estimator = bimodal.Estimator(scene.image, scene.depth)
     stop = threading.Event()
@@ -114,7 +114,7 @@ def test_other_threads_run_during_a_step(scene):
         done.append(count)
 
     interval = sys.getswitchinterval()
-    # Longer than the test: no thread gives way but by its own will.
+    # Longer than the test, so that a thread yields only voluntarily.
     sys.setswitchinterval(1000)
     try:
         thread = threading.Thread(target=work)

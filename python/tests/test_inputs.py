@@ -1,4 +1,4 @@
-"""Files, pictures, matrices and grey in the place of arrays and members: the same numbers give the same bits at the start."""
+"""Files, pictures, matrices and grey images in place of arrays and members: the same numbers give the same bits at the start."""
 
 import types
 import warnings
@@ -16,14 +16,14 @@ CAMERA = bimodal.Pinhole(160.0, 150.0, 15.5, 14.5)
 
 @pytest.fixture(scope="module")
 def levels(scene):
-    """The scene's colours as levels of 8 bits, and its depth in hundredths of a pixel."""
+    """The scene's colours as 8-bit levels, and its depth in hundredths of a pixel."""
     colours = np.asarray(scene.image.data)
     eight = (250 * (colours / colours.max()) ** (1 / 2.2)).round().astype(np.uint8)
     return eight, np.nan_to_num(100 * np.asarray(scene.depth.data)).round().astype(np.uint16)
 
 
 def inside_of(scene):
-    """A mask that is not told by the colours, of which black ones are left out anyway."""
+    """A mask that cannot be derived from the colours, of which black ones are left out anyway."""
     inside = np.array(scene.image.mask)
     inside[:, :14] = False
     return inside
@@ -43,7 +43,7 @@ def files(levels, scene, tmp_path_factory):
 
 @pytest.fixture
 def of_views(scene):
-    """What comes out at the start, in reach of the answer."""
+    """All results at the start, with an initial pose near the answer."""
 
     def run(image, depth):
         own = {"start": "identity", "scale": 1.0, "light": scene.light}
@@ -108,13 +108,13 @@ def test_pictures_of_pillow_are_arrays(levels, scene, of_views):
     for mask in (flag, flag.convert("1"), flag.convert("RGB"), flag.convert("RGBA"), flag.convert("P"), clear):
         assert of_views(bimodal.ColorImage(image, mask=mask), Image.fromarray(hundredths)) == expected
     assert of_views(bimodal.ColorImage(image.convert("RGBA"), mask=inside), hundredths) == expected
-    # A palette has levels of its own.
+    # A palette has its own levels.
     palette = image.convert("P", palette=Image.Palette.ADAPTIVE)
     assert of_views(palette, hundredths) == of_views(np.asarray(palette.convert("RGB")), hundredths)
 
 
 class OfOpen3D:
-    """Has what Open3D's images and cameras have: a buffer, and a matrix."""
+    """Has the interface of Open3D's images and cameras: a buffer, and a matrix."""
 
     def __init__(self, data):
         self.data, self.intrinsic_matrix = data, data
@@ -139,7 +139,7 @@ def test_clouds_of_open3d_are_points(levels, tmp_path):
     for number, points in enumerate([cloud, cloud.points]):
         bimodal.write_cloud(tmp_path / f"{number}.ply", points)
     assert (tmp_path / "0.ply").read_bytes() == (tmp_path / "1.ply").read_bytes()
-    # It has no rows.
+    # The cloud has no rows.
     refused(lambda: bimodal.Estimator(levels[0], bimodal.DepthMap(points=cloud)), "size", "depth.points")
 
 
@@ -184,11 +184,11 @@ def test_extrinsics_are_matrices(rig):
         np.testing.assert_allclose(again.points, expected.points, atol=1e-4)
     assert expected.points.shape[1:] == expected.positions.shape[1:] == (3,) and expected.edges.shape[1:] == (2,)
     assert len(expected.points) > 1000 and len(expected.edges) > 10
-    # The third number of a point is the depth of its position.
+    # The third coordinate of a point is the depth of its position.
     np.testing.assert_array_equal(expected.points[:, 2], expected.positions[:, 2])
     camera = rig.image.camera.K @ expected.positions.T
     off = np.abs(camera[:2] / camera[2] - expected.points[:, :2].T)
-    # But for the lens.
+    # Up to the lens.
     assert np.median(off) < 5
     refused(lambda: bimodal.project_frame(frame, 2 * rig.pose.matrix), "range", "pose.matrix")
     refused(lambda: bimodal.check_calibration([frame], {"mine": np.eye(3)}), "size", "candidates.mine")

@@ -1,4 +1,4 @@
-"""Every line of the README that is code, run in order, on files and arrays like those that it speaks of."""
+"""Every line of code in the README, run in order, on files and arrays like those that it mentions."""
 
 import re
 from pathlib import Path
@@ -13,14 +13,14 @@ README = (Path(__file__).parents[1] / "README.md").read_text()
 BLOCKS = re.findall(r"^```python\n(.*?)^```", README, re.MULTILINE | re.DOTALL)
 
 
-# So far away, in millimetres and pixels, a scene without perspective is nearly what a camera sees.
+# At this distance, in millimetres and pixels, an orthographic scene is nearly what a camera sees.
 FOCAL = 600.0
-# Of the pose found after a block, in degrees about y.
+# True beta of the pose after each block, degrees.
 BETA = {0: 50, 1: 20, 2: 20, 4: 20, 5: 20}
 
 
 class Intrinsics:
-    """Of a stream, as librealsense gives them."""
+    """Intrinsics of a stream, in librealsense's form."""
 
     fx = fy = FOCAL
     ppx = ppy = 31.5
@@ -28,7 +28,7 @@ class Intrinsics:
 
 
 def levels(scene):
-    """A scene's colours as levels of 8 bits, and its depth in tenths of a millimetre."""
+    """A scene's colours as 8-bit levels, and its depth in tenths of a millimetre."""
     colours = np.asarray(scene.image.data)
     pixels = np.asarray(scene.depth.data)
     tenths = np.nan_to_num(10 * (pixels - np.nanmean(pixels) + FOCAL)).round().astype(np.uint16)
@@ -37,7 +37,7 @@ def levels(scene):
 
 @pytest.fixture(scope="module")
 def lines(tmp_path_factory):
-    """Names that the blocks share, in a folder with the files that they read."""
+    """Names shared by the blocks, in a folder with the files that they read."""
     folder = tmp_path_factory.mktemp("readme")
     scene = bimodal.sample("bust", "colourful", size=64)
     colours, tenths = levels(scene)
@@ -55,7 +55,7 @@ def lines(tmp_path_factory):
         "colour_intrinsics": Intrinsics,
         "depth_intrinsics": Intrinsics,
         "rotation": scene.pose.rotation,
-        # The object's middle stays where it is.
+        # Keeps the object's middle in place.
         "translation": middle - scene.pose.rotation @ middle,
         "cloud_of_rows": np.dstack([(columns - 31.5) / FOCAL * z, (rows - 31.5) / FOCAL * z, z]),
     }

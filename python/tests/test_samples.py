@@ -1,4 +1,4 @@
-"""Made scenes and rigs, and the check of a calibration on one of them."""
+"""Rendered scenes and rigs, and the check of a calibration on one of them."""
 
 import numpy as np
 import pytest
@@ -39,7 +39,7 @@ def test_heights_of_ones_own_are_a_surface():
     heights = 30 * np.sqrt(np.clip(1 - (rows / 0.8) ** 2 - columns**2 / 0.3, 0, None))
     made = bimodal.sample(heights, "window", size=32, height=40, angles={"beta": 0})
     inside = np.asarray(made.image.mask)
-    # Higher than wide, as the heights are.
+    # Taller than wide, as the heights are.
     assert inside.any(axis=1).sum() > inside.any(axis=0).sum() > 4
 
 

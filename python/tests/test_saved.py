@@ -1,4 +1,4 @@
-"""A run as bytes: it goes on to the same bits, and whatever else is given is refused by name."""
+"""A run saved as bytes continues to the same bits, and anything else is refused by name."""
 
 import json
 import shutil
@@ -16,7 +16,7 @@ from conftest import outcome
 ROOT = Path(__file__).parents[2]
 PKG = ROOT / "pkg" / "index.js"
 NODE = shutil.which("node")
-# Bytes before the header's length, and before the header.
+# Offsets of the header's length and of the header.
 MARK, HEADER = 16, 20
 
 
@@ -113,12 +113,12 @@ def bad(state, words, code="state"):
 
 
 def checked(whole):
-    """With a checksum that is right."""
+    """The bytes with a valid checksum."""
     return whole + struct.pack("<I", crc32(whole))
 
 
 def changed(state, change):
-    """The same with another header."""
+    """The same state with another header."""
     length = struct.unpack_from("<I", state, MARK)[0]
     header = json.loads(state[HEADER : HEADER + length])
     other = change(header)
@@ -152,7 +152,7 @@ def test_another_format_is_refused(state):
 
 
 def put(*path):
-    """A change that puts the last of these at the path of the others."""
+    """A change that sets the member at a path to a value; the value comes last."""
     *names, last, value = path
 
     def change(header):
@@ -187,7 +187,7 @@ def put(*path):
         (put("more", 1), "nothing else"),
         (lambda _: [1], "header"),
         (lambda _: 5, "header"),
-        # One whose numbers come out otherwise, and ends that are never reached.
+        # A run with other results, and ends that are never reached.
         (lambda header: put("found", header["found"] ^ 1)(header), "other numbers"),
         (put("reached", "iteration", 10**9), "other numbers"),
         (put("reached", "slices", 10**9), "other numbers"),
@@ -213,7 +213,7 @@ def by_node(script, folder):
 
 @pytest.mark.skipif(NODE is None or not PKG.exists(), reason="needs Node and the package in pkg/ (npm run build)")
 def test_neither_package_takes_what_the_other_has_saved(state, tmp_path):
-    """Their last digits differ, so that neither could keep its promise of the same bits."""
+    """Their last digits differ, so neither package could guarantee the same bits."""
     (tmp_path / "python").write_bytes(state)
     script = """
         const { image, depth } = sample({ surface: "bust", light: "window", size: 32 });

@@ -1,6 +1,6 @@
-"""Native numbers against those of the wasm build, on the same bytes.
+"""Compares native numbers with those of the wasm build, on the same bytes.
 
-Both run the same source, but functions of the standard library differ in their last digit, and so does the order of some sums.
+Both run the same source, but functions of the standard library differ in their last digit, as does the order of some sums.
 """
 
 import json
@@ -18,20 +18,20 @@ PKG = HERE.parents[1] / "pkg" / "index.js"
 NODE = shutil.which("node")
 pytestmark = pytest.mark.skipif(NODE is None or not PKG.exists(), reason="needs Node and the package in pkg/ (npm run build)")
 
-# Far away, so that a scene without perspective is nearly what it sees: a millimetre a pixel at a distance of a metre.
+# Far away, so that an orthographic scene is nearly what the camera sees: a millimetre per pixel at a distance of a metre.
 FOCAL = 1000.0
 CAMERA = bimodal.Pinhole(FOCAL, FOCAL, 23.5, 23.5)
 
 
 def rendered():
-    """Linear floats, depths as floats, everything known but the pose."""
+    """Linear floats, float depths, everything known but the pose."""
     scene = bimodal.sample("bust", "colourful", size=32)
     options = {"light": scene.light, "start": "identity", "scale": 1.0}
     return scene.image, scene.depth, options, 4
 
 
 def encoded():
-    """Levels of 8 bits, depths of 16 in tenths of a millimetre, cameras, nothing known."""
+    """8-bit levels, 16-bit depths in tenths of a millimetre, cameras, nothing known."""
     scene = bimodal.sample("bust", "colourful", size=48)
     colours = np.asarray(scene.image.data)
     levels = (250 * (colours / colours.max()) ** (1 / 2.2)).round().astype(np.uint8)
@@ -43,13 +43,13 @@ def encoded():
 
 
 def cloud():
-    """An organised cloud with its normals, by the paper's own loop."""
+    """An organised cloud with its normals, in the paper's own loop."""
     scene = bimodal.sample("vase", "overcast", protocol="grid", angles={"beta": 10})
     return scene.image, scene.depth, {"start": "identity", "registration": "icp", "shading": "pixel"}, 3
 
 
 def of_javascript(folder, name, view):
-    """A view of the other contract: flat arrays in files, RGBA where colours are integers."""
+    """A view in the JavaScript package's form: flat arrays in files, RGBA for integer colours."""
     data = np.asarray(view.data if view.data is not None else view.points)
     members = {"height": data.shape[0], "width": data.shape[1]}
     if name == "image" and data.dtype == np.uint8:
@@ -79,11 +79,10 @@ def by_wasm(folder, image, depth, options, steps):
     return json.loads((folder / "report.json").read_text())
 
 
-# Of whatever unit: normals have none, logarithms neither, depths are pixels or metres. Some ten thousand times the rounding of 32 bits,
-# because an iteration goes on from the last one's rounding (measured: up to 1.5e-4, mostly 1e-5). A wrong curve of the
-# colours or a wrong unit changes the first digits.
+# Absolute, in any unit: normals and logarithms have none, depths are in pixels or metres. Some ten thousand times the rounding of
+# 32 bits, because each iteration continues from the last one's rounding. A wrong transfer curve or a wrong unit changes the first digits.
 TOLERANCE = 1e-3
-# A rotation is found from all pixels together, in 64 bits (measured: up to 3e-7).
+# A rotation is computed from all pixels together, in 64 bits.
 ROUNDING = 1e-5
 
 RASTERS = {
@@ -116,7 +115,7 @@ def test_native_and_wasm_agree(case, tmp_path):
         near(getattr(estimator, name)().ravel(), numbers(their_name, np.float32), TOLERANCE, name)
     for view in ("image", "depth"):
         near(estimator.points(view).ravel(), numbers(f"points-{view}", np.float32), TOLERANCE, view)
-    # A point on the edge between two pixels may fall to either.
+    # A point on the edge between two pixels may fall on either.
     same = estimator.correspondence().ravel() == numbers("correspondence", np.int32)
     assert same.mean() > 0.99
 

@@ -1,4 +1,4 @@
-"""Threads that share the work: the same result to the bit."""
+"""Threads that share the work: the results are equal bit by bit."""
 
 import pytest
 

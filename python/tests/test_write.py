@@ -1,4 +1,4 @@
-"""Files that are written, as other readers find them."""
+"""Written files, read by other programs."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""What a type checker makes of the package; nothing here runs. `mypy --strict` finds an error where one is expected, and no other."""
+"""The package under a type checker; nothing here runs. `mypy --strict` must find the expected errors and no others."""
 
 from pathlib import Path
 from typing import Optional

@@ -1,10 +1,10 @@
-// What every variant runs: cells of the tables, by their names.
+// The cells of the tables that every variant runs, by name.
 import { TABLES } from "../../protocols/index.mjs";
 import { PAINTED } from "../../protocols/scenes.mjs";
 
 const numbers = (count) => Array.from({ length: count }, (_, index) => index + 1);
 
-/** Lines of a set, each with the cells that stand in it. */
+/** Lines of a set, each with its cells. */
 const SETS = [
   {
     set: "photographs",
@@ -27,7 +27,7 @@ const SETS = [
     quick: 1,
   },
   {
-    // Even ones of `stress`, on whose odd ones constants were set.
+    // Even cells of `stress`; constants were set on the odd ones.
     set: "noisy depth",
     lines: [
       ...[2, 4, 6].map((scene) => ({ name: `stress ${scene}`, ids: [`stress/${scene}`] })),
@@ -37,7 +37,7 @@ const SETS = [
   },
 ];
 
-/** The sets with their lines; without other people's data those of our own scenes. */
+/** The sets with their lines; without the data beside the project, only those of built-in scenes. */
 export const sets = (quick, complete) =>
   SETS.map(({ set, lines, quick: few }) => ({ set, lines: quick ? lines.slice(0, few) : lines }))
     .map(({ set, lines }) => ({
@@ -46,7 +46,7 @@ export const sets = (quick, complete) =>
     }))
     .filter(({ lines }) => lines.length > 0);
 
-/** The cells as a table of their own, which is run as the others are. */
+/** The cells as a separate table, which runs like the others. */
 export const table = (chosen) => ({
   name: "parts",
   cells(kit) {

@@ -1,7 +1,7 @@
-// The parts of the method that can be switched off by themselves, and how: lines of the sources that are replaced.
+// The parts of the method that can be switched off individually. Each lists the source lines that are replaced.
 //
-// A line has to be there exactly once, so that a part that has moved fails by its name instead of measuring nothing. What
-// the options of the package can leave out is measured by `npm run tables -- --only ablation`.
+// A line must occur exactly once, so that a part that has moved fails with its name instead of measuring nothing. Parts that the options
+// of the package can leave out are measured by `npm run tables -- --only ablation`.
 import { Failure } from "../shell.mjs";
 
 const CONTRAST = "src/pose/contrast";
@@ -13,7 +13,7 @@ const LIMBS = [
   objective("const SETTLING_LIMB_WEIGHT: f64 = 0.1;", "const SETTLING_LIMB_WEIGHT: f64 = 0.0;"),
 ];
 
-/** `what` completes "without ..". */
+/** `what` completes the phrase "without ..". */
 export const PARTS = [
   {
     name: "instruments",
@@ -79,7 +79,7 @@ export const PARTS = [
   },
   {
     name: "means",
-    // Three quarters of an object: what is left is the mean over all of it, the exposure.
+    // A window of three quarters of an object leaves the mean over the whole object, which is the exposure.
     what: "local means: those over the whole object are taken off instead",
     changes: [
       {
@@ -141,7 +141,7 @@ export const PARTS = [
 /** The method as it is. */
 export const ALL = { name: "all", what: "nothing", changes: [] };
 
-/** The contents of a file without a part. */
+/** The contents of a source file without a part. */
 export function without({ name, changes }, file, text) {
   return changes
     .filter((change) => change.file === file)

@@ -1,9 +1,9 @@
-// What each part buys, as text and as a table of docs/lab/results.md.
+// The contribution of each part, as text and as a table of docs/lab/results.md.
 import { columns, fixed, mark } from "../tables/columns.mjs";
 import { isConfidentlyWrong, isFound } from "../../protocols/counts.mjs";
 import { median, worst } from "../../protocols/numbers.mjs";
 
-/** A cell is worse or better by a part where it moves by so much, degrees: a tenth of what counts as found. */
+/** Change of a cell above which a part counts as helpful or harmful, degrees: a tenth of the limit for a found pose. */
 const MATTERS = 0.3;
 
 const degreesOf = (row) => (row ? `${fixed(row.degrees, row.degrees < 9.95 ? 1 : 0)}${mark(row)}` : "-");
@@ -14,7 +14,7 @@ const ratio = (rows, is) => `${known(rows).filter(is).length} of ${known(rows).l
 /** Rows of a variant by their cell. */
 const byId = ({ rows }) => new Map(rows.map((row) => [row.id, row]));
 
-/** The lines of a set's foot: what is said of it, and the word for a variant's rows. Nothing where some are missing. */
+/** The lines below a set: label, and the text for a variant's rows. */
 const FOOT = [
   ["median", (rows) => fixed(medianOf(rows), 2)],
   ["worst", (rows) => fixed(worst(known(rows).map(({ degrees }) => degrees)), 1)],
@@ -26,7 +26,7 @@ const whole = (show) => (rows) => (known(rows).length === rows.length ? show(row
 
 const kilobytes = (bytes) => (bytes / 1000).toFixed(1).replace(/^-(?=0\.0$)/, "");
 
-/** Each set's lines and foot, and the sizes, a column for each variant. */
+/** The lines and footers of each set, and the sizes, with one column for each variant. */
 export function rowsOf(sets, variants) {
   const found = variants.map(byId);
   const of = (lines) => found.map((rows) => lines.flatMap(({ ids }) => ids.map((id) => rows.get(id))));
@@ -50,7 +50,7 @@ export function rowsOf(sets, variants) {
   };
 }
 
-/** Cells that a part makes worse, and those that it makes better; what is lost with and without it is neither. */
+/** Cells that a part makes worse and cells that it makes better. Cells whose pose is wrong with and without the part count as neither. */
 export function effects(all, { part, rows }) {
   const off = new Map(rows.map((row) => [row.id, row]));
   const pairs = known(all.rows).map((row) => ({ id: row.id, on: row, off: off.get(row.id) }));
@@ -80,7 +80,7 @@ export function text(sets, variants) {
   ];
 }
 
-/** As Markdown: photographs line by line, the other sets by their feet. */
+/** As Markdown: photographs line by line, the other sets by their footers. */
 export function markdown(sets, variants) {
   const { head, blocks, sizes } = rowsOf(sets, variants);
   const [all, ...others] = variants;

@@ -1,4 +1,4 @@
-// The .wasm of the method without a part, from a copy of the sources.
+// Builds the .wasm of the method without one part, from a copy of the sources.
 import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { gzipSync } from "node:zlib";
@@ -8,12 +8,12 @@ import { without } from "./parts.mjs";
 
 const FOLDER = "target/ablation";
 const SOURCES = `${FOLDER}/sources`;
-/** What Cargo reads of the workspace. */
+/** The files of the workspace that Cargo reads. */
 const COPIED = ["src", "benches", "cli", "Cargo.toml", "Cargo.lock", "README.md"];
 
 const below = (paths) => paths.flatMap((path) => filesBelow(inRoot(path))).map((path) => path.slice(root.length + 1));
 
-/** Copies the sources without a part. Files that stay the same are not touched: Cargo compiles anew what is newer. */
+/** Copies the sources without a part. Unchanged files are left untouched, because Cargo recompiles newer files. */
 function copy(part) {
   const files = new Set(below(COPIED));
   const missing = part.changes.find(({ file }) => !files.has(file));
@@ -32,14 +32,14 @@ const fileOf = (part) => `${FOLDER}/${part.name}.wasm`;
 const markOf = (part) => inRoot(`${FOLDER}/.${part.name}.stamp`);
 const wantedOf = (part) => stamp(NUMERICS) + JSON.stringify(part.changes);
 
-/** Where the .wasm is and its size gzipped, if it is that of the present sources. */
+/** Path and gzipped size of the .wasm, if it was built from the present sources. */
 export function built(part) {
   const wasm = fileOf(part);
   if (readIfThere(markOf(part)) !== wantedOf(part) || !existsSync(inRoot(wasm))) return undefined;
   return { wasm, gzipped: gzipSync(readFileSync(inRoot(wasm))).length };
 }
 
-/** The same, built where the sources or the part have changed. */
+/** The same, after a build if the sources or the part have changed. */
 export async function variant(part) {
   if (!built(part)) {
     const start = performance.now();

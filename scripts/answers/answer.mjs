@@ -1,10 +1,10 @@
-// One scene run by one package, and everything that came out of it.
+// Runs one scene with one package and collects all results.
 import { createHash } from "node:crypto";
 import { usesOf } from "./contract.mjs";
 import { optionsOf, pairOf } from "./pairs.mjs";
 import { checkOf } from "./rigs.mjs";
 
-/** No scene goes on longer, unless it says so; what does not converge by then is compared where it stands. */
+/** Limit of iterations unless a scene sets another; a scene that has not converged by then is compared in that state. */
 const MOST_ITERATIONS = 25;
 /** Steps before a reset. */
 const BEFORE_RESET = 12;
@@ -27,12 +27,12 @@ async function drive(estimator, way, options) {
   return report;
 }
 
-/** Length of a pixel at the middle of the surface, in the view's units: one where it is orthographic. */
+/** Size of a pixel at the depth of the surface's middle, in the view's units; 1 in an orthographic view. */
 const pixelOf = ({ camera }, middle) => (camera ? middle / camera.fx : 1);
-/** Lengths in pixels; where the pixel is the unit, to the bit. */
+/** Lengths in pixels; returned unchanged, bit by bit, where the pixel is the unit. */
 const inPixels = (lengths, pixel) => (pixel === 1 ? lengths : Float64Array.from(lengths, (length) => length / pixel));
 
-/** What goes into the estimator, as one word. */
+/** A hash of the estimator's input. */
 function fingerprint(views) {
   const hash = createHash("sha256");
   for (const view of views) {
@@ -48,7 +48,7 @@ function everything(estimator, { image, depth, middle }) {
   const pixels = { image: pixelOf(image, middle), depth: pixelOf(depth, middle) };
   return {
     report,
-    // Packages from before it was said do not say.
+    // Older packages do not report it.
     endedBy: report.status === "running" ? undefined : estimator.registeredBy,
     light: [...estimator.light()],
     pixel: pixels.image,
@@ -65,17 +65,17 @@ function everything(estimator, { image, depth, middle }) {
   };
 }
 
-/** Length of a pixel of the colour image at the middle of a rig's scene, metres. */
+/** Size of a colour pixel at the depth of the middle of a rig's scene, metres. */
 const rigPixelOf = ({ middle }, { image }) => middle[2] / (image.camera?.fx ?? image.width);
 
-/** A rig is made by the same package, likewise. */
+/** The same package renders the rig, so that the rendering is compared as well. */
 async function checkAnswerOf({ rig }, api) {
   const { frames, report } = await checkOf(rig, api);
   const input = fingerprint(frames.flatMap(({ image, depth }) => [image, depth]));
   return { input, uses: [], report, pixel: rigPixelOf(report, frames[0]) };
 }
 
-/** The pair is made by the same package, so that what `sample` renders is compared as well. */
+/** The same package renders the pair, so that the results of `sample` are compared as well. */
 export async function answerOf(scene, api) {
   if (scene.rig) return checkAnswerOf(scene, api);
   const made = pairOf(scene, api);

@@ -1,4 +1,4 @@
-// How far two reports of a calibration check lie apart.
+// Differences between two reports of a calibration check.
 import { degreesBetween } from "../../protocols/rotations.mjs";
 import { LIMITS, codeOf, differ, largest, listsApart, relative } from "./compare.mjs";
 
@@ -6,14 +6,14 @@ import { LIMITS, codeOf, differ, largest, listsApart, relative } from "./compare
 const POSE = 6;
 const DEGREE = 180 / Math.PI;
 
-/** Sigmas in degrees and millimetres, and correlations: a covariance's own numbers are too small to be compared with others. */
+/** Sigmas in degrees and millimetres, and correlations: the entries of a covariance are too small to compare with other numbers. */
 function spreadOf(covariance) {
   const sigmas = Array.from({ length: POSE }, (_, k) => Math.sqrt(covariance[(POSE + 1) * k]));
   const correlations = covariance.map((value, at) => value / (sigmas[Math.floor(at / POSE)] * sigmas[at % POSE]));
   return [...sigmas.map((sigma, k) => sigma * (k < 3 ? DEGREE : 1000)), ...correlations];
 }
 
-/** Everything in a report that is a number and no pose. */
+/** All numbers of a report except poses. */
 function numbersOf({ middle, covariance, focal = [], health, candidates, cues, frames, sensitivity }) {
   const named = (object) =>
     Object.keys(object)
@@ -42,7 +42,7 @@ const turnsOf = ({ candidates }) =>
     .sort()
     .map((name) => candidates[name].offDegrees);
 
-/** What may not differ at all: verdicts, how many warnings and which, notes. */
+/** Members that must be equal: verdicts, number and kind of warnings, notes. */
 function disagreements(before, after) {
   const [a, b] = [before.report, after.report];
   const pairs = [

@@ -1,14 +1,14 @@
-// How far two answers to one scene lie apart, and what may be.
+// Differences between two answers to one scene, and their limits.
 import { degreesBetween } from "../../protocols/rotations.mjs";
 
 /**
- * Largest differences of a redesign that only reorders sums. Lengths are in pixels: of an orthographic view its unit, of a view
- * with a camera a pixel's length at the middle of the surface. At 128 pixels and more one bit of a 32-bit depth is 1.5e-5.
+ * Largest differences allowed for a refactoring that only reorders sums. Lengths are in pixels: the unit of an orthographic view, or a
+ * pixel's size at the middle of the surface for a view with a camera. At 128 pixels and more, one bit of a 32-bit depth is 1.5e-5.
  */
 export const LIMITS = {
-  /** Of the rotation, and of the rivals' rotations. */
+  /** Of the rotation and of the rivals' rotations. */
   degrees: 1e-6,
-  /** Relative: at 80 pixels from the middle it moves a point as far as a height may move. */
+  /** Relative: 80 pixels from the middle, it moves a point as far as a height may move. */
   scale: 1e-7,
   translation: 1e-5,
   /** `imageDepth` and `refinedDepth`. */
@@ -20,15 +20,15 @@ export const LIMITS = {
   residual: 1e-5,
   /** `points` of both views. */
   points: 1e-5,
-  /** Relative: objective terms, overlap, inliers, residual, sigmas; the rotation's last change in degrees counts with `degrees`. */
+  /** Relative: objective terms, overlap, inliers, residual, sigmas. The last change of the rotation, in degrees, counts under `degrees`. */
   report: 1e-5,
 };
-/** Even where a reason is given (reasons.mjs): 1e-3 degrees. */
+/** Factor on the limits of results with a given reason (reasons.mjs): 1e-3 degrees. */
 export const EXCUSED = 1000;
-/** Numbers of a report below it count as absolute. */
+/** Numbers of a report below this are compared absolutely. */
 const LEAST_NUMBER = 1e-6;
 
-/** Rasters of each column; their lengths are in pixels. */
+/** Rasters of each column; lengths are in pixels. */
 const RASTERS = {
   heights: ["imageDepth", "refinedDepth"],
   normals: ["imageNormals", "depthNormals"],
@@ -38,7 +38,7 @@ const RASTERS = {
 
 const apart = (a, b) => (a === b ? 0 : Math.abs(a - b));
 export const relative = (a, b) => apart(a, b) / Math.max(Math.abs(a), Math.abs(b), LEAST_NUMBER);
-/** Largest of some differences; what is no number differs beyond measure. */
+/** Largest of some differences; NaN counts as infinite. */
 export const largest = (values) =>
   values.reduce((most, value) => (value <= most ? most : Number.isNaN(value) ? Infinity : value), 0);
 
@@ -50,7 +50,7 @@ export function listsApart(a, b, measure = apart) {
   );
 }
 
-/** Everything in a report that is a number and neither a pose nor a count. */
+/** All numbers of a report except poses and counts. */
 function numbersOf({ energy, overlap, inliers, residual, uncertainty }) {
   const { rotationDegrees = [], translation = [], scale = null } = uncertainty ?? {};
   return [
@@ -66,15 +66,15 @@ function numbersOf({ energy, overlap, inliers, residual, uncertainty }) {
   ];
 }
 
-/** The code of a reason; packages from before there were codes have none. */
+/** The code of a reason; older packages have no codes. */
 export const codeOf = ({ reason }) => reason?.code;
-/** Whether two answers that say so say different things. */
+/** Whether both answers report a value and the values differ. */
 export const differ = (a, b) => a !== undefined && b !== undefined && a !== b;
 
-/** Words are wording, numbers are answers. */
+/** The numbers of a message; its wording may change. */
 const numbersIn = (message = "") => message.match(/-?\d+(\.\d+)?(e-?\d+)?/g)?.join(" ") ?? "";
 
-/** What may not differ at all, in words. */
+/** Members that must be equal, described in words. */
 function disagreements(before, after) {
   const [a, b] = [before.report, after.report];
   const list = ["status", "iteration", "stage"]
@@ -96,8 +96,8 @@ function disagreements(before, after) {
 }
 
 /**
- * Two answers, or two figures of answers. `rasterApart(a, b)` is the largest difference of two rasters where both have values,
- * or Infinity where the pixels that have values differ; `pairsApart(a, b)` says how the correspondences differ, if they do.
+ * Compares two answers, or two figures of answers. `rasterApart(a, b)` is the largest difference of two rasters where both have values,
+ * or Infinity if different pixels have values; `pairsApart(a, b)` describes how the correspondences differ, if they do.
  */
 export function compare(before, after, { rasterApart, pairsApart }) {
   const [a, b] = [before.report, after.report];

@@ -1,11 +1,11 @@
-// Which members of the public contract the scenes make use of: each of them in several, or the list of scenes is not complete.
+// The members of the public contract that the scenes must use. Each must occur in several scenes, or the list of scenes is incomplete.
 
-/** Scenes that each member has to occur in. */
+/** Number of scenes in which each member must occur. */
 const LEAST = 3;
 
 const under = (path, ...names) => names.map((name) => `${path}${name}`);
 
-/** Whatever a run's pose can rest on. */
+/** Every method that can determine a run's pose. */
 export const ENGINES = [
   "photometric registration",
   "local contrast",
@@ -15,7 +15,7 @@ export const ENGINES = [
   "held pose",
 ];
 
-/** Members and values as `namesOf` spells them. Of defaults nothing is asked: scenes that say nothing have them. */
+/** Members and values as `namesOf` spells them. Defaults are not listed, because every scene that leaves them out uses them. */
 const MEMBERS = [
   ...under("sample.surface", ": bust", ": vase", ": ripples", ".heights"),
   ...under("sample.light", ": colourful", ": window", ": overcast", " of 27 numbers"),
@@ -46,7 +46,7 @@ const MEMBERS = [
   ...under("ended by ", ...ENGINES),
 ];
 
-/** "path.to.member", and with it a word's value, an array's type, a light's length. */
+/** "path.to.member", with the value of a word, the type of an array, the length of a light. */
 function namesOf(path, value) {
   if (typeof value === "string") return [path, `${path}: ${value}`];
   if (ArrayBuffer.isView(value) || Array.isArray(value)) {
@@ -56,7 +56,7 @@ function namesOf(path, value) {
   return [path, ...Object.entries(value).flatMap(([key, member]) => namesOf(`${path}.${key}`, member))];
 }
 
-/** Those that a scene makes use of. */
+/** Those that a scene uses. */
 export function usesOf({ request = {}, image, depth, albedo = {} }, options, way, endedBy) {
   const used = Object.entries({ sample: request, image, depth, options, albedo }).flatMap(([path, value]) =>
     namesOf(path, value),
@@ -66,7 +66,7 @@ export function usesOf({ request = {}, image, depth, albedo = {} }, options, way
   return MEMBERS.filter((member) => all.has(member));
 }
 
-/** Members that too few scenes make use of, with their number. */
+/** Members that too few scenes use, with their number. */
 export function neglected(uses) {
   const counts = MEMBERS.map((member) => ({ member, count: uses.filter((used) => used.includes(member)).length }));
   return counts.filter(({ count }) => count < LEAST);

@@ -1,14 +1,14 @@
-// An answer as figures that are small enough to be committed: the pose to the digit, rasters by their sums and by samples.
+// Condenses an answer into figures small enough to be committed: the pose in full, rasters by sums and samples.
 import { createHash } from "node:crypto";
 
-/** Values kept of each raster, evenly over those that there are; points follow from depths and pose. */
+/** Number of values kept of each raster, evenly spread over the pixels that have one; points follow from depths and pose. */
 const SAMPLES = {
   ...{ imageDepth: 24, refinedDepth: 24, imageNormals: 18, depthNormals: 18 },
   ...{ residual: 6, imagePoints: 0, depthPoints: 0 },
 };
-/** Decimals of rasters (pixels, parts of a unit normal) and of the light. */
+/** Decimals of rasters (pixels, components of a unit normal) and of the light. */
 const DECIMALS = 6;
-/** Significant digits of numbers in a report, and of poses, whose limits are narrower. */
+/** Significant digits of numbers in a report, and of poses, whose limits are tighter. */
 const DIGITS = 7;
 const POSE_DIGITS = 12;
 
@@ -19,7 +19,7 @@ const hash = ({ buffer, byteOffset, byteLength }) =>
     .digest("hex")
     .slice(0, 8);
 
-/** Where there are values, how many, their mean and spread, and some of them. */
+/** Which pixels have values, how many, their mean and spread, and samples. */
 function rasterFigure(values, count) {
   const there = values.filter((value) => !Number.isNaN(value));
   const pattern = hash(Uint8Array.from(values, (value) => (Number.isNaN(value) ? 0 : 1)));
@@ -33,7 +33,7 @@ function rasterFigure(values, count) {
   return { pattern, count: there.length, values: [mean, spread, ...samples].map(fixed) };
 }
 
-/** Every number of a report, rounded; angles follow from the rotation. */
+/** Every number of a report, rounded; angles are left out, since they follow from the rotation. */
 function rounded(value, digits = DIGITS) {
   if (typeof value === "number") return Number(value.toPrecision(digits));
   if (Array.isArray(value)) return value.map((item) => rounded(item, digits));
@@ -43,7 +43,7 @@ function rounded(value, digits = DIGITS) {
   return Object.fromEntries(entries.map(([key, item]) => [key, rounded(item, precise ? POSE_DIGITS : digits)]));
 }
 
-/** Of a curve of the log likelihood where it falls to, and its mean. */
+/** The minimum and the mean of a curve of the log likelihood. */
 function curveFigure({ values, ...curve }) {
   const mean = values.reduce((sum, value) => sum + value, 0) / values.length;
   return { ...curve, offsets: [], values: [Math.min(...values), mean] };

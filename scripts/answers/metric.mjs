@@ -1,4 +1,4 @@
-// Pairs in metres: an analytic body seen by pinhole cameras, which `sample` does not offer. Each pixel's ray is followed to the
+// Pairs in metres: an analytic body seen by pinhole cameras, which `sample` does not offer. Each pixel's ray is intersected with the
 // body's surface, so nothing is resampled and the pose is known.
 import { IDENTITY, aboutAxis, transpose, turn } from "../../protocols/rotations.mjs";
 import { chance } from "../../protocols/numbers.mjs";
@@ -6,16 +6,16 @@ import { chance } from "../../protocols/numbers.mjs";
 /** Half axes of the body and its distance from either camera, metres. */
 const HALF_AXES = [0.1, 0.12, 0.1];
 const DISTANCE = 0.8;
-/** Rays are followed through this much before and behind the body's middle (metres), in so many strides. */
+/** Rays are searched over this range before and behind the body's middle (metres), in this many strides. */
 const REACH = 0.18;
 const STRIDES = 60;
-/** Each halves what a stride leaves open: beyond the digits of a double. */
+/** Bisections of a stride: enough for the precision of a double. */
 const BISECTIONS = 50;
-/** Step of the central differences that give normals, half axes. */
+/** Step of the central differences for normals, half axes. */
 const STEP = 1e-5;
-/** The fixed-point iteration that takes a mild lens's distortion away gains two digits a turn. */
+/** Rounds of the fixed-point iteration that removes a mild lens's distortion; each gains two digits. */
 const UNDISTORTIONS = 30;
-/** Middle, height and sharpness of the body's bumps, half axes: no two sides of it are alike. */
+/** Middle, height and sharpness of the body's bumps, half axes. No two sides of the body are alike. */
 const BUMPS = [
   { at: [0.35, -0.4, -0.8], height: 0.5, sharpness: 9 },
   { at: [-0.5, 0.1, -0.75], height: -0.35, sharpness: 12 },
@@ -24,7 +24,7 @@ const BUMPS = [
   { at: [-0.75, -0.5, -0.1], height: 0.4, sharpness: 7 },
 ];
 
-/** Above zero outside the body, below inside; a point in half axes. */
+/** Positive outside the body, negative inside; the point is in half axes. */
 function outside([x, y, z]) {
   let value = x * x + y * y + z * z - 1 + 0.15 * x * y - 0.1 * x * x * x;
   for (const { at, height, sharpness } of BUMPS) {
@@ -50,7 +50,7 @@ function normalAt(point) {
   return gradient.map((part) => part / length);
 }
 
-/** How far along the ray the body begins, or undefined. */
+/** Distance along the ray to the body's surface, or undefined. */
 function hit(origin, direction) {
   const at = (along) => outside(inHalfAxes(origin.map((value, axis) => value + along * direction[axis])));
   let near = DISTANCE - REACH;
@@ -86,7 +86,7 @@ function undistort(seen, distortion) {
   return point;
 }
 
-/** Origin and direction (with z = 1) of a pixel's ray in the camera's frame; without a camera rays are parallel. */
+/** Origin and direction (with z = 1) of a pixel's ray in the camera's frame; without a camera, rays are parallel. */
 function ray({ camera, metresPerPixel, width, height }, column, row) {
   if (!camera) {
     return [
@@ -117,7 +117,7 @@ function look(view, rotation) {
   return pixels;
 }
 
-/** Log intensities of three channels: the image model (Eq. 3, 5) with its harmonics written out. */
+/** Log intensities of three channels by the image model (Eq. 3, 5), with its harmonics written out. */
 function shade(light, [x, y, z]) {
   const [c1, c2, c3, c4, c5] = [0.429043, 0.511664, 0.743125, 0.886227, 0.247708];
   const linear = [2 * c2 * y, 2 * c2 * z, 2 * c2 * x];

@@ -1,5 +1,5 @@
-// Scenes of pairs that are not what they are taken for: another unit, relief inside out, no mask where one is
-// needed, an initial pose that is believed too much.
+// Scenes whose input is described incorrectly: a wrong unit, inverted relief, a missing mask, an initial pose that is trusted too
+// much.
 import { LENS, OTHER_LENS, metric, near, pinhole, sample } from "./requests.mjs";
 
 const UNITS = [
@@ -94,7 +94,7 @@ const WITHOUT_MASKS = [
   },
 ];
 
-/** Initial poses that are farther off than they are said to be: nothing that is allowed explains the colours better. */
+/** Initial poses farther off than their tolerance: no allowed pose fits the image better. */
 const BELIEVED = { degrees: 1, distance: 0.5 };
 const TOO_SURE = [
   {

@@ -1,11 +1,11 @@
-// Scenes of more than one albedo: where local contrast, silhouettes or surfaces take over from the colours.
+// Scenes with varying albedo, in which local contrast, silhouettes or surfaces replace photometric registration.
 import { LENS, OTHER_LENS, PAPER, metric, near, pinhole, sample } from "./requests.mjs";
 
 const PATCHES = { seed: 1 };
 const OTHER_PATCHES = { seed: 6 };
 const STRIPES = { seed: 3, stripes: true };
 const OTHER_STRIPES = { seed: 8, stripes: true };
-/** Metres. */
+/** Noise of the depth, metres. */
 const NOISY = 0.001;
 
 const ORTHOGRAPHIC = [

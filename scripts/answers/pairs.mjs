@@ -1,15 +1,15 @@
-// The pair of views of a scene: rendered by the package's `sample` or in metres, then changed into what the scene asks for.
+// The views of a scene: rendered by the package's `sample` or in metres, then modified as the scene requires.
 import { throughJpeg } from "../../protocols/jpeg.mjs";
 import { chance, median } from "../../protocols/numbers.mjs";
 import { paint } from "../../protocols/painted.mjs";
 import { aboutAxis, anglesOf, product, turn } from "../../protocols/rotations.mjs";
 import { metricPair } from "./metric.mjs";
 
-/** Grid of a relief of our own, samples; its radius is that of its disc. */
+/** Grid of an added relief, samples; its radius is that of its disc. */
 const SIDE = 128;
 const RADIUS = 0.44 * SIDE;
 
-/** Heights over a disc in units of its radius, raised so that none is background. */
+/** Heights over a disc in units of its radius, raised so that no sample is background. */
 function relief(height) {
   const heights = new Float32Array(SIDE * SIDE);
   for (let index = 0; index < heights.length; index++) {
@@ -19,7 +19,7 @@ function relief(height) {
   return { width: SIDE, height: SIDE, heights };
 }
 
-/** Surfaces beside the built-in ones. A ball looks the same after any turn and does not tell its pose. */
+/** Surfaces in addition to the built-in ones. A ball looks the same after any rotation, so its pose is not observable. */
 const RELIEFS = {
   ball: (x, y) => Math.sqrt(Math.max(0, 1 - x * x - y * y)),
   hills(x, y) {
@@ -44,15 +44,15 @@ function sampled(request, { sample }) {
 }
 
 function metric({ light, ...request }, { sample }) {
-  // The package says what its lights are.
+  // The package gives the coefficients of its lights.
   const numbers = sample({ surface: "bust", light: lightOf(light), size: 16 }).light;
   return metricPair(request, numbers);
 }
 
-/** IEC 61966-2-1, from linear intensity to what a file holds; both 0 .. 1. */
+/** IEC 61966-2-1, from linear intensity to stored value; both 0 .. 1. */
 const toSrgb = (value) => (value <= 0.0031308 ? 12.92 * value : 1.055 * value ** (1 / 2.4) - 0.055);
 
-/** RGBA integers of the given type: the brightest pixel just under what counts as saturated. */
+/** RGBA integers of the given type, with the brightest pixel just below saturation. */
 function integers({ data, mask, ...image }, Type, most, transfer, encode) {
   const brightest = data.reduce((high, value) => Math.max(high, value), 0);
   const rgba = new Type(4 * image.width * image.height);
@@ -65,21 +65,21 @@ function integers({ data, mask, ...image }, Type, most, transfer, encode) {
   return { ...image, mask, data: rgba, ...(transfer ? { transfer } : {}) };
 }
 
-/** As a camera with its exposure set by the object stores it; what lies around the object is grey. */
+/** As a camera stores it whose exposure is set for the object; the surroundings are grey. */
 function photographed({ data, mask, ...image }, quality) {
   const [exposure, wall] = [0.9 / data.reduce((high, value) => Math.max(high, value), 0), 0.2];
   const levels = data.map((value, index) => (mask[Math.floor(index / 3)] ? value * exposure : wall));
   return { ...image, mask, data: throughJpeg({ ...image, data: levels }, quality) };
 }
 
-/** The object before a wall of another colour, both in the frame. */
+/** The object in front of a wall of another colour, without saturation. */
 function beforeWall({ data, mask, ...image }) {
   const brightest = data.reduce((high, value) => Math.max(high, value), 0);
   const wall = [0.5, 0.45, 0.4].map((share) => share * brightest);
   return { ...image, mask, data: data.map((value, index) => (mask[Math.floor(index / 3)] ? value : wall[index % 3])) };
 }
 
-/** Another albedo in patches or stripes, by a seed. */
+/** Adds varying albedo in patches or stripes, by a seed. */
 const painted = ({ data, ...image }, { seed, stripes = false }) => {
   const colours = data.slice();
   paint(colours, image.width, chance(seed), stripes);
@@ -100,7 +100,7 @@ const COLOURS = {
   grey: (image) => ({ ...image, data: new Float32Array(image.data.length).fill(0.5) }),
 };
 
-/** Stored units per unit of the depth map; the default unit is left unsaid. */
+/** Stored units per unit of the depth map; the default unit is left out. */
 function quantised({ data, ...depth }, unit, isDefault) {
   const stored = Uint16Array.from(data, (value) => (value > 0 ? Math.round(value / unit) : 0));
   return { ...depth, data: stored, ...(isDefault ? {} : { unit }) };
@@ -119,7 +119,7 @@ function cloud({ data, ...depth }) {
   return { ...depth, points };
 }
 
-/** Some pixels float behind the surface, as beside edges they do. */
+/** Some pixels float behind the surface, as they do at depth discontinuities. */
 function flying(depth, seed = 5) {
   const dice = chance(seed);
   const share = 0.03;
@@ -129,16 +129,16 @@ function flying(depth, seed = 5) {
   };
 }
 
-/** What it says its lengths are, so many times as long as they are. */
+/** Misstates the unit: lengths become `factor` times too long. */
 const misread = (depth, factor) => ({ ...depth, unit: factor * (depth.unit ?? 1) });
 
-/** The relief turned inside out: what was near is far. */
+/** Inverts the relief: near becomes far. */
 function hollow({ data, ...depth }) {
   const middle = median(data.filter((value) => value > 0));
   return { ...depth, data: data.map((value) => 2 * middle - value) };
 }
 
-/** A wall behind the object, as far off as the object is wide. */
+/** A wall behind the object, at a distance of the object's width. */
 function wall({ data, mask: _, ...depth }) {
   const seen = data.filter((value) => value > 0);
   const pixel = depth.camera ? median(seen) / depth.camera.fx : 1;
@@ -151,7 +151,7 @@ const without =
   ({ [key]: _, ...rest }) =>
     rest;
 
-/** Scenes name what becomes of the depth view; it happens in the order given. */
+/** The changes to the depth view that scenes name; they are applied in the given order. */
 const DEPTHS = {
   "16 bit, 1/200 pixel": (depth) => quantised(depth, 1 / 200, false),
   "16 bit, quarter pixels": (depth) => quantised(depth, 1 / 4, false),
@@ -170,10 +170,10 @@ const DEPTHS = {
   "before a wall, without mask": wall,
 };
 
-/** Turns a start away from the truth; the axis is no axis of symmetry. */
+/** Axis of the rotation between an initial pose and the truth; not an axis of symmetry. */
 const AWAY = [0.48, 0.6, 0.64];
 
-/** The pose that a scene is told: so many degrees off the truth about the surface's middle, or about the depth camera. */
+/** The initial pose of a scene, `off` degrees from the truth about the surface's middle or about the depth camera. */
 function startOf({ off, about = "middle", members = ["scale", "rotation", "translation"] }, { pose, middle }) {
   const rotation = product(aboutAxis(AWAY, off), pose.rotation);
   const stays = [0, 0, about === "middle" ? middle : 0];
@@ -189,7 +189,7 @@ function middleOf({ data, points }) {
   return depths[Math.floor(depths.length / 2)];
 }
 
-/** The pair of a scene, made by a package; `request` is what `sample` was asked for, `middle` the depth of the surface's middle. */
+/** The pair of a scene, rendered by a package; `request` is what was passed to `sample`, `middle` the depth of the surface's middle. */
 export function pairOf({ sample, metric: body, albedo, colours, depths = [], maskless = false }, api) {
   const made = body ? metric(body, api) : sampled(sample, api);
   const bare = albedo ? painted(made.image, albedo) : made.image;
@@ -202,7 +202,7 @@ export function pairOf({ sample, metric: body, albedo, colours, depths = [], mas
   };
 }
 
-/** Options as the estimator takes them: what is known comes from the pair. */
+/** Options as the estimator takes them; known values come from the pair. */
 export function optionsOf({ light, start, ...rest }, made) {
   return {
     ...rest,

@@ -1,4 +1,4 @@
-// What scenes ask for, in short.
+// Shorthands for the requests of scenes.
 
 export const NOISE = 0.01;
 /** The paper's own loop. */
@@ -15,7 +15,7 @@ export const pinhole = (width, height, rest = {}) => ({
 });
 export const LENS = { distortion: [-0.12, 0.05, 0.001, -0.0015, 0.01] };
 export const OTHER_LENS = { distortion: [0.08, -0.03, -0.001, 0.002, 0] };
-/** Two pinholes side by side, the body turned between them. */
+/** Two pinhole cameras side by side, with the body rotated between them. */
 export const metric = (light, image, depth, rest = {}) => ({
   light,
   image,

@@ -1,11 +1,11 @@
-// Scenes of rendered rigs whose calibration is checked: candidates that are true and off, fewer cues, a camera that is not given, masks.
+// Scenes of rendered rigs whose calibration is checked: candidates that are right and wrong, fewer cues, an unknown camera, masks.
 import { chance, wrong } from "../rigs/draws.mjs";
 
-/** Candidates, off by degrees about the colour camera and millimetres. */
+/** Errors of candidates: degrees about the colour camera, and millimetres. */
 const LITTLE = { little: { degrees: 0.5, millimetres: 5 } };
 const FAR = { far: { degrees: 3, millimetres: 40 } };
 const AS_IT_IS = { degrees: 0, millimetres: 0 };
-/** What is nearer is the object, metres; its mask on the image is its points' pixels and those beside them. */
+/** Everything nearer than this is the object, metres. Its image mask covers its projected points and their neighbouring pixels. */
 const OBJECT = 1.2;
 const BESIDE = 3;
 
@@ -31,7 +31,7 @@ export const RIGS = [
   },
 ];
 
-/** The frame with masks of what is near, as somebody who knows the rig would draw them. */
+/** The frame with masks of the near object, as a user who knows the rig would draw them. */
 async function masked(frame, { projectFrame }) {
   const { width, height } = frame.image;
   const unit = frame.depth.unit ?? 0.001;
@@ -56,7 +56,7 @@ async function frameOf({ kind, seed, isGuessed, isMasked }, frame, api) {
   return { ...whole, image };
 }
 
-/** The check of a scene's rig, and what went into it. */
+/** The check of a scene's rig, and its input. */
 export async function checkOf(request, api) {
   const { seed, off, cues, frames: count = 1 } = request;
   const frames = [];

@@ -1,11 +1,11 @@
-// The scenes, each with a name in words, its pair (see pairs.mjs), its options, and how it is driven.
+// The scenes: each has a name in words, its pair (see pairs.mjs), its options, and a way of driving the loop.
 //   sample, metric   the pair, from the package's `sample` or in metres (metric.mjs)
-//   albedo           { seed, stripes }: patches or stripes of other colours
-//   colours, depths  what becomes of its views; `maskless` leaves the image's mask out
+//   albedo           { seed, stripes }: patches or stripes of another albedo
+//   colours, depths  changes to its views; `maskless` leaves out the image's mask
 //   options          the estimator's; light "known" is the pair's; start { off: degrees, about, members } is near the pair's pose
-//   drive            "run" (the default), "step", "stage", "time": which method takes the steps;
-//                    { stop: n }: the loop is left running after n steps; { reset: options }: some steps with those come first
-//   rig              in place of all these: frames of a rendered rig that is checked (rigs.mjs)
+//   drive            "run" (the default), "step", "stage", "time": the method that takes the steps;
+//                    { stop: n } leaves the loop running after n steps; { reset: options } first takes some steps, then resets
+//   rig              instead of all these: frames of a rendered rig whose calibration is checked (rigs.mjs)
 import { MISSTATED } from "./misstated.mjs";
 import { PAINTED } from "./painted.mjs";
 import { GIVEN, LENS, OTHER_LENS, PAPER, grid, metric, near, pinhole, sample } from "./requests.mjs";

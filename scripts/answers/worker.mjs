@@ -1,4 +1,4 @@
-// A process of its own for scenes: one instance of each package, one scene after the other.
+// A separate process that runs scenes one after the other, with one instance of each package.
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
@@ -10,12 +10,12 @@ import { SCENES } from "./scenes.mjs";
 
 const packages = new Map();
 
-/** The package that a checkout has built, with either of its .wasm files. */
+/** Loads the package that a checkout has built, with either of its .wasm files. */
 async function load(folder, scalar) {
   if (!packages.has(folder)) {
     const inPackage = (path) => pathToFileURL(join(folder, "pkg", path));
     const { exports } = JSON.parse(readFileSync(inPackage("package.json"), "utf8"));
-    // Older packages have a module of their own for Node.
+    // Older packages have a separate module for Node.
     const api = await import(inPackage(exports["."].node ?? exports["."].default));
     await (scalar ? api.default(inPackage("bimodal_stereo_scalar_bg.wasm")) : api.default());
     packages.set(folder, api);

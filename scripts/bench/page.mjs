@@ -1,12 +1,12 @@
-// What a visitor waits for beside the loop: the start, the way of a frame to the page, its drawing.
+// Waiting times of a visitor outside the loop: start, transfer of a frame to the page, drawing.
 import { openPage } from "./sides.mjs";
 
 /** The page's largest square; it draws at most 512 pixels a side. */
 const DRAWN_SIZE = 256;
-/** The loop whose iterations are quickest: frames are as large as in any other. */
+/** The loop with the fastest iterations; its frames are as large as those of any other. */
 const DRAWN = `surface=bust&light=colourful&size=${DRAWN_SIZE}&lighting=known&start=identity&registration=icp&shading=pixel`;
 
-/** From `init()` to the first report, each time in a page of its own that has compiled nothing yet; the file comes from this machine. */
+/** Times from `init()` to the first report, each in a new page that has compiled nothing yet; the file is served from this machine. */
 export async function startUps(chromium, address, scene, times) {
   const found = [];
   for (let round = 0; round < times; round++) {
@@ -22,7 +22,7 @@ export async function startUps(chromium, address, scene, times) {
   return found;
 }
 
-/** All arrays of a frame in full size: copied out of the module's memory, and sent to the page; four of its views painted by the module. */
+/** Times to copy all arrays of a full-sized frame out of the module's memory, to post them to the page, and to paint four views in the module. */
 export async function transfers(side, times) {
   const found = { copying: [], painting: [], travelling: [] };
   for (let round = 0; round < times; round++) {
@@ -34,7 +34,7 @@ export async function transfers(side, times) {
   return found;
 }
 
-/** Before the page's own scripts: records when a frame was asked for and came, and how long its drawing kept the page busy. */
+/** Runs before the page's own scripts: records when a frame was requested, when it arrived, and how long its drawing kept the page busy. */
 function recordFrames() {
   const frames = (window.benchFrames = []);
   let asked;
@@ -48,7 +48,7 @@ function recordFrames() {
     });
   window.Worker = class extends Worker {
     postMessage(message, ...rest) {
-      // The clouds have a thread of their own, which is never asked for a frame.
+      // Clouds have a separate thread, which receives no requests for frames.
       if (!("kind" in message)) return super.postMessage(message, ...rest);
       asked = message.kind === "advance" ? performance.now() : undefined;
       shown = undefined;
@@ -72,12 +72,12 @@ function recordFrames() {
   };
 }
 
-/** A camera's frame on the page, from a search to the end of the loop. */
+/** Size of a camera's frame, which the page plays from the search to the end of the loop. */
 const PLAYED_SIZE = "640x480";
-/** Seconds of it, at most. */
+/** Limit of the time that is recorded, seconds. */
 const PLAYED = 10;
 
-/** Before the page's own scripts: its animation frames, and tasks that held the main thread for over 50 ms. */
+/** Runs before the page's own scripts: records animation frames, and tasks that block the main thread for more than 50 ms. */
 function watch() {
   const seen = (window.benchSeen = { frames: [], longTasks: [] });
   new PerformanceObserver((list) => seen.longTasks.push(...list.getEntries().map(({ duration }) => duration))).observe({
@@ -90,14 +90,14 @@ function watch() {
   requestAnimationFrame(frame);
 }
 
-/** How smoothly the page runs while it plays. */
+/** Measures how smoothly the page plays a run. */
 export async function playing(chromium, address) {
   const context = await chromium.newContext({ viewport: { width: 1280, height: 800 }, serviceWorkers: "block" });
   const page = await context.newPage();
   await page.addInitScript(watch);
   await page.goto(`${address}/site/#size=${PLAYED_SIZE}`);
   await page.waitForSelector('#status[data-state="ready"]', { timeout: 60_000 });
-  // What loads late is there by then.
+  // By then, scripts that load late have loaded.
   await page.waitForTimeout(2000);
   await page.evaluate(() => Object.values(window.benchSeen).forEach((list) => (list.length = 0)));
   await page.keyboard.press("Space");
@@ -110,8 +110,8 @@ export async function playing(chromium, address) {
 }
 
 /**
- * Frames of the real page, stage by stage. `delivery`: from the request to the reply without the stage's own time, which is cutting,
- * copying and sending. `drawing`: what its animation frames kept the main thread busy with, all canvases, clouds and charts.
+ * Times of frames of the real page, stage by stage. `delivery`: from the request to the reply, without the stage's own time; this is
+ * cropping, copying and sending. `drawing`: the time for which animation frames kept the main thread busy with canvases, clouds and charts.
  */
 export async function drawings(chromium, address, times) {
   const context = await chromium.newContext({ viewport: { width: 1280, height: 800 }, serviceWorkers: "block" });
@@ -122,11 +122,11 @@ export async function drawings(chromium, address, times) {
   const ready = () => page.waitForSelector('#status[data-state="ready"]');
   await ready();
   let frames = [];
-  // The first one builds what the others use again.
+  // The first frame builds objects that later frames reuse.
   while (frames.length < times + 1) {
     await page.keyboard.press("t");
     await page.waitForFunction((count) => window.benchFrames.length > count, frames.length);
-    // A painting that is too long for one animation frame goes on in the next.
+    // A painting that is too long for one animation frame continues in the next.
     await page.evaluate(async () => {
       for (let frame = 0; frame < 4; frame++) await new Promise((done) => requestAnimationFrame(done));
     });

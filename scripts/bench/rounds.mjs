@@ -1,15 +1,15 @@
-// What is timed, run by run, browser and native in turn: a busy machine slows both alike.
+// Times the loop run by run, alternating between browser and native, so that a busy machine slows both equally.
 import { Failure, say } from "../shell.mjs";
 
-/** Iterations that a loop needs to get going: with three different starts its surface finds the best (STARTS in src/shape/heights/starts.rs). */
+/** Iterations before the steady state: the surface first tries three initialisations (STARTS in src/shape/heights/starts.rs). */
 const WARMING = 3;
-/** No loop takes so many iterations: its end decides. */
+/** An unreachable limit of iterations, so that runs go to their end. */
 const TO_THE_END = 1000;
 
 /** The times of one kind of stage in a run. */
 const timesOf = ({ stages }, wanted) => stages.filter(wanted).map(({ milliseconds }) => milliseconds);
 
-/** The steady iterations of a run, each as its stages by name; of a run that ends before, the last one. */
+/** The steady iterations of a run, each as its stages by name; for a run that ends earlier, its last iteration. */
 function steadyIterations({ stages, iterations }) {
   const first = Math.max(0, Math.min(WARMING, iterations - 1));
   const each = Array.from({ length: Math.max(0, iterations - first) }, () => ({}));
@@ -21,10 +21,10 @@ function steadyIterations({ stages, iterations }) {
 const sum = (values) => values.reduce((total, value) => total + value, 0);
 
 /**
- * Samples of every stage at one size on one side. The registration computes once in a run, in its first iteration; later ones
- * find that the pose no longer moves and repeat nothing. A step is therefore put together: the other stages of a steady iteration and a
- * registration that did compute. "standing step" is the steady iteration as it was, its pose no longer moving; "last step" is the last one
- * of a loop, whose shapes have mostly settled and are kept. It counts as steady only where there is no other one.
+ * Samples of every stage at one size on one side. The registration computes only in the first iteration of a run; later iterations find
+ * that the pose no longer moves and skip it. A step is therefore composed of the other stages of a steady iteration and of a registration
+ * that did compute. "standing step" is the steady iteration as it ran, with a settled pose; "last step" is the last iteration of a loop,
+ * in which most shapes have settled and are kept. The last iteration counts as steady only if there is no other.
  */
 class Samples {
   #steady = [];
@@ -46,13 +46,13 @@ class Samples {
     this.#steady.push(...steady.slice(0, Math.max(1, steady.length - 1)));
   }
 
-  /** Only from a run that does not begin with a search, whose registrations the first iteration repeats just as little. */
+  /** Only for runs without a search: after a search, the first iteration skips the registration too. */
   addRegistration(run) {
     this.#registrations.push(...timesOf(run, ({ stage, iteration }) => stage === "registration" && iteration === 0));
     this.#preparations.push(run.preparation);
   }
 
-  /** [stage, times] in the order in which a reader wants them. */
+  /** [stage, times] in the order of the report. */
   all() {
     const others = ["light", "shading", "surface", "refinement"];
     const registrations = this.#registrations;
@@ -85,8 +85,8 @@ export async function stages(sides, scene, { size, least }) {
   for (const side of sides) await side.open(scene);
   const samples = new Map(sides.map((side) => [side.where, new Samples()]));
   const lacks = (what) => sides.some(({ where }) => samples.get(where)[what] < least);
-  // The first runs are not counted: what a browser compiles while it runs, it compiles now. They start at the true pose. Where the
-  // colours do not hold it (the smallest views), the loop soon ends and steady iterations have to follow a search.
+  // The first runs are not counted, because a browser compiles during them. They start at the true pose. The smallest views do not
+  // determine the pose from the image: there the loop ends early, and steady iterations have to follow a search.
   let start = "near";
   for (const side of sides) {
     const { iterations } = await side.run({ start, most: WARMING + 1 });
@@ -107,7 +107,7 @@ export async function stages(sides, scene, { size, least }) {
     if (ends.some(({ iterations }) => iterations === 0))
       throw new Failure(`${size}: a loop ended before its first iteration was over`);
   }
-  // The registration does not look at the image's surface, so here that may be the one that is raised fastest.
+  // The registration does not use the image's surface, so the fastest way of computing that surface serves here.
   while (lacks("registrations")) {
     for (const side of sides)
       samples.get(side.where).addRegistration(await side.run({ start: "near", shading: "pixel", most: 1 }));
@@ -122,7 +122,7 @@ export async function stages(sides, scene, { size, least }) {
   return { rows, ends: ends.filter((end) => end.start === "near") };
 }
 
-/** Steady iterations that several workers share, until there are `least` for each number of workers. */
+/** Samples steady iterations shared by several workers, until there are `least` for each number of workers. */
 export async function sharedSteps(sides, scene, { size, least }) {
   const rows = [];
   for (const side of sides) {
@@ -145,7 +145,7 @@ export async function sharedSteps(sides, scene, { size, least }) {
 
 const endOf = ({ milliseconds, degrees, status, iterations }) => ({ milliseconds, degrees, status, iterations });
 
-/** From two views and nothing known to the end, `times` times on each side. */
+/** Complete runs with nothing known but the two views, `times` times on each side. */
 export async function searches(sides, scene, { size, times, name = size }) {
   for (const side of sides) await side.open(scene);
   const found = [];

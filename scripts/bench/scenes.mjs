@@ -1,4 +1,4 @@
-// The pairs that are timed, made once and written to files: browser and native loop read the same bytes.
+// The pairs for timing, made once and written to files, so that browser and native loop read the same bytes.
 import { mkdirSync, writeFileSync } from "node:fs";
 import { inRoot } from "../shell.mjs";
 import { hasData, library } from "../tables/library.mjs";
@@ -7,15 +7,15 @@ import { chance } from "../../protocols/numbers.mjs";
 import { NOISE, kit, requestOf } from "../../protocols/scenes.mjs";
 
 const FOLDER = "target/bench/scenes";
-/** Samples of a relief on a side: of Mozart and of the built-in surfaces. */
+/** Side of a relief, samples: of Mozart and of the built-in surfaces. */
 const RELIEF_SIDE = 256;
-/** Under this height a relief has no surface (docs/lab/protocols.md), samples. */
+/** Heights below this are background (docs/lab/protocols.md), samples. */
 const FLOOR = 5;
 
 /** "640x480" as numbers. */
 export const sidesOf = (size) => size.split("x").map(Number);
 
-/** Heights of a built-in surface, read off its own rendering on its own grid. */
+/** Heights of a built-in surface, taken from a rendering on its own grid. */
 function heightsOf(surface, sample) {
   const { truth } = sample({ surface, light: "colourful", size: RELIEF_SIDE });
   const farthest = truth.imageDepth.reduce((far, depth) => (depth > far ? depth : far), -Infinity);
@@ -23,7 +23,7 @@ function heightsOf(surface, sample) {
   return { width: RELIEF_SIDE, height: RELIEF_SIDE, heights };
 }
 
-/** A square relief made as wide as the frame, so that the object covers as much of 640x480 as of a square: about half. */
+/** A square relief stretched to the frame's width, so that the object covers about half of the frame at 640x480 as in a square. */
 function widened({ width, height, heights }, factor) {
   const wide = Math.round(width * factor);
   const stretched = new Float32Array(wide * height);
@@ -32,7 +32,7 @@ function widened({ width, height, heights }, factor) {
       const at = Math.max(0, Math.min(width - 1, (column + 0.5) / factor - 0.5));
       const [low, share] = [Math.floor(at), at - Math.floor(at)];
       const [a, b] = [low, Math.min(width - 1, low + 1)].map((x) => heights[row * width + x]);
-      // Between object and background there is no slope: the nearer sample decides.
+      // Object and background are not interpolated; the nearer sample decides.
       const edge = a > FLOOR !== b > FLOOR;
       stretched[row * wide + column] = edge ? (share < 0.5 ? a : b) : a + share * (b - a);
     }
@@ -60,14 +60,14 @@ export function scenes(api, files) {
   mkdirSync(inRoot(FOLDER), { recursive: true });
   const names = kit(hasData());
   const data = library(files);
-  // Of the built-in surfaces the ripples cover half of their grid, as Mozart does.
+  // Of the built-in surfaces, the ripples cover half of their grid, as Mozart does.
   const surface = hasData() ? "mozart" : "ripples";
   const relief = hasData() ? data.surface(surface) : heightsOf(surface, api.sample);
   const lightName = hasData() ? "A" : "window";
   return {
     surface,
     lightName,
-    /** The scene whose steps are timed: beta = 20, natural light. */
+    /** The scene for timing steps: beta = 20, natural light. */
     plain(size, seed = 1) {
       const [width, height] = sidesOf(size);
       const made = api.sample({
@@ -76,7 +76,7 @@ export function scenes(api, files) {
       });
       return write(`${size}-plain-${seed}`, made);
     },
-    /** Random surface, light, pose and scale: the scenes of the tables at another size. */
+    /** Random surface, light, pose and scale: scenes of the tables at another size. */
     random(size, seed) {
       const [width] = sidesOf(size);
       const scene = { ...drawScene(chance(seed), names, data.gaussian), size: width, seed };

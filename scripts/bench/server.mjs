@@ -1,4 +1,4 @@
-// Serves the project's own files to the bench, isolated: a browser then tells the time to 5 microseconds instead of 100.
+// Serves the project's files to the bench with cross-origin isolation, in which browsers resolve 5 microseconds instead of 100.
 import { createReadStream, existsSync, statSync } from "node:fs";
 import { createServer } from "node:http";
 import { extname, normalize } from "node:path";
@@ -12,10 +12,10 @@ const TYPES = {
   ".svg": "image/svg+xml",
 };
 const ISOLATED = { "Cross-Origin-Opener-Policy": "same-origin", "Cross-Origin-Embedder-Policy": "require-corp" };
-/** Folders that a bench has business in. */
+/** Folders that the bench may read. */
 const SERVED = /^\/(pkg|scripts\/bench\/page|target\/bench|site)\//;
 
-/** Its address, and how to end it. */
+/** Starts the server; returns its address and a function that closes it. */
 export function serve() {
   const server = createServer((request, response) => {
     const { pathname } = new URL(request.url, "http://localhost");

@@ -1,9 +1,9 @@
-// Both places where the loop is timed: a browser's worker and a native process. Both answer the same requests.
+// The two places where the loop is timed: a browser's worker and a native process. Both answer the same requests.
 import { spawn } from "node:child_process";
 import { createInterface } from "node:readline";
 import { Failure, inRoot } from "../shell.mjs";
 
-/** Containers have no sandbox, machines for tests no graphics card, and the browser's own errands no business here. */
+/** No sandbox, as in containers; no graphics card, as on test machines; no background traffic of the browser. */
 const FLAGS = [
   "--no-sandbox",
   "--enable-unsafe-swiftshader",
@@ -17,23 +17,23 @@ export async function launch(executablePath) {
   return chromium.launch({ executablePath, args: FLAGS });
 }
 
-/** A page of its own, and with it a renderer that has compiled nothing yet. */
+/** Opens a new page, with a renderer that has compiled nothing yet. */
 export async function openPage(chromium, address) {
   const context = await chromium.newContext({ viewport: { width: 1280, height: 800 } });
   const page = await context.newPage();
-  // Runs are as long as they are.
+  // Runs may take any time.
   page.setDefaultTimeout(0);
   await page.goto(address);
   return { page, close: () => context.close() };
 }
 
-/** The package in a worker of a browser; `start` makes a fresh worker, whose memory nothing has grown yet. */
+/** The package in a browser's worker; `start` creates a new worker, whose memory has not grown yet. */
 export async function browserSide(chromium, address) {
   const { page, close } = await openPage(chromium, `${address}/scripts/bench/page/`);
   const ask = (request) => page.evaluate((given) => window.bench.ask(given), request);
   return {
     where: "browser",
-    /** Numbers of workers that runs are timed with. */
+    /** Numbers of workers with which runs are timed. */
     workerCounts: [1, 2],
     ask,
     async open({ path }) {

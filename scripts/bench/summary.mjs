@@ -1,4 +1,4 @@
-// From samples to the JSON: quantiles, ratios, growth, and the aims with their verdicts.
+// Summarises samples for the JSON: quantiles, ratios, growth, and aims with their verdicts.
 import { FIRST_PAINT_BUDGET, WASM_BUDGET } from "../sizes.mjs";
 import { FOUND_WITHIN, isFound } from "../../protocols/counts.mjs";
 import { median, quantile } from "../../protocols/numbers.mjs";
@@ -8,10 +8,10 @@ export const quantiles = (times) => ({ median: median(times), p10: quantile(time
 
 export const pixelsOf = (size) => sidesOf(size).reduce((width, height) => width * height);
 
-/** The smallest view whose steps tell how time grows: below, what every step costs at any size prevails. */
+/** Smallest view for the growth of time, pixels: in smaller ones the fixed cost of a step dominates. */
 const GROWTH_FROM = 64 * 64;
 
-/** Slope of a straight line through the points, by least squares. */
+/** Slope of a least-squares line through the points. */
 function slope(points) {
   const middle = [0, 1].map((axis) => points.reduce((sum, point) => sum + point[axis], 0) / points.length);
   const moment = (axis) =>
@@ -69,7 +69,7 @@ function searchRows(searches) {
   });
 }
 
-/** Everything as it goes into the JSON; what was not measured is null. */
+/** The contents of the JSON; a value that was not measured is null. */
 export function summary({
   samples,
   ends,
@@ -115,7 +115,7 @@ export function summary({
   };
 }
 
-/** [what, value, unit, limit] of each aim; a value is null where this run did not measure it. */
+/** [name, value, unit, limit] of each aim; a value is null if this run did not measure it. */
 export function aims({
   rows,
   search,
@@ -153,12 +153,12 @@ export function aims({
     ["wasm against native, worst step", most(ratios), "x", 1.8],
     ["growth of a step with the pixels", growth.step, "", 1.1],
     ["page playing 640x480: tasks over 50 ms", playing?.longTasks.length ?? null, "", 0],
-    // At least 55 of them a second.
+    // At least 55 frames a second.
     ["page playing 640x480: mean frame", playing ? 1000 / playing.framesPerSecond : null, "ms", 1000 / 55],
     ["memory after a run at 640x480", bytesPerPixel, "B/px", 220],
     ["wasm, gzipped", kilo(wasmGzipBytes), "kB", WASM_BUDGET / 1000],
     ["wasm without SIMD, gzipped", kilo(scalarGzipBytes), "kB", WASM_BUDGET / 1000],
-    // Below, not at.
+    // The size must stay below the budget, not reach it.
     ["first scripts of the page, gzipped", kilo(jsGzipBytes), "kB", (FIRST_PAINT_BUDGET - 1) / 1000],
   ].map(([what, value, unit, limit]) => ({ what, value, unit, limit, met: value === null ? null : value <= limit }));
 }

@@ -1,30 +1,30 @@
-// What other people's tools minimise, as costs of a pose over whole frames, written down from their papers to rank beside ours.
+// Costs that other people's tools minimise, as functions of a pose over whole frames, implemented from their papers for comparison.
 //
 // Normalised information distance: Koide, Oishi, Yokozuka, Banno, "General, single-shot, target-less, and automatic LiDAR-camera
 // extrinsic calibration toolbox", ICRA 2023, section III-E: NID = (2 H(L, I) - H(L) - H(I)) / H(L, I) over points that the camera sees,
-// with L a point's intensity and I the image's, both equalised, in 16 levels each. A depth camera has no intensity that its
-// files keep; in its place stands what a lamp at the depth camera would give, the cosine between normal and ray.
+// with L a point's intensity and I the image's, both equalised, in 16 levels each. Files of depth cameras hold no intensity; the
+// cosine between normal and ray replaces it, which is the shading by a lamp at the depth camera.
 // Edge alignment: distances of projected depth edges to the image's edges, as in Levinson and Thrun, "Automatic online
 // calibration of cameras and lasers", RSS 2013, here with Canny's edges (1986) and a distance transform.
 import { moved } from "../rigs/draws.mjs";
 import { project } from "./lens.mjs";
 
 const LEVELS = 16;
-/** A point this much farther than the nearest of its cell is hidden: metres, and share of its depth. */
+/** A point farther than the nearest in its cell by more than this is hidden: metres, and share of its depth. */
 const HIDDEN = { metres: 0.015, share: 0.02 };
-/** Side of a cell, pixels: wider than the points of one surface lie apart. */
+/** Side of a cell, pixels: more than the spacing of points on one surface. */
 const CELL = 3;
-/** Pixels to each side of a normal's differences: over the steps of a quantised map. */
+/** Pixels to each side for a normal's differences: more than the steps of a quantised map. */
 const REACH = 3;
 /** Canny: blur in pixels, share of pixels below the upper threshold, lower over upper threshold (MATLAB's values for the two). */
 const CANNY = { blur: 1.4, below: 0.7, ratio: 0.4 };
-/** Distances count up to this, pixels: an edge farther away belongs to something else. */
+/** Distances are capped here, pixels: an edge farther away belongs to another object. */
 const FARTHEST = 20;
 
 const point = (points, index) => [points[3 * index], points[3 * index + 1], points[3 * index + 2]];
 const clear = (depth) => Math.max(HIDDEN.metres, HIDDEN.share * depth);
 
-/** Ranks of values over their number, 0 .. 1; NaN stays. */
+/** Ranks of values divided by their number, 0 .. 1; NaN stays NaN. */
 function equalised(values) {
   const order = [...values.keys()]
     .filter((index) => !Number.isNaN(values[index]))
@@ -39,7 +39,7 @@ function equalised(values) {
   return ranks;
 }
 
-/** Ranks of an image's greys; what its makers cut out is black and has the lowest level, instead of nearly all ranks. */
+/** Ranks of an image's greys; black pixels, which the image's authors cut out, get the lowest level and do not take up most ranks. */
 const levelsOf = (light) =>
   equalised(light.map((value) => (value > 0 ? value : NaN))).map((rank) => (Number.isNaN(rank) ? 0 : rank));
 
@@ -51,7 +51,7 @@ const grey = ({ width, height, data }) => {
   );
 };
 
-/** Cosine between normal and ray of each point, the depth camera at `eye`. */
+/** Cosine between normal and ray of each point, with the depth camera at `eye`. */
 export function shading(points, { width, height }, eye) {
   const values = new Float32Array(width * height).fill(NaN);
   for (let row = REACH; row < height - REACH; row++) {
@@ -70,7 +70,7 @@ export function shading(points, { width, height }, eye) {
   return values;
 }
 
-/** Column, row, and depth of each point, NaN where it is missing, off the image or behind another one. */
+/** Column, row and depth of each point; NaN if it is missing, outside the image or hidden by another point. */
 function seen({ points, image }, pose) {
   const { width, height, camera } = image;
   const places = new Float32Array(points.length).fill(NaN);
@@ -115,7 +115,7 @@ function informationDistance(places, levels, image, { width }) {
   return (2 * both - depth - light) / both;
 }
 
-/** Points of the depth map that end before something clearly farther, looked for in the next pixel alone. */
+/** Points at a depth discontinuity: one of the adjacent pixels is clearly farther. */
 function depthEdges(points, { width, height }, eye) {
   const distance = (index) => Math.hypot(...point(points, index).map((value, k) => value - eye[k]));
   const found = [];
@@ -194,7 +194,7 @@ function distances(edges, { width, height }) {
   return far;
 }
 
-/** Costs of poses for one frame whose depth camera is at `motion` of its own origin; the less the better. */
+/** Costs of poses for one frame whose depth camera is at `motion` in the frame of its cloud; lower is better. */
 export function costs({ image, grid, points }, motion) {
   const eye = motion.translation;
   const light = grey(image);

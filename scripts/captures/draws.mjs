@@ -1,21 +1,21 @@
-// Checks on captures whose truth has been hidden: how each draw is made, and what is measured of it.
+// Checks of captures with a hidden truth: how each draw is made and what is measured.
 import { after, chance, inverse, mahalanobis, offset, poseOf, sizes, wrong } from "../rigs/draws.mjs";
 import { IDENTITY } from "../../protocols/rotations.mjs";
 import { costs } from "./costs.mjs";
 import { checkFrame, hide } from "./read.mjs";
 
 const NOWHERE = poseOf(IDENTITY, [0, 0, 0]);
-/** What the truth is hidden behind. */
+/** Size of the motion that hides the truth. */
 const HIDING = { degrees: 10, millimetres: 100 };
 
-/** A number for each text, so that a capture's draws do not depend on those of another (Fowler, Noll and Vo's hash). */
+/** A seed for each text, so that a capture's draws do not depend on other captures (Fowler, Noll and Vo's hash). */
 export const seedOf = (text, draw) =>
   [...`${text} ${draw}`].reduce((hash, letter) => Math.imul(hash ^ letter.charCodeAt(0), 16777619), -2128831035) >>> 0;
 
-/** Frames of one rig behind one motion; the truth of the first is that of all. */
+/** Frames of one rig behind one motion; the truth of the first frame holds for all. */
 function hidden(frames, random) {
   const motion = wrong(NOWHERE, HIDING, random.direction);
-  // Frames of two poses become frames of one rig: what differs is moved into their clouds.
+  // Frames with different poses become frames of one rig: the difference is applied to their clouds.
   const first = frames[0].truth;
   return { motion, frames: frames.map((frame) => hide(frame, after(motion, after(inverse(first), frame.truth)))) };
 }
@@ -43,14 +43,14 @@ function measured(report, truth, centre) {
   };
 }
 
-/** The told candidate is off by `error`, about the colour camera or about the frames' middle. */
+/** Checks a candidate that is off by `error` about the colour camera or about the middle of the frames. */
 export async function toldOff(check, frames, error, { seed, about = "camera", options = {}, correction }) {
   const random = chance(seed);
   const { frames: behind } = hidden(frames, random);
   const { truth, centre } = behind[0];
   const told = wrong(truth, error, random.direction, about === "middle" ? centre : undefined);
   const report = await check(behind.map(checkFrame), { told }, options);
-  // Where the makers' pose is known to be off, what is known better: X, colour frame, before the makers' pose.
+  // `correction` is a more accurate pose where the authors' pose is known to be off: X, colour frame, applied after the authors' pose.
   const better = correction ? after(correction, truth) : truth;
   return {
     error,
@@ -61,12 +61,12 @@ export async function toldOff(check, frames, error, { seed, about = "camera", op
   };
 }
 
-/** 1 where the wrong one is worse, 0 where it is better, one half where nothing tells. */
+/** 1 if the wrong one is worse, 0 if it is better, one half for a tie or a missing value. */
 const beats = (right, wrong) => (right === wrong || Number.isNaN(right - wrong) ? 0.5 : Number(wrong > right));
 
 /**
- * The true candidate against wrong ones, none of them told first: the first candidate, about which the prior is, is a third pose that
- * is off by `start`. Ours is the distance from the estimate in its own covariance, and the pixels that the report gives.
+ * Ranks the true candidate against wrong ones. None of these is the first candidate, on which the prior is centred: that is a third pose,
+ * off by `start`. Our measures are the Mahalanobis distance from the estimate and the report's pixels.
  */
 export async function ranked(check, frame, { start, errors, each, seed, about }) {
   const random = chance(seed);

@@ -1,6 +1,6 @@
-// Brown's lens with five coefficients, as OpenCV writes it, for costs that run outside the package.
+// Brown's lens with five coefficients, in OpenCV's order, for costs computed outside the package.
 
-/** Rounds of the fixed point: a lens of k1 = 0.2 is inverted to a thousandth of a pixel. */
+/** Rounds of the fixed-point iteration: enough to invert a lens of k1 = 0.2 to a thousandth of a pixel. */
 const ROUNDS = 30;
 
 function bent([x, y], [k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0]) {
@@ -9,13 +9,13 @@ function bent([x, y], [k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0]) {
   return [x * radial + 2 * p1 * x * y + p2 * (r + 2 * x * x), y * radial + p1 * (r + 2 * y * y) + 2 * p2 * x * y];
 }
 
-/** Column and row of a point before the camera. */
+/** Column and row of a point in front of the camera. */
 export function project({ fx, fy, cx, cy, distortion = [] }, [x, y, z]) {
   const [u, v] = bent([x / z, y / z], distortion);
   return [fx * u + cx, fy * v + cy];
 }
 
-/** x and y of the ray of a pixel, at z = 1. */
+/** x and y of a pixel's ray at z = 1. */
 export function ray({ fx, fy, cx, cy, distortion = [] }, [column, row]) {
   const told = [(column - cx) / fx, (row - cy) / fy];
   let at = told;
@@ -27,7 +27,7 @@ export function ray({ fx, fy, cx, cy, distortion = [] }, [column, row]) {
   return at;
 }
 
-/** The organised cloud of a depth map, metres; NaN where nothing was measured. */
+/** The organised cloud of a depth map, metres; missing depths are NaN. */
 export function cloud({ width, height, data, camera, unit }) {
   const NOTHING = 65535;
   const points = new Float32Array(3 * width * height).fill(NaN);

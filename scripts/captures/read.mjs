@@ -1,4 +1,4 @@
-// The captures that a check is measured on: whole frames without masks, as clouds, each with the extrinsics that its makers state.
+// The captures for measuring the check: whole frames without masks, as clouds, with the extrinsics that their authors state.
 import { after, inverse, moved, poseOf, quantile } from "../rigs/draws.mjs";
 import { bytes, capture } from "../real-pairs.mjs";
 import { IDENTITY } from "../../protocols/rotations.mjs";
@@ -7,7 +7,7 @@ import { cloud } from "./lens.mjs";
 const MILLIMETRE = 0.001;
 const SAME = poseOf(IDENTITY, [0, 0, 0]);
 
-/** A frame before its truth is hidden; `centre` is what turns about the scene are about, colour frame. */
+/** A frame before its truth is hidden; `centre` is the pivot of rotations about the scene, colour frame. */
 function sight(name, { image, depth }, truth, centre) {
   const points = depth.points ?? cloud(depth);
   return {
@@ -20,7 +20,7 @@ function sight(name, { image, depth }, truth, centre) {
   };
 }
 
-/** Medians of the points in the colour frame. */
+/** Medians of the points' coordinates in the colour frame. */
 function middle(points, truth, isAsked = () => true) {
   const axes = [[], [], []];
   for (let index = 0; index < points.length / 3; index += 3) {
@@ -39,7 +39,7 @@ export function nyu({ decodeColour, decodeDepth }) {
   return sight("nyu_raw_pair", { image, depth }, poseOf(calib.R.flat(), calib.t));
 }
 
-/** Camera and depth of `from`, colours of `to`; the pose by the two cameras' places in the room. */
+/** Camera and depth of frame `from`, colours of frame `to`; the pose follows from the camera's two poses in the room. */
 export function sevenScenes(from, to, { decodeColour, decodeDepth }) {
   const read = (number, kind) => bytes("seven_scenes", `frame-000${number}.${kind}`);
   const [[fx, , cx], [, fy, cy]] = numbers(bytes("seven_scenes", "camera-intrinsics.txt"));
@@ -60,7 +60,7 @@ export function sevenScenes(from, to, { decodeColour, decodeDepth }) {
   );
 }
 
-/** A frame of a rig that was read from files. */
+/** A frame of a rig, read from files. */
 export function rigSight({ name, image, depth }, truth) {
   const unit = depth.unit ?? (depth.data instanceof Uint16Array ? MILLIMETRE : 1);
   return sight(name, { image, depth: { ...depth, unit } }, truth);
@@ -79,13 +79,13 @@ const OBJECTS = ["coffee_mug_1", "bowl_1", "cap_1", "cereal_box_1"].flatMap((nam
 const LAMPS = [1, 7, 14].map((frame) => ["mitten_rgbd", frame]);
 const REGISTERED = [...OBJECTS, ["vase_rgbd", ""], ["android_rgbd", ""], ...LAMPS];
 
-/** Registered captures of single objects with all that is around them; the middle is the masked object's. */
+/** Registered captures of single objects with their surroundings; the middle is that of the masked object. */
 export function registered(files) {
   return REGISTERED.map(([name, frame]) => {
     const { image, depth } = capture(name, frame, files);
     const points = cloud(depth);
     const centre = middle(points, SAME, (index) => depth.mask[index]);
-    // The android was cut out of both its files; of the others all that is around the object is there.
+    // Both files of the android have the background removed; the other captures include it.
     const masked = name === "android_rgbd";
     const { mask, ...bare } = image;
     const shown = sight(
@@ -99,8 +99,8 @@ export function registered(files) {
 }
 
 /**
- * The same frame with its cloud in another frame of reference, so that neither the identity nor the makers' pose is an answer.
- * Clouds are turned point by point; nothing is rendered anew, so no depth is interpolated.
+ * The same frame with its cloud in another frame of reference, so that neither the identity nor the authors' pose is the answer.
+ * Clouds are transformed point by point; nothing is rendered, so no depth is interpolated.
  */
 export function hide(frame, motion) {
   const points = new Float32Array(frame.points.length);
@@ -108,7 +108,7 @@ export function hide(frame, motion) {
   return { ...frame, points, truth: after(frame.truth, inverse(motion)) };
 }
 
-/** As the package takes it. */
+/** The frame in the form that the package takes. */
 export const checkFrame = ({ name, image, grid, points, mask }) => ({
   name,
   image,

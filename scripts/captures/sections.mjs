@@ -1,18 +1,18 @@
-// The three parts of the measurement, each as rows, and what is printed of them.
+// The three parts of the measurement: the rows of each, and their printed summary.
 import { percent, poseOf, quantile } from "../rigs/draws.mjs";
 import { IDENTITY } from "../../protocols/rotations.mjs";
 import { costs } from "./costs.mjs";
 import { ranked, seedOf, toldOff } from "./draws.mjs";
 import { checkFrame, nyu, registered, sevenScenes } from "./read.mjs";
 
-/** Off by 1, 2, 4 degrees and 20 to 60 mm, in turn. */
+/** Errors of 1, 2 and 4 degrees, each with 20, 40 and 60 mm. */
 const CLEARLY_OFF = [1, 2, 4].flatMap((degrees) => [20, 40, 60].map((millimetres) => ({ degrees, millimetres })));
 const NEARLY_RIGHT = { degrees: 0.1, millimetres: 3 };
 const HALF_A_DEGREE = { degrees: 0.5, millimetres: 20 };
 const ONE_DEGREE = { degrees: 1, millimetres: 20 };
 const TOLD = { degrees: 3, millimetres: 20 };
 const FARTHER = { degrees: 3, millimetres: 50 };
-/** Wrong candidates of each kind in a draw: with the first and the true one as many as a check takes. */
+/** Wrong candidates of each kind in a draw; with the first and the true candidate, this is the most that a check takes. */
 const RIVALS = [1, 2, 5]
   .map((degrees) => ({ degrees, millimetres: 0 }))
   .concat([5, 10, 20].map((millimetres) => ({ degrees: 0, millimetres })));
@@ -30,7 +30,7 @@ const spread = (rows) =>
     )
     .join(" (90 %: ") + ")";
 
-/** Each verdict's share and the refined error of one frame's candidates, off clearly and hardly. */
+/** The share of each verdict and the refined error of one frame's candidates, for large and small errors. */
 export async function verdicts(frames, { check, number, progress }) {
   const rows = [];
   const name = frames[0].name;
@@ -67,11 +67,11 @@ const withFocal = (frame, focal) => ({
   ...frame,
   image: { ...frame.image, camera: { ...frame.image.camera, fx: focal, fy: focal } },
 });
-/** Kinect v1: nominal focal length of its colours; 585 is that of its depth. */
+/** Kinect v1: the nominal focal length of its colour camera is 525 pixels; 585 is that of its depth camera. */
 const [WRITTEN, NOMINAL] = [585, 525];
 const MOMENTS = [150, 160, 190];
 
-/** Colour and depth of one moment under several focal lengths: what offset between the cameras each asks for. */
+/** Colour and depth of one moment under several focal lengths: the offset between the cameras that each implies. */
 async function focals({ check, files, progress }) {
   const rows = [];
   for (const moment of MOMENTS) {
@@ -99,13 +99,13 @@ async function focals({ check, files, progress }) {
 export async function scenes(options) {
   const { check, files, number, progress } = options;
   const rows = await focals(options);
-  // The offset between the two cameras, from the moment whose colours the draws do not use.
+  // The offset between the two cameras, from the frame whose colours the draws do not use.
   const { estimate: correction } = rows.find(({ moment, focal }) => moment === MOMENTS[0] && focal === NOMINAL);
   const pair = MOMENTS.slice(1).map((to) => sevenScenes(MOMENTS[0], to, files));
   const sets = [...pair.map((frame) => [`150 onto ${frame.name.slice(-3)}`, [frame]]), ["both frames", pair]];
   for (const [name, frames] of sets) {
     const right = frames.map((frame) => withFocal(frame, NOMINAL));
-    // As the files say, a few draws show it.
+    // A few draws suffice for the focal length in the files.
     for (const [focal, set, times, better] of [
       [WRITTEN, frames, Math.ceil(number / 5)],
       [NOMINAL, right, number, correction],
@@ -150,7 +150,7 @@ export function printScenes(rows) {
   }
 }
 
-/** Three objects before one Kinect. */
+/** Sets of three objects in front of one Kinect. */
 const trios = (all) => {
   const first = all.filter(({ name }) => /_1 1$/.test(name));
   return first.map((_, left) => first.filter((_, index) => index !== left));

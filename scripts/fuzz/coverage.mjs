@@ -1,14 +1,14 @@
-// How much of the package ran so far, by V8's precise coverage: what a fuzzer is guided by.
+// The part of the package that has run so far, by V8's precise coverage; it guides the fuzzer.
 import { Session } from "node:inspector/promises";
 
-/** V8 lists the ranges of a function that did not run; what is left of the function did. */
+/** V8 lists the ranges of a function that did not run; the rest of the function did. */
 export class Coverage {
   #session = new Session();
-  /** For each function the characters of its text that have run. */
+  /** For each function, the characters of its text that have run. */
   #ran = new Map();
-  /** What grew last: arrays and indices. */
+  /** The last growth: arrays and indices. */
   #last = [];
-  /** Characters that have run, of all functions. */
+  /** Number of characters of all functions that have run. */
   count = 0;
 
   async start() {
@@ -18,7 +18,7 @@ export class Coverage {
     await this.grown();
   }
 
-  /** By how many characters the covered text has grown since it was last asked. */
+  /** Growth of the covered text since the last call, characters. */
   async grown() {
     const { result } = await this.#session.post("Profiler.takePreciseCoverage");
     const before = this.count;
@@ -31,7 +31,7 @@ export class Coverage {
     return this.count - before;
   }
 
-  /** Takes back what grew last, so that it can be asked again file by file. */
+  /** Takes back the last growth, so that it can be measured again file by file. */
   forget() {
     for (const [ran, at] of this.#last) ran[at] = 0;
     this.count -= this.#last.length;
@@ -53,7 +53,7 @@ export class Coverage {
         this.#last.push([ran, at - from]);
       }
     };
-    // In the order of the text; none lies within another that did not run either.
+    // Ranges follow the order of the text; none lies within another idle range.
     for (const { startOffset, endOffset } of idle) {
       mark(startOffset);
       at = Math.max(at, endOffset);

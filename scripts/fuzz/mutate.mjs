@@ -1,11 +1,11 @@
-// Files made of other files: bytes, numbers, words and pieces changed; a PNG gets its checksums back, so that what is behind them is met.
+// Mutates files: bytes, numbers, words and pieces. A PNG gets valid checksums again, so that the code behind the checks is reached.
 import { crc32, deflateSync, inflateSync } from "node:zlib";
 
-/** Longest file that is made, bytes. */
+/** Longest generated file, bytes. */
 const LONGEST = 16_384;
 const BYTES = [0, 1, 255, 127, 128, 45, 46, 48, 57, 10, 32, 34, 44, 58];
 const NUMBERS = [0, 1, -1, 2 ** 15, 2 ** 16 - 1, 2 ** 31 - 1, -(2 ** 31), 4096, 4097, 100, 1000];
-/** What formats of text turn on. */
+/** Words with a special meaning in formats of text. */
 const WORDS = [
   "nan",
   "inf",
@@ -81,7 +81,7 @@ const WORDS = [
 const joined = (...parts) => new Uint8Array(Buffer.concat(parts));
 const text = (words) => new TextEncoder().encode(words);
 
-/** A place: in the head of a file more often than behind it. */
+/** A random position, more often in the head of a file than behind it. */
 const place = (random, length) => random.below(random.chance(0.6) ? Math.min(length, 160) : length);
 
 const STEPS = [
@@ -131,7 +131,7 @@ const STEPS = [
   numberChanged,
 ];
 
-/** A number that stands in a text, by another. */
+/** Replaces a number of a text. */
 function numberChanged(file, random) {
   const words = Buffer.from(file).toString("latin1");
   const found = [...words.matchAll(/-?\d+(?:\.\d*)?(?:e[+-]?\d+)?/gi)];
@@ -158,7 +158,7 @@ function numberChanged(file, random) {
   return joined(file.subarray(0, index), text(value), file.subarray(index + old.length));
 }
 
-/** Another file, a few steps away from this one. */
+/** A copy of a file after a few mutations. */
 export function mutated(file, others, random) {
   if (random.chance(0.7)) {
     const png = pngMutated(file, others, random);
@@ -178,7 +178,7 @@ function steps(file, others, random) {
 
 const SIGNATURE = Buffer.from("\x89PNG\r\n\x1a\n", "latin1");
 
-/** A PNG with one of its parts changed, and whole for all that; nothing where it is none. */
+/** A PNG with one chunk changed and its structure intact; undefined if the file is not a PNG. */
 function pngMutated(file, others, random) {
   const parts = pngParts(Buffer.from(file.buffer, file.byteOffset, file.length));
   if (parts === undefined || parts.length === 0) return undefined;
@@ -189,7 +189,7 @@ function pngMutated(file, others, random) {
         steps(new Uint8Array(inflateSync(chosen.body, { maxOutputLength: LONGEST })), others, random),
       );
     } catch {
-      // Damaged already, or in several parts.
+      // The data may be damaged already, or split over several chunks.
       chosen.body = Buffer.from(steps(chosen.body, others, random));
     }
   } else if (chosen.body.length > 0) chosen.body = Buffer.from(steps(new Uint8Array(chosen.body), others, random));

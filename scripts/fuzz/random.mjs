@@ -1,4 +1,4 @@
-// Chance that a seed repeats.
+// Random numbers that a seed reproduces.
 
 /** Mulberry32. */
 export function generator(seed) {

@@ -1,10 +1,10 @@
-// What the readers owe whatever the bytes: a reading that keeps its promises, or a BimodalError of code "file", in bounded time. The fuzzer
-// and tests/contract/fuzz-corpus.test.mjs, which replays the committed corpus, share it.
+// The contract of the readers for any bytes: a reading that keeps its promises, or a BimodalError of code "file", in bounded time. The
+// fuzzer shares it with tests/contract/fuzz-corpus.test.mjs, which replays the committed corpus.
 import assert from "node:assert/strict";
 import { decodeColour, decodeDepth, decodeMask } from "../../pkg/files.js";
 import { BimodalError, readRigFile, readRigFolder } from "../../pkg/rig.js";
 
-/** Milliseconds of the processor that a reading of a small file may take. */
+/** Limit of processor time for reading a small file, milliseconds. */
 export const MOST_MILLISECONDS = 1000;
 
 const isFinite = (numbers) => numbers.every((value) => Number.isFinite(value));
@@ -67,7 +67,7 @@ function checkReading({ says, warnings, kind, image, depth, mask, cameras = [], 
   poses.forEach(checkPose);
 }
 
-/** Every way in which a file may be asked for. */
+/** Every way to request a file. */
 const WAYS = [
   ...[undefined, "colour", "depth", "mask", "cameras", "poses"].map((as) => ({
     name: `as ${as}`,
@@ -91,7 +91,7 @@ const WAYS = [
   },
 ];
 
-/** Milliseconds of the processor's that something takes. */
+/** Processor time that a call takes, milliseconds. */
 async function spentOn(run) {
   const before = process.cpuUsage();
   await run();
@@ -99,7 +99,7 @@ async function spentOn(run) {
   return (user + system) / 1000;
 }
 
-/** Reads a file in every way, and says in how many of them it could be read; it throws where a promise is broken. */
+/** Reads a file in every way and returns how many readings succeed; throws if a promise is broken. */
 export async function readEveryWay(bytes) {
   const copy = bytes.slice();
   let read = 0;
@@ -115,7 +115,7 @@ export async function readEveryWay(bytes) {
       }
     };
     let spent = Infinity;
-    // Other programs take the caches: the best of three counts.
+    // Other programs compete for the caches, so the best of three trials counts.
     for (let trial = 0; trial < 3 && spent > MOST_MILLISECONDS; trial++) spent = await spentOn(attempt);
     assert.ok(spent <= MOST_MILLISECONDS, `${name}: ${spent} ms`);
   }

@@ -1,4 +1,4 @@
-// The thread that fuzzes: it makes files, reads them, and keeps those that run what had not run before. Its parent watches over it.
+// The thread that fuzzes: it makes files, reads them, and keeps those that run new code. Its parent supervises it.
 import { createHash } from "node:crypto";
 import { mkdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
@@ -9,7 +9,7 @@ import { generator } from "./random.mjs";
 import { readEveryWay } from "./read.mjs";
 
 const { seeds, seed, milliseconds, folder, findings, beat, present } = workerData;
-/** Files that are read between two looks at the coverage, which takes as long as they do. */
+/** Number of files read between two measurements of the coverage, each of which takes as long as the reading. */
 const BATCH = 12;
 
 const random = generator(seed);
@@ -17,7 +17,7 @@ const coverage = new Coverage();
 const counts = { runs: 0, read: 0, kept: 0, found: 0 };
 const told = new Set();
 
-/** Where the parent finds the file that hangs or fills the memory. */
+/** Tells the parent which file is being read, in case it hangs or fills the memory. */
 function announce(file) {
   const view = new Uint8Array(present);
   view.set(file.subarray(0, view.length));
@@ -38,7 +38,7 @@ async function read(file) {
   try {
     counts.read += (await readEveryWay(file)) > 0 ? 1 : 0;
   } catch (error) {
-    // One of each kind, numbers aside.
+    // Findings that differ only in numbers count as one kind.
     const kind = String(error.message).split("\n").slice(0, 3).join(" ").replace(/\d+/g, "#");
     if (told.has(kind)) return;
     told.add(kind);
@@ -58,7 +58,7 @@ parentPort.postMessage({ progress: { ...counts, covered: coverage.count } });
 const end = Date.now() + milliseconds;
 let next = Date.now() + 10_000;
 while (Date.now() < end) {
-  // New files are worked on more often than old ones.
+  // New files are mutated more often than old ones.
   const base = () =>
     random.chance(0.5) ? queue[queue.length - 1 - random.below(Math.min(queue.length, 50))] : random.pick(queue);
   const batch = Array.from({ length: BATCH }, () => mutated(base(), queue, random)).filter((file) => file.length > 0);
@@ -74,7 +74,7 @@ while (Date.now() < end) {
 }
 parentPort.postMessage({ progress: { ...counts, covered: coverage.count } });
 
-/** A file of a batch that ran something new. */
+/** Keeps a file of a batch if it ran new code. */
 async function keepIfNew(file) {
   await readEveryWay(file).catch(() => undefined);
   if ((await coverage.grown()) === 0) return;

@@ -1,22 +1,22 @@
-// How well a range image holds a scan: which of the points that the camera sees are in it, and how far each lies from its pixel's ray.
+// The quality of a range image: which visible points of the scan it holds, and how far each lies from its pixel's ray.
 import { project } from "../captures/lens.mjs";
 
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const key = (point) => point.join(" ");
 
-/** Whether a point of the scan falls onto the picture. */
+/** Whether a point of the scan projects into the picture. */
 function sees({ rotation, translation, camera, width, height }) {
   return (point) => {
     const [x, y, z] = [0, 1, 2].map((row) => dot(rotation.slice(3 * row, 3 * row + 3), point) + translation[row]);
     if (!(z > 0.05)) return false;
-    // Far off the axis a lens of so few coefficients folds back onto the picture.
+    // Far off the axis, a lens with so few coefficients folds back into the picture.
     if (Math.abs(camera.fx * (x / z)) > width || Math.abs(camera.fy * (y / z)) > height) return false;
     const [column, row] = project(camera, [x, y, z]);
     return column > -0.5 && column < width - 0.5 && row > -0.5 && row < height - 0.5;
   };
 }
 
-/** The pixel of each point that a range image holds, by its coordinates. */
+/** The pixel of each point in a range image, by the point's coordinates. */
 function held({ points, width, height }) {
   const pixels = new Map();
   for (let pixel = 0; pixel < width * height; pixel++) {
@@ -26,10 +26,10 @@ function held({ points, width, height }) {
   return pixels;
 }
 
-/** A point in the axes of a range image: to the right, forward, up. */
+/** A point in the axes of a range image: right, forward, up. */
 const within = ({ right, forward, up }, point) => [dot(point, right), dot(point, forward), dot(point, up)];
 
-/** Distance of a point to the ray of its pixel, and of neighbouring rays from each other there, metres. */
+/** The distance of a point to its pixel's ray, and the spacing of neighbouring rays at that point, metres. */
 function atRay(image, pixel, point) {
   const { frame, rows, first, step, width, height } = image;
   const row = Math.floor(pixel / width);
@@ -45,11 +45,11 @@ function atRay(image, pixel, point) {
   const angle = Math.atan(rows[above].tangent) - Math.atan(rows[below].tangent);
   const across = Math.hypot(right, forward) * step;
   const down = (Math.hypot(...from) * angle) / Math.max(1, below - above);
-  // The side of a square as large as the pixel.
+  // The side of a square of the pixel's area.
   return { distance, sampling: Math.sqrt(across * Math.max(0, down)), across };
 }
 
-/** Of a z-buffer: whether the pixel that a point falls into holds a point of the same surface, or one before it. */
+/** For a z-buffer: whether the pixel that a point falls into holds a point of the same surface or one in front of it. */
 function stands(image, point) {
   const { frame, rows, first, step, width, height, points } = image;
   const [right, forward, up] = within(frame, point);
@@ -63,8 +63,8 @@ function stands(image, point) {
 const mean = (values) => values.reduce((sum, value) => sum + value, 0) / values.length;
 
 /**
- * Of the points of a scan that a view's camera sees: how many, the share that is kept, and how far they lie from their rays. Of a z-buffer
- * `stood` is the share for which the point in their pixel stands, itself or one of its surface, or which that one hides.
+ * For the points of a scan that a view's camera sees: their number, the share that is kept, and their distance from their rays. For a
+ * z-buffer, `stood` is the share of points whose pixel holds the point, another point of its surface, or a point that hides it.
  */
 export function measured(scan, view, image) {
   const isSeen = sees(view);

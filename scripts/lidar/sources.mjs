@@ -1,5 +1,5 @@
-// Frames of a LiDAR and a camera in the folders that others publish, with the calibration that lies beside them: which file is the scan,
-// which the picture, and P_camera = R P_lidar + t.
+// Frames of a LiDAR and a camera in published folders, with their calibration: which file is the scan, which the picture, and
+// P_camera = R P_lidar + t.
 import { existsSync, readFileSync, readdirSync } from "node:fs";
 import { basename, join } from "node:path";
 
@@ -20,7 +20,7 @@ const product = (a, b) =>
     [0, 1, 2].reduce((sum, k) => sum + a[3 * Math.floor(at / 3) + k] * b[3 * k + (at % 3)], 0),
   );
 const times = (a, v) => [0, 1, 2].map((row) => [0, 1, 2].reduce((sum, k) => sum + a[3 * row + k] * v[k], 0));
-/** Rotation and translation of a matrix of three or four rows. */
+/** Rotation and translation of a matrix with three or four rows. */
 const motion = (rows) => ({
   rotation: rows.slice(0, 3).flatMap((row) => row.slice(0, 3)),
   translation: rows.slice(0, 3).map((row) => row[3]),
@@ -36,7 +36,7 @@ const filesOf = (folder, pattern) =>
 const PICTURE = /\.(?:png|jpe?g)$/i;
 const SCAN = /\.(?:pcd|ply|bin|las|laz)$/i;
 
-/** KITTI object detection: the left colour camera is P2, whose fourth column is a shift of its own. */
+/** KITTI object detection: the left colour camera is P2, whose fourth column is an additional shift. */
 function kittiCamera(path) {
   const { P2, R0_rect, Tr_velo_to_cam } = table(path);
   const lidar = motion(inRows(Tr_velo_to_cam));
@@ -68,7 +68,7 @@ function kitti(folder) {
   });
 }
 
-/** nuScenes: a K and lidar2cam for each camera, pictures called by its name. */
+/** nuScenes: a K and a lidar2cam for each camera; pictures have the camera's name. */
 function nuscenes(folder) {
   const [scan] = filesOf(folder, SCAN);
   const found = filesOf(folder, /\.json$/i).map((name) => JSON.parse(text(join(folder, name))));
@@ -84,7 +84,7 @@ function nuscenes(folder) {
 
 const opencv = (K, D) => ({ fx: K[0], fy: K[4], cx: K[2], cy: K[5], distortion: [...D, 0, 0, 0, 0, 0].slice(0, 5) });
 
-/** OpenCalib: K, D and T of lines, or the first matrices below `cam_K`, `cam_dist` and `sensor_calib` of its JSON. */
+/** OpenCalib: K, D and T in lines of text, or the first matrices below `cam_K`, `cam_dist` and `sensor_calib` in JSON. */
 function opencalib(folder) {
   const [[scan], [picture]] = [filesOf(folder, SCAN), filesOf(folder, PICTURE)];
   if (scan === undefined || picture === undefined) return [];

@@ -1,28 +1,28 @@
-// The npm packages whose code a bundler puts into its output, read off the bundler's own module graph.
+// The npm packages whose code a bundler puts into its output, from the bundler's own module graph.
 import { existsSync, readFileSync, readdirSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { Failure, inRoot } from "../shell.mjs";
 
-/** Files of a package that say whose it is and what it may be used for. */
+/** Names of files with a package's licence or attributions. */
 const TEXTS = /^(licen[cs]e|copying|notice|third-party-licen[cs]e)/i;
-/** Licences whose text is the same for everybody, for packages that forget it. */
+/** Licences whose text is the same for everybody, for packages that do not include it. */
 const GENERAL = { "Apache-2.0": "LICENSE-APACHE" };
-/** Modules that a bundler adds by itself are that bundler's code. */
+/** Modules that a bundler adds itself are that bundler's code. */
 const RUNTIME = /^\0(rolldown|vite)\//;
-/** Vite's file goes on with what the program consists of, none of which reaches the output. */
+/** The end of Vite's licence file lists Vite's dependencies, none of which reaches the output. */
 const REST = /\n# Licenses of bundled dependencies[\s\S]*$/;
 
-/** Comments, block by block or line after line, with the empty lines between these. */
+/** Comments: blocks, or consecutive lines with the empty lines between them. */
 const COMMENT = /\/\*[\s\S]*?\*\/|(?:^[ \t]*\/\/.*(?:\n\s*)?)+/gm;
 const CLAIM = /\bcopyright\b|\(c\) \d{4}|\bred?istributions? /i;
 
-/** What a source says of its own licence: bundlers leave comments out, and some licences ask for them. */
+/** Licence comments of a source: bundlers remove comments, but some licences require these. */
 export function claimsIn(source) {
   const words = (comment) => comment.replaceAll(/^[ \t]*(?:\/\*+|\/\/+|\*(?!\/))?[ \t]?(?:\/\/ ?)*|\*+\/[ \t]*$/gm, "");
   return [...source.matchAll(COMMENT)].map(([comment]) => words(comment)).filter((text) => CLAIM.test(text));
 }
 
-/** The folder of the package that a module belongs to; nothing for the project's own modules. */
+/** The folder of the package that a module belongs to; undefined for the project's own modules. */
 function folderOf(id) {
   if (id.startsWith("\0")) {
     const runtime = RUNTIME.exec(id);
@@ -50,7 +50,7 @@ function entryOf([folder, modules]) {
   return { name, version, licence, texts };
 }
 
-/** A plugin of rolldown and vite that looks at every bundle, and what it has found: entries for `section` of text.mjs. */
+/** A plugin of rolldown and vite that inspects every bundle, and its findings: entries for `section` of text.mjs. */
 export function collector() {
   /** The modules of each package. */
   const folders = new Map();

@@ -1,20 +1,20 @@
-// The crates whose code an artefact contains, as cargo resolves them: no macros, no build scripts, no crates of tests.
+// The crates whose code an artefact contains, as cargo resolves them: no macros, no build scripts, no test dependencies.
 import { ALL } from "../numerics.mjs";
 import { WASM } from "../setup.mjs";
 import { Failure, ask } from "../shell.mjs";
 import { NOTICES } from "./text.mjs";
 
-/** Wheels and command lines are built for more systems than these; none of them brings crates of its own. */
+/** Wheels and command lines are also built for other systems; none of them adds crates. */
 const NATIVE = ["x86_64-unknown-linux-gnu", "aarch64-apple-darwin"].map((target) => [`--target=${target}`]);
 
-/** What is compiled, how often and with which arguments, and where the notices of its crates are written down. */
+/** What is compiled, in which builds and with which arguments, and the file with the notices of its crates. */
 export const ARTEFACTS = [
   {
     file: NOTICES,
     title: "The sources of bimodal-stereo hold no code of others. Contained in its .wasm files:",
     manifest: "Cargo.toml",
     crate: "bimodal-stereo",
-    // As one argument each, so that all builds together name each once.
+    // As one argument each, so that the arguments of all builds can be merged without repetition.
     builds: ALL.map(({ features = [] }) => [`--target=${WASM}`, features.join("=")].filter(Boolean)),
   },
   {
@@ -33,7 +33,7 @@ export const ARTEFACTS = [
   },
 ];
 
-/** Crates of a registry; those of the project have a path behind their version. */
+/** Crates of a registry; the project's own have a path after their version. */
 const FOREIGN = /^(\S+) v(\S+)(?: \(\*\))?$/;
 
 /** The crates of all builds of an artefact, each as "name version", sorted. */

@@ -1,20 +1,20 @@
-// Rust's standard library is part of whatever is compiled, with crates of its own; the toolchain tells their licences in one page.
+// Rust's standard library is part of every artefact, with further crates; one page of the toolchain states their licences.
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { Failure, ask, inRoot } from "../shell.mjs";
 
-/** Its crates on the systems that something is built for; the others are those of other systems, and of its build. */
+/** Its crates on the systems that artefacts are built for; the page also lists those of other systems and of its build. */
 const LINKED = ["cfg-if", "dlmalloc", "foldhash", "gimli", "hashbrown", "libc", "rustc-demangle"];
-/** The names of the texts that serve, the first that a crate has. */
+/** Names of licence files in order of preference. */
 const TEXTS = ["LICENSE-MIT", "LICENSE"];
 
-/** The compiler's version, as rust-toolchain.toml names it. */
+/** The compiler's version in rust-toolchain.toml. */
 export const compiler = () => /^channel = "(.+)"$/m.exec(readFileSync(inRoot("rust-toolchain.toml"), "utf8"))[1];
 
 const plain = (html) =>
   html.replaceAll(/&#(\d+);/g, (_, code) => String.fromCodePoint(Number(code))).replaceAll("&amp;", "&");
 
-/** The part of the page about one crate: from its heading to the next. */
+/** The part of the page about one crate, from its heading to the next. */
 function crateOf(page, name) {
   const part = page.split("<h3>").find((text) => new RegExp(`^\\S+ ${name}-\\d`).test(text));
   const texts = TEXTS.map((file) => part?.split(`<code>${file}</code>`)[1]?.match(/<pre>([\s\S]*?)<\/pre>/)?.[1]);

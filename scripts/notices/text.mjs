@@ -1,15 +1,15 @@
-// Notices as text: who wrote what an artefact contains, and under which licence.
-/** The file's name in every artefact; a browser shows it as it is. */
+// Notices as text: the authors of an artefact's contents, and the licences.
+/** The file's name in every artefact; a browser shows the file as text. */
 export const NOTICES = "THIRD-PARTY-NOTICES.txt";
 const RULE = "=".repeat(80);
 
-/** One line of a section's list: name and version, then the licence. */
+/** A line of a section's list: name and version, then the licence. */
 const listed = ({ name, version, licence }) => `  ${name} ${version}, ${licence}`;
 
 const byName = (a, b) => (a.name < b.name ? -1 : a.name > b.name ? 1 : a.version < b.version ? -1 : 1);
 
 /**
- * A section: its title, the list of its packages, then every text once, below the names of all packages that it belongs to.
+ * A section: its title, the list of its packages, then every text once, below the names of all packages that it applies to.
  * An entry is `{ name, version, licence, texts }`.
  */
 export function section(title, entries) {
@@ -21,10 +21,10 @@ export function section(title, entries) {
   return `${title}\n\n${sorted.map(listed).join("\n")}\n\n${texts.join("\n")}`;
 }
 
-/** The packages that the lists of a text name, as "name version". */
+/** The packages in the lists of a text, as "name version". */
 export const namedIn = (text) => [...text.matchAll(/^ {2}(\S+ \d\S*), .+$/gm)].map((match) => match[1]);
 
-/** Line ends and outer white space differ between copies of one licence, and mean nothing. */
+/** Line ends and surrounding white space differ between copies of a licence and are not significant. */
 const tidy = (text) =>
   text
     .replaceAll("\r\n", "\n")

@@ -1,15 +1,15 @@
-// The Lab as a first visit leaves it: the bust under colourful light, its run played to the end, on site/ as it is built from pkg/.
+// The Lab after a first visitor's run: the bust under colourful light, the run played to its end, on site/ as built from pkg/.
 import { chromium } from "@playwright/test";
 import { headless } from "../browser.mjs";
 import { buildSite } from "../site/build.mjs";
 import { serveSite } from "../site/serve.mjs";
 
 const VIEWPORT = { width: 1600, height: 850 };
-/** How long, in milliseconds, the run may take, and what is drawn rests before it counts as drawn. */
+/** Limit of the run, and how long the drawing must be unchanged to count as finished, milliseconds. */
 const LONGEST_RUN = 120_000;
 const REST = 500;
 
-/** The picture once it stands still. */
+/** The picture once it has stopped changing. */
 async function still(page) {
   for (let last; ; ) {
     const next = await page.screenshot();

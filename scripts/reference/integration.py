@@ -28,11 +28,11 @@ def scene():
     q[rng.random(mask.shape) < 0.06] = np.nan
     anchor = np.where(rng.random(mask.shape) < 0.3, 20 + np.sin(columns / 3) * np.cos(rows / 4), np.nan)
     weight = rng.uniform(0.01, 0.5, mask.shape)
-    # Two pixels that no edge touches, one of them with an anchor.
+    # Two isolated pixels that no edge reaches, one of them with an anchor.
     for row, column, height in ((5, 9, 21.5), (11, 9, np.nan)):
         p[row, column] = q[row, column] = np.nan
         anchor[row, column] = height
-    # What the file holds is what both sides read.
+    # Rounded to 32 bits, as both sides read them from the file.
     return mask, *(field.astype(np.float32).astype(float) for field in (p, q, anchor, weight))
 
 

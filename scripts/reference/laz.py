@@ -1,9 +1,9 @@
-"""LAZ files for the tests of the reader, written by laspy with lazrs, which were not written here.
+"""LAZ files for the tests of the reader, written by an independent program, laspy with lazrs.
 
     pip install laspy==2.7.0 lazrs==0.8.2
     python scripts/reference/laz.py tests/fixtures/rig
 
-A scan of eight lasers in a round room with a wavy wall, laser after laser: tests/contract/rig-laz.test.mjs has the same formulas.
+A scan of eight lasers in a round room with a wavy wall, laser after laser; tests/contract/rig-laz.test.mjs has the same formulas.
 """
 
 import sys
@@ -13,7 +13,7 @@ import laspy
 import numpy as np
 
 LASERS, COLUMNS = 8, 72
-# The version of LAS that each point format came with; a file by itself is changed at random by another test as well.
+# The version of LAS that introduced each point format. Another test also mutates the files of ALONE, which are not in a subfolder.
 FORMATS = {0: "1.2", 1: "1.2", 2: "1.2", 3: "1.2", 4: "1.3", 6: "1.4", 7: "1.4", 8: "1.4", 10: "1.4"}
 ALONE = (1, 6)
 

@@ -8,19 +8,20 @@ Poly Haven in its folder hdri/, 512x256, DWAB-compressed; INTEGRITY below is the
   src/light/environments.rs           mean and covariance as the crate has them
   scripts/reference/light-prior.json  the same numbers, as the option `prior` takes them, and the environments
 and prints how well the nine coefficients fit, how likely each environment is under the prior made from the others, and
-the distances of the test lights in ../shared/data where they are there. Nothing is random: every run writes the same.
+the distances of the test lights in ../shared/data if they are there. Nothing is random: every run writes the same.
 
-One light: a panorama at one azimuth. Its irradiance on the normals that a camera sees (optical frame: x right, y down,
-n_z < 0), the logarithm of that, and the nine coefficients a channel that fit the logarithm best. Normals are the nodes of
-a product quadrature over the hemisphere; they weigh as they fill an image, by |n_z|, and LIMB more, so that the limb counts.
+One light is a panorama at one azimuth: its irradiance on the normals that a camera sees (optical frame: x right, y down,
+n_z < 0), the logarithm of that, and for each channel the nine coefficients that fit the logarithm best. Normals are the
+nodes of a product quadrature over the hemisphere, weighted by the area that they cover in an image, |n_z|, plus `LIMB`, so
+that normals near the occluding contour count.
 
-The Gaussian: first and second moments over
-  environments  each the same
-  azimuths      32 of them, evenly spread
-  mirror        x to -x, which turns the signs of what is odd in x (L4, L5, L8): moments of odd with even are exactly zero
-  exposure      taken out of each light, then put back as MEAN_EXPOSURE and EXPOSURE_SPREAD, the same for R, G, B
-and FLOOR on the diagonal, a coefficient's variance that 18 environments say nothing of: where the environments left out are
-likeliest at the median (the table that this prints).
+The Gaussian has the first and second moments over
+  environments  with equal weights
+  azimuths      32, evenly spread
+  mirror        x to -x, which flips the signs of the terms odd in x (L4, L5, L8): moments of odd with even are exactly zero
+  exposure      removed from each light, then replaced by MEAN_EXPOSURE and EXPOSURE_SPREAD, the same for R, G, B
+FLOOR is added to the diagonal: the variance of a coefficient that 18 environments do not determine. It was set where the
+environments left out have the largest median likelihood (the table that this prints).
 """
 
 import base64
@@ -42,17 +43,17 @@ TEST_LIGHTS = ROOT / "../shared/data/lights/natural_lights_114.csv"
 
 # The constants of Ramamoorthi and Hanrahan (2001), as in src/light/harmonics.rs.
 C1, C2, C3, C4, C5 = 0.429043, 0.511664, 0.743125, 0.886227, 0.247708
-# Signs of L1..L9 of R, G and B in a mirror, and which of them are the constants.
+# Signs of L1..L9 of R, G and B in a mirror, and the positions of the constant terms.
 MIRROR = np.tile([1.0, 1, 1, -1, -1, 1, 1, -1, 1], 3)
 CONSTANT = np.arange(27) % 9 == 0
 
-# Rows and columns that a panorama is summed into, azimuths, and normals: polar angles and azimuths.
+# Rows and columns of the cells that a panorama is summed into, azimuths, and normals: polar angles and azimuths.
 CELLS = (64, 128)
 AZIMUTHS = 32
 POLAR, AROUND = 16, 48
 LIMB = 0.05
 
-# Coefficient of the constant at the mean exposure: log S = log 0.36, one stop above middle grey. Half a stop of spread.
+# Coefficient of the constant at the mean exposure: log S = log 0.36, one stop above middle grey. The spread is half a stop.
 MEAN_EXPOSURE = np.log(0.36) / C4
 EXPOSURE_SPREAD = 0.5 * np.log(2) / C4
 FLOOR = 1e-3
@@ -109,7 +110,7 @@ def cell_directions():
 
 
 def lights_of(package):
-    """27 coefficients for each azimuth of each environment, and the error of the logarithm that they leave."""
+    """27 coefficients for each azimuth of each environment, and the remaining error of the logarithm."""
     normals, weights = visible_normals()
     values = basis(normals)
     root = np.sqrt(weights)[:, None]
@@ -128,17 +129,17 @@ def lights_of(package):
 
 
 def exposed(lights):
-    """Each light at the mean exposure."""
+    """Each light, rescaled to the mean exposure."""
     return lights + np.where(CONSTANT, MEAN_EXPOSURE - lights[:, CONSTANT].mean(1, keepdims=True), 0)
 
 
 def gaussian(lights, floor=FLOOR):
-    """Mean and covariance of lights (a list of one array for each environment), in closed form."""
+    """Mean and covariance of lights (a list with one array for each environment), in closed form."""
     every = np.concatenate([exposed(of_one) for of_one in lights])
     every = np.concatenate([every, every * MIRROR])
     mean = every.mean(0)
     second = every.T @ every / len(every)
-    # Sums of what cancels in pairs leave a rounding error; the mirror makes them zero.
+    # Sums whose terms cancel in pairs leave a rounding error; the mirror makes them exactly zero.
     mean[MIRROR < 0] = 0
     second[np.not_equal.outer(MIRROR, MIRROR)] = 0
     covariance = second - np.outer(mean, mean)
@@ -147,7 +148,7 @@ def gaussian(lights, floor=FLOOR):
 
 
 def scores(mean, covariance, lights):
-    """Log-likelihood (up to a constant) and squared Mahalanobis distance of lights, the exposure left free."""
+    """Log-likelihood (up to a constant) and squared Mahalanobis distance of lights, with the exposure left free."""
     free = np.linalg.svd(CONSTANT[None].astype(float))[2][1:]
     lower = np.linalg.cholesky(free @ covariance @ free.T)
     squared = (np.linalg.solve(lower, free @ (lights - mean).T) ** 2).sum(0)

@@ -1,6 +1,6 @@
 // node scripts/reference/open3d-scenes.mjs FOLDER: the scenes of Table 2B as clouds, for open3d.py.
 //
-// For each scene `N.image.f32` (x y z and normal of the surface from shading: light known, one normal for each pixel, no word of
+// For each scene `N.image.f32` (x y z and normal of the surface from shading: light known, one normal for each pixel, independent of
 // the pose) and `N.depth.f32` (x y z of the depth map), float32, and in `scenes.json` their names and the rotation to find.
 import { writeFileSync } from "node:fs";
 import { join } from "node:path";
@@ -13,17 +13,17 @@ import { kit, requestOf } from "../../protocols/scenes.mjs";
 const [, , folder] = process.argv;
 if (!folder || !hasData()) throw new Error("needs a folder to write to, and the data beside the project");
 
-/** The exposure settles in the first two; without a prior and with the pose held nothing changes after that. */
+/** The exposure settles in the first two steps; without a prior and with a fixed pose nothing changes after that. */
 const STEPS = 3;
 
-/** Pixels of a view as the frame counts them. */
+/** Pixels of a view in coordinates of the frame. */
 const place = ({ width, height }, index) => [
   (index % width) - (width - 1) / 2,
   Math.floor(index / width) - (height - 1) / 2,
 ];
 
 function surfaceFromShading({ image, depth, light }) {
-  // The loop wants some pose: identity, held. With the weight of the prior at zero neither it nor the depth has any say.
+  // The loop needs a pose: the identity, fixed. With the weight of the prior at zero, neither the pose nor the depth has any effect.
   const options = { light, start: "identity", scale: 1, registration: "fixed", shading: "pixel", lambda: { prior: 0 } };
   const estimator = new Estimator(image, depth, options);
   for (let step = 0; step < STEPS && estimator.report.status === "running"; step++) estimator.step();
@@ -41,7 +41,7 @@ const cloud = (depth) =>
 
 await init();
 const data = library(files);
-// Where the light is unknown there is no surface to register to.
+// If the light is unknown, there is no surface to register to.
 const known = table2B.cells(kit(true), false).filter(({ row }) => row.light === "known");
 const scenes = known.map((cell, index) => {
   const made = sample(requestOf(cell.scene, data));

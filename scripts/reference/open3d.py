@@ -1,9 +1,9 @@
-"""Baseline of Table 2B: the same scenes through Open3D (FPFH, RANSAC, point-to-plane ICP), start unknown, light known.
+"""Baseline of Table 2B: the same scenes through Open3D (FPFH, RANSAC, point-to-plane ICP), pose unknown, light known.
 
 npm run build && python3 scripts/reference/open3d.py > scripts/reference/open3d.csv
 
 Registers the depth map's cloud to the surface that shading gives for the image (open3d-scenes.mjs). Open3D 0.20 and numpy.
-One thread: with more of them the answers of RANSAC depend on which comes first. Lengths are pixels.
+One thread, because with more the result of RANSAC depends on which finishes first. Lengths are pixels.
 """
 
 import json
@@ -14,15 +14,15 @@ import tempfile
 from pathlib import Path
 
 os.environ["OMP_NUM_THREADS"] = "1"
-sys.path.pop(0)  # this file's folder, where "open3d" would be this file
+sys.path.pop(0)  # this file's folder, in which "open3d" would be this file
 
 import numpy as np
 import open3d as o3d
 
-VOXEL = {128: 1.5, 64: 1.0}  # features are found on a thinned cloud; of three pairs tried the one that found most
-NORMAL_VOXELS, FEATURE_VOXELS, MATCH_VOXELS = 2, 5, 1.5  # radii, Open3D's own advice
+VOXEL = {128: 1.5, 64: 1.0}  # features are computed on a thinned cloud; the best of three pairs of sizes
+NORMAL_VOXELS, FEATURE_VOXELS, MATCH_VOXELS = 2, 5, 1.5  # radii, as Open3D recommends
 RANSAC = (100_000, 0.999)
-SEEDS = range(1, 6)  # of these starts the one that matches most points is refined
+SEEDS = range(1, 6)  # the seed that matches most points is refined
 ICP_DISTANCES = (4.0, 2.0, 1.0)
 registration = o3d.pipelines.registration
 o3d.utility.set_verbosity_level(o3d.utility.VerbosityLevel.Error)  # warnings go to stdout, where the figures are

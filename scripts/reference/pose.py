@@ -1,8 +1,8 @@
-"""Reference answers for src/pose, from numpy and scipy alone.
+"""Reference answers for src/pose, from numpy and scipy.
 
 python3 scripts/reference/pose.py > scripts/reference/pose.csv
 
-Each case is two lines of numbers, after a line of words that names the columns:
+Each case is two lines of numbers, after a line that names the columns:
   angles  alpha beta gamma (degrees), then R row by row, from scipy's intrinsic 'XYZ' = Rx Ry Rz
   pairs   six pairs p q with weights w, then s, R and t of Umeyama (1991), weighted, by numpy's SVD
 """
@@ -36,7 +36,7 @@ for _ in range(CASES):
     line("angles", angles, Rotation.from_euler("XYZ", angles, degrees=True).as_matrix())
 for case in range(CASES):
     p = random.normal(size=(POINTS, 3))
-    if case % 2:  # flat points, where a careless answer is a reflection
+    if case % 2:  # flat points, for which a careless solution is a reflection
         p[:, 2] = 0.3 * p[:, 0]
     rotation = Rotation.random(random_state=case).as_matrix()
     q = 1.7 * p @ rotation.T + random.normal(size=3) + 0.3 * random.normal(size=(POINTS, 3))

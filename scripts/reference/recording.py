@@ -1,4 +1,4 @@
-"""Bags of ROS 1 for the tests of recordings, written by `rosbags`, which was not written here.
+"""ROS 1 bags for the tests of recordings, written by an independent program, `rosbags`.
 
     pip install rosbags
     node tests/contract/recorded-messages.mjs > target/messages.json
@@ -36,7 +36,7 @@ def main(source, folder):
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     write(folder / "walk-lz4.bag", messages, COMPRESSIONS["lz4"])
-    # What is not of pictures is enough to tell the other two from each other.
+    # Messages without pictures suffice to distinguish the other two.
     few = [message for message in messages if "image_raw" not in message["topic"] or "Depth" in message["topic"]]
     write(folder / "depth-none.bag", few[:8], COMPRESSIONS["none"])
     write(folder / "depth-bz2.bag", few[:8], COMPRESSIONS["bz2"])

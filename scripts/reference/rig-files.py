@@ -3,8 +3,8 @@
 pip install numpy pillow opencv-python-headless tifffile imagecodecs OpenEXR open3d pyyaml
 python3 -P scripts/reference/rig-files.py tests/fixtures/rig   (-P: the open3d.py beside it is not the package)
 
-Everything holds the same: 16x12 pixels, depths of 800 + 37 x + 11 y millimetres with holes where x + y is a multiple of 7, colours of
-(16 x, 20 y, 8 (x + y)), and the cameras and the motion written down below. tests/contract/rig-files.test.mjs has the same formulas.
+All files hold the same: 16x12 pixels, depths of 800 + 37 x + 11 y millimetres with holes where x + y is a multiple of 7, colours of
+(16 x, 20 y, 8 (x + y)), and the cameras and the motion below. tests/contract/rig-files.test.mjs has the same formulas.
 """
 
 import json
@@ -53,7 +53,7 @@ def pictures():
     image.convert("L").save(OUT / "colour-grey.jpg", quality=95)
     image.convert("CMYK").save(OUT / "colour-cmyk.jpg")
     image.quantize(64).save(OUT / "colour-palette.png")
-    # A picture that is told from all its turns; what EXIF asks for is applied by Pillow, too.
+    # A picture that differs from all its rotations and mirror images; Pillow also applies the orientation of EXIF.
     for orientation in range(1, 9):
         exif = Image.Exif()
         exif[0x0112] = orientation
@@ -87,7 +87,7 @@ def tiffs():
     save("lerc-deflate", METRES, compression="lerc", compressionargs={"compression": "deflate"})
     tifffile.imwrite(OUT / "colour-planes.tif", np.moveaxis(RGB, -1, 0), photometric="rgb", planarconfig="separate", compression="zlib")
     tifffile.imwrite(OUT / "colour.tif", RGB, photometric="rgb", compression="lzw", predictor=2)
-    # A picture whose table of LZW codes fills up and is cleared.
+    # A picture that fills the table of LZW codes, so that it is cleared.
     noise = np.random.default_rng(1).integers(0, 1 << 16, (80, 80), dtype=np.uint16)
     tifffile.imwrite(OUT / "noise.tif", noise, compression="lzw")
     (OUT / "noise.json").write_text(json.dumps({"sum": int(noise.astype(np.int64).sum()), "last": int(noise[-1, -1]), "middle": int(noise[40, 40])}))
@@ -104,7 +104,7 @@ def exrs():
 
 
 def large_exrs():
-    """64x48 pixels, so that blocks become shorter: depths of 0.75 + x / 64 + y / 128 metres, which halves hold, and colours of (x, y, (x + y) / 2) / 64."""
+    """64x48 pixels, so that some blocks are shorter: depths of 0.75 + x / 64 + y / 128 metres, exact in half precision, and colours of (x, y, (x + y) / 2) / 64."""
     x, y = np.meshgrid(np.arange(64), np.arange(48))
     depth = np.where((x + y) % 7 == 0, 0, 0.75 + x / 64 + y / 128)
     colours = {"R": x / 64, "G": y / 64, "B": (x + y) / 128}
@@ -131,7 +131,7 @@ def clouds():
     for name, options in {"ascii": {"write_ascii": True}, "binary": {}, "compressed": {"compressed": True}}.items():
         path = OUT / f"cloud-{name}.pcd"
         o3d.io.write_point_cloud(str(path), cloud, **options)
-        # Open3D does not keep rows and columns: they are said afterwards, as the point cloud library does.
+        # Open3D does not keep rows and columns; they are added here, in the point cloud library's form.
         text = path.read_bytes().replace(b"WIDTH %d" % (W * H), b"WIDTH %d" % W).replace(b"HEIGHT 1\n", b"HEIGHT %d\n" % H)
         path.write_bytes(text)
     for name, ascii in {"ascii": True, "binary": False}.items():

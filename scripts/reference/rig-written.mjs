@@ -1,4 +1,4 @@
-// The files of a few made rigs, for readers that were not written here (rig-written.py) and for tests/contract/rig-write.test.mjs.
+// Writes the files of a few synthetic rigs, for independent readers (rig-written.py) and for tests/contract/rig-write.test.mjs.
 //
 // npm run build && node scripts/reference/rig-written.mjs     writes tests/fixtures/rig/
 import { mkdirSync, realpathSync, writeFileSync } from "node:fs";
@@ -7,7 +7,7 @@ import { inRoot } from "../shell.mjs";
 
 export const FOLDER = "tests/fixtures/rig";
 
-/** The rotation of a quaternion x y z w of any length, row-major. */
+/** The rotation of an x y z w quaternion of any length, row-major. */
 function rotation(x, y, z, w) {
   const s = 2 / (x * x + y * y + z * z + w * w);
   return [
@@ -26,7 +26,7 @@ const pose = (turn, translation) => ({
 const vga = [640, 480];
 
 export const RIGS = {
-  /** A depth sensor without distortion beside a colour camera with it. */
+  /** A depth sensor without distortion beside a colour camera with distortion. */
   usual: {
     pose: pose([0.004, -0.011, 0.0023, 1], [-0.02503, 0.00017, 1 / 3000]),
     context: {
@@ -41,7 +41,7 @@ export const RIGS = {
       sizes: { depth: vga, colour: [1280, 960] },
     },
   },
-  /** Nearly half a turn, tiny and round numbers, the models with fewest and most numbers. */
+  /** Nearly half a turn, tiny and round numbers, the lens models with the fewest and the most numbers. */
   turned: {
     pose: pose([0.7, -0.1, 0.7, 1e-9], [1, -2e-7, 3.25e-21]),
     context: {
@@ -51,7 +51,7 @@ export const RIGS = {
       frames: { depth: "tof_optical_frame", colour: "rig/colour" },
     },
   },
-  /** Four numbers of distortion, which every format holds, and no sizes. */
+  /** Four distortion coefficients, which every format holds, and no sizes. */
   radial: {
     pose: pose([-0.2, 0.3, 0.1, 0.9], [0.1, 0.2, -0.3]),
     context: {
@@ -59,14 +59,14 @@ export const RIGS = {
       colour: { fx: 1050, fy: 1050, cx: 960, cy: 540 },
     },
   },
-  /** Nothing but the pose. */
+  /** Only the pose. */
   bare: { pose: pose([0, 0, 0, 1], [0, -0.05, 0]), context: {} },
 };
 
-/** Open3D has no extrinsics without intrinsics. */
+/** In Open3D there are no extrinsics without intrinsics. */
 export const formatsOf = (rig) => poseFormats.filter((format) => format !== "open3d" || RIGS[rig].context.colour);
 
-/** Two small clouds, points missing in the first, the second without colours. */
+/** Two small clouds: the first with missing points, the second without colours. */
 export const CLOUDS = [
   {
     name: "depth",

@@ -1,9 +1,9 @@
-"""What readers that were not written here find in the files of tests/fixtures/rig.
+"""What independent readers find in the files of tests/fixtures/rig.
 
 npm run build && node scripts/reference/rig-written.mjs && python3 scripts/reference/rig-written.py
 
-OpenCV's FileStorage, PyYAML, Open3D, plyfile, numpy, scipy (the quaternion); librealsense's structure by hand from json, since it
-reads no such file itself. Writes tests/fixtures/rig/read.json: for each file the 4x4 matrix that carries points of the depth camera
+OpenCV's FileStorage, PyYAML, Open3D, plyfile, numpy, scipy (the quaternion); librealsense's structure is read from json here, since it
+has no reader for such files. Writes tests/fixtures/rig/read.json: for each file the 4x4 matrix that transforms points of the depth camera
 into the colour camera's frame, and the cameras that it holds; for clouds their points, colours and labels.
 """
 
@@ -13,7 +13,7 @@ import shlex
 import sys
 from pathlib import Path
 
-sys.path.pop(0)  # this file's folder, where "open3d" would be another file
+sys.path.pop(0)  # this file's folder, in which "open3d" would be another file
 
 import cv2
 import numpy as np
@@ -78,7 +78,7 @@ def kalibr(path):
 
 
 def ros2(path):
-    """The line as a shell takes it apart; tf2 has P_parent = R P_child + t."""
+    """The line, parsed as a shell does; tf2 has P_parent = R P_child + t."""
     words = shlex.split(path.read_text(), comments=True)
     assert words[:4] == ["ros2", "run", "tf2_ros", "static_transform_publisher"]
     parser = argparse.ArgumentParser()
@@ -86,7 +86,7 @@ def ros2(path):
         parser.add_argument(f"--{name}", type=float, required=True)
     for name in ("frame-id", "child-frame-id"):
         parser.add_argument(f"--{name}", required=True)
-    # Python takes "-1.0e-7" for an option, ROS does not.
+    # Python's parser takes "-1.0e-7" for an option, ROS does not.
     joined = [f"{flag}={value}" for flag, value in zip(words[4::2], words[5::2], strict=True)]
     line = parser.parse_args(joined)
     rotation = Rotation.from_quat([line.qx, line.qy, line.qz, line.qw]).as_matrix()
@@ -117,7 +117,7 @@ def realsense(path):
 
 
 def cloud(path):
-    """By two readers; Open3D leaves the label out."""
+    """The cloud by two readers; Open3D ignores the label."""
     read = o3d.io.read_point_cloud(str(path))
     vertices = PlyData.read(str(path))["vertex"]
     points = np.stack([vertices[axis] for axis in "xyz"], axis=1)

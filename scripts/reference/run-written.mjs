@@ -1,4 +1,4 @@
-// The files that the Lab's "Download" hands over, of a made run, for readers that were not written here (run-written.py) and for
+// Writes the files of the Lab's "Download" for a synthetic run, for independent readers (run-written.py) and for
 // tests/contract/write.test.mjs.
 //
 // npm run build && node scripts/reference/run-written.mjs     writes tests/fixtures/run/
@@ -20,7 +20,7 @@ export const FOLDER = "tests/fixtures/run";
 const [width, height] = [7, 5];
 const [sine, cosine] = [Math.sin(0.3), Math.cos(0.3)];
 
-/** A turn about y, a scale that is not one, a tiny number and a round one. */
+/** A rotation about y, a scale other than one, a tiny number and a round one. */
 export const POSE = {
   scale: 1.25,
   rotation: [cosine, 0, sine, 0, 1, 0, -sine, 0, cosine],
@@ -28,7 +28,7 @@ export const POSE = {
   angles: { alpha: 0, beta: (0.3 * 180) / Math.PI, gamma: 0 },
 };
 export const LIGHT = Float64Array.from({ length: 27 }, (_, k) => Math.cos(k) / 3);
-/** Depths in metres and in pixels; what is not above zero, and what is no number, is no depth. In pixels one below zero would be refused. */
+/** Depths in metres and in pixels. Values that are not positive or NaN mean no depth; in pixels, a value below zero would be refused. */
 export const DEPTH = Float32Array.from({ length: width * height }, (_, i) =>
   i === 3 ? NaN : i === 8 ? 0 : i === 9 ? -1 : i === 11 ? Infinity : 0.5 + 0.0123 * i,
 );

@@ -1,12 +1,12 @@
-"""What readers that were not written here find in the files of tests/fixtures/run, and arrays in column order as numpy writes them.
+"""What independent readers find in the files of tests/fixtures/run, and arrays in column order as numpy writes them.
 
 npm run build && node scripts/reference/run-written.mjs && python3 scripts/reference/run-written.py
 
-numpy, Pillow, OpenCV and Open3D (pip install numpy pillow opencv-python-headless open3d). PLY by Open3D, PNG by Pillow and OpenCV, .npy
-and the pose's matrix by numpy, the pose also by json, and applied to points by Open3D. Writes tests/fixtures/run/read.json with what was
-found, and columns-*.npy there, whose numbers in row order it holds, too. Fails where two readers disagree.
+numpy, Pillow, OpenCV and Open3D (pip install numpy pillow opencv-python-headless open3d). Open3D reads the PLY, Pillow and OpenCV the PNG,
+numpy the .npy and the pose's matrix; the pose is also read by json, and applied to points by Open3D. Writes tests/fixtures/run/read.json
+with the results, and columns-*.npy there, whose numbers in row order it also holds. Fails where two readers disagree.
 
-With a folder of files that the Lab's "Download" has saved, all of them, it reads those and says what is in them:
+With a folder of files that the Lab's "Download" has saved, it reads all of them and prints what they contain:
 
 python3 scripts/reference/run-written.py FOLDER
 """
@@ -15,7 +15,7 @@ import json
 import sys
 from pathlib import Path
 
-sys.path.pop(0)  # this file's folder, where "open3d" would be another file
+sys.path.pop(0)  # this file's folder, in which "open3d" would be another file
 
 import cv2
 import numpy as np
@@ -27,7 +27,7 @@ o3d.utility.set_verbosity_level(o3d.utility.VerbosityLevel.Error)
 
 
 def plain(values):
-    """Numbers as JSON has them; what is not finite becomes its name."""
+    """Numbers as JSON has them; a value that is not finite becomes its name."""
     flat = np.asarray(values, dtype=np.float64).ravel()
     return [float(value) if np.isfinite(value) else str(value) for value in flat]
 
@@ -43,7 +43,7 @@ def png(name):
         by_pillow, texts = np.array(image), dict(image.text)
     if by_cv.ndim == 3:
         by_cv = by_cv[..., ::-1]
-    # Pillow has no 16-bit colours: it keeps their high bytes.
+    # Pillow has no 16-bit colours; it keeps their high bytes.
     same = by_cv >> 8 if by_cv.ndim == 3 and by_cv.dtype == np.uint16 else by_cv
     assert np.array_equal(same, by_pillow), name
     return {**raster(by_cv), "texts": texts}
@@ -85,7 +85,7 @@ def columns():
 
 
 def saved():
-    """What the Lab has saved, held against each other."""
+    """Compares the files that the Lab has saved with each other."""
     matrix = np.array(pose()["matrix"])
     print("pose: JSON and 4x4 agree, determinant of the turn and scale", np.linalg.det(matrix[:3, :3]))
     points = np.array(cloud("clouds.ply")["points"]).reshape(-1, 3)

@@ -1,7 +1,7 @@
-// What a draw of a check needs: random candidates, how far an estimate is from the truth, and shares in words.
+// Tools for a draw of a check: random candidates, the error of an estimate, and formatted shares.
 import { aboutAxis, offBy, product, transpose, turn } from "../../protocols/rotations.mjs";
 
-/** Numbers that follow from a seed (Steele and Vigna's splitmix32); directions from normal ones by Box and Muller. */
+/** Random numbers from a seed (Steele and Vigna's splitmix32); directions from normal variates by Box and Muller. */
 export function chance(seed) {
   let state = seed >>> 0;
   const uniform = () => {
@@ -23,7 +23,7 @@ export const poseOf = (rotation, translation) => ({ scale: 1, rotation, translat
 export const moved = ({ rotation, translation }, point) =>
   turn(rotation, point).map((value, k) => value + translation[k]);
 
-/** First `inner`, then `outer`. */
+/** The composition: first `inner`, then `outer`. */
 export const after = (outer, inner) => poseOf(product(outer.rotation, inner.rotation), moved(outer, inner.translation));
 
 export function inverse({ rotation, translation }) {
@@ -34,7 +34,7 @@ export function inverse({ rotation, translation }) {
   );
 }
 
-/** A pose that is off by degrees about a random axis through a point of the colour frame and millimetres in a random direction. */
+/** A pose with an error: degrees about a random axis through a point of the colour frame, and millimetres in a random direction. */
 export function wrong(pose, { degrees, millimetres }, direction, centre = [0, 0, 0]) {
   const rotation = aboutAxis(direction(), degrees);
   const shift = direction().map((value) => (value * millimetres) / 1000);
@@ -42,7 +42,7 @@ export function wrong(pose, { degrees, millimetres }, direction, centre = [0, 0,
   return { ...pose, ...after(poseOf(rotation, held), pose) };
 }
 
-/** Rotation vector and shift of a point of the colour frame, from one pose to another. */
+/** Rotation vector from one pose to another, and shift of a point of the colour frame. */
 export function offset(estimate, truth, middle) {
   const w = offBy(truth.rotation, estimate.rotation).map((degrees) => (degrees * Math.PI) / 180);
   const v = moved(truth, moved(inverse(estimate), middle)).map((value, k) => value - middle[k]);

@@ -1,4 +1,4 @@
-// The built page, closed against everything but its own files, and with the service worker that keeps these for a visit without a network.
+// The built page, restricted to its own files, with the service worker that caches these for offline visits.
 import { createHash } from "node:crypto";
 import { cpSync, readFileSync, writeFileSync } from "node:fs";
 import { relative, sep } from "node:path";
@@ -11,9 +11,9 @@ const WORKER = "sw.js";
 const LICENCES = ["LICENSE-MIT", "LICENSE-APACHE"];
 
 /**
- * What the page may do. Nothing but its own files, no script or style in the document itself; .wasm may be compiled. Pictures may be a
- * page's own data: its icon, and what a visitor has opened. WebSockets may be opened, since a visitor may name the bridge of a robot, which
- * is anywhere; nothing else on the page opens one. Frames that show the page elsewhere are not forbidden.
+ * What the page may do: load only its own files, with no script or style in the document itself; compile .wasm. Pictures may be inline data
+ * or blobs: the icon, and files that a visitor has opened. WebSockets may connect anywhere, since a visitor may enter the address of a
+ * robot's bridge; nothing else on the page opens one. Other sites may embed the page in a frame.
  */
 export const POLICY = [
   "default-src 'none'",
@@ -26,7 +26,7 @@ export const POLICY = [
   "form-action 'none'",
 ].join("; ");
 
-/** The policy before anything that it is about. */
+/** Puts the policy before everything that it applies to. */
 function close(path) {
   const text = readFileSync(path, "utf8");
   const before = text.includes("<head>") ? "<head>" : "<!doctype html>";
@@ -36,10 +36,10 @@ function close(path) {
   );
 }
 
-/** A hash as browsers check it. */
+/** A hash in the form that browsers check. */
 const integrity = (path) => `sha256-${createHash("sha256").update(readFileSync(path)).digest("base64")}`;
 
-/** The service worker, told which files there are and what is in them; another content is another version. */
+/** Builds the service worker with the list of files and their hashes; other contents are another version. */
 async function addWorker(paths) {
   const files = Object.fromEntries(
     paths.map((path) => [relative(inRoot(SITE), path).split(sep).join("/"), integrity(path)]),
@@ -59,11 +59,11 @@ async function addWorker(paths) {
     minify: true,
   });
   await bundle.close();
-  // It names the hashes of all other files, the notices among them, so that these can't tell of it any more.
+  // It names the hashes of all other files, including the notices, so the notices cannot include its own code.
   if (npm.entries().length > 0) throw new Failure("The service worker contains code of others, which has no notice.");
 }
 
-/** The licences of the page, and the notices of what it contains: of its own, and of the package in it. */
+/** The licences of the page, and the notices of its contents: for its own scripts and for the package. */
 function addLicences(entries) {
   for (const file of LICENCES) cpSync(inRoot(file), inRoot(SITE, file));
   const own = section("Contained in the scripts of this page:", entries);

@@ -1,5 +1,5 @@
-// A file server as plain as any: what is not in site/ is not there, and no header but the type is sent.
-//   node scripts/site/serve.mjs PORT /below/ builds the page from pkg/ as it is, and serves it there; the page's tests do so
+// A minimal file server: only files of site/ exist, and the only header is the type.
+//   node scripts/site/serve.mjs PORT /below/ builds the page from pkg/ as it is and serves it there, for the page's tests
 import { createReadStream, existsSync, realpathSync, statSync } from "node:fs";
 import { createServer } from "node:http";
 import { extname, join, normalize } from "node:path";
@@ -14,7 +14,7 @@ const TYPES = {
   ".txt": "text/plain; charset=utf-8",
 };
 
-/** The file of an address, or nothing. */
+/** The file of an address, or undefined. */
 function fileOf(url, below, folder) {
   const { pathname } = new URL(url, "http://localhost");
   if (!pathname.startsWith(below)) return undefined;
@@ -22,7 +22,7 @@ function fileOf(url, below, folder) {
   return existsSync(path) && statSync(path).isFile() ? path : undefined;
 }
 
-/** Serves the folder, and says at which address; port 0 is any that is free. Headers are for those who try what a host may add. */
+/** Serves the folder and returns its address; port 0 is any free port. `headers` are for trying what a host may add. */
 export function serveSite({ port, below, folder = inRoot(SITE), headers = {} }) {
   const server = createServer(({ url }, response) => {
     const path = fileOf(url, below, folder);
@@ -42,7 +42,7 @@ export function serveSite({ port, below, folder = inRoot(SITE), headers = {} }) 
   });
 }
 
-// Node names this module by its real path, and the command by the path it was given.
+// `import.meta` has the real path, the command line the path that was given.
 if (import.meta.filename === realpathSync(process.argv[1])) {
   const [port, below] = process.argv.slice(2);
   await script(async () => {

@@ -1,9 +1,9 @@
-// What Open3D makes of the scenes of Table 2B: figures that scripts/reference/open3d.py has left.
+// Open3D's results on the scenes of Table 2B, written by scripts/reference/open3d.py.
 import { inRoot, readIfThere } from "../shell.mjs";
 
 const FIXTURE = "scripts/reference/open3d.csv";
 
-/** Degrees for a row of Table 2B; undefined where the baseline has none: it can't start without the light. */
+/** Degrees for a row of Table 2B; undefined if the baseline has none, because it needs the light. */
 export function baseline() {
   const lines = (readIfThere(inRoot(FIXTURE)) ?? "").split("\n").filter((line) => /^\d/.test(line));
   const degrees = new Map(

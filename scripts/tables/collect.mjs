@@ -1,4 +1,4 @@
-// From tables to their rows: every cell once, what is known from the journal, the rest run now.
+// Turns tables into rows: every cell once, from the journal if known, else run now.
 import { inRoot, say } from "../shell.mjs";
 import { openJournal } from "./journal.mjs";
 import { hasData, statues } from "./library.mjs";
@@ -6,7 +6,7 @@ import { runCells } from "./pool.mjs";
 import { rowsOf } from "../../protocols/index.mjs";
 import { kit } from "../../protocols/scenes.mjs";
 
-/** Milliseconds between two progress lines. */
+/** Milliseconds between two reports of progress. */
 const PROGRESS_EVERY = 10_000;
 
 function clock(seconds) {
@@ -14,7 +14,7 @@ function clock(seconds) {
   return seconds < 5400 ? `${Math.round(seconds / 60)} min` : `${(seconds / 3600).toFixed(1)} h`;
 }
 
-/** Cells of all tables by their id; tables share some. */
+/** Cells of all tables by their id; tables share some cells. */
 function cellsOf(tables, quick) {
   const things = kit(hasData(), statues());
   const lists = new Map(tables.map((table) => [table, table.cells(things, quick)]));
@@ -22,7 +22,7 @@ function cellsOf(tables, quick) {
   return { lists, cells: [...cells.values()] };
 }
 
-/** Ctrl-C ends the run in good order; a second one ends it at once. */
+/** The first Ctrl-C ends the run cleanly, the second at once. */
 function interruption() {
   const abort = new AbortController();
   const stop = () => abort.abort();
@@ -30,7 +30,7 @@ function interruption() {
   return { signal: abort.signal, done: () => process.off("SIGINT", stop).off("SIGTERM", stop) };
 }
 
-/** `wasm` is a file to measure in place of the package's own. */
+/** `wasm` is a file to measure instead of the package's own. */
 export async function collect(tables, { quick, workers, wasm }) {
   const { lists, cells } = cellsOf(tables, quick);
   const journal = openJournal(wasm);

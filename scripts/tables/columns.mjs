@@ -1,14 +1,14 @@
-// Figures as words, and words as columns.
+// Formats figures as words and words as columns.
 import { isConfidentlyWrong, isFlagged } from "../../protocols/counts.mjs";
 
 export const DASH = "-";
 export const fixed = (value, digits = 3) =>
   typeof value === "number" && Number.isFinite(value) ? value.toFixed(digits) : DASH;
 export const percent = (value) => (typeof value === "number" ? `${(100 * value).toFixed(0)} %` : DASH);
-/** ? flagged as uncertain, ! wrong by more than 3 degrees and not flagged. */
+/** ? flagged as uncertain, ! wrong by more than 3 degrees without a flag. */
 export const mark = (row) => (isFlagged(row) ? "?" : isConfidentlyWrong(row) ? "!" : "");
 
-/** Lists of words as columns, the first one flush left. */
+/** Lists of words as columns, the first one left-aligned. */
 export function columns(rows) {
   const widths = rows[0].map((_, column) => Math.max(...rows.map((row) => String(row[column]).length)));
   const pad = (word, column) => (column === 0 ? String(word).padEnd(widths[0]) : String(word).padStart(widths[column]));

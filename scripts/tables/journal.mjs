@@ -1,11 +1,11 @@
-// Results as they come, one JSON line each, so that a run that was broken off goes on where it was.
+// Results as they come, one JSON line each, so that an interrupted run continues where it stopped.
 import { createHash } from "node:crypto";
 import { appendFileSync, existsSync, mkdirSync, readFileSync } from "node:fs";
 import { inRoot, matching, stamp } from "../shell.mjs";
 import { hasData } from "./library.mjs";
 
 const FOLDER = "target/tables";
-/** What decides about a result: the package, or its scripts and a .wasm in place of its own, the protocols, and what the names stand for. */
+/** Everything that determines a result: the package (or its scripts and another .wasm), the protocols, and the data behind the names. */
 const decisive = (wasm) => [
   ...matching(["pkg"], wasm ? /\.js$/ : /\.(js|wasm)$/),
   ...(wasm ? [wasm] : []),
@@ -14,7 +14,7 @@ const decisive = (wasm) => [
 
 const keyOf = (cell) => createHash("sha256").update(JSON.stringify(cell)).digest("hex").slice(0, 16);
 
-/** A line that Ctrl-C has cut off is no result. */
+/** A line cut off by Ctrl-C is skipped. */
 function parsed(line) {
   try {
     return JSON.parse(line);
@@ -23,7 +23,7 @@ function parsed(line) {
   }
 }
 
-/** The journal of this very package and these very protocols; another build begins another one, and so does another .wasm. */
+/** The journal of this package and these protocols; another build or another .wasm starts a new one. */
 export function openJournal(wasm) {
   const path = inRoot(FOLDER, `${stamp(decisive(wasm)).slice(0, 16)}${hasData() ? "" : "-built-in"}.jsonl`);
   mkdirSync(inRoot(FOLDER), { recursive: true });
@@ -34,7 +34,7 @@ export function openJournal(wasm) {
     find: (cell) => results.get(keyOf(cell)),
     keep(cell, result) {
       results.set(keyOf(cell), result);
-      // What failed is tried again by the next run.
+      // Failed cells are tried again by the next run.
       if (!result.failure) appendFileSync(path, `\n${JSON.stringify({ id: cell.id, key: keyOf(cell), result })}`);
     },
   };

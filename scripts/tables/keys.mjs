@@ -1,4 +1,4 @@
-// What readers of the JSON rely on: its tables and the keys of their rows.
+// The part of the JSON that readers rely on: its tables and the keys of their rows.
 
 const KEYS = {
   table1: ["protocol", "sign", "scale", "alpha", "beta", "gamma", "iterations", "degrees"],
@@ -64,10 +64,10 @@ const KEYS = {
   perturbation: ["kind", "of", "change", "degrees", "isWithin", "status"],
   ablation: ["without", "medianDegrees", "found"],
 };
-/** Nothing replaces these where other people's data is absent. */
+/** Tables without a replacement where the data beside the project are absent. */
 const REAL = ["table3", "figure7", "sensors", "photographs", "conditions", "albedo", "rgbd", "statue"];
 
-/** Tables without a row, and keys that a row lacks. A key may be null: not everything has a value. */
+/** Tables without rows, and missing keys of rows. A key may be null, because not every row has a value. */
 export const missingKeys = (json, { realPairs }) =>
   Object.entries(KEYS).flatMap(([table, keys]) => {
     if (json[table] === undefined) return [table];

@@ -1,4 +1,4 @@
-// The names in the cells and what they stand for: the package's own scenes, and other people's data from beside the project.
+// Resolves the names in the cells: built-in scenes, and other people's data from beside the project.
 import { existsSync, readFileSync, readdirSync } from "node:fs";
 import { join } from "node:path";
 import { PAIRS, capture } from "../real-pairs.mjs";
@@ -6,23 +6,23 @@ import { inRoot } from "../shell.mjs";
 import { readHeights } from "./npy.mjs";
 
 const DATA = inRoot("../shared/data");
-/** Rows of `natural_lights_114.csv`: the easy, the median and the hard one. */
+/** Rows of `natural_lights_114.csv`: an easy, a median and a hard one. */
 const NATURAL_LIGHTS = { A: 132, B: 214, C: 144 };
-/** Side of a relief, and how much of it an object of `mit_berkeley` spans. */
+/** Side of a relief, and the part of it that an object of `mit_berkeley` spans, samples. */
 const RELIEF_SIDE = 256;
 const OBJECT_SPAN = 230;
-/** Lowest height of such an object in samples: at 5 the background begins. */
+/** Lowest height of such an object, samples; heights up to 5 are background. */
 const LOWEST = 6;
 
 export const hasData = () => existsSync(DATA);
-/** Pairs of a statue: of the data beside the project, or of a folder in the environment, which processes inherit. */
+/** Pairs of a statue: from the data beside the project, or from a folder that the environment names, which child processes inherit. */
 const STATUES = () => process.env.BIMODAL_STATUE ?? join(DATA, "statue");
 export const statues = () => (existsSync(STATUES()) ? readdirSync(STATUES()).sort() : []);
 export const DATA_FOLDER = DATA;
 
 const bytes = (...path) => readFileSync(join(DATA, ...path));
 
-/** Reads once. */
+/** Caches a reader. */
 function remember(read) {
   const kept = new Map();
   return (name) => {
@@ -39,7 +39,7 @@ function naturalLight(index) {
     .slice(1);
 }
 
-/** Box of the object: first and last column and row with a height. */
+/** Bounding box of the object: first and last column and row with a height. */
 function extent({ width, data }) {
   let [left, right, top, bottom] = [Infinity, -Infinity, Infinity, -Infinity];
   for (const [index, height] of data.entries()) {
@@ -51,7 +51,7 @@ function extent({ width, data }) {
   return { left, right, top, bottom };
 }
 
-/** Bilinear between the neighbours that have a value; NaN where the nearest has none. */
+/** Bilinear interpolation between neighbours that have a value; NaN if the nearest has none. */
 function heightAt({ width, height, data }, x, y) {
   const inside = (column, row) => column >= 0 && row >= 0 && column < width && row < height;
   const at = (column, row) => (inside(column, row) ? data[row * width + column] : NaN);
@@ -67,7 +67,7 @@ function heightAt({ width, height, data }, x, y) {
   return sum / weights;
 }
 
-/** An object's heights on the grid of a relief, and where the grid lies in the object's photographs. */
+/** An object's heights on the grid of a relief, and the grid's position in the object's photographs. */
 function objectOn(raster) {
   const { left, right, top, bottom } = extent(raster);
   const place = {
@@ -107,7 +107,7 @@ function mitten(files, frame) {
   };
 }
 
-/** A scan of DiLiGenT: depth in metres, normals as its photometric stereo gives them, in our frame. */
+/** A scan of DiLiGenT: depth in metres, and the normals of its photometric stereo, in this project's frame. */
 function scan(files, name) {
   const read = (file) => bytes("diligent", name, file);
   const { width, height, data } = readHeights(read("depth_mm.npy"));
@@ -136,7 +136,7 @@ function scan(files, name) {
   };
 }
 
-/** Colour and depth of a statue with both cameras, the pose between them, and the degrees between the viewing directions. */
+/** Colour and depth of a statue with both cameras, the pose between them, and the angle between the viewing directions in degrees. */
 function statue(name) {
   const read = (file) => readFileSync(join(STATUES(), name, file));
   const { iw, ih, dw, dh, Kc, Kd, rotation, translation, viewDegrees } = JSON.parse(read("meta.json").toString());
@@ -183,9 +183,9 @@ export function library(files) {
     scan: (name) => scan(files, name),
     statue,
     pair: (name) => PAIRS[name](files),
-    /** Colour and depth of one moment, one frame of their own each. */
+    /** Colour and depth of one moment, each with its own frame. */
     capture: (name, frame) => capture(name, frame, files),
-    /** Linear colours with the object's mask, and where a relief's samples lie on it. */
+    /** Linear colours with the object's mask, and the position of a relief's samples in it. */
     photograph: (name, image) => photograph(`${name}/${image}`),
   };
 }

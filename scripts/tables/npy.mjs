@@ -1,6 +1,6 @@
-// Height maps as NumPy saves them. The package's own reader refuses column order, in which half of this data is.
+// Height maps as NumPy saves them. The package's own reader refuses column order, which half of these files have.
 
-/** A two-dimensional float32 .npy of either order, row by row. */
+/** A two-dimensional float32 .npy of either order, in row order. */
 export function readHeights(bytes) {
   const [major] = bytes.subarray(6, 7);
   const [start, length] = major === 1 ? [10, bytes.readUInt16LE(8)] : [12, bytes.readUInt32LE(8)];

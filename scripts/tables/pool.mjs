@@ -1,14 +1,14 @@
-// Cells on several processes. The results do not depend on how many there are: every cell carries its own seeds.
+// Runs cells in several processes. The results do not depend on their number, because every cell carries its own seeds.
 import { fork } from "node:child_process";
 import { inRoot } from "../shell.mjs";
 
 const CELLS = inRoot("scripts/tables/worker.mjs");
-/** A cell that ends its process so often fails. A process, not a thread: when Node itself breaks, the others go on. */
+/** A cell that has ended its process this many times fails. Processes, not threads: if Node itself crashes, the others continue. */
 const MOST_TRIES = 2;
 
 /**
- * Runs all cells; `onResult(id, result, took)` gets each one's as it comes. Resolves when all are done, or, once `signal` is
- * aborted, when those at work have been given up. `program` is what each process runs, `settings` what it is told on its command line.
+ * Runs all cells; `onResult(id, result, took)` is called as each finishes. Resolves when all are done or, once `signal` is aborted, when
+ * the running processes have ended. `program` is the script of each process, `settings` its arguments.
  */
 export function runCells(cells, { workers, signal, onResult, program = CELLS, settings = [] }) {
   const waiting = cells.map((cell) => ({ cell, tries: 0 }));
@@ -28,7 +28,7 @@ export function runCells(cells, { workers, signal, onResult, program = CELLS, se
       child.on("message", ({ ready, id, result, took }) => {
         if (!ready) onResult(id, result, took);
         task = undefined;
-        // After a panic the instance is suspect.
+        // After a panic, the instance may be in an invalid state.
         if (result?.failure?.code === "panic") child.disconnect();
         else next();
       });

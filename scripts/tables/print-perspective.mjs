@@ -1,4 +1,4 @@
-// The tables of two pinhole cameras as text.
+// Formats the tables of two pinhole cameras as text.
 import { isConfidentlyWrong } from "../../protocols/counts.mjs";
 import { mean, median, worst } from "../../protocols/numbers.mjs";
 import { FOUND, REGISTERED, VIEWS } from "../../protocols/statue.mjs";
@@ -44,7 +44,7 @@ export function rgbd(rows) {
   ]);
 }
 
-/** Medians of rows by degrees between the views; how many ended farther off than they began, and where a registration is worth having. */
+/** Medians of rows by degrees between the views; how many ended farther off than they began, and where registration is worthwhile. */
 function statueLines(name, rows) {
   const count = (is) => `${rows.filter(is).length} of ${rows.length}`;
   const isWorse = ({ told, degrees, lateral }) => told !== null && degrees > told.degrees && lateral > told.lateral;

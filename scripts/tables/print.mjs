@@ -1,4 +1,4 @@
-// The tables as text.
+// Formats the tables as text.
 import { coverage3, isConfidentlyWrong, isFound } from "../../protocols/counts.mjs";
 import { mean, median, share, worst } from "../../protocols/numbers.mjs";
 import { paperDegrees } from "../../protocols/rotations.mjs";
@@ -6,7 +6,7 @@ import { PAPER_TABLE_1, PAPER_TABLE_3 } from "../../protocols/scenes.mjs";
 import { columns, DASH, fixed, mark, percent, unique } from "./columns.mjs";
 import { pinhole, rgbd, statue } from "./print-perspective.mjs";
 
-/** Of a list of failures so many are shown; the JSON has all. */
+/** Number of failures shown of a list; the JSON has all. */
 const WRONG_SHOWN = 20;
 const WORST_SHOWN = 5;
 const small = (value) =>
@@ -22,7 +22,7 @@ function table1(rows) {
   ]);
 }
 
-/** Beta downward, overlap to the right; for each beta one line of every kind of figure. */
+/** Beta in rows, overlap in columns; for each beta, one line for every kind of figure. */
 function matrix(rows, kinds) {
   const [betas, overlaps] = ["beta", "overlap"].map((key) => unique(rows.map((row) => row[key])).sort((a, b) => a - b));
   const at = (beta, overlap) => rows.find((row) => row.beta === beta && row.overlap === overlap);
@@ -179,7 +179,7 @@ function photographs(rows) {
   ];
 }
 
-/** Rows of one kind: what they come to. */
+/** Summary of the rows of one kind. */
 const summed = (name, rows) => {
   const degrees = rows.map((row) => row.degrees);
   return [
@@ -346,7 +346,7 @@ export function show({ name, title, notes = [] }, rows, open3d = () => undefined
   ];
 }
 
-/** Every aim with its figure and the verdict. */
+/** Every aim with its value and verdict. */
 export const showAims = (list) => [
   "Aims (computed from the rows above)",
   ...columns([

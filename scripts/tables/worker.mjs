@@ -1,5 +1,5 @@
-// A process of its own for cells: one instance of the package, one cell after the other.
-//   WASM   a file in place of the package's own
+// A separate process that runs cells one after the other, with one instance of the package.
+//   WASM   a file to use instead of the package's own
 import { pathToFileURL } from "node:url";
 import { library } from "./library.mjs";
 import { measure } from "../../protocols/measure.mjs";
@@ -9,7 +9,7 @@ const [wasm] = process.argv.slice(2);
 await api.default(wasm && pathToFileURL(wasm));
 const data = library(await import("../../pkg/files.js"));
 
-/** What is worth keeping of an error. */
+/** The members of an error that are kept. */
 const failure = ({ name, code, message }) => ({ name, code, message });
 
 process.on("message", async ({ cell }) => {
@@ -22,7 +22,7 @@ process.on("message", async ({ cell }) => {
   }
   process.send({ id: cell.id, result, took: performance.now() - start });
 });
-// Ctrl-C reaches every process of the terminal; the one in charge decides.
+// Ctrl-C reaches every process of the terminal; the parent decides when to stop.
 process.on("SIGINT", () => {});
 process.on("disconnect", () => process.exit());
 process.send({ ready: true });

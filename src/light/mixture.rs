@@ -25,9 +25,11 @@ const MOST_UNKNOWNS: usize = COEFFICIENTS + 3 * MOST_REGIONS;
 const DEGREES: f64 = 4.0;
 /// Standard deviation of the prior over log offsets: most materials reflect 4 to 90 percent.
 const PAINT_SPREAD: f64 = 1.0;
-/// Maximum rounds of expectation maximisation for each number of albedos, and the gain of log likelihood per pixel
-/// below which it has settled; both set on ten photographs (docs/lab/thresholds.md).
+/// Maximum rounds of expectation maximisation for each number of albedos, set on ten photographs
+/// (docs/lab/thresholds.md).
 const ROUNDS: usize = 14;
+/// Gain of log likelihood per pixel and round below which expectation maximisation has settled, set on the same
+/// photographs.
 const SETTLED: f64 = 1e-3;
 
 /// A pixel: its normal, the harmonics of that normal, and its log colour along the axes.

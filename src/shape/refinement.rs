@@ -23,10 +23,10 @@ use crate::error::Result;
 use crate::light::Light;
 use crate::view::{ColourView, DepthView, Normals, depth_noise, normals};
 
-/// Error of the shading in log units: a multiple of the image's noise, and the share of the colours' spread that
-/// discretisation adds. Set on Mozart at 64x64 with depth noise of half a pixel under colourful and natural light
-/// (docs/lab/thresholds.md).
+/// Error of the shading as a multiple of the image's noise. Set on Mozart at 64x64 with depth noise of half a pixel
+/// under colourful and natural light (docs/lab/thresholds.md).
 const SHADING_ERROR: f64 = 1.4;
+/// Error of the shading that discretisation adds, as a share of the colours' spread. Set on the same data.
 const DISCRETISATION: f64 = 0.065;
 /// Bounds of the weight of an anchor, squared log residual per squared pixel of height: whatever its noise, depth
 /// neither loses all weight nor overrides the colours.

@@ -215,8 +215,8 @@ pub(super) fn checked(image: &ColourImage) -> Result<(Size, Vec<bool>)> {
     Ok((size, object))
 }
 
-/// Largest deviation of log intensity from the channel's median. The factor of 10000 exceeds the contrast of any
-/// picture of one object; floats beyond it mark missing pixels.
+/// Largest deviation of log intensity from the channel's median, log units: a factor of 10000. This exceeds the contrast
+/// of any picture of one object; floats beyond it mark missing pixels.
 const FARTHEST_FROM_MEDIAN: f32 = 9.21;
 
 fn leave_out_far_from_median(log: &[Vec<f32>; 3], usable: &mut [bool]) {

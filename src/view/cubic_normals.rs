@@ -31,7 +31,7 @@ const NOISY: f32 = 0.06;
 /// of the wider window. Up to 1.24, the sum of bias and noise falls. The limit is a little lower, because a
 /// registration averages noise over its points, but not bias.
 const MOST_MOVED: f64 = 1.1;
-/// Half width of the squares over which this is summed, in half widths of the window: overlapping windows share their
+/// Half width of the squares over which that move is summed, in half widths of the window: overlapping windows share their
 /// noise.
 const REACH: usize = 2;
 /// Largest |w| of a neighbour: half the distance along the plane plus 0.3 pixel lengths. Beyond it lies another part of

@@ -16,10 +16,11 @@ use std::cmp::Reverse;
 use super::ColourView;
 use crate::numeric::quantile;
 
-/// Differences of neighbours' log colours in chromaticity (deviation from the channels' mean) and in brightness (that
-/// mean), beyond which, plus four sigmas of the noise, an edge of albedo lies between them: no shading of a smooth
-/// surface reaches them. Not varied.
+/// Difference of neighbours' log colours in chromaticity (deviation from the channels' mean), log units, beyond which,
+/// plus four sigmas of the noise, an edge of albedo lies between them: no shading of a smooth surface reaches it. Not
+/// varied.
 const HUE_STEP: f32 = 0.06;
+/// The same for brightness (the channels' mean), log units. Not varied.
 const LOG_STEP: f32 = 0.22;
 /// Fewest pixels of a region.
 const SMALLEST_REGION: usize = 6;
@@ -34,9 +35,11 @@ const LEAST_PAINT: f64 = 0.03;
 /// Weight that ties each region to the mean, in pairs of pixels: it matters only for regions without borders.
 const LOOSE_TIE: f64 = 1e-3;
 
-/// Regions with smaller differences in chromaticity (deviation from the channels' mean) and in brightness share one
-/// albedo: edges of the relief between them shift brightness, but hardly chromaticity.
+/// Regions share one albedo if they differ by less than this in chromaticity (deviation from the channels' mean), log
+/// units, and by less than [`ONE_BRIGHTNESS`].
 const ONE_HUE: f64 = 0.1;
+/// The same for brightness (the channels' mean), log units: edges of the relief between regions shift brightness, but
+/// hardly chromaticity.
 const ONE_BRIGHTNESS: f64 = 0.4;
 /// Number of times that albedos are joined and compared again, over all borders between two of them together.
 const PALETTE_ROUNDS: usize = 2;

@@ -1,21 +1,20 @@
-//! Runs whose ends are written down, so that every build can be held against the same numbers: the native one
-//! (`tests/library/agreement.rs`) and the .wasm (the same test on wasm32), whose SIMD and scalar files `tests/contract/fallback.test.mjs`
-//! compares.
+//! Runs with recorded results, against which every build is compared: the native one (`tests/library/agreement.rs`) and the .wasm (the
+//! same test on wasm32), whose SIMD and scalar files `tests/contract/fallback.test.mjs` compares.
 
 use bimodal_stereo::scenes::{self, Sample, SampleRequest, Scene};
 use bimodal_stereo::{Angles, Estimator, LightSource, Options, Registration, Size, Start, Status};
 
-/// Degrees: builds round their sums and elementary functions otherwise, and a run stops where a step changes the rotation by
+/// Tolerance, degrees: builds round sums and elementary functions differently, and a run stops where a step changes the rotation by
 /// less than 0.01 degrees.
 const DEGREES: f64 = 1e-3;
-/// Of log S, and of the scale.
+/// Tolerance of log S and of the scale.
 const NUMBERS: f64 = 1e-4;
 
-/// How a run ended: alpha, beta, gamma in degrees, scale, residual.
+/// The result of a run: alpha, beta, gamma in degrees, scale, residual.
 type End = [f64; 5];
 
-/// By the colours, from a start that is some degrees off; by the paper's own loop, under light that tells enough: it chooses
-/// inliers, and under the window's a last digit moves its end by half a degree; by one that starts nowhere.
+/// Photometric registration from an initial pose some degrees off; the paper's own loop; a search. The paper's loop runs under the
+/// colourful light, because it chooses inliers: under the window light, a last digit moves its result by half a degree.
 const ENDS: [End; 3] = [
     [5.380928, 24.581559, -7.989400, 0.997229, 0.050961],
     [4.846028, 25.005366, -7.994371, 0.998792, 0.116139],
@@ -44,7 +43,7 @@ fn end(sample: &Sample, options: Options) -> End {
     [alpha, beta, gamma, report.pose.scale, report.residual]
 }
 
-/// Holds this build against the numbers.
+/// Compares this build with the recorded results.
 pub fn check() {
     let (small, usual, colourful) = (sample(32, "window"), sample(48, "window"), sample(48, "colourful"));
     let light = LightSource::Known(usual.light);

@@ -1,4 +1,4 @@
-// npm run ablation: every part can be switched off in the present sources, and what is told of the rows.
+// npm run ablation: every part can be switched off in the present sources, and the summary of the rows is right.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { describe, test } from "node:test";

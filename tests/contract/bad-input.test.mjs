@@ -1,4 +1,4 @@
-// Whatever is wrong with an input is said by name.
+// Every invalid input is named in an error.
 import assert from "node:assert/strict";
 import { before, describe, test } from "node:test";
 import { Estimator, estimator, init, pair, refused, sample } from "./support.mjs";
@@ -31,7 +31,7 @@ describe("after init", () => {
     refused(onImage({ width: 2 ** 32 + 32 }), "size", "image.width");
     assert.throws(onImage({ width: 2 ** 32 + 1 }), /\(got 4294967297\)$/);
     assert.throws(onImage({ width: 1e300 }), /\(got 1e\+300\)$/);
-    // A photograph of this size is worked on at the depth map's resolution, so that its samples are asked for.
+    // A photograph of this size would be reduced to the depth map's resolution, so the error is about its missing samples.
     refused(onImage({ width: 4000, height: 3000, mask: undefined }), "size", "image.data");
     refused(onDepth({ width: 4000, height: 3000, mask: undefined }), "memory", "depth");
   });
@@ -118,7 +118,7 @@ describe("after init", () => {
     assert.throws(withOptions({ regstration: "icp" }), /did you mean "registration"\?/);
     assert.throws(withOptions({ LAMBDA: {} }), /did you mean "lambda"\?/);
     assert.throws(withOptions({ zzz: 1 }), /known: light, prior, start/);
-    // Words of any length are told from those that are known in no time, and repeated in part.
+    // Words of any length are compared with the known ones quickly, and messages repeat them only in part.
     assert.throws(withOptions({ ["z".repeat(1e6)]: 1 }), ({ message }) => message.length < 1000);
     assert.throws(withOptions({ start: "z".repeat(1e7) }), ({ message }) => message.length < 1000);
     refused(withOptions({ lambda: { priors: 1 } }), "option", "options.lambda.priors");
@@ -160,7 +160,7 @@ describe("after init", () => {
     const shrunk = new Float32Array(buffer, 0, image.data.length);
     buffer.resize(16);
     refused(onImage({ data: shrunk }), "empty", "image.data");
-    // By their word the numerics made room for 4e9 bytes, and broke off.
+    // A false length could make the numerics allocate 4e9 bytes and abort.
     refused(
       onImage({ data: Object.defineProperty(image.data.slice(), "length", { value: 1e9 }) }),
       "type",
@@ -174,7 +174,7 @@ describe("after init", () => {
     refused(onImage({ data: new Short(image.data) }), "type", "image.data");
     refused(onImage({ data: Object.create(Float32Array.prototype) }), "type", "image.data");
     refused(onImage({ data: new Proxy(image.data, {}) }), "type", "image.data");
-    // What is shared, or lies within something larger, is what it says.
+    // A view of shared memory or of a part of a buffer is valid.
     const within = new Float32Array(new SharedArrayBuffer(image.data.byteLength + 12), 12);
     within.set(image.data);
     make({ image: { data: within } }).free();

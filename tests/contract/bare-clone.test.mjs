@@ -1,4 +1,4 @@
-// The commands that set the project up begin where nothing is installed yet.
+// The commands that set up the project start in a fresh clone, where nothing is installed.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { cpSync, mkdtempSync, rmSync } from "node:fs";
@@ -12,7 +12,7 @@ after(() => rmSync(folder, { recursive: true, force: true }));
 for (const name of ["package.json", "protocols", "scripts", "src"])
   cpSync(inRoot(name), join(folder, name), { recursive: true });
 
-/** What a command says that is refused before it sets anything up: by then all that it imports is there. */
+/** The message of a command that is refused before it sets up anything; by then it has loaded all its imports. */
 const refusal = (args, env = {}) =>
   spawnSync(process.execPath, args, { cwd: folder, env: { ...process.env, ...env }, encoding: "utf8" }).stderr;
 

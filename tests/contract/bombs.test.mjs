@@ -1,4 +1,4 @@
-// Files that are small and say, or inflate to, more than any machine has room for: refused before the memory is taken.
+// Small files that declare, or inflate to, more than any machine's memory are refused before the memory is allocated.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { crc32, deflateSync } from "node:zlib";
@@ -7,7 +7,7 @@ import { readRigFile } from "../../pkg/rig.js";
 import { png } from "./support.mjs";
 
 const MEGABYTE = 2 ** 20;
-/** What a reader may take beside the file itself, for a picture of few pixels. */
+/** Limit of a reader's memory in addition to the file, for a picture of few pixels. */
 const ROOM = 200 * MEGABYTE;
 /** 100 MB of zeros in 100 kB. */
 const bomb = deflateSync(Buffer.alloc(100 * MEGABYTE));
@@ -36,7 +36,7 @@ function pngOf(width, height, { bits = 8, type = 0, pixels = bomb, before = [] }
   );
 }
 
-/** A little-endian TIFF of one strip that deflate has packed. */
+/** A little-endian TIFF with one strip, compressed by deflate. */
 function tiffOf(width, height) {
   const tags = [
     [256, width],
@@ -63,7 +63,7 @@ function tiffOf(width, height) {
   return new Uint8Array(Buffer.concat([head, bomb]));
 }
 
-/** An OpenEXR image of one channel and one ZIP block. */
+/** An OpenEXR image with one channel and one ZIP block. */
 function exrOf(width, height) {
   const attribute = (name, type, data) => {
     const size = Buffer.alloc(4);
@@ -90,7 +90,7 @@ function exrOf(width, height) {
   return new Uint8Array(Buffer.concat([head, offset, ints(0, bomb.length), bomb]));
 }
 
-/** Refused as a file, for this reason, without room for what it would have become. */
+/** Checks that a file is refused for this reason, without memory for its contents. */
 async function refusedSmall(read, reason) {
   const before = process.memoryUsage().arrayBuffers;
   let most = 0;

@@ -1,12 +1,12 @@
-// A foxglove_bridge for tests: a robot's driver behind @foxglove/ws-protocol's server. What is latched is sent to whoever subscribes.
+// A foxglove_bridge for tests: a robot's driver behind @foxglove/ws-protocol's server. Latched messages are sent to each new subscriber.
 import protocol from "@foxglove/ws-protocol";
 import { WebSocketServer } from "ws";
 import { definitionOf, encoded } from "./recordings.mjs";
 
-/** Milliseconds from one picture to the next. */
+/** Interval between pictures, milliseconds. */
 const EVERY = 60;
 
-/** Serves the topics of `messages` (see `driver`), of which `view(now)` are sent again and again. */
+/** Serves the topics of `views` (see `driver`); the messages of the present view are sent repeatedly. */
 export async function bridge(views, { port = 0, generation = "ros2" } = {}) {
   const server = new protocol.FoxgloveServer({ name: "test robot" });
   const sockets = new WebSocketServer({
@@ -53,9 +53,9 @@ export async function bridge(views, { port = 0, generation = "ros2" } = {}) {
   return {
     address: `ws://127.0.0.1:${sockets.address().port}`,
     port: sockets.address().port,
-    /** How many of its topics somebody listens to. */
+    /** The topics that have a subscriber. */
     listening: () => [...channels].filter(([, id]) => listening.has(id)).map(([topic]) => topic),
-    /** Shows another scene. */
+    /** Switches to another scene. */
     turn: (view) => (state.view = view),
     close: () => {
       clearInterval(timer);

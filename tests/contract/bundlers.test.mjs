@@ -1,4 +1,4 @@
-// Every line of the table in the package's README, done as it says in a fresh project: README's example runs in a browser or in Node.
+// Tests every line of the table in the package's README in a fresh project: the README's example runs in a browser or in Node.
 import assert from "node:assert/strict";
 import { cpSync, readFileSync, readdirSync } from "node:fs";
 import { createServer as createHttpServer } from "node:http";
@@ -14,7 +14,7 @@ import { examples, freshProject, html, pairFiles, run, served, visit, write } fr
 const README = inRoot("pkg/README.md");
 const [MADE, OWN] = examples(README, "js");
 
-/** What the table says of each: the code in its second column. */
+/** The table's lines: each name with the code in the second column. */
 const [, section] = /^\| with \| it needs \|\n\|---\|---\|\n((?:\|.*\n)+)/m.exec(readFileSync(README, "utf8"));
 const table = new Map(
   section
@@ -26,13 +26,13 @@ const table = new Map(
     }),
 );
 const tested = [];
-/** A test of one of the table's lines. */
+/** A test of a line of the table. */
 function line(name, body) {
   tested.push(name);
   test(name, () => body(...table.get(name)));
 }
 
-/** README's example; then a thread, and a file that is loaded on demand. */
+/** README's example, followed by a thread and by a file that loads on demand. */
 const APP = `${MADE}
 import { projectFrame } from "bimodal-stereo";
 const together = new Estimator(image, depth, { workers: 2 });
@@ -44,10 +44,10 @@ console.log(points.length, "numbers of points");
 console.log("end");
 `;
 
-/** Everything was found, and works. */
+/** Checks that everything was found and works. */
 function complete({ lines, missing, threads }) {
   assert.deepEqual(missing, []);
-  // Vite's development server says when it is there.
+  // Vite's development server logs its connection.
   const ours = lines.filter((text) => !text.startsWith("[vite]"));
   assert.match(ours.join("\n"), /^converged (49|50)\.\d+ true: .+\n768 numbers of points\nend$/);
   assert.deepEqual(threads, ["function"]);
@@ -55,7 +55,7 @@ function complete({ lines, missing, threads }) {
 
 const project = freshProject();
 write(project, { "app.js": APP });
-/** A page of the project in a folder of its own, with its script beside it. */
+/** A page of the project in a separate folder, with its script beside it. */
 const page = (folder, head = '<script type="module" src="app.js"></script>') =>
   write(project, { [`${folder}/index.html`]: html(head) });
 
@@ -97,7 +97,7 @@ describe("README's example in", () => {
     assert.equal(stats.toString({ all: false, errors: true, warnings: true }), "");
     page("webpack");
     complete(await visit(await served(path), { threads: 1 }));
-    // Nobody's business: where it was bundled.
+    // A bundle must not contain the path of its project.
     for (const file of readdirSync(path)) assert.ok(!readFileSync(join(path, file), "latin1").includes(project), file);
   });
 
@@ -165,7 +165,7 @@ describe("README's example in", () => {
     }
   });
 
-  // By other-origin.test.mjs and runtimes.test.mjs.
+  // Tested in other-origin.test.mjs and runtimes.test.mjs.
   const elsewhere = ["another origin", "Deno", "Bun"];
   test("no other: the table has no line without a test", () =>
     assert.deepEqual([...table.keys()].sort(), [...tested, ...elsewhere].sort()));

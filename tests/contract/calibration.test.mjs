@@ -1,4 +1,4 @@
-// checkCalibration on rendered rigs, whose extrinsics are known, and on a real one if other people's data are here.
+// checkCalibration on rendered rigs with known extrinsics, and on a real one if the data beside the project are there.
 import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
 import { before, describe, test } from "node:test";
@@ -8,7 +8,7 @@ import { aboutAxis, degreesBetween as degreesOf, product, transpose, turn } from
 import { LONG } from "./long.mjs";
 import { BimodalError, checkCalibration } from "./support.mjs";
 
-/** A pose after an error about the camera, degrees and metres. */
+/** A pose with an error about the camera, degrees and metres. */
 const wrong = (pose, axis, degrees, shift = [0, 0, 0]) => {
   const rotation = aboutAxis(
     axis.map((value) => value / Math.hypot(...axis)),
@@ -22,7 +22,7 @@ const inverse = (pose) => {
   return { ...pose, rotation, translation: turn(rotation, pose.translation).map((value) => -value) };
 };
 const degreesBetween = (a, b) => degreesOf(a.rotation, b.rotation);
-/** How far two poses put a point from each other, millimetres. */
+/** Distance between a point's positions under two poses, millimetres. */
 const millimetresBetween = (a, b, point) => {
   const [p, q] = [a, b].map((pose) => turn(pose.rotation, point).map((value, k) => value + pose.translation[k]));
   return 1000 * Math.hypot(...p.map((value, k) => value - q[k]));
@@ -66,7 +66,7 @@ describe("a rig before boxes", () => {
     );
     assert.equal(sensitivity.length, 24);
     const edges = sensitivity.find(({ cue, axis }) => cue === "edges" && axis === "ry");
-    // A degree and more away edges say less than at the estimate.
+    // A degree or more away, the edges' likelihood is lower than at the estimate.
     edges.offsets.forEach(
       (offset, k) => Math.abs(offset) > 1 && assert.ok(edges.values[k] < 0, `${offset}: ${edges.values[k]}`),
     );
@@ -137,7 +137,7 @@ describe("a rig before boxes", () => {
       assert.equal(report.candidates.truth.verdict, "undecided", report.candidates.truth.reason);
       assert.equal(report.candidates.told.verdict, "off", report.candidates.told.reason);
       assert.ok(codes(report.warnings).includes("intrinsics-guessed"));
-      // Its principal point and its lens are as unknown: of the scene's middle by a hundredth of the width at the least.
+      // The principal point and the lens are unknown as well: the sigma of the middle's position across is at least a hundredth of the width.
       const across = Math.sqrt(report.covariance[21]) / report.middle[2];
       assert.ok(across > (0.01 * frame.image.width) / frame.image.camera.fx, String(across));
     },
@@ -154,7 +154,7 @@ describe("a rig before boxes", () => {
   });
 
   test("a wall alone can't tell, and says so", async () => {
-    // No depth edge at all: what was told is all that is known.
+    // Without a depth edge, the given candidate is the only information.
     const data = new Uint16Array(frame.depth.data.length).fill(1500);
     for (const cues of [["edges"], undefined]) {
       const { verdict, estimate, health } = await checkCalibration(
@@ -244,7 +244,7 @@ describe("a rig before boxes", () => {
     const lens = (distortion) => ({ image: { ...image, camera: { ...image.camera, distortion } }, depth });
     await refused(check(lens([1, 2, 3])), "size", "frames[0].image.camera.distortion");
     await refused(check(lens([NaN, 0, 0, 0, 0])), "range", "frames[0].image.camera.distortion");
-    // Of a slipped decimal point: it folds near the image's middle.
+    // A slipped decimal point: the lens folds near the image's middle.
     await refused(check(lens([1e6, 0, 0, 0, 0])), "range", "frames[0].image.camera.distortion");
     await refused(
       check({ image, depth: { ...depth, camera: { ...depth.camera, distortion: [-40, 0, 0, 0, 0] } } }),
@@ -271,7 +271,7 @@ describe("a rig before boxes", () => {
 });
 
 const NYU = new URL("../../../shared/data/nyu_raw_pair/", import.meta.url);
-/** A candidate 2 degrees and 20 mm off, and how far from the truth the check of these frames ends. */
+/** Checks these frames with a candidate 2 degrees and 20 mm off, and returns the error of the estimate. */
 async function found(kind, seed, count) {
   const frames = [];
   for (let frame = 0; frame < count; frame++) frames.push(await sampleRig({ kind, seed, frame }));
@@ -280,7 +280,7 @@ async function found(kind, seed, count) {
   const report = await checkCalibration(frames, { told, truth }, { cues: ["edges"] });
   assert.equal(report.verdict, "off");
   const { health, candidates } = report;
-  // Mean squares add up: of a right candidate what is left is the estimate's own error.
+  // Mean squares add up, so for a right candidate the difference is the estimate's own error.
   const own = Math.sqrt(Math.max(0, candidates.truth.pixels ** 2 - health.pixels ** 2));
   return {
     own,
@@ -291,13 +291,13 @@ async function found(kind, seed, count) {
 }
 
 test("noise of a receding floor is no rim", LONG, async () => {
-  // Rims of noise drew to the line between floor and wall: 0.34 degrees and 6 mm.
+  // Depth discontinuities from noise would pull the estimate towards the line between floor and wall.
   const { degrees, millimetres } = await found("objects", 2, 3);
   assert.ok(degrees < 0.15 && millimetres < 3, `${degrees} degrees, ${millimetres} mm`);
 });
 
 test("the health number's interval holds the estimate's error, not one several times as large", LONG, async () => {
-  // A covariance of one inflation for all scenes said 0.15 to 0.8 pixels of errors of 0.1.
+  // A covariance with the same inflation for all scenes would overstate these errors.
   for (const seed of [0, 1]) {
     const { own, health } = await found("boxes", seed, 3);
     assert.ok(
@@ -308,7 +308,7 @@ test("the health number's interval holds the estimate's error, not one several t
 });
 
 test("one frame is found where wide windows lead elsewhere", LONG, async () => {
-  // Every start of the search by image shifts ended in one wrong place: 2.8 degrees, 51 mm.
+  // In this scene, image shifts in wide windows lead the search to one wrong pose from every initial pose.
   const { degrees, millimetres } = await found("room", 5, 1);
   assert.ok(degrees < 0.4 && millimetres < 10, `${degrees} degrees, ${millimetres} mm`);
 });

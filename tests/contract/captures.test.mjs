@@ -1,4 +1,4 @@
-// What npm run captures stands on: lenses, hidden truths and the costs of others, on rendered rigs whose extrinsics are known.
+// The parts of npm run captures: lenses, hidden truths and other people's costs, on rendered rigs with known extrinsics.
 import assert from "node:assert/strict";
 import { before, describe, test } from "node:test";
 import { projectFrame, sampleRig } from "../../pkg/index.js";

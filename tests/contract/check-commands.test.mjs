@@ -1,4 +1,4 @@
-// `check` on three command lines: npm's, Rust's and Python's. One manual, one verdict, one JSON, one text.
+// `check` on three command lines: npm's, Rust's and Python's. They share one manual, verdict, JSON and text.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -12,13 +12,13 @@ import { ask, inRoot } from "../../scripts/shell.mjs";
 import { freshProject } from "./fresh.mjs";
 
 /**
- * Native code and wasm round the same sums in another order and have other sines. How near their reports are: of the estimate in units of its
- * own sigma, of other numbers relative to the largest of their list, and of the curves of the likelihood likewise.
+ * Native code and wasm sum in different orders and compute other sines. Limits of the differences between their reports: for the estimate in
+ * units of its sigma, for other numbers relative to the largest of their list, and likewise for the curves of the likelihood.
  */
 const ROUNDING = { sigmas: 1e-4, relative: 1e-4, curves: 0.01 };
-/** On some rendered rigs rounding decides whether a point counts, and the estimate moves by up to a hundredth of a sigma. */
+/** On some rendered rigs, rounding decides whether a point counts, and the estimate moves by up to a hundredth of a sigma. */
 const DECISIONS = { sigmas: 0.05, relative: 0.02, curves: 0.2 };
-/** What rounding leaves of numbers that are zero. */
+/** Rounding error of numbers that should be zero. */
 const ZERO = 1e-9;
 
 const NYU = inRoot("../shared/data/nyu_raw_pair");
@@ -56,7 +56,7 @@ before(() => {
   COMMANDS.python = { ...COMMANDS.python, program: PYTHON, before: ["-m", "bimodal_stereo"] };
 });
 
-/** A rendered rig as files of ours: two frames, the cameras of both, and its extrinsics. */
+/** A rendered rig as files of this project: two frames, the cameras of both, and its extrinsics. */
 async function rendered() {
   await init();
   const at = join(folder, "rig");
@@ -85,7 +85,7 @@ async function rendered() {
 const isNumber = (value) => typeof value === "number";
 const size = (values) => Math.max(...values.map(Math.abs));
 
-/** The tolerance of the estimate's members: of its rotation, rad or degrees, and of its translation, metres. */
+/** The tolerance for members of the estimate: for its rotation in rad or degrees, for its translation in metres. */
 function toleranceOf(path, covariance, sigmas) {
   const sigma = (k) => sigmas * Math.sqrt(covariance[7 * k]);
   const [turn, shift] = [Math.max(sigma(0), sigma(1), sigma(2)), Math.max(sigma(3), sigma(4), sigma(5))];
@@ -93,12 +93,12 @@ function toleranceOf(path, covariance, sigmas) {
   return { rotation: turn, matrix: turn + shift, angles: (180 / Math.PI) * turn, translation: shift }[member] ?? 0;
 }
 
-/** A sentence without its numbers, and a table without the width of its columns. */
+/** A sentence without its numbers, and a table without its column widths. */
 const withoutNumbers = (text) => text.replace(/\d+(?:\.\d+)?(?:e[-+]?\d+)?/g, "#").replace(/ {2,}/g, "  ");
-/** What was printed beside the progress, of which each shows other moments. */
+/** The output without progress lines, which are printed at different moments. */
 const remarks = (text) => text.split("\n").filter((line) => !/^ *\d+ % /.test(line));
 
-/** Equal in shape and in words, and nearly in numbers. */
+/** Checks that two reports have equal structure and words, and nearly equal numbers. */
 function alike(one, other, path, covariance, near) {
   const [ours, theirs] = isNumber(one) ? [[one], [other]] : [one, other];
   if (Array.isArray(ours) && ours.length > 0 && ours.every(isNumber)) {
@@ -114,7 +114,7 @@ function alike(one, other, path, covariance, near) {
   else assert.equal(other, one, path);
 }
 
-/** The same files for all, one after the other; what npm's prints is what the others are compared with. */
+/** Runs all commands on the same files, one after the other, and compares the others' output with npm's. */
 function checkAll(frames, calibration, near, more = []) {
   const [first, ...others] = Object.keys(COMMANDS).filter((name) => !COMMANDS[name].skip);
   const outcome = (name) => {
@@ -125,7 +125,7 @@ function checkAll(frames, calibration, near, more = []) {
     const html = readFileSync(page, "utf8");
     for (const words of [`Check of ${basename(calibration)}`, "Content-Security-Policy", report.inputs[0].sha256])
       assert.ok(html.includes(words), `${name}: ${words}`);
-    // Numbers are compared in the JSON.
+    // The numbers are compared in the JSON.
     return { ...found, words: withoutNumbers(found.stdout), report };
   };
   const theirs = outcome(first);
@@ -182,7 +182,7 @@ describe("check by npm, Rust and Python", () => {
 
   test("a raw Kinect has one verdict and one JSON", { skip: existsSync(NYU) ? false : "needs ../shared/data" }, () => {
     const { status, report } = checkAll(NYU, join(NYU, "calib.json"), ROUNDING);
-    // Its unit is in no file.
+    // No file states its unit.
     assert.deepEqual([status, report.verdict], [2, "undecided"]);
     assert.deepEqual(
       report.warnings.map(({ code }) => code),

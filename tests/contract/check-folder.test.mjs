@@ -1,5 +1,5 @@
-// The package's command `check`: arguments, exit codes, what it prints and writes. Readers and check stand in by what they are told, so
-// that every verdict can be had; the report is the package's.
+// The package's command `check`: arguments, exit codes, printed and written output. Readers and check are replaced by stubs, so that every
+// verdict can be produced; the report is the package's.
 import assert from "node:assert/strict";
 import { spawn, spawnSync } from "node:child_process";
 import { createHash } from "node:crypto";
@@ -13,7 +13,7 @@ import { report } from "./rig-sample.mjs";
 const root = mkdtempSync(join(tmpdir(), "check-folder-"));
 after(() => rmSync(root, { recursive: true, force: true }));
 
-/** A file of ours says in JSON what is read in it. */
+/** A stub of the readers: each file states in JSON what reading it returns. */
 const RIG = `
 import { BimodalError } from "./rig-write.js";
 export async function readRigFile({ name, bytes }) {
@@ -27,7 +27,7 @@ export async function readRigFolder(files, options) {
   if (frames[0]?.leaves) return { frames, cameras: [], poses: [], readings, warnings: [{ code: "file-left-out", isDoubt: false, message: "left out" }] };
   return { frames, cameras: [], poses: [], readings, warnings: frames[0]?.sure ? [] : [{ code: "unit-guessed", isDoubt: true, message: "read " + files.map(({ name }) => name.split("/").pop()) + " " + JSON.stringify(options) }] };
 }`;
-/** The verdict is the first frame's; "wait" goes on until it is aborted. */
+/** A stub of the check: the first frame states the verdict; "wait" continues until it is aborted. */
 const INDEX = `
 import { report } from ${JSON.stringify(new URL("rig-sample.mjs", import.meta.url).href)};
 export default async () => {};
@@ -43,7 +43,7 @@ mkdirSync(join(root, "pkg"));
 mkdirSync(join(root, "examples"));
 writeFileSync(join(root, "package.json"), '{ "type": "module" }');
 cpSync(inRoot("examples/check-folder.mjs"), join(root, "examples/check-folder.mjs"));
-// The command and what its files share with the others, of which some are replaced.
+// The command and its dependencies, some of which are replaced below.
 for (const file of readdirSync(inRoot("pkg")).filter((name) => /\.(js|wasm)$/.test(name)))
   cpSync(inRoot("pkg", file), join(root, "pkg", file));
 writeFileSync(join(root, "pkg/rig.js"), RIG);
@@ -92,7 +92,7 @@ function check(...args) {
   });
   return { status, stdout, stderr };
 }
-/** What the check was asked. */
+/** The arguments that the check received. */
 const asked = (stdout) => JSON.parse(/^\w+: (\{.*\})$/m.exec(stdout)[1]);
 
 describe("exit codes", () => {

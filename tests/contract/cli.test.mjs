@@ -1,4 +1,4 @@
-// The command line beside the package: the same files, the same answer. Its own tests, of codes and broken files, are in cli/tests.
+// The command line and the package give the same answer for the same files. Codes and broken files are tested in cli/tests.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -12,10 +12,10 @@ import { readRigFile } from "../../pkg/rig.js";
 import { lightCsv, writeNpy, writePng } from "../../pkg/write.js";
 import { inRoot } from "../../scripts/shell.mjs";
 
-/** Native code and wasm round the same sums in another order, degrees and share. */
+/** Native code and wasm sum in different orders: limits of the differences, in degrees and as a share. */
 const DEGREES = 1e-3;
 const SHARE = 1e-4;
-/** Two decoders of JPEG differ by a step or two of 8 bits where colours were thinned out, degrees. */
+/** Two JPEG decoders differ by one or two steps of 8 bits where chroma was subsampled; limit in degrees. */
 const JPEG_DEGREES = 0.2;
 
 const SIZE = 48;
@@ -32,7 +32,7 @@ function cli(...args) {
   return { code: status, ...JSON.parse(stdout) };
 }
 
-/** Levels of 16 bits, or of 8 in sRGB. */
+/** Levels of 16 bits, or of 8 bits in sRGB. */
 function levels({ width, height, data }, most) {
   const brightest = data.reduce((a, b) => Math.max(a, b), 0) * 1.05;
   const encoded = (v) => (v <= 0.0031308 ? 12.92 * v : 1.055 * v ** (1 / 2.4) - 0.055);
@@ -67,8 +67,8 @@ function alike(told, report, degrees) {
 describe("command line", () => {
   before(async () => {
     await init();
-    // With all features and an example, as the Rust tests are built: cargo keeps one build of the library for all choices of features, and
-    // examples of the documentation would be linked with another one's.
+    // With all features and an example, as the Rust tests are built: cargo keeps one build of the library for all choices of features, and the
+    // documentation's examples would otherwise be linked with another build.
     const { status } = spawnSync(
       "cargo",
       ["build", "--quiet", "--all-features", "--bin", "bimodal-stereo", "--example", "pair"],
@@ -97,7 +97,7 @@ describe("command line", () => {
   test("8-bit sRGB and millimetres, nothing known", async () => {
     const { image, depth } = sample({ surface: "bust", light: "window", size: SIZE });
     writeFileSync(at("photo.png"), await writePng(levels(image, 255)));
-    // Two metres away a pixel of this camera measures 4 mm.
+    // At two metres, a pixel of this camera measures 4 mm.
     const camera = { fx: 500, fy: 500, cx: 23.5, cy: 23.5 };
     const stored = Uint16Array.from(depth.data, (value) => (Number.isFinite(value) ? Math.round(2000 + 4 * value) : 0));
     writeFileSync(at("depth.png"), await writePng({ width: SIZE, height: SIZE, channels: 1, data: stored }));

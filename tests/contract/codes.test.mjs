@@ -1,4 +1,4 @@
-// Codes, then words: the types list what the numerics can give, the documentation has a row for each, and nothing decides by a message.
+// The types list the codes that the numerics can give, the documentation has a row for each, and no code depends on a message's words.
 import assert from "node:assert/strict";
 import { readFileSync, readdirSync } from "node:fs";
 import { test } from "node:test";
@@ -7,7 +7,7 @@ import { DOCUMENT, documentOf } from "../../scripts/codes.mjs";
 
 const TABLE = JSON.parse(readFileSync(inRoot("src/codes.json"), "utf8"));
 const source = (path) => readFileSync(inRoot(path), "utf8");
-/** The files below some folders whose paths fit. */
+/** The files below some folders whose paths match. */
 const files = (folders, pattern) =>
   folders.flatMap((folder) =>
     readdirSync(inRoot(folder), { recursive: true })
@@ -15,14 +15,14 @@ const files = (folders, pattern) =>
       .filter((path) => pattern.test(path)),
   );
 
-/** The words of a union type. */
+/** The members of a union type. */
 function union(path, name) {
   const [, body] = new RegExp(`export type ${name} =([^;]+);`).exec(source(path)) ?? [];
   assert.ok(body, `${path} has no ${name}`);
   return [...body.matchAll(/"([a-z-]+)"/g)].map(([, word]) => word);
 }
 
-// That the table has the codes of the numerics and no others is a test of the crate (tests/library/codes.rs).
+// A test of the crate (tests/library/codes.rs) checks that the table has exactly the codes of the numerics.
 for (const [group, path, name] of [
   ["runs", "js/types/codes.ts", "ReasonCode"],
   ["checks", "js/types/codes.ts", "CheckCode"],
@@ -66,7 +66,7 @@ test("warnings of the readers in Rust and of the command check have a row", () =
   );
 });
 
-/** The words of a list in a source. */
+/** The strings of a list in a source. */
 function list(path, pattern) {
   const [, body] = pattern.exec(source(path)) ?? [];
   assert.ok(body, `${path} has no ${pattern}`);
@@ -84,7 +84,7 @@ test("the documentation's table is made of these rows", () => {
   assert.equal(source(DOCUMENT), documentOf(TABLE), "node scripts/codes.mjs writes it anew");
 });
 
-/** Whatever looks for words in a message, a reason or a warning. */
+/** Patterns of code that looks for words in a message, a reason or a warning. */
 const DECIDING = [
   /\.(?:test|exec)\(\s*[^()]*\b(?:message|reason|warnings?)\b/,
   /\b(?:message|reason|warnings?)\b(?:[?!]|\s*\?\?\s*"")?\)?\??\.(?:match|matchAll|includes|startsWith|endsWith|search)\(/,
@@ -92,7 +92,7 @@ const DECIDING = [
   /(?<!typeof [\w.]*)\b(?:message|warning)\b\s*[!=]==?\s*["'`][^"'`]/,
   /\bswitch \((?:[\w.?]*\.)?(?:message|warning)\)/,
 ];
-/** What is left: a message is shown without the name of the field that it stands beside. */
+/** The exception: it displays a message without the name of the field beside it. */
 const SHOWN = ["www/lab/messages.ts"];
 
 function decisions(text) {

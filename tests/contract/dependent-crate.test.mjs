@@ -1,4 +1,4 @@
-// Crates of others that depend on this one: what they require beside it, and what their modules export.
+// Crates that depend on this one: their dependencies, and the exports of their modules.
 import assert from "node:assert/strict";
 import { copyFileSync, mkdirSync, readFileSync } from "node:fs";
 import { createRequire } from "node:module";
@@ -8,7 +8,7 @@ import { inRoot } from "../../scripts/shell.mjs";
 import { run, write } from "./fresh.mjs";
 import { LONG } from "./long.mjs";
 
-/** The features of the crate that are not for this project's own package. */
+/** The crate's features, except those for this project's own package. */
 function features() {
   const metadata = JSON.parse(run("cargo", ["metadata", "--no-deps", "--format-version", "1"], inRoot()));
   const { features } = metadata.packages.find(({ name }) => name === "bimodal-stereo");
@@ -17,15 +17,15 @@ function features() {
 }
 
 /**
- * A crate of its own below target/, where its second build is a short one. It starts from this project's lock file, so that a
- * release of today changes nothing.
+ * A separate crate below target/, where a second build is fast. It uses this project's lock file, so that new releases of dependencies
+ * change nothing.
  */
 function dependent(name, manifest, files) {
   const path = inRoot(`target/dependent/${name}`);
   mkdirSync(path, { recursive: true });
   copyFileSync(inRoot("Cargo.lock"), `${path}/Cargo.lock`);
   const head = `[package]\nname = "dependent"\nversion = "0.0.0"\nedition = "2024"\n\n[workspace]\n`;
-  // What the test looks at is not how fast it is.
+  // Speed does not matter here.
   const profile = `[profile.dev]\nopt-level = 0\ndebug = false\n`;
   write(path, { "Cargo.toml": `${head}\n${manifest}\n${profile}`, ...files });
   return path;
@@ -45,7 +45,7 @@ thiserror = "2.0.18"
 wasm-bindgen = "0.2"
 `,
     {
-      // The glue is a CommonJS module, and this project's are not.
+      // The glue is a CommonJS module, unlike this project's modules.
       "bound/package.json": "{}",
       "src/lib.rs": `use bimodal_stereo::{Estimator, Options, scenes};
 use wasm_bindgen::prelude::{JsError, wasm_bindgen};
@@ -71,7 +71,7 @@ pub fn scale_at_the_start(surface: &str) -> Result<f64, JsError> {
   const linked = `${path}/target/${WASM}/debug/dependent.wasm`;
   const exported = (file) =>
     WebAssembly.Module.exports(new WebAssembly.Module(readFileSync(file))).map(({ name }) => name);
-  // Until it is bound, a function's name has a hash at its end; names of wasm-bindgen's and the linker's own begin with underscores.
+  // Before binding, a function's name ends in a hash; names of wasm-bindgen and of the linker begin with underscores.
   const described = exported(linked)
     .filter((name) => !name.startsWith("__") && name !== "memory")
     .map((name) => name.replace(/_[0-9a-f]{16}$/, ""));

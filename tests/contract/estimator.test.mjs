@@ -1,4 +1,4 @@
-// The life of an estimator: what comes out, in which shape, and when it ends.
+// The life cycle of an estimator: its results, their types, and its end.
 import assert from "node:assert/strict";
 import { before, describe, test } from "node:test";
 import { Estimator, estimator, init, pair, refused, sample, sampleLights, sampleSurfaces } from "./support.mjs";
@@ -256,7 +256,7 @@ describe("run", () => {
     let events = 0;
     const onStep = ({ iteration }) => {
       seen.push(iteration);
-      // In the next turn of the event loop, and so within two steps.
+      // Runs in the next turn of the event loop, so within two steps.
       if (iteration === 1) setImmediate(() => events++);
       if (iteration === 3) assert.equal(events, 1);
     };
@@ -307,7 +307,7 @@ describe("for await", () => {
     assert.ok(reports.length > 1 && reports.slice(0, -1).every(({ status }) => status === "running"));
     assert.notEqual(reports.at(-1).status, "running");
     assert.deepEqual(reports.at(-1), made.report);
-    // The loop is over: there is no other step.
+    // The loop is over, so there is no further step.
     for await (const report of made) assert.fail(report.status);
   });
 

@@ -1,4 +1,4 @@
-// Every example does what it says: pages in a browser, programs in a shell.
+// Every example works: pages in a browser, programs in a shell.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { appendFileSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -9,7 +9,7 @@ import { inRoot } from "../../scripts/shell.mjs";
 import { decodeDepth } from "../../pkg/files.js";
 import { chrome, folder, pairFiles, run, served } from "./fresh.mjs";
 
-/** No test is about time: this ends what hangs, milliseconds. */
+/** No test measures time; this ends a test that hangs, milliseconds. */
 const NEVER = 300_000;
 
 const data = folder();
@@ -20,10 +20,10 @@ before(async () => {
   writeFileSync(join(data, "bad.png"), "no picture");
 });
 
-/** A page of its own, closed after the body; what went wrong in it fails the test. */
+/** Opens a new page, runs the body and closes the page; errors in the page fail the test. */
 async function onPage(address, body) {
   const page = await (await chrome()).newPage();
-  // Whatever is said for a moment only: on a quick machine it is gone before it is looked for.
+  // Records every text of the output, since on a fast machine some are gone before the test reads them.
   await page.addInitScript(() => {
     window.said = [];
     new MutationObserver(() => window.said.push(document.getElementById("out")?.textContent ?? "")).observe(document, {
@@ -42,7 +42,7 @@ async function onPage(address, body) {
   await page.close();
 }
 
-/** Waits until an element says what it should. */
+/** Waits until an element shows the expected text. */
 const says = (page, selector, pattern) => page.locator(selector, { hasText: pattern }).waitFor();
 
 describe("pages", () => {
@@ -78,7 +78,7 @@ describe("pages", () => {
         });
         assert.ok(painted > 1000, `${painted} pixels of ${id}`);
       }
-      // Pressed before the worker has loaded, so that there is something to stop however busy the machine is.
+      // Clicked before the worker has loaded, so that there is something to stop on any machine.
       await page.addInitScript(() => addEventListener("load", () => document.getElementById("stop").click()));
       await page.reload();
       await says(page, "#out", "stopped");
@@ -131,7 +131,7 @@ describe("batch.mjs", () => {
       .map((line) => line.split(","));
   const named = (name) => lines().find(([first]) => first === name);
 
-  /** Runs to the end, or until `stop` holds and it is interrupted. */
+  /** Runs to the end, or interrupts the program once `stop` holds. */
   function batch(args, stop) {
     const child = spawn(process.execPath, [inRoot("examples/batch.mjs"), ...args]);
     const output = { stdout: "", stderr: "" };
@@ -154,11 +154,11 @@ describe("batch.mjs", () => {
       writeFileSync(join(pairs, first), colour);
       writeFileSync(join(pairs, second), depth);
     };
-    // Two ways to name them.
+    // Two naming schemes.
     for (const beta of [0, 10]) await add([`colour/${beta}.png`, `depth/${beta}.npy`], { angles: { beta }, size: 48 });
     for (const beta of [20, 30])
       await add([`view ${beta}-rgb.png`, `view ${beta}-depth.npy`], { angles: { beta }, size: 48 });
-    // It comes after the first, and takes far longer than an interruption.
+    // The pair comes after the first and takes far longer than an interruption.
     await add(LARGE, { size: 512 });
     writeFileSync(join(pairs, 'bad, "cut"-colour.png'), "no picture");
     writeFileSync(join(pairs, 'bad, "cut"-depth.npy'), "no array");
@@ -196,7 +196,7 @@ describe("batch.mjs", () => {
       ["name", '"bad', "0"],
     );
     for (const file of LARGE) rmSync(join(pairs, file));
-    // As if it had been cut off in the middle of a line.
+    // As if the file had been cut off within a line.
     appendFileSync(csv, "10,conv");
 
     const second = await batch([pairs, "--csv", csv]);

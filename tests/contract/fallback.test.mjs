@@ -1,4 +1,4 @@
-// A machine without SIMD gets the other file, that one alone, and the same answer.
+// A machine without SIMD loads only the other file and finds the same answer.
 import assert from "node:assert/strict";
 import { once } from "node:events";
 import { before, describe, test } from "node:test";
@@ -6,9 +6,9 @@ import { Worker } from "node:worker_threads";
 
 const SIMD = "bimodal_stereo_bg.wasm";
 const SCALAR = "bimodal_stereo_scalar_bg.wasm";
-/** Rounding may differ where a compiler reorders sums; today it does not, and the poses are equal to the bit. */
+/** Limit of the difference between the rotations: rounding may differ where a compiler reorders sums. */
 const DEGREES = 0.001;
-/** Nothing known: the whole method runs, the search included. */
+/** Nothing known, so that the whole method runs, including the search. */
 const REQUEST = {
   surface: "bust",
   light: "window",

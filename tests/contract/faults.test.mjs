@@ -1,16 +1,16 @@
-// Inputs at the edge of what there can be: refused by name, or worked on to an end that does not claim more than it knows.
+// Extreme inputs are refused with a named error or processed, without a result that claims more than it knows.
 import assert from "node:assert/strict";
 import { before, describe, test } from "node:test";
 import { LONG } from "./long.mjs";
 import { BimodalError, Estimator, init, outcome, pair, refused, sample } from "./support.mjs";
 
-/** Degrees beyond which a pose that is called converged is confidently wrong. */
+/** A pose with the status "converged" is confidently wrong beyond this, degrees. */
 const WRONG = 3;
 const SIDE = 64;
-/** Side of the scenes that are searched. */
+/** Side of the scenes with a search. */
 const SMALL = 32;
 const ENDS = ["converged", "ambiguous", "lost", "max-iterations"];
-/** The least float above zero, and the largest one. */
+/** The smallest positive float and (nearly) the largest one. */
 const [DENORMAL, LARGEST] = [1.4e-45, 3.4e38];
 
 /** The angle between two rotations, degrees. */
@@ -21,12 +21,12 @@ function degreesBetween(a, b) {
 
 const isFinitePose = ({ scale, rotation, translation }) => [scale, ...rotation, ...translation].every(Number.isFinite);
 
-/** Nothing known: a search over all poses comes first. It takes most of the time, so that only some of the cases have one. */
+/** Nothing known: the loop begins with a search over all poses. It takes most of the time, so only some cases use it. */
 const SEARCH = { start: "search" };
 
 /**
- * Runs to the end, or is refused by a named error. Where the truth is known, "converged" has to be near it; where there is none to be known,
- * it must not be said.
+ * Runs to the end, or checks that the error is named. If the truth is known, "converged" requires a pose near it; if not, the status must
+ * not be "converged".
  */
 function run({ image, depth }, { truth, ...options } = {}) {
   let made;
@@ -37,7 +37,7 @@ function run({ image, depth }, { truth, ...options } = {}) {
     return { refused: error.code, field: error.field };
   }
   try {
-    // Slices of the search and iterations are both capped, so that this ends.
+    // Slices of the search and iterations are both limited, so this loop ends.
     while (made.report.status === "running") made.step();
     const { status, pose } = made.report;
     assert.ok(ENDS.includes(status), status);
@@ -51,7 +51,7 @@ function run({ image, depth }, { truth, ...options } = {}) {
   }
 }
 
-/** A scene whose pose is known, with one of its inputs changed in place. */
+/** A scene with a known pose and one input changed in place. */
 function spoiled(change, request = {}) {
   const scene = pair({ size: SIDE, light: "window", angles: { beta: 15 }, ...request });
   const { image, depth, pose } = scene;
@@ -59,7 +59,7 @@ function spoiled(change, request = {}) {
   return [{ image, depth }, { truth: pose }];
 }
 
-/** The same numbers in each run. */
+/** The same random numbers in each run. */
 function randoms(seed) {
   let state = seed;
   return () => (state = (Math.imul(state, 1664525) + 1013904223) >>> 0) / 2 ** 32;
@@ -143,7 +143,7 @@ describe("faults", () => {
   });
 
   test("views that show nothing in common", LONG, () => {
-    // Its front and its back: what either view sees the other does not.
+    // Two different objects: neither view shows anything of the other.
     const front = pair({ size: SMALL, light: "window" });
     const back = pair({ size: SMALL, light: "window", surface: "ripples", seed: 5 });
     run({ image: front.image, depth: back.depth }, SEARCH);
@@ -158,7 +158,7 @@ describe("faults", () => {
     });
     const round = sample({ surface: { width: 64, height: 64, heights: ball }, light: "window", size: SMALL });
     run({ image: round.image, depth: round.depth }, SEARCH);
-    // A plane of one colour before a plane.
+    // A plane of one colour, and a plane as depth.
     const count = SIDE * SIDE;
     const flat = {
       image: { width: SIDE, height: SIDE, data: new Float32Array(3 * count).fill(0.5) },
@@ -200,7 +200,7 @@ describe("faults", () => {
     }
     const [{ depth, image }] = spoiled(() => {});
     run({ image: { ...image, data: new Float32Array(3 * count).fill(0.25) }, depth });
-    // Half of the object brighter than the camera can tell.
+    // Half of the object saturates the camera.
     const [clipped, options] = spoiled(({ data }) => {
       const middle = [...data].filter((value) => value > 0).sort((a, b) => a - b);
       const most = middle[Math.floor(middle.length / 2)];

@@ -1,4 +1,4 @@
-// The page of files that are read: it is what the table beside the readers says, the readers do what the table says, and no reader is missing.
+// The page of supported files matches the table beside the readers, the readers do what the table says, and no reader is missing.
 import assert from "node:assert/strict";
 import { readFileSync, readdirSync } from "node:fs";
 import { describe, test } from "node:test";
@@ -21,17 +21,17 @@ const { rasterKind, containerOf } = await loaded(
 );
 const source = (path) => readFileSync(inRoot("js/rig", path), "utf8");
 
-// Node.js has a WebSocket since version 22.
+// Node.js has a WebSocket only from version 22.
 globalThis.WebSocket = WebSocket;
 
 test("the page is made of the table", () => {
   assert.equal(readFileSync(inRoot(DOCUMENT), "utf8"), documentOf(GROUPS), "node scripts/files.mjs writes it anew");
 });
 
-/** The codes of warnings, each once. */
+/** The distinct codes of warnings. */
 const codesOf = ({ warnings }) => [...new Set(warnings.map(({ code }) => code))].sort();
 
-/** Reads a sample as its row says; its codes. */
+/** Reads a sample as its row states, and returns the codes. */
 const READ = {
   async folder({ files, options }) {
     const found = await readRigFolder(files, options);
@@ -102,7 +102,7 @@ test("each row has a sample of its own, and each cell its words", () => {
 
 const READERS = new Set(ROWS.map(({ reader }) => reader));
 const missing = (names) => names.filter((name) => !READERS.has(name));
-/** The words of a union type. */
+/** The members of a union type. */
 const union = (path, name) =>
   [...new RegExp(`type ${name} =([^;]+);`).exec(source(path))[1].matchAll(/"([\w-]+)"/g)].map(([, word]) => word);
 

@@ -1,4 +1,4 @@
-// PNG and .npy, right and wrong.
+// PNG and .npy files, valid and invalid.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { describe, test } from "node:test";

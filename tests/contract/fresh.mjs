@@ -1,4 +1,4 @@
-// Fresh projects with the packed package in them, as npm leaves it for others, and their pages in a browser.
+// Fresh projects with the packed package, as npm installs it, and their pages in a browser.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -12,10 +12,10 @@ import { serveSite } from "../../scripts/site/serve.mjs";
 import { writeNpy, writePng } from "../../pkg/write.js";
 import { init, sample } from "./support.mjs";
 
-/** Ends what hangs, milliseconds. */
+/** Limit that ends a test that hangs, milliseconds. */
 const NEVER = 300_000;
 
-/** Runs a program to its end, which has to be a good one; what it printed. Programs of our node_modules are found by name. */
+/** Runs a program, which must succeed, and returns its output. Programs of this project's node_modules are found by name. */
 export function run(program, args, cwd) {
   const env = { ...process.env, PATH: `${inRoot("node_modules/.bin")}${delimiter}${process.env.PATH}` };
   const { status, stdout, stderr } = spawnSync(program, args, { cwd, env, encoding: "utf8" });
@@ -23,23 +23,23 @@ export function run(program, args, cwd) {
   return stdout;
 }
 
-/** What is to be done after all tests of a file; asked for inside a hook or a test, Node's own `after` would come too early. */
+/** Work for the end of a test file; Node's own `after`, called inside a hook or a test, would run too early. */
 const endings = [];
 after(async () => {
   for (const end of endings.reverse()) await end();
 });
 
-/** Has something done after all tests of a file. */
+/** Registers work for the end of a test file. */
 export const atTheEnd = (end) => void endings.push(end);
 
-/** A folder that is gone after the tests. */
+/** A temporary folder, removed at the end. */
 export function folder() {
   const path = mkdtempSync(join(tmpdir(), "bimodal-stereo-"));
   endings.push(() => rmSync(path, { recursive: true, force: true }));
   return path;
 }
 
-/** A project that has the package and nothing else. */
+/** A project that contains only the package. */
 export function freshProject() {
   const path = folder();
   writeFileSync(join(path, "package.json"), JSON.stringify({ name: "fresh", private: true, type: "module" }));
@@ -50,7 +50,7 @@ export function freshProject() {
   return path;
 }
 
-/** Writes files, by their paths in a folder. */
+/** Writes files, given by their paths in a folder. */
 export function write(path, files) {
   for (const [name, content] of Object.entries(files)) {
     mkdirSync(dirname(join(path, name)), { recursive: true });
@@ -58,7 +58,7 @@ export function write(path, files) {
   }
 }
 
-/** A pair as files: the image as PNG of 16 bits, linear, so that nothing of it is lost; the depth as float32. */
+/** A pair as files: the image as a linear 16-bit PNG, which is precise enough for the tests; the depth as float32. */
 export async function pairFiles(request) {
   await init();
   const { image, depth } = sample({ surface: "bust", light: "colourful", ...request });
@@ -67,17 +67,17 @@ export async function pairFiles(request) {
   return { colour: await writePng({ ...image, channels: 3, data }), depth: writeNpy({ ...depth, channels: 1 }) };
 }
 
-/** The fenced examples of one language in a Markdown file. */
+/** The fenced examples in one language of a Markdown file. */
 export const examples = (path, language) =>
   [...readFileSync(path, "utf8").matchAll(new RegExp("^```" + language + "\\n([\\s\\S]*?)^```", "gm"))].map(
     (m) => m[1],
   );
 
-/** An HTML page with something in its head. */
+/** An HTML page with the given head. */
 export const html = (head) =>
   `<!doctype html><meta charset="utf-8"><link rel="icon" href="data:,"><title>test</title>${head}\n`;
 
-/** The addresses of folders, until the tests are over. */
+/** The address of a folder, served until the end of the tests. */
 export async function served(path) {
   const { address, close } = await serveSite({ port: 0, below: "/", folder: path });
   endings.push(close);
@@ -85,7 +85,7 @@ export async function served(path) {
 }
 
 let started;
-/** One browser for all. */
+/** One browser, shared by all tests. */
 export function chrome() {
   started ??= (async () => {
     const chrome = await chromium.launch({
@@ -99,8 +99,8 @@ export function chrome() {
 }
 
 /**
- * What a page says in its console until it says "end" or fails, the answers of its server that were none, and its threads:
- * whether each of them runs our code.
+ * Visits a page until its console shows "end" or it fails. Returns the console's lines, the paths of failed requests, and for each thread
+ * whether it runs the package's code.
  */
 export async function visit(address, { threads = 0 } = {}) {
   const page = await (await chrome()).newPage();
@@ -110,7 +110,7 @@ export async function visit(address, { threads = 0 } = {}) {
     page.on("response", (response) => {
       if (response.status() < 400) return;
       seen.missing.push(new URL(response.url()).pathname);
-      // Without its script a page says nothing.
+      // Without its script, a page logs nothing.
       if (["document", "script"].includes(response.request().resourceType())) done();
     });
     page.on("console", (message) => {
@@ -130,7 +130,7 @@ export async function visit(address, { threads = 0 } = {}) {
       late.addEventListener("abort", () => fail(new Error(`${address}: ${seen.lines.join("\n")}`))),
     ),
   ]);
-  // The browser may tell of a thread after what its page has said.
+  // The browser may report a thread after the page's last line.
   while (seen.threads.length < threads && !late.aborted) await page.waitForTimeout(50);
   seen.threads = await Promise.all(seen.threads);
   await page.close();

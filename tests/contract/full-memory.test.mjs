@@ -1,15 +1,15 @@
-// Memory that is full is an error by name. Four gigabytes are too much for a test, so that the module here is granted less.
+// Exhausted memory is a named error. Four gigabytes are too much for a test, so the module here gets a lower limit.
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { test } from "node:test";
 import { Estimator, estimator, init, refused, sample } from "./support.mjs";
 
 const PAGE = 65_536;
-/** Enough for a small pair, and for some of 400x400. */
+/** Enough for a small pair and for some of 400x400, bytes. */
 const GRANTED = 120e6;
 const MEMORY_SECTION = 5;
 
-/** An unsigned LEB128 number, and where it ends. */
+/** An unsigned LEB128 number, and the position after it. */
 function leb128(bytes, at) {
   let [value, shift] = [0, 0];
   for (; ; shift += 7) {

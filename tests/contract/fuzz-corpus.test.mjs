@@ -1,4 +1,4 @@
-// Replays the corpus of scripts/fuzz-readers.mjs: files that the fuzzer made, each of which runs what no fixture and no smaller one runs.
+// Replays the corpus of scripts/fuzz-readers.mjs: files from the fuzzer, each of which runs code that no fixture and no smaller file runs.
 import assert from "node:assert/strict";
 import { readFileSync, readdirSync } from "node:fs";
 import { describe, test } from "node:test";
@@ -6,7 +6,7 @@ import { fileURLToPath } from "node:url";
 import { readEveryWay } from "../../scripts/fuzz/read.mjs";
 
 const folder = fileURLToPath(new URL("../../fuzz/corpus/readers", import.meta.url));
-/** A corpus that has gone missing would pass. */
+/** Least number of files: a missing corpus would pass the other checks. */
 const FEWEST = 50;
 
 describe("files that a fuzzer made", () => {

@@ -1,12 +1,12 @@
-// What a report must be: whole, and without anything that could run or ask for a file.
+// Requirements on a report: it is complete, and contains nothing that could run or request a file.
 import assert from "node:assert/strict";
 
-/** Elements with no end of their own. */
+/** Elements without an end tag. */
 const VOID = new Set(["meta", "img", "!doctype"]);
-/** Attributes that may name another file. */
+/** Attributes that can name another file. */
 const ADDRESSES = /^(?:src|srcset|href|xlink:href|action|formaction|data|poster|background|ping)$/;
 
-/** The elements of a page that keeps to quoted attributes: their names and attributes, and the text; it asserts that every one is closed. */
+/** Parses a page that quotes all attributes: returns element names, attributes and text, and asserts that every element is closed. */
 function parse(page) {
   const elements = [];
   const open = [];
@@ -28,7 +28,7 @@ function parse(page) {
   return { elements, text };
 }
 
-/** Fails where a page could run or ask for anything. */
+/** Fails if a page could run or request anything. */
 export function harmless(page) {
   const { elements, text } = parse(page);
   for (const { name, attributes } of elements) {

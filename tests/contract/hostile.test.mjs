@@ -1,4 +1,4 @@
-// Every export, given what it never asked for: no call breaks the numerics off, runs away with memory, or leaves anything changed.
+// Every export with hostile arguments: no call aborts the numerics, exhausts memory, or changes other state.
 import assert from "node:assert/strict";
 import { after, before, describe, test } from "node:test";
 import * as files from "../../pkg/files.js";
@@ -12,12 +12,12 @@ import { report } from "./rig-sample.mjs";
 import { BimodalError, Estimator, estimator, init, outcome, pair } from "./support.mjs";
 
 const MODULES = { index: package_, files, rig, "rig-recordings": recordings, "rig-write": rigWrite, write };
-/** These have effects of their own: `init` loads, a class is made with `new`, a robot is looked for in the network. */
+/** Exports with side effects: `init` loads, classes need `new`, `connectRobot` uses the network. */
 const APART = new Set(["default", "BimodalError", "Estimator", "connectRobot"]);
 
 const circle = {};
 circle.self = circle;
-/** Throws from wherever it is looked at. */
+/** Throws on any access. */
 const trap = new Proxy(
   {},
   {
@@ -60,7 +60,7 @@ const HOSTILE = {
   "a view on nothing": new DataView(new ArrayBuffer(0)),
 };
 const NAMES = Object.keys(HOSTILE);
-/** Arguments: one hostile value in each place, the same one in all places, and two neighbours. */
+/** Arguments: one hostile value in one position, in all positions, and in two neighbouring ones. */
 function* given(count) {
   for (const [index, name] of NAMES.entries()) {
     yield [name, Array(count).fill(HOSTILE[name])];
@@ -95,7 +95,7 @@ const RUN = {
 };
 const SIGMAS = { rotationDegrees: [1, 2, 3], translation: [1, 2, null], scale: null, weakest: "a" };
 const levels = (data, channels = 1) => ({ width: 1, height: 1, channels, data });
-/** Writers with what they take. */
+/** Writers with their arguments. */
 const WRITERS = {
   reportHtml: [rigWrite.reportHtml, report(), PICTURES, BESIDE],
   runReportHtml: [write.runReportHtml, RUN],
@@ -118,7 +118,7 @@ const WRITERS = {
     ]),
   ),
 };
-/** A value with one member changed, at any depth, and the hostile values in its place. */
+/** Copies of a value with one member, at any depth, replaced by each hostile value. */
 function* changes(value, path = "") {
   if (Object(value) !== value || !(Array.isArray(value) || Object.getPrototypeOf(value) === Object.prototype)) return;
   for (const key of Object.keys(value).slice(0, 12)) {
@@ -134,7 +134,7 @@ function* changes(value, path = "") {
   }
 }
 
-/** What a call may end in: an answer, or an error that is no break-off and names what is wrong. */
+/** Checks the outcome of a call: a result, or an error that names the problem and is not an abort. */
 async function tried(what, call) {
   try {
     const answer = await call();
@@ -178,7 +178,7 @@ describe("every export", () => {
     test(`${name}, with one member of what it takes changed`, async () => {
       await call(...values);
       for (const [words, changed] of changes(values)) {
-        // A number in a report is said to be "not known" where it is none; JavaScript does not reckon with these.
+        // A report shows "not known" for a missing number; bigints and symbols make JavaScript's own arithmetic throw.
         if (name === "reportHtml" && /(bigint|symbol)$/.test(words)) continue;
         await tried(`${name}(${words})`, () => call(...changed));
       }
@@ -211,7 +211,7 @@ describe("every export", () => {
       for (const [words, values] of given(2))
         await tried(`estimator.${name}(${words})`, () => bystander[name](...values));
     }
-    // One that has ended: what is accepted costs nothing.
+    // An estimator that has ended, so that accepted calls cost nothing.
     const ended = estimator({ maxIterations: 1 });
     ended.step();
     for (const [words, values] of given(2)) {

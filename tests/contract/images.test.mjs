@@ -1,4 +1,4 @@
-// One function for whatever holds a colour image: files and addresses in Node, and what a page has in Chromium.
+// One function for every source of a colour image: files and addresses in Node, and objects of a page in Chromium.
 import assert from "node:assert/strict";
 import { copyFileSync, readFileSync } from "node:fs";
 import { createServer } from "node:http";
@@ -96,7 +96,7 @@ describe("in Node", () => {
         assert.deepEqual([code, details.file, message], ["file", name, `${name}: ${details.reason}`]);
         return true;
       });
-    // An address that holds the picture is not repeated as a whole.
+    // An address that contains the picture is repeated only in part.
     const picture = `data:image/png;base64,${Buffer.from(broken).toString("base64").repeat(9)}`;
     await assert.rejects(imageFrom(picture), ({ message }) => message.startsWith("data:") && message.length < 200);
   });
@@ -112,7 +112,7 @@ describe("in Node", () => {
   });
 });
 
-/** What a page finds in each source: its size, the red of its first pixels, and the type of its numbers; or the error. */
+/** The page prints for each source its size, first pixels, and type of array, or the error. */
 const PAGE = `
 import { imageFrom } from "bimodal-stereo/files";
 const say = async (name, source, options) => {
@@ -183,9 +183,9 @@ describe("on a page", () => {
       assert.match(lines.get(name), /^3x2 Uint8ClampedArray 0 1[12] 23 255 3[45] /, name);
     for (const name of ["canvas", "offscreen", "data"])
       assert.equal(lines.get(name), "3x2 Uint8ClampedArray 200 100 50 255 200 100 50 255", name);
-    // A frame of a video may be stored as luma and chroma.
+    // A video frame may be stored as luma and chroma.
     assert.match(lines.get("frame"), /^3x2 Uint8ClampedArray (19\d|20\d) (9\d|10\d) (4\d|5\d) 255 /);
-    // display-p3 holds the same colour as sRGB by other numbers.
+    // The same colour has other values in display-p3 than in sRGB.
     assert.match(lines.get("p3"), /^3x2 Uint8ClampedArray (19[89]|20[0-2]) (99|10[01]) (49|5[0-2]) 255 /);
     assert.match(lines.get("jpeg"), /^\d+x\d+ Uint8/);
     assert.match(lines.get("gif"), /^1x1 Uint8ClampedArray 255 0 0 255/);

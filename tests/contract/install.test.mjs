@@ -1,4 +1,4 @@
-// What `npm run build` leaves can be installed: into an empty folder, with types, and README's examples are true.
+// The output of `npm run build` can be installed into an empty folder, with types, and the README's examples work.
 import assert from "node:assert/strict";
 import { existsSync, mkdirSync, readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
@@ -20,7 +20,7 @@ test("the README's example runs in Node", () => {
   assert.match(run(process.execPath, ["example.mjs"]), /converged/);
 });
 
-/** What a program of one line sees of the package after `init`. */
+/** The lights that a one-line program gets from the package after `init`. */
 function lightsAfter(specifier, argument) {
   const code = `import init, { sampleLights } from ${JSON.stringify(specifier)}; await init(${argument}); console.log(...sampleLights());`;
   return run(process.execPath, ["--input-type=module", "-e", code]).trim().split(" ");
@@ -61,12 +61,12 @@ test("bundled for browsers it carries its files along, and asks for nothing of N
   };
   const { output } = await build({
     ...{ root: folder, configFile: false, logLevel: "warn", customLogger: logger, worker: { format: "es" } },
-    // A remark on how long plugins took depends on how busy the machine is.
+    // This warning about slow plugins depends on how busy the machine is.
     build: { write: false, rollupOptions: { input: join(folder, "page.js"), checks: { bundlerTimings: false } } },
   });
   assert.deepEqual(warnings, []);
   const bundled = output.map(({ fileName }) => fileName.replace(/^assets\/|-[\w-]{8}(?=\.)/g, "")).sort();
-  // The check's files lie beside them although this page never asks for them: their addresses are known before what uses them is left out.
+  // The check's files are emitted although this page never loads them: their addresses are resolved before the unused code is removed.
   const wasm = ["", "_check", "_rigs", "_scalar"].map((which) => `bimodal_stereo${which}_bg.wasm`);
   const files = [...wasm, "page.js", "thread.js"];
   assert.deepEqual(bundled, files);
@@ -137,7 +137,7 @@ test("types resolve for Node and for bundlers, without help from other type pack
   }
 });
 
-/** The package's entry points for programs, by the names that they are imported by. */
+/** The package's entry points for programs, by their import names. */
 const typedEntries = () => {
   const { name, exports } = JSON.parse(readFileSync(join(folder, "node_modules/bimodal-stereo/package.json"), "utf8"));
   return Object.entries(exports).flatMap(([path, { types }]) => (types === undefined ? [] : [join(name, path)]));
@@ -164,7 +164,7 @@ test("every entry point has all of its types, which are checked themselves", () 
 
 test("nothing is wrong with the types of the packed file", () => {
   const [packed] = readdirSync(folder).filter((name) => name.endsWith(".tgz"));
-  // .wasm files and thread.js have paths for bundlers and no types.
+  // .wasm files and thread.js have paths for bundlers, but no types.
   const entries = typedEntries().map((entry) => entry.replace(/^bimodal-stereo/, "."));
   run("attw", [packed, "--profile", "esm-only", "--no-color", "--no-definitely-typed", "--entrypoints", ...entries]);
 });
@@ -186,7 +186,7 @@ test("nothing of the workshop is packed, and the package says where it comes fro
   );
   for (const licence of ["LICENSE-MIT", "LICENSE-APACHE"])
     assert.ok(readFileSync(join(installed, licence)).equals(readFileSync(inRoot(licence))));
-  // Whatever has a path of its own is there.
+  // Every exported path exists.
   for (const target of Object.values(exports).flatMap((each) =>
     typeof each === "string" ? each : Object.values(each),
   )) {

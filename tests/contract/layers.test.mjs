@@ -1,4 +1,4 @@
-// Which part of the TypeScript looks into which. That no two files import each other in a circle is Biome's to say (noImportCycles).
+// The permitted imports between the parts of the TypeScript. Biome checks that imports form no circles (noImportCycles).
 import assert from "node:assert/strict";
 import { existsSync, readFileSync, readdirSync } from "node:fs";
 import { dirname, join } from "node:path";
@@ -7,14 +7,14 @@ import { imports } from "../../scripts/imports.mjs";
 import { inRoot } from "../../scripts/shell.mjs";
 
 const PARTS = ["js", "protocols", "www", "scripts"];
-/** What a part looks into beside itself: folders, or single files. */
+/** The folders or files outside itself that a part may import. */
 const MAY_LOOK = {
   js: ["target"],
   protocols: [],
   www: ["pkg", "protocols", "src/codes.json", "js/wasm.ts"],
   scripts: ["pkg", "protocols", "target", "src/codes.json"],
 };
-/** The places of the page, which stand side by side, and what they borrow from each other. */
+/** The places of the page, which are peers, and the files that they may borrow from each other. */
 const PLACES = ["www/lab", "www/learn", "www/rig", "www/tables"];
 const BORROWED = [
   "www/rig/protocol.ts",
@@ -23,19 +23,19 @@ const BORROWED = [
   "www/rig/paint.ts",
   "www/lab/settings.ts",
 ];
-/** What all places stand on. */
+/** Folders that all places may use. */
 const GROUND = ["www/draw", "www/engine"];
 
 const language = (path) => (path.endsWith(".d.ts") ? "dts" : path.endsWith(".ts") ? "ts" : "js");
 
-/** The file of an import: sources name what is compiled from them, and bundlers leave the ending out. */
+/** The file of an import: sources name compiled files, and imports for bundlers have no ending. */
 function fileOf(from, source) {
   const path = join(dirname(from), source);
   const candidates = [path.replace(/\.js$/, ".ts"), `${path}.ts`, path];
   return candidates.find((each) => existsSync(inRoot(each)) && /\.[a-z]+$/.test(each)) ?? path;
 }
 
-/** Every import of another file of the project, by the file that it stands in. */
+/** All imports of other files of the project, by the importing file. */
 function looksOf(parts) {
   const files = parts.flatMap((part) =>
     readdirSync(inRoot(part), { recursive: true })
@@ -53,7 +53,7 @@ function looksOf(parts) {
 const LOOKS = looksOf(PARTS);
 const isIn = (path, folder) => path === folder || path.startsWith(`${folder}/`);
 
-/** The looks that a rule forbids, in words. */
+/** The imports that a rule forbids, as text. */
 const forbidden = (looks, isAllowed) =>
   [...looks].flatMap(([from, targets]) => targets.filter((to) => !isAllowed(from, to)).map((to) => `${from} -> ${to}`));
 
@@ -78,7 +78,7 @@ test("the places of the page do not look into each other, nor what they stand on
   assert.deepEqual(forbidden(LOOKS, staysInPlace), []);
 });
 
-/** All files that one needs, itself included. */
+/** All files that a file needs, including itself. */
 function needed(entry) {
   const found = new Set([entry]);
   for (const path of found) for (const target of LOOKS.get(path) ?? []) found.add(target);

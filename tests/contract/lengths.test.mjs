@@ -1,4 +1,4 @@
-// No file of code is longer than can be read in one go: one that grows is split where its parts mean different things.
+// Files of code stay short enough to be read in one go; a growing file is split by meaning.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { existsSync, readFileSync } from "node:fs";

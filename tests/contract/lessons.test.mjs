@@ -1,4 +1,4 @@
-// Single parts of the method as the page's lessons look at them.
+// Single parts of the method, as the page's lessons use them.
 import assert from "node:assert/strict";
 import { before, describe, test } from "node:test";
 import * as package_ from "../../pkg/index.js";
@@ -13,7 +13,7 @@ before(async () => {
   ({ light } = sample({ surface: "bust", light: "colourful", size: 16 }));
 });
 
-/** Eq. 5 written out, nine terms for a colour. */
+/** Eq. 5 written out, with nine terms per channel. */
 function shade([x, y, z], l) {
   const basis = [
     0.886227,
@@ -40,7 +40,7 @@ describe("predicted colours", () => {
   });
 
   test("of a turned normal under the light turned alike stay", () => {
-    // gamma = 90 takes x to y.
+    // gamma = 90 rotates x to y.
     const turned = turnLight(light, { gamma: 90 });
     const there = shadeNormals(turned, Float32Array.of(0.48, 0.36, -0.8));
     shade(NORMAL, light).forEach((value, at) => assert.ok(Math.abs(there[at] - value) < 1e-6));
@@ -77,7 +77,7 @@ describe("the landscape of a pixel", () => {
     assert.deepEqual([...landscape.path.subarray(0, 3)], [0, 0, -1]);
     const finite = landscape.objective.filter(Number.isFinite);
     assert.ok(Math.min(...finite) < 0.01 && Math.max(...finite) > 0.3);
-    // The corners are no normals.
+    // The corners are not normals.
     assert.ok(Number.isNaN(landscape.objective[0]));
   });
 
@@ -92,7 +92,7 @@ describe("the landscape of a pixel", () => {
       weights.every((value, i) => i === 0 || value < weights[i - 1]),
       weights.join(),
     );
-    // 65 degrees off, a robust prior has next to no hold, a plain one takes the pixel nearly half the way.
+    // At 65 degrees, a robust prior has nearly no effect, a plain one moves the pixel nearly halfway.
     assert.ok(off({ weight: 1 }) > 0.95 * weights[0] && off({ weight: 1, robust: false }) < 0.6 * weights[0]);
   });
 

@@ -1,13 +1,13 @@
-// The option `prior`: the lights to expect, as a list or as rows, refused by name, and followed.
+// The option `prior`: as a list or as rows it is accepted and has an effect; invalid values are refused by name.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { before, describe, test } from "node:test";
 import { Estimator, init, refused, sample } from "./support.mjs";
 
-/** The crate's own prior to six digits, as scripts/reference/light-prior.py has written it beside the Rust table. */
+/** The crate's own prior to six digits, written by scripts/reference/light-prior.py next to the Rust table. */
 const KEPT = JSON.parse(readFileSync(new URL("../../scripts/reference/light-prior.json", import.meta.url), "utf8"));
 const OWN = { mean: KEPT.mean, covariance: KEPT.covariance };
-/** Grey light from the viewer and nothing else. */
+/** Grey light from the viewer only. */
 const narrow = {
   mean: Float64Array.from({ length: 27 }, (_, at) => [-1, 0, -0.5][at % 9] ?? 0),
   covariance: Float64Array.from({ length: 729 }, (_, at) => (at % 28 === 0 ? 1e-10 : 0)),

@@ -1,2 +1,2 @@
-/** The options of a test of over three seconds, which a shorter one makes up for: `npm test -- --long` runs it, `npm test` does not. */
+/** Options of a test over three seconds for which shorter tests stand in: it runs with `npm test -- --long`, not with `npm test`. */
 export const LONG = { skip: process.env.LONG_TESTS ? false : "it takes long: npm test -- --long" };

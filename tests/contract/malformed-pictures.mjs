@@ -1,9 +1,9 @@
-// More pictures and clouds that are wrong on purpose: windows turned inside out, tables that point at themselves, colours without end.
+// More pictures and clouds that are malformed on purpose: inverted windows, tables that point at themselves, excessive colour counts.
 import { deflateSync } from "node:zlib";
 import { MEGABYTE, bytes, chunk, exr, idat, ihdr, jpeg, pcd, ply, pngOf, tiff, tiffTags, u32 } from "./malformed.mjs";
 import { fixture, text } from "./rig-support.mjs";
 
-/** A whole JPEG with a segment put behind its first mark. */
+/** A complete JPEG with a segment inserted after its first marker. */
 const withSegment = (mark, content) => {
   const file = fixture("colour.jpg");
   const length = content.length + 2;
@@ -23,7 +23,7 @@ const swappedTiff = () => {
   return file;
 };
 
-/** File, bytes, what the error has to say; or the code of a warning where the rest of the file is of use. */
+/** File name, bytes, and a pattern for the error, or the code of a warning if the rest of the file is usable. */
 export const PICTURES = [
   [
     "length.png",

@@ -1,4 +1,4 @@
-// Calibrations and depth maps that are wrong on purpose, of the kinds of products: numbers that are none, cycles, counts without end.
+// Calibrations and depth maps of products that are malformed on purpose: invalid numbers, cycles, excessive counts.
 import { deflateRawSync } from "node:zlib";
 import { bytes, cut, u32 } from "./malformed.mjs";
 import { fixture, text } from "./rig-support.mjs";
@@ -38,7 +38,7 @@ const handEye = (q) =>
     `parameters:\n  eye_on_hand: false\n  tracking_base_frame: camera\ntransformation: {x: 0, y: 0, z: 1, qx: ${q}, qy: ${q}, qz: ${q}, qw: ${q}}\n`,
   );
 
-/** File, bytes, and what the error has to say; or the code of a warning where the rest of the file is of use. */
+/** File name, bytes, and a pattern for the error, or the code of a warning if the rest of the file is usable. */
 export const CALIBRATIONS = [
   [
     "rs-nan.txt",
@@ -261,7 +261,7 @@ export const CALIBRATIONS = [
   ],
 ];
 
-/** A ZIP archive with one entry whose numbers may lie. */
+/** A ZIP archive with one entry whose header may be wrong. */
 function zipOf(
   name,
   content,
@@ -291,7 +291,7 @@ const head = (entry) =>
   bytes([0x93, 78, 85, 77, 80, 89, 1, 0, entry.length & 255, entry.length >> 8], text(entry), new Uint8Array(64));
 const shaped = (shape, descr = "<f4") => head(`{'descr': '${descr}', 'fortran_order': False, 'shape': ${shape}, }\n`);
 
-/** A LAS of version 1.2 with points of 20 bytes. */
+/** A LAS file of version 1.2 with points of 20 bytes. */
 function las({
   count = 300,
   size = 20,
@@ -320,11 +320,11 @@ const laz = (change) => {
   change(new DataView(file.buffer), file);
   return file;
 };
-/** Where the points of a LAS begin. */
+/** Offset of the points in a LAS file. */
 const points = (view) => view.getUint32(96, true);
 const nans = (count) => new Uint8Array(new Float32Array(count).fill(NaN).buffer);
 
-/** File, bytes, reason, options. */
+/** File name, bytes, reason, options. */
 export const BINARIES = [
   [
     "bomb.npz",

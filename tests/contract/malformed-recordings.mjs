@@ -1,4 +1,4 @@
-// Recordings that are wrong on purpose: containers whose records lie, and messages in sound containers that do.
+// Recordings that are malformed on purpose: containers with false records, and valid containers with false messages.
 import { readFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
 import { bytes, u32 } from "./malformed.mjs";
@@ -9,7 +9,7 @@ import { text } from "./rig-support.mjs";
 const fixture = (name) =>
   new Uint8Array(readFileSync(fileURLToPath(new URL(`../fixtures/recordings/${name}`, import.meta.url))));
 const copy = (buffer) => Uint8Array.from(buffer);
-/** A file with changes made to it. */
+/** A changed copy of a file. */
 const changed = (file, change) => {
   const own = copy(file);
   change(new DataView(own.buffer), own);
@@ -20,7 +20,7 @@ const plain = () => mcap(recorded({}, 2));
 const packed = (compression, data) => () =>
   mcap(recorded({}, 2), { compressChunk: (chunk) => ({ compression, compressedData: data(chunk) }) });
 
-/** Where the records of this kind are in an MCAP that is not damaged, by their opcode: [at, length]. */
+/** The records of a kind in an undamaged MCAP file, by their opcode: [offset, length]. */
 function recordsOf(file, wanted) {
   const view = new DataView(file.buffer, file.byteOffset, file.byteLength);
   const found = [];
@@ -32,7 +32,7 @@ function recordsOf(file, wanted) {
   return found;
 }
 const [SCHEMA, CHANNEL, CHUNK] = [0x03, 0x04, 0x06];
-/** An MCAP whose first record of a kind is changed; `at` is where its content begins. */
+/** An MCAP file whose first record of a kind is changed; `at` is the offset of its content. */
 const record = (opcode, change, options) => async () => {
   const file = copy(await mcap(recorded({}, 2), options));
   const [first] = recordsOf(file, opcode);
@@ -40,7 +40,7 @@ const record = (opcode, change, options) => async () => {
 };
 const COLOUR = "/camera/color/image_raw";
 const DEPTH = "/camera/depth/image_raw";
-/** A recording whose messages of a topic are changed. */
+/** A recording with the messages of a topic changed. */
 const messages = (topic, change) => () =>
   mcap(recorded({}, 2).map((each) => (each.topic === topic ? { ...each, message: change(each.message) } : each)));
 const cloud = (more) => () =>
@@ -59,10 +59,10 @@ const cloud = (more) => () =>
     },
   ]);
 const mkv = () => matroska(frames(2), "{}");
-/** Where an element's id is in a Matroska file. */
+/** Offset of an element's id in a Matroska file. */
 const element = (file, id) => Buffer.from(file).indexOf(Buffer.from(id));
 
-/** File, what makes its bytes, what the error has to say; or the code of a warning where the rest is of use. */
+/** File name, a function that makes its bytes, and a pattern for the error, or the code of a warning if the rest is usable. */
 export const RECORDINGS = [
   ["empty.mcap", async () => new Uint8Array(0), /no recording/],
   ["magic.mcap", async () => bytes([0x89], text("MCAP0\r\n")), /holds no messages/],

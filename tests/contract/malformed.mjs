@@ -1,16 +1,16 @@
-// Files of a rig that are wrong on purpose, made byte by byte, and the time and memory that reading one may take.
+// Files of a rig that are malformed on purpose, made byte by byte, and limits of the time and memory for reading one.
 import assert from "node:assert/strict";
 import { crc32, deflateSync } from "node:zlib";
 import { fixture, text } from "./rig-support.mjs";
 
 export const MEGABYTE = 2 ** 20;
-/** The issue's bounds. */
+/** Limits for reading a file, milliseconds and bytes. */
 const MOST_MILLISECONDS = 1000;
 const MOST_MEMORY = 2 ** 30;
 
 /**
- * Runs what may be slow, and checks its time: that of this process and not of the clock, since other programs may keep the machine busy;
- * and the best of three, since they also take its caches.
+ * Runs code that may be slow and checks its processor time, since other programs may delay the clock. The best of three trials counts, since
+ * they also compete for the caches.
  */
 export async function inTime(what, run) {
   let spent = Infinity;
@@ -29,8 +29,8 @@ const BUFFERS = [
 ];
 
 /**
- * Runs what may ask for memory, and checks the sum of all buffers that it asks for: room that is never written to is not resident, and would
- * not show in the memory of this process.
+ * Runs code that may allocate and checks the sum of all requested buffers: memory that is never written to is not resident and would not
+ * count in the memory of this process.
  */
 export async function inRoom(what, run) {
   let asked = 0;
@@ -44,7 +44,7 @@ export async function inRoom(what, run) {
         return Reflect.construct(target, given, own);
       },
     });
-    // Copies, slices and maps are made by the constructor that the prototype names.
+    // Copies, slices and maps use the prototype's constructor.
     Buffer.prototype.constructor = globalThis[name];
   }
   try {
@@ -58,7 +58,7 @@ export async function inRoom(what, run) {
   assert.ok(asked < MOST_MEMORY, `${what}: ${(asked / MEGABYTE).toFixed(0)} MB`);
 }
 
-/** Whether this process has never held a gigabyte. */
+/** Asserts that this process has never used a gigabyte. */
 export function assertSmall() {
   const most = 1024 * process.resourceUsage().maxRSS;
   assert.ok(most < MOST_MEMORY, `${(most / MEGABYTE).toFixed(0)} MB`);
@@ -74,7 +74,7 @@ export const changed = (name, ...changes) => {
   return file;
 };
 
-/** A part of a PNG with its checksum. */
+/** A chunk of a PNG with its checksum. */
 export const chunk = (type, data) => {
   const body = Buffer.concat([Buffer.from(type, "latin1"), data]);
   const frame = Buffer.alloc(8);
@@ -97,7 +97,7 @@ export const pngOf = (...chunks) =>
   );
 export const idat = (length) => chunk("IDAT", deflateSync(Buffer.alloc(length)));
 
-/** A TIFF of one strip; tags are [tag, value] of one 32-bit number each. */
+/** A TIFF with one strip; tags are [tag, value] with one 32-bit number each. */
 export const tiff = (tags, body = new Uint8Array(0)) => {
   const view = new DataView(new ArrayBuffer(14 + 12 * tags.length));
   view.setUint32(0, 0x002a4949, true);
@@ -124,7 +124,7 @@ export const tiffTags = (width, height, more = {}) =>
     ...more,
   }).map(([tag, value]) => [Number(tag), value]);
 
-/** A JPEG of nothing but its marks. */
+/** A JPEG that consists only of markers. */
 export const jpeg = (
   width,
   height,
@@ -185,7 +185,7 @@ export const exr = (changes, name = "depth-zip.exr") => {
   return file;
 };
 
-/** Where the table of an EXR of several blocks is: it points behind its own end. */
+/** Offset of the table of an EXR with several blocks, found as a number that points behind the table. */
 function blocksAt(view) {
   for (let at = 0; at + 8 < view.byteLength; at++) {
     const first = view.getUint32(at, true);
@@ -194,17 +194,17 @@ function blocksAt(view) {
   throw new Error("no table");
 }
 
-/** The first block once more in place of the second. */
+/** Makes the second entry point at the first block. */
 export const twice = (_, view) => view.setUint32(blocksAt(view) + 8, view.getUint32(blocksAt(view), true), true);
 
-/** Where the table of an EXR's one block is, which stands right behind it. */
+/** Offset of the table of an EXR with one block, which directly follows the table. */
 export function table(view) {
   for (let at = 0; at + 8 < view.byteLength; at++)
     if (view.getUint32(at, true) === at + 8 && view.getUint32(at + 4, true) === 0) return at;
   throw new Error("no table");
 }
 
-/** The same file by another compression, as its header says. */
+/** The same file with another compression in its header. */
 export const packed = (name, compression) => {
   const file = fixture(name);
   const at = Buffer.from(file).indexOf("compression\0compression\0") + "compression\0compression\0".length;
@@ -221,9 +221,9 @@ export function bombOf(name) {
   return bytes(file.subarray(0, from + 4), u32(bomb.length), bomb, new Uint8Array(30_000));
 }
 
-/** A frame of ZSTD that declares so many bytes and holds none. */
+/** A ZSTD frame that declares this many bytes and holds none. */
 export const zstdOf = (declared) => bytes([0x28, 0xb5, 0x2f, 0xfd, 0xa0], u32(declared), [1, 0, 0]);
 
-/** The header of a blob of LERC, of the second version. */
+/** The header of a LERC blob, second version. */
 export const lercOf = ({ width = 4, height = 4, block = 8, length = 100 }) =>
   bytes(text("Lerc2 "), u32(2, height, width, width * height, block, length, 3), new Uint8Array(100)).slice(0, 100);

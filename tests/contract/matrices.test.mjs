@@ -1,4 +1,4 @@
-// Poses as 4x4 matrices and cameras as 3x3 ones, in every form and wherever a pose or a camera goes in.
+// Poses as 4x4 matrices and cameras as 3x3 matrices, in every form, wherever a pose or a camera is accepted.
 import assert from "node:assert/strict";
 import { before, describe, test } from "node:test";
 import { checkCalibration, projectFrame, sampleRig } from "../../pkg/index.js";
@@ -89,7 +89,7 @@ describe("a pose", () => {
     refused(start(changed(1, 1, "1")), "type", "options.start[1][1]");
     refused(start({ matrix: changed(1, 1, -SCALE) }), "range", "options.start.matrix");
     refused(start({ matrix: 5 }), "type", "options.start.matrix");
-    // Sheared: judged where all rotations are.
+    // A shear passes the matrix checks and is refused by the check of rotations.
     refused(start(changed(0, 1, 0.5)), "range", "options.start.rotation");
     refused(start({ matrix: ROWS, rotaton: ROTATION }), "option", "options.start.rotaton");
     refused(() => matrixText(ROWS.flat().slice(1)), "size", "pose");

@@ -1,10 +1,10 @@
-// What the numerics take and give back. The module's memory never shrinks, so its size is the most that was ever in use.
+// Memory that the numerics allocate and free. The module's memory never shrinks, so its size is the largest amount ever used.
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import { LONG } from "./long.mjs";
 import { Estimator, estimator, init, pair, sample } from "./support.mjs";
 
-/** Bytes that a pixel of either view takes: BYTES_PER_PIXEL of src/estimator/memory.rs. */
+/** Budget for one pixel of either view, bytes: BYTES_PER_PIXEL of src/estimator/memory.rs. */
 const BUDGET = 220;
 const ROUNDS = 100;
 const STEPS = 10_000;
@@ -24,7 +24,7 @@ const dome = (column, row) =>
 
 describe("memory", () => {
   test("a pair keeps to its budget, the search included", LONG, (t) => {
-    // An object as wide as the frame: the estimator's memory is more than the renderer's, which it takes over.
+    // An object as wide as the frame, so that the estimator needs more memory than the renderer, whose freed memory it reuses.
     const relief = {
       width: 128,
       height: 96,
@@ -63,7 +63,7 @@ describe("memory", () => {
 
   test(`${STEPS} steps take no more than the first`, LONG, () => {
     const { image, depth, light } = pair({ size: 16 });
-    // The loop of surfaces goes on as long as it is let; that of the colours ends at once on so small a view. A reset takes as long as ten steps.
+    // The loop of surfaces runs as long as allowed; photometric registration ends at once on so small a view. A reset takes as long as ten steps.
     const options = { light, start: "identity", scale: 1, registration: "icp", stopDegrees: 1e-9, maxIterations: 100 };
     const made = new Estimator(image, depth, options);
     const steps = (count) => {

@@ -1,4 +1,4 @@
-// Whatever is handed on carries its licences and the notices of the code of others in it, and no number that is not free. Each artefact is unpacked.
+// Every artefact contains its licences and the notices of other people's code, and no data that is not free. Each artefact is unpacked.
 import assert from "node:assert/strict";
 import { existsSync, mkdirSync, readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { basename, dirname, join, relative } from "node:path";
@@ -15,12 +15,12 @@ import { LONG } from "./long.mjs";
 
 const read = (path) => readFileSync(inRoot(path), "utf8");
 
-/** Licences of npm's packages that may be passed on with a program of any licence for no more than their text. */
+/** Licences of npm packages that allow use in a program of any licence if their text is included. */
 const FREE = ["0BSD", "Apache-2.0", "BSD-2-Clause", "BSD-3-Clause", "CC0-1.0", "ISC", "MIT", "Zlib"];
 
 /**
- * Numbers of a prior that was published for non-commercial use alone, two neighbours each of its mean and its covariance, and words of its
- * notice.
+ * Numbers of a prior that was published for non-commercial use only (two adjacent ones of its mean and two of its covariance), and words of
+ * its notice.
  */
 const UNFREE = [
   [-1.147481, -0.1998278],
@@ -28,12 +28,12 @@ const UNFREE = [
 ];
 const UNFREE_WORDS = /1\.147481|0?\.1349868|0?\.4037586|not-for-profit|Regents of the University/;
 
-/** The numbers as compilers lay them down. */
+/** The numbers as compilers store them. */
 const patterns = UNFREE.flatMap((pair) => [Float32Array.from(pair), Float64Array.from(pair)]).map((array) =>
   Buffer.from(array.buffer),
 );
 
-/** The files of a folder in which something is not free, by their paths in it. */
+/** The files of a folder that contain anything that is not free, by their paths in it. */
 function unfreeIn(path) {
   const files = filesBelow(path);
   assert.ok(files.length > 0, `${path} is empty`);
@@ -42,7 +42,7 @@ function unfreeIn(path) {
   return files.filter((file) => isUnfree(readFileSync(file))).map((file) => relative(path, file));
 }
 
-/** The own licences are there, and the notices, which name these packages with a text each. */
+/** Checks that the project's licences are there, and notices that name these packages, each with a text. */
 function carries(path, packages) {
   for (const file of ["LICENSE-MIT", "LICENSE-APACHE"])
     assert.equal(readFileSync(join(path, file), "utf8"), read(file), file);
@@ -56,11 +56,11 @@ function carries(path, packages) {
   return text;
 }
 
-/** The packages in the heads of texts. */
+/** The packages in the headings of texts. */
 const headsOf = (text) =>
   [...text.matchAll(/^={80}\n(.+(?:\n.+)*?)\n={80}\n\n(?=.*\S)/gm)].flatMap((match) => match[1].split(/,\s/));
 
-/** An npm package as the notices name it, and its own copy of its licence; the one that forgets it is under Apache's. */
+/** An npm package as the notices name it, and its own copy of its licence; one without a copy has Apache's. */
 function npmPackage(name) {
   const at = `node_modules/${name}`;
   const file = readdirSync(inRoot(at)).find((each) => /^licen[cs]e/i.test(each));
@@ -70,7 +70,7 @@ function npmPackage(name) {
   };
 }
 
-/** What the sources of some folders import by a name of npm's, type declarations aside. */
+/** The npm packages that the sources of some folders import, except type declarations. */
 function imported(folders) {
   const found = matching(folders, /(?<!\.d)\.ts$/)
     .filter((path) => !path.endsWith("vite.config.ts"))
@@ -122,7 +122,7 @@ describe("the package for npm", () => {
     const bundled = [...new Set(regions.map((match) => match[1])), "rolldown"].map(npmPackage);
     assert.ok(bundled.length >= 3);
     const text = carries(path, [...bundled.map(({ named }) => named), ...namedIn(read(NOTICES))]);
-    // What sources say of themselves and their package's licence does not: bundlers leave comments out.
+    // Claims in sources that the package's licence file lacks, because bundlers remove comments.
     for (const claim of ["Syoyo Fujita", "Industrial Light & Magic", "notmasteryet"])
       assert.ok(text.includes(claim), claim);
     for (const { named, text: licence } of bundled) assert.ok(isWhole(text, licence), named);

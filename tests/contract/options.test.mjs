@@ -1,4 +1,4 @@
-// The rows of js/options.ts say what the numerics do: the same ranges, refused by both, and the same defaults.
+// The rows of js/options.ts agree with the numerics: both refuse the same values and have the same defaults.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { before, describe, test } from "node:test";
@@ -8,7 +8,7 @@ import { Estimator, init, outcome, pair, sample } from "./support.mjs";
 
 const REQUEST = { surface: "bust", light: "window", size: 32 };
 
-/** An object with this value at this path, as { lambda: { prior: 1 } } of "options.lambda.prior". */
+/** An object with this value at this path, such as { lambda: { prior: 1 } } for "options.lambda.prior". */
 const holding = (path, value) =>
   path
     .split(".")
@@ -24,7 +24,7 @@ function neighbour(x, by) {
   return bits.getFloat64(0);
 }
 
-/** Numbers at the ends of a row's range, with whether they are inside. */
+/** Numbers at the ends of a row's range, each with whether it is inside. */
 function ends({ kind, min, above, max, below }) {
   const beside = (x, by) => (kind === "number" ? neighbour(x, by) : x + by);
   return [
@@ -61,12 +61,12 @@ function ends({ kind, min, above, max, below }) {
 const ROWS = new Map([...paths(OPTIONS, "options"), ...paths(SAMPLE, "sample")]);
 const NUMBERS = [...ROWS].filter(([, { kind }]) => ["number", "whole", "side"].includes(kind));
 
-/** What the numerics never see: they get the rotation that angles make, a seed as 64 bits, and no threads. */
+/** Members that the numerics never see: they get the rotation of the angles, a seed of 64 bits, and no threads. */
 const FACADE_ALONE = /\.(angles\.\w+|workers|seed)$/;
-/** Natively both sides are one member. */
+/** In the numerics, both sides are one member. */
 const NATIVE_FIELD = { "sample.height": "sample.size" };
 
-/** The error of a call, or nothing; whatever else is wrong, such as too large a view, is not about this field. */
+/** The code of a call's error, or undefined; errors about other fields, such as too large a view, do not count. */
 function refusal(field, call) {
   try {
     call()?.free?.();
@@ -98,7 +98,7 @@ describe("ranges", () => {
         if (FACADE_ALONE.test(path)) continue;
         const nativeCode = refusal(native, call(numerics, value));
         assert.equal(nativeCode === undefined, inside, `${value}, without the facade`);
-        // Only here are numbers that are none or no whole ones told from those that are out of range.
+        // Only the facade distinguishes NaN and fractions from numbers out of range.
         if (Number.isFinite(value)) assert.equal(code, nativeCode, `${value}`);
       }
     });
@@ -132,7 +132,7 @@ describe("ranges", () => {
   });
 });
 
-/** Noise, an unknown light and depths that stand out: most options have something to do. */
+/** Noise, an unknown light and outlying depths, so that most options have an effect. */
 function noisy(base = { start: "identity" }, size = 40) {
   const { image, depth } = pair({
     size,
@@ -146,7 +146,7 @@ function noisy(base = { start: "identity" }, size = 40) {
   return { image, depth, base };
 }
 
-/** A pose that goes on changing a little: sooner or later the loop is ended by its settings. */
+/** A pose that keeps changing slightly, so that the loop's settings end it. */
 function slow(base = {}) {
   const { image, depth, light } = pair({ angles: { beta: 8 } });
   return {
@@ -157,14 +157,14 @@ function slow(base = {}) {
 }
 
 const turned = { given: () => noisy({ start: { angles: {} } }) };
-/** Where another value than the default shows if not on the noisy pair at once, and what that value is. */
+/** Where another value than the default has an effect, unless on the noisy pair, and that value. */
 const SHOWN = {
   "options.light": { other: new Array(27).fill(0.1) },
   "options.start": { given: () => noisy({}), steps: 1, other: "identity" },
   "options.start.angles.alpha": turned,
   "options.start.angles.beta": turned,
   "options.start.angles.gamma": turned,
-  // The noisy pair is 8 degrees off its start.
+  // The noisy pair is 8 degrees from its initial pose.
   "options.startTolerance.degrees": { given: () => noisy({ start: { angles: {} } }), other: 0.01 },
   "options.scale": { other: 1.1 },
   "options.stopDegrees": { given: slow, other: 0.02 },
@@ -182,7 +182,7 @@ function another({ kind, words, max = Infinity, default: value }) {
 
 describe("defaults", () => {
   for (const [path, row] of ROWS) {
-    // Other threads change nothing that comes out: tests/contract/search-workers.test.mjs.
+    // Additional threads do not change the result: tests/contract/search-workers.test.mjs.
     if (row.default === undefined || path === "options.workers") continue;
     const { given = noisy, steps, other = another(row) } = SHOWN[path] ?? {};
     test(path, async () => {
@@ -206,7 +206,7 @@ function sure() {
   return { image, depth, base: { start: "identity" } };
 }
 
-/** What a loop ends with where the option has a value. */
+/** The result of a loop in which the option has a value. */
 const loops =
   ({ image, depth, base }, steps, path) =>
   async (value) => {
@@ -217,7 +217,7 @@ const loops =
     return end;
   };
 
-/** The sample where a member of the request has a value; noise and holes, so that their seed matters. */
+/** The sample for a value of the request's member; noise and holes make the seed matter. */
 const samples = (path) => (value) => {
   const flaws = path === "sample.protocol" ? {} : { noise: 0.01, holes: 0.1 };
   return sample({ surface: "bust", light: "window", ...flaws, ...holding(path, value) });

@@ -1,4 +1,4 @@
-// A page that takes the package from another origin has threads all the same, and is warned where it can have none.
+// A page that loads the package from another origin can use threads, and gets a warning where it cannot.
 import assert from "node:assert/strict";
 import { rmSync } from "node:fs";
 import { join } from "node:path";
@@ -6,7 +6,7 @@ import { describe, test } from "node:test";
 import { serveSite } from "../../scripts/site/serve.mjs";
 import { atTheEnd, folder, freshProject, html, served, visit, write } from "./fresh.mjs";
 
-/** A search by two threads; how many slices of it were left to the page's own. */
+/** A search by two threads that prints the estimator's warnings. */
 const script = (address) => `
 import init, { Estimator, sample } from "${address}index.js";
 await init();
@@ -19,7 +19,7 @@ console.log(estimator.warnings.map(({ code, field }) => code + " " + field).join
 console.log("end");
 `;
 
-/** The package at an address of its own, which permits others to read it. */
+/** The package at a separate address that permits other origins to read it. */
 async function packageElsewhere() {
   const path = join(freshProject(), "node_modules/bimodal-stereo");
   const headers = { "Access-Control-Allow-Origin": "*" };

@@ -1,4 +1,4 @@
-// The visitor's files as the pair of a run (js/pair): sizes, cameras, units and masks. The page reads them through `pkg/pair.js`.
+// Builds the pair of a run from the visitor's files (js/pair): sizes, cameras, units and masks. The page reads them through `pkg/pair.js`.
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import { camerasFor, pairOf, readPart } from "../../pkg/pair.js";
@@ -54,7 +54,7 @@ describe("the unit", () => {
       notes["depth.unit"],
       /^The file does not state its unit\. It was guessed to be millimetres, .* 0\.90 m\.$/,
     );
-    // What a file states is no guess.
+    // A unit that a file states is not guessed.
     const stated = pairOf({ colour, depth: map(8, 8, { unit: 1 / 256, warnings: [] }), depthCamera }, nothing);
     assert.deepEqual([stated.depth.unit, stated.unit, stated.notes["depth.unit"]], [1 / 256, 1 / 256, undefined]);
   });
@@ -73,7 +73,7 @@ describe("the unit", () => {
 });
 
 describe("a large image beside a coarse depth map", () => {
-  // Blocks of 20x20 alternate between two levels pixel by pixel, so that a mean of codes is not that of intensities.
+  // Pixels of each 20x20 block alternate between two levels, so that a mean of codes differs from a mean of intensities.
   const [WIDTH, HEIGHT] = [1280, 960];
   const striped = (x, _y, channel) => (x % 2 === 0 ? 60 : 180) + 10 * channel;
   const linear = (level) => (level / 255 <= 0.04045 ? level / 255 / 12.92 : ((level / 255 + 0.055) / 1.055) ** 2.4);
@@ -88,7 +88,7 @@ describe("a large image beside a coarse depth map", () => {
     for (let c = 0; c < 3; c++) {
       const expected = (linear(60 + 10 * c) + linear(180 + 10 * c)) / 2;
       const code = expected <= 0.0031308 ? 12.92 * expected : 1.055 * expected ** (1 / 2.4) - 0.055;
-      // Half a level of 16 bits, and single precision of the table.
+      // Half a level of 16 bits, and the single precision of the table.
       close([small.data[4 * 700 + c]], [65535 * code], 1);
     }
     assert.equal(
@@ -104,7 +104,7 @@ describe("a large image beside a coarse depth map", () => {
     const { image: small } = pairOf({ ...parts, depthCamera: camera(64, 48, 100) }, nothing);
     assert.deepEqual([small.width, small.height], [Math.floor(WIDTH / 9), Math.floor(HEIGHT / 9)]);
     const { fx, fy, cx, cy } = small.camera;
-    // The first pixel's middle is the mean of its nine columns' middles.
+    // The first pixel's centre is the mean of the centres of its nine columns.
     close([fx, fy, cx, cy], [100, 100, (colourCamera.cx - 4) / 9, (colourCamera.cy - 4) / 9], 1e-12);
   });
 

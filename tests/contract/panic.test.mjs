@@ -1,11 +1,11 @@
-// A panic spoils one estimator and no other. The package does not panic on demand, so its module is given a trap.
+// A panic spoils one estimator and no other. The package does not panic on demand, so a trap is built into its module.
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { test } from "node:test";
 import binaryen from "binaryen";
 import { estimator, init, refused } from "./support.mjs";
 
-/** The module with one exported function replaced by a trap, as a panic is one. */
+/** The module with one exported function replaced by a trap, which is what a panic compiles to. */
 async function trapped(name) {
   const module = binaryen.readBinary(await readFile(new URL("../../pkg/bimodal_stereo_bg.wasm", import.meta.url)));
   const inner = binaryen.getExportInfo(module.getExport(name)).value;

@@ -1,4 +1,4 @@
-// The decoder of PNG against an independent one, fast-png, on random bytes under every filter.
+// Compares the PNG decoder with an independent one, fast-png, on random bytes under every filter.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { crc32, deflateSync } from "node:zlib";
@@ -34,7 +34,7 @@ function chunk(type, body) {
   return bytes;
 }
 
-/** Any bytes are the filtered rows of some image. */
+/** Random bytes serve as filtered rows, since any bytes are the rows of some image. */
 function randomPng({ width, height, bits, type, interlaced, draw, palette, alpha }) {
   const header = Buffer.alloc(13);
   header.writeUInt32BE(width, 0);
@@ -57,7 +57,7 @@ function randomPng({ width, height, bits, type, interlaced, draw, palette, alpha
   );
 }
 
-/** The channels that the facade gives, of whatever the file has. */
+/** The channels that the facade returns, from those of the file. */
 function spread(data, channels, full) {
   const out = [];
   for (let at = 0; at < data.length; at += channels) {

@@ -1,4 +1,4 @@
-// A small file of each product that writes calibrations, by the keys of js/rig/formats/catalogue: as the product writes it, shortened.
+// A small file of each product that writes calibrations, by the keys of js/rig/formats/catalogue, in the product's format, shortened.
 import {
   K,
   angles,
@@ -31,7 +31,7 @@ const made = (name) => ({ name, bytes: fixture(name) });
 const lines = (all) => `${all.join("\n")}\n`;
 const yamlPlace = ([a, b, c]) => `{x: ${a}, y: ${b}, z: ${c}, roll: ${roll}, pitch: ${pitch}, yaw: ${yaw}}`;
 
-/** Depth and colour cameras of the devices that say both. */
+/** Devices that state both the depth and the colour camera. */
 const DEVICES = {
   "realsense-list": words(
     "rs-enumerate-devices.txt",
@@ -159,7 +159,7 @@ const DEVICES = {
   }),
 };
 
-/** Tools that find calibrations. */
+/** Calibration tools. */
 const TOOLS = {
   kalibr: made("camchain.yaml"),
   euroc: words(

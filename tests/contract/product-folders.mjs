@@ -1,4 +1,4 @@
-// Small folders of datasets and apps, and recordings, by the keys of js/rig/formats/catalogue: as the product leaves them, with few frames.
+// Small folders of datasets and apps, and recordings, by the keys of js/rig/formats/catalogue, in the products' layouts, with few frames.
 import { readFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
 import { PICTURE_SAMPLES } from "./product-pictures.mjs";
@@ -32,7 +32,7 @@ const folder = (files) => ({
     bytes: typeof bytes === "string" ? text(bytes) : bytes,
   })),
 });
-/** Of camera 2, for small pictures. */
+/** Calibration of camera 2, for small pictures. */
 const KITTI = `P2: 100 0 61.5 0 0 100 18.5 0 0 0 1 0\nR0_rect: 1 0 0 0 1 0 0 0 1\nTr_velo_to_cam: 0 -1 0 0.1 0 0 -1 0.2 1 0 0 0.3\n`;
 const small = { fx: 55, fy: 55, cx: 31.5, cy: 23.5 };
 const pose = [
@@ -127,7 +127,7 @@ const IDENTITY = [
   [1, 0, 0, 0, 1, 0, 0, 0, 1],
   [0, 0, 0],
 ];
-/** What librealsense writes, below the names of its streams. */
+/** The topics of librealsense, named after its streams. */
 const librealsense = () => {
   const { image: picture, depth: map } = frame();
   const time = START + 0.1;

@@ -1,4 +1,4 @@
-// Small depth maps, pictures, masks and scans as products write them, by the keys of js/rig/formats/catalogue.
+// Small depth maps, pictures, masks and scans in the formats of products, by the keys of js/rig/formats/catalogue.
 import { zipSync } from "fflate";
 import { H, W, fixture, millimetres, text } from "./rig-support.mjs";
 import { spinning } from "./scanners.mjs";
@@ -11,12 +11,12 @@ const join = (...parts) =>
   );
 const levels = Uint16Array.from(millimetres);
 const bytesOf = (array) => new Uint8Array(array.buffer, array.byteOffset, array.byteLength);
-/** Depths of a size that a table or a code in colours needs to be recognised by. */
+/** Size of depth maps, large enough for a table or a colour code to be recognised. */
 const [COLUMNS, ROWS] = [64, 48];
 const depthAt = (x, y) => 900 + 13 * x + 5 * y;
 const grid = (value) => Array.from({ length: ROWS }, (_, y) => Array.from({ length: COLUMNS }, (_, x) => value(x, y)));
 
-/** Metres as CARLA codes them: 24 bits of 1000 m, red the lowest byte. */
+/** Metres in CARLA's code: 24 bits of 1000 m, with the lowest byte in red. */
 const carla = (x, y) => {
   const code = Math.round(((2 + 0.05 * x + 0.02 * y) / 1000) * (2 ** 24 - 1));
   return [code & 255, (code >> 8) & 255, code >> 16];

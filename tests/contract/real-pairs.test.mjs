@@ -1,4 +1,4 @@
-// Real pairs through the built package: the loop ends, with a status, and fills the holes.
+// Real pairs with the built package: the loop ends with a status and fills the holes.
 import assert from "node:assert/strict";
 import { before, describe, test } from "node:test";
 import * as files from "../../pkg/files.js";
@@ -9,7 +9,7 @@ const ENDS = ["converged", "max-iterations", "ambiguous"];
 
 before(() => init());
 
-// Each of them is skipped, not their group: a runner counts tests.
+// The tests are skipped one by one, not as a group, because runners count tests.
 const skip = hasData() ? false : "needs ../shared/data";
 
 describe("real pairs", () => {
@@ -21,7 +21,7 @@ describe("real pairs", () => {
       assert.ok(ENDS.includes(report.status), `${report.status}: ${report.message}`);
       assert.equal(report.pose.scale, 1, "both cameras are metric");
       assert.ok([...report.pose.rotation, ...report.pose.translation].every(Number.isFinite));
-      // Texture that no light explains keeps the residual high on these objects: that it falls is no promise.
+      // Texture that no light explains keeps the residual of these objects high, so it need not fall.
       assert.ok(residualBefore > 0 && residualAfter > 0 && residualAfter < Infinity);
       assert.ok(holes > 0, "there is something to fill");
       assert.equal(filled, holes);

@@ -1,9 +1,9 @@
-// Messages of a depth camera before three rendered scenes, a quarter of their size, for scripts/reference/recording.py to write as bags.
+// Messages of a depth camera in front of three rendered scenes, a quarter of their size; scripts/reference/recording.py writes them as bags.
 //   node tests/contract/recorded-messages.mjs > target/messages.json      (needs pkg/: npm run build)
 import { sampleRig } from "../../pkg/index.js";
 import { definitionOf, driver, encoded } from "./recordings.mjs";
 
-/** A pixel of the small picture is the mean of 3x3 around pixel 4 x + 1 of the large one; of depths it is that pixel. */
+/** A colour pixel of the small picture is the mean of 3x3 pixels around pixel 4 x + 1 of the large one; a depth is that of the pixel. */
 const STEP = 4;
 const OFFSET = 1;
 const smaller = ({ fx, fy, cx, cy, distortion }) => ({
@@ -37,7 +37,7 @@ function smallColour({ width, height, data, camera }) {
   return { width: w, height: h, data: small, camera: smaller(camera) };
 }
 
-/** Three frames of one rig, small, and the motion between its cameras. */
+/** Three small frames of one rig, and the motion between its cameras. */
 export async function smallFrames() {
   const frames = [];
   for (let frame = 0; frame < 3; frame++) {

@@ -2,7 +2,7 @@ import type { CheckFrame, Pose } from "../../pkg/index.js";
 
 export interface Recorded {
   topic: string;
-  /** "sensor_msgs/Image", in either generation. */
+  /** "sensor_msgs/Image", for either generation of ROS. */
   type: string;
   /** Seconds. */
   time: number;

@@ -1,4 +1,4 @@
-// Recordings for tests, made by the public writers: messages of ROS 1 and ROS 2, MCAP files, and what image_transport makes of pictures.
+// Recordings for tests, made with public writers: messages of ROS 1 and ROS 2, MCAP files, and pictures compressed by image_transport.
 import { McapWriter } from "@mcap/core";
 import { parse } from "@foxglove/rosmsg";
 import { MessageWriter as Ros1Writer } from "@foxglove/rosmsg-serialization";
@@ -7,7 +7,7 @@ import { encode as png } from "fast-png";
 import jpeg from "jpeg-js";
 
 const LINE = "=".repeat(80);
-/** Definitions as ROS writes them into its recordings; `std_msgs/Header` differs between its two generations. */
+/** Definitions as ROS writes them into recordings; `std_msgs/Header` differs between the two generations. */
 const PARTS = {
   "std_msgs/Header": {
     ros1: "uint32 seq\ntime stamp\nstring frame_id",
@@ -40,7 +40,7 @@ const PARTS = {
   "std_msgs/Float32": { ros1: "float32 data" },
 };
 
-/** A type's definition with those of its members behind it. */
+/** A type's definition, followed by those of its members. */
 export function definitionOf(type, generation) {
   const textOf = (name) => PARTS[name][generation] ?? PARTS[name].ros1;
   const found = [];
@@ -56,7 +56,7 @@ export function definitionOf(type, generation) {
 }
 
 const writers = new Map();
-/** A message's bytes; ROS 1's members are those of ROS 2 by their older names. */
+/** A message's bytes; members of ROS 1 have the older names of those of ROS 2. */
 export function encoded(type, message, generation) {
   const key = `${generation} ${type}`;
   if (!writers.has(key)) {
@@ -112,7 +112,7 @@ export const jpegMessage = ({ width, height, data }, time, frame) => ({
   data: new Uint8Array(jpeg.encode({ width, height, data }, 95).data),
 });
 
-/** image_transport's compressedDepth: a head of twelve bytes and a PNG. */
+/** image_transport's compressedDepth: a header of twelve bytes and a PNG. */
 export function compressedDepthMessage({ width, height, data }, time, frame, { quantised } = {}) {
   const head = new DataView(new ArrayBuffer(12));
   if (quantised) [4, 8].forEach((at, index) => head.setFloat32(at, quantised[index], true));
@@ -144,7 +144,7 @@ export function infoMessage({ fx, fy, cx, cy, distortion = [] }, { width, height
   };
 }
 
-/** From a rotation of nine numbers. */
+/** The quaternion of a rotation matrix of nine numbers. */
 export function quaternionOf(r) {
   const w = Math.sqrt(Math.max(0, 1 + r[0] + r[4] + r[8])) / 2;
   return { x: (r[7] - r[5]) / (4 * w), y: (r[2] - r[6]) / (4 * w), z: (r[3] - r[1]) / (4 * w), w };
@@ -157,7 +157,7 @@ export const transform = (parent, child, { rotation, translation: [x, y, z] }, t
 });
 
 export function cloudMessage({ width, height, points }, time, frame) {
-  const step = 20; // x y z, four bytes of nothing, intensity
+  const step = 20; // x y z, four bytes of padding, intensity
   const view = new DataView(new ArrayBuffer(step * width * height));
   for (let point = 0; point < width * height; point++)
     for (let axis = 0; axis < 3; axis++) view.setFloat32(step * point + 4 * axis, points[3 * point + axis], true);
@@ -175,7 +175,7 @@ export function cloudMessage({ width, height, points }, time, frame) {
   };
 }
 
-/** A file of MCAP as rosbag2 writes it; `messages` are { topic, type, time, message } or have their own `bytes`. */
+/** An MCAP file as rosbag2 writes it; `messages` are { topic, type, time, message } or have their own `bytes`. */
 export async function mcap(messages, { generation = "ros2", compressChunk, chunks = true, cut = 0 } = {}) {
   const parts = [];
   const writable = {
@@ -203,11 +203,11 @@ export async function mcap(messages, { generation = "ros2", compressChunk, chunk
   }
   await writer.end();
   const whole = Buffer.concat(parts);
-  // As when the power went.
+  // As after a power failure.
   return whole.subarray(0, whole.length - cut);
 }
 
-/** A frame of LZ4 whose blocks are runs of bytes as copies of their first, and literals between them. */
+/** An LZ4 frame whose blocks consist of literals and of runs, encoded as copies of their first byte. */
 export function lz4Frame(data) {
   const out = [0x04, 0x22, 0x4d, 0x18, 0x60, 0x70, 0x73];
   const length = (value) =>
@@ -238,7 +238,7 @@ export function lz4Frame(data) {
   return Uint8Array.from([...out, 0, 0, 0, 0]);
 }
 
-/** A frame of Zstandard whose blocks are stored as they are. */
+/** A Zstandard frame with uncompressed blocks. */
 export function zstdFrame(data) {
   const parts = [
     Uint8Array.of(0x28, 0xb5, 0x2f, 0xfd, 0xa0, ...[0, 8, 16, 24].map((shift) => (data.length >>> shift) & 255)),
@@ -255,7 +255,7 @@ export function zstdFrame(data) {
 export const FRAMES = { colour: "camera_color_optical_frame", depth: "camera_depth_optical_frame" };
 const IDENTITY = { rotation: [1, 0, 0, 0, 1, 0, 0, 0, 1], translation: [0, 0, 0] };
 
-/** What a depth camera's driver publishes while it sees these frames, one after the other: pictures, intrinsics, transforms. */
+/** The messages of a depth camera's driver for a sequence of frames: pictures, intrinsics, transforms. */
 export function driver(frames, pose, { start = 1_700_000_000, every = 0.5, late = 0.004, compress = false } = {}) {
   const [first] = frames;
   const messages = [
@@ -266,7 +266,7 @@ export function driver(frames, pose, { start = 1_700_000_000, every = 0.5, late 
       message: {
         transforms: [
           transform("camera_link", FRAMES.colour, IDENTITY),
-          // Points of the depth camera into the colour camera's frame, by way of the rig's.
+          // Transforms points of the depth camera into the colour camera's frame, by way of the rig's frame.
           transform("camera_link", FRAMES.depth, pose),
         ],
       },
@@ -310,7 +310,7 @@ export function driver(frames, pose, { start = 1_700_000_000, every = 0.5, late 
   return messages;
 }
 
-/** An element of EBML: its id, its size in eight bytes (all ones where nobody knew it), and its content. */
+/** An EBML element: its id, its size in eight bytes (all ones if unknown), and its content. */
 function element(id, content, isOpen = false) {
   const bytes = typeof content === "string" ? new TextEncoder().encode(content) : content;
   const head = [];
@@ -323,7 +323,7 @@ function element(id, content, isOpen = false) {
 const whole = (value, width = 4) =>
   Uint8Array.from({ length: width }, (_, at) => Math.floor(value / 256 ** (width - 1 - at)) % 256);
 
-/** A track as k4arecorder writes it: a codec of Windows, named in its header. */
+/** A track as k4arecorder writes it: with a Windows codec, named in its header. */
 function videoTrack(number, name, code, { width, height }) {
   const header = new Uint8Array(40);
   header.set(new TextEncoder().encode(code), 16);
@@ -338,7 +338,7 @@ function videoTrack(number, name, code, { width, height }) {
   return element(0xae, Buffer.concat(parts));
 }
 
-/** A Matroska file of an Azure Kinect's tracks, with a calibration attached; blocks single or in groups, clusters of known size or not. */
+/** A Matroska file with an Azure Kinect's tracks and calibration; blocks single or in groups, clusters of known or unknown size. */
 export function matroska(frames, calibration, { groups = false, isOpen = false } = {}) {
   const [{ image, depth }] = frames;
   const tracks = [

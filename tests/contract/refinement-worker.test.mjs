@@ -1,11 +1,11 @@
-// A worker refines the depth view beside the image surface, and nothing but the time it takes depends on it.
+// A worker refines the depth view while the image surface is computed; only the time depends on it.
 import assert from "node:assert/strict";
 import { before, describe, test } from "node:test";
 import { LONG } from "./long.mjs";
 import { Estimator, init, outcome, pair } from "./support.mjs";
 import { runSettled, seen, settled, tamperWith, until } from "./threads.mjs";
 
-/** Large enough to be shared; the pose that is to be found no longer moves from the second iteration on. */
+/** Large enough to be shared; the pose stops moving from the second iteration on. */
 function scene(options = {}, request = {}) {
   const { image, depth, pose } = pair({ light: "window", size: 112, noise: 0.01, angles: { beta: 20 }, ...request });
   return { image, depth, options: { start: pose, stopDegrees: 1e-12, ...options } };
@@ -21,7 +21,7 @@ async function endOf(estimator) {
   return end;
 }
 
-/** As many steps of this kind, each after all threads have answered. */
+/** The end of a run in steps of one kind, each taken after all threads have answered. */
 async function settledEnd(estimator, step) {
   await runSettled(estimator, step);
   const end = outcome(estimator);
@@ -32,16 +32,16 @@ async function settledEnd(estimator, step) {
 /** How long the estimator waits for an answer, milliseconds: LONGEST_WAIT of js/workers/refinement.ts. */
 const LONGEST_WAIT = 2000;
 
-/** The estimator waits for the other thread as long as it takes: the timer that ends its wait is stopped. */
+/** Stops the timer that limits the estimator's wait, so that it waits for the other thread as long as necessary. */
 const withoutHaste = (t) => t.mock.timers.enable({ apis: ["setTimeout"] });
 
-/** Until a run waits for a refinement that never comes. */
+/** Resolves once a run waits for a refinement that never comes. */
 async function lostInWaiting() {
   const before = seen.asked;
   tamperWith((order) => (order.kind === "refine" ? undefined : order));
   await until(() => seen.asked > before);
   tamperWith();
-  // The run goes on to the place where it waits.
+  // The run continues to the place where it waits.
   for (let turns = 0; turns < 10; turns++) await new Promise(setImmediate);
 }
 
@@ -111,7 +111,7 @@ describe("a refinement worker", () => {
       await settled();
       const before = { ...seen };
       assert.deepEqual(await endOf(estimator), expected);
-      // After a failure none is asked, nor another started, in this loop.
+      // After a failure, no further refinement is requested and no thread started in this loop.
       assert.deepEqual([seen.asked - before.asked, seen.begun - before.begun], [1, 0]);
     }
     tamperWith();
@@ -127,7 +127,7 @@ describe("a refinement worker", () => {
     const end = endOf(estimator).finally(() => (ended = true));
     await lostInWaiting();
     const { asked } = seen;
-    // The wait ends here, and nowhere else.
+    // Only the mocked timer ends the wait.
     for (; !ended; t.mock.timers.tick(LONGEST_WAIT)) await new Promise(setImmediate);
     assert.deepEqual(await end, expected);
     assert.equal(seen.asked, asked, "it is not asked again");

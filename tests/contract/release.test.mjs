@@ -1,4 +1,4 @@
-// The citation is what it should be, and a release changes what it should, in a repository of its own.
+// The citation is valid, and a release changes the right files, tested in a separate repository.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -66,7 +66,7 @@ describe("release", () => {
   const folders = [];
   let folder;
   const git = (...args) => {
-    // Of the repository alone, whatever this machine is set up to.
+    // Only the repository's configuration counts, not this machine's.
     const env = { ...process.env, GIT_CONFIG_GLOBAL: "/dev/null", GIT_CONFIG_SYSTEM: "/dev/null" };
     const { status, stdout, stderr } = spawnSync("git", args, { cwd: folder, encoding: "utf8", env });
     assert.equal(status, 0, stderr);
@@ -125,7 +125,7 @@ describe("release", () => {
     );
     assert.equal(git("status", "--porcelain"), "");
     assert.deepEqual([git("log", "-1", "--format=%s"), git("describe")], ["Release 9.8.7", "v9.8.7"]);
-    // Nothing else in the lock file has moved.
+    // Nothing else in the lock file changes.
     assert.equal(
       git("diff", "--numstat", "HEAD~1", "--", "Cargo.lock"),
       `${locked.length}\t${locked.length}\tCargo.lock`,

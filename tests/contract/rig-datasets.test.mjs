@@ -1,4 +1,4 @@
-// Calibrations of data sets and toolboxes: poses of cameras in the world, units of depth, and pixels that count from 1.
+// Calibrations of data sets and toolboxes: camera poses in the world, units of depth, and pixels counted from 1.
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import {

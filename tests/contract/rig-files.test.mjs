@@ -1,4 +1,4 @@
-// Pictures, depth maps and clouds of a rig as other programs write them, and what is said of them.
+// Pictures, depth maps and clouds of a rig as other programs write them, and the descriptions of what was read.
 import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
 import { describe, test } from "node:test";
@@ -23,7 +23,7 @@ import {
 const GREY = 0,
   RGB = 2;
 const words = (...values) => values.flatMap((value) => [value >> 8, value & 255]);
-/** A 16-bit PNG of one row for each list. */
+/** A 16-bit PNG with one row for each list. */
 const depthPng = (rows) =>
   png({
     width: rows[0].length,
@@ -33,7 +33,7 @@ const depthPng = (rows) =>
     rows: rows.map((row) => words(...row)),
   });
 const expected = millimetres.map((value) => value / 1000);
-/** Columns of the EXR files that are called large. */
+/** Columns of the EXR files named "large". */
 const LARGE = 64;
 const large = (value) => Array.from({ length: 48 * LARGE }, (_, at) => value(at % LARGE, Math.floor(at / LARGE)));
 
@@ -70,7 +70,7 @@ describe("depth maps", () => {
     close(metres(reading), expected, 0.0005);
   });
 
-  // Large enough for their blocks to become shorter; halves hold these depths exactly.
+  // Large enough for some blocks to be shorter; half floats hold these depths exactly.
   for (const name of ["piz-half", "piz-float", "piz-colours", "pxr24-float", "pxr24-mixed", "dwaa-depth"]) {
     test(`large-${name}.exr`, async () => {
       const reading = await readFixture(`large-${name}.exr`, { as: "depth" });
@@ -215,7 +215,7 @@ describe("what looks wrong is said", () => {
   test("by content: masks, grey pictures, depth; names where either would do", async () => {
     const mask = png({ width: 10, height: 1, depth: 1, colourType: GREY, rows: [[0b10000001, 0b01000000]] });
     assert.equal((await read("x.png", mask)).kind, "mask");
-    // Drawn ones have soft edges: so called, they are masks all the same.
+    // Drawn masks have soft edges; a name with "mask" makes them masks nevertheless.
     const soft = png({ width: 4, height: 1, depth: 8, colourType: GREY, rows: [[0, 96, 255, 254]] });
     assert.equal((await read("cup-mask.png", soft)).kind, "mask");
     assert.equal((await read("x.png", soft)).kind, "colour");
@@ -270,7 +270,7 @@ describe("colour images", () => {
   for (const [name, tolerance] of [
     ["piz-colours", 0],
     ["pxr24-mixed", 0],
-    // Lossy: what OpenEXR's own reader differs from the truth by.
+    // Lossy: the tolerance is the error of OpenEXR's own reader.
     ["dwaa-colours", 0.004],
     ["dwab-colours", 0.004],
   ]) {
@@ -321,7 +321,7 @@ describe("colour images", () => {
         const found = colours(reading);
         for (let at = 0; at < found.length; at++) {
           const [x, y] = from(at % width, Math.floor(at / width));
-          // JPEG rounds; the others may not.
+          // JPEG rounds; the other formats must be exact.
           close(found[at], rgb[y * W + x], extension === "jpg" ? 5 : 0, `${orientation} at ${at}`);
         }
         assert.equal(reading.warnings.length, orientation === "1" ? 0 : 1);

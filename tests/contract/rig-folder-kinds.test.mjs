@@ -1,4 +1,4 @@
-// Folders as products leave them: third folders, time stamps as names, units in texts, raw depth maps, and what is said of the rest.
+// Folders in the layouts of products: third folders, time stamps as names, units in texts, raw depth maps, and messages about other files.
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import { readRigFolder } from "../../pkg/rig.js";
@@ -8,7 +8,7 @@ import { npy, png } from "./support.mjs";
 const [W, H] = [48, 36];
 const pixels = (value) => Array.from({ length: H }, (_, y) => Array.from({ length: W }, (_, x) => value(x, y)).flat());
 const grey = (depth, value) => png({ width: W, height: H, depth, colourType: 0, rows: pixels(value) });
-/** Smooth depths of 16 bits, told apart by their first one. */
+/** Smooth 16-bit depths, identified by their first value. */
 const depth = (first = 1000, across = 7, down = 1) =>
   grey(16, (x, y) => {
     const value = first + across * x + down * y;
@@ -31,7 +31,7 @@ const folder = (files, options) =>
     Object.entries(files).map(([name, bytes]) => ({ name, bytes: typeof bytes === "string" ? text(bytes) : bytes })),
     options,
   );
-/** The first value of each frame's colour image and depth map, which tell which files they are of. */
+/** The first value of each frame's colour image and depth map, which identifies their files. */
 const marks = ({ frames }) => frames.map(({ image, depth }) => [image.data[0], depth.data[0]]);
 const says = ({ warnings }, code, pattern, isDoubt) => {
   const found = warnings.find((each) => each.code === code && pattern.test(each.message));

@@ -1,4 +1,4 @@
-// Whole folders of a rig: which files are one frame, which camera took it, and what is said of the rest.
+// Whole folders of a rig: which files form a frame, which camera took it, and messages about the other files.
 import assert from "node:assert/strict";
 import { existsSync, readFileSync, readdirSync } from "node:fs";
 import { describe, test } from "node:test";
@@ -18,7 +18,7 @@ const folder = (files, options) =>
     Object.entries(files).map(([name, bytes]) => ({ name, bytes })),
     options,
   );
-/** The first value of each frame's colour image and depth map, which tell which files they are of. */
+/** The first value of each frame's colour image and depth map, which identifies their files. */
 const marks = ({ frames }) => frames.map(({ image, depth }) => [image.data[0], depth.data[0]]);
 const has = (warnings, code, pattern = /./) =>
   assert.ok(
@@ -310,7 +310,7 @@ describe("cameras are given to the pictures they took", () => {
       "depth_K.txt": K(400),
     });
     has(wrong[2], "camera-size", /are for 64x48 pixels, and these have 2x1/);
-    // Without a size the principal point tells.
+    // Without a size, the principal point reveals it.
     const outside = await focals({ ...pair, "rgb.json": text('{"fx": 500, "fy": 500, "cx": 320, "cy": 240}') });
     has(outside[2], "principal-point", /outside these \(320, 240 of 2x1\)/);
   });

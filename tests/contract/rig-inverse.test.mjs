@@ -1,4 +1,4 @@
-// Disparities and inverse depths, whose larger numbers are nearer, read as depths: the option `inverse`. And masks of 16 bits, which are no depths.
+// Disparities and inverse depths, for which larger is nearer, are read as depths with the option `inverse`. 16-bit masks are not depths.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { close, codes, metres, read, refusedFile } from "./rig-support.mjs";
@@ -6,7 +6,7 @@ import { BimodalError, npy, png } from "./support.mjs";
 
 const [WIDTH, HEIGHT] = [40, 30];
 const pixels = (value) => Array.from({ length: WIDTH * HEIGHT }, (_, at) => value(at % WIDTH, Math.floor(at / WIDTH)));
-/** Depths of a slope, metres, with a hole in each fifth column. */
+/** Depths of a slope, metres, with holes in every fifth column. */
 const depths = pixels((x, y) => (x % 5 === 0 ? 0 : 0.5 + 0.01 * x + 0.02 * y));
 const grey16 = (values) =>
   png({
@@ -18,22 +18,22 @@ const grey16 = (values) =>
       values.slice(y * WIDTH, (y + 1) * WIDTH).flatMap((value) => [value >> 8, value & 255]),
     ),
   });
-/** Focal length times baseline, in metres times pixels. */
+/** Focal length times baseline, pixels times metres. */
 const NUMERATOR = 600 * 0.05;
 const disparities = depths.map((z) => (z > 0 ? NUMERATOR / z : 0));
 const inFile = grey16(disparities.map((value) => Math.round(256 * value)));
 
 test("disparities become metres by focal length times baseline, and holes stay holes", async () => {
   const reading = await read("disp.png", inFile, { as: "depth", inverse: { numerator: 256 * NUMERATOR } });
-  // Half a level of disparity is z^2 / (2 * 7680) metres.
+  // Half a level of disparity corresponds to z^2 / (2 * 7680) metres.
   close(metres(reading), depths, 1.5 ** 2 / (2 * 7680));
   assert.deepEqual(reading.guessed, []);
   assert.equal(reading.depth.unit, 1);
   assert.match(reading.says, /16-bit, read as metres: 7680 \/ stored number/);
-  // By itself the name is refused, and the way out is named for programs.
+  // Without the option the name is refused, and the error names the remedy for programs.
   await refusedFile(read("disp.png", inFile), "disp.png", /the option `inverse`/);
   await assert.rejects(read("disp.png", inFile), ({ details }) => details.problem === "disparity");
-  // The option alone says that it is a depth map, whatever the name.
+  // The option alone makes it a depth map, whatever the name.
   assert.equal((await read("x.png", inFile, { inverse: { numerator: 7680 } })).kind, "depth");
 });
 
@@ -49,7 +49,7 @@ test("without the factor the median depth is the longer side of the map, and tha
   const reading = await read("d.png", inFile, { inverse: {} });
   const found = metres(reading).filter((value) => value > 0);
   assert.ok(Math.abs([...found].sort((a, b) => a - b)[found.length >> 1] / WIDTH - 1) < 0.01);
-  // All depths are right but for one factor.
+  // All depths are right up to one factor.
   const ratios = metres(reading).flatMap((value, at) => (value > 0 ? [value / depths[at]] : []));
   assert.ok(Math.max(...ratios) / Math.min(...ratios) < 1.001);
   assert.deepEqual(reading.guessed, ["unit"]);
@@ -109,7 +109,7 @@ test("masks of 16 bits are masks, with soft edges or of any level by their name;
     ["object_mask.png", soft(4095)],
   ])
     assert.equal((await read(name, grey16(values))).kind, "mask", name);
-  // A wall at one distance, and a sparse map, stay depths.
+  // A wall at one distance and a sparse map remain depths.
   assert.equal((await read("a.png", grey16(pixels((x, y) => (inside(x, y) ? 1000 : 0))))).kind, "depth");
   assert.equal((await read("a.png", grey16(pixels((x) => (x % 30 ? 0 : 900 + x))))).kind, "depth");
   const labels = grey16(pixels((x, y) => Math.floor(x / 10) + 4 * Math.floor(y / 10)));

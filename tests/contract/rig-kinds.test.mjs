@@ -1,4 +1,4 @@
-// Depth in the many files that people have: read right, or refused in words that name the file's kind and the way out.
+// Depth in many common formats: read correctly, or refused with the file's kind and a remedy.
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import { deflateRawSync } from "node:zlib";

@@ -1,4 +1,4 @@
-// LAZ, as laspy with lazrs compresses it (scripts/reference/laz.py): every point format that laz-perf knows, and files that are damaged.
+// LAZ, as laspy with lazrs compresses it (scripts/reference/laz.py): every point format that laz-perf supports, and damaged files.
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import { inTime } from "./malformed.mjs";
@@ -23,7 +23,7 @@ describe("LAZ", () => {
       assert.equal(found.kind, "depth");
       assert.match(found.says, /576 points \(LAZ\), sorted into \d+x8/);
       const { points, intensity, times } = found.scan;
-      // Stored to the millimetre.
+      // Coordinates are stored to the millimetre.
       close([...points], POINTS, 5.01e-4);
       assert.deepEqual(
         [...intensity],
@@ -42,7 +42,7 @@ describe("LAZ", () => {
   test("damage inside the compressed points is seen by the header's box", async () => {
     const bytes = fixture("scan-6.laz");
     const view = new DataView(bytes.buffer);
-    // Within the layers of the first chunk, behind its uncompressed point.
+    // Within the layers of the first chunk, after its uncompressed point.
     for (let at = view.getUint32(96, true) + 200; at < view.getUint32(96, true) + 230; at++) bytes[at] ^= 0x5a;
     await refusedFile(read("a.laz", bytes), "a.laz", /damaged/);
   });

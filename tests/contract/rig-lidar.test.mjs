@@ -1,11 +1,11 @@
-// Clouds of LiDARs in no rows and columns become range images: made scanners in a made room, whose rays are known.
+// Unorganised LiDAR clouds become range images: simulated scanners in a simulated room, with known rays.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { rangeImage } from "../../pkg/rig.js";
 import { measured } from "../../scripts/lidar/measures.mjs";
 import { OPTICAL, VIEW, accumulated, rosette, shuffled, spinning, turned } from "./scanners.mjs";
 
-/** Aims: a point lies within half the sampling of its pixel's ray, and of the points in view nearly all are kept. */
+/** Aims: a point lies within half the sampling of its pixel's ray, and nearly all points in view are kept. */
 function holds(found, name) {
   assert.ok(found.kept >= 0.99, `${name}: ${(100 * found.kept).toFixed(2)} % of ${found.count} points are kept`);
   assert.ok(
@@ -39,7 +39,7 @@ test("lasers above each other and a coarse clock cost neither rows nor points", 
   assert.equal(image.how, "order");
   const found = measured(scan, VIEW, image);
   holds(found, "64 lasers in two blocks");
-  // Above each other by 0.2 m, a laser's elevations differ by a degree between 3 and 9 m, twice the distance of rows.
+  // The two blocks of lasers are 0.1 m apart in height, which changes elevations by about a degree from 3 to 9 m: twice the spacing of rows.
   assert.ok(found.ofColumn < 0.5, `${found.ofColumn}`);
 });
 
@@ -73,7 +73,7 @@ test("neighbours of a range image are neighbours in the room", async () => {
       image.points.subarray(3 * pixel + 3, 3 * pixel + 6),
     ];
     if (Number.isNaN(a[0]) || Number.isNaN(b[0])) continue;
-    // From left to right the scanner's y falls.
+    // From left to right, the scanner's y falls.
     assert.ok(Math.atan2(a[1], a[0]) > Math.atan2(b[1], b[0]) - 1e-6);
     pairs++;
     if (Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]) > 0.3) jumps++;
@@ -90,7 +90,7 @@ test("a rosette and sweeps from several places fill a z-buffer at their own dens
     assert.equal(image.how, "sphere", name);
     const found = measured(scan, VIEW, image);
     holds({ ...found, kept: found.stood }, name);
-    // A circle in its square is four fifths of it.
+    // The rosette is a circle, which covers four fifths of its bounding square.
     assert.ok(found.filled > 0.3, `${name}: ${found.filled}`);
   }
 });

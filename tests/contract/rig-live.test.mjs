@@ -1,4 +1,4 @@
-// The cameras of a robot behind a server of @foxglove/ws-protocol: topics, views that differ, and a lost connection.
+// The cameras of a robot behind a server of @foxglove/ws-protocol: topics, changing views, and a lost connection.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { WebSocket } from "ws";
@@ -8,10 +8,10 @@ import { CAMERA, K, POSE, frame } from "./recorded.mjs";
 import { FRAMES, driver } from "./recordings.mjs";
 import { close, translation } from "./rig-support.mjs";
 
-// Node.js has a WebSocket since version 22.
+// Node.js has a WebSocket only from version 22.
 globalThis.WebSocket = WebSocket;
 
-/** The messages of the robot at each scene. */
+/** The robot's messages for each scene. */
 const views = (count) => Array.from({ length: count }, (_, index) => driver([frame(index)], POSE));
 
 for (const generation of ["ros1", "ros2"])

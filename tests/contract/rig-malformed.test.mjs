@@ -1,4 +1,4 @@
-// Malformed and odd files of a rig: each a clear error that names file and reason, in bounded time and memory.
+// Malformed and odd files of a rig: each gives a clear error with file and reason, in bounded time and memory.
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import { deflateSync } from "node:zlib";
@@ -37,7 +37,7 @@ import {
 import { codes, fixture, refusedFile, text } from "./rig-support.mjs";
 import { npy, png } from "./support.mjs";
 
-/** File, bytes, what the error has to say, and options where it needs some. */
+/** File name, bytes, a pattern for the error, and options if needed. */
 const FILES = [
   ["empty.png", new Uint8Array(0), /it is empty/],
   ["spaces.txt", text(" \n\t "), /it is empty or has only spaces/],
@@ -257,7 +257,7 @@ const FILES = [
   ["mirror.txt", text("1 0 0 0\n0 1 0 0\n0 0 -1 0\n0 0 0 1\n"), /mirrors/],
   ["last.txt", text("1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 2\n"), /not in 0 0 0 1/],
   ["numbers.txt", text("1.5 ".repeat(500_000)), /more than 200000 numbers/],
-  // No number, of many digits: where digits match in two ways, that takes the square of their number.
+  // Many digits that form no number: a pattern that can match digits in two ways takes time quadratic in their number.
   ["digits.txt", text(`${"1".repeat(200_000)}${"e".repeat(200_000)}`), /in none of the formats/],
   ["digits.json", text(`{"fx":"${"1".repeat(200_000)}x","fy":1,"cx":1,"cy":1}`), /fx|camera/],
   ["digits.yaml", text(`fx: ${"1".repeat(200_000)}x\nfy: 1\ncx: 1\ncy: 1\n`), /fx|camera|none/],
@@ -277,7 +277,7 @@ const FILES = [
 
 const ALL = [...FILES, ...PICTURES, ...CALIBRATIONS, ...BINARIES];
 
-/** Refused with a BimodalError of the code "file" that names the file and fits the pattern; or read with this doubt or gap. */
+/** Checks that a reading is refused with a BimodalError "file" that names the file and matches the pattern, or has this warning. */
 async function isTold(reading, name, outcome) {
   if (outcome instanceof RegExp) return refusedFile(reading, name, outcome);
   const { warnings } = await reading;

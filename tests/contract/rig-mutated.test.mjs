@@ -1,4 +1,4 @@
-// Files of a rig changed at random: each ends in a reading or in an error that names it, in bounded time and memory.
+// Randomly changed files of a rig: each is read or gives an error that names it, in bounded time and memory.
 import assert from "node:assert/strict";
 import { readdirSync } from "node:fs";
 import { test } from "node:test";
@@ -9,7 +9,7 @@ import { CALIBRATION_SAMPLES } from "./product-calibrations.mjs";
 import { PICTURE_SAMPLES } from "./product-pictures.mjs";
 import { fixture } from "./rig-support.mjs";
 
-/** Mulberry32: the same cases in each run. */
+/** Mulberry32, for the same cases in each run. */
 function generator(seed) {
   let state = seed >>> 0;
   return () => {
@@ -21,12 +21,12 @@ function generator(seed) {
 }
 
 const CASES = 120;
-/** Of each file of a product, which are short. */
+/** Cases for each file of a product; these files are short. */
 const CASES_OF_PRODUCTS = 40;
 const KINDS = ["colour", "depth", "mask", "cameras", "poses", undefined, undefined, undefined];
 const BYTES = [0, 255, 127, 128, 45, 48, 57, 10];
 
-/** Cut off, with bits and bytes changed (headers more than bodies), or with something put in between. */
+/** Truncates, changes bits and bytes (more often in the header than behind it), or inserts bytes. */
 function mutated(file, random) {
   const below = (count) => Math.floor(random() * count);
   if (random() < 0.3) return file.slice(0, below(file.length));
@@ -39,7 +39,7 @@ function mutated(file, random) {
 }
 
 const folder = fileURLToPath(new URL("../fixtures/rig", import.meta.url));
-// Folders beside them hold what the writers wrote.
+// Subfolders hold the output of writers.
 const fixtures = readdirSync(folder, { withFileTypes: true })
   .filter((entry) => entry.isFile())
   .map(({ name }) => ({ name, content: fixture(name), cases: CASES }))

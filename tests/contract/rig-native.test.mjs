@@ -1,4 +1,4 @@
-// The readers of calibrations in Rust (files/) and in JavaScript (js/rig) read the same in the same files, with the same codes.
+// The calibration readers in Rust (files/) and in JavaScript (js/rig) read the same from the same files, with the same codes.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { existsSync, readFileSync, readdirSync } from "node:fs";
@@ -7,7 +7,7 @@ import { before, describe, test } from "node:test";
 import { readRigFile } from "../../pkg/rig.js";
 import { inRoot } from "../../scripts/shell.mjs";
 
-/** What rotations that are made orthonormal in another order of sums may differ by. */
+/** Limit of the difference between rotations that are made orthonormal with another order of sums. */
 const NEAR = 1e-9;
 const TEXT = /\.(?:json|ya?ml|xml|txt|conf|ini|toml|launch|camera|csv|sh|py|log|freiburg|intrinsics?|log)$|\/[^./]+$/i;
 
@@ -19,7 +19,7 @@ function filesBelow(folder) {
 
 const FIXTURES = filesBelow(inRoot("tests/fixtures/rig"));
 
-/** As the Rust example prints them. */
+/** The reading in the form that the Rust example prints. */
 async function byJavaScript(path) {
   const bytes = new Uint8Array(readFileSync(path));
   const found = await readRigFile({ name: path, bytes }).catch((error) => ({ error }));
@@ -68,7 +68,7 @@ describe("readers in Rust and in JavaScript", () => {
     assert.equal(built.status, 0);
   });
 
-  // Of the products' own files, which JavaScript reads, Rust reads some: docs/check.md.
+  // Of the products' own files, which JavaScript reads, Rust reads only some: docs/check.md.
   for (const [name, paths] of Object.entries({ "the fixtures": FIXTURES })) {
     test(name, async () => {
       const program = inRoot("target/debug/examples/calibration");
@@ -83,7 +83,7 @@ describe("readers in Rust and in JavaScript", () => {
       for (const [index, path] of paths.entries()) {
         const theirs = await byJavaScript(path);
         try {
-          // Parsers word damage in their own way; what is refused is refused by both.
+          // Parsers describe damage differently, but both must refuse the same files.
           if (theirs.error !== undefined || ours[index].error !== undefined)
             assert.equal(
               theirs.error === undefined,

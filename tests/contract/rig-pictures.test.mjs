@@ -1,4 +1,4 @@
-// What a picture or a cloud holds, told by its name and its values: depths coded in colours, disparities, infrared, labels, units and axes.
+// The contents of a picture or a cloud, inferred from name and values: depths in colour codes, disparities, infrared, labels, units and axes.
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import { pcd } from "./malformed.mjs";
@@ -14,7 +14,7 @@ const says = async (code, pattern, name, bytes, options) => {
 const refused = (name, bytes, reason, options) => refusedFile(read(name, bytes, options), name, reason);
 const bytesOf = (array) => new Uint8Array(array.buffer, array.byteOffset, array.byteLength);
 
-/** A smooth depth map of 64x48 in whole numbers up to so many, with a step in it. */
+/** A smooth depth map of 64x48 whole numbers up to a maximum. */
 const [COLUMNS, ROWS] = [64, 48];
 const slope = (most) =>
   Array.from({ length: COLUMNS * ROWS }, (_, at) =>
@@ -54,7 +54,7 @@ describe("depths that are coded in colours", () => {
         );
       }
       await says("unit-guessed", /coded in the picture's colours/, "depth_1.png", bytes);
-      // Without a name that says depth it is a picture.
+      // Without "depth" in its name, it is a picture.
       assert.equal((await read("1.png", bytes)).kind, "colour");
     });
 
@@ -126,7 +126,7 @@ describe("what a picture holds is told by its name and its values", () => {
       const floats = new Float32Array(3 * COLUMNS * ROWS).map((_, at) => value(at % 3, Math.floor(at / 3)));
       return new Uint8Array([...Buffer.from(`PF\n${COLUMNS} ${ROWS}\n-1\n`), ...bytesOf(floats)]);
     };
-    // Rows from the bottom up.
+    // Rows run from the bottom up.
     const cloud = pfm((axis, at) => [(at % COLUMNS) / 32 - 1, 0.7 - Math.floor(at / COLUMNS) / 32, 2][axis]);
     assert.equal((await read("a.pfm", cloud)).kind, "depth");
     assert.equal(

@@ -1,4 +1,4 @@
-// Calibrations of products: units, modes, frames and orders that the product has and its file does not say.
+// Calibrations of products: units, modes, frames and orders that the product defines and its file does not state.
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import {

@@ -1,4 +1,4 @@
-// Recordings with random bytes changed, cut off or copied: each is read or ends in a BimodalError that names the file, in bounded time.
+// Recordings with random bytes changed, removed or copied: each is read or gives a BimodalError that names the file, in bounded time.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";

@@ -14,7 +14,7 @@ import {
 import { H, W, close, metres, millimetres, translation } from "./rig-support.mjs";
 
 const bayer = (pattern) => ({ width: W, height: H, encoding: `bayer_${pattern}8`, step: W, is_bigendian: 0 });
-/** Each encoding stores the same grey picture of rows. */
+/** Each encoding stores the same grey picture, given in rows. */
 const ENCODINGS = {
   bgra8: [4, (value) => [value, value, value, 255]],
   mono8: [1, (value) => [value]],
@@ -85,7 +85,7 @@ test("32-bit depth is in metres, and so is depth compressed as inverse depths", 
 });
 
 test("RVL data is read as depth", async () => {
-  // Two pixels without depth, then 1000, 1003 and 998 millimetres: counts and differences by zigzag, three bits a nibble.
+  // Two pixels without depth, then 1000, 1003 and 998 millimetres: counts and zigzag-coded differences, three bits a nibble.
   const words = [2, 3, 2000, 6, 9];
   const nibbles = words.flatMap((value) => {
     const found = [];

@@ -1,4 +1,4 @@
-// Recordings of a rig: the topics that are chosen, frames with cameras and transforms, and warnings and errors.
+// Recordings of a rig: the chosen topics, frames with cameras and transforms, warnings and errors.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
@@ -163,7 +163,7 @@ test("the best of several topics is chosen, and an option takes another", async 
     poses,
     frames: [first],
   } = await recording.read({ depth: "/camera/aligned_depth_to_color/image_raw" });
-  // It is registered to the colour image: both share one frame.
+  // It is registered to the colour image, so both share one frame.
   close(poses[0].pose.translation, [0, 0, 0], 1e-12);
   assert.equal(first.depth.camera.fx, K.fx);
 });
@@ -245,7 +245,7 @@ test("recordings of librealsense have cameras, units and motions below the names
   close(poses[0].pose.translation, translation, 1e-9);
 });
 
-/** Any calibration that names its cameras and their sizes. */
+/** A calibration that names its cameras and their sizes. */
 const CALIBRATION = JSON.stringify({
   depth: { ...K, width: W, height: H },
   depth_other: { ...K, fx: 28, fy: 29, width: 2 * W, height: 2 * H },
@@ -289,7 +289,7 @@ test("a Matroska file without a calibration, of other codecs or cut off has warn
 });
 
 test("moments at which the rig rests are preferred to those at which it moves", async () => {
-  // Two frames of each place, and one on the way to the next.
+  // Two frames at each place, and one on the way to the next.
   const all = Array.from({ length: 8 }, (_, place) => [
     frame(2 * place),
     frame(2 * place),

@@ -1,4 +1,4 @@
-// The report of a check: a file that asks for nothing, runs nothing, and holds every number.
+// The report of a check: a file that requests nothing, runs nothing, and contains every number.
 import assert from "node:assert/strict";
 import { createHash } from "node:crypto";
 import { describe, test } from "node:test";

@@ -1,4 +1,4 @@
-// The rules by which calibrations of any program are read: what belongs together, what may be read in two ways, what is left over.
+// The rules for reading calibrations of any program: what belongs together, what can be read in two ways, what is left over.
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import {
@@ -238,7 +238,7 @@ describe("rotations that can be read in two ways", () => {
         [["rotation-guessed", as]],
       );
     }
-    // Right angles in radians turn axes; in degrees they would be a rig by chance.
+    // Right angles in radians swap axes; read as degrees they would also make a plausible rig.
     const axes = await json(pose({ rpy: [-1.59, 0.01, -1.55] }));
     assert.equal(axes.warnings[0].as, "euler-radians");
     const long = await json({ depth_to_color: { rvec: [1.2, -1.7, 2.9], tvec: translation } });

@@ -1,6 +1,6 @@
-// A report as a check of a rig might give it, for the tests of what is made from one.
+// A report in the form of a rig check's, for tests of its consumers.
 
-/** The log likelihood of a cue that is so many sigmas sharp, best at an offset. */
+/** The log likelihood of a cue with this sigma and its best offset. */
 const fall = (offsets, best, sigma) => offsets.map((offset) => -0.5 * ((offset - best) / sigma) ** 2);
 const steps = (most, count = 41) => Array.from({ length: count }, (_, k) => most * ((2 * k) / (count - 1) - 1));
 
@@ -12,7 +12,7 @@ const AXES = [
   ["ty", 50, 5],
   ["tz", 50, 18],
 ];
-/** Each cue's sigma over the sharpest one's, and where it is best in its own sigmas. */
+/** Each cue's sigma relative to the sharpest one's, and its best offset in its own sigmas. */
 const CUES = { edges: [1, 0.3], information: [1.6, -0.8], shading: [6, 1], silhouette: [40, 0.2] };
 
 export const report = () => ({

@@ -1,4 +1,4 @@
-// Files of LiDARs and mapping tools, whose points are in no rows and columns: what is read of each format, and what is said of it.
+// Files of LiDARs and mapping tools, whose points are unorganised: what is read from each format, and the messages about it.
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import { checkCalibration } from "../../pkg/index.js";
@@ -14,14 +14,14 @@ const joined = (...parts) =>
     Buffer.concat(parts.map((part) => Buffer.from(part.buffer ?? part, part.byteOffset, part.byteLength))),
   );
 
-/** Floats of each point: x y z and what the functions say. */
+/** Floats of each point: x y z and the values of the functions. */
 const interleaved = ({ points }, ...others) =>
   Float32Array.from({ length: (points.length / 3) * (3 + others.length) }, (_, at) => {
     const [point, column] = [Math.floor(at / (3 + others.length)), at % (3 + others.length)];
     return column < 3 ? points[3 * point + column] : others[column - 3](point);
   });
 
-/** Whether a reading holds these points in rows of one laser each. */
+/** Checks that a reading holds these points, with one row for each laser. */
 async function holds(found, how, rows = 16, count = COUNT) {
   assert.equal(found.kind, "depth");
   assert.ok(CODES(found).includes("points-sorted"), found.says);
@@ -54,7 +54,7 @@ describe("points in no rows and columns", () => {
     await holds(found, /by the file's rings/);
     assert.deepEqual([...found.scan.ring.slice(0, 5)], [...scan.ring.slice(0, 5)]);
     assert.equal(found.scan.intensity[7], 7);
-    // Each point has its time: that it was taken for one moment makes a verdict doubtful.
+    // Each point has a time; treating the scan as one moment caps the verdict.
     const timed = found.warnings.find(({ code }) => code === "point-times");
     assert.equal(timed.isDoubt, true);
     assert.ok(Math.abs(timed.span - 0.1) < 1e-3);
@@ -167,7 +167,7 @@ describe("points in no rows and columns", () => {
 });
 
 describe("scans in a folder and a check", () => {
-  /** A picture of the room by its distances: brightness steps where they do. */
+  /** A picture of the room whose brightness follows the distances, so that it has the same steps. */
   async function picture() {
     const { cast } = await import("./scanners.mjs");
     const { rotation, translation, camera, width, height } = VIEW;
@@ -242,7 +242,7 @@ describe("scans in a folder and a check", () => {
       reports.push({ off: candidates.pose, estimate });
     }
     const [whole, own, turnedOnes] = reports;
-    // Axes that change places change nothing but the order of sums.
+    // Swapping axes only changes the order of sums.
     assert.ok(Math.abs(own.off.offDegrees - turnedOnes.off.offDegrees) < 1e-3);
     assert.ok(Math.abs(own.off.pixels - turnedOnes.off.pixels) < 0.01);
     for (const at of [0, 1, 2])

@@ -1,4 +1,4 @@
-// Which camera of many took the pictures of a folder: by size, by what its file or its name says, scaled where the view is the same.
+// Which of many cameras took a folder's pictures: by size, by statements of files or names, scaled where the view is the same.
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import { readRigFolder } from "../../pkg/rig.js";
@@ -13,7 +13,7 @@ const depth = (width, height, from = 1500) => ({
   ...{ width, height, channels: 1 },
   data: Uint16Array.from({ length: width * height }, (_, i) => from + (i % 97)),
 });
-/** Reads files by their names: pictures, texts, or objects as JSON. */
+/** Reads files, given by name: pictures, texts, or objects as JSON. */
 async function folder(files) {
   const named = [];
   for (const [name, content] of Object.entries(files)) {

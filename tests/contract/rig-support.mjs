@@ -1,4 +1,4 @@
-// What the tests of a rig's files share: the fixtures of scripts/reference/rig-files.py and the formulas behind them.
+// Shared by the tests of a rig's files: the fixtures of scripts/reference/rig-files.py and their formulas.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
@@ -24,7 +24,7 @@ export function close(actual, expected, tolerance, message) {
   );
 }
 
-/** The depths of a reading in metres, 0 where there is none. */
+/** The depths of a reading in metres, 0 where missing. */
 export function metres({ depth }) {
   if (depth.points)
     return Array.from({ length: depth.width * depth.height }, (_, at) =>
@@ -53,7 +53,7 @@ export async function refusedFile(reading, name, reason) {
   });
 }
 
-/** Of cv2.Rodrigues of (0.02, -0.03, 0.05), and the shift, as the fixtures have them. */
+/** The rotation of cv2.Rodrigues for (0.02, -0.03, 0.05), and the translation, as in the fixtures. */
 export const rotation = [
   0.9983005382651491, -0.05026824436148818, -0.029481161922952533, 0.04966843433742314, 0.9985504591085095,
   -0.020737098269863558, 0.030480845296394256, 0.019237573209700973, 0.999350205807263,
@@ -62,7 +62,7 @@ export const translation = [-0.025, 0.001, 0.003];
 export const K = { fx: 518.5, fy: 519.25, cx: 325.5, cy: 253.75 };
 export const distortion = [0.2, -0.5, 0.001, -0.002, 0.3];
 
-/** What the tests of calibrations by rules compare with. */
+/** The only item of a list; fails if there is another number of items. */
 export const only = (found) => (assert.equal(found.length, 1, JSON.stringify(found)), found[0]);
 export const codes = ({ warnings }) => warnings.map(({ code }) => code);
 export const sameCamera = ({ camera }, lens = distortion, expected = K) => {
@@ -77,7 +77,7 @@ export const samePose = ({ pose }, r = rotation, t = translation, tolerance = 1e
 export const rows = [0, 3, 6].map((at) => rotation.slice(at, at + 3));
 export const matrix = [...rows.map((row, at) => [...row, translation[at]]), [0, 0, 0, 1]];
 export const columns = [0, 3, 6, 1, 4, 7, 2, 5, 8].map((at) => rotation[at]);
-/** The rotation of the fixtures as a quaternion x y z w. */
+/** The fixtures' rotation as a quaternion x y z w. */
 export const quaternion = [0.009998416741873298, -0.014997625112809946, 0.024996041854683248, 0.999525037602976];
 /** Its roll, pitch and yaw about fixed axes, radians. */
 export const angles = [

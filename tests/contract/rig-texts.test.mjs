@@ -1,4 +1,4 @@
-// The languages that calibrations are written in: JSON with comments, TOML, Python, numbers with labels, decimal commas.
+// The notations of calibrations: JSON with comments, TOML, Python, numbers with labels, decimal commas.
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import { writeNpy } from "../../pkg/write.js";
@@ -77,7 +77,7 @@ describe("languages", () => {
     assert.match(says, /decimal commas/);
     samePose(only((await read("T.txt", table.replace(/;/g, " "))).poses));
     sameCamera(only((await read("k.txt", "fx = 518,5\nfy = 519,25\ncx = 325,5\ncy = 253,75\n")).cameras), null);
-    // Commas that separate whole numbers stay what they are.
+    // Commas that separate whole numbers remain separators.
     sameCamera(only((await read("K.csv", "500,0,320\n0,501,240\n0,0,1\n")).cameras), null, {
       fx: 500,
       fy: 501,

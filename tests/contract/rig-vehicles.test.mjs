@@ -111,7 +111,7 @@ describe("LiDARs and cameras of vehicles", () => {
       laserCalibrations: [{ name: "TOP", extrinsic: transform(1.5, 0, 2.5) }],
     });
     assert.deepEqual(lens(waymo.cameras[0]), ["brown", ...distortion]);
-    // The LiDAR, half a metre above the camera, has its x axis along the camera's z.
+    // The LiDAR is half a metre above the camera; its x axis is the camera's z axis.
     assert.deepEqual(ends(waymo.poses[0]), ["lidar TOP", "camera FRONT"]);
     samePose(waymo.poses[0], [0, -1, 0, 0, 0, -1, 1, 0, 0], [0, -0.5, 0], 1e-9);
   });
@@ -159,11 +159,11 @@ describe("LiDARs and cameras of vehicles", () => {
       "sensor_kit_calibration.yaml",
       `sensor_kit_base_link:\n  camera0/camera_link: ${place([1, 0, 0], [0, 0, 0])}\n  velodyne_top_base_link: ${place([0, 0, 0.5], [0, 0, 0])}\n`,
     );
-    // By ROS's convention a camera_link looks along x.
+    // By ROS's convention, a camera_link looks along x.
     samePose(kit.poses[0], [0, -1, 0, 0, 0, -1, 1, 0, 0], [0, -0.5, -1], 1e-9);
     assert.deepEqual(codes(kit), ["pose-assumed"]);
     assert.equal(kit.poses.length, 3);
-    // One whose y points down has optical axes, whatever it is called.
+    // A frame whose y axis points down has optical axes, whatever its name.
     const half = Math.PI / 2;
     const optical = await read(
       "sensor_kit_calibration.yaml",
@@ -244,7 +244,7 @@ describe("robots", () => {
     assert.deepEqual(ends(plain.poses[0]), ["depth_optical", "color_optical"]);
     const tree = `<robot name="rig" xmlns:xacro="x"><xacro:property name="base" value="0.06"/><xacro:property name="half" value="\${base/2}"/>${joint("color_frame", "camera_link", `<origin xyz="0 ${xacro("half + 0.01")} 0" rpy="0 0 ${xacro("radians(90) - pi/2")}"/>`)}${joint("color_optical_frame", "color_frame", optical)}${joint("depth_optical_frame", "camera_link", optical)}${joint("camera_link", "map", "<xacro:insert_block name='origin'/>")}</robot>`;
     const found = await read("rig.urdf.xacro", tree);
-    // Four centimetres to the left of the body are to the left in the picture.
+    // The depth camera is four centimetres to the left of the colour camera's position on the body, so points move right in the picture.
     assert.deepEqual(ends(found.poses[0]), ["depth_optical_frame", "color_optical_frame"]);
     samePose(found.poses[0], [1, 0, 0, 0, 1, 0, 0, 0, 1], [0.04, 0, 0], 1e-9);
     assert.deepEqual(codes(found), ["pose-left-out"]);

@@ -1,4 +1,4 @@
-// Files of a rig: the very ones that readers of others have read, and what these found in them.
+// Files of a rig: the same files that independent readers have read, and the readers' results.
 import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
 import { describe, test } from "node:test";
@@ -31,7 +31,7 @@ describe("what others read is what was written", () => {
       test(`${rig}: the pose from ${format}`, () => {
         const { rotation: r, translation: t } = pose;
         const expected = [0, 1, 2].map((i) => [...r.slice(3 * i, 3 * i + 3), t[i]]);
-        // A quaternion keeps a rotation to its rounding; all else is the same number.
+        // A quaternion preserves a rotation up to rounding; all other numbers are exact.
         const tolerance = format === "ros2" ? 1e-12 : 0;
         const { matrix } = found(rig, format);
         assert.deepEqual(matrix[3], [0, 0, 0, 1]);
@@ -44,7 +44,7 @@ describe("what others read is what was written", () => {
     }
   }
 
-  /** What a reader found of a camera is what was given; zeros at the end of a distortion say nothing. */
+  /** Checks that a reader found the given camera; trailing zeros of a distortion are not significant. */
   function same(camera, given, size, { distortion = true } = {}) {
     const { fx, fy, cx, cy } = given;
     assert.deepEqual([camera.fx, camera.fy, camera.cx, camera.cy], [fx, fy, cx, cy]);
@@ -55,7 +55,7 @@ describe("what others read is what was written", () => {
     assert.deepEqual(padded(camera.distortion), padded(given.distortion));
   }
 
-  /** Every camera of every rig, beside what was found of it in a format that holds so many numbers of Brown's distortion. */
+  /** Compares every camera of every rig with its reading in a format that holds `most` coefficients of Brown's distortion. */
   function each(format, most, model) {
     let count = 0;
     for (const [rig, { context }] of Object.entries(RIGS)) {
@@ -128,7 +128,7 @@ describe("what others read is what was written", () => {
   });
 });
 
-/** The package's own readers, where it was built with them. */
+/** The package's own readers, if the build includes them. */
 const readers = existsSync(inRoot("pkg/rig.js")) ? await import("../../pkg/rig.js") : undefined;
 const skip = readers ? false : "this build has no readers";
 
@@ -184,7 +184,7 @@ test("any number keeps its digits", () => {
 });
 
 test("quaternions of every quadrant", () => {
-  // Half and other turns, so that each of the four is the largest once.
+  // Half turns and others, so that each of the four components is the largest once.
   for (const [x, y, z, w] of [
     [1, 0, 0, 0],
     [0, 1, 0, 0],

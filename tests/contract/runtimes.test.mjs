@@ -1,4 +1,4 @@
-// The package in Deno and Bun: its README's example, threads, and files from disk. Both are installed for this test alone, below target/.
+// The package in Deno and Bun: its README's example, threads, and files from disk. Both are installed below target/ for this test only.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { existsSync, readFileSync } from "node:fs";
@@ -13,16 +13,16 @@ import { LONG } from "./long.mjs";
 const RUNTIMES = inRoot("target/runtimes");
 const VERSIONS = { deno: "2.9.6", bun: "1.4.5" };
 const program = (name) => join(RUNTIMES, "node_modules/.bin", name);
-/** The commands of README's table, by their programs. */
+/** The commands of README's table, split into words. */
 const COMMANDS = [
   ...readFileSync(inRoot("pkg/README.md"), "utf8").matchAll(/^\| (?:Deno|Bun) \| `(.+?) app\.mjs`/gm),
 ].map(([, command]) => command.split(" "));
 
-/** Whether a runtime is there, installed now or before. */
+/** Whether a runtime is available; installs it if necessary. */
 function isThere(name) {
   if (!existsSync(program(name))) {
     const line = ["install", "--prefix", RUNTIMES, "--no-save", "--no-audit", "--no-fund"];
-    // Both at once: npm removes what is not asked for.
+    // Both in one command, because npm removes packages that are not listed.
     const all = Object.entries(VERSIONS).map(([each, version]) => `${each}@${version}`);
     spawnSync("npm", [...line, ...all], { encoding: "utf8" });
   }
@@ -30,7 +30,7 @@ function isThere(name) {
 }
 
 const [MADE, OWN] = examples(inRoot("pkg/README.md"), "js");
-/** README's example, then threads and a file from disk. */
+/** README's example, followed by threads and a file from disk. */
 const APP = `${MADE}
 import { imageFrom } from "bimodal-stereo/files";
 const together = new Estimator(image, depth, { workers: 2 });

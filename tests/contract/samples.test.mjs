@@ -1,4 +1,4 @@
-// What made scenes offer beyond the plain pair: the paper's bare grid, a scale, and the physical limit.
+// Options of rendered scenes beyond a plain pair: the paper's bare grid, a scale, and the physical limit.
 import assert from "node:assert/strict";
 import { before, describe, test } from "node:test";
 import { Estimator, init, refused, sample, sampleBound, sampleLights, shadeNormals, turnLight } from "./support.mjs";
@@ -91,7 +91,7 @@ describe("lights", () => {
       light.forEach((own, at) => assert.ok(Math.abs(coefficients[at] - own) < 1e-12, `${name} ${at}`));
       const [shaded, again] = [name, light].map((light) => shadeNormals(light, NORMALS));
       assert.deepEqual(shaded, again);
-      // Towards the camera: the constant, the term along z and the second of z.
+      // Towards the camera: the constant, the z term, and the second z term.
       const [l1, , l3, , , , l7] = coefficients;
       assert.ok(Math.abs(shaded[0] - (0.886227 * l1 - 2 * 0.511664 * l3 + (0.743125 - 0.247708) * l7)) < 1e-6);
     }
@@ -99,7 +99,7 @@ describe("lights", () => {
 
   test("turned by an angle fall where they fell before", () => {
     const turned = turnLight("window", { beta: 90 });
-    // A quarter of a turn about y takes x to -z, and z to x.
+    // A quarter turn about y takes x to -z, and z to x.
     const there = shadeNormals(turned, Float32Array.of(-1, 0, 0, -0.8, 0, -0.6));
     const before = shadeNormals("window", NORMALS);
     for (const at of [0, 1, 2, 3, 4, 5]) assert.ok(Math.abs(there[at] - before[at]) < 1e-5, `${at}`);

@@ -1,4 +1,4 @@
-// A run as bytes: it goes on to the same bits, and whatever else is given is refused by name.
+// A run saved as bytes continues to the same bits, and anything else is refused by name.
 import assert from "node:assert/strict";
 import { before, describe, test } from "node:test";
 import { crc32 } from "node:zlib";
@@ -6,7 +6,7 @@ import { Estimator, estimator, init, outcome, pair, refused } from "./support.mj
 
 before(() => init());
 
-/** Runs to the end, and says what came out. */
+/** Runs to the end and returns the results. */
 function ended(run) {
   while (run.report.status === "running") run.step();
   const out = outcome(run);
@@ -107,7 +107,7 @@ describe("goes on to the same bits", () => {
   });
 
   test("from a file as Node reads it", () => {
-    // A small file lies within a larger buffer, and what is cut from a Buffer is a view of it.
+    // A small file lies within a larger buffer, and a slice of a Buffer is a view of it.
     for (const size of [16, 32]) {
       const run = estimator({ maxIterations: 2 }, pair({ size }));
       same(run, Estimator.restore(Buffer.concat([Buffer.from("before"), run.save()]).subarray(6)));
@@ -133,7 +133,7 @@ describe("is refused", () => {
     refused(() => Estimator.restore(bytes), "state", "state");
     assert.throws(() => Estimator.restore(bytes), words);
   };
-  /** The same with another header, and a checksum that is right. */
+  /** The same state with another header and a valid checksum. */
   function changed(change) {
     const view = Buffer.from(state);
     const length = view.readUInt32LE(16);

@@ -1,5 +1,5 @@
-// Scanners of LiDARs in a made room, for the tests of range images: rings, a rosette, and sweeps from several places in one cloud.
-// Axes as most LiDARs have them: x forward, y left, z up.
+// Simulated LiDAR scanners in a simulated room, for the tests of range images: rings, a rosette, and sweeps from several places in one cloud.
+// The axes are those of most LiDARs: x forward, y left, z up.
 
 /** A reproducible random number in 0 .. 1. */
 export function random(seed) {
@@ -10,7 +10,7 @@ export function random(seed) {
   };
 }
 
-/** A room with things in it, as boxes of a lowest and a highest corner. */
+/** A room with objects, as boxes with a lowest and a highest corner. */
 const ROOM = [
   [-6, -5, -1.5],
   [9, 6, 2.5],
@@ -30,7 +30,7 @@ const THINGS = [
   ],
 ];
 
-/** Distances along a ray to where it enters and leaves a box. */
+/** Distances along a ray at which it enters and leaves a box. */
 function through([low, high], from, along) {
   let [enter, leave] = [-Infinity, Infinity];
   for (let axis = 0; axis < 3; axis++) {
@@ -41,7 +41,7 @@ function through([low, high], from, along) {
   return [enter, leave];
 }
 
-/** How far a ray goes until it meets the room or a thing in it. */
+/** Distance along a ray to the room or an object. */
 export function cast(from, along) {
   const hits = THINGS.map((thing) => through(thing, from, along)).filter(
     ([enter, leave]) => enter > 0 && enter < leave,
@@ -55,7 +55,7 @@ const direction = (azimuth, elevation) => [
   Math.sin(elevation),
 ];
 
-/** What a ray measures; nothing for one in twenty, as where a surface is black. */
+/** A ray's measurement; one ray in twenty gives none, as on black surfaces. */
 function measured(points, from, along, noise) {
   if (noise() < 0.05) return false;
   const range = cast(from, along) + 0.01 * (noise() - 0.5);
@@ -64,8 +64,8 @@ function measured(points, from, along, noise) {
 }
 
 /**
- * A spinning scanner: ring after ring, each by azimuth, as KITTI stores them. Its clock ticks, so that azimuths come in coarse steps; its
- * lasers sit `offset` metres above each other, block by block.
+ * A spinning scanner: ring by ring, each by azimuth, in the order of KITTI. A clock's ticks make azimuths coarse; the upper block of lasers
+ * is `offset` metres above the origin, the lower block half as high.
  */
 export function spinning({ lasers, step = 0.2, offset = 0, seed = 1, tick = 0 }) {
   const noise = random(seed);
@@ -84,7 +84,7 @@ export function spinning({ lasers, step = 0.2, offset = 0, seed = 1, tick = 0 })
   return { points: Float32Array.from(points), ring: Float32Array.from(ring) };
 }
 
-/** The same scan with its points in another order. */
+/** The same scan with its points in random order. */
 export function shuffled({ points, ring }, seed = 3) {
   const noise = random(seed);
   const order = Array.from(ring.keys());
@@ -98,19 +98,19 @@ export function shuffled({ points, ring }, seed = 3) {
   };
 }
 
-/** A scan in other axes: each new one a signed old one, [axis, sign]. */
+/** A scan in other axes; each new axis is a signed old one, [axis, sign]. */
 export const turned = ({ points, ...rest }, axes) => ({
   ...rest,
   points: points.map((_, at) => axes[at % 3][1] * points[at - (at % 3) + axes[at % 3][0]]),
 });
-/** Right, down and forward of x forward, y left and z up. */
+/** Right, down and forward, from x forward, y left and z up. */
 export const OPTICAL = [
   [1, -1],
   [2, -1],
   [0, 1],
 ];
 
-/** Two prisms that turn against each other draw a rosette, 38 degrees wide. */
+/** A rosette, 38 degrees wide, drawn by two prisms that rotate in opposite directions. */
 export function rosette({ count, from = [0, 0, 0], seed = 5 }) {
   const noise = random(seed);
   const points = [];
@@ -124,7 +124,7 @@ export function rosette({ count, from = [0, 0, 0], seed = 5 }) {
   return { points: Float32Array.from(points) };
 }
 
-/** Sweeps of a scanner that is carried sideways and forwards, in the frame of the first. */
+/** Sweeps of a scanner that moves sideways and forwards, in the frame of the first sweep. */
 export function accumulated(places = 5) {
   const all = Array.from({ length: places }, (_, place) =>
     rosette({ count: 12_000, from: [0.1 * place, 0.15 * place, 0.02 * place], seed: 11 + place }),
@@ -132,7 +132,7 @@ export function accumulated(places = 5) {
   return { points: Float32Array.from(all.flatMap(({ points }) => [...points])) };
 }
 
-/** A camera beside the scanner that looks along its x: 640x480, 70 degrees wide. */
+/** A camera beside the scanner that looks along the scanner's x axis: 640x480, 70 degrees wide. */
 export const VIEW = {
   rotation: [0, -1, 0, 0, 0, -1, 1, 0, 0],
   translation: [0.05, -0.08, -0.06],

@@ -1,4 +1,4 @@
-// Workers share a search, and nothing but the time it takes depends on how many.
+// Workers share a search; only the time depends on their number.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
@@ -12,7 +12,7 @@ import { runSettled, seen, settled, until } from "./threads.mjs";
 const scene = (request = {}) =>
   pair({ light: "window", size: 48, angles: { alpha: 10, beta: 40 }, noise: 0.01, ...request });
 
-/** Runs to the end; how many slices of the search were done in this thread. */
+/** Runs to the end and returns the number of search slices in this thread. */
 async function slicesOf(estimator) {
   return (await runSettled(estimator)).filter(({ stage }) => stage === "search").length;
 }
@@ -34,7 +34,7 @@ describe("search workers", () => {
           const slices = await slicesOf(together);
           assert.ok(slices < all, `${slices} of ${all} slices`);
           assert.deepEqual(outcome(together), outcome(alone));
-          // Others serve the next search.
+          // The next search gets new workers.
           together.reset();
           assert.ok((await slicesOf(together)) < all);
           assert.deepEqual(outcome(together), outcome(alone));

@@ -1,4 +1,4 @@
-// Nothing known, through the built package: the search opens the loop in slices, and the pose is found.
+// Nothing known, with the built package: the search begins the loop in slices, and the pose is found.
 import assert from "node:assert/strict";
 import { before, describe, test } from "node:test";
 import { Estimator, init, sample } from "./support.mjs";
@@ -19,7 +19,7 @@ const degrees = (a, b) =>
 const rotationOf = ([alpha, beta, gamma]) =>
   product(product(aboutAxis([1, 0, 0], alpha), aboutAxis([0, 1, 0], beta)), aboutAxis([0, 0, 1], gamma));
 
-/** Runs to the end; every report on the way. */
+/** Runs to the end and returns every report. */
 function reports({ image, depth }, gain = 1, options = {}) {
   const estimator = new Estimator({ ...image, data: image.data.map((value) => gain * value) }, depth, options);
   const seen = [];
@@ -60,7 +60,7 @@ describe("search", () => {
       for (let row = 0; row < count; row += 4) if (scores[row + 3] > best[3]) best = [...scores.subarray(row, row + 4)];
     }
     assert.ok(count > 4 * 300, `${count / 4} rotations`);
-    // Rotations lie 16 degrees apart; registration does the rest.
+    // Rotations are 16 degrees apart; registration refines the pose.
     assert.ok(degrees(rotationOf(best), pair.pose.rotation) < 15, String(best));
     while (estimator.step().status === "running");
     assert.equal(estimator.searchScores().length, 0);

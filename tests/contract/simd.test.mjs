@@ -1,16 +1,16 @@
-// Builds meant to have SIMD have shipped without it, which cannot be seen from outside: so the instructions are counted.
+// A build can lose SIMD without any visible change, so these tests count its instructions.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { describe, test } from "node:test";
 import binaryen from "binaryen";
 
 const FILES = { simd: "bimodal_stereo_bg.wasm", scalar: "bimodal_stereo_scalar_bg.wasm" };
-/** Loops that are vectorised at all have thousands; a few copies of 16 bytes would come from any library. */
+/** Vectorised loops have thousands of vector instructions; any library may have a few for copies of 16 bytes. */
 const MANY = 1000;
 
 const bytesOf = (file) => readFileSync(new URL(`../../pkg/${file}`, import.meta.url));
 
-/** The decoded module as text, in which each instruction follows a bracket and nothing else looks like one. */
+/** The decoded module as text, in which every instruction follows a bracket and nothing else looks like one. */
 function decoded(file) {
   const module = binaryen.readBinary(bytesOf(file));
   const text = module.emitText();
@@ -18,7 +18,7 @@ function decoded(file) {
   return text;
 }
 
-/** Names of all its instructions on vectors, as often as they occur. */
+/** Names of all vector instructions, with repetitions. */
 const vectorInstructions = (text) => [...text.matchAll(/\(((?:v128|[if]\d+x\d+)\.\w+)/g)].map((match) => match[1]);
 
 describe("instructions", () => {
@@ -39,7 +39,7 @@ describe("instructions", () => {
     assert.doesNotMatch(text, /\bv128\b/);
   });
 
-  /** Node 20 aborts when optimised code that is inside such a call is thrown away: see scripts/numerics.mjs. */
+  /** Node 20 aborts when it discards optimised code that is inside such a call: see scripts/numerics.mjs. */
   test("no function takes or returns a reference", () => {
     for (const file of Object.values(FILES)) assert.doesNotMatch(decoded(file), /externref/, file);
   });

@@ -1,4 +1,4 @@
-// However the steps of a run are sliced, its end is the same to the bit: by iterations, by stages, by milliseconds of any number.
+// A run ends the same, bit by bit, however its steps are sliced: by iterations, by stages, or by any number of milliseconds.
 import assert from "node:assert/strict";
 import { before, test } from "node:test";
 import { LONG } from "./long.mjs";
@@ -6,7 +6,7 @@ import { Estimator, init, outcome, pair } from "./support.mjs";
 
 before(() => init());
 
-/** Nothing told: the search is sliced as well. */
+/** With nothing known, so that the search is sliced as well. */
 function end(advance) {
   const { image, depth } = pair({ size: 24, noise: 0.01 });
   const estimator = new Estimator(image, depth, { maxIterations: 6 });

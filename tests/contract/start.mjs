@@ -1,4 +1,4 @@
-// One start of the package in a thread of its own, which knows SIMD or doesn't: the files it reads, and where its search ends.
+// Starts the package in a separate thread with or without SIMD; reports the files that it reads and the result of its run.
 import { promises } from "node:fs";
 import { syncBuiltinESMExports } from "node:module";
 import { basename } from "node:path";
@@ -16,7 +16,7 @@ promises.readFile = noted;
 syncBuiltinESMExports();
 if (!inNode) {
   process.getBuiltinModule = undefined;
-  // Node's own refuses files.
+  // Node's own fetch refuses files.
   globalThis.fetch = async (address) =>
     new Response(await noted(address), { headers: { "content-type": "application/wasm" } });
 }

@@ -16,15 +16,15 @@ export const {
   turnLight,
 } = package_;
 
-/** A pair with a known answer, quick to work on. */
+/** A pair with a known answer that takes little time. */
 export const pair = (request = {}) => sample({ surface: "bust", light: "colourful", size: 32, ...request });
 
-/** An estimator of that pair that starts in reach of the answer. */
+/** An estimator of that pair whose initial pose is near the answer. */
 export function estimator(options = {}, { image, depth, light } = pair()) {
   return new Estimator(image, depth, { light, start: "identity", scale: 1, ...options });
 }
 
-/** All that comes out, to the bit, but for the times. */
+/** All results, bit by bit, except times. */
 export function outcome(estimator) {
   const { milliseconds, ...report } = estimator.report;
   const arrays = [
@@ -37,7 +37,7 @@ export function outcome(estimator) {
   return { report, bits: arrays.map((array) => new Uint32Array(array.buffer)), light: estimator.light() };
 }
 
-/** Checks that a call is refused with this code and this field, and that the message begins with the field. */
+/** Checks that a call is refused with this code and field, and that the message begins with the field. */
 export function refused(call, code, field) {
   assert.throws(call, (error) => {
     assert.ok(error instanceof BimodalError, `not a BimodalError: ${error}`);
@@ -45,7 +45,7 @@ export function refused(call, code, field) {
     assert.equal(error.name, "BimodalError");
     assert.deepEqual([error.code, error.field], [code, field], error.message);
     assert.equal("field" in error, field !== undefined, "absent rather than undefined");
-    // A file is no member of the contract: its message begins with its name.
+    // A file is not a member of the contract, so its message begins with its name.
     if (field && code !== "file") assert.ok(error.message.startsWith(field), error.message);
     return true;
   });
@@ -60,7 +60,7 @@ function chunk(type, data) {
   return frame;
 }
 
-/** A PNG whose rows are bytes as they stand in the file (big-endian, packed). */
+/** A PNG with its rows as the bytes in the file (big-endian, packed). */
 export function png({ width, height, depth, colourType, rows, palette }) {
   const header = Buffer.alloc(13);
   header.writeUInt32BE(width, 0);
@@ -78,7 +78,7 @@ export function png({ width, height, depth, colourType, rows, palette }) {
   );
 }
 
-/** A .npy file of version 1 whose data begin where `align` says (NumPy: 64). */
+/** A .npy file of version 1 whose data begin at a multiple of `align` (NumPy: 64). */
 export function npy({ descr, shape, data, fortran = false, align = 64 }) {
   const entry = `{'descr': '${descr}', 'fortran_order': ${fortran ? "True" : "False"}, 'shape': (${shape.join(", ")}${shape.length === 1 ? "," : ""}), }`;
   const length = Math.ceil((11 + entry.length) / align) * align - 10;

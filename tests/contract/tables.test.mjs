@@ -1,4 +1,4 @@
-// The arithmetic of the tables: rows in, summary out. What the method makes of the scenes is the tables' own business.
+// The arithmetic of the tables, from rows to summaries. The method's results on the scenes are not tested here.
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import { missingKeys } from "../../scripts/tables/keys.mjs";
@@ -71,7 +71,7 @@ describe("definitions", () => {
       for (const quick of [true, false]) {
         const cells = TABLES.flatMap((table) => table.cells(kit(complete), quick));
         const byId = new Map(cells.map((cell) => [cell.id, cell]));
-        // Tables may share a cell, but then it is the same one.
+        // Tables may share a cell, which must then be identical.
         for (const cell of cells) assert.deepEqual(cell, byId.get(cell.id));
         assert.deepEqual(JSON.parse(JSON.stringify(cells)), cells, "cells travel to other processes");
       }

@@ -1,27 +1,27 @@
-// The threads that the package makes, in the test's sight: a test waits until they have answered instead of for some time, so
-// that a machine that is slow or busy changes nothing. To import this module is enough.
+// Makes the package's threads observable: a test waits for their answers rather than for some time, so a slow or busy machine changes
+// nothing. Importing this module suffices.
 import { EventEmitter, once } from "node:events";
 import { syncBuiltinESMExports } from "node:module";
 import { after } from "node:test";
 import threads from "node:worker_threads";
 
-/** Ends what hangs, milliseconds. */
+/** Limit that ends a test that hangs, milliseconds. */
 const NEVER = 200_000;
 
-/** Threads that were made, and those of them that ended; refinements that they were asked for, and brought. */
+/** Threads that were started and that ended; refinements that were requested and delivered. */
 export const seen = { begun: 0, ended: 0, asked: 0, brought: 0 };
 
 const living = new Set();
 const news = new EventEmitter();
 let tamper = (order) => order;
 
-/** What becomes of each order before it is sent, until it is called without one; `undefined` is an order that gets lost. */
+/** Changes each order before it is sent, until called without an argument; an order that becomes `undefined` is lost. */
 export function tamperWith(change = (order) => order) {
   tamper = change;
 }
 
 class Watched extends threads.Worker {
-  /** Orders without an answer: each of them gets one. */
+  /** Number of unanswered orders; each order gets one answer. */
   due = 0;
 
   constructor(...args) {
@@ -58,20 +58,20 @@ class Watched extends threads.Worker {
 threads.Worker = Watched;
 syncBuiltinESMExports();
 
-// The package's threads keep no program from ending, and so no test that waits for one.
+// The package's threads do not keep a program alive, so they would not keep a waiting test alive either.
 const awake = setInterval(() => {}, 1000);
 after(() => clearInterval(awake));
 
-/** Until this holds; asked whenever a thread is told something, answers or ends. */
+/** Resolves once the condition holds; it is evaluated whenever a thread gets an order, answers or ends. */
 export async function until(holds) {
   const signal = AbortSignal.timeout(NEVER);
   while (!holds()) await once(news, "news", { signal });
 }
 
-/** Until every thread has answered all that it was told. */
+/** Resolves once every thread has answered all its orders. */
 export const settled = () => until(() => [...living].every(({ due }) => due === 0));
 
-/** Runs to the end, and lets all threads answer after each step; every report on the way. */
+/** Runs to the end, waiting for all threads after each step; returns every report. */
 export async function runSettled(estimator, step = () => estimator.run({ maxIterations: 1 })) {
   const reports = [];
   do {

@@ -1,4 +1,4 @@
-// An editor says of everything in the package what it is: every public name and member has a comment, and those of options follow from their rows.
+// Editors show a comment for every public name and member of the package, and the comments of options follow from their rows.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
@@ -23,7 +23,7 @@ test("units, ranges and defaults of options are those of their rows", async () =
   assert.ok(texts.filter((text) => /@default /.test(text)).length > 1, "the types of options and samples are not read");
   for (const text of texts) assert.equal(text, documented(text, rows), "node scripts/documented.mjs writes them anew");
   const found = comments(entries);
-  // Members of an interface that has a name of its own stand there.
+  // Members of an interface with a separate name are documented there.
   const isNamed = (path) => /^Options\.(start|prior)\./.test(path);
   for (const [path, row] of rows) assert.ok(found.get(path) || isNamed(path), `${path} ${row.kind}`);
 });

@@ -1,4 +1,4 @@
-// A depth map in another unit than its own: colours that it explains after a fashion are no answer to be sure of.
+// A depth map in a wrong unit: a result that fits the image only approximately must not be reported as certain.
 import assert from "node:assert/strict";
 import { before, test } from "node:test";
 import { LONG } from "./long.mjs";
@@ -18,7 +18,7 @@ const DEGREES = 180 / Math.PI;
 const apart = ({ rotation: a }, { rotation: b }) =>
   DEGREES * Math.acos(Math.min(1, (a.reduce((sum, entry, index) => sum + entry * b[index], 0) - 1) / 2));
 
-// The image of the bust looks like one of varying albedo.
+// The image of the bust looks like one with varying albedo.
 const [BY_UNIT, BY_CONTRAST] = [
   ["ambiguous", "other-unit", 0.1],
   ["lost", "contrast-unexplained"],
@@ -28,7 +28,7 @@ for (const [surface, light, beta, [status, code, times]] of [
   ["ripples", "window", 30, BY_UNIT],
   ["bust", "window", 20, BY_CONTRAST],
 ]) {
-  // The bust, and the factors below, stand for the others where time is short.
+  // In short runs, the bust and the factors below stand for the other cases.
   test(`relief ten times as deep as it is, ${surface} under ${light} light`, surface === "bust" ? {} : LONG, () => {
     const made = pair({ surface, light, size: 64, angles: { beta }, noise: 0.01 });
     const right = found(made, 1);
@@ -42,7 +42,7 @@ for (const [surface, light, beta, [status, code, times]] of [
   });
 }
 
-// Flat relief mostly leaves the pose so open that its sigmas speak first; at 64 pixels those of this pair do.
+// For flat relief, sigmas mostly reveal first that the pose is not determined, as for this pair at 64 pixels.
 test("relief a tenth as deep as it is", LONG, () => {
   const made = pair({ surface: "ripples", light: "colourful", size: 96, angles: { beta: 10 }, noise: 0.01 });
   const right = found(made, 1);
@@ -55,9 +55,8 @@ test("relief a tenth as deep as it is", LONG, () => {
   assert.ok(Math.abs(wrong.reason.times - 10) < 1e-6, wrong.message);
 });
 
-// What TUM's scale of 5000 makes of millimetres, what half of the resolution does, a raw number taken for another one: about half of
-// such pairs ended "converged", 4 to 25 degrees off, while nothing but ten times and a tenth was tried.
-// Three times is not told of this pair at 64 pixels: 0.3 times as deep leaves 0.58 of what residuals have in common, as 1/3 is no step.
+// Millimetres under TUM's scale of 5000, half of the resolution, and a raw number mistaken for another unit give factors that are no powers
+// of ten. A factor of three is not detected for this pair at 64 pixels, because the nearest factor tried is 0.3 rather than 1/3.
 for (const [unit, size, factor] of [
   [5, 64, "0.20"],
   [3, 96, "0.30"],
@@ -77,7 +76,7 @@ for (const [unit, size, factor] of [
   });
 }
 
-// What they leave is no noise but the error of normals of few pixels, and half or twice the relief leaves up to a fifth less of it.
+// The residuals here come from errors of the normals, not from noise; half or twice the relief reduces them by up to a fifth.
 test("the right relief of a view of 48 pixels without noise is doubted by no other unit", () => {
   for (const [light, beta] of [
     ["colourful", 0],
@@ -93,7 +92,7 @@ test("the right relief of a view of 48 pixels without noise is doubted by no oth
 
 test("relief next to flat, by a unit a thousand times too small, is no error and no answer", LONG, () => {
   for (const surface of ["bust", "vase"]) {
-    // The light that its normals ask for at first has coefficients beyond 100.
+    // The light that fits its normals at first has coefficients beyond 100.
     const made = pair({ surface, light: "overcast", angles: { beta: 20 }, noise: 0.01 });
     assert.notEqual(found(made, 1e-3).status, "converged", surface);
   }

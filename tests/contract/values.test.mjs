@@ -1,4 +1,4 @@
-// A number that is refused is a value of the error, with its index where it stands in a list: programs need not read it out of the message.
+// A refused number is a value of the error, with its index in a list, so that programs need not parse the message.
 import assert from "node:assert/strict";
 import { before, describe, test } from "node:test";
 import { checkCalibration, pixelLandscape, projectFrame } from "../../pkg/index.js";
@@ -11,7 +11,7 @@ const REQUEST = { surface: "bust", light: "colourful", size: 32 };
 const IDENTITY = [1, 0, 0, 0, 1, 0, 0, 0, 1];
 const POSE = { scale: 1, rotation: IDENTITY, translation: [0, 0, 0] };
 const CAMERA = { fx: 30, fy: 30, cx: 16, cy: 16 };
-/** A list with one other entry. */
+/** A list with one entry replaced. */
 const but = (list, index, value) => list.with(index, value);
 const matrix = (index, value) => but([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1], index, value);
 const frame = (depth = {}) => {
@@ -35,7 +35,7 @@ const image = (given) => () => made(given);
 const depth = (given) => () => made({}, given);
 const scene = (given) => () => sample({ ...REQUEST, ...given });
 
-/** What is called, the error's code, its field, the number and, of a list, the index. */
+/** Call, code of the error, field, number and, for a list, index. */
 const CALLS = [
   [options({ maxIterations: 1.5 }), "range", "options.maxIterations", 1.5],
   [options({ maxIterations: 0 }), "range", "options.maxIterations", 0],

@@ -1,13 +1,14 @@
-// The page, the packages and their documents use the terms of the field. Words that this project coined, and phrases that have to be
-// read twice, are found in comments, docstrings, messages and visible texts. Each rule names what to say instead.
+// The project uses the terms of the field. Coined words and phrases that a reader has to read twice are found in comments, docstrings,
+// messages and visible texts. Each rule names what to say instead.
 import assert from "node:assert/strict";
 import { readFileSync, readdirSync, statSync } from "node:fs";
 import { extname, join } from "node:path";
 import { test } from "node:test";
 import { inRoot } from "../../scripts/shell.mjs";
+import { DOCUMENT as THRESHOLDS, handWritten } from "../../scripts/thresholds.mjs";
 import { ts } from "ts-morph";
 
-/** A pattern, what to say instead, and a sentence that breaks the rule. */
+/** A pattern, the words to use instead, and a sentence that breaks the rule. */
 const RULES = [
   ["told", "given, initial (value, pose, light); reported", "A told start is kept."],
   ["tells? (?:\\w+ )?apart", "distinguish", "A property tells them apart."],
@@ -48,6 +49,7 @@ const RULES = [
   example,
 }));
 
+/** Areas whose comments, messages, visible texts and documents are checked. */
 const COVERED = [
   "www",
   "js",
@@ -70,19 +72,27 @@ const COVERED = [
   "docs/lab",
 ];
 
-/** Not covered yet: these still use words of the table above. An area moves up once its words are those of the field. */
-const LATER = [
+/**
+ * Areas of code in which only comments and docstrings are checked. The string literals of tests and scripts (titles of tests, commands'
+ * output) stay unchecked, and those of Rust are mostly checked by way of the packages that show them.
+ */
+const COMMENTS = [
   "src",
   "files",
   "cli",
   "python/src",
+  "python/tests",
   "tests",
+  "fuzz/bodies",
+  "fuzz/targets",
   "scripts",
   "examples",
   "benches",
   "protocols",
-  "docs/codes.md",
 ];
+
+/** Not covered yet: these still use words of the table above. */
+const LATER = ["src/calibration", "docs/codes.md"];
 
 /** Phrases that stay as they are, each in one file, with the reason. */
 const EXCEPTIONS = [
@@ -100,23 +110,24 @@ const EXCEPTIONS = [
 ];
 
 const KINDS = new Set([".ts", ".css", ".html", ".py", ".md"]);
+const CODE = new Set([".ts", ".tsx", ".mts", ".js", ".mjs", ".html", ".py", ".rs"]);
 
 const filesBelow = (path) =>
   statSync(inRoot(path)).isFile()
     ? [path]
     : readdirSync(inRoot(path), { withFileTypes: true })
-        .flatMap((entry) => filesBelow(join(path, entry.name)))
-        .filter((name) => KINDS.has(extname(name)));
+        .filter(({ name }) => name !== "node_modules" && name !== "target")
+        .flatMap((entry) => filesBelow(join(path, entry.name)));
 
 const matches = (text, pattern) => [...text.matchAll(pattern)].map(({ 0: found, index }) => [index, found]);
 
 /** Comments, and string literals of more than one word: a literal without a space is a key or a code. */
-function partsOfScript(text) {
-  const source = ts.createSourceFile("a.ts", text, ts.ScriptTarget.Latest, true);
+function partsOfScript(name, text, onlyComments) {
+  const source = ts.createSourceFile(name, text, ts.ScriptTarget.Latest, true);
   const parts = new Map();
   const visit = (node) => {
     const isText = ts.isStringLiteral(node) || ts.isTemplateLiteralToken(node);
-    if (isText && /\s/.test(node.text)) parts.set(node.getStart(), node.text);
+    if (!onlyComments && isText && /\s/.test(node.text)) parts.set(node.getStart(), node.text);
     for (const ranges of [
       ts.getLeadingCommentRanges(text, node.getFullStart()),
       ts.getTrailingCommentRanges(text, node.getEnd()),
@@ -128,46 +139,67 @@ function partsOfScript(text) {
   return [...parts];
 }
 
+/** Strings, characters and lifetimes of Rust are matched so that what looks like a comment within them is skipped. */
+const RUST =
+  /(?:\/\/.*(?:\n[ \t]*(?=\/\/))?)+|\/\*[^]*?\*\/|b?r(#*)"[^]*?"\1|"(?:\\[^]|[^"\\])*"|'(?:\\.[^']*|[^'\\])'|'\w+/g;
+const PYTHON = /"""[^]*?"""|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'|#.*(?:\n[ \t]*#.*)*/g;
+const HTML = /<!--[^]*?-->|\/\*[^]*?\*\/|^[ \t]*\/\/.*/gm;
+
+/** The comments and docstrings of a file, each with its position. */
+function commentsOf(name, text) {
+  switch (extname(name)) {
+    case ".rs":
+      return matches(text, RUST).filter(([, part]) => /^\/[/*]/.test(part));
+    case ".py":
+      return matches(text.replaceAll(/\bNone\b/g, "null"), PYTHON).filter(([, part]) => /^(?:"""|#)/.test(part));
+    case ".html":
+      return matches(text, HTML);
+    default:
+      return partsOfScript(name, text, true);
+  }
+}
+
 const ATTRIBUTES = /(?:title|alt|content|placeholder|aria-label|aria-description)="([^"]*)"/g;
 const UNRELEASED = /^## \[?Unreleased\]?[^]*?(?=^## |$(?![^]))/gm;
 
-/** Paragraphs, items of lists and rows of tables, without blocks of code and without what a command writes: those are words of `scripts`. */
+/** Paragraphs, items of lists and rows of tables, without blocks of code and without generated regions. */
 const paragraphs = (text) => matches(withoutRegions(withoutCode(text)), /^.+(?:\n(?![-|#\n]).+)*/gm);
 
-/** What people read in a file, with where it begins. */
+/** The texts that people read in a file, each with its position. */
 function partsOf(name, text) {
   switch (extname(name)) {
     case ".ts":
-      return partsOfScript(text);
+      return partsOfScript(name, text, false);
     case ".css":
       return matches(text, /\/\*[^]*?\*\//g);
     case ".html":
       return [...matches(text, /(?<=>)[^<]+/g), ...matches(text, ATTRIBUTES)];
     case ".py":
-      // "is None" is code, also between the quotes of two strings.
+      // `is None` is code, also between the quotes of two strings.
       return matches(text.replaceAll(/\bNone\b/g, "null"), /"""[^]*?"""|#.*|"[^"\n]* [^"\n]*"/g);
     default:
       return name === "CHANGELOG.md"
         ? matches(text, UNRELEASED).flatMap(([start, section]) =>
             paragraphs(section).map(([at, part]) => [start + at, part]),
           )
-        : paragraphs(text);
+        : // The other columns of that page are comments of `src`.
+          paragraphs(name === THRESHOLDS ? handWritten(text) : text);
   }
 }
 
 const blank = (part) => part.replaceAll(/[^\n]/g, " ");
 
-/** Quoted names are the code's: what stands between backticks is not read, nor are blocks of code in documents. */
+/** Blanks names of code between backticks and blocks of code, which are not checked. */
 const withoutCode = (text) => text.replaceAll(/```[^]*?```|``[^`]*``|`[^`]*`/g, blank);
 
 /** The regions that scripts/docs.mjs fills. */
 const withoutRegions = (text) => text.replaceAll(/<!-- begin: [^]*?<!-- end: \w+ -->/g, blank);
 
-function found(name, text) {
+function found(name, text, parts = partsOf) {
   const excepted = EXCEPTIONS.filter(([file]) => file === name).map(([, phrase]) => phrase);
-  return partsOf(name, text).flatMap(([start, part]) => {
+  return parts(name, text).flatMap(([start, part]) => {
     // A phrase may continue on the next line of a comment.
-    const joined = withoutCode(part).replaceAll(/\s*\n[ \t]*(?:\*|\/\/|#)?\s*/g, " ");
+    const joined = withoutCode(part).replaceAll(/\s*\n[ \t]*(?:\*|\/\/[/!]?|#)?\s*/g, " ");
     const words = excepted.reduce((rest, phrase) => rest.replaceAll(phrase, ""), joined);
     return RULES.flatMap(({ pattern, say }) =>
       [...words.matchAll(pattern)].map(({ 0: phrase, index }) => {
@@ -179,9 +211,17 @@ function found(name, text) {
 }
 
 test("visible texts and comments use the terms of the field", () => {
-  const names = COVERED.flatMap(filesBelow);
+  const names = COVERED.flatMap(filesBelow).filter((name) => KINDS.has(extname(name)));
   assert.ok(names.length > 300, `${names.length} files`);
   const wrong = names.flatMap((name) => found(name, readFileSync(inRoot(name), "utf8")));
+  assert.deepEqual(wrong, []);
+});
+
+test("comments of the library, tests and scripts use the terms of the field", () => {
+  const isCovered = (name) => CODE.has(extname(name)) && !LATER.some((path) => name.startsWith(`${path}/`));
+  const names = COMMENTS.flatMap(filesBelow).filter(isCovered);
+  assert.ok(names.length > 650, `${names.length} files`);
+  const wrong = names.flatMap((name) => found(name, readFileSync(inRoot(name), "utf8"), commentsOf));
   assert.deepEqual(wrong, []);
 });
 
@@ -215,9 +255,33 @@ test("a sentence that breaks a rule is found wherever people read it", async (t)
     });
 });
 
+test("only comments and docstrings of tests, scripts and Rust are checked", () => {
+  const words = "A told start is kept.";
+  for (const [name, text] of [
+    ["a.rs", `//! ${words}\n`],
+    ["a.rs", `pub fn a<'a>(b: &'a str) -> char { '"' } // ${words}\n`],
+    ["a.rs", `/* ${words} */\nconst A: &str = r#"a "b" // c"#;\n`],
+    ["a.mjs", `/** ${words} */\nexport const a = 1;\n`],
+    ["a.tsx", `export const a = <b title="c" />; // ${words}\n`],
+    ["a.py", `a = "#"  # ${words}\n`],
+    ["a.py", `def a():\n    """${words}"""\n`],
+    ["a.html", `<!-- ${words} -->\n`],
+  ])
+    assert.equal(found(name, text, commentsOf).length, 1, text);
+  for (const [name, text] of [
+    ["a.rs", `const A: [&str; 2] = ["// ${words}", r#"/* ${words} */"#];\n`],
+    ["a.mjs", `test("${words}", () => "// ${words}");\n`],
+    ["a.py", `a = "# ${words}"\n`],
+    ["a.html", `<p>${words}</p>\n`],
+  ])
+    assert.deepEqual(found(name, text, commentsOf), [], text);
+});
+
 test("a phrase over two lines of a comment is found", () => {
   assert.equal(found("a.ts", "/**\n * A thread of\n * its own.\n */\nexport {};\n").length, 1);
   assert.equal(found("a.ts", "// A thread of its\n// own.\nexport {};\n").length, 1);
+  assert.equal(found("a.rs", "fn a() {\n    /// A thread of its\n    /// own.\n}\n", commentsOf).length, 1);
+  assert.equal(found("a.py", "# A thread of its\n# own.\n", commentsOf).length, 1);
 });
 
 test("names of code, other senses of a word and what was released are left alone", () => {

@@ -1,4 +1,4 @@
-// Files of a run: the very ones that readers of others have read (scripts/reference/run-written.py), and what these found in them.
+// Files of a run: the same files that independent readers have read (scripts/reference/run-written.py), and the readers' results.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { before, describe, test } from "node:test";
@@ -32,10 +32,10 @@ import { harmless } from "./harmless.mjs";
 import { BimodalError, estimator, init, pair, refused } from "./support.mjs";
 
 const read = JSON.parse(readFileSync(inRoot(FOLDER, "read.json"), "utf8"));
-/** As the reference has them: what is not finite by its name. */
+/** In the form of the reference: numbers that are not finite by name. */
 const named = (value) => (Number.isFinite(value) ? value : { NaN: "nan", Infinity: "inf" }[String(value)]);
 
-/** Checks that a promise is refused with this code, this field and such words. */
+/** Checks that a promise is rejected with this code and field, and a message that matches. */
 async function rejected(promise, code, field, words = /./) {
   const error = await promise.then(
     () => undefined,
@@ -74,7 +74,7 @@ describe("what others read is what was written", () => {
       [0, 0, 0, 1],
     ]);
     assert.equal(read.pose.unit, "m");
-    // A point that Open3D has moved by it.
+    // A point that Open3D has transformed.
     const [px, py, pz] = [0.1, -0.2, 0.7];
     const moved = [a * px + b * py + c * pz + x, d * px + e * py + f * pz + y, g * px + h * py + i * pz + z];
     read.pose.moved.forEach((value, axis) => assert.ok(Math.abs(value - moved[axis]) < 1e-12));
@@ -107,7 +107,7 @@ describe("what others read is what was written", () => {
     });
     assert.ok(about.startsWith(before));
     assert.match(about, /null where the views cannot see/);
-    // A run that is not over has a status alone.
+    // For a run that has not ended, only the status is written.
     assert.deepEqual(JSON.parse(poseJson(POSE, "px", { status: "running" })), { ...plain, status: "running" });
   });
 
@@ -228,7 +228,7 @@ describe("depths in 16 bits", () => {
       "range",
       `depth.data[${data.findIndex((value) => value < 0)}]`,
     );
-    // The page's: refined depths lie where the depth map's are.
+    // Refined depths, as the page has them, lie where the depth map has depths.
     const refined = run.refinedDepth();
     const back = decodeDepth(
       (await depthPng({ width: depth.width, height: depth.height, data: refined }, "px")).bytes,

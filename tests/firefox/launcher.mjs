@@ -1,8 +1,8 @@
 #!/usr/bin/env node
 /**
- * Debian's Firefox, as Playwright's channel "moz-firefox" starts it (WebDriver BiDi): Firefox ESR does not know one of the commands that Playwright
- * 1.65 sends to every page, so what passes between the two goes through here, and that command is answered. Once ESR knows it
- * (emulation.setMediaFeaturesOverride), FIREFOX itself can be the executable, and this file go.
+ * Starts Debian's Firefox for Playwright's channel "moz-firefox" (WebDriver BiDi). Firefox ESR does not know one of the commands that
+ * Playwright 1.65 sends to every page, so this launcher relays the messages and answers that command. Once ESR supports it
+ * (emulation.setMediaFeaturesOverride), FIREFOX itself can be the executable, and this file can be removed.
  */
 import { spawn } from "node:child_process";
 import { createInterface } from "node:readline";
@@ -11,7 +11,7 @@ import { WebSocket, WebSocketServer } from "ws";
 const UNKNOWN = "emulation.setMediaFeaturesOverride";
 const LISTENING = /^WebDriver BiDi listening on (ws:\/\/.*)$/;
 
-/** Passes messages on both ways; answers the unknown command itself. */
+/** Relays messages both ways and answers the unknown command itself. */
 function join(client, address) {
   const browser = new WebSocket(address);
   const early = [];

@@ -1,6 +1,6 @@
 /**
- * A second engine: every place of the page does in Firefox what it is there for. Not its clouds: without a graphics card Firefox has no WebGL,
- * and the page says so.
+ * A second engine: every place of the page works in Firefox, except the clouds: without a graphics card Firefox has no WebGL, and the page
+ * says so.
  */
 
 import { expect, test } from "../page/lab";

@@ -1,7 +1,7 @@
-//! Which file looks into which: the paths of every file, resolved to the file that defines what they name.
+//! Dependencies between files: the paths in every file, resolved to the file that defines what they name.
 //!
-//! Limits: a method of a type from elsewhere is not a path, and macros are not expanded; what a macro's call names
-//! counts.
+//! Limits: methods of types from other files are not paths, and macros are not expanded, although names inside a macro
+//! call count.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::fs;
@@ -9,30 +9,30 @@ use std::path::Path;
 
 use crate::tokens::{group, tokens, without_tests};
 
-/// Segments of a path, or of a module's place below the crate.
+/// Segments of a path, or of a module's path within the crate.
 type Segments = Vec<String>;
 
-/// Re-exports that lead to others at most: more go round in a circle.
+/// Longest chain of re-exports; longer ones are circular.
 const MOST_HOPS: usize = 8;
 
-/// A crate's files by their path below `src`.
+/// A crate's files by their paths below `src`.
 pub struct House {
     files: BTreeMap<String, File>,
 }
 
 struct File {
-    /// The module that the file holds; empty for the crate itself.
+    /// Path of the file's module; empty for the crate root.
     module: Segments,
     words: Vec<String>,
-    /// By the name that they get here.
+    /// By local name.
     imports: BTreeMap<String, Segments>,
-    /// Where names may also come from: `use x::*`.
+    /// Glob imports, `use x::*`, from which names may also come.
     globs: Vec<Segments>,
     /// Paths in the code itself.
     paths: Vec<Segments>,
-    /// Names that are imported for others only, in a file that holds modules.
+    /// Names that are only re-exported, in a file that declares modules.
     passed_on: BTreeSet<String>,
-    /// Whether there is more than modules and imports.
+    /// Whether the file contains more than modules and imports.
     has_code: bool,
 }
 
@@ -47,12 +47,12 @@ impl House {
         Self { files: files.into_iter().map(|(path, text)| (path.into(), File::new(path, text))).collect() }
     }
 
-    /// The first folder or file name below `src`; none for the crate itself.
+    /// The layers: first folder or file names below `src`, without the crate root.
     pub fn rooms(&self) -> BTreeSet<&str> {
         self.files.values().filter_map(File::room).collect()
     }
 
-    /// Every look from one file into another one, without the crate's own, which shows everything.
+    /// Every dependency of one file on another, without those of the crate root, which re-exports everything.
     pub fn looks(&self) -> BTreeSet<(&str, &str)> {
         let mut looks = BTreeSet::new();
         for (from, file) in &self.files {
@@ -65,14 +65,14 @@ impl House {
         looks
     }
 
-    /// Looks into a room that `may_look(from, into)` forbids.
+    /// Dependencies on another layer that `may_look(from, into)` forbids.
     pub fn forbidden(&self, may_look: impl Fn(&str, &str) -> bool) -> Vec<String> {
         let room = |path: &str| self.files[path].room().unwrap_or_default();
         let forbidden = |&(from, to): &(&str, &str)| room(from) != room(to) && !may_look(room(from), room(to));
         self.looks().into_iter().filter(forbidden).map(|(from, to)| format!("{from} -> {to}")).collect()
     }
 
-    /// One circle for each set of files that lead to each other.
+    /// One circle for each set of files that depend on each other.
     pub fn circles(&self) -> Vec<String> {
         let mut next: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
         for (from, to) in self.looks() {
@@ -90,19 +90,19 @@ impl House {
         circles
     }
 
-    /// Files outside of the room `wasm`, tests included, that name one of these crates.
+    /// Files outside the layer `wasm`, including tests, that name one of these crates.
     pub fn bound_to(&self, crates: &[&str]) -> Vec<&str> {
         let binds = |file: &File| file.words.iter().any(|word| crates.contains(&word.as_str()));
         let outside = self.files.iter().filter(|(_, file)| file.room() != Some("wasm"));
         outside.filter(|(_, file)| binds(file)).map(|(path, _)| path.as_str()).collect()
     }
 
-    /// The file of the module at this place.
+    /// The file of the module with this path.
     fn file_of(&self, module: &[String]) -> Option<(&str, &File)> {
         self.files.iter().find(|(_, file)| file.module == module).map(|(path, file)| (path.as_str(), file))
     }
 
-    /// The file that defines what a path of `from` names; `None` for another crate's.
+    /// The file that defines what a path in `from` names; `None` for another crate's.
     fn resolve(&self, from: &File, path: &[String], hops: usize) -> Option<&str> {
         let (first, mut rest) = path.split_first()?;
         let mut place = match first.as_str() {
@@ -132,14 +132,14 @@ impl House {
         }
     }
 
-    /// What a name that `file` has imported leads to.
+    /// The file that defines a name which `file` has imported.
     fn follow(&self, file: &File, name: &str, rest: &[String], hops: usize) -> Option<&str> {
         let import = file.imports.get(name).filter(|import| hops < MOST_HOPS && import[..] != [name])?;
         self.resolve(file, &[&import[..], rest].concat(), hops + 1)
     }
 }
 
-/// The shortest way from a file back to it.
+/// The shortest chain of dependencies from a file back to itself.
 fn shortest_circle<'a>(start: &'a str, next: &BTreeMap<&'a str, Vec<&'a str>>) -> Option<Vec<&'a str>> {
     let mut ways = VecDeque::from([vec![start]]);
     let mut seen = BTreeSet::new();
@@ -193,7 +193,7 @@ impl File {
         self.module.first().map(String::as_str)
     }
 
-    /// Paths in the code and what is imported for it.
+    /// Paths in the code, and the imports that they use.
     fn all_paths(&self) -> impl Iterator<Item = Segments> + '_ {
         let used = |name: &String| !self.passed_on.contains(name) || self.paths.iter().any(|path| path[0] == *name);
         let imports = self.imports.iter().filter(move |(name, _)| used(name)).map(|(_, path)| path.clone());
@@ -201,7 +201,7 @@ impl File {
     }
 
     fn scan(&mut self, words: &[String]) {
-        // Where the inline modules around end.
+        // The ends of the enclosing inline modules.
         let mut inline: Vec<usize> = Vec::new();
         let mut is_public = false;
         let mut at = 0;
@@ -260,14 +260,14 @@ impl File {
     }
 }
 
-/// A path as it reads outside of so many inline modules of the file.
+/// A path as seen from outside this many inline modules of the file.
 fn outside_of(path: Segments, inline: usize) -> Segments {
     let climbs = path.iter().take_while(|word| *word == "super").count();
     let rest = path[climbs.min(inline)..].to_vec();
     if climbs > 0 && climbs <= inline { [vec!["self".into()], rest].concat() } else { rest }
 }
 
-/// The names and paths of a `use`, which begins at `at`; returns where it ends.
+/// The names and paths of a `use` that begins at `at`; returns its end.
 fn tree(words: &[String], mut at: usize, prefix: &[String], found: &mut Vec<(String, Segments)>) -> usize {
     let mut path = prefix.to_vec();
     while at < words.len() {
@@ -291,7 +291,7 @@ fn tree(words: &[String], mut at: usize, prefix: &[String], found: &mut Vec<(Str
             }
             "," | "}" | ";" => break,
             word => {
-                // `use x::{self}` is x.
+                // `use x::{self}` imports x.
                 if word != "self" || path.is_empty() {
                     path.push(word.into());
                 }

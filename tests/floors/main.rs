@@ -1,4 +1,4 @@
-//! The order of the rooms, held: which file may look into which (docs/method/code.md).
+//! Checks the order of the layers: which files may use which (docs/method/code.md).
 
 mod house;
 mod tokens;
@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 use house::House;
 
-/// From the ground up: a room looks only into rooms before it.
+/// From the bottom up: a layer only uses layers before it.
 const ROOMS: [&str; 19] = [
     "text",
     "serial",
@@ -31,10 +31,10 @@ const ROOMS: [&str; 19] = [
     "tutorial",
     "wasm",
 ];
-/// What scenes with a known answer stand on: they are made with the means of the inputs and with random numbers, not with
-/// those of the method.
+/// Layers that `scenes` may use: scenes with a known answer are made with the code of the inputs and with random numbers, not with
+/// the method.
 const BELOW_SCENES: [&str; 8] = ["text", "error", "check", "numeric", "view", "light", "pose", "calibration"];
-/// Crates that only bindings may name.
+/// Crates that only the bindings may name.
 const BINDINGS: [&str; 5] = ["wasm_bindgen", "serde_wasm_bindgen", "js_sys", "web_sys", "console_error_panic_hook"];
 
 fn source() -> PathBuf {
@@ -47,7 +47,7 @@ fn may_look(from: &str, into: &str) -> bool {
     is_below && (from != "scenes" || BELOW_SCENES.contains(&into))
 }
 
-/// The rooms of the table in the comments of lib.rs: names in a row's first cell, before any bracket and up to a slash.
+/// The layers in the table of lib.rs: names in the first cell of a row, before any bracket and up to a slash.
 fn table(library: &str) -> Vec<String> {
     let cells = library.lines().filter_map(|line| line.strip_prefix("// |")?.split(['|', '(']).next());
     let names = cells.flat_map(|cell| cell.split('`').skip(1).step_by(2));
@@ -70,7 +70,7 @@ fn no_two_files_of_a_room_import_each_other() {
     assert!(circles.is_empty(), "{} circles:\n{}", circles.len(), circles.join("\n"));
 }
 
-/// The crates of files and of the command line are not packed with the library's.
+/// The package of the library does not contain the crates of files and of the command line.
 #[test]
 fn no_two_files_beside_the_library_import_each_other() {
     for (folder, fewest) in [("files/src", 30), ("cli/src", 5)] {
@@ -161,7 +161,7 @@ mod checker {
         assert_eq!(circles(&[library, rooms, a, two, c]), ["pose/a.rs -> pose/b.rs -> pose/a.rs"]);
         assert_eq!(circles(&[library, rooms, a, three, c]), ["pose/a.rs -> pose/b.rs -> pose/c.rs -> pose/a.rs"]);
         assert!(circles(&[library, rooms, a, ("pose/b.rs", "pub struct B;"), c]).is_empty());
-        // Another name for the module leads to its file, too.
+        // An alias of the module leads to its file as well.
         let a = ("pose/a.rs", "use super as room; pub struct A(room::b::B);");
         assert_eq!(circles(&[library, rooms, a, two, c]).len(), 1);
     }

@@ -1,6 +1,6 @@
-//! Rust source as a list of words, as far as paths need it: no types, no expressions, no macros expanded.
+//! Rust source as a list of words, as far as paths require it: without types or expressions, macros not expanded.
 
-/// Identifiers, numbers, `::` and single characters; comments, strings, characters and lifetimes are left out.
+/// Identifiers, numbers, `::` and single characters; comments, strings, characters and lifetimes are skipped.
 pub fn tokens(source: &str) -> Vec<String> {
     let letters: Vec<char> = source.chars().collect();
     let (mut tokens, mut at) = (Vec::new(), 0);
@@ -20,7 +20,7 @@ pub fn tokens(source: &str) -> Vec<String> {
             letter if is_of_word(letter) => {
                 let length = length_until(rest, |rest| !is_of_word(rest[0]));
                 let word: String = rest[..length].iter().collect();
-                // The prefixes of byte strings and raw ones.
+                // The prefixes of byte strings and raw strings.
                 let is_prefix = matches!(word.as_str(), "b" | "br" | "c" | "cr")
                     && rest.get(length).is_some_and(|&after| matches!(after, '"' | '#'));
                 if is_prefix && word.ends_with('r') {
@@ -85,7 +85,7 @@ fn raw_string(letters: &[char]) -> Option<usize> {
     Some(open + 1 + length_until(&letters[open + 1..], closes) + 1 + fence)
 }
 
-/// A character, or a lifetime.
+/// A character literal or a lifetime.
 fn quote(letters: &[char]) -> usize {
     if letters.get(1) == Some(&'\\') {
         return 3 + length_until(&letters[3..], |rest| rest[0] == '\'') + 1;
@@ -93,7 +93,7 @@ fn quote(letters: &[char]) -> usize {
     if letters.get(2) == Some(&'\'') { 3 } else { 1 + length_until(&letters[1..], |rest| !is_of_word(rest[0])) }
 }
 
-/// Without the items that are compiled for tests alone.
+/// The tokens without items that are compiled only for tests.
 pub fn without_tests(tokens: &[String]) -> Vec<String> {
     const MARK: [&str; 7] = ["#", "[", "cfg", "(", "test", ")", "]"];
     let (mut kept, mut at) = (Vec::new(), 0);
@@ -112,7 +112,7 @@ pub fn without_tests(tokens: &[String]) -> Vec<String> {
     kept
 }
 
-/// Length of what begins with a bracket and ends with the one that closes it.
+/// Length of a group from its opening to its closing bracket.
 pub fn group(tokens: &[String]) -> usize {
     let mut depth = 0;
     for (at, token) in tokens.iter().enumerate() {
@@ -128,7 +128,7 @@ pub fn group(tokens: &[String]) -> usize {
     tokens.len()
 }
 
-/// Length of an item: up to its semicolon or the end of its braces.
+/// Length of an item, up to its semicolon or closing brace.
 fn item(tokens: &[String]) -> usize {
     let mut at = 0;
     while at < tokens.len() {

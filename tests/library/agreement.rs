@@ -1,4 +1,4 @@
-//! The native build against the numbers that the .wasm is held against as well.
+//! Compares the native build with the recorded results that also apply to the .wasm.
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;

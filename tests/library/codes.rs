@@ -1,4 +1,4 @@
-//! The table of codes has a row for each that the crate can give.
+//! The table of codes has a row for each code that the crate can give.
 
 use std::collections::BTreeSet;
 
@@ -23,6 +23,6 @@ fn every_code_has_a_row_and_every_row_a_code() {
     assert_eq!(rows("runs"), names(Reason::CODES));
     assert_eq!(rows("checks"), names(CheckReason::CODES));
     assert_eq!(rows("warnings"), names(WarningKind::CODES));
-    // The packages refuse more than the crate sees.
+    // The packages refuse further inputs before the crate sees them.
     assert!(rows("errors").is_superset(&names(ErrorKind::CODES)));
 }

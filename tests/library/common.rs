@@ -1,4 +1,4 @@
-//! Helpers that several tests share: the data beside the project, and pictures.
+//! Helpers for several tests: the data beside the project, and pictures.
 
 use std::fs::File;
 use std::io::{BufReader, BufWriter};
@@ -10,15 +10,15 @@ use nalgebra::Vector3;
 use proptest::prelude::ProptestConfig;
 use proptest::test_runner::RngSeed;
 
-/// So many cases of a law, the same in every run: natively .cargo/config.toml has their seed, and wasm sees no environment.
+/// Number of cases of a law, the same in every run: native runs get their seed from .cargo/config.toml, wasm has no environment.
 pub fn laws(cases: u32) -> ProptestConfig {
     let drawn = ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() };
     if cfg!(target_arch = "wasm32") { ProptestConfig { rng_seed: RngSeed::Fixed(1), ..drawn } } else { drawn }
 }
 
 /// Folder of other people's data, which is never part of the project. A test that needs it is marked `#[ignore]` with
-/// that reason, so that no summary counts it as passed where it could not run; `npm test` asks for it where the data
-/// are there.
+/// that reason, so that no summary counts it as passed if it could not run; `npm test` includes it if the data are
+/// there.
 pub fn data_dir() -> PathBuf {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
     assert!(folder.is_dir(), "no data in {}", folder.display());
@@ -48,21 +48,21 @@ pub fn mozart(data: &Path) -> Relief {
     Relief::new(size.width, size.height, heights).expect("a relief")
 }
 
-/// A measured light by the number that its row begins with.
+/// A measured light, by the number at the start of its row.
 pub fn natural_light(data: &Path, index: usize) -> Light {
     let rows = read_csv(&data.join("lights/natural_lights_114.csv"));
     let row = rows.iter().find(|row| row.len() == 28 && row[0] == index as f64).expect("that light");
     Light::from_slice("light", &row[1..]).expect("a light")
 }
 
-/// Angles between normals that both fields have, degrees.
+/// Angles between the normals of two fields where both have one, degrees.
 pub fn angles_between(a: &Normals, b: &Normals) -> Vec<f64> {
     let vector = |normals: &Normals, index| Vector3::from(normals.get(index).map(f64::from));
     let both = (0..a.len()).filter(|&index| a.is_valid(index) && b.is_valid(index));
     both.map(|index| vector(a, index).angle(&vector(b, index)).to_degrees()).collect()
 }
 
-/// A decoded PNG, values as stored: 0 .. 255 or 0 .. 65535.
+/// A decoded PNG with values as stored: 0 .. 255 or 0 .. 65535.
 pub struct Picture {
     pub size: Size,
     /// 1, 2, 3 or 4.
@@ -92,7 +92,7 @@ pub fn read_png(path: &Path) -> Picture {
     Picture { size, channels: frame.color_type.samples(), bits, values }
 }
 
-/// The numbers of each line, separated by commas; words are left out, and lines without a number too.
+/// The comma-separated numbers of each line; words and lines without a number are skipped.
 pub fn read_csv(path: &Path) -> Vec<Vec<f64>> {
     let text = std::fs::read_to_string(path).expect("the file is there");
     let numbers = |line: &str| line.split(',').filter_map(|word| word.trim().parse().ok()).collect();
@@ -104,13 +104,13 @@ pub fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// The middle of the values, sorted.
+/// Median of the values.
 pub fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values[values.len() / 2]
 }
 
-/// Writes an 8-bit RGB picture below the target folder and returns where.
+/// Writes an 8-bit RGB picture below the target folder and returns its path.
 pub fn write_png(name: &str, size: Size, rgb: &[u8]) -> PathBuf {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     let file = BufWriter::new(File::create(&path).expect("the target folder can be written"));
@@ -120,12 +120,12 @@ pub fn write_png(name: &str, size: Size, rgb: &[u8]) -> PathBuf {
     path
 }
 
-/// Linear colours as 8-bit sRGB, near enough for looking.
+/// Linear colours as approximate 8-bit sRGB, for viewing.
 pub fn colour_bytes(colours: &[f32]) -> Vec<u8> {
     colours.iter().map(|value| (255.0 * value.clamp(0.0, 1.0).powf(1.0 / 2.2)) as u8).collect()
 }
 
-/// Depth as grey, nearest white; missing dark red.
+/// Depth as grey, with the nearest in white and missing values in dark red.
 pub fn depth_bytes(depth: &[f32]) -> Vec<u8> {
     let valid = || depth.iter().copied().filter(|value| !value.is_nan());
     let (near, far) = (valid().fold(f32::INFINITY, f32::min), valid().fold(f32::NEG_INFINITY, f32::max));
@@ -136,7 +136,7 @@ pub fn depth_bytes(depth: &[f32]) -> Vec<u8> {
     depth.iter().flat_map(grey).collect()
 }
 
-/// Normals as colours: x right red, y up green, toward the camera blue.
+/// Normals as colours: red is x to the right, green y upward, blue toward the camera.
 pub fn normal_bytes(normals: &Normals) -> Vec<u8> {
     let colour = |index| {
         let [x, y, z] = normals.get(index);

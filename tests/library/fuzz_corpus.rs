@@ -1,5 +1,5 @@
-//! Replays the corpus of the fuzz targets (`fuzz/`) on the stable toolchain: what they found, and small inputs that reach
-//! most of what they reached. No panic, and every promise of `fuzz/bodies/` kept.
+//! Replays the corpus of the fuzz targets (`fuzz/`) on the stable toolchain: findings, and small inputs that reach most of
+//! the code that the fuzzer reached. No input may panic or break a check of `fuzz/bodies/`.
 
 use std::fs;
 use std::panic::catch_unwind;
@@ -8,7 +8,7 @@ use std::path::Path;
 #[path = "../../fuzz/bodies/mod.rs"]
 mod bodies;
 
-/// Runs every file of one target's corpus, names those that fail, and says how many there were.
+/// Runs every file of a target's corpus, names those that fail, and returns their number.
 fn replay(target: &str, run: fn(&[u8])) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus").join(target);
     let mut paths: Vec<_> =
@@ -24,7 +24,7 @@ fn replay(target: &str, run: fn(&[u8])) {
     assert!(paths.len() >= FEWEST, "{} inputs in {}", paths.len(), folder.display());
 }
 
-/// A corpus that has gone missing would pass.
+/// Least number of files: a missing corpus would pass the other checks.
 const FEWEST: usize = 10;
 
 #[test]
@@ -47,7 +47,7 @@ fn functions() {
     replay("functions", bodies::functions::run);
 }
 
-/// A fuzzer that makes nothing but errors would find nothing else: with no bytes at all it makes a good pair.
+/// A fuzzer that only makes invalid inputs would find little: without any bytes it makes a valid pair.
 #[test]
 fn no_bytes_are_a_good_input() {
     for run in [bodies::estimator::run, bodies::worker::run, bodies::calibration::run, bodies::functions::run] {

@@ -1,4 +1,4 @@
-//! The image model against renders that others made (MIT-Berkeley Intrinsic Images under natural lights).
+//! Compares the image model with other people's renders (MIT-Berkeley Intrinsic Images under natural lights).
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
@@ -8,13 +8,13 @@ use std::path::Path;
 use crate::common::{data_dir, median, read_csv, read_npy_f32, read_png};
 use bimodal_stereo::{Light, Size};
 
-/// Bound for central differences, natural logarithm. They miss because of the slopes alone.
+/// Bound for central differences, natural logarithm; the differences come from the slopes alone.
 const CENTRAL_BOUND: f64 = 0.004;
-/// Bound for the slopes that the renders were made with, natural logarithm: one step of 16 bits in 65535, at the
+/// Bound for the slopes with which the renders were made, natural logarithm: one step of 16 bits in 65535, at the
 /// renders' usual grey of a tenth of the range, is 1.5e-4.
 const SOBEL_BOUND: f64 = 1.5e-4;
 
-/// Slopes of the heights by Sobel's 3 x 3 filters, NaN where a neighbour is missing: those of the renders.
+/// Slopes of the heights by Sobel's 3 x 3 filters, as in the renders; NaN where a neighbour is missing.
 fn sobel(heights: &[f32], size: Size, column: usize, row: usize) -> [f64; 2] {
     let at = |x: usize, y: usize| f64::from(heights[size.index(column + x - 1, row + y - 1)]);
     let across = |y: usize| at(2, y) - at(0, y);
@@ -44,7 +44,7 @@ fn difference(folder: &Path, slopes: Slopes) -> (f64, usize) {
             let predicted = light.shade([-p / length, -q / length, -1.0 / length]);
             for (channel, log) in predicted.into_iter().enumerate() {
                 let value = render.values[3 * size.index(column, row) + channel];
-                // Black has no logarithm, white is cut off.
+                // Black has no logarithm, and white is clipped.
                 if !log.is_nan() && (1..u16::MAX).contains(&value) {
                     differences.push((log - (f64::from(value) / f64::from(u16::MAX)).ln()).abs());
                 }

@@ -1,4 +1,4 @@
-//! Pose from anywhere: nothing is known but the two views.
+//! The search: nothing is known but the two views.
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
@@ -91,7 +91,7 @@ fn the_search_comes_in_slices_and_says_how_far_it_is() {
     assert_eq!((report.stage, report.iteration), (Stage::Refinement, 1));
 }
 
-/// A ball looks the same from everywhere, and one colour says nothing: no pose may be called found.
+/// A ball looks the same from everywhere, and a uniform image has no information: neither pose may be called found.
 #[test]
 fn what_cannot_be_known_is_not_claimed() {
     let ball: Vec<f32> = (0..256 * 256)
@@ -121,7 +121,7 @@ fn what_cannot_be_known_is_not_claimed() {
     assert_eq!(estimator.report().status, Status::Lost, "{:?}", estimator.report());
 }
 
-/// A depth map whose prior has no weight must not show in the image's normals: under a poor light they stay poor.
+/// A depth map whose prior has no weight must not influence the image's normals, which stay poor under a poor light.
 #[test]
 fn a_prior_without_weight_has_no_say() {
     let sample = scene("bust", "window");
@@ -150,7 +150,7 @@ fn a_prior_without_weight_has_no_say() {
     assert!(without > 1.5 * with, "{without} {with}");
 }
 
-/// Noise that needs no library: which task is given away, which one comes back, and when.
+/// Random numbers without a library: which task is given away, which one comes back, and when.
 struct Chance(u64);
 
 impl Chance {
@@ -160,8 +160,8 @@ impl Chance {
     }
 }
 
-/// Runs with so many workers; each brings what it finds late and out of order, and the first one brings nothing at all
-/// after a while. Also how many findings came in.
+/// Runs with several workers. Each returns its findings late and out of order, and the first one stops after a while. Also
+/// returns the number of findings.
 fn run_with_workers(sample: &Sample, options: &Options, workers: usize, seed: u64) -> (StepReport, Vec<u32>, usize) {
     let mut chance = Chance(seed);
     let mut estimator = Estimator::new(sample.colour_image(), &sample.depth_map(), options.clone()).unwrap();
@@ -215,7 +215,7 @@ mod long {
         }
     }
 
-    /// Paint and shadows are no shading: a pose that they may have pulled away is not called found.
+    /// Albedo and shadows are not shading: a pose that they may have displaced is not called found.
     #[test]
     fn what_paint_and_shadows_mislead_is_doubted() {
         for (name, light) in [("bust", "window"), ("bust", "overcast"), ("vase", "window")] {

@@ -1,4 +1,4 @@
-//! What the loop owes whatever the scene: it does not depend on exposure, origin or luck, and says only what is so.
+//! Laws of the loop for every scene: it does not depend on exposure, origin or chance, and its claims are true.
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
@@ -10,9 +10,9 @@ use bimodal_stereo::{
 };
 use nalgebra::{Matrix3, Vector3};
 
-/// Two poses are the same within this, degrees: the aim for colours of another exposure.
+/// Largest difference of two equal poses, degrees: the aim for images with another exposure.
 const SAME: f64 = 1e-3;
-/// A mirrored scene meets the same numbers in another order, and RANSAC other samples: a tenth of the aim for the bust.
+/// Tolerance for a mirrored scene, which has the same numbers in another order and other RANSAC samples: a tenth of the aim for the bust.
 const MIRRORED: f64 = 0.1;
 
 fn bust(request: &SampleRequest) -> Sample {
@@ -37,7 +37,7 @@ fn estimator(sample: &Sample, options: Options) -> Estimator {
     Estimator::new(sample.colour_image(), &sample.depth_map(), options).expect("good input")
 }
 
-/// Runs to the end and returns the report of every step.
+/// Runs to the end and returns the reports of all steps.
 fn finish(estimator: &mut Estimator) -> Vec<StepReport> {
     let mut reports = vec![estimator.report().clone()];
     while estimator.report().status == Status::Running {
@@ -46,7 +46,7 @@ fn finish(estimator: &mut Estimator) -> Vec<StepReport> {
     reports
 }
 
-/// Everything that an estimator gives out, as bits: NaN equals NaN.
+/// All outputs of an estimator as bits, so that NaN equals NaN.
 fn outcome(estimator: &Estimator) -> (StepReport, Vec<u32>, Vec<i32>, Light) {
     let (image, depth) = (estimator.image_normals().interleaved(), estimator.depth_normals().interleaved());
     let fields = [&image[..], &estimator.image_depth(), &depth, estimator.refined_depth(), &estimator.residual()];
@@ -82,8 +82,8 @@ fn exposure_leaves_the_pose_alone_under_a_known_light_with_noise() {
     exposure_leaves_the_pose_alone(&sample, &known(&sample));
 }
 
-/// From the true pose: from afar these stages do not find the pose of an unknown light, and where nothing is found the
-/// last digit of a colour decides which way the loop strays.
+/// Starts from the true pose. From elsewhere these stages do not find the pose under an unknown light, and then the last
+/// digit of a colour decides which way the loop strays.
 #[test]
 fn exposure_leaves_the_pose_alone_under_an_estimated_light() {
     for name in ["colourful", "window"] {
@@ -161,11 +161,11 @@ fn the_origin_of_orthographic_depth_moves_only_the_translation() {
     let moved = b.translation - a.translation + b.scale * b.rotation * Vector3::new(0.0, 0.0, f64::from(OFFSET));
     println!("{:.2e} degrees, scale {:.2e}, translation {moved:?}", a.degrees_to(&b), b.scale - a.scale);
     assert!(a.degrees_to(&b) < SAME);
-    // A thousandth of a degree about an origin as far away as the offset.
+    // A thousandth of a degree about an origin at the distance of the offset.
     assert!(moved.norm() < SAME.to_radians() * f64::from(OFFSET));
 }
 
-/// The inputs of the sample as a mirror beside the object shows them: columns reversed, x negated.
+/// The sample's inputs, mirrored: columns reversed, x negated.
 fn mirrored(sample: &Sample) -> Sample {
     let mut other = sample.clone();
     let size = sample.image.size;
@@ -210,7 +210,7 @@ fn an_iteration_taken_back_is_no_convergence() {
         scale: Some(sample.pose.scale),
         translation: Some(sample.pose.translation),
     };
-    // A light that has nothing to do with the colours: whatever the shading finds, the pose gets worse.
+    // A light unrelated to the image: whatever normals the shading finds, the pose gets worse.
     let nonsense = LightSource::Known(Light(colourful.light.0.map(|channel| channel.map(|value| -3.0 * value))));
     let runs = [
         (

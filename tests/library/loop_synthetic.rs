@@ -1,4 +1,4 @@
-//! The whole loop on scenes with a known answer: the aims that the project has set itself, never softened.
+//! The whole loop on scenes with a known answer, against the project's aims, which are never relaxed.
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
@@ -15,13 +15,13 @@ const BUST_ROTATION: f64 = 1.0;
 const BUST_NORMALS: f64 = 2.0;
 /// The rotation error of the paper's Table 1, degrees.
 const PAPER_ROTATION: f64 = 1.30;
-/// By how much the refinement has to lower the error of the depth.
+/// Least factor by which the refinement reduces the error of the depth.
 const GAIN_COLOURFUL: f64 = 4.0;
 const GAIN_NATURAL: f64 = 2.0;
-/// Mozart has less of a rim than the bust.
+/// Mozart has fewer points near its occluding contour than the bust.
 const MOZART_COLOURFUL: f64 = 5.0;
 const MOZART_NATURAL: f64 = 3.0;
-/// The row of an easy one among the natural lights.
+/// The row of an easy natural light.
 const NATURAL_A: usize = 132;
 
 fn square(side: usize) -> Size {
@@ -40,7 +40,7 @@ fn known(sample: &Sample) -> Options {
     Options { light: LightSource::Known(sample.light), ..Options::paper() }
 }
 
-/// Runs the loop to its end and says how it went.
+/// Runs the loop to its end and prints a summary.
 fn run(name: &str, sample: &Sample, options: Options) -> Estimator {
     let mut estimator = Estimator::new(sample.colour_image(), &sample.depth_map(), options).expect("good input");
     while estimator.report().status == Status::Running {
@@ -80,7 +80,7 @@ fn the_other_sense_of_rotation_is_found_as_well() {
 fn mozart_beats_the_paper() {
     let data = data_dir();
     let scene = Scene::new(&mozart(&data)).expect("a surface");
-    // Sign conventions differ, the protocol has noise in one table and none in another, and the scale is free or one.
+    // Both signs of beta, because conventions differ; with and without noise, as in the paper's tables; with a free scale and a scale of one.
     for (beta, noise, scale) in [(20.0, 0.0, None), (-20.0, 0.0, None), (20.0, 0.01, None), (20.0, 0.01, Some(1.0))] {
         let request = SampleRequest { size: square(32), rotation: about_y(beta), noise, ..SampleRequest::default() };
         let sample = scene.sample(&request).expect("a sample");
@@ -91,7 +91,7 @@ fn mozart_beats_the_paper() {
     }
 }
 
-/// Samples of each scene: a single one says as much about its noise as about the refinement.
+/// Seeds to average over: a single sample shows its noise as much as the refinement.
 const SEEDS: std::ops::RangeInclusive<u64> = 1..=5;
 
 /// Squared differences of two depth maps where `counts`.
@@ -100,8 +100,8 @@ fn squares(depth: &[f32], truth: &[f32], counts: impl Fn(usize) -> bool) -> Vec<
     indices.map(|index| f64::from(depth[index] - truth[index]).powi(2)).collect()
 }
 
-/// Refinement alone: the pose is known and held. Returns the depth's error before over its error after,
-/// root mean square over the pixels where depth was measured.
+/// Refinement alone: the pose is known and fixed. Returns the depth's error before, divided by its error after,
+/// as root mean squares over the pixels with measured depth.
 fn refinement_gain(name: &str, scene: &Scene, light: Light) -> f64 {
     let [mut before, mut after, mut holes] = [const { Vec::new() }; 3];
     for seed in SEEDS {

@@ -1,8 +1,8 @@
-//! Tests of the library's public face, a file a subject. One program: each test program more is compiled and linked with all of the
-//! library, and runs alone.
+//! Tests of the library's public interface, one file for each subject. They form one program, because each test program is linked with
+//! the whole library and runs alone.
 //!
-//! On wasm32 the same tests run by wasm-bindgen's harness, in Node and in browsers: there `test` is the name of its attribute. Those that
-//! read or write files run natively alone.
+//! On wasm32, wasm-bindgen's harness runs the same tests in Node and in browsers, where `test` is the name of its attribute. Tests that
+//! read or write files only run natively.
 
 mod agreement;
 mod codes;

@@ -28,7 +28,7 @@ fn degrees(a: [f32; 3], b: [f64; 3]) -> f64 {
     2.0 * (chord / 2.0).min(1.0).asin().to_degrees()
 }
 
-/// Depth and outward unit normal of a sphere (facing half) for each pixel that sees it.
+/// Depth and outward unit normal of a sphere's facing half, for each pixel that sees it.
 fn sphere(size: Size, camera: &Camera, centre: [f64; 3], radius: f64) -> (Vec<f32>, Vec<[f64; 3]>) {
     let mut depth = vec![f32::NAN; size.len()];
     let mut truth = vec![[f64::NAN; 3]; size.len()];
@@ -51,7 +51,7 @@ fn sphere(size: Size, camera: &Camera, centre: [f64; 3], radius: f64) -> (Vec<f3
     (depth, truth)
 }
 
-/// Largest and mean error in degrees over the pixels where `select` says so; every one of them has to have a normal.
+/// Largest and mean error in degrees over the selected pixels, each of which must have a normal.
 fn errors(normals: &Normals, truth: &[[f64; 3]], select: impl Fn(usize) -> bool) -> (f64, f64) {
     let (mut largest, mut sum, mut count) = (0.0_f64, 0.0, 0);
     for index in (0..truth.len()).filter(|&index| select(index)) {
@@ -96,7 +96,7 @@ fn a_plane_is_exact_up_to_its_borders() {
 
 #[test]
 fn spheres_are_second_order() {
-    // Twice the resolution of the same scene: errors inside the rim fall by four.
+    // Twice the resolution of the same scene: errors away from the occluding contour are four times smaller.
     let error = |side: usize, perspective: bool| {
         let size = size(side, side);
         let camera = if perspective { pinhole(size) } else { Camera::Orthographic };
@@ -139,7 +139,7 @@ fn nothing_is_taken_across_a_jump_or_a_hole() {
     let length = (1.0_f64 + 0.25 + 0.0625).sqrt();
     let truth = vec![[0.5 / length, -0.25 / length, -1.0 / length]; size.len()];
     let known = (0..size.len()).filter(|&index| found.is_valid(index)).count();
-    // Where the jump leaves a pixel alone in its column or row, there is no normal.
+    // Pixels that the jump isolates in their column or row have no normal.
     assert!(known >= size.len() - 3, "{known}");
     let (largest, _) = errors(&found, &truth, |index| found.is_valid(index));
     assert!(largest < 1e-3, "{largest} deg");
@@ -152,7 +152,7 @@ fn an_organised_cloud_may_turn_away() {
     let (depth, truth) = sphere(size, &Camera::Orthographic, [0.0, 0.0, 50.0], 9.0);
     let mut points = Points::missing(size.len());
     normals::points_of_depth(size, &Camera::Orthographic, &depth, &mut points);
-    // Half a turn about the y axis: (x, y, z) -> (-x, y, -z).
+    // A half turn about the y axis: (x, y, z) -> (-x, y, -z).
     for index in 0..size.len() {
         let [x, y, z] = points.get(index);
         points.set(index, [-x, y, -z]);

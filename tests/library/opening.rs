@@ -1,4 +1,4 @@
-//! Large views: the search works on coarse ones, and the end is that of all pixels.
+//! Large views: the search uses coarse views, and the result is that of all pixels.
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
@@ -10,7 +10,7 @@ use bimodal_stereo::{
     Angles, Camera, Estimator, Lens, Options, Pinhole, Size, Stage, Start, Status, StepReport, Worker,
 };
 
-/// More object pixels than a frame of 128x128, odd sides, part of the depth map missing.
+/// More object pixels than a frame of 128x128, odd sides, and a depth map with a part missing.
 fn large(camera: Camera) -> Sample {
     let scale = if camera.is_orthographic() { 1.1 } else { 1.0 };
     let request = SampleRequest {
@@ -33,7 +33,7 @@ fn pinhole() -> Camera {
     Camera::Pinhole(Pinhole { fx: 300.0, fy: 310.0, cx: 118.3, cy: 107.6, lens: Lens::None })
 }
 
-/// Runs to the end; the reports of the search on the way.
+/// Runs to the end; also returns the reports of the search.
 fn run(sample: &Sample, start: Start) -> (Estimator, Vec<StepReport>) {
     let options = Options { start, ..Options::default() };
     let mut estimator = Estimator::new(sample.colour_image(), &sample.depth_map(), options).unwrap();
@@ -47,7 +47,7 @@ fn run(sample: &Sample, start: Start) -> (Estimator, Vec<StepReport>) {
     (estimator, search)
 }
 
-/// What a run came to: its last report, those of its search, the depth it refined.
+/// The result of a run: its last report, those of its search, the refined depth.
 struct Run {
     report: StepReport,
     search: Vec<StepReport>,
@@ -63,7 +63,7 @@ fn searched(sample: &Sample) -> Run {
     Run { report: estimator.report().clone(), search, refined: bits(&estimator) }
 }
 
-/// The orthographic pair's, which takes long and which two tests look at.
+/// The run of the orthographic pair, which takes long and which two tests share.
 fn searched_without_cameras() -> &'static Run {
     static RUN: OnceLock<Run> = OnceLock::new();
     RUN.get_or_init(|| searched(&large(Camera::Orthographic)))
@@ -119,7 +119,7 @@ mod long {
             let (near, _) = run(&sample, truth);
             let near = near.report();
             assert_eq!([found.status, near.status], [Status::Converged; 2], "{found:?}");
-            // Both are the same registration by all points, whatever it started from.
+            // Both results come from the same registration by all points, whatever its initial pose.
             let sigma = near.uncertainty.as_ref().unwrap().rotation_degrees;
             let apart = found.pose.degrees_to(&near.pose);
             assert!(apart < 0.3 * sigma.iter().map(|s| s * s).sum::<f64>().sqrt(), "{camera:?}: {apart} {sigma:?}");
@@ -128,7 +128,7 @@ mod long {
             let off = found.pose.apply(middle) - near.pose.apply(middle);
             let pixel = camera.focal_length().map_or(1.0, |focal_length| near.pose.apply(middle).z / focal_length);
             assert!(off.xy().norm() < 0.1 * pixel, "{camera:?}: {off}");
-            // The best candidate is reported while the search goes on, in the units of the views.
+            // During the search, the best candidate is reported in the units of the views.
             let halfway = &search[search.len() / 2];
             assert!(halfway.pose.degrees_to(&pose) < 16.0, "{}", halfway.pose.degrees_to(&pose));
             let off = halfway.pose.apply(middle) - pose.apply(middle);

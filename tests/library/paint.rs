@@ -1,4 +1,4 @@
-//! Paint is told from shading, and what is given out adds up.
+//! Albedo is separated from shading, and the outputs add up.
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
@@ -8,13 +8,13 @@ use bimodal_stereo::{ColourSamples, Estimator, LightSource, Options, Registratio
 
 const SIDE: usize = 80;
 
-/// Log paint of a pixel: a chequerboard of two paints.
+/// Log albedo of a pixel: a chequerboard of two albedos.
 fn chequers(index: usize) -> [f64; 3] {
     let (column, row) = (index % SIDE, index / SIDE);
     if (column / 9 + row / 9) % 2 == 0 { [0.0; 3] } else { [-0.7, -0.2, 0.3] }
 }
 
-/// The bust, 20 degrees off.
+/// The bust, with 20 degrees between the views.
 fn bust(name: &str, depth_noise: f64) -> Sample {
     let size = Size { width: SIDE, height: SIDE };
     let light = light(name).expect("a name");
@@ -22,7 +22,7 @@ fn bust(name: &str, depth_noise: f64) -> Sample {
     Scene::new(&surface("bust").expect("a name")).and_then(|scene| scene.sample(&request)).expect("a pair")
 }
 
-/// A run on it with the pose told and held; the image has its paint.
+/// Runs on it with the pose given and fixed; the image is multiplied by the albedo.
 fn run(name: &str, depth_noise: f64, known: bool, paint: impl Fn(usize) -> [f64; 3]) -> Estimator {
     let sample = bust(name, depth_noise);
     let mut image = sample.colour_image();
@@ -73,7 +73,7 @@ fn two_paints_are_found_under_each_light() {
     for (name, known) in [("window", false), ("overcast", false), ("colourful", true), ("colourful", false)] {
         let estimator = run(name, 0.0, known, chequers);
         let albedo = estimator.albedo();
-        // Under a light of all colours hue says nothing where there is no normal.
+        // Under coloured light, chromaticity has no information where there is no normal.
         let counts = |index: usize| name != "colourful" || estimator.correspondence()[index] >= 0;
         let inside = (0..SIDE * SIDE).filter(|&index| estimator.image().mask[index]);
         let inside: Vec<usize> = inside.filter(|&index| counts(index)).collect();
@@ -82,14 +82,14 @@ fn two_paints_are_found_under_each_light() {
                 inside.iter().map(|&index| f64::from(albedo[3 * index + channel]) - chequers(index)[channel]).collect();
             let mean = crate::common::mean(&off);
             let error = crate::common::mean(&off.iter().map(|value| (value - mean).powi(2)).collect::<Vec<_>>()).sqrt();
-            // A tenth of the contrast between the paints.
+            // A tenth of the contrast between the two albedos.
             assert!(error < 0.07, "{name}, known: {known}, channel {channel}: {error}");
         }
     }
 }
 
-/// Seen obliquely, depth pixels lie farther apart than the image's: those that no point falls on used to have normals of
-/// their own, dots and lines in shading and albedo.
+/// In an oblique view, depth pixels are farther apart than the image's. Image pixels between the points of the depth view
+/// must not get different normals, which would show as dots and lines in shading and albedo.
 #[test]
 fn shading_has_no_dots_between_the_points_of_the_depth_view() {
     let estimator = run("window", 0.0, false, chequers);
@@ -128,6 +128,6 @@ fn print_is_no_relief() {
         crate::common::mean(&off.filter(|square| !square.is_nan()).collect::<Vec<_>>()).sqrt()
     };
     let [painted, plain] = [error(chequers), error(|_| [0.0; 3])];
-    // A tenth for the rims of the squares, where paint is neither one nor the other.
+    // A margin of a tenth for the borders of the squares, where the albedo is a mixture.
     assert!(painted < 1.1 * plain, "{painted} {plain}");
 }

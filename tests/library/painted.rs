@@ -1,4 +1,4 @@
-//! Painted objects: colours that light and shape do not explain must neither mislead the pose nor be believed.
+//! Objects with varying albedo: colours that light and shape do not explain must neither displace the pose nor be trusted.
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
@@ -9,7 +9,7 @@ use bimodal_stereo::{
     Status, StepReport,
 };
 
-/// A scene whose image is painted in four hues, in squares of so many pixels, or not at all.
+/// A scene whose image has four albedos in squares of a given side, or a single albedo.
 struct Painted {
     image: ColourImage,
     depth: DepthMap,
@@ -41,7 +41,7 @@ fn painted_at(side: usize, name: &str, beta: f64, square: Option<usize>) -> Resu
     Ok(Painted { image, depth: sample.depth_map(), truth: sample.pose })
 }
 
-/// Linear colours whose hue is only known at half the resolution, as JPEG leaves it; brightness stays.
+/// Linear colours whose chromaticity has half the resolution, as in a JPEG; brightness is unchanged.
 fn with_half_hues(image: &ColourImage) -> ColourImage {
     let ColourSamples::RgbLinear(data) = &image.samples else { return image.clone() };
     let (width, height) = (image.width, image.height);
@@ -64,7 +64,7 @@ fn with_half_hues(image: &ColourImage) -> ColourImage {
     ColourImage { samples: ColourSamples::RgbLinear(soft), ..image.clone() }
 }
 
-/// Depth in steps, as disparities that are whole numbers leave it.
+/// Depth in steps, as from whole disparities.
 fn in_steps(depth: &DepthMap, step: f32) -> DepthMap {
     let DepthSamples::Float(data) = &depth.samples else { return depth.clone() };
     DepthMap { samples: DepthSamples::Float(data.iter().map(|z| (z / step).round() * step).collect()), ..depth.clone() }
@@ -96,7 +96,7 @@ fn paint_does_not_pull_a_told_start_away() -> Result<()> {
     Ok(())
 }
 
-/// Two paints that run into one another over several pixels: no edge tells them apart.
+/// Two albedos that blend over several pixels, so that no edge separates them.
 fn softly_painted(name: &str, beta: f64) -> Result<Painted> {
     let mut scene = painted_at(96, name, beta, None)?;
     let ColourSamples::RgbLinear(data) = &mut scene.image.samples else { return Ok(scene) };
@@ -113,7 +113,7 @@ fn without_paint_the_colours_themselves_decide() -> Result<()> {
     let scene = painted("bust", 25.0, None)?;
     let report = run(&scene, Options::default())?;
     let off = report.pose.degrees_to(&scene.truth);
-    // A third of what contrast alone would leave.
+    // A third of the error that local contrast alone would leave.
     assert!(off < 0.3 && report.status == Status::Converged, "{off} degrees, {:?}", report.status);
     Ok(())
 }

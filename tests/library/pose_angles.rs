@@ -1,4 +1,4 @@
-//! Eq. 16 as the paper solves it, by Levenberg-Marquardt over scale and angles: the closed form finds the same.
+//! Eq. 16, solved as in the paper by Levenberg-Marquardt over scale and angles: the closed form finds the same.
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
@@ -19,7 +19,7 @@ struct Equation16 {
     settings: [MPPar; 4],
 }
 
-/// Tolerances as small as rounding allows.
+/// The smallest tolerances that rounding permits.
 const PRECISE: MPConfig = MPConfig { ftol: 1e-15, xtol: 1e-15, gtol: 1e-15, ..MPConfig::new() };
 
 fn scale_of(parameters: &[f64]) -> f64 {
@@ -38,17 +38,17 @@ fn rotation_of(parameters: &[f64]) -> Matrix3<f64> {
     x * y * z
 }
 
-/// The derivative of s Rx Ry Rz by each unknown.
+/// The derivatives of s Rx Ry Rz with respect to each unknown.
 fn derivatives(parameters: &[f64]) -> [Matrix3<f64>; 4] {
     let [x, y, z] = factors_of(parameters);
     let s = scale_of(parameters);
-    // d Rx / d alpha = [e_x] Rx with the cross-product matrix of the axis, and so on.
+    // d Rx / d alpha = [e_x] Rx with the cross-product matrix of the axis, and likewise for the other axes.
     let [ex, ey, ez] = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| axis.cross_matrix());
     [x * y * z, ex * x * y * z * s, x * ey * y * z * s, x * y * ez * z * s]
 }
 
 impl Equation16 {
-    /// Starts at a scale and at angles.
+    /// Starts at a scale and angles.
     fn new(scale: f64, angles: Angles, target: Matrix3<f64>) -> Self {
         let Angles { alpha, beta, gamma } = angles;
         let parameters = [scale, alpha.to_radians(), beta.to_radians(), gamma.to_radians()];
@@ -127,7 +127,7 @@ fn finds_a_rotation_from_far_off() {
 proptest! {
     #![proptest_config(laws(128))]
 
-    /// The solver starts off the closed form, so that it has a way to go.
+    /// The solver starts away from the closed form, so that it has to iterate.
     #[test]
     fn least_squares_agrees_with_the_closed_form(
         turn in prop::array::uniform3(-3.0..3.0), scale in 0.1..10.0_f64, bend in prop::array::uniform9(-0.05..0.05),
@@ -138,7 +138,7 @@ proptest! {
         let closed = Similarity::nearest(&matrix, Vector3::zeros()).unwrap();
         let angles = Angles::of(&closed.rotation);
         let [alpha, beta, gamma] = [angles.alpha + off[0], angles.beta + off[1], angles.gamma + off[2]];
-        // The size of A is taken out, so that the solver's tolerances are relative.
+        // The size of A is divided out, so that the solver's tolerances are relative.
         let found = Equation16::new(1.0, Angles { alpha, beta, gamma }, matrix / scale).solved();
         prop_assert!((found.scale() * scale / closed.scale - 1.0).abs() < 1e-6);
         prop_assert!((found.rotation() - angles.rotation()).norm() < 1e-5);

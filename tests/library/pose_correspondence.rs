@@ -74,7 +74,7 @@ fn pairs_at_the_true_pose_are_the_same_place() {
         assert!(pairs > 0 && pairs <= found.count(), "{beta}: {pairs} {}", found.count());
         assert!(found.inliers() > 0.5);
 
-        // Completeness: a depth point that lies on the visible image surface, well inside, has its counterpart.
+        // Completeness: a depth point on the visible image surface, well inside, has a counterpart.
         let (mut expected, mut missed) = (0, 0);
         for index in (0..views.depth.size.len()).filter(|&index| views.depth.points.is_valid(index)) {
             let transformed = pose.apply(vector(views.depth.points.get(index)));
@@ -97,7 +97,7 @@ fn nothing_corresponds_to_a_surface_far_behind() {
     let mut pose = views.sample.pose;
     pose.translation.z += 60.0;
     let found = update(&views, &pose, Some(1.0));
-    // At the rim, where normals are nearly across the line of sight, some points are still near their planes.
+    // At the occluding contour, where normals are nearly perpendicular to the line of sight, some points are still near their planes.
     assert!(found.count() * 20 < views.depth.valid(), "{} of {}", found.count(), views.depth.valid());
     pose.translation.x = 1e4;
     assert_eq!(update(&views, &pose, None).count(), 0);
@@ -123,7 +123,7 @@ fn between_points_of_one_surface_normals_are_their_mean() {
         }
         off.sort_by(f64::total_cmp);
         let [median, most] = [off[off.len() / 2], off[off.len() * 95 / 100]];
-        // Half a pixel of the bust's curvature, and what central differences leave at rims.
+        // Half a pixel of the bust's curvature, and the error of central differences at occluding contours.
         assert!(gaps > 50 && median < 4.0 && most < 20.0, "{beta}: {gaps} gaps, {median} and {most} degrees off");
     }
 }
@@ -135,6 +135,6 @@ fn what_the_depth_view_does_not_see_has_no_normal() {
     let unseen = |pixel: &usize| views.image.mask[*pixel] && found.normal_at(*pixel, &views.depth.normals).is_none();
     let wide = (0..views.image.size.len()).filter(unseen).count();
     let inside = views.image.mask.iter().filter(|&&inside| inside).count();
-    // At 60 degrees a quarter of the bust and more is turned away from the depth camera.
+    // At 60 degrees, about a quarter of the bust faces away from the depth camera.
     assert!(wide * 5 > inside, "{wide} of {inside}");
 }

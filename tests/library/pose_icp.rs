@@ -1,4 +1,4 @@
-//! ICP on the built-in bust: how far it reaches, and what it says where the geometry says nothing.
+//! ICP on the built-in bust: its range of convergence, and its report where the geometry does not determine the pose.
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
@@ -65,7 +65,7 @@ impl Surface {
         self.valid().map(|index| self.point(index)).sum::<Vector3<f64>>() / self.valid().count() as f64
     }
 
-    /// The centred share of the valid columns.
+    /// The central share of the valid columns.
     fn cut(mut self, share: f64) -> Self {
         let columns = self.valid().map(|index| self.size.position(index).0);
         let (first, last) = columns.fold((usize::MAX, 0), |(low, high), column| (low.min(column), high.max(column)));
@@ -80,7 +80,7 @@ impl Surface {
         self
     }
 
-    /// What shading does to a surface: it is stretched and bent, and its normals are off by a few degrees.
+    /// The typical errors of a surface from shading: stretched and bent, with normals off by a few degrees.
     fn distorted(mut self) -> Self {
         let side = self.size.width as f64;
         for index in self.valid().collect::<Vec<_>>() {
@@ -102,7 +102,7 @@ impl Surface {
     }
 }
 
-/// A number in -1 .. 1 that looks like chance.
+/// A pseudo-random number in -1 .. 1.
 fn chance(number: usize) -> f64 {
     (number.wrapping_mul(7919) % 1009) as f64 / 504.5 - 1.0
 }
@@ -123,7 +123,7 @@ fn register(depth: &Surface, image: &Surface, start: Similarity, options: &IcpOp
     Icp::new().register(&problem, options)
 }
 
-/// Identity rotation, `scale`, centroid on centroid.
+/// Identity rotation, the given scale, and matching centroids.
 fn first_pose(depth: &Surface, image: &Surface, scale: f64) -> Similarity {
     Similarity { scale, translation: image.centroid() - scale * depth.centroid(), ..Similarity::identity() }
 }
@@ -132,7 +132,7 @@ fn error(report: &IcpReport, rotation: &Matrix3<f64>) -> f64 {
     report.pose.degrees_to(&Similarity { rotation: *rotation, ..Similarity::identity() })
 }
 
-/// One sigma of the rotation in degrees, all axes together.
+/// One sigma of the rotation in degrees, all axes combined.
 fn sigma(report: &IcpReport) -> f64 {
     let sigmas = report.information.uncertainty(report.rms, &report.pose, &Camera::Orthographic).rotation_degrees;
     sigmas.iter().map(|sigma| sigma * sigma).sum::<f64>().sqrt()
@@ -160,7 +160,7 @@ fn a_distorted_surface_costs_degrees_and_says_so() {
         let rotation = about_y(beta);
         let depth = Surface::bust(64, &rotation.transpose());
         let found = register(&depth, &image, first_pose(&depth, &image, 1.0), &IcpOptions::default()).unwrap();
-        // The distortion tilts the surface by about two degrees; no registration could know.
+        // The distortion tilts the surface by about two degrees, which no registration can detect.
         assert!(error(&found, &rotation) < 3.0, "{beta}: {}", error(&found, &rotation));
         assert!((0.1..3.0).contains(&sigma(&found)), "{}", sigma(&found));
     }
@@ -287,7 +287,7 @@ fn consensus_of_the_pairs_confirms_the_pose() {
     let (mut from, mut to) = (Vec::new(), Vec::new());
     icp.paired_points(&problem, &mut from, &mut to, usize::MAX);
     let found = ransac(&from, &to, &RansacOptions::default()).unwrap();
-    // The pairs end on pixels, not between them: that costs a tenth of a degree.
+    // The pairs end at pixels, not between them, which costs a tenth of a degree.
     assert!(found.pose.degrees_to(&Similarity { rotation, ..Similarity::identity() }) < 0.2);
     assert!(found.inliers.len() * 10 > from.len() * 9);
 }

@@ -1,4 +1,4 @@
-//! Laws that poses obey whatever their numbers.
+//! Laws that hold for all poses.
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
@@ -22,7 +22,7 @@ fn distance(a: &Similarity, b: &Similarity) -> f64 {
     (a.rotation - b.rotation).norm() + (a.scale / b.scale).ln().abs() + (a.translation - b.translation).norm() / 1e3
 }
 
-/// Points in a box, so many that no four of them decide.
+/// Points in a box, enough that no four of them determine the result.
 fn cloud(points: usize) -> impl Strategy<Value = Vec<Vector3<f64>>> {
     prop::collection::vec(vector(20.0), points)
 }
@@ -45,7 +45,7 @@ proptest! {
         let beta = sign * (90.0 - 10.0_f64.powf(power));
         let rotation = Angles { alpha, beta, gamma }.rotation();
         let found = Angles::of(&rotation);
-        // Within 1e-6 rad of the pole alpha is dropped, which turns the rest by as much.
+        // Within 1e-6 rad of the pole alpha is dropped, which changes the rotation by as much.
         prop_assert!((found.rotation() - rotation).norm() < 4e-6, "{found:?}");
     }
 
@@ -91,7 +91,7 @@ proptest! {
         prop_assert_eq!(&found, &ransac(&points, &image, &options).unwrap());
         let linear = Similarity::nearest(&found.matrix, Vector3::zeros()).unwrap();
         prop_assert!((linear.rotation - pose.rotation).norm() < 1e-6);
-        // Noise of 0.01 leaves an error of that order over the root of the number of pairs.
+        // Noise of 0.01 leaves an error of that order divided by the root of the number of pairs.
         for (target, noise) in image.iter_mut().zip(&noise) {
             *target += pose.scale * 5e-4 * noise;
         }
@@ -124,7 +124,7 @@ fn degenerate_pairs_are_errors() {
     assert_eq!(fit(&vec![Vector3::repeat(f64::NAN); 9]), Err(ErrorKind::Range));
 }
 
-/// Found by the fuzzer: the largest of several numbers passes over those that are none.
+/// Found by the fuzzer: the maximum of several numbers skips NaN.
 #[test]
 fn a_rotation_with_entries_that_are_no_numbers_is_none() {
     for (first, second) in (0..81).map(|pair| (pair / 9, pair % 9)) {

@@ -1,4 +1,4 @@
-//! The pose straight from the colours, on scenes whose pose is known.
+//! Photometric registration on scenes with a known pose.
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
@@ -18,7 +18,7 @@ struct Views {
     sample: Sample,
 }
 
-/// Both views of a sample, the colours `gain` times as bright.
+/// Both views of a sample, with the image `gain` times as bright.
 fn views(sample: Sample, gain: f32) -> Views {
     let mut image = sample.colour_image();
     if let bimodal_stereo::ColourSamples::RgbLinear(colours) = &mut image.samples {
@@ -65,7 +65,7 @@ fn register(views: &Views, light: Option<&Light>, start: &Similarity) -> Result<
     Photometric::new(&problem).register(&problem, start, &PhotometricOptions::default())
 }
 
-/// The true pose, turned by `degrees` about the object's centre and shifted by a pixel.
+/// The true pose, rotated by `degrees` about the object's centre and shifted by a pixel.
 fn off(views: &Views, degrees: f64) -> Similarity {
     let pose = views.sample.pose;
     let turn = Rotation3::new(Vector3::new(0.6, -0.7, 0.4).normalize() * degrees.to_radians()).into_inner();
@@ -104,7 +104,7 @@ fn exposure_changes_nothing() {
     }
 }
 
-/// The pair of Table 2A, the bare grid, has an exact answer: every point falls on a pixel's centre.
+/// The pair of Table 2A, the bare grid, has an exact answer, because every point falls on a pixel's centre.
 fn exact_views_give_the_pose_to_rounding(relief: &Relief) {
     for (beta, overlap) in [(20.0, 1.0), (-20.0, 1.0), (60.0, 0.5), (90.0, 0.25), (90.0, 1.0)] {
         let rotation = Angles { beta, ..Angles::default() }.rotation();
@@ -138,7 +138,7 @@ fn what_cannot_be_registered_is_an_error() {
     assert_eq!(register(&short, None, &Similarity::identity()).unwrap_err().kind(), ErrorKind::Size);
 }
 
-/// Figures of the prototype; its own count of the visible points differs from ours by some ten percent.
+/// Figures of a prototype whose own count of the visible points differs by some ten percent.
 #[test]
 #[ignore = "needs ../shared/data"]
 fn the_bound_is_that_of_the_prototype() {
@@ -163,8 +163,8 @@ fn the_bound_is_that_of_the_prototype() {
     }
 }
 
-/// Normals of a noisy depth map bend the light towards less contrast, and the pose follows all one way. Over maps that differ
-/// in their noise alone its mean is nearer to the truth where the equations are without the noise's share.
+/// Normals of a noisy depth map bias the light towards less contrast, and the pose follows in one direction. Over maps that
+/// differ only in their noise, the mean pose is nearer to the truth if the noise's contribution is removed from the equations.
 #[test]
 fn what_noisy_normals_add_to_the_equations_is_taken_off() {
     let scene = scenes::Scene::new(&scenes::surface("bust").unwrap()).unwrap();
@@ -193,7 +193,7 @@ fn what_noisy_normals_add_to_the_equations_is_taken_off() {
     assert!(without < 0.7 * with, "{without} {with}");
 }
 
-/// Maps that differ in their noise: means are known to a third of one's error.
+/// Number of maps with different noise: enough for a mean with a third of one map's error.
 const SEEDS: u64 = 10;
 
 #[test]
@@ -201,7 +201,7 @@ fn neighbours_share_what_the_model_leaves_out_and_no_noise() {
     let structure = |noise: f64, shadow: f64| {
         let mut sample = bust_with_noise(30.0, 96, scenes::lights::WINDOW, noise);
         for (index, colour) in sample.image.colours.chunks_mut(3).enumerate() {
-            // A shadow over a part of the object, as no harmonics of its normals are.
+            // A shadow over a part of the object, which harmonics of the normals cannot represent.
             let [x, y] = [index % 96, index / 96].map(|at| at as f64);
             let share = shadow * (0.35 * x).sin() * (0.35 * y).sin();
             colour.iter_mut().for_each(|value| *value *= share.exp() as f32);
@@ -214,7 +214,7 @@ fn neighbours_share_what_the_model_leaves_out_and_no_noise() {
         let (structure, noise) = structure(noise, 0.0);
         assert!(structure < 0.15 * noise, "{structure} of {noise}");
     }
-    // Of a wave of this length the mean over a tile of 8 pixels keeps sin(u) / u along each axis; the light takes a little.
+    // The mean over a tile of 8 pixels keeps sin(u) / u of such a wave along each axis; the light absorbs a little.
     let kept = (4.0 * 0.35_f64).sin() / (4.0 * 0.35);
     for noise in [0.0, 0.03] {
         let (structure, _) = structure(noise, 0.04);
@@ -223,8 +223,8 @@ fn neighbours_share_what_the_model_leaves_out_and_no_noise() {
     }
 }
 
-/// Where shading is faint beside the noise, least squares gain more by places between pixels, which average noise, than by the
-/// right pose: 0.5 to 3 degrees off here.
+/// Where shading is faint compared with the noise, least squares gain more from positions between pixels, which average the noise,
+/// than from the right pose.
 #[test]
 fn a_gain_that_is_only_averaged_noise_is_given_up() {
     for (side, noise) in [(160, 0.04), (256, 0.02)] {

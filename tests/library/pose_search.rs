@@ -1,4 +1,4 @@
-//! The search over poses on scenes with a known pose: what it finds, and the laws it obeys.
+//! The search over poses on scenes with a known pose: its results and its laws.
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
@@ -9,11 +9,11 @@ use bimodal_stereo::{
 };
 use nalgebra::{Rotation3, Vector3};
 
-/// Degrees: a registration by colours converges from 15 degrees off; a candidate has to be nearer.
+/// Degrees: photometric registration converges from 15 degrees off; a candidate must be nearer.
 const NEAR: f64 = 12.0;
-/// Candidates that are looked at.
+/// Number of candidates that are checked.
 const FIRST: usize = 10;
-/// Slices of a search of one scale; a free scale has four, and less than four times as many slices.
+/// Limit of the slices of a search with one scale; a free scale has four scales, and less than four times as many slices.
 const MOST_SLICES: usize = 200;
 
 fn bust(request: SampleRequest) -> Sample {
@@ -21,7 +21,7 @@ fn bust(request: SampleRequest) -> Sample {
     Scene::new(&relief).unwrap().sample(&SampleRequest { noise: 0.01, ..request }).unwrap()
 }
 
-/// Sixty degrees about a slanted axis, with a roll.
+/// Sixty degrees about an oblique axis, with a roll.
 fn far() -> SampleRequest {
     let tilt = Rotation3::new(Vector3::new(0.5, 0.8, 0.0).normalize() * 60_f64.to_radians());
     let rotation = (tilt * Rotation3::new(Vector3::z() * -0.3)).into_inner();
@@ -38,7 +38,7 @@ fn search(sample: &Sample, gain: f32, light: Option<&Light>, scale: Option<f64>,
     Search::new(&problem).unwrap()
 }
 
-/// One of unknown light and free scale.
+/// A problem with an unknown light and a free scale.
 fn problem<'a>(image: &'a ColourView, depth: &'a DepthView) -> SearchProblem<'a> {
     SearchProblem { image, depth, normals: &depth.normals, light: None, scale: None, unit_scale: 1.0, seed: 1 }
 }

@@ -68,7 +68,7 @@ fn what_is_no_similarity_is_refused_by_name() {
     assert_eq!(field_of(|matrix| matrix[(3, 0)] = 0.1), "matrix");
     assert_eq!(field_of(|matrix| matrix[(3, 3)] = 2.0), "matrix");
     assert_eq!(field_of(|matrix| matrix[(3, 1)] = f64::NAN), "matrix");
-    // A reflection, nothing at all, and what is no number.
+    // A reflection, zeros, and NaN.
     assert_eq!(field_of(|matrix| matrix.row_mut(0).neg_mut()), "matrix");
     assert_eq!(field_of(|matrix| matrix.fixed_view_mut::<3, 3>(0, 0).fill(0.0)), "matrix");
     assert_eq!(field_of(|matrix| matrix[(0, 0)] = f64::INFINITY), "matrix");
@@ -80,7 +80,7 @@ fn what_is_no_similarity_is_refused_by_name() {
 fn other_transformations_are_checked_too() {
     let good = pose([0.1, 0.2, 0.3], 1.5, [1.0, 2.0, 3.0]);
     assert_eq!(Isometry3::try_from(good).unwrap_err().field(), "pose.scale");
-    // nalgebra itself panics at a scale of zero.
+    // nalgebra itself panics for a scale of zero.
     for scale in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let bad = Similarity { scale, ..good };
         assert_eq!(Similarity3::try_from(bad).unwrap_err().field(), "pose.scale");

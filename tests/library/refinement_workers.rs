@@ -1,4 +1,4 @@
-//! The refinement beside the image surface, here or in a worker: the outcome is the same to the bit.
+//! The refinement while the image surface is computed, here or in a worker: the results are equal bit by bit.
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
@@ -9,15 +9,15 @@ use bimodal_stereo::{
     StepReport, Weights, Worker,
 };
 
-/// What a run leaves: its report, refined depth and image depth to the bit, and how many refinements a worker has made.
+/// The result of a run: its report, refined depth and image depth as bits, and the number of refinements from a worker.
 type End = (StepReport, [Vec<u32>; 2], usize);
 
 fn bits(values: &[f32]) -> Vec<u32> {
     values.iter().map(|value| value.to_bits()).collect()
 }
 
-/// Runs with a worker that brings the refinements that `brings` names by their number, and that is told shapes that it
-/// holds already if it `forgets`.
+/// Runs with a worker that delivers the refinements whose number `brings` accepts. If the worker `forgets`, it gets all planes again,
+/// including those that it already holds.
 fn run(sample: &Sample, options: &Options, brings: impl Fn(usize) -> bool, forgets: bool) -> End {
     let mut estimator = Estimator::new(sample.colour_image(), &sample.depth_map(), options.clone()).unwrap();
     let mut worker = Worker::new(sample.colour_image(), &sample.depth_map(), options.clone()).unwrap();
@@ -34,7 +34,7 @@ fn run(sample: &Sample, options: &Options, brings: impl Fn(usize) -> bool, forge
         let shape = task.shape;
         held = (!forgets).then_some(shape + 1);
         asked += 1;
-        // Before its stage, and for another shape, it is not taken.
+        // A refinement is refused before its stage and for another shape.
         assert!(estimator.accept_refinement(shape).is_none());
         while estimator.precedes_refinement() {
             estimator.step_stage();
@@ -78,7 +78,7 @@ fn an_iteration_that_is_taken_back_takes_its_shape_along() {
     let request =
         SampleRequest { light: colourful, noise: 0.05, depth_noise: 0.3, holes: 0.1, ..SampleRequest::default() };
     let sample = sample(&request);
-    // A depth view that is trusted too much makes the second iteration worse than the first.
+    // With too much trust in the depth view, the second iteration is worse than the first.
     let options = Options { weights: Weights { prior: 10.0, ..Weights::default() }, ..near(&sample) };
     let mut estimator = Estimator::new(sample.colour_image(), &sample.depth_map(), options.clone()).unwrap();
     estimator.step();
@@ -88,7 +88,7 @@ fn an_iteration_that_is_taken_back_takes_its_shape_along() {
     assert!(known < unknown);
     let report = estimator.step();
     assert!(matches!(report.reason, Some(Reason::TakenBack { .. })), "{report:?}");
-    // A worker that has made the second shape does not hold the first one any more.
+    // A worker that has refined the second shape no longer holds the first.
     assert_eq!(planes(&estimator, Some(first + 1)), unknown);
     assert_same("taken back", &sample, &options);
 }

@@ -1,5 +1,5 @@
-//! A photograph that is much finer than the depth map is worked on at the depth map's resolution, and everything is
-//! carried back to the photograph's pixels and units.
+//! A photograph much finer than the depth map is processed at the depth map's resolution, and all results are converted
+//! back to the photograph's pixels and units.
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
@@ -37,7 +37,7 @@ fn run(image: ColourImage, sample: &Sample, options: Options) -> Estimator {
     estimator
 }
 
-/// The pose of the small depth map in the pixels of an image so many times as large.
+/// The pose of the small depth map in the pixels of an enlarged image.
 fn enlarged(pose: &Similarity, times: f64) -> Similarity {
     Similarity { scale: times * pose.scale, rotation: pose.rotation, translation: times * pose.translation }
 }
@@ -101,7 +101,7 @@ fn outputs_have_the_pixels_of_the_image_and_its_mask() {
     assert!((ratio - 1.0).abs() < 0.1, "{ratio}");
 }
 
-/// The sample's image on a larger frame, each pixel a square of so many, from `origin` on.
+/// The sample's image on a larger frame, starting at `origin`, with each pixel enlarged to a square.
 fn on_frame(sample: &Sample, side: usize, frame: Size, origin: [usize; 2]) -> ColourImage {
     let image = sample.colour_image();
     let ColourSamples::RgbLinear(colours) = &image.samples else { panic!("renders are linear") };
@@ -131,7 +131,7 @@ fn on_frame(sample: &Sample, side: usize, frame: Size, origin: [usize; 2]) -> Co
 
 #[test]
 fn a_photograph_of_twelve_megapixels_finds_its_small_depth_map() {
-    // The object stands away from the middle of the frame.
+    // The object is off the middle of the frame.
     let small = sample(Size { width: 160, height: 120 }, Camera::Orthographic);
     let (frame, side, origin) = (Size { width: 4000, height: 3000 }, 15, [1203, 907]);
     let estimator = run(on_frame(&small, side, frame, origin), &small, Options::default());
@@ -181,7 +181,7 @@ fn behind_pinholes_poses_stay_metric() {
     let options = || Options { start: Start::Identity, ..Options::default() };
     let [own, found] = [image, fine].map(|image| run(image, &small, options()).report().clone());
     let near = own.pose.degrees_to(&found.pose);
-    // The small image is worked on in both, cut to its mask in one.
+    // Both runs use the small image; one of them crops it to its mask.
     assert!(near < 0.1, "{near}");
     assert!((own.pose.translation - found.pose.translation).norm() < 0.01 * own.pose.translation.norm().max(1.0));
     assert_eq!(found.pose.scale, 1.0);

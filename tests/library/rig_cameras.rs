@@ -1,4 +1,4 @@
-//! Cameras of a rig against OpenCV (scripts/reference/lens.py).
+//! Compares cameras of a rig with OpenCV (scripts/reference/lens.py).
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
@@ -44,7 +44,7 @@ fn pixels_agree_with_opencv() {
     assert_eq!(cameras, 18);
 }
 
-/// Found by the fuzzer: rays with infinite slopes, and with finite ones whose pixels are infinite.
+/// Found by the fuzzer: rays with infinite slopes, and rays with finite slopes whose pixels are infinite.
 #[test]
 fn slopes_beyond_all_numbers_are_no_rays() {
     for lens in [Lens::None, Lens::Brown([0.0; 8]), Lens::Fisheye([0.0; 4])] {

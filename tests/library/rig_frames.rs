@@ -1,4 +1,4 @@
-//! Rendered rigs: what a seed fixes, and that each kind of scene is what it says.
+//! Rendered rigs: a seed fixes everything, and each kind of scene has its properties.
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
@@ -28,7 +28,7 @@ fn a_seed_fixes_the_rig_and_a_frame_what_is_seen() {
     }
 }
 
-/// Share of the pixels whose depth lies within a range of metres.
+/// Share of the pixels whose depth lies in a range of metres.
 fn share(frame: &RigFrame, range: std::ops::Range<f32>) -> f64 {
     frame.true_depth.iter().filter(|depth| range.contains(depth)).count() as f64 / frame.true_depth.len() as f64
 }
@@ -41,7 +41,7 @@ fn scenes_are_what_they_are_called() {
             assert!(share(&frame, 0.1..9.0) > 0.98, "{kind:?} {seed}: nothing is seen");
             let holes = frame.depth.iter().filter(|&&depth| depth == 0).count() as f64 / frame.depth.len() as f64;
             assert!((0.001..0.3).contains(&holes), "{kind:?} {seed}: {holes}");
-            // Neither black nor white all over.
+            // Neither all black nor all white.
             let mean = frame.colour.iter().map(|&value| f64::from(value)).sum::<f64>() / frame.colour.len() as f64;
             assert!((90.0..245.0).contains(&mean), "{kind:?} {seed}: {mean}");
             let (near, all) = match kind {

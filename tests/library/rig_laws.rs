@@ -1,4 +1,4 @@
-//! Laws of the calibration check, whatever the rig, the cues and the candidate.
+//! Laws of the calibration check for every rig, cue and candidate.
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
@@ -98,7 +98,7 @@ proptest! {
     }
 }
 
-/// Without masks there is no silhouette: the estimate is the candidate to the last digit, and nothing is known of it.
+/// Without masks there is no silhouette: the estimate equals the candidate to the last digit, and nothing is known about its error.
 #[test]
 fn silhouettes_without_masks_leave_every_candidate_undecided() {
     for kind in RigKind::ALL {
@@ -112,7 +112,7 @@ fn silhouettes_without_masks_leave_every_candidate_undecided() {
     }
 }
 
-/// Pixels that a mask of the image leaves out say nothing: other colours there change no digit of what any cue finds.
+/// Pixels outside the image's mask have no effect: other colours there change no digit of any cue's result.
 #[test]
 fn every_cue_obeys_the_mask_of_the_image() {
     let size = Size { width: 192, height: 144 };

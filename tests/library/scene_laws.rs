@@ -1,5 +1,5 @@
-//! Laws of whole runs and whole views, for random scenes: what turns, changes channels, units or exposure together has
-//! the answer turned with it, and nobody sees how the steps were sliced.
+//! Laws of whole runs and views, for random scenes: rotating the inputs, permuting channels, or changing units or exposure changes the
+//! answer accordingly, and slicing the steps has no effect.
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
@@ -13,16 +13,16 @@ use bimodal_stereo::{
 use nalgebra::Matrix3;
 use proptest::prelude::*;
 
-/// Side of the views, pixels. With 32 some poses are so uncertain that another rounding ends degrees away, and says so.
+/// Side of the views, pixels. At 32, some poses are so uncertain that another rounding ends degrees away, which the sigmas report.
 const SIDE: usize = 64;
-/// Two runs end alike within this, degrees: each stops where a step changes the rotation by less than 0.01.
+/// Largest difference of two equal runs, degrees: each stops where a step changes the rotation by less than 0.01.
 const ALIKE: f64 = 0.02;
-/// Or within this share of the sigma that is claimed: now and then the pose sought repels rounding, which grows until the
-/// steps do (three of 200 scenes were apart by more than [`ALIKE`], by 0.21 degrees at most).
+/// Or this share of the reported sigma: near some poses rounding errors grow until the steps do. Set on 200 scenes, three of
+/// which differ by more than [`ALIKE`].
 const ALIKE_SIGMAS: f64 = 0.5;
 
 prop_compose! {
-    /// The bust from some direction, with noise.
+    /// The bust from a random direction, with noise.
     fn scene()(
         alpha in -15.0..15.0, beta in 10.0..35.0, gamma in -20.0..20.0, noise in 0.0..0.01, seed in 1_u64..1000,
         name in prop::sample::select(vec!["colourful", "window"]),
@@ -39,7 +39,7 @@ prop_compose! {
     }
 }
 
-/// Light and scale are known, and the start is some degrees off.
+/// Light and scale are known; the initial pose is some degrees off.
 fn told(sample: &Sample, light: Light, before: &Matrix3<f64>) -> Options {
     let off = Angles { alpha: 4.0, beta: -3.0, gamma: 5.0 }.rotation();
     let rotation = before * sample.pose.rotation * off;
@@ -59,7 +59,7 @@ fn run(image: ColourImage, depth: &DepthMap, options: Options) -> Estimator {
     estimator
 }
 
-/// The image with its linear colours replaced, three at a time.
+/// The image with its linear colours replaced, pixel by pixel.
 fn with_colours(sample: &Sample, colour: impl Fn([f32; 3]) -> [f32; 3]) -> ColourImage {
     let colours = sample.image.colours.chunks_exact(3).flat_map(|rgb| colour([rgb[0], rgb[1], rgb[2]])).collect();
     ColourImage { samples: ColourSamples::RgbLinear(colours), ..sample.colour_image() }
@@ -69,7 +69,7 @@ fn bits(values: &[f32]) -> Vec<u32> {
     values.iter().map(|value| value.to_bits()).collect()
 }
 
-/// Whether a run ended at this pose, as far as rounding lets it.
+/// Whether a run ended at this pose, within the effects of rounding.
 fn ended_at(run: &Estimator, expected: &Similarity) -> Result<(), TestCaseError> {
     let report = run.report();
     let apart = report.pose.degrees_to(expected);
@@ -78,7 +78,7 @@ fn ended_at(run: &Estimator, expected: &Similarity) -> Result<(), TestCaseError>
     Ok(())
 }
 
-/// Everything that a run gives out, as bits.
+/// All outputs of a run as bits.
 fn outcome(estimator: &Estimator) -> (String, Vec<u32>) {
     let normals = [estimator.image_normals().interleaved(), estimator.depth_normals().interleaved()].concat();
     let fields = [&normals[..], &estimator.image_depth(), estimator.refined_depth(), &estimator.residual()].concat();
@@ -90,7 +90,7 @@ proptest! {
 
     #[test]
     fn light_and_image_turned_together_turn_the_pose(sample in scene()) {
-        // A quarter turn puts pixels onto pixels: x' = -y, y' = x.
+        // A quarter turn maps pixels onto pixels: x' = -y, y' = x.
         let turn = Matrix3::new(0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
         let mut turned = sample.clone();
         for index in 0..SIDE * SIDE {
@@ -128,7 +128,7 @@ proptest! {
         prop_assert!((moved - f64::from(stops) * std::f64::consts::LN_2).abs() < 1e-3, "{stops} stops: {moved}");
     }
 
-    /// Powers of two change no digit: the answers are the same to the bit.
+    /// Powers of two change no digit, so the answers are equal bit by bit.
     #[test]
     fn units_of_the_depth_change_nothing(sample in scene(), power in -10_i32..10) {
         let factor = 2.0_f32.powi(power);
@@ -161,7 +161,7 @@ proptest! {
 proptest! {
     #![proptest_config(laws(32))]
 
-    /// As sensors store them, and as floats: the same view, to the bit.
+    /// Integers as sensors store them, and floats, give equal views, bit by bit.
     #[test]
     fn millimetres_are_thousandths_of_metres(levels in prop::collection::vec(700_u16..1400, 144), holes in 0_usize..40) {
         let mut levels = levels;
@@ -177,7 +177,7 @@ proptest! {
     }
 }
 
-/// Found by the fuzzer: a focal length of almost nothing put points at infinity.
+/// Found by the fuzzer: a tiny focal length puts points at infinity.
 #[test]
 fn points_beyond_all_distances_are_missing() {
     let with = |fx, depth| {

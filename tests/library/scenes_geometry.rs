@@ -1,4 +1,4 @@
-//! The renderer and the true pose against analytic surfaces.
+//! Compares the renderer and the true pose with analytic surfaces.
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
@@ -8,17 +8,17 @@ use bimodal_stereo::{Angles, Camera, Lens, Pinhole, Similarity, Size};
 use nalgebra::{Matrix3, Vector3};
 
 const SIDE: usize = 256;
-/// Radius of the sphere in samples, and of the part of it that the relief shows.
+/// Radius of the sphere in samples, and radius of the cap that the relief shows.
 const SPHERE: f64 = 150.0;
 const CAP: f64 = 100.0;
-/// The part that is compared: the smoothing of the heights flattens the last four samples, the triangles there end.
+/// Radius that is compared: smoothing of the heights flattens the last four samples, and the triangles there end.
 const COMPARED: f64 = 92.0;
-/// Height of the rim of the cap in samples, above the background's limit of 5.
+/// Height of the cap's border in samples, above the background's limit of 5.
 const RIM: f64 = 6.0;
-/// Smoothing by sigma = 1 sample lowers the cap by half its Laplacian, 1/150 at the pole and 1/60 at 92 samples, and
-/// the triangles cut 1/600 off; in samples.
+/// In samples: smoothing by sigma = 1 sample lowers the cap by half its Laplacian, 1/150 at the pole and 1/60 at 92 samples,
+/// and the triangles cut off 1/600.
 const DEPTH_TOLERANCE: f64 = 0.02;
-/// The same in degrees; mostly the change of the slope by smoothing.
+/// In degrees: mostly the change of slope by smoothing.
 const NORMAL_TOLERANCE: f64 = 0.05;
 
 /// Centre of the sphere in the frame of the mesh.
@@ -57,7 +57,7 @@ fn behind(lens: Lens) -> Camera {
     Camera::Pinhole(Pinhole { fx: 400.0, fy: 390.0, cx: 121.3, cy: 130.8, lens })
 }
 
-/// Where a view puts the mesh: documented at `Scene::view`.
+/// The placement of the mesh in a view, as documented at `Scene::view`.
 fn placement(scene: &Scene, rotation: &Matrix3<f64>, scale: f64, view: &View) -> Similarity {
     let fit = view.size.width as f64 / SIDE as f64;
     let centroid = scene.mesh().centroid();
@@ -69,8 +69,8 @@ fn placement(scene: &Scene, rotation: &Matrix3<f64>, scale: f64, view: &View) ->
     Similarity { scale: scale * fit, rotation: *rotation, translation }
 }
 
-/// Largest error of depth and normal against the ray's intersection with the sphere: across the surface in samples (so
-/// that it counts the same where the surface is seen at a flat angle), and in degrees.
+/// Largest errors of depth and normal against the ray's intersection with the sphere: depth in samples across the surface, so
+/// that it counts the same at grazing angles, normals in degrees.
 fn errors_on_sphere(rotation: &Matrix3<f64>, size: Size, camera: Camera) -> (f64, f64) {
     let scene = cap();
     let view = scene.view(rotation, 1.0, size, camera);
@@ -122,7 +122,7 @@ fn a_sphere_cap_is_rendered_as_it_is() {
     }
 }
 
-/// Every point of the depth view, moved by the true pose, lies on the sphere of the colour view.
+/// Every point of the depth view, transformed by the true pose, lies on the sphere of the colour view.
 #[test]
 fn the_pose_carries_the_depth_view_onto_the_surface() {
     let scene = cap();
@@ -157,7 +157,7 @@ fn the_pose_carries_the_depth_view_onto_the_surface() {
     }
 }
 
-/// The same on the bust, where parts are hidden: points that the image sees land on its own depth.
+/// The same on the bust, which has hidden parts: points visible in the image lie on the image's own depth.
 #[test]
 fn visible_points_of_the_bust_land_on_the_image_view() {
     let scene = Scene::new(&surface("bust").expect("a name")).expect("a surface");
@@ -172,7 +172,7 @@ fn visible_points_of_the_bust_land_on_the_image_view() {
             let depth = f64::from(sample.truth.depth[index]);
             let point = sample.pose.apply(Camera::Orthographic.point(size, pixel, depth).into());
             let Some(seen) = bilinear(&sample.truth.image_depth, size, point) else { continue };
-            // What lies a pixel behind the image's surface is hidden there.
+            // A point more than a pixel behind the image's surface is hidden there.
             if point.z - seen < 1.0 {
                 differences.push((point.z - seen).abs());
             }
@@ -185,7 +185,7 @@ fn visible_points_of_the_bust_land_on_the_image_view() {
     }
 }
 
-/// The image's depth at the place of a point, `None` where one of four pixels is missing.
+/// The image's depth at a point's position; `None` if one of four pixels is missing.
 fn bilinear(depth: &[f32], size: Size, point: Vector3<f64>) -> Option<f64> {
     let [x, y] = Camera::Orthographic.project(size, point.into())?;
     let (column, row) = (x.floor(), y.floor());
@@ -199,8 +199,8 @@ fn bilinear(depth: &[f32], size: Size, point: Vector3<f64>) -> Option<f64> {
     (!value.is_nan()).then_some(value)
 }
 
-/// Two plateaus, the right one 80 samples nearer. Turned one way it hides a part of the left one, the other way a gap
-/// opens that no triangle spans.
+/// Two plateaus, the right one 80 samples nearer. Rotated one way, it hides a part of the left one; rotated the other way, a
+/// gap opens that no triangle spans.
 #[test]
 fn a_step_hides_what_is_behind() {
     const LOW: f64 = 20.0;
@@ -246,7 +246,7 @@ fn a_step_hides_what_is_behind() {
     assert!(gap.len() >= 24 && gap.iter().all(|(_, level)| level.is_none()), "no surface spans the step");
 }
 
-/// From behind nothing is seen, and no view holds a normal that faces away.
+/// From behind nothing is visible, and no view contains a normal that faces away.
 #[test]
 fn what_faces_away_is_dropped() {
     let scene = Scene::new(&surface("ripples").expect("a name")).expect("a surface");

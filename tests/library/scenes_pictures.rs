@@ -1,4 +1,4 @@
-//! Pictures to look at, in target/tmp: no test can say whether a face looks like one.
+//! Writes pictures to target/tmp for visual inspection: no test can tell whether a face looks like one.
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;

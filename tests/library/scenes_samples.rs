@@ -1,4 +1,4 @@
-//! What samples promise: the image model, noise, overlap, holes, seeds, limits, and the bare grid of Table 2A.
+//! Guarantees of samples: the image model, noise, overlap, holes, seeds, limits, and the bare grid of Table 2A.
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
@@ -9,7 +9,7 @@ use bimodal_stereo::scenes::{
 use bimodal_stereo::{Angles, Camera, ErrorKind, Light, Normals, Size};
 use nalgebra::{Matrix3, Vector3};
 
-/// Largest difference of the logarithm of an f32 and of a shading whose normal was rounded to f32 (no unit).
+/// Largest difference between the logarithm of an f32 and a shading whose normal was rounded to f32 (no unit).
 const ROUNDING: f64 = 2e-6;
 
 fn scene(name: &str) -> Scene {
@@ -27,7 +27,7 @@ fn map(sample: &Sample) -> &[f32] {
     }
 }
 
-/// Comparable where values are NaN.
+/// As bits, so that NaN can be compared.
 fn bits(values: &[f32]) -> Vec<u32> {
     values.iter().map(|value| value.to_bits()).collect()
 }
@@ -94,7 +94,7 @@ fn noise_has_the_sigma_asked_for_and_leaves_the_rest_alone() {
     let clean = scene.sample(&plain).expect("a sample");
     let noisy = scene.sample(&SampleRequest { noise: 0.02, ..plain.clone() }).expect("a sample");
     let residuals = residuals(&noisy);
-    // The sigma of a sigma from n values is sigma / sqrt(2 n): 0.5 % of 20000; four of these.
+    // The sigma of a sigma from n values is sigma / sqrt(2 n), 0.5 % for 20000; the limit is four of these.
     let sigma = root_mean_square(&residuals);
     assert!((sigma / 0.02 - 1.0).abs() < 0.02, "{sigma} from {} values", residuals.len());
     assert_eq!(bits(map(&noisy)), bits(map(&clean)));
@@ -162,7 +162,7 @@ fn every_size_within_the_limits_works() {
     for (width, height) in [(16, 16), (32, 32), (640, 480), (100, 300), (1024, 1024)] {
         let size = Size { width, height };
         let sample = scene.sample(&SampleRequest { size, ..SampleRequest::default() }).expect("a sample");
-        // The bust fills 0.39 of the square that fits, less the rim that meshing takes off.
+        // The bust fills 0.39 of the largest square in the frame, minus the border that meshing removes.
         let share = count(&sample.image.mask) as f64 / (width.min(height) as f64).powi(2);
         assert!((0.3..0.42).contains(&share), "{width}x{height}: {share}");
         assert!(map(&sample).iter().all(|depth| depth.is_nan() || *depth > 0.0));
@@ -200,7 +200,7 @@ fn bad_requests_are_refused_by_name() {
     assert_eq!(Scene::new(&relief).expect_err("without a surface").kind(), ErrorKind::Empty);
 }
 
-/// The pair of Table 2A is exact: each point of the cloud, moved by the pose, is the image's point of that pixel.
+/// The pair of Table 2A is exact: each point of the cloud, transformed by the pose, is the image's point at that pixel.
 #[test]
 fn the_bare_grid_is_exact() {
     let relief = surface("bust").expect("a name");
@@ -220,7 +220,7 @@ fn the_bare_grid_is_exact() {
             let pixel = [column as f64, row as f64];
             let depth = f64::from(sample.truth.image_depth[index]);
             let point: Vector3<f64> = Camera::Orthographic.point(size, pixel, depth).into();
-            // Coordinates up to 64 in f32 are rounded by 4e-6, normals by 6e-8.
+            // Coordinates up to 64 are rounded by 4e-6 in f32, normals by 6e-8.
             assert!((sample.pose.apply(vector(points, index)) - point).norm() < 1e-5);
             let normal = vector(&sample.truth.image_normals, index);
             assert!((sample.pose.rotation * vector(normals, index) - normal).norm() < 1e-6);

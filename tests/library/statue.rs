@@ -1,4 +1,4 @@
-//! Two real views of a statue from different places, whose albedo varies, with the pose between them known.
+//! Two real views of a statue with varying albedo from different places, with a known pose between them.
 
 use std::fs;
 use std::path::PathBuf;
@@ -15,7 +15,7 @@ struct Pair {
     image: ColourImage,
     depth: DepthMap,
     truth: Similarity,
-    /// Of the depth points.
+    /// Centroid of the depth points.
     middle: Vector3<f64>,
 }
 
@@ -68,7 +68,7 @@ fn load(name: &str) -> Pair {
     }
 }
 
-/// How far a run ends off that starts from this pose: degrees, and metres across the line of sight.
+/// Error of a run from this initial pose: degrees, and metres across the line of sight.
 fn run(pair: &Pair, start: &Similarity) -> (f64, f64) {
     let start = Start::Pose { rotation: start.rotation, scale: None, translation: Some(start.translation) };
     let options = Options { start, ..Options::default() };
@@ -81,8 +81,8 @@ fn run(pair: &Pair, start: &Similarity) -> (f64, f64) {
     (pose.degrees_to(&pair.truth), off.xy().norm())
 }
 
-/// Silhouettes alone pull a depth map that sees part of the object until it fills the image's mask: 3 to 9 degrees and 3 to 30 mm off,
-/// from the true pose as well.
+/// Silhouettes alone pull a depth map that sees part of the object until it fills the image's mask, even from the true
+/// pose.
 #[test]
 #[ignore = "needs ../shared/data"]
 fn views_of_a_statue_from_different_places_register_from_a_pose_that_is_roughly_right() {

@@ -12,7 +12,7 @@ fn size(width: usize, height: usize) -> Size {
     Size { width, height }
 }
 
-/// Height, p and q of a function of column and row that returns all three.
+/// Height, p and q from a function of column and row that returns all three.
 fn sample(size: Size, surface: impl Fn(f64, f64) -> [f64; 3]) -> [Vec<f32>; 3] {
     [0, 1, 2].map(|part| {
         let value = |(column, row): (usize, usize)| surface(column as f64, row as f64)[part] as f32;
@@ -39,7 +39,7 @@ fn integrate(
     (z, report)
 }
 
-/// Largest difference over the pixels that `select` picks, each side about its mean there.
+/// Largest difference over the selected pixels, with each side's mean there removed.
 fn largest(a: &[f32], b: &[f32], select: impl Fn(usize) -> bool) -> f64 {
     let chosen: Vec<f64> = (0..a.len()).filter(|&i| select(i)).map(|i| f64::from(a[i]) - f64::from(b[i])).collect();
     let mean = chosen.iter().sum::<f64>() / chosen.len() as f64;
@@ -71,7 +71,7 @@ fn planes_and_quadratics_are_exact() {
         let (found, report) = integrate(size, mask, &p, &q, None, &options);
         let error = largest(&found, &z, |index| mask[index]);
         println!("{error:e} px, {report:?}");
-        // Heights run over 53 px.
+        // Heights span 53 px.
         assert!(error < 1e-3, "{error}");
         let mean: f64 = found.iter().filter(|z| !z.is_nan()).map(|&z| f64::from(z)).sum();
         assert_eq!(report.components, 1);
@@ -82,7 +82,7 @@ fn planes_and_quadratics_are_exact() {
 #[test]
 fn a_rectangle_is_solved_in_one_iteration_to_five_digits() {
     let size = size(256, 256);
-    // Gradients that the surface's own differences are the trapezoids of: cos(k (x + 1/2)) has no discretisation error.
+    // The trapezoids of these gradients equal the surface's own differences: cos(k (x + 1/2)) has no discretisation error.
     let k = std::f64::consts::PI * 3.0 / 256.0;
     let [z, _, _] = sample(size, |x, y| [40.0 * (k * (x + 0.5)).cos() * (k * (y + 0.5)).cos(), 0.0, 0.0]);
     let scale = -40.0 * 2.0 * (k / 2.0).tan();
@@ -216,7 +216,7 @@ fn a_perspective_sphere_comes_back_up_to_scale() {
         let discriminant = b * b - a * c;
         let z = (-b - discriminant.max(0.0).sqrt()) / a;
         let normal = [x * z - centre[0], y * z - centre[1], z - centre[2]].map(|part| part / radius);
-        // Up to 70 degrees between normal and sight.
+        // Up to 70 degrees between the normal and the line of sight.
         let facing = -(normal[0] * x + normal[1] * y + normal[2]) / a.sqrt();
         if discriminant > 0.0 && facing > 0.34 {
             mask[index] = true;
@@ -273,7 +273,7 @@ fn bad_input_is_an_error_or_a_report() {
     assert_eq!(short.err().as_deref(), Some("p"));
     let bad = IntegrationOptions { tolerance: f64::NAN, ..options };
     assert!(integrator.integrate(&flat, &flat, None, &bad, &mut z).is_err());
-    // Flat, unbounded and absurd gradients: numbers, unknown edges and the largest that count.
+    // Invalid, infinite and extreme gradients: numbers, unknown edges, and the largest number.
     for value in [0.0, f32::INFINITY, f32::MAX, -1e6] {
         for robustness in [Robustness::Off, Robustness::Estimated] {
             let p = vec![value; 48];

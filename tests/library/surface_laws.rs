@@ -80,7 +80,7 @@ proptest! {
         close(&warm, &cold, 1e-3)?;
     }
 
-    /// A surface of second order has gradients that trapezoids sum up exactly, whatever the mask cuts out of it.
+    /// Trapezoids integrate the gradients of a quadratic surface exactly, whatever the mask removes.
     #[test]
     fn the_gradient_of_a_surface_gives_it_back(
         mask in mask(), a in -2.0_f32..2.0, b in -2.0_f32..2.0, curvature in prop::array::uniform3(-0.2_f32..0.2),
@@ -92,7 +92,7 @@ proptest! {
         let surface = at(&|x, y| a * x + b * y + c * x * x + d * x * y + e * y * y);
         let (p, q) = (at(&|x, y| a + 2.0 * c * x + d * y), at(&|x, y| b + d * x + 2.0 * e * y));
         let z = integrate(&mask, &p, &q, None);
-        // Each part of the surface has a level of its own: neighbours tell.
+        // Each part of the surface has its own level, so only differences of neighbours are compared.
         for index in (0..PIXELS).filter(|&index| mask[index]) {
             for other in SIZE.neighbours(index).filter(|&other| mask[other]) {
                 let (found, expected) = (z[other] - z[index], surface[other] - surface[index]);

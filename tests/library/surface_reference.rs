@@ -1,4 +1,4 @@
-//! Integration against scipy's sparse least squares (scripts/reference/integration.py).
+//! Compares integration with scipy's sparse least squares (scripts/reference/integration.py).
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
@@ -6,7 +6,7 @@ use wasm_bindgen_test::wasm_bindgen_test as test;
 use bimodal_stereo::{AnchorWeight, Anchors, IntegrationOptions, IntegrationTermination, Integrator, Size};
 
 const FIXTURE: &str = include_str!("../fixtures/integration.txt");
-/// Largest accepted difference in heights of some ten pixels.
+/// Largest accepted difference, for heights of some ten pixels.
 const TOLERANCE: f32 = 1e-4;
 
 #[test]

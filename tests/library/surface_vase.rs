@@ -1,4 +1,4 @@
-//! Integration of a published vase whose gradients carry spikes of +-10 at its discontinuities.
+//! Integration of a published vase whose gradients have spikes of +-10 at its discontinuities.
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
@@ -17,7 +17,7 @@ struct Vase {
 fn vase() -> Vase {
     let folder = data_dir().join("normal_integration");
     let read = |name: &str| read_npy_f32(&folder.join(format!("vase_{name}.npy")));
-    // The data's p runs down the columns and its q along the rows: the reverse of ours.
+    // In the data, p is along the columns and q along the rows, the reverse of this project's convention.
     let ((size, down), (_, right), (_, height)) = (read("p"), read("q"), read("u"));
     let file = std::fs::read(folder.join("vase_mask.npy")).expect("the file is there");
     let array = npyz::NpyFile::new(&file[..]).expect("npy");
@@ -29,7 +29,7 @@ fn vase() -> Vase {
 }
 
 impl Vase {
-    /// Root mean square error on the vase about its median, after integrating over `domain`.
+    /// Root mean square error on the vase about its median error, after integrating over `domain`.
     fn error(&self, domain: &[bool], robustness: Robustness) -> f64 {
         let mut z = vec![0.0; self.size.len()];
         let options = IntegrationOptions { robustness, ..Default::default() };
@@ -45,7 +45,7 @@ impl Vase {
     }
 }
 
-/// With the true discontinuities cut, scipy reaches 0.0699 px; least squares 0.1093.
+/// Reference from scipy: 0.0699 px with the true discontinuities cut, 0.1093 px by least squares.
 #[test]
 #[ignore = "needs ../shared/data"]
 fn spikes_inside_the_mask_are_cut() {
@@ -55,7 +55,7 @@ fn spikes_inside_the_mask_are_cut() {
     assert!(robust < 0.09, "{robust}");
 }
 
-/// The whole rectangle: the vase stands out of its background by a jump that the gradients can't tell.
+/// Over the whole rectangle, the vase stands out from its background by a jump that the gradients do not show.
 #[test]
 #[ignore = "needs ../shared/data"]
 fn the_background_bends_the_vase_less_with_robust_weights() {

@@ -1,9 +1,9 @@
-//! Threads that share an estimator's work: the outcome is the same to the bit, however many there are.
+//! Threads that share an estimator's work: the results are equal bit by bit for any number of threads.
 
 use bimodal_stereo::scenes::{Sample, SampleRequest, Scene, light, surface};
 use bimodal_stereo::{Estimator, Options, Reason, Similarity, Start, Status, StepReport};
 
-/// Its report, refined depth and image depth to the bit.
+/// The report, refined depth and image depth as bits.
 type End = (StepReport, [Vec<u32>; 2]);
 
 fn estimator(sample: &Sample, options: &Options) -> Estimator {
@@ -52,7 +52,7 @@ fn a_search_that_is_shared_says_how_far_it_is_and_can_be_begun_again() {
     let mut shared = estimator(&sample, &Options::default()).with_threads(3);
     let mut told = Vec::new();
     while shared.is_searching() {
-        // The last step of a search reports that it is done.
+        // The last step of a search reports that the search is done.
         if let Some(Reason::Searching { percent, .. }) = shared.step().reason {
             told.push(percent);
         }

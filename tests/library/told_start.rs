@@ -1,4 +1,4 @@
-//! A start that is told: believed within its tolerance, searched around, and kept where nothing better is near.
+//! A given initial pose: trusted within its tolerance, searched around, and kept if nothing better is near.
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
@@ -12,7 +12,7 @@ use nalgebra::{Rotation3, Vector3};
 
 const SIZE: Size = Size { width: 96, height: 72 };
 
-/// The bust four of its heights away from both cameras, which are calibrated.
+/// The bust at a distance of four times its height from both calibrated cameras.
 fn perspective(light_name: &str) -> Sample {
     let pinhole = Pinhole { fx: 288.0, fy: 288.0, cx: 47.5, cy: 35.5, lens: Lens::None };
     let request = SampleRequest {
@@ -31,13 +31,13 @@ fn perspective(light_name: &str) -> Sample {
 #[derive(Clone, Copy, PartialEq)]
 enum Paint {
     None,
-    /// Four colours in a pattern.
+    /// Four albedos in a pattern.
     Patches,
-    /// Black on white, letters of a pixel: noise, by what neighbouring pixels do.
+    /// Black on white, in letters of one pixel, which neighbouring pixels cannot distinguish from noise.
     FinePrint,
 }
 
-/// Colours that no shading explains, on a background of its own.
+/// Albedo that no shading explains, on a dark background.
 fn painted(sample: &Sample, kind: Paint) -> ColourSamples {
     let paints = [[0.8, 0.2, 0.1], [0.1, 0.6, 0.2], [0.2, 0.2, 0.7], [0.9, 0.9, 0.3]];
     let paint = |index: usize| {
@@ -57,7 +57,7 @@ fn painted(sample: &Sample, kind: Paint) -> ColourSamples {
     ColourSamples::RgbLinear((0..sample.image.size.len()).flat_map(shaded).collect())
 }
 
-/// The true pose turned by so many degrees about the depth camera.
+/// The true pose, rotated about the depth camera.
 fn turned_about_the_sensor(sample: &Sample, axis: Vector3<f64>, degrees: f64) -> Similarity {
     let turn = Rotation3::new(axis.normalize() * degrees.to_radians()).into_inner();
     Similarity { rotation: sample.pose.rotation * turn, ..sample.pose }
@@ -99,7 +99,7 @@ fn outlines_bring_a_painted_object_home() {
         // A pixel measures one unit at the object.
         assert!(after.xy().norm() < 1.5 && before.norm() > 10.0, "{before} {after} {report:?}");
         assert!(report.pose.degrees_to(&sample.pose) < 3.5, "{report:?}");
-        // What outlines say of their error holds.
+        // The error is within the sigmas of the silhouettes.
         let sigma = report.uncertainty.as_ref().expect("sigmas");
         let turned = Rotation3::from_matrix_unchecked(report.pose.rotation * sample.pose.rotation.transpose());
         let turned = turned.scaled_axis().map(f64::to_degrees);
@@ -125,7 +125,7 @@ fn outlines_find_the_place_of_a_painted_object_whose_rotation_alone_is_told() {
 
 #[test]
 fn fine_print_is_not_taken_for_noise_that_explains_the_colours() {
-    // Letters of a pixel are noise: neighbours share nothing of them, and only how much they are tells them from a camera's.
+    // Letters of one pixel are uncorrelated between neighbours, as noise is; only their amplitude distinguishes them from a camera's noise.
     let sample = perspective("window");
     let middle = middle(&sample);
     for (axis, degrees) in [(Vector3::new(0.2, 1.0, 0.3), 3.0), (Vector3::new(1.0, 0.1, -0.5), 4.0)] {
@@ -169,7 +169,7 @@ mod long {
                 let turned = report.pose.degrees_to(&start);
                 let tolerance = format!("{degrees} {distance} {off} {}: {turned} {moved}", paint != Paint::None);
                 assert!(turned <= degrees && moved <= distance, "{tolerance}");
-                // What is out of reach is not found, and that is said.
+                // A pose beyond the tolerance cannot be found, and the status says so.
                 if off > degrees {
                     assert_ne!(report.status, Status::Converged, "{tolerance}");
                 }
@@ -204,7 +204,7 @@ mod long {
         let middle = middle(&sample);
         let off = report.pose.apply(middle) - sample.pose.apply(middle);
         assert!(off.xy().norm() < 4.0, "{off} {report:?}");
-        // The image of a shape without paint is for its colours to tell.
+        // With a single albedo, photometric registration determines the pose.
         let plain = run(&sample, Paint::None, Options::default());
         let by_silhouettes = matches!(plain.reason, Some(Reason::AlbedoVaries { .. } | Reason::SilhouetteBlind { .. }));
         assert!(plain.pose.degrees_to(&sample.pose) < 2.0 && !by_silhouettes, "{plain:?}");

@@ -1,4 +1,4 @@
-/** What axe-core finds on every screen, in dark and in light: nothing. */
+/** axe-core finds no violations on any screen, in dark and in light colours. */
 
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
@@ -34,9 +34,9 @@ interface Axe {
   ): Promise<{ violations: { id: string; help: string; nodes: { target: string[]; failureSummary: string }[] }[] }>;
 }
 
-/** All rules, those of good practice included, with the places that break them. */
+/** Violations of all rules, including best practices, with their places. */
 async function findings(page: Page): Promise<string[]> {
-  // Over the tools' own line: a policy without eval lets no document do this to itself.
+  // Through the browser's own protocol, because the page's policy forbids eval.
   await page.evaluate(AXE);
   return page.evaluate(async () => {
     const { violations } = await (window as unknown as { axe: Axe }).axe.run(document);
@@ -48,7 +48,7 @@ async function findings(page: Page): Promise<string[]> {
 
 const ENDS = /^(converged|ambiguous|lost|max-iterations)$/;
 
-/** Of one screen in either colours: what leads to it, a run or a lesson's figure, takes longer than the rules. Soft: its findings do not hide the next one's. */
+/** Checks one screen in both colour schemes, because reaching it takes longer than the rules. Soft, so that its findings do not hide the next screen's. */
 async function clean(page: Page, screen: string): Promise<void> {
   for (const colorScheme of ["dark", "light"] as const) {
     await page.emulateMedia({ colorScheme });
@@ -64,7 +64,7 @@ async function lab(lab: Lab, page: Page): Promise<void> {
   await clean(page, "before a run");
   await page.getByRole("button", { name: "Play" }).click();
   await expect(lab.iteration).not.toHaveText("0");
-  // It runs for as long as it is looked at.
+  // Keeps the run going during the check.
   await messages.hold("advance");
   await clean(page, "while it runs");
   await messages.release();

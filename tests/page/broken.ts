@@ -1,19 +1,19 @@
-/** What tests of faults do to the page: workers that end, graphics that are taken away, a page that is out of sight. */
+/** Faults that tests inject into the page: workers that end, graphics that are lost, a page that is hidden. */
 
 import type { Page } from "@playwright/test";
 
 interface Breakable {
-  /** Ends a worker without a word, as a browser does, right after the n-th message from now on that holds all of `members`; `times` times. */
+  /** Ends a worker without notice, as a browser does, right after the n-th message from now on that contains all of `members`; `times` times. */
   endAt(members: Record<string, string>, nth?: number, times?: number): void;
-  /** How many `endAt` has ended so far. */
+  /** Number of workers that `endAt` has ended. */
   ended: number;
-  /** Ends every worker whose script is called so, now. */
+  /** Ends every worker whose script's address contains this name, now. */
   endAll(script: string): void;
-  /** Lets no frame be drawn, as while another tab is in front. */
+  /** Hides the page: frames are not drawn, as while another tab is in front. */
   hide(isHidden: boolean): void;
 }
 
-/** To be called before the page opens. */
+/** Must be called before the page opens. */
 export async function breakable(page: Page): Promise<void> {
   await page.addInitScript(() => {
     const workers: { worker: Worker; address: string }[] = [];
@@ -35,7 +35,7 @@ export async function breakable(page: Page): Promise<void> {
         armed !== undefined &&
         Object.entries(armed.members).every(([key, value]) => String(message[key]) === value) &&
         --armed.left < 1;
-      // Checks are answered by the tests, ended workers by nobody.
+      // Tests answer checks themselves, so a check's worker never receives the message at which it ends.
       if (!isMeant || message.kind !== "check") send.call(this, message, rest as StructuredSerializeOptions);
       if (!armed || !isMeant) return;
       this.terminate();
@@ -81,7 +81,7 @@ export const endAll = (page: Page, script: string): Promise<void> =>
 export const hide = (page: Page, isHidden: boolean): Promise<void> =>
   page.evaluate((isHidden) => (window as unknown as Breakable).hide(isHidden), isHidden);
 
-/** Has the n-th worker of this script hear nothing, and end by itself as soon as the page knows that it lives. To be called before the page opens. */
+/** Makes the n-th worker of this script ignore all messages and end as soon as it has reported to the page. Must be called before the page opens. */
 export async function endSoon(page: Page, script: RegExp, nth: number): Promise<void> {
   const end =
     "addEventListener('message', (event) => event.stopImmediatePropagation()); const say = self.postMessage; self.postMessage = (message, ...rest) => { say.call(self, message, ...rest); if (message?.holds) self.close(); };";
@@ -92,7 +92,7 @@ export async function endSoon(page: Page, script: RegExp, nth: number): Promise<
   });
 }
 
-/** WebGL that a test can take away and give back, on the page and in its threads. To be called before the page opens. */
+/** WebGL that a test can take away and give back, on the page and in its threads. Must be called before the page opens. */
 export async function fragileGraphics(page: Page): Promise<void> {
   const script = `{
     const made = [];

@@ -1,20 +1,20 @@
-/** Both surfaces, drawn by a thread of their own where the browser lets one. */
+/** Both surfaces, drawn by a separate thread if the browser permits. */
 
 import { decode, type DecodedPng } from "fast-png";
 import { DRAWN, NO_OFFSCREEN, covered, goToClouds, still } from "./clouds";
 import { LONG, expect, test } from "./lab";
 
-/** How many pixels of a row are drawn on: those of another colour than the ground, which is seen near a corner. */
+/** Number of drawn pixels in a row: those whose colour differs from the background, which is visible near a corner. */
 function drawnIn({ data, channels, width }: DecodedPng, row: number): number {
   const at = (column: number, row: number) => [0, 1, 2].map((c) => data[(row * width + column) * channels + c] ?? 0);
   const ground = at(width - 8, 8);
-  // Corners are rounded.
+  // The outermost pixels are left out, because corners are rounded.
   return Array.from({ length: width - 16 }, (_, i) => at(i + 8, row)).filter((colour) =>
     colour.some((value, c) => Math.abs(value - (ground[c] ?? 0)) > 24),
   ).length;
 }
 
-/** Longest wait, milliseconds, of one attempt of several. */
+/** Limit of one attempt out of several, milliseconds. */
 const BRIEFLY = { timeout: 5_000 };
 
 const NO_WEBGL = `
@@ -40,10 +40,10 @@ for (const [where, script] of [
     expect(threads()).toBe(script === "" ? 1 : 0);
     const lookFromTheFront = async () => {
       await page.getByRole("button", { name: "Home", exact: true }).click();
-      // The ring of the focus is a change of the picture, too.
+      // The focus ring changes the picture as well.
       await clouds.focus();
     };
-    // A picture follows its cause after some time. One that was taken too early never comes back, and another is taken.
+    // A picture follows its cause with a delay. If it was taken too early, it will not match again, so another one is taken.
     await expect(async () => {
       await lookFromTheFront();
       const front = await clouds.screenshot();
@@ -58,7 +58,7 @@ for (const [where, script] of [
 }
 
 test("another example is seen from the front, however the last one was turned", LONG, async ({ lab, page }) => {
-  // Nothing plays by itself, and nothing swings.
+  // Stops animations and autoplay.
   await page.emulateMedia({ reducedMotion: "reduce" });
   await lab.visit();
   await goToClouds(page);
@@ -93,7 +93,7 @@ test("surfaces whose distance the pose settles stay in the middle of the view", 
   await lab.reaches("converged");
   const clouds = page.locator("#clouds-canvas");
   await expect.poll(() => covered(clouds)).toBeGreaterThan(DRAWN);
-  // How much of the picture is drawn tells a bust that is cut off from a whole one.
+  // The drawn share of the picture distinguishes a cut-off bust from a complete one.
   await still(clouds);
   const kept = await covered(clouds);
   await page.getByRole("button", { name: "Home", exact: true }).click();
@@ -109,7 +109,7 @@ test("no surface is cut off, whatever scale is found", LONG, async ({ lab, page 
   await page.getByLabel("Speed").selectOption({ label: "fastest" });
   await page.getByRole("button", { name: "Play" }).click();
   await lab.reaches("lost");
-  // A surface that reaches the upper or lower edge goes on beyond it.
+  // A surface that reaches the upper or lower edge is cut off.
   await expect(async () => {
     const canvas = decode(await page.locator("#clouds-canvas").screenshot());
     const [top, middle, bottom] = [1, Math.round(canvas.height / 2), canvas.height - 2].map((row) =>
@@ -121,9 +121,9 @@ test("no surface is cut off, whatever scale is found", LONG, async ({ lab, page 
 });
 
 test("without WebGL the page says so and computes all the same", async ({ lab, page }) => {
-  // three.js complains on the console before it gives up; nothing else may.
+  // three.js logs errors before it gives up; no other errors may occur.
   await page.addInitScript(NO_WEBGL);
-  // The page's init scripts do not run in a worker, so its own script begins with the lines.
+  // Init scripts of the page do not run in workers, so the lines are prepended to the worker's script.
   await page.route(/stage-thread[^/]*\.js$/, async (route) => {
     const response = await route.fetch();
     await route.fulfill({ response, body: `${NO_WEBGL}\n${await response.text()}` });
@@ -148,7 +148,7 @@ test("points are as large on a dense screen", LONG, async ({ browser, baseURL })
     const clouds = page.locator("#clouds-canvas");
     await page.getByLabel("Draw as").selectOption("points");
     await expect(page.locator("#clouds-note")).toBeHidden();
-    // Before the first step there is the depth map's cloud alone, so that no other can come late.
+    // Before the first step only the depth map's cloud exists, so no other can appear late.
     await expect.poll(() => covered(clouds)).toBeGreaterThan(DRAWN);
     shares.push(await covered(clouds));
     await context.close();
@@ -166,7 +166,7 @@ test("while the search looks around, the surface stands where its best candidate
   await expect.poll(() => covered(clouds)).toBeGreaterThan(DRAWN);
   const start = await clouds.screenshot();
   await expect(async () => {
-    // No iteration has run: only the search can have moved it.
+    // No iteration has run, so only the search can have moved the surface.
     await page.keyboard.press("s");
     expect((await clouds.screenshot()).equals(start)).toBe(false);
   }).toPass();

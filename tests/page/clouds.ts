@@ -1,12 +1,12 @@
-/** What tests of the clouds look at. */
+/** Helpers for tests of the clouds. */
 
 import { expect, type Locator, type Page } from "@playwright/test";
 import { decode } from "fast-png";
 
-/** Share of the picture that two clouds cover, at least. */
+/** Smallest share of the picture that two clouds cover. */
 export const DRAWN = 0.02;
 
-/** Share of the pixels of the clouds' picture that are not of its ground, which its corner shows. */
+/** Share of the pixels that differ from the background, whose colour is taken at a corner. */
 export async function covered(clouds: Locator): Promise<number> {
   const { data, channels, width, height } = decode(await clouds.screenshot());
   const ground = data.subarray(0, 3);
@@ -18,8 +18,8 @@ export async function covered(clouds: Locator): Promise<number> {
 }
 
 /**
- * The picture once it stands still: it follows its cause after some time, and how long that is nobody knows on a busy machine. Each look
- * makes the browser draw, so that three alike in a row are three pictures drawn.
+ * The picture once it has stopped changing. It follows its cause with a delay of unknown length on a busy machine. Each screenshot makes the
+ * browser draw, so three equal ones in a row are three drawn pictures.
  */
 export async function still(target: Locator): Promise<Buffer> {
   let last = await target.screenshot();
@@ -35,8 +35,8 @@ export async function still(target: Locator): Promise<Buffer> {
   return last;
 }
 
-/** The clouds are loaded once a visitor comes near them; on a laptop they are there at once. */
+/** Scrolls to the clouds, which load when a visitor comes near; on a large screen they load at once. */
 export const goToClouds = (page: Page) => page.locator("#clouds-box").scrollIntoViewIfNeeded();
 
-/** Browsers whose threads have no canvas. */
+/** Simulates a browser whose threads have no canvas. */
 export const NO_OFFSCREEN = "delete HTMLCanvasElement.prototype.transferControlToOffscreen;";

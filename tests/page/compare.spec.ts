@@ -1,4 +1,4 @@
-/** A pinned run beside the next one, and a light set number by number. */
+/** A pinned run next to the following one, and a light set coefficient by coefficient. */
 
 import type { Locator, Page } from "@playwright/test";
 import { decode } from "fast-png";
@@ -8,7 +8,7 @@ import { LONG, expect, test, type Lab } from "./lab";
 const boxOf = (lab: Lab, title: string): Locator =>
   lab.page.locator("figure.view > .canvas", { has: lab.page.locator(`canvas[aria-label^="${title}:"]`) });
 
-/** Share of the pixels of two screenshots that differ, but for the wipe's own line at the right edge. */
+/** Share of the pixels that differ between two screenshots, without the wipe's line at the right edge. */
 async function differing(box: Locator, before: Buffer): Promise<number> {
   const [a, b] = [decode(before), decode(await box.screenshot())];
   expect([b.width, b.height]).toEqual([a.width, a.height]);
@@ -40,7 +40,7 @@ test("a pinned run stays in the charts, and in the pictures left of the wipe", a
   await lab.reaches("ready");
   await page.locator("#input > summary").click();
   await expect(lab.iteration).toHaveText("0");
-  // Nothing has run since, and yet there are curves: those of the pinned run.
+  // No run has started since, but the curves of the pinned run are shown.
   await expect(page.locator("#objective-chart")).toHaveAttribute(
     "aria-label",
     /^Objective over the iterations\. total: none yet.*Pinned: objective .*total: from \d/,
@@ -82,7 +82,7 @@ test(
   "the surfaces of a pinned run are seen left of the wipe, from wherever they are looked at",
   LONG,
   async ({ lab, page }) => {
-    // Nothing swings.
+    // Stops animations.
     await page.emulateMedia({ reducedMotion: "reduce" });
     await lab.open("size=64");
     await goToClouds(page);
@@ -99,7 +99,7 @@ test(
     await page.locator("#input > summary").click();
     const wipe = page.getByLabel("wipe");
     await wipe.fill("100");
-    // Brought to where the present object stands, and looked at from where that one is.
+    // The pinned surfaces are moved to the present object's place and seen from the present viewpoint.
     await expect.poll(() => differing(clouds, before)).toBeLessThan(0.1);
     const pinned = await clouds.screenshot();
     await wipe.fill("0");
@@ -159,7 +159,7 @@ test("a pinned picture of another size lies where its pixels belong", async ({ l
   await page.mouse.move(2, 2);
   const small = await colour.screenshot();
   await wipe.fill("100");
-  // The same object under the same light: only its edges and the finer shading differ.
+  // The same object under the same light, so only edges and finer shading differ.
   await expect.poll(() => differing(colour, small)).toBeLessThan(0.5);
   expect(await differing(colour, small)).toBeGreaterThan(0.001);
 });
@@ -174,7 +174,7 @@ test(
     const sliders = page.locator("#coefficients").getByRole("slider");
     await expect(sliders).toHaveCount(27);
     const slider = page.getByRole("slider", { name: "red, x", exact: true });
-    // That of the built-in light.
+    // The value of the built-in light.
     await expect(slider).toHaveValue("0.7");
     await slider.evaluate((input: HTMLInputElement) => {
       input.value = "-0.5";
@@ -192,13 +192,13 @@ test(
     await expect(slider).toHaveValue("0.7");
     await page.getByRole("button", { name: "Redo" }).click();
     await expect.poll(() => lab.fingerprint("Colour")).toBe(changed);
-    // A link brings it back.
+    // A link restores it.
     const link = page.url();
     await page.goto("about:blank");
     await page.goto(link);
     await lab.reaches("ready");
     expect(await lab.fingerprint("Colour")).toBe(changed);
-    // And a light by name takes its place.
+    // A named light replaces it.
     await lab.unfold();
     await page.getByLabel("Light", { exact: true }).first().selectOption("colourful");
     await expect.poll(() => lab.fingerprint("Colour")).toBe(before);

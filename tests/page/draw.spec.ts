@@ -1,4 +1,4 @@
-/** What the module paints itself, compared with its numbers. */
+/** Compares pictures that the module paints with its numbers. */
 
 import { fileURLToPath } from "node:url";
 import { expect, test } from "./lab";
@@ -58,7 +58,7 @@ test("layers are painted from the module's memory onto either kind of canvas", a
         return (error as Error).message;
       }
     });
-    // The view's other layers are painted as well.
+    // The other layers of the view are painted too.
     const shares = (["residual", "refined", "refinedNormals"] as const).map((layer) => {
       own.clearRect(0, 0, width, height);
       estimator.draw(own, layer, { map: "magma" });
@@ -149,7 +149,7 @@ test("the Lab's pictures are the module's own, pixel by pixel", async ({ lab, pa
       const found = layers.map(([title, { width, height, mask }, layer, options]) => {
         const context = Object.assign(document.createElement("canvas"), { width, height }).getContext("2d")!;
         estimator.draw(context, layer, options);
-        // The Lab shows the part with the object and two pixels around it.
+        // The Lab crops to the object with a margin of two pixels.
         const inside = Array.from(mask ?? []).flatMap((value, i) =>
           value ? [[i % width, Math.floor(i / width)] as const] : [],
         );
@@ -177,7 +177,7 @@ test("the Lab's pictures are the module's own, pixel by pixel", async ({ lab, pa
 });
 
 test("the page's own colours, for what the module has no layer for, are the module's", async ({ lab }) => {
-  // Before the first step the refined depth, which the module paints, is the given one, which the page paints, on one scale.
+  // Before the first step, the refined depth (painted by the module) equals the given one (painted by the page), on the same scale.
   await lab.open("size=64");
   const [given, refined] = await Promise.all(
     ["Given depth", "Refined depth"].map((title) =>

@@ -1,14 +1,14 @@
-/** Fingers, keys, and whoever wants less motion. */
+/** Touch, keyboard, and reduced motion. */
 
 import type { Page } from "@playwright/test";
 import { LONG, expect, test } from "./lab";
 import { answerChecks } from "./rig";
 import { atWidths, innerWidth, narrowest } from "./widths";
 
-/** The least side of what a finger has to hit, px (WCAG 2.5.5); half a pixel is rounding. */
+/** Smallest side of a touch target, px (WCAG 2.5.5), with half a pixel for rounding. */
 const TARGET = 43.5;
 
-/** Controls that are smaller; links within a sentence are as high as its line, and a box to be ticked is hit by its label. */
+/** Controls that are smaller, except links within a sentence, which are as high as the line; a check box's target is its label. */
 const small = (page: Page): Promise<string[]> =>
   page.evaluate((least) => {
     const controls = [
@@ -38,7 +38,7 @@ test.describe("by touch", () => {
     for (const summary of await page.locator("#input details > summary").all())
       if (await summary.isVisible()) await summary.tap();
     expect(await small(page), "settings").toEqual([]);
-    // They lie over the button that has opened them.
+    // The open settings cover the button that opened them.
     await page.getByRole("button", { name: "Close settings" }).tap();
     await expect(page.getByRole("button", { name: "Close settings" })).toBeHidden();
     await page.locator("#input > summary").tap();
@@ -77,7 +77,7 @@ test.describe("by touch", () => {
     expect(await small(page), "calibrations").toEqual([]);
     await page.getByRole("button", { name: "Run the check" }).tap();
     await expect(page.locator(".rig-bar").first()).toBeVisible();
-    // Its picture comes a little later.
+    // The picture appears a little later.
     await expect
       .poll(() => page.locator(".rig-overlay-board").evaluate(({ clientHeight }) => clientHeight))
       .toBeGreaterThan(TARGET);

@@ -5,7 +5,7 @@ import { expect, test } from "./lab";
 
 const NO_SIMD = "WebAssembly.validate = () => false;";
 
-/** Names of all .wasm files asked for, without what the build has added to them. */
+/** Names of all requested .wasm files, without the suffix added by the build. */
 function downloads(page: Page): string[] {
   const names: string[] = [];
   page.on("request", (request) => {
@@ -23,7 +23,7 @@ test("with SIMD the default file is downloaded, and no other", async ({ lab, pag
 
 test("without SIMD the Lab's worker downloads the scalar file alone, and computes", async ({ lab, page }) => {
   const names = downloads(page);
-  // The page's init scripts do not run in a worker, so its own script begins with the line.
+  // Init scripts of the page do not run in workers, so the line is prepended to the worker's script.
   await page.route(/worker[^/]*\.js$/, async (route) => {
     const response = await route.fetch();
     await route.fulfill({ response, body: `${NO_SIMD}${await response.text()}` });

@@ -1,4 +1,4 @@
-/** Workers that end, break off or trap in the middle of something: the page says so, keeps what it was given, and goes on. */
+/** Workers that end, fail or trap during work: the page reports it, keeps its input, and continues. */
 
 import { readFileSync } from "node:fs";
 import type { Page } from "@playwright/test";
@@ -15,7 +15,7 @@ async function play(lab: Lab): Promise<void> {
   await lab.page.getByRole("button", { name: "Play" }).click();
 }
 
-/** What a run has come to. */
+/** The result of a run. */
 const end = async (lab: Lab): Promise<string[]> => [
   await lab.iteration.innerText(),
   await lab.page.locator("#pose").innerText(),
@@ -102,7 +102,7 @@ test.describe("in the Lab", () => {
     await page.route(/bimodal_stereo_bg[^/]*\.wasm$/, async (route) => {
       const module = binaryen.readBinary(readFileSync(new URL("../../pkg/bimodal_stereo_bg.wasm", import.meta.url)));
       const inner = binaryen.getExportInfo(module.getExport("estimator_stepStage")).value;
-      // Its types leave this out.
+      // Missing in binaryen's types.
       const { Function: functions } = binaryen as unknown as { Function: { setBody(of: number, body: number): void } };
       functions.setBody(module.getFunction(inner), module.unreachable());
       await route.fulfill({ contentType: "application/wasm", body: Buffer.from(module.emitBinary()) });
@@ -149,7 +149,7 @@ test(
   LONG,
   async ({ lab, page }) => {
     await breakable(page);
-    // The second cell's worker is ended.
+    // Ends the worker of the second cell that runs.
     await page.addInitScript(() => {
       const send = Worker.prototype.postMessage;
       let cells = 0;
@@ -161,7 +161,7 @@ test(
     await page.goto("./#tables");
     const cells = page.locator("#tables .heat-cell");
     await expect(cells.nth(2)).toBeVisible();
-    // At once: on a busy machine the first cell would be done before the third is pressed. What is pressed last comes next.
+    // All clicks at once: otherwise the first cell could be done before the third is clicked. The cell clicked last runs next.
     await cells.evaluateAll((buttons) =>
       buttons.slice(0, 3).forEach((button) => (button as HTMLButtonElement).click()),
     );

@@ -1,4 +1,4 @@
-/** The figure of a lesson in a test's hands. */
+/** Controls the figure of a lesson. */
 
 import { expect, type Locator, type Page } from "@playwright/test";
 
@@ -7,26 +7,26 @@ export const LESSONS = ["pixel", "grey", "colours", "surface", "prior", "pose", 
 export const figure = (page: Page): Locator => page.locator(".learn-figure");
 
 /**
- * Opens a lesson in one of its states. A page that has loaded hears of it by the end of its address alone, as it does from a link of its
- * own, which spares loading everything anew.
+ * Opens a lesson in one of its states. On a loaded page it only changes the address's fragment, as one of the page's own links does, which
+ * avoids loading everything again.
  */
 export async function open(page: Page, state = ""): Promise<void> {
   const hash = `#learn${state ? `&${state}` : ""}`;
   if (page.url().includes("#learn")) {
     await page.evaluate((hash) => {
       if (location.hash === hash) return;
-      // Taken back by the page once it has drawn: what is drawn still belongs to the address before.
+      // The page resets this once it has drawn; until then, the drawing belongs to the previous address.
       document.querySelector(".learn-figure")?.setAttribute("aria-busy", "true");
       location.hash = hash;
     }, hash);
   } else await page.goto(`./${hash}`);
-  // Where only the address's end is another one, the lesson before is there until the page hears of it.
+  // If only the fragment changes, the previous lesson stays until the page handles the change.
   const link = page.locator(`.learn-contents a[href="#learn&at=${new URLSearchParams(state).get("at") ?? ""}"]`);
   if ((await link.count()) > 0) await expect(link).toHaveAttribute("aria-current", "true");
   await settled(page);
 }
 
-/** The last drawing for the values as they are. */
+/** Waits until the drawing shows the present values. */
 export async function settled(page: Page): Promise<void> {
   await expect(figure(page)).toHaveAttribute("aria-busy", "false");
 }
@@ -36,7 +36,7 @@ export async function number(page: Page, key: string): Promise<number> {
   return Number((await page.locator(`[data-number="${key}"]`).getAttribute("data-value")) ?? NaN);
 }
 
-/** Moves a slider as a hand does: the page hears of it by the input event, and is busy from then on. */
+/** Moves a slider as a user does: the page is busy from the input event on. */
 export async function slide(page: Page, name: string, value: number): Promise<void> {
   const slider = page.locator(`.learn-controls input[name="${name}"]`);
   await slider.fill(String(value));

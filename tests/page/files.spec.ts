@@ -1,4 +1,4 @@
-/** The visitor's own files, good and bad. They are made here from a sample, so that the answer is known. */
+/** The visitor's own files, valid and invalid. They are made from a sample, so that the answer is known. */
 
 import { readFile } from "node:fs/promises";
 import { encode } from "fast-png";
@@ -20,7 +20,7 @@ interface Upload {
   buffer: Buffer;
 }
 
-/** Linear floats as 16-bit RGB, the brightest just below white. */
+/** Linear floats as 16-bit RGB, with the brightest just below white. */
 function colourPng(): Upload {
   const linear = pair.image.data as Float32Array;
   const brightest = linear.reduce((most, value) => (Number.isFinite(value) ? Math.max(most, value) : most), 0);
@@ -74,7 +74,7 @@ test("nothing runs while files are awaited", async ({ lab, page }) => {
   const messages = await Messages.of(page);
   await openFiles(lab);
   await expect(page.locator("#verdict")).toContainText("choose them in the settings");
-  // By a press, which the buttons say to be in vain, and by the keys.
+  // With the pointer, on buttons marked as disabled, and with the keyboard.
   await page.getByRole("button", { name: "Step", exact: true }).click({ force: true });
   const play = page.locator("#play");
   await play.click({ force: true });
@@ -156,7 +156,7 @@ test("bad files are named in words, and another pair is not shown for them", asy
   await lab.reaches("error");
   await expect(page.locator(".slot").nth(1)).toContainText("depth.npy");
 
-  // The depth map from before is not the one asked for; once it is, the pair runs.
+  // The previous depth map is not the requested one; once that is there, the pair runs.
   await expect(page.locator('canvas[aria-label^="Given depth:"]')).toBeHidden();
   await put(lab, "Depth map", depthNpy());
   await lab.reaches("ready");
@@ -201,7 +201,7 @@ test("empty angles of a sample are zero, all of them as well as one", async ({ l
   }
 });
 
-/** A JPEG as a phone held upright writes it: the sensor's landscape, and a tag that says which way is up. */
+/** A JPEG from a phone held upright: a landscape picture with a tag for its orientation. */
 function phonePhoto(jpeg: Buffer): Upload {
   const exif = Buffer.from(
     "457869660000" + "49492a0008000000" + "0100" + "120103000100000006000000" + "00000000",

@@ -1,10 +1,10 @@
-/** Files whose names and contents are markup: whoever puts one of them into a page as HTML is owned. */
+/** Files whose names and contents are markup, which would run if the page inserted any of them as HTML. */
 
 import { deflateSync, crc32 } from "node:zlib";
 import { expect, type Page } from "@playwright/test";
 import { colourPng, depthPng, type Upload } from "./uploads";
 
-/** Names of files have no slashes. */
+/** Without slashes, which file names cannot contain. */
 export const EVIL = `<img src=x onerror="window.owned=1"><svg onload=owned=1>`;
 export const EVIL_TEXT = `</style></title></script><script>window.owned=1</script>"'>${EVIL}`;
 
@@ -16,7 +16,7 @@ function chunk(type: string, data: Buffer): Buffer {
   return Buffer.concat([length, body, sum]);
 }
 
-/** An EXIF block of one description and one maker, as cameras write them. */
+/** An EXIF block with a description and a maker, as cameras write them. */
 function exif(): Buffer {
   const words = Buffer.from(`${EVIL_TEXT}\0`, "latin1");
   const head = Buffer.alloc(8 + 2 + 2 * 12 + 4);
@@ -33,7 +33,7 @@ function exif(): Buffer {
   return Buffer.concat([head, words]);
 }
 
-/** A PNG with texts of all three kinds, and EXIF. */
+/** A PNG with texts of all three kinds, and with EXIF. */
 export function withTexts({ buffer, ...file }: Upload): Upload {
   const texts = [
     chunk("tEXt", Buffer.from(`Title\0${EVIL_TEXT}`, "latin1")),
@@ -41,7 +41,7 @@ export function withTexts({ buffer, ...file }: Upload): Upload {
     chunk("iTXt", Buffer.from(`Author\0\0\0\0\0${EVIL_TEXT}`, "latin1")),
     chunk("eXIf", exif()),
   ];
-  // Behind the signature and the header.
+  // After the signature and the header.
   return { ...file, buffer: Buffer.concat([buffer.subarray(0, 33), ...texts, buffer.subarray(33)]) };
 }
 
@@ -51,7 +51,7 @@ const text = (name: string, words: string): Upload => ({
   buffer: Buffer.from(words),
 });
 
-/** Cameras and poses whose names, models and frames are markup, and texts that are refused with words of their own in the reason. */
+/** Cameras and poses whose names, models and frames are markup, and texts whose refusals quote them. */
 export const texts = (): Upload[] => [
   text(
     ".json",
@@ -94,7 +94,7 @@ export const pictures = (): Upload[] => [
   withTexts(depthPng(`${EVIL}depth.png`)),
 ];
 
-/** Nothing of it has become an element, or has run. */
+/** Checks that none of it has become an element or has run. */
 export async function expectHarmless(page: Page): Promise<void> {
   expect(await page.evaluate(() => (window as unknown as { owned?: number }).owned)).toBeUndefined();
   expect(await page.locator(`[onerror], [onload], img[src="x"], script:not([src])`).count()).toBe(0);

@@ -1,10 +1,10 @@
-/** What every test of the page needs: the Lab, opened, and a record of its errors on the console. */
+/** Shared by all tests of the page: an open Lab, and a record of errors in the console. */
 
 import { test as base, expect, type Locator, type Page } from "@playwright/test";
 
 export { expect };
 
-/** A test of over three seconds, which a shorter one makes up for: `npm test -- --long` runs it, `npm test` does not. */
+/** Marks a test over three seconds for which shorter tests stand in: it runs with `npm test -- --long`, not with `npm test`. */
 export const LONG = { tag: "@long" };
 
 const PAPER = "lighting=known&start=identity&registration=icp&shading=pixel";
@@ -21,18 +21,18 @@ export class Lab {
     });
   }
 
-  /** The paper's own loop, whose steps are iterations from the start, under other settings. */
+  /** Opens the Lab with the paper's own loop, whose first step is an iteration, and further settings. */
   async open(settings = ""): Promise<void> {
     await this.visit([settings, PAPER].filter(Boolean).join("&"));
   }
 
-  /** The page as a visitor finds it, under some settings. */
+  /** Opens the page as a visitor does, with some settings. */
   async visit(settings = ""): Promise<void> {
     await this.page.goto(`./${settings ? `#${settings}` : ""}`);
     await this.reaches("ready");
   }
 
-  /** Unfolds the settings, which lie over the left of the page. */
+  /** Opens the settings, which cover the left of the page. */
   async unfold(): Promise<void> {
     if (!(await this.page.locator("#input").evaluate((drawer: HTMLDetailsElement) => drawer.open)))
       await this.page.locator("#input > summary").click();
@@ -46,7 +46,7 @@ export class Lab {
     return this.page.locator("#iteration");
   }
 
-  /** A hash of a canvas' pixels: enough to see that something was drawn. */
+  /** A hash of a canvas's pixels, to notice changes of the drawing. */
   fingerprint(label: string): Promise<number> {
     return this.page.locator(`canvas[aria-label^="${label}:"]`).evaluate((canvas: HTMLCanvasElement) => {
       const data =
@@ -60,7 +60,7 @@ export class Lab {
   }
 }
 
-/** Fails on any error in the console, whatever else the test looks at. */
+/** Fails on any error in the console, besides the test's own assertions. */
 export const test = base.extend<{ lab: Lab }>({
   lab: async ({ page }, use) => {
     const lab = new Lab(page);

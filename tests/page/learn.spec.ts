@@ -1,4 +1,4 @@
-/** Learn: each lesson's figure answers to its control, links open their state, slides turn by keys. */
+/** Learn: each lesson's figure reacts to its controls, links open their state, the keyboard turns slides. */
 
 import { readFile } from "node:fs/promises";
 import type { Page } from "@playwright/test";
@@ -43,7 +43,7 @@ test(
   },
 );
 
-/** The links of a lesson that lead elsewhere; those to headings of the documents lead to one that there is. */
+/** A lesson's links, except those to documents, whose headings are checked to exist. */
 async function referencesOf(page: Page): Promise<string[]> {
   const links = await page
     .locator(".learn-more a")
@@ -57,7 +57,7 @@ async function referencesOf(page: Page): Promise<string[]> {
   return links.filter((link) => !link.includes("/docs/"));
 }
 
-/** The names that the headings of a document have in an address. */
+/** The anchors of a document's headings. */
 async function anchorsOf(file: string): Promise<string[]> {
   const text = await readFile(new URL(`../../${file}`, import.meta.url), "utf8");
   return [...text.matchAll(/^#+ (.+)$/gm)].map(([, heading = ""]) =>
@@ -71,7 +71,7 @@ async function anchorsOf(file: string): Promise<string[]> {
 async function fits(page: Page, id: string, width: number): Promise<void> {
   await settled(page);
   expect(await innerWidth(page), `${id} at ${width} px`).toBeLessThanOrEqual(width);
-  // On a phone a long formula is swiped, and no picture stands alone in its row.
+  // On a phone, long formulas scroll sideways, and each picture has its own row.
   if (width >= 1280) {
     const cut = await page
       .locator(".learn-formula")
@@ -185,7 +185,7 @@ test("1: the light and the albedo change the predicted colour, and a drag choose
   await slide(page, "beta", 60);
   await settled(page);
   expect(await fingerprint(page, "bust")).not.toBe(bust);
-  // The orders add up to the whole, but for the albedo, and each says whose order it is.
+  // The orders add up to the whole except for the albedo, and each is labelled with its number.
   await expect(page.locator(".learn-numbers dt").filter({ hasText: /order \d$/ })).toHaveText(
     [0, 1, 2].map((order) => `log S, green: order ${order}`),
   );
@@ -208,7 +208,7 @@ test("2: a dent under the turned lamp is the bump's picture", async ({ lab, page
   expect(apart).toBeGreaterThan(0.05);
   await slide(page, "turn", 180);
   expect(await number(page, "difference")).toBeLessThan(1e-3);
-  // Flat, there is no difference under any lamp that is told from another by slopes alone.
+  // On a flat surface, no lamp produces a difference that slopes alone could explain.
   await slide(page, "height", 0);
   expect(await number(page, "difference")).toBeLessThan(apart);
   expect(lab.complaints).toEqual([]);
@@ -274,7 +274,7 @@ test("6: a wrong pose leaves a residual, valleys merge, and registration comes h
   await page.getByLabel("Action").selectOption("register");
   expect(await number(page, "error")).toBeLessThan(1);
   await expect(page.locator('[data-number="status"]')).toHaveText("converged");
-  // From too far away the given pose is kept, as the text says, and the page has words for what the library calls by an option's name.
+  // Too far away, the initial pose is kept, as the text says, and the page describes in words what the library names by an option.
   await slide(page, "offset", 40);
   await settled(page);
   await expect(page.locator('[data-number="status"]')).toHaveText(/^ambiguous: no pose within/);
@@ -286,7 +286,7 @@ test("6: a wrong pose leaves a residual, valleys merge, and registration comes h
 });
 
 test("5, 6: a curve's axes stand still from its first drawing to its last", LONG, async ({ page }) => {
-  // Every text of the plots is written down as it is drawn.
+  // Records every text of the plots as it is drawn.
   await page.addInitScript(() => {
     const seen = new Set<string>();
     Object.assign(window, { seen });
@@ -308,7 +308,7 @@ test("5, 6: a curve's axes stand still from its first drawing to its last", LONG
     await open(page, `at=${state}`);
     await expect(page.locator(':is([data-panel="curve"], [data-panel="figure5"]) circle')).toHaveCount(points);
     const axes = await page.evaluate(() => [...(window as unknown as { seen: Set<string> }).seen]);
-    // One for each width: a plot is drawn once before its place is known.
+    // One drawing for each width: a plot is drawn once before its size is known.
     expect(new Set(axes.map((drawn) => drawn.split(",")[0])).size, state).toBe(axes.length);
   }
 });
@@ -388,7 +388,7 @@ test("an address brings a lesson back, and what is no value of a control is pass
   await page.reload();
   await settled(page);
   await expect(page.locator('.learn-controls input[name="colour"]')).toHaveValue("0.5");
-  // Another lesson and back: what was set stays.
+  // Another lesson and back: the settings are kept.
   await page.getByRole("navigation", { name: "Lessons" }).getByRole("link", { name: "Refining the sensor" }).click();
   await expect(page.getByRole("heading", { name: "7. Refining the sensor" })).toBeVisible();
   await page.getByRole("navigation", { name: "Lessons" }).getByRole("link", { name: "Three colours" }).click();
@@ -419,7 +419,7 @@ test("slides turn by keys, leave the sliders theirs, and end by escape", async (
   await page.keyboard.press("ArrowRight");
   await expect(slides.getByRole("heading", { name: "3. Three colours" })).toBeVisible();
   await expect(page).toHaveURL(/at=colours.*&slides$/);
-  // A slider keeps its arrows.
+  // Arrow keys on a slider move the slider.
   const slider = slides.locator('input[name="colour"]');
   await slider.focus();
   await page.keyboard.press("ArrowRight");

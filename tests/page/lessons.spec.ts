@@ -1,4 +1,4 @@
-/** What the lessons say of their figures, sentence by sentence: the numbers are computed, and bear it out. */
+/** Checks the statements of the lessons about their figures, sentence by sentence, with computed numbers. */
 
 import { readFile } from "node:fs/promises";
 import type { Page } from "@playwright/test";
@@ -7,7 +7,7 @@ import { LONG, expect, test } from "./lab";
 
 /** A figure's numbers in one of its states. */
 async function numbers<K extends string>(page: Page, state: string, ...keys: K[]): Promise<Record<K, number>> {
-  // A lesson that is told nothing is as it was left; in a page that is loaded anew, as it begins.
+  // Without settings in the address, a lesson keeps its last state; on a reloaded page it has its initial state.
   if (!state.includes("&")) await page.goto("about:blank");
   await open(page, `at=${state}`);
   const found: [K, number][] = [];
@@ -93,7 +93,7 @@ test(
     const wrong = await numbers(page, "pose&offset=20&weight=1", "minima", "off", "end");
     expect(wrong.minima).toBe(1);
     expect(wrong.end).toBeGreaterThan(0.8 * wrong.off);
-    // At the module's own weight.
+    // With the module's own weight.
     const [plain, robust] = [
       await numbers(page, "pose&offset=40&weight=-1.3", "off", "end"),
       await numbers(page, "pose&offset=40&weight=-1.3&robust=1", "end"),
@@ -128,7 +128,7 @@ test("8: under coloured lamps hue says less, and the normals are worse", async (
     await numbers(page, "paint", "likeness", "degrees"),
     await numbers(page, "paint&light=colourful", "likeness", "degrees"),
   ];
-  // The text names the direction; a difference of a twentieth can be seen.
+  // The text states the direction; a difference of a twentieth is visible.
   expect(lamps.degrees).toBeGreaterThan(1.05 * window.degrees);
   expect(lamps.likeness).toBeLessThan(window.likeness);
 });
@@ -208,5 +208,5 @@ test("numbers that the text states of the method are the method's own", LONG, as
   await expect(page.locator(".learn-text")).toContainText(new RegExp(`${100 * noise}\\s% noise`));
 });
 
-/** Answers are folded. */
+/** The answers, which are collapsed at first. */
 const answers = (page: Page, words: string) => expect(page.locator(".learn-exercises")).toContainText(words);

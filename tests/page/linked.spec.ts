@@ -1,4 +1,4 @@
-/** A pixel that is looked at lights up in every view, where it belongs. */
+/** A hovered pixel is highlighted in every view at the corresponding place. */
 
 import { readFile } from "node:fs/promises";
 import type { Locator } from "@playwright/test";
@@ -7,7 +7,7 @@ import { expect, test, type Lab } from "./lab";
 import { Messages } from "./messages";
 
 const size = 64;
-/** The pose is told, and stays: what is shown can be checked against it. */
+/** The pose is given and fixed, so that the display can be checked against it. */
 const TRUE_POSE = `size=${size}&beta=20&lighting=known&start=truth&registration=fixed`;
 
 test.beforeAll(async () => {
@@ -23,13 +23,13 @@ async function middle(part: Locator): Promise<{ x: number; y: number }> {
   return { x: box.x + box.width / 2, y: box.y + box.height / 2 };
 }
 
-/** The pixel that a view names, or nothing. */
+/** The pixel that a view names, or undefined. */
 async function pixelOf(lab: Lab, title: string): Promise<[number, number] | undefined> {
   const found = /^(\d+), (\d+): (?!none)/.exec((await figureOf(lab, title).locator(".readout").textContent()) ?? "");
   return found ? [Number(found[1]), Number(found[2])] : undefined;
 }
 
-/** Points at a share of a view's sides and waits for the answer. */
+/** Hovers at a share of a view's sides and waits for the answer. */
 async function point(lab: Lab, title: string, across: number, down: number): Promise<void> {
   const canvas = canvasOf(lab, title);
   await canvas.scrollIntoViewIfNeeded();
@@ -60,7 +60,7 @@ test("its counterpart is marked where the true pose says", async ({ lab }) => {
     await point(lab, "Normals", across, down);
     const [mine, theirs] = [await pixelOf(lab, "Normals"), await pixelOf(lab, "Refined depth")];
     if (!mine || !theirs) continue;
-    // An orthographic view's coordinates are pixels about its middle.
+    // Coordinates of an orthographic view are pixels about its middle.
     const half = (size - 1) / 2;
     const from = [theirs[0] - half, theirs[1] - half, truth.depth[theirs[1] * depth.width + theirs[0]] ?? NaN];
     const to = [0, 1].map(
@@ -71,7 +71,7 @@ test("its counterpart is marked where the true pose says", async ({ lab }) => {
     );
     expect(Math.hypot((to[0] ?? NaN) - mine[0], (to[1] ?? NaN) - mine[1])).toBeLessThan(1.5);
 
-    // The mark stands at the pixel that is named: pointing there names it again, and leads back.
+    // The mark is at the named pixel: hovering there names it again and leads back.
     const mark = await middle(figureOf(lab, "Refined depth").locator(".dot"));
     const box = await canvasOf(lab, "Refined depth").boundingBox();
     if (!box) throw new Error("the view is on the page");
@@ -110,13 +110,13 @@ test("a card says what is known of the pixel, in a fixed size", async ({ lab, pa
       await numbers("normal"),
     ];
     expect(log.every(Number.isFinite)).toBe(true);
-    // Three decimals are shown of each.
+    // Each is shown with three decimals.
     expect(
       Math.abs(Math.hypot(...log.map((value, c) => value - (predicted[c] ?? NaN))) - (residual[0] ?? NaN)),
     ).toBeLessThan(0.003);
     expect(Math.hypot(...normal)).toBeCloseTo(1, 2);
     const [own, view] = [await card.boundingBox(), await canvasOf(lab, title).boundingBox()];
-    // Away from what is looked at.
+    // The card does not cover the hovered view.
     expect(
       own &&
         view &&
@@ -142,7 +142,7 @@ test("the surfaces show the point, and can be pointed at", async ({ lab, page })
     await middle(page.locator("#clouds-box .dot.image")),
     await middle(page.locator("#clouds-box .dot.depth")),
   ];
-  // Under the true pose both surfaces lie on each other.
+  // Under the true pose the surfaces coincide.
   expect(Math.hypot(image.x - depth.x, image.y - depth.y)).toBeLessThan(25);
   await page.mouse.move(image.x, image.y);
   await expect(page.locator("#probe")).toBeVisible();
@@ -186,7 +186,7 @@ test("of many moves the last counts, and the worker is asked one thing at a time
   for (let move = 1; move <= 10; move++)
     await page.mouse.move(box.x + (0.3 + 0.03 * move) * box.width, box.y + 0.4 * box.height);
   expect(await messages.count("probe")).toBe(before + 1);
-  // Until there is an answer, place and numbers are those of the last one.
+  // Until the answer arrives, position and numbers are the last ones.
   expect(await pixelOf(lab, "Depth")).toEqual(first);
   await messages.release();
   await expect.poll(() => messages.count("probe")).toBe(before + 2);

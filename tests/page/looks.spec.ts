@@ -1,4 +1,4 @@
-/** Small and large, dark and light. */
+/** Small and large screens, dark and light colours. */
 
 import { expect, test } from "./lab";
 import { atWidths, innerWidth, narrowest } from "./widths";
@@ -46,7 +46,7 @@ test("the first paint needs little, and nothing comes from elsewhere", async ({ 
     const url = new URL(request.url());
     if (url.protocol.startsWith("http") && url.host !== home) elsewhere.push(request.url());
   });
-  // What the document itself asks for, static imports included; chunks that load later are not in it.
+  // Scripts that the document itself requests, including static imports but not chunks that load later.
   const html = await (await page.request.get("./")).text();
   const early = [...html.matchAll(/<(?:script|link rel="modulepreload")[^>]* (?:src|href)="([^"]+\.js)"/g)].map(
     ([, path]) => path ?? "",
@@ -89,7 +89,7 @@ test("an enlarged view comes into sight", async ({ lab, page }) => {
   expect(await page.evaluate(() => (scrollTo({ top: 5000, behavior: "instant" }), scrollY))).toBeGreaterThan(200);
   await page.keyboard.press("1");
   await expect(page.locator("figure[data-large]")).toBeInViewport({ ratio: 0.9 });
-  // One that shares its row with others has it for itself.
+  // A view that shares its row takes the whole row when enlarged.
   await page.keyboard.press("7");
   const widthOf = async (box: string) => (await page.locator(box).filter({ visible: true }).boundingBox())?.width;
   expect(await widthOf("#views > section")).toBe(await widthOf("#views"));
@@ -112,7 +112,7 @@ test("a view without values has no range of earlier ones, and the surfaces' lege
   await lab.reaches("ready");
   await expect(lab.iteration).toHaveText("0");
   await expect(lowest).toHaveValue("0");
-  // As long as `short` writes them.
+  // The longest text that `short` writes.
   await lowest.fill("5.2e-4");
   expect(await lowest.evaluate(({ scrollWidth, clientWidth }) => scrollWidth - clientWidth)).toBeLessThanOrEqual(0);
 });
@@ -123,7 +123,7 @@ test("a range that is half typed survives the frames that arrive meanwhile", asy
   const highest = page.getByLabel("Depth: highest value shown", { exact: true });
   const before = await highest.inputValue();
   await lowest.fill("-9");
-  // Without a press, which would enter it.
+  // Without a pointer event, which would commit the value.
   await page.locator("#step").evaluate((button: HTMLButtonElement) => button.click());
   await expect(lab.iteration).toHaveText("1");
   await expect(highest).not.toHaveValue(before);
@@ -175,7 +175,7 @@ test("on a tablet the verdict is on the first screen, and stages that do not fit
     page.locator(box).evaluate(({ scrollWidth, clientWidth }) => scrollWidth - clientWidth);
   expect(await widths("#stages")).toBeGreaterThan(0);
   expect(await widths("#bar")).toBe(0);
-  // None of them is broken into lines.
+  // None of them wraps.
   const [stages] = await page
     .locator("#stages")
     .evaluateAll((all) =>
@@ -219,15 +219,15 @@ test("open settings hide no input, and what has opened them stays under the poin
   for (const box of ["#inputs", "#hero", "#outcome"])
     expect((await page.locator(box).boundingBox())?.x).toBeGreaterThan((sheet?.x ?? 0) + (sheet?.width ?? 0));
   expect(await summary.boundingBox()).toEqual(before);
-  // Neither what is above: the places, the sentence, the examples.
+  // Nor does anything above: the places, the sentence, the examples.
   for (const box of [".top", ".lead"]) {
     const above = await page.locator(box).boundingBox();
     expect((above?.y ?? Infinity) + (above?.height ?? 0)).toBeLessThanOrEqual(sheet?.y ?? 0);
   }
-  // All of it can be reached, and it stays beside what is scrolled to.
+  // All of it can be reached, and it stays next to the scrolled content.
   const bar = await page.locator("#bar").boundingBox();
   expect((sheet?.y ?? 0) + (sheet?.height ?? 0)).toBeLessThanOrEqual(bar?.y ?? 0);
-  // The surfaces are seen whole, under a title of one line and above their legend.
+  // The surfaces are fully visible, below a title of one line and above their legend.
   const legend = await page.locator("#clouds .legend").boundingBox();
   expect((legend?.y ?? Infinity) + (legend?.height ?? 0)).toBeLessThanOrEqual(bar?.y ?? 0);
   expect(

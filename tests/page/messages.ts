@@ -1,16 +1,16 @@
 /**
- * The page's messages to its workers, in the test's hands: what the page does beside a slow or silent worker is then looked
- * at in a fixed order of events, however fast or busy the machine is.
+ * Controls the page's messages to its workers, so that the page's behaviour next to a slow or silent worker is tested in a fixed order of
+ * events, however fast or busy the machine is.
  */
 
 import type { Page } from "@playwright/test";
 
-/** What a message asks for: of the Lab's worker and of the readers' by its kind, or a cell of the tables. Clouds to be drawn have no kind. */
+/** Kinds of messages to the Lab's worker and to the readers', or a cell of the tables. Messages with clouds to draw have no kind. */
 type Kind = "catalogue" | "open" | "reset" | "advance" | "look" | "probe" | "read" | "pair" | "cell";
 
 interface Box {
   counts: Partial<Record<Kind, number>>;
-  /** Which messages are kept back, after how many more of them. */
+  /** Messages that are held back, after this many more have passed. */
   holding: { kind: Kind | undefined; after: number } | undefined;
   held: (() => void)[];
 }
@@ -27,7 +27,7 @@ export class Messages {
     this.#page = page;
   }
 
-  /** For every document that the page opens from now on; each message arrives so many milliseconds late. */
+  /** Applies to every document that the page opens from now on; each message is delayed by `late` milliseconds. */
   static async of(page: Page, late = 0): Promise<Messages> {
     await page.addInitScript((late) => {
       const box: Box = { counts: {}, holding: undefined, held: [] };
@@ -51,17 +51,17 @@ export class Messages {
     return new Messages(page);
   }
 
-  /** How many of a kind this document has sent, those that were kept back included. */
+  /** Number of messages of a kind that this document has sent, including held ones. */
   count(kind: Kind): Promise<number> {
     return this.#page.evaluate((kind) => window.messages.counts[kind] ?? 0, kind);
   }
 
-  /** From now on messages, or those of one kind, are kept back; `after` of them still pass. */
+  /** Holds back messages from now on, or those of one kind, after `after` more have passed. */
   hold(kind?: Kind, after = 0): Promise<void> {
     return this.#page.evaluate(({ kind, after }) => void (window.messages.holding = { kind, after }), { kind, after });
   }
 
-  /** What was kept back is sent, in its order, and so is what follows. */
+  /** Sends the held messages in order; later ones pass. */
   release(): Promise<void> {
     return this.#page.evaluate(() => {
       window.messages.holding = undefined;
@@ -69,7 +69,7 @@ export class Messages {
     });
   }
 
-  /** What was kept back never arrives, as at a worker whose step takes for ever; what follows does. */
+  /** Drops the held messages, as for a worker whose step never ends; later ones pass. */
   lose(): Promise<void> {
     return this.#page.evaluate(() => {
       window.messages.holding = undefined;

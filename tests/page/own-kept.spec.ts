@@ -1,4 +1,4 @@
-/** The visitor's own files over a reload, where nothing can be kept, and never beside another pair's pictures. */
+/** The visitor's own files after a reload, without storage, and never next to another pair's pictures. */
 
 import { LONG, expect, test } from "./lab";
 import { own, put, slot } from "./ownfiles";
@@ -30,7 +30,7 @@ test("nothing of another pair stays: no picture, no true value, nothing to save"
   await expect(page.locator('canvas[aria-label^="Colour:"]')).toBeVisible();
   await expect(page.locator("#pose-error")).toBeHidden();
   await expect(page.locator("#pose tbody tr").first().locator("td").nth(1)).toBeEmpty();
-  // Another picture that can't be read leaves nothing of the one before it.
+  // An unreadable picture replaces the previous one completely.
   await put(lab, "Colour image", { ...colourPng("cut.png"), buffer: colourPng().buffer.subarray(0, 90) });
   await lab.reaches("error");
   await gone();

@@ -1,4 +1,4 @@
-/** The visitor's own files, read as a rig's are: what is guessed is said and can be changed, and nothing is wrong in silence. */
+/** The visitor's own files go through a rig's readers: guesses are reported and can be changed, and nothing fails silently. */
 
 import { readFile } from "node:fs/promises";
 import { encode } from "fast-png";
@@ -35,7 +35,7 @@ test("the unit of a depth map with a camera is guessed into its field, said, and
     "Unit of depth: The file does not state its unit. It was guessed to be milli",
   );
   await expect(page.locator("#pose tr", { hasText: "translation along z" })).toContainText(/z\s*m/);
-  // What is typed is nobody's guess, and that of the next depth map neither.
+  // A typed unit is not a guess, and it also applies to the next depth map.
   await unit(lab).fill("0.002");
   await page.keyboard.press("Enter");
   await lab.reaches("ready");
@@ -44,7 +44,7 @@ test("the unit of a depth map with a camera is guessed into its field, said, and
   await expect(slot(lab, 1)).toContainText("another.png");
   await lab.reaches("ready");
   await expect(unit(lab)).toHaveValue("0.002");
-  // An empty field is guessed again; what it holds then is the next map's own.
+  // An emptied field is guessed again, and again for the next depth map.
   await unit(lab).fill("");
   await page.keyboard.press("Enter");
   await expect(unit(lab)).toHaveValue("0.001");
@@ -101,7 +101,7 @@ test("a mask of 16 bits is a mask, and labels are refused in words", async ({ la
   await lab.reaches("ready");
   await drop(page, "body", [mask("soft.png", 30_000)]);
   await expect(slot(lab, 3)).toContainText("soft.png");
-  // By hand it is what its place asks for, with what speaks against it.
+  // A file chosen by hand is read as its slot requires, with the objection to it.
   await put(lab, "Depth map", labels);
   await expect(slot(lab, 1)).toContainText(
     "Without this slot it would have been refused: its few small integers are labels",
@@ -162,13 +162,13 @@ test("a missing mask before a background is named, and can be drawn", async ({ l
   await expect(slot(lab, 2)).toContainText(`a mask of ${((100 * 40 * 24) / SIDE ** 2).toFixed(1)} % of the pixels`);
   await lab.reaches("ready");
   await expect(remarks(lab)).not.toContainText("no mask, and its background");
-  // A mask of somebody else's is as good.
+  // Another program's mask works as well.
   await put(lab, "Colour mask", maskPng("round.png"));
   await expect(slot(lab, 2)).toContainText("round.png");
   await lab.reaches("ready");
 });
 
-/** Inverse depths of the bust, of a camera whose focal length is the map's side. */
+/** Inverse depths of the bust, for a camera whose focal length is the side of the map. */
 async function inverse(size: number): Promise<{ colour: Upload; depth: (name: string) => Upload; beta: number }> {
   await init(await readFile(new URL("../../pkg/bimodal_stereo_bg.wasm", import.meta.url)));
   const beta = 12;
@@ -230,7 +230,7 @@ test("disparities by their name are read as such, and with a camera wait for foc
   await page.keyboard.press("Enter");
   await lab.reaches("ready");
   await expect(page.getByLabel("Unit", { exact: true })).toHaveValue("1");
-  // Depths by another name are depths again.
+  // A file with another name contains depths again.
   await drop(page, "body", [depthPng("depth.png")]);
   await expect(numbers).toHaveValue("depth");
   await lab.reaches("ready");

@@ -1,4 +1,4 @@
-/** The visitor's own files: dropped anywhere, told apart, and shown at once. */
+/** The visitor's own files: dropped anywhere, recognised, and shown at once. */
 
 import { readFile } from "node:fs/promises";
 import { encode } from "fast-png";
@@ -20,7 +20,7 @@ import {
   type Upload,
 } from "./uploads";
 
-/** A grey picture of 8 bits, which may be either view. */
+/** A grey 8-bit picture, which can be either view. */
 const greyPng = (name: string): Upload => ({
   name,
   mimeType: "image/png",
@@ -59,7 +59,7 @@ test("four files and a camera dropped anywhere go where their content belongs, e
     );
   }
   await lab.reaches("ready");
-  // Registered pictures of one camera: its numbers are those of both.
+  // Registered pictures of one camera share its parameters.
   for (const side of ["colour", "depth"]) {
     await expect(page.locator(`#fields-${side}`).getByLabel("fx", { exact: true })).toHaveValue("61");
     await expect(page.locator(".remarks")).toContainText(`2.json: the ${side} camera`);
@@ -109,7 +109,7 @@ test("what is too large for a preview says its name, its size and that, below ea
   expect(file.y).toBeGreaterThanOrEqual(close.y + close.height - 4);
   expect(says.x).toBe(title.x);
   expect(says.y).toBeGreaterThanOrEqual(file.y + file.height);
-  // The name is cut, its size is not.
+  // The name is truncated, its size is not.
   await expect(card.locator(".file-name")).toHaveText(/ \(1 kB\)$/);
   expect(
     await card.locator(".file-name").evaluate(({ scrollWidth, clientWidth }) => scrollWidth - clientWidth),
@@ -132,7 +132,7 @@ test(
       await lab.reaches("ready");
       expect(await lab.fingerprint("Given depth"), file.name).toBe(rows);
     }
-    // A colour image of another kind, and a cloud with its own points, run as well.
+    // A colour image of another format, and a cloud with its own points, run as well.
     const fixture = async (name: string): Promise<Upload> => ({
       name,
       mimeType: "",
@@ -144,7 +144,7 @@ test(
     await put(lab, "Depth map", cloudPly());
     await expect(slot(lab, 1)).toContainText("d.ply");
     await lab.reaches("ready");
-    // What the reader has against a file is said where it lies.
+    // The reader's objection to a file is shown in its slot.
     await put(lab, "Depth map", await fixture("large-b44.exr"));
     await expect(slot(lab, 1)).toContainText("compressed with loss");
     await put(lab, "Depth map", await fixture("colour.jpg"));
@@ -177,12 +177,12 @@ test("swapped files are offered to be swapped, and then run", async ({ lab, page
   await put(lab, "Depth map", colourPng("second.png"));
   await expect(page.locator(".offer")).toContainText("Colour and depth seem to be swapped.");
   await lab.reaches("error");
-  // Where the eye is, too: the settings may be closed.
+  // It is also shown at the verdict, since the settings may be closed.
   await expect(page.locator("#verdict")).toContainText(
     "second.png: it is a colour picture where a depth map was expected",
   );
   await expect(page.locator("#next")).toHaveText("Colour and depth seem to be swapped: Settings, Swap.");
-  // With the samples nothing is swapped.
+  // The samples are not affected by the swap.
   await page.getByRole("button", { name: "Sample", exact: true }).click();
   await lab.reaches("ready");
   await expect(page.locator("#next")).not.toContainText("swapped");
@@ -194,7 +194,7 @@ test("swapped files are offered to be swapped, and then run", async ({ lab, page
   await lab.reaches("ready");
   await expect(page.locator(".offer")).toBeEmpty();
   await expect(page.locator("#next")).not.toContainText("swapped");
-  // A grey picture may be a depth map, a coloured one can't.
+  // A grey picture can be a depth map, a coloured one cannot.
   await put(lab, "Colour image", greyPng("grey.png"));
   await put(lab, "Depth map", colourPng("third.png"));
   await expect(page.locator("#next")).toHaveText("Colour and depth seem to be swapped: Settings, Swap.");
@@ -224,7 +224,7 @@ test("where there is nothing to run the player's buttons are off, and say why", 
     }
   };
   await areOff("waiting for both files");
-  // They can be reached, so that the reason can be heard; a press changes nothing.
+  // The buttons can be focused, so that a screen reader announces the reason; pressing them changes nothing.
   await page.locator("#play").focus();
   await page.keyboard.press("Enter");
   await expect(page.locator("#play")).toBeFocused();
@@ -267,7 +267,7 @@ test("while own files are read the page says so, asks for nothing that is there,
   await lab.reaches("ready");
   await expect(play).toHaveAttribute("aria-pressed", "false");
   await expect(page.locator("#next")).toHaveText(/^Press play; masks, cameras/);
-  // What is done to a large one is said as soon as it is known.
+  // The scaling of a large picture is reported as soon as it is known.
   await page.locator("#verdict").evaluate((verdict) => {
     const said: string[] = [];
     Object.assign(window, { said });
@@ -373,7 +373,7 @@ test("what is wrong with a file is in sight, moves no slot, and is over with the
     const remark = page.locator(".remarks").getByText("all.zip: it is a ZIP archive");
     await expect(remark).toBeInViewport({ ratio: 1 });
     expect(await places()).toEqual(before);
-    // Nothing lies over it.
+    // Nothing covers it.
     expect(
       await remark.evaluate((words) => {
         const { left, top, width, height } = words.getBoundingClientRect();
@@ -384,12 +384,12 @@ test("what is wrong with a file is in sight, moves no slot, and is over with the
     await expect(slot(lab, 0)).toContainText(`a${width}.png`);
     await expect(remark).toHaveCount(0);
   }
-  // Of a slot's own file beside it, however far down that is.
+  // The remark about a slot's own file is next to the slot, however far down.
   await put(lab, "Depth map", depthPng());
   await put(lab, "Depth mask", { ...maskPng("cut.png"), buffer: maskPng().buffer.subarray(0, 60) });
   await lab.reaches("error");
   await expect(slot(lab, 3).locator(".note.error").filter({ visible: true }).last()).toBeInViewport({ ratio: 1 });
-  // Who turns to the samples and back finds nothing of a file that came to nothing.
+  // After switching to the samples and back, nothing remains of a file that failed.
   await drop(page, "body", [zip]);
   await expect(page.locator(".remarks")).toBeVisible();
   await page.getByRole("button", { name: "Sample", exact: true }).click();

@@ -1,4 +1,4 @@
-/** The Lab's slots for own files, as a visitor fills them. */
+/** Fills the Lab's slots for own files as a visitor does. */
 
 import type { Lab } from "./lab";
 import type { Upload } from "./uploads";

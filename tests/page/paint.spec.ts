@@ -1,4 +1,4 @@
-/** Paint and light are shown apart. */
+/** Albedo and shading are shown separately. */
 
 import { readFile } from "node:fs/promises";
 import { encode } from "fast-png";
@@ -6,7 +6,7 @@ import init, { sample } from "../../pkg/index.js";
 import { expect, test } from "./lab";
 
 const size = 80;
-/** Linear factors of a second paint, in squares of so many pixels. */
+/** Linear factors of a second albedo, and the side of its squares in pixels. */
 const PAINT = [0.45, 0.75, 1.2];
 const SQUARE = 10;
 
@@ -40,7 +40,7 @@ test("a painted object is shown as its paint and its shading", async ({ lab, pag
   await page.getByRole("button", { name: "Play" }).click();
   await lab.reaches("converged");
 
-  // Red over blue where there is paint and where there is none: the albedo differs, the shading hardly.
+  // Ratios of red to blue over both albedos: they differ in the albedo and hardly in the shading.
   const hues = (label: string) =>
     page.locator(`canvas[aria-label^="${label}:"]`).evaluate((canvas: HTMLCanvasElement) => {
       const { data, width } =

@@ -1,4 +1,4 @@
-/** A worker that is slow or silent: what was asked for last is what happens, and nothing has to be waited for. */
+/** With a slow or silent worker, the latest request wins and nothing blocks. */
 
 import { LONG, expect, test } from "./lab";
 import { Messages } from "./messages";
@@ -45,7 +45,7 @@ test("of several requests the last one counts", LONG, async ({ lab, page }) => {
   await lab.unfold();
   const surface = page.getByLabel("Surface", { exact: true });
   const start = page.getByLabel("Start", { exact: true });
-  // All of them are made before the worker receives the first.
+  // All requests are made before the worker receives the first.
   await messages.hold();
   for (const name of ["ripples", "bust", "vase"]) await surface.selectOption(name);
   await start.selectOption("near");
@@ -55,7 +55,7 @@ test("of several requests the last one counts", LONG, async ({ lab, page }) => {
   await expect(lab.iteration).toHaveText("1");
   expect(await lab.fingerprint("Colour")).toBe(vase);
 
-  // A refusal leaves the pair on the screen and the one in the worker the same, also where another pair came in between.
+  // After a refusal, screen and worker have the same pair, also if another pair was requested in between.
   await messages.hold();
   await surface.selectOption("ripples");
   await page.getByLabel("Overlap", { exact: true }).first().fill("7");
@@ -72,12 +72,12 @@ test("of several requests the last one counts", LONG, async ({ lab, page }) => {
 });
 
 /**
- * A clock for the worker that runs by what it does: 5 ms pass whenever it looks at the time, as after each slice of the
- * search, and 400 ms before each request.
+ * A clock for the worker that depends on the worker's actions: it advances by 5 ms whenever the time is read, as after each slice of the
+ * search, and by 400 ms before each request.
  */
 const CLOCK = "let now = 0; performance.now = () => (now += 5); addEventListener('message', () => (now += 400));";
 
-/** Requests until the first iteration is done: 16 by that clock. */
+/** Limit of the requests until the first iteration is done; with that clock it takes 16. */
 const MOST_FRAMES = 40;
 
 test("where every frame is late the search still ends", LONG, async ({ lab, page }) => {
@@ -85,7 +85,7 @@ test("where every frame is late the search still ends", LONG, async ({ lab, page
     const response = await route.fetch();
     await route.fulfill({ response, body: `${CLOCK}${await response.text()}` });
   });
-  // Frames so late are played stage by stage, and a search has hundreds of slices.
+  // Frames this late are played stage by stage, and a search has hundreds of slices.
   const messages = await Messages.of(page, 400);
   await lab.visit("size=64&light=colourful");
   await page.getByRole("button", { name: "Play" }).click();

@@ -1,4 +1,4 @@
-// The report of a check in a browser: its own policy lets it look as it should, and it asks for nothing.
+// The report of a check in a browser: its own policy permits its style, and it requests nothing.
 import { type Page, expect, test } from "@playwright/test";
 import { reportHtml } from "../../pkg/rig-write.js";
 import { report } from "../contract/rig-sample.mjs";
@@ -6,7 +6,7 @@ import { report } from "../contract/rig-sample.mjs";
 const PIXEL =
   "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNkYPhfDwAChwGA60e6kgAAAABJRU5ErkJggg==";
 
-/** Opens a report as a file that a server gives out; what it asks for beside, and what its policy refuses, is in the list. */
+/** Opens a report as a file from a server; the list records further requests and violations of its policy. */
 async function open(page: Page, html: string): Promise<string[]> {
   const wrong: string[] = [];
   page.on("console", (message) => wrong.push(message.text()));
@@ -18,7 +18,7 @@ async function open(page: Page, html: string): Promise<string[]> {
   return wrong;
 }
 
-/** Pixels by which the page is wider than the window. */
+/** Width of the page beyond the window, pixels. */
 const overflow = (page: Page) =>
   page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
 

@@ -19,7 +19,7 @@ test("a wrong file is named beside itself, and the others are read", async ({ la
     await expect(file(wrong).getByRole("alert")).toContainText(wrong);
     await expect(file(wrong)).toHaveAttribute("data-state", "failed");
   }
-  // A file's name is text.
+  // A file's name is inserted as text.
   expect(await page.locator("#rig img").count()).toBe(0);
   await expect(page.locator(".rig-frame")).toHaveCount(1);
   await expect(file("color_0001.png")).toContainText("160x120");
@@ -89,7 +89,7 @@ test("what is used of a frame can be restricted, with the pointer and with numbe
     await dialog.getByLabel(label).fill(value);
   await dialog.getByRole("button", { name: "Apply" }).click();
   await expect(share).toHaveText("25 % of the image is used.");
-  // A stroke is taken back, one at a time.
+  // Strokes are undone one at a time.
   await dialog.getByRole("button", { name: "Undo stroke" }).click();
   await expect(share).toHaveText("100 % of the image is used.");
   await dialog.getByRole("button", { name: "Undo stroke" }).click();
@@ -175,7 +175,7 @@ test("a frame that was removed stays away when files are added, and comes back u
   await expect(frames).toHaveCount(2);
   await expect(frames.first()).toContainText("frame 2");
   await page.getByRole("button", { name: "Undo removing frame 1" }).click();
-  // What was added since is still there.
+  // Frames added since then are still there.
   await expect(frames).toHaveCount(3);
   await expect(page.locator(".rig-file")).toHaveCount(7);
   await expect(page.getByRole("button", { name: /^Undo/ })).toBeHidden();

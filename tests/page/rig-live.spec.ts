@@ -1,4 +1,4 @@
-/** Check a rig: a robot behind a bridge of @foxglove/ws-protocol, whose verdict sharpens view by view. */
+/** Check a rig: a robot behind a bridge of @foxglove/ws-protocol, with a verdict that sharpens view by view. */
 
 import { expect, test } from "./lab";
 import type { Page } from "@playwright/test";
@@ -11,7 +11,7 @@ const shot = async (page: Page, name: string) => {
   if (process.env.SHOTS) await page.screenshot({ path: `${process.env.SHOTS}/${name}.png`, fullPage: true });
 };
 
-/** What a robot sends before each of three scenes. */
+/** The messages of a robot in front of each of three scenes. */
 async function scenes() {
   const frames = await smallFrames();
   const [first] = frames;

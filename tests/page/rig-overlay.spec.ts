@@ -1,11 +1,11 @@
-/** The overlay of a verdict, and the room that it takes. */
+/** The overlay of a verdict, and the space that it takes. */
 
 import { expect, test } from "./lab";
 import { answerChecks, giveFiles, pair } from "./rig";
 
 declare global {
   interface Window {
-    /** Pictures that were asked for and are kept back; nothing where all pass. */
+    /** Held requests for pictures; undefined while all pass. */
     pictures: (() => void)[] | undefined;
   }
 }

@@ -1,4 +1,4 @@
-/** What a rig's readers leave to browsers: JPEG and WebP, turned and in sRGB; and what a browser has to permit: LAZ. */
+/** Formats that a rig's readers leave to browsers: JPEG and WebP, rotated and in sRGB; and LAZ, which needs a browser's permission. */
 
 import { readFile } from "node:fs/promises";
 import { expect, test } from "@playwright/test";
@@ -14,7 +14,7 @@ interface Read {
   warnings: string[];
 }
 
-/** As the site's: WebAssembly may be compiled, and no script is made of a text. */
+/** As on the site: WebAssembly may be compiled, and strings cannot become scripts. */
 const POLICY = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; connect-src 'self'";
 const WORKER = `import { readRigFile } from "/pkg/rig.js";
 onmessage = async ({ data }) => postMessage((await readRigFile(data)).says);`;
@@ -43,7 +43,7 @@ const read = (page: import("@playwright/test").Page, name: string): Promise<Read
     return { width: image.width, height: image.height, data: [...image.data], says, warnings };
   }, name);
 
-/** The largest difference from the fixtures' formula; `from` says which of its pixels is expected where. */
+/** The largest difference from the fixtures' formula; `from` gives the fixture's pixel for each pixel. */
 function off({ width, data }: Read, from = (x: number, y: number): [number, number] => [x, y]): number {
   return Math.max(
     ...Array.from({ length: W * H }, (_, at) => {

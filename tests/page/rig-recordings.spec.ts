@@ -1,4 +1,4 @@
-/** Check a rig: recordings are dropped, and a verdict comes out by clicking alone. They are made here, by the public writers. */
+/** Check a rig: from dropped recordings to a verdict with clicks alone. The recordings are made here with public writers. */
 
 import { expect, test } from "./lab";
 import { existsSync, readFileSync } from "node:fs";
@@ -9,7 +9,7 @@ import { answerChecks } from "./rig";
 import { open, put, run, step } from "./rigsteps";
 import { atWidths, innerWidth, narrowest } from "./widths";
 
-/** Rendered frames of one rig that differ, and its calibration. */
+/** Different rendered frames of one rig, and its calibration. */
 async function rendered() {
   const frames = await smallFrames();
   const [first] = frames;
@@ -24,7 +24,7 @@ const shot = async (page: Page, name: string) => {
   if (process.env.SHOTS) await page.screenshot({ path: `${process.env.SHOTS}/${name}.png`, fullPage: true });
 };
 
-/** Drops files where a visitor would. */
+/** Drops files as a visitor does. */
 async function drop(page: Page, files: { name: string; buffer: Buffer }[]): Promise<void> {
   const transfer = await page.evaluateHandle(
     (all) => {
@@ -101,7 +101,7 @@ test("what a recording lacks is said, its frames are none, and nothing sticks ou
   expect(lab.complaints).toEqual([]);
 });
 
-/** A real one, beside the project: colour and depth of one moment, and the device's own calibration. */
+/** A real recording, from the data beside the project: colour and depth of one moment, and the device's own calibration. */
 const AZURE = new URL("../../../shared/data/azure_kinect_raw/recording.mkv", import.meta.url);
 
 test("the recording of an Azure Kinect ends in a verdict of the calibration attached to it", async ({ lab, page }) => {

@@ -1,4 +1,4 @@
-/** Check a rig: files in, calibrations, verdict. Where the page alone is looked at, the test answers in place of the check. */
+/** Check a rig: files, calibrations, verdict. Where only the page is tested, the test answers in place of the check. */
 
 import { LONG, expect, test } from "./lab";
 import { createHash } from "node:crypto";
@@ -19,7 +19,7 @@ test("the place opens by its link and by its address, and the Lab has loaded not
   await expect(page.getByRole("button", { name: "Play" })).toBeHidden();
   await page.getByRole("button", { name: "Load an example" }).click();
   await expect(page.locator(".rig-frame").first()).toBeVisible();
-  // Whatever the check has downloaded, the Lab had not.
+  // The Lab had not loaded any of the check's files.
   const later = asked.slice(ofTheLab.length).filter((path) => /\.(js|css|wasm)$/.test(path));
   expect(later.length).toBeGreaterThan(1);
   for (const path of later) if (!path.endsWith(".wasm")) expect(ofTheLab).not.toContain(path);
@@ -57,7 +57,7 @@ test("steps go back, by their buttons and by the browser's, and nothing is lost"
   await lab.reaches("ready");
   await page.getByRole("link", { name: "Check a rig" }).click();
   await expect(page.locator(".rig-frame")).toHaveCount(3);
-  // What has nothing to show leads to the first step.
+  // A step without content leads to the first step.
   await page.goto("about:blank");
   await page.goto("./#rig&step=verdict");
   await expect(heading(page, "1. Files and cameras")).toBeVisible();
@@ -141,7 +141,7 @@ test("the overlay moves between the calibration in question and the one found", 
   await expect.poll(print).not.toBe(before);
   await slider.press("ArrowLeft");
   await expect(slider).toHaveAttribute("aria-valuetext", /^95 % of the way from .+ to found$/);
-  // At full resolution: one pixel of the canvas for each of the image.
+  // At full resolution: one canvas pixel for each image pixel.
   expect(await layer.evaluate((canvas: HTMLCanvasElement) => [canvas.width, canvas.height])).toEqual(
     await page
       .locator(".rig-overlay-picture > canvas")
@@ -164,13 +164,13 @@ test("without a calibration there is an estimate only, and what was guessed is s
   await expect(page.getByText("have changed since this verdict")).toBeVisible();
   await page.getByRole("button", { name: "Run again" }).click();
   await expect(page.locator(".rig-word")).toHaveText("Looks right, see warnings");
-  // Who was right keeps what is there.
+  // After a right calibration, the existing choice is kept.
   await expect(page.getByLabel("Calibration", { exact: true })).toHaveValue("pasted");
   const download = page.waitForEvent("download");
   await page.getByRole("button", { name: "Save report (HTML)" }).click();
   const report = readFileSync(await (await download).path(), "utf8");
   expect(report).toContain("Guessed: the unit of depth_0001.png.");
-  // Files are told later by their hashes.
+  // Hashes identify the files later.
   expect(report).toContain(createHash("sha256").update(colourPng()).digest("hex"));
   await expect(page.getByText("have changed since this verdict")).toBeHidden();
   await expect(page.locator(".rig-history li")).toHaveCount(2);
@@ -183,7 +183,7 @@ test("what is chosen to be written stays chosen when the check runs again", asyn
   await run(page);
   const out = page.locator(".rig-card", { hasText: "Export" });
   const [which, format] = [out.getByLabel("Calibration"), out.getByLabel("Format")];
-  // Who was right keeps what is there, until the visitor says otherwise.
+  // After a right calibration, the existing choice is kept until the visitor changes it.
   await expect(which).not.toHaveValue("");
   await which.selectOption("found");
   await format.selectOption("kalibr");
@@ -227,7 +227,7 @@ test("a check can be cancelled, and run again", async ({ lab, page }) => {
   await expect(page.getByRole("button", { name: "Cancel" })).toBeDisabled();
   await page.getByRole("button", { name: "Run the check" }).last().click();
   await expect(status).toHaveText("aligning depth edges");
-  // Leaving the place ends it as well, however soon one comes back.
+  // Leaving the place also cancels the check, even with an immediate return.
   await page.getByRole("link", { name: "Tables" }).click();
   await page.goBack();
   await expect(status).toHaveText("Cancelled. Files and calibrations are kept.");
@@ -247,7 +247,7 @@ test(
     );
     await step(page, "Files and cameras").click();
     const dialog = page.getByRole("dialog");
-    // Asked of the old worker, answered by the new one.
+    // Requested from the old worker, answered by the new one.
     await page.getByRole("button", { name: "Restrict what is used" }).click();
     await expect(dialog).toBeVisible();
     expect(
@@ -282,7 +282,7 @@ test("starting over ends the check that runs, and undone it brings everything ba
 test("what a reader warned of caps the verdict, and is what to do next", async ({ lab, page }) => {
   await answerChecks(page, "consistent");
   await open(page);
-  // A colour picture's grey levels as depths, of 8 bits, and a second frame of another size.
+  // 8-bit grey levels of a colour picture as depths, and a second frame of another size.
   const grey = Buffer.from(
     encode({
       width: 160,

@@ -1,10 +1,10 @@
-/** What tests of "Check a rig" need: files made here, and a check whose answer is the test's own. */
+/** For tests of "Check a rig": generated files, and a check whose answer the test determines. */
 
 import { type Page, expect } from "@playwright/test";
 import { encode } from "fast-png";
 import type { CheckReport } from "../../pkg/index.js";
 
-/** An 8-bit colour image with a box before a wall. */
+/** An 8-bit colour image of a box in front of a wall. */
 export function colourPng(width = 160, height = 120): Buffer {
   const data = new Uint8Array(3 * width * height);
   for (let i = 0; i < width * height; i++) {
@@ -15,7 +15,7 @@ export function colourPng(width = 160, height = 120): Buffer {
   return Buffer.from(encode({ width, height, channels: 3, data }));
 }
 
-/** A 16-bit depth map of the same in millimetres. */
+/** A 16-bit depth map of the same scene in millimetres. */
 export function depthPng(width = 160, height = 120): Buffer {
   const data = Uint16Array.from({ length: width * height }, (_, i) => {
     const [column, row] = [i % width, Math.floor(i / width)];
@@ -29,7 +29,7 @@ export const pair = (name = "0001") => [
   { name: `depth_${name}.png`, mimeType: "image/png", buffer: depthPng() },
 ];
 
-/** Gives the page files of so many frames, and the depth camera that they do not name by its field of view. */
+/** Adds files of this many frames, and the depth camera, which they do not name, by its field of view. */
 export async function giveFiles(
   page: Page,
   files: readonly { name: string; mimeType: string; buffer: Buffer }[],
@@ -54,7 +54,7 @@ export const matrixFile = (name: string, tx: number) => ({
 
 const AXES = ["rx", "ry", "rz", "tx", "ty", "tz"] as const;
 
-/** A report as the check gives it, about these candidates and frames. */
+/** A report in the form of the check's, about these candidates and frames. */
 export function reportOf(verdict: CheckReport["verdict"], candidates: string[], frames: string[]): CheckReport {
   const offsets = Array.from({ length: 41 }, (_, i) => i - 20);
   const candidate = (i: number) => ({
@@ -114,8 +114,8 @@ export function reportOf(verdict: CheckReport["verdict"], candidates: string[], 
 }
 
 /**
- * The check answers with this report, after some progress; everything else is the worker's own. "never" keeps it waiting, "dead" is a
- * worker that hears nothing any more once it has been asked for a check.
+ * The check answers with this report after some progress; the worker handles everything else. "never" keeps the check waiting; "dead" is a
+ * worker that ignores all messages from a check on.
  */
 export async function answerChecks(page: Page, verdict: CheckReport["verdict"] | "never" | "dead"): Promise<void> {
   const source = `${reportOf.toString()}`;

@@ -1,4 +1,4 @@
-/** Check a rig as a visitor opens it and goes through its steps. */
+/** Opens Check a rig and goes through its steps as a visitor does. */
 
 import { type Page, expect } from "@playwright/test";
 import { giveFiles, matrixFile, pair } from "./rig";
@@ -22,13 +22,13 @@ export async function openExample(page: Page): Promise<void> {
 export const put = (page: Page, files: Parameters<ReturnType<Page["locator"]>["setInputFiles"]>[0]) =>
   page.locator("#rig input[type=file]:not([webkitdirectory])").first().setInputFiles(files);
 
-/** A pair, and a depth camera by its field of view. */
+/** Opens a pair, with the depth camera by its field of view. */
 export async function openPair(page: Page): Promise<void> {
   await open(page);
   await giveFiles(page, pair());
 }
 
-/** As much as the example has, three frames and two calibrations, and no rendering of it, which takes seconds. */
+/** Opens as much as the example has, three frames and two calibrations, without rendering it, which takes seconds. */
 export async function openFrames(page: Page): Promise<void> {
   await open(page);
   await giveFiles(

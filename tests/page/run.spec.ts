@@ -1,4 +1,4 @@
-/** The method runs, by pointer and by keyboard, and its pictures and numbers follow. */
+/** The method runs, by pointer and by keyboard, and its pictures and numbers update. */
 
 import { LONG, expect, test } from "./lab";
 import { Messages } from "./messages";
@@ -16,7 +16,7 @@ test("a sample runs to convergence with a small pose error", async ({ lab, page 
   expect(await lab.fingerprint("Normals")).not.toBe(before);
   await expect(page.getByRole("button", { name: "Play" })).toHaveAttribute("aria-pressed", "false");
 
-  // Played again it begins anew; the second step is kept back, so that the first can be seen.
+  // Play restarts the run; the second step is held back, so that the first can be seen.
   await messages.hold("advance", 1);
   await page.getByRole("button", { name: "Play" }).click();
   await expect(lab.iteration).toHaveText("1");
@@ -45,7 +45,7 @@ test("keys step, stage, play, pause, reset and enlarge", async ({ lab, page }) =
   await page.keyboard.press("t");
   await expect(page.locator(".stage[data-lit]")).toContainText("shading");
 
-  // It plays until the other key is pressed, however late that is.
+  // The run plays until the other key is pressed, however late.
   await messages.hold("advance");
   await page.keyboard.press(" ");
   await lab.reaches("playing");
@@ -77,7 +77,7 @@ test("a view that was alone leaves the page where it stood", async ({ lab, page 
       await page.evaluate((from) => scrollTo(0, from), from);
       await page.keyboard.press(key);
       await expect(page.locator("#lab")).toHaveAttribute("data-single", "");
-      // One after the other counts as one.
+      // Enlarging several in a row counts as one.
       await page.keyboard.press("2");
       await expect(page.getByRole("img", { name: /^Normals:/ })).toBeFocused();
       await page.keyboard.press("Escape");
@@ -96,7 +96,7 @@ test(
     await messages.hold("advance", 1);
     await page.keyboard.press(" ");
     await expect(lab.iteration).toHaveText("1");
-    // By way of two places, of which neither ends the run.
+    // Through two other places, neither of which ends the run.
     await page.locator("#to-learn").click();
     await page.locator("#to-tables").click();
     await expect(page.locator("#lab")).toBeHidden();
@@ -126,7 +126,7 @@ test("the value under the pointer is shown in every view", async ({ lab, page })
   await page.getByRole("img", { name: /^Normals/ }).hover();
   const readouts = page.locator("#image-views .readout");
   for (const readout of await readouts.all()) await expect(readout).toHaveText(/^\d+, \d+: /);
-  // Of the depth map those of its own pixel, where it has one.
+  // The depth map's pixel is given as well, if there is one.
   await expect(page.locator("#probe .where")).toHaveText(/^image \d+, \d+; depth map (\d+, \d+|none)$/);
 });
 
@@ -188,7 +188,7 @@ test("a stage explains itself", async ({ lab, page }) => {
 });
 
 test("after a panic a new worker takes the same input up again", async ({ lab, page }) => {
-  // The second step is answered as the worker would after a panic; the numerics themselves give no occasion for one.
+  // The second step is answered as the worker does after a panic, because the numerics cannot be made to panic.
   await page.addInitScript(() => {
     let steps = 0;
     const send = Worker.prototype.postMessage;
@@ -230,13 +230,13 @@ test("a hint unfolds at a tap", async ({ lab, page }) => {
   await expect(hint).toBeVisible();
 });
 
-/** The error that the table names for the start of a run. */
+/** The error that the table shows for the initial pose. */
 const AT_START = /[\d.]+° at the start/;
 
 test("nothing known: the search comes first, says how far it is, and the loop converges", async ({ lab, page }) => {
   await lab.visit("size=64&light=window&beta=50&gamma=15&overlap=0.7&noise=0.01");
   const search = page.getByRole("button", { name: /^search/ });
-  // A look now and then may miss the search, so all that its chip says while it is lit is written down.
+  // Polling could miss the search, so every text of its chip while lit is recorded.
   const said = await search.evaluateHandle((chip) => {
     const said: string[] = [];
     const record = () => chip.hasAttribute("data-lit") && said.push(chip.textContent ?? "");
@@ -253,7 +253,7 @@ test("nothing known: the search comes first, says how far it is, and the loop co
   const before = AT_START.exec((await error.textContent()) ?? "")?.[0] ?? "";
   await page.getByRole("button", { name: "Play" }).click();
   await expect(page.locator("#status")).toHaveAttribute("data-state", "converged");
-  // The start is where the visitor began, not what the search found.
+  // The table still refers to the visitor's initial pose, not to the pose of the search.
   await expect(error).toContainText(before);
   expect((await said.jsonValue()).join(" ")).toMatch(/\d+ %/);
   expect(await lab.errorDegrees()).toBeLessThanOrEqual(1);
@@ -284,7 +284,7 @@ test("a pose that was held is not said to have been sought", async ({ lab, page 
   await page.keyboard.press(" ");
   await expect(page.locator("#verdict")).toContainText("stayed at its initial value");
   await expect(page.locator("#next")).toContainText("Registration, joint");
-  // It is 20 degrees off, and in red: a tick would say the contrary.
+  // It is 20 degrees off and shown in red, since a tick would claim the contrary.
   await expect(page.locator("#status")).toHaveAttribute("data-tone", "wrong");
   await expect(page.locator("#status-icon")).toHaveText("×");
 });
@@ -325,9 +325,9 @@ test(
     const canvas = page.getByRole("img", { name: /^Scores of \d+ rotations\. The best one is/ });
     const [, about] =
       /is (−?\d+) degrees about the vertical/.exec((await canvas.getAttribute("aria-label")) ?? "") ?? [];
-    // Rotations lie 16 degrees apart.
+    // Rotations are 16 degrees apart.
     expect(Math.abs(Number(about?.replace("−", "-")) - 30)).toBeLessThanOrEqual(16);
-    // At the true turn the map is yellow, at its corner nothing was tried.
+    // At the true rotation the map is yellow; at its corner nothing was tried.
     const colours = await canvas.evaluate((element: HTMLCanvasElement) => {
       const at = (x: number, y: number) => [...(element.getContext("2d")?.getImageData(x, y, 1, 1).data ?? [])];
       return { truth: at(Math.round(((30 + 105) / 210) * element.width), element.height / 2), corner: at(1, 1) };

@@ -1,4 +1,4 @@
-/** A run as a file: taken away, dropped on another visit, and gone on with from where it stood. */
+/** A run as a file: saved, dropped on another visit, and continued where it stopped. */
 
 import { expect, test } from "./lab";
 import { colourPng, depthPng, drop } from "./uploads";
@@ -19,7 +19,7 @@ test("a run that was taken away goes on where it stood, with the options that it
   for await (const chunk of await download.createReadStream()) chunks.push(Buffer.from(chunk as Uint8Array));
   const run = { name: "evening.bimodal", mimeType: "application/octet-stream", buffer: Buffer.concat(chunks) };
 
-  // Another visit, which knows nothing of it.
+  // Another visit, without any state of the first.
   await page.goto("about:blank");
   await lab.visit("size=64");
   await drop(page, "body", [run]);
@@ -27,19 +27,19 @@ test("a run that was taken away goes on where it stood, with the options that it
   await lab.unfold();
   await expect(page.locator("#fields-weights").getByLabel("λ shape prior", { exact: true }).first()).toHaveValue("2");
   await expect(page.locator(".remarks")).toContainText("evening.bimodal: a saved run");
-  // The truth of a sample does not travel with it, the pose found does.
+  // The file omits a sample's truth and contains the pose found.
   const found = (text: string) => text.split("\n").map((line) => line.split("\t").slice(0, 2).join(" "));
   expect(found(await page.locator("#pose").innerText())).toEqual(found(pose));
   await page.keyboard.press("s");
   await expect(lab.iteration).toHaveText("3");
 
-  // Reset begins the same pair anew, with the same options.
+  // Reset restarts the same pair with the same options.
   await page.getByRole("button", { name: "Reset" }).click();
   await expect(lab.iteration).toHaveText("0");
   await page.keyboard.press("s");
   await expect(lab.iteration).toHaveText("1");
 
-  // A pair of files takes its place.
+  // A pair of files replaces it.
   await drop(page, "body", [colourPng(), depthPng()]);
   await lab.reaches("ready");
   await expect(lab.iteration).toHaveText("0");

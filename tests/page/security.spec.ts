@@ -1,4 +1,4 @@
-/** Hostile files, and a whole visit under the page's policy: nothing of a file becomes part of the page, and the page asks for nothing but its own. */
+/** Hostile files, and a whole visit under the page's policy: no content of a file becomes part of the page, and the page requests only its own files. */
 
 import { readFileSync } from "node:fs";
 import type { Download, Page } from "@playwright/test";
@@ -12,7 +12,7 @@ import { refusals, requests } from "./visit";
 const read = async (download: Promise<Download>): Promise<string> =>
   readFileSync(await (await download).path(), "utf8");
 
-/** A report is whole and holds nothing that could run, and a browser that opens it runs nothing. */
+/** Checks that a report is complete and contains nothing that could run, and that a browser runs nothing when opening it. */
 async function opens(page: Page, html: string): Promise<void> {
   expect(harmless(html).text).toContain("&lt;img src=x onerror=");
   await page.route("**/taken.html", (route) => route.fulfill({ contentType: "text/html", body: html }));
@@ -29,7 +29,7 @@ test("hostile files stay text in the Lab, in what it takes away, and in its repo
   await expect(page.locator(".remarks")).toContainText(`${EVIL}a.txt`);
   await page.keyboard.press("s");
   await expectHarmless(page);
-  // A reload brings them back from the browser's storage.
+  // A reload restores them from the browser's storage.
   await expect(page.locator(".keeping")).toContainText("stay in this browser");
   await page.reload();
   await lab.reaches("ready");

@@ -1,4 +1,4 @@
-/** Graphics that are taken away and given back, and a page that is out of sight for a while. */
+/** Graphics that are lost and restored, and a page that is hidden for a while. */
 
 import { breakable, endAll, fragileGraphics, graphics, hide } from "./broken";
 import { covered, goToClouds, DRAWN, NO_OFFSCREEN } from "./clouds";
@@ -22,7 +22,7 @@ for (const [where, script] of [
     await graphics(page, "lose");
     await expect(note).toBeVisible();
     await expect(note).toContainText("The surfaces stand still until it returns");
-    // All else goes on.
+    // Everything else continues.
     await page.keyboard.press("s");
     await expect(lab.iteration).toHaveText("1");
     await graphics(page, "restore");
@@ -68,10 +68,10 @@ test(
     await expect(lab.iteration).toHaveText("1");
     await hide(page, true);
     await page.getByRole("button", { name: "Play" }).click();
-    // The frame that was asked for comes; it can't be drawn, so no further one is asked for.
+    // The requested frame arrives; while it cannot be drawn, no further one is requested.
     await expect(lab.iteration).toHaveText("2");
     await page.evaluate(async () => {
-      // As long as a dozen frames would take; it only makes the test able to fail.
+      // Time for a dozen frames, so that the test could fail.
       for (let count = 0; count < 4; count++) await new Promise((go) => setTimeout(go, 50));
     });
     await expect(lab.iteration).toHaveText("2");

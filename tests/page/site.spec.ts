@@ -1,4 +1,4 @@
-/** The built page on a plain file server, below a folder: what it asks for, what its policy refuses, and what is left without a network. */
+/** The built page on a plain file server, below a folder: its requests, violations of its policy, and what works offline. */
 
 import { createHash } from "node:crypto";
 import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -15,7 +15,7 @@ test.use({ serviceWorkers: "allow" });
 
 const offline = (page: Page) => page.locator("#offline");
 
-/** Every place, and something of it that its worker has computed. */
+/** Every place, with a check of something that its worker has computed. */
 const PLACES: [string, (page: Page) => Promise<void>][] = [
   [
     "./#size=48",
@@ -67,7 +67,7 @@ test("the policy refuses what is not the page's own", async ({ page }) => {
       "beforeend",
       `<p style="color: red" onclick="0">x</p><img src="https://example.org/x.png" alt="">`,
     );
-    // Some browsers look at a handler only once it is to run.
+    // Some browsers check a handler only when it is about to run.
     document.querySelector<HTMLElement>("p[onclick]")?.click();
     await fetch("https://example.org/").catch(() => undefined);
   });
@@ -80,7 +80,7 @@ test("after one visit every place opens without a network", LONG, async ({ lab, 
   await page.goto("./");
   await expect(offline(page)).toHaveText("It works offline.");
   await context.setOffline(true);
-  // The worker's own script is not among what it keeps.
+  // The service worker does not cache its own script.
   expect(
     await page.evaluate(() =>
       fetch("./sw.js").then(
@@ -130,7 +130,7 @@ test(
       );
       await page.reload();
       await expect(offline(page)).toContainText("A newer version is ready");
-      // What is open stays of one piece.
+      // The open page keeps its version as a whole.
       await page.reload();
       await expect(page.locator("#newer")).toHaveCount(0);
       await page.close();
@@ -176,7 +176,7 @@ test("under the headers that docs/hosting.md suggests it runs as well, isolated"
   }
 });
 
-/** Presses Tab until the focus is on something that the selector finds. */
+/** Presses Tab until an element that matches the selector has the focus. */
 async function tabTo(page: Page, selector: string): Promise<void> {
   for (let presses = 0; presses < 120; presses++) {
     if (await page.evaluate((wanted) => document.activeElement?.matches(wanted), selector)) return;
@@ -194,7 +194,7 @@ test("from the first key to a pose in a file, by keyboard alone", async ({ lab, 
   await expect(page.getByRole("button", { name: "Play" })).toBeFocused();
   await page.keyboard.press("Space");
   await expect(page.locator("#status")).toHaveAttribute("data-state", /converged|ambiguous/);
-  // On from Play, round the page's end.
+  // From Play onward, around the end of the page.
   await tabTo(page, "#takeaway button[value=pose]");
   const download = page.waitForEvent("download");
   await page.keyboard.press("Enter");

@@ -1,4 +1,4 @@
-/** Says which tests did not run and why, which the list of them leaves out. */
+/** Reports the skipped tests with their reasons, which Playwright's list omits. */
 
 import type { Reporter, TestCase, TestResult } from "@playwright/test/reporter";
 

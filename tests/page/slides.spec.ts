@@ -1,9 +1,9 @@
-/** The slides of Learn: each fits its screen, and they are turned as pages are, by the browser's Back, too. */
+/** The slides of Learn: each fits its screen, and the browser's Back turns them like pages. */
 
 import { LESSONS, open } from "./figure";
 import { LONG, expect, test } from "./lab";
 
-/** Whose words are longest. */
+/** The states with the longest texts. */
 const WORDIEST = ["pose&run=register&offset=40", "failure&case=symmetry&amount=100", "failure&amount=100"];
 
 test("each slide fits its screen, whatever its figure has to say", LONG, async ({ lab, page }) => {
@@ -50,7 +50,7 @@ test("the browser's Back turns a slide back, then leads to the lesson, and Forwa
   await expect(slides).toBeVisible();
   await page.keyboard.press("ArrowRight");
   await expect(heading("2. One grey light is not enough")).toBeVisible();
-  // What is set is no entry of its own.
+  // A changed setting adds no entry to the history.
   await slides.locator('input[name="turn"]').fill("90");
   await expect(page).toHaveURL(/at=grey&turn=90&slides$/);
   await page.keyboard.press("PageDown");
@@ -68,7 +68,7 @@ test("the browser's Back turns a slide back, then leads to the lesson, and Forwa
   await page.goForward();
   await expect(slides).toBeVisible();
   await expect(heading("1. What a pixel shows")).toBeVisible();
-  // Away from the slides to the Lab, and back to the lesson in its place.
+  // From the slides to the Lab, and back to the lesson itself.
   await page.goto("./#size=32");
   await lab.reaches("ready");
   await page.getByRole("link", { name: "Learn", exact: true }).click();

@@ -1,4 +1,4 @@
-/** The Lab stands still, and all of it can be reached: in windows of any size, by the keyboard and by fingers. */
+/** The Lab keeps its layout and all of it can be reached, in windows of any size, by keyboard and by touch. */
 
 import { LONG, expect, test } from "./lab";
 import { atWidths } from "./widths";
@@ -19,7 +19,7 @@ test("the surfaces are most of the first screen from 1280 to 2560 px", async ({ 
         const bar = await page.locator("#bar").boundingBox();
         expect(box && box.width / width).toBeGreaterThan(0.45);
         expect(box && bar && box.y + box.height).toBeLessThanOrEqual(bar?.y ?? 0);
-        // In their reading order: what goes in, the surfaces, what comes out.
+        // In reading order: inputs, surfaces, results.
         const lefts = await page
           .locator("#inputs, #hero, #outcome")
           .evaluateAll((parts) => parts.map((part) => part.getBoundingClientRect().left));
@@ -48,7 +48,7 @@ test("nothing moves under the pointer", async ({ lab, page }) => {
 });
 
 test("at 400 % zoom nothing sticks out, and the bar leaves the window to the page", async ({ lab, page }) => {
-  // What 1280 x 800 at four times the size leaves.
+  // The size of a window of 1280 x 800 at 400 % zoom.
   await page.setViewportSize({ width: 320, height: 200 });
   await lab.open("size=32");
   expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBeLessThanOrEqual(320);
@@ -67,7 +67,7 @@ for (const [width, height] of [
     await page.keyboard.press("Enter");
     await expect(page.locator("#play")).toBeFocused();
     await expect(page.locator("#play")).toBeInViewport({ ratio: 1 });
-    // What is seen of it there; the page may scroll softly.
+    // The visible part at this size; the page may scroll smoothly.
     await expect(page.locator("#clouds-canvas")).toBeInViewport({ ratio: height < 300 ? 0.5 : 1 });
     if (height > 300) await expect(page.locator("#status")).toBeInViewport({ ratio: 1 });
   });
@@ -131,7 +131,7 @@ test("fingers have targets of 44 px", async ({ browser, baseURL }) => {
   const page = await context.newPage();
   await page.goto(`${baseURL}#size=32&start=identity`);
   await expect(page.locator("#status")).toHaveAttribute("data-state", "ready");
-  // On a phone the wipe comes with a run to be wiped.
+  // On a phone, the wipe appears with a pinned run.
   await page.getByRole("button", { name: "Pin this run" }).click();
   const small = await page
     .locator(

@@ -1,10 +1,10 @@
-/** Storage that is full or forbidden, several tabs that share it, and files that change while a run is on. */
+/** Storage that is full or forbidden, several tabs that share it, and files that change during a run. */
 
 import type { Page } from "@playwright/test";
 import { Lab, LONG, expect, test } from "./lab";
 import { colourPng, depthPng, drop } from "./uploads";
 
-/** The browser's own limit, which refuses whatever is stored from now on. */
+/** Sets the browser's own quota, which rejects everything stored from now on. */
 async function fill(page: Page, baseURL: string | undefined): Promise<void> {
   const session = await page.context().newCDPSession(page);
   await session.send("Storage.overrideQuotaForOrigin", { origin: new URL(baseURL ?? "").origin, quotaSize: 1 });

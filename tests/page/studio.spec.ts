@@ -1,4 +1,4 @@
-/** The Lab as a newcomer meets it: examples, the light, and what a run has come to. */
+/** The Lab for a newcomer: examples, the light, and the result of a run. */
 
 import { LONG, expect, test, type Lab } from "./lab";
 
@@ -51,7 +51,7 @@ test(
     await expect(example).toBeFocused();
     await page.keyboard.press(" ");
     await expect(play).toHaveAttribute("aria-label", "Play");
-    // Not begun anew.
+    // The run is not restarted.
     await expect(lab.iteration).not.toHaveText("0");
     await page.keyboard.press(" ");
     await lab.reaches("converged");
@@ -92,7 +92,7 @@ test(
     await page.mouse.down();
     await page.mouse.move(ball.x + ball.width / 2 + 10, ball.y + ball.height / 2 + 4, { steps: 3 });
     await expect.poll(() => lab.fingerprint("Colour")).not.toBe(before);
-    // Where it rests on its way it counts, and all of the drag is one step for Undo.
+    // A rest during the drag takes effect, and the whole drag is one step for Undo.
     await expect(page).toHaveURL(/lightTurn=-\d+/);
     await lab.reaches("ready");
     await page.mouse.move(ball.x + ball.width / 2 + 20, ball.y + ball.height / 2 + 8, { steps: 3 });
@@ -123,7 +123,7 @@ test(
     await page.mouse.move(x, y);
     await page.mouse.down();
     await page.mouse.move(x + 10, y);
-    // Where the loop starts is the same under any light.
+    // The initial pose is the same under any light.
     await expect(found).toHaveText("start");
     await page.mouse.up();
     await expect(page).toHaveURL(/lightTurn=-\d+/);
@@ -141,7 +141,7 @@ test(
     await expect(found).toHaveText("last run");
     await expect(ball).toHaveText("last run");
     expect(await boxes()).toEqual(before);
-    // Back where it was, and let go: nothing has to run anew.
+    // After a return to its place and a release, nothing has to run again.
     await page.mouse.move(x, y);
     await page.mouse.up();
     await expect(found).toHaveText("found");
@@ -167,7 +167,7 @@ test(
     await truth.focus();
     for (const turn of [5, 10, 15]) {
       await page.keyboard.press("ArrowRight");
-      // It has come to rest, and the pair is rendered and opened anew.
+      // The light has come to rest, so the pair is rendered and opened again.
       await expect(page).toHaveURL(new RegExp(`lightTurn=-${turn}\\b`));
     }
     await lab.reaches("converged");
@@ -176,7 +176,7 @@ test(
 
 test("the arrow keys turn the light toward where they point", async ({ lab, page }) => {
   await lab.open("size=64&light=window");
-  /** Where the ball is bright: its middle of brightness, columns. */
+  /** The column of the ball's centre of brightness. */
   const column = () =>
     page.getByRole("img", { name: /^A ball under the true light/ }).evaluate((canvas: HTMLCanvasElement) => {
       const { data, width } =
@@ -214,15 +214,15 @@ test("a slider acts when it rests, and what had been played plays again", LONG, 
   await expect.poll(() => lab.fingerprint("Colour")).not.toBe(before);
   await expect(page).toHaveURL(/noise=0\.05/);
   await lab.reaches("converged");
-  // One step back, however many values the slider passed.
+  // One step of Undo, however many values the slider passed.
   await page.getByRole("button", { name: "Undo" }).click();
   await expect.poll(() => lab.fingerprint("Colour")).toBe(before);
-  // What is taken back, or made again, plays as the slider's own change did.
+  // Undone and redone values play like the slider's own change.
   await lab.reaches("converged");
   await page.getByRole("button", { name: "Redo" }).click();
   await expect.poll(() => lab.fingerprint("Colour")).not.toBe(before);
   await lab.reaches("converged");
-  // So does a number that is typed.
+  // A typed number does as well.
   await exact.fill("0");
   await exact.press("Enter");
   await expect.poll(() => lab.fingerprint("Colour")).toBe(before);
@@ -265,12 +265,12 @@ test("a pose with a rival says so, and the rival can be seen and chosen", LONG, 
   expect(foundOff).toBeLessThan(5);
   await rival.click();
   await expect(rival).toHaveAttribute("aria-pressed", "true");
-  // The table is the rival's, and nothing has made room for what can be done with it.
+  // The table shows the rival, without extra space for its actions.
   await expect(page.locator("#pose-found")).toHaveText("alternative");
   await expect(beta).not.toHaveText(String(foundBeta));
   expect(await lab.errorDegrees()).toBeGreaterThan(away - 5);
   await expect(rivals.getByRole("button", { name: "Restart from here" })).toBeVisible();
-  // Verdict and light are those of the pose found, and say so.
+  // Verdict and light belong to the pose found, and say so.
   await expect(page.locator("#status")).toHaveText(/^found: ambiguous, /);
   await expect(page.locator("#pose-error")).toHaveText(/° from the true rotation \(best pose: \d\.\d°\)/);
   await expect(page.locator("#light figcaption").first()).toHaveText("best pose");
@@ -309,7 +309,7 @@ test("a stage explains the method that runs", async ({ lab, page }) => {
     ["lighting=estimate", "light", "Robust least squares fits them"],
     ["", "light", "Only the exposure of the image"],
   ] as const) {
-    // Another address alone: the page hears of it a moment later, so that the first press may come too early.
+    // Only the address changes: the page handles it a moment later, so the first click may come too early.
     await lab.open(`size=32${settings && "&"}${settings}`);
     await expect(async () => {
       await page.keyboard.press("Escape");
@@ -427,7 +427,7 @@ test("files dropped anywhere go where their content belongs", async ({ lab, page
   await expect(slots.nth(1)).toContainText("a.png");
   await expect(slots.nth(2)).toContainText("b.png");
   await lab.reaches("ready");
-  // Nothing of the sample's truth is left standing.
+  // The sample's truth is no longer shown.
   await expect(page.locator("#errors")).toBeHidden();
   await expect(page.locator("#pose-error")).toBeHidden();
   await expect(page.locator("#light .ball").filter({ visible: true })).toHaveCount(1);

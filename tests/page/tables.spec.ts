@@ -1,4 +1,4 @@
-/** The Tables: cells are computed here, and each of them can be watched in the Lab. */
+/** The Tables: cells are computed here, and each can be watched in the Lab. */
 
 import type { Locator, Page } from "@playwright/test";
 import { LONG, expect, test } from "./lab";
@@ -13,7 +13,7 @@ async function openTables(page: Page, state = ""): Promise<void> {
   await expect(page.locator(".heat")).toBeVisible();
 }
 
-/** A cell's number, once it has one. */
+/** A cell's number, once it is computed. */
 async function computed(page: Page, id: string): Promise<number> {
   await expect(cell(page, id)).toHaveAttribute("data-state", "done");
   return Number(await cell(page, id).getAttribute("data-value"));
@@ -27,7 +27,7 @@ test("the navigation leads to the Tables and back, and the Lab keeps its setting
   await expect(page.getByText("our built-in bust stands in for it")).toBeVisible();
   await expect(page.getByRole("button", { name: "Play" })).toBeHidden();
   await expect(page).toHaveURL(/#tables&show=table1/);
-  // The Lab's keys rest.
+  // The Lab's keys are inactive.
   await page.keyboard.press("s");
   await page.getByRole("link", { name: "Lab" }).click();
   await expect(page).toHaveURL(/surface=vase/);
@@ -45,7 +45,7 @@ test("the Lab alone loads nothing of the Tables", async ({ lab, page }) => {
   await page.getByRole("link", { name: "Tables" }).click();
   await expect(page.locator(".heat")).toBeVisible();
   expect(asked.filter((path) => /\.(js|css)$/.test(path)).length).toBeGreaterThan(ofTheLab);
-  // Nor is a second instance of the numerics, before a cell is run.
+  // Before a cell runs, there is no second instance of the numerics either.
   expect(asked.filter((path) => path.endsWith(".wasm"))).toHaveLength(1);
 });
 
@@ -62,7 +62,7 @@ test("a cell is run where it is pressed, and the Lab plays that very run", async
 
   await page.getByRole("link", { name: "Watch this run" }).click();
   await expect(page.locator("#status")).toHaveAttribute("data-state", "converged");
-  // The same scene, noise and all, and so the same answer to the last digits.
+  // The same scene with the same noise, so the answers agree to the last digits.
   expect(Math.abs((await lab.errorDegrees()) - degrees)).toBeLessThan(1e-9);
   await expect(page.getByLabel("Overlap", { exact: true }).first()).toHaveValue("0.5");
   await expect(page).not.toHaveURL(/play/);
@@ -91,7 +91,7 @@ test("all cells run one after the other, and stop when told to", LONG, async ({ 
   await openTables(page, "show=table2A");
   const stop = page.getByRole("button", { name: "Stop" });
   await expect(stop).toBeDisabled();
-  // The third cell never ends, so that all is still under way when it is told to stop.
+  // The third cell never ends, so that the run is under way when it is stopped.
   await messages.hold("cell", 2);
   await page.getByRole("button", { name: "Run all" }).click();
   await expect(inState(page, "done")).toHaveCount(2);
@@ -103,7 +103,7 @@ test("all cells run one after the other, and stop when told to", LONG, async ({ 
   await expect(stop).toBeDisabled();
   await expect(page.locator(".progress")).toHaveText("2 of 30");
 
-  // What is left goes on, and leaving ends it as well.
+  // The remaining cells continue, and leaving the place stops them as well.
   await messages.lose();
   await messages.hold("cell", 1);
   await page.getByRole("button", { name: "Run row β 90°" }).click();
@@ -146,7 +146,7 @@ test("figures are drawn from the cells that are done, and the rows can be taken 
 });
 
 test("a cell that fails says so in words, and the next one runs", async ({ lab, page }) => {
-  // The first cell is answered as the worker would after a panic; the numerics themselves give no occasion for one.
+  // The first cell is answered as the worker does after a panic, because the numerics cannot be made to panic.
   await page.addInitScript(() => {
     let tasks = 0;
     const send = Worker.prototype.postMessage;

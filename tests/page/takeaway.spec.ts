@@ -1,4 +1,4 @@
-/** What can be taken away: every file downloads and reads back, the report stands alone, a figure can be put into another page. */
+/** Downloads: every file can be read back, the report is self-contained, a figure can be embedded in another page. */
 
 import { createHash } from "node:crypto";
 import type { Download, Page } from "@playwright/test";
@@ -13,10 +13,10 @@ async function press(lab: Lab, name: string): Promise<Download> {
   return waiting;
 }
 
-/** Chromium drops what a page downloads beyond ten files within a second, which no hand is quick enough for. */
+/** Chromium drops downloads of a page beyond ten within a second, which no user reaches. */
 const MOST_AT_ONCE = 8;
 
-/** Until a second has gone by on the page's clock. */
+/** Waits until a second has passed on the page's clock. */
 async function aSecond(page: Page): Promise<void> {
   const now = await page.evaluate(() => performance.now());
   await page.waitForFunction((since) => performance.now() > since + 1_000, now);
@@ -56,7 +56,7 @@ test("pose, light and clouds", async ({ lab, page }) => {
     translation: number[];
     matrix: number[][];
   };
-  // Not over after one step.
+  // One step does not end the run.
   expect(pose).toMatchObject({ unit: "px", status: "running" });
   const rows = (await handed(lab, "Pose, 4×4"))
     .toString()
@@ -149,7 +149,7 @@ test("any picture of the page, the clouds and the curves among them", LONG, asyn
     const colours = new Set<number>();
     for (let i = 0; i < data.length; i += channels)
       colours.add((data[i] ?? 0) * 65536 + (data[i + 1] ?? 0) * 256 + (data[i + 2] ?? 0));
-    // Only what is zero everywhere, as nothing's difference, is of one colour.
+    // Only a view that is zero everywhere, such as a difference of equal pictures, has one colour.
     expect(colours.size, title).toBeGreaterThan(1);
   }
 });
@@ -267,7 +267,7 @@ test("a line puts one figure, as it is set, into another page", async ({ page, c
   for (const hidden of [".top", ".learn-text", ".learn-contents", "#bar", "h1"])
     await expect(frame.locator(hidden).first()).toBeHidden();
   await expect(frame.locator(".learn-panel canvas").first()).toBeVisible();
-  // It lives, and keeps to itself.
+  // It is interactive and stays within its frame.
   await frame.locator('.learn-controls input[name="beta"]').fill("10");
   await expect(frame.locator(".learn-figure")).toHaveAttribute("aria-busy", "false");
   const inside = elsewhere.frames()[1];

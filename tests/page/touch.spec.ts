@@ -1,4 +1,4 @@
-/** Fingers on the surfaces: across they turn them, up and down they scroll the page. */
+/** Touch on the surfaces: horizontal movements rotate them, vertical ones scroll the page. */
 
 import { expect, test } from "@playwright/test";
 import { still } from "./clouds";
@@ -8,7 +8,7 @@ test(
   "a finger up or down scrolls the page and turns nothing; across, or two of them, turn the surfaces and scroll nothing",
   LONG,
   async ({ browser, baseURL }) => {
-    // Nothing swings while pictures are compared.
+    // Stops animations while pictures are compared.
     const context = await browser.newContext({
       hasTouch: true,
       isMobile: true,
@@ -20,12 +20,12 @@ test(
     await expect(page.locator("#status")).toHaveAttribute("data-state", "ready");
     await expect(page.locator("#clouds-note")).toBeHidden();
     const canvas = page.locator("#clouds-canvas");
-    // What tilts them is said where they are.
+    // A note on the surfaces explains how to tilt them.
     await expect(page.getByText("one finger rotates, two tilt")).toBeVisible();
     const hand = await context.newCDPSession(page);
     const scrolled = () => page.evaluate(() => scrollY);
 
-    /** Fingers beside each other that go so many pixels across and down, in steps that the browser sees one by one. */
+    /** Moves adjacent fingers by these distances across and down, in steps that the browser handles one by one. */
     const swipe = async (fingers: number, across: number, down: number) => {
       const box = await canvas.boundingBox();
       if (!box) throw new Error("the surfaces are on the page");

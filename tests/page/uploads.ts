@@ -1,4 +1,4 @@
-/** Small files of a pair of pictures, and the way a hand drops them. */
+/** Small files of a pair of pictures, and how a user drops them. */
 
 import type { Page } from "@playwright/test";
 import { encode } from "fast-png";
@@ -16,7 +16,7 @@ const png = (name: string, channels: 1 | 3, depth: 8 | 16, data: Uint8Array | Ui
   ...{ name, mimeType: "image/png", buffer: Buffer.from(encode({ width: SIDE, height: SIDE, channels, depth, data })) },
 });
 
-/** A lit ball before black; another `tint` is another picture. */
+/** A lit ball in front of black; another `tint` is another picture. */
 export const colourPng = (name = "a.png", tint = 0): Upload =>
   png(
     name,
@@ -27,7 +27,7 @@ export const colourPng = (name = "a.png", tint = 0): Upload =>
     ),
   );
 
-/** The ball before a wall that is not black. */
+/** The ball in front of a wall that is not black. */
 export const roomPng = (name = "room.png"): Upload =>
   png(
     name,
@@ -38,7 +38,7 @@ export const roomPng = (name = "room.png"): Upload =>
     ),
   );
 
-/** A ball in tenths of a pixel, holes around it; column by column in a .npy as numpy writes a transposed array. */
+/** A ball in tenths of a pixel, surrounded by holes; the .npy is in column order, as numpy writes a transposed array. */
 const depthAt = (i: number) => (radius(i) < 20 ? Math.round(300 - 10 * Math.sqrt(400 - radius(i) ** 2)) : 0);
 export const depthPng = (name = "b.png"): Upload =>
   png(
@@ -78,13 +78,13 @@ const depths16 = (isLittle: boolean): Buffer => {
 /** The depth map of `depthPng` as other programs save it. */
 export const depthPgm = (name = "d.pgm"): Upload => bytes(name, `P5\n${SIDE} ${SIDE}\n65535\n`, depths16(false));
 export function depthPfm(name = "d.pfm"): Upload {
-  // From the lowest row up, and low byte first.
+  // From the bottom row up, with the low byte first.
   const rows = Float32Array.from({ length: SIDE * SIDE }, (_, i) =>
     depthAt((SIDE - 1 - Math.floor(i / SIDE)) * SIDE + (i % SIDE)),
   );
   return bytes(name, `Pf\n${SIDE} ${SIDE}\n-1.0\n`, new Uint8Array(rows.buffer));
 }
-/** One strip of 16 bits, not compressed; its directory lies behind it. */
+/** One uncompressed strip of 16 bits, followed by its directory. */
 export function depthTiff(name = "d.tif"): Upload {
   const strip = depths16(true);
   const tags = [
@@ -111,7 +111,7 @@ export function depthTiff(name = "d.tif"): Upload {
   return bytes(name, head, strip, directory);
 }
 
-/** The same as points, rows by columns; where there is no depth there is none. */
+/** The same as points in rows and columns; missing depths have no point. */
 export function cloudPly(name = "d.ply"): Upload {
   const points = Float32Array.from({ length: 3 * SIDE * SIDE }, (_, at) => {
     const i = Math.floor(at / 3);
@@ -138,7 +138,7 @@ export const cameraJson = (name = "camera.json", side = SIDE): Upload => ({
   },
 });
 
-/** Drops files onto whatever the selector finds. */
+/** Drops files onto the element that the selector matches. */
 export async function drop(page: Page, selector: string, files: readonly Upload[]): Promise<void> {
   const carried = await page.evaluateHandle(
     (all) => {

@@ -1,8 +1,8 @@
-/** What a visit asks for and what the page's policy refuses, whatever is looked at. */
+/** Records a visit's requests and the violations of the page's policy. */
 
 import type { BrowserContext, Page } from "@playwright/test";
 
-/** What the policy has refused in any document of the page. */
+/** The violations in any document of the page. */
 export async function refusals(page: Page): Promise<string[]> {
   const found: string[] = [];
   await page.exposeFunction("refused", (what: string) => void found.push(what));
@@ -14,7 +14,7 @@ export async function refusals(page: Page): Promise<string[]> {
   return found;
 }
 
-/** Addresses that were asked for, the service worker's included; what a document holds itself is not asked for. */
+/** Requested addresses, including the service worker's, without a document's own data. */
 export function requests(context: BrowserContext): string[] {
   const found: string[] = [];
   context.on("request", (request) => {

@@ -1,14 +1,14 @@
-/** One visit at several widths of the window: a start of the page for each would cost most of what such a test takes. */
+/** One visit at several window widths, because starting the page for each would take most of a test's time. */
 
 import type { Page } from "@playwright/test";
 
-/** What a visit begins with: here the page has to get by with least, and nothing has been wider before. */
+/** The first size of a visit: the narrowest layout, without an earlier wider one. */
 export const narrowest = { width: 320, height: 844 };
 
-/** How far the document reaches, px; more than the window's width sticks out. */
+/** Width of the document, px; anything beyond the window's width sticks out. */
 export const innerWidth = (page: Page): Promise<number> => page.evaluate(() => document.documentElement.scrollWidth);
 
-/** Looks at the page in windows of these widths, and leaves it as narrow as at the start. */
+/** Checks the page at these window widths, and restores the narrow one. */
 export async function atWidths(
   page: Page,
   widths: readonly number[],
@@ -22,7 +22,7 @@ export async function atWidths(
   await resize(page, narrowest.width, height);
 }
 
-/** Two frames later whoever watches sizes has drawn for the new one. */
+/** Resizes the window and waits two frames, in which resize observers have redrawn. */
 async function resize(page: Page, width: number, height: number): Promise<void> {
   await page.setViewportSize({ width, height });
   await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));

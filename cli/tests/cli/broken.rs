@@ -1,10 +1,10 @@
-//! Whatever is wrong comes out as code 3, with the file or the argument and the reason.
+//! Every invalid input exits with code 3 and names the file or the argument with the reason.
 
 use std::fs;
 
 use crate::made::{Made, Ran, SIDE, bust, run, write_png};
 
-/// Refused in words, and as JSON.
+/// Checks that the program refuses these arguments, in words and as JSON.
 fn refused(arguments: &[&str], parts: &[&str]) {
     let Ran { code, out, err } = run(arguments);
     assert_eq!((code, out.as_str()), (3, ""), "{arguments:?}: {err}");
@@ -35,7 +35,7 @@ fn arguments() {
     refused(&pair(&["--registration", "magic"]), &["joint"]);
 }
 
-/// A file of these bytes beside a good other one.
+/// Checks a file with these bytes next to a valid one.
 fn bad_file(made: &Made, name: &str, bytes: &[u8], parts: &[&str]) {
     let path = made.path(name);
     fs::write(&path, bytes).unwrap();
@@ -123,7 +123,7 @@ fn errors_as_json_have_a_code_and_a_field() {
     let error = &told.json()["error"];
     assert_eq!((error["code"].as_str(), error["field"].as_str()), (Some("file"), Some("file")));
     assert!(error["message"].as_str().unwrap().contains("nowhere.npy"));
-    // What is wrong before any pair is read has no files.
+    // Errors that come before any pair is read name no files.
     for (arguments, words) in [
         (vec!["nowhere", "--json"], "no such folder"),
         (vec![image.as_str(), "depth.npy", "--json", "--light", "nowhere.csv"], "nowhere.csv"),
@@ -139,7 +139,7 @@ fn errors_as_json_have_a_code_and_a_field() {
 fn results_that_cannot_be_written() {
     let made = bust();
     let [image, depth, light] = ["image.png", "depth.npy", "light.csv"].map(|name| made.path(name));
-    // A file stands where the folder should be made.
+    // A file is in the place of the folder to be made.
     let told =
         run(&[&image, &depth, "--light", &light, "--start", "identity", "--max-iterations", "1", "--out", &light]);
     assert_eq!((told.code, told.err.contains("light.csv")), (3, true), "{}", told.err);

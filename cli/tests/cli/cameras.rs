@@ -1,10 +1,10 @@
-//! Intrinsics from files: those that are named, those beside the images, and what happens to millimetres without any.
+//! Intrinsics from files: named ones, those next to the images, and the effect on millimetres without any.
 
 use std::fs;
 
 use crate::made::{Made, SIDE, bust, run, run_pair, write_png};
 
-/// A camera of the made pair.
+/// A camera of the generated pair.
 const CAMERA: &str = r#"{"camera": {"fx": 300, "fy": 300, "cx": 23.5, "cy": 23.5, "width": 48, "height": 48}}"#;
 const ONCE: [&str; 3] = ["--json", "--max-iterations", "1"];
 
@@ -13,7 +13,7 @@ fn with(made: &Made, name: &str, text: &str) -> String {
     made.path(name)
 }
 
-/// Which units a run has, of its pose and of its depth map.
+/// The units of a run's pose and depth map.
 fn units(made: &Made, more: &[&str]) -> [String; 2] {
     let found = run_pair(made, &[&ONCE, more].concat());
     assert!(found.code < 3, "{}", found.err);
@@ -26,7 +26,7 @@ fn cameras_of_files_make_metres() {
     assert_eq!(units(&made, &[]), ["px", "px"]);
     let named = with(&made, "elsewhere.json", CAMERA);
     assert_eq!(units(&made, &["--cameras", &named]), ["m", "m"]);
-    // A name that speaks of cameras is enough beside the images.
+    // Next to the images, a name that indicates cameras is enough.
     with(&made, "calib.json", CAMERA);
     assert_eq!(units(&made, &[]), ["m", "m"]);
     let report = run_pair(&made, &ONCE).json();
@@ -34,7 +34,7 @@ fn cameras_of_files_make_metres() {
     assert_eq!(report["warnings"][0]["code"], "camera-shared");
 }
 
-/// The whole frame of this pair is seen within five degrees of the axis, where a fisheye without coefficients bends by a twentieth
+/// The whole frame of this pair is within five degrees of the axis, where a fisheye lens without coefficients deviates by a twentieth
 /// of a pixel.
 #[test]
 fn lenses_of_files_bend_the_rays() {

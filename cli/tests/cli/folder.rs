@@ -1,4 +1,4 @@
-//! Folders of pairs: one line each, and the worst code of all.
+//! Folders of pairs: one line for each pair, and the worst code of all.
 
 use std::fs;
 
@@ -34,7 +34,7 @@ fn a_folder_is_one_line_each_and_a_broken_pair_costs_itself() {
     assert_eq!(lines[1]["error"]["code"], "file");
     assert_eq!(names(&out), ["10", "2"]);
 
-    // The results lie in the folder by now, and are no pairs of it.
+    // By now the folder also contains the results, which are not pairs.
     fs::remove_file(at("depth/0004.npy")).unwrap();
     let told = run_folder(folder.path().to_str().unwrap(), &made, &["--out", out.to_str().unwrap()]);
     let lone: Vec<_> =

@@ -1,4 +1,4 @@
-//! Files of a scene with a known answer, and the program run on them.
+//! Files of a scene with a known answer, and runs of the program on them.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use npyz::WriterBuilder;
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// Pixels of a side; with the light known the pose settles in few iterations.
+/// Side of the views, pixels; with a known light the pose settles in few iterations.
 pub const SIDE: usize = 48;
 
 /// A folder with the files of one pair.
@@ -24,12 +24,12 @@ impl Made {
     }
 }
 
-/// Files of the bust.
+/// The files of the bust.
 pub fn bust() -> Made {
     made(&scenes::surface("bust").unwrap())
 }
 
-/// .. of half a ball, whose pose cannot be told.
+/// The files of a ball's half, whose pose is not observable.
 pub fn ball() -> Made {
     let side = 64;
     let radius = 24.0_f32;
@@ -40,7 +40,7 @@ pub fn ball() -> Made {
     made(&Relief::new(side, side, (0..side * side).map(height).collect()).unwrap())
 }
 
-/// image.png (16 bits, linear), depth.npy and light.csv.
+/// Writes image.png (16 bits, linear), depth.npy and light.csv.
 fn made(relief: &Relief) -> Made {
     let size = bimodal_stereo::Size::new("size", SIDE, SIDE).unwrap();
     let request = SampleRequest { light: scenes::light("colourful").unwrap(), size, ..SampleRequest::default() };
@@ -79,7 +79,7 @@ pub fn write_png(path: &Path, width: usize, colour: png::ColorType, bits: png::B
     encoder.write_header().unwrap().write_image_data(data).unwrap();
 }
 
-/// What the program did.
+/// The result of a run of the program.
 pub struct Ran {
     pub code: i32,
     pub out: String,
@@ -100,13 +100,13 @@ pub fn run(arguments: &[&str]) -> Ran {
     Ran { code: status.code().expect("was not killed"), out: String::from_utf8(stdout).unwrap(), err }
 }
 
-/// On the pair of a folder, started in reach of the answer with the light known.
+/// Runs on the pair of a folder, from an initial pose near the answer with the light known.
 pub fn run_pair(made: &Made, more: &[&str]) -> Ran {
     let [image, depth, light] = ["image.png", "depth.npy", "light.csv"].map(|name| made.path(name));
     run(&[&[image.as_str(), &depth, "--light", &light, "--start", "identity", "--scale", "1"], more].concat())
 }
 
-/// All files below a folder by name.
+/// All files below a folder, by name.
 pub fn names(folder: &Path) -> Vec<String> {
     let mut names: Vec<String> =
         fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();

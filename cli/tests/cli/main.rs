@@ -1,4 +1,4 @@
-//! The built program as a script sees it: exit codes, what it prints, the files that it leaves.
+//! The built program as a script sees it: exit codes, output, and written files.
 
 mod broken;
 mod cameras;

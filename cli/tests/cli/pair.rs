@@ -1,4 +1,4 @@
-//! One pair: the pose, the words, the files, the codes.
+//! One pair: the pose, the messages, the files, the codes.
 
 use std::fs;
 
@@ -79,7 +79,7 @@ fn results_are_files_that_others_read() {
     assert!(head.contains("pixels") && count > SIDE * SIDE / 4);
     assert_eq!(ply.len(), body + 16 * count, "three floats, three colours, a label");
 
-    // A light that was written is read again, as known.
+    // A written light is read again as a known light.
     let light = out.join("light.csv");
     let [image, depth] = ["image.png", "depth.npy"].map(|name| made.path(name));
     let again =
@@ -87,7 +87,7 @@ fn results_are_files_that_others_read() {
     assert_eq!(again.json()["pose"], told.json()["pose"]);
 }
 
-/// The step in the file's remark, and the stored numbers.
+/// The depth step in the file's comment, and the stored numbers.
 fn stored_depth(bytes: &[u8]) -> (f64, Vec<u16>) {
     let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().unwrap();
     let mut data = vec![0; reader.output_buffer_size().unwrap()];
@@ -109,7 +109,7 @@ fn nothing_known_is_found_by_the_search() {
     let made = bust();
     let [image, depth] = ["image.png", "depth.npy"].map(|name| made.path(name));
     let told = run(&[&image, &depth, "--json"]);
-    // At 48 pixels it may say that it is not certain, but the pose is there.
+    // At 48 pixels the result may be reported as uncertain, but the pose is right.
     assert!(told.code < 2, "{}", told.err);
     assert!(degrees_off(&told.json()["pose"], &made) < 3.0, "{}", told.out);
 }
@@ -131,7 +131,7 @@ fn cameras_make_metres() {
     let told = run_pair(&made, &["--json", "--depth-camera", camera, "--max-iterations", "1"]);
     let report = told.json();
     assert_eq!((report["unit"].as_str(), report["depthUnit"].as_str()), (Some("px"), Some("m")), "{}", told.err);
-    // Depths of a hundred pixels or so: nearer in millimetres than in metres.
+    // Depths of about a hundred pixels are closer to plausible millimetres than to metres.
     let notes = report["notes"].as_array().unwrap();
     assert!(notes.iter().any(|note| note.as_str().unwrap().contains("guessed")), "{notes:?}");
     let said = run_pair(&made, &["--json", "--depth-camera", camera, "--depth-unit", "0.01", "--max-iterations", "1"]);
@@ -147,7 +147,7 @@ fn help_and_version_are_no_faults_and_tell_the_codes() {
     }
     let version = run(&["--version"]);
     assert_eq!((version.code, version.out.trim()), (0, concat!("bimodal-stereo ", env!("CARGO_PKG_VERSION"))));
-    // A reader that has seen enough is no fault either.
+    // A reader that closes the pipe early is not an error.
     let (reader, writer) = std::io::pipe().unwrap();
     drop(reader);
     let program = env!("CARGO_BIN_EXE_bimodal-stereo");
@@ -160,7 +160,7 @@ fn a_prior_over_lights_is_read_and_followed() {
     let made = bust();
     let [image, depth] = ["image.png", "depth.npy"].map(|name| made.path(name));
     let kept = concat!(env!("CARGO_MANIFEST_DIR"), "/../scripts/reference/light-prior.json");
-    // A prior of grey light from the front alone.
+    // A prior of grey light from the front only.
     let narrow = made.path("narrow.json");
     let covariance: Vec<Vec<f64>> =
         (0..27).map(|row| (0..27).map(|column| if row == column { 1e-10 } else { 0.0 }).collect()).collect();

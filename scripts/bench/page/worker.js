@@ -1,7 +1,7 @@
-// The browser's half of the bench: the built package in a module worker, as the page has it. One request, one answer.
+// The browser's half of the bench: the built package in a module worker, as on the page. Each request gets one answer.
 import init, { Estimator } from "/pkg/index.js";
 
-/** The module's memory, caught on its way in: the package keeps it to itself. */
+/** The module's memory, captured during instantiation, because the package does not expose it. */
 let memory;
 for (const name of ["instantiate", "instantiateStreaming"]) {
   const original = WebAssembly[name];
@@ -14,7 +14,7 @@ for (const name of ["instantiate", "instantiateStreaming"]) {
 
 let scene;
 
-/** Reads what scenes.mjs has written. */
+/** Reads a file written by scenes.mjs. */
 async function read(path) {
   const buffer = await (await fetch(path)).arrayBuffer();
   const [width, height] = new Uint32Array(buffer, 0, 2);
@@ -36,7 +36,7 @@ function degreesBetween(a, b) {
   return (2 * Math.asin(Math.min(1, distance / Math.sqrt(8))) * 180) / Math.PI;
 }
 
-/** Lets messages in: from the workers that share a search. */
+/** Yields to the event loop, so that messages of the workers that share a search can arrive. */
 const breathe = () =>
   new Promise((resume) => {
     const { port1, port2 } = new MessageChannel();
@@ -46,7 +46,7 @@ const breathe = () =>
 
 /**
  * The same as `run` of benches/common: to the end, or through `most` iterations. Stages carry the package's own times. With several
- * workers an iteration is one step, which waits for them: `shared` has the wall times.
+ * workers, an iteration is one step, which waits for them; `shared` has the wall times.
  */
 async function run({ start, shading, most, workers }) {
   const { image, depth, pose } = scene;
@@ -65,7 +65,7 @@ async function run({ start, shading, most, workers }) {
       continue;
     }
     report = estimator.stepStage();
-    // Wall time of the call: so long no other event is handled.
+    // Wall time of the call, during which no other event is handled.
     if (report.stage === "search") longestSlice = Math.max(longestSlice, performance.now() - before);
     stages.push({ stage: report.stage, iteration, milliseconds: report.milliseconds[report.stage] });
     if (workers > 1 && report.stage === "search") await breathe();
@@ -76,7 +76,7 @@ async function run({ start, shading, most, workers }) {
   return { status: report.status, iterations: report.iteration, degrees, milliseconds, preparation, longestSlice, stages, shared };
 }
 
-/** From nothing loaded but this file to the first report. */
+/** Time from loading the package to the first report. */
 async function firstReport() {
   const begun = performance.now();
   await init();
@@ -87,7 +87,7 @@ async function firstReport() {
   return { milliseconds, iteration };
 }
 
-/** All arrays of a full-sized frame, copied out and sent: the time of the copies and when they were posted. And four views painted instead. */
+/** Copies and posts all arrays of a full-sized frame; returns the time of the copies and the time of posting. Also times painting four views. */
 async function frame() {
   const estimator = new Estimator(scene.image, scene.depth, { start: scene.pose });
   const before = performance.now();

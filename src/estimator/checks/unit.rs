@@ -21,8 +21,8 @@ const UNIT_ROUNDS: usize = 5;
 /// Another unit fits better if the spatial covariance of its residuals is below this share of the given unit's. Set on
 /// pairs with right and wrong units (docs/lab/thresholds.md).
 const BETTER_STRUCTURE: f64 = 0.5;
-/// Its noise must also be lower by four sigmas: the median of n points in three channels gives the noise to
-/// 0.56/sqrt(n).
+/// The noise of another unit must also be lower by four sigmas: the median of n points in three channels gives the noise
+/// to 0.56/sqrt(n).
 const SIGMAS_OF_NOISE: f64 = 4.0 * 0.56;
 
 /// The reason to cap a verdict if relief in another unit explains an image that the given unit does not explain.

@@ -13,9 +13,10 @@ use crate::view::ColourView;
 
 /// Two registrations agree if they end within this angle, degrees: local contrast can be off by a few.
 const SAME_POSE: f64 = 8.0;
-/// Around an initial pose, starts are turned about the axes by multiples of this angle (degrees), up to this many: 123
-/// turns. Set on photographs with initial poses 8 degrees off (docs/lab/thresholds.md).
+/// Around an initial pose, starts are turned about the axes by multiples of this angle, degrees. Set on photographs with
+/// initial poses 8 degrees off (docs/lab/thresholds.md).
 const TURN: f64 = 5.0;
+/// Largest multiple of that angle: 123 turns in all. Set on the same photographs.
 const MOST_TURNS: i32 = 3;
 
 /// Whether local contrast may take over if photometric residuals exceed noise: the image has a mask, and varying albedo

@@ -13,7 +13,7 @@ use crate::estimator::finder::TrustRegion;
 use crate::estimator::pair::ViewPair;
 use crate::pose::{ContrastReport, Similarity, register_again};
 
-/// Most rounds. Set on photographs at 20 and 60 degrees (docs/lab/thresholds.md).
+/// Most rounds of pose and albedo in turn. Set on photographs at 20 and 60 degrees (docs/lab/thresholds.md).
 const ROUNDS: usize = 3;
 
 /// A pose from contrast, and how many rounds it may still follow the albedo.

@@ -23,7 +23,8 @@ const BLUR: f64 = 1.5;
 const MEANS: [f64; LEVELS] = [3.0, 5.0];
 /// Blur of the sharp image in strides beyond the first, because detail between samples would be noise.
 const BLUR_OF_STRIDE: f64 = 0.4;
-/// v = log(I + 0.1 median I).
+/// Share of the median intensity that is added before the logarithm, v = log(I + 0.1 median I), which limits the
+/// contrast of dark pixels.
 const LIFT: f32 = 0.1;
 /// Maximum number of Gauss-Newton steps of a round, and of attempts to damp each.
 const MOST_STEPS: usize = 4;

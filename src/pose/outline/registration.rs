@@ -16,8 +16,9 @@ use crate::pose::sums::Sums;
 use crate::pose::uncertainty::{Direction, describe};
 use crate::view::extent;
 
-/// Weights of depth discontinuities off the silhouette, and of uncovered silhouette.
+/// Weight of depth discontinuities off the silhouette.
 const RIM: f64 = 1.0;
+/// Weight of uncovered silhouette.
 const BARE: f64 = 0.3;
 /// Weight of depth discontinuities against edges of the image, which may be print (docs/lab/thresholds.md).
 const EDGE: f64 = 0.4;
@@ -25,8 +26,9 @@ const EDGE: f64 = 0.4;
 const PRIOR: f64 = 0.1;
 /// One sigma of the edge bias, pixels.
 const LOSS_SIGMA: f64 = 2.0;
-/// Robust scales, pixels, and number of rounds at each.
+/// Robust scales in turn, pixels.
 const SCALES: [f64; 4] = [40.0, 14.0, 7.0, 3.5];
+/// Number of rounds at each robust scale.
 const ROUNDS: usize = 6;
 /// Number of steps of a round.
 const STEPS: usize = 3;
@@ -37,9 +39,10 @@ const MOST_POINTS: usize = 4000;
 const MOST_OUTLINE: usize = 1000;
 /// The last robust scale.
 const FINEST: f64 = SCALES[SCALES.len() - 1];
-/// Length of silhouette, in pixels, whose errors count as one, and the factor by which errors exceed the residuals,
-/// because errors of masks, of the sensors' registration and of the edge bias all go one way.
+/// Length of silhouette, in pixels, whose errors count as one.
 const CORRELATED: f64 = 8.0;
+/// Factor by which errors exceed the residuals, because errors of masks, of the sensors' registration and of the edge
+/// bias all go one way.
 const SIGMA_INFLATION: f64 = 3.0;
 /// Smallest noise of the discontinuities, pixels.
 const LEAST_NOISE: f64 = 0.3;

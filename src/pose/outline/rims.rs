@@ -18,8 +18,9 @@ const JUMP: f64 = 0.02;
 /// Cosines between normal and ray of the depth camera at which a discontinuity begins to count as sharp, and from which
 /// it does fully; normals of real sensors at an occluding contour do not fall below 0.3.
 const SHARP: [f64; 2] = [0.35, 0.7];
-/// Cosine between normal and ray of the colour camera below which a surface turns away, and the weight of such a point.
+/// Cosine between normal and ray of the colour camera below which a surface turns away.
 const LIMB: f64 = 0.45;
+/// Weight of a discontinuity on such a surface.
 const LIMB_WEIGHT: f64 = 0.5;
 
 /// A depth discontinuity: a point of the depth map on the object's silhouette.

@@ -14,11 +14,11 @@ const SETTLED_STEP: f64 = 1e-7;
 /// Maximum number of rounds with instrumental variables. The first chooses the visible points; the others keep them.
 const INSTRUMENTAL_ROUNDS: usize = 3;
 const MOST_INSTRUMENTAL_STEPS: usize = 12;
-/// If there are more points than annealing needs, these rounds run first on the points of the annealing and then on all
-/// of them. They end when no unknown moves by more than this share of its sigma; because steps halve, about as much
-/// remains.
+/// The instrumental rounds end when no unknown moves by more than this share of its sigma; because steps halve, about as
+/// much remains. If there are more points than annealing needs, the rounds run first on the points of the annealing and
+/// then on all of them.
 const SETTLED_SIGMAS: f64 = 0.02;
-/// These rounds are undone if they raise the objective by more than this share, because they should only trade noise.
+/// The instrumental rounds are undone if they raise the objective by more than this share, because they should only trade noise.
 /// Least squares favours positions between pixels, where a cubic spline leaves 0.572 of the variance of white noise
 /// (0.756 along either axis), and loses that gain at the pixels.
 const LARGEST_RISE: f64 = 1.0 / 0.572 - 1.0;

@@ -14,9 +14,11 @@ use crate::view::{Size, extent};
 /// Distance from the border of the mask within which points are left out, image pixels: they would enter and leave with
 /// every step, and the spline is only a continuation there.
 const MARGIN: usize = 1;
-/// Minimum number of points for a coarse level: about 15 for each unknown of the pose, and 30 for each unknown
-/// if the 27 of the light are added, which may fit the image under a wrong pose (docs/lab/thresholds.md).
+/// Minimum number of points for a coarse level under a known light: about 15 for each unknown of the pose
+/// (docs/lab/thresholds.md).
 const ENOUGH_KNOWN: usize = 100;
+/// Minimum number of points for a coarse level under an unknown light: 30 for each unknown, because the 27 of the light
+/// may fit the image under a wrong pose (docs/lab/thresholds.md).
 const ENOUGH_UNKNOWN: usize = 1000;
 /// (5^(1/2) - 1) / 2.
 const GOLDEN_SECTION: f64 = 0.618_033_988_749_895;

@@ -1,4 +1,4 @@
-// The component of examples/react in strict mode, with a count of the estimators that it makes, runs to the end and frees.
+// The component of examples/react in strict mode, with counters of the estimators that it makes, runs to the end and frees.
 import init, { Estimator, sample } from "bimodal-stereo";
 import { StrictMode, useState } from "react";
 import { createRoot } from "react-dom/client";
@@ -19,7 +19,7 @@ Estimator.prototype.free = function () {
 };
 
 await init();
-/** The first takes far longer than a click; between the two there is none. */
+/** The first pair takes far longer than a click; no pair is shown between the two. */
 const pairs = [256, undefined, 48].map((size) => (size ? sample({ surface: "bust", light: "window", size }) : undefined));
 
 function App() {
