@@ -3,26 +3,22 @@
 //! Starts (the candidates, their inverses, and what the coarse search finds beside the first) are each brought to rest by
 //! edges alone; the best by its score is settled with all cues; then the candidates are judged by its covariance.
 
-use nalgebra::Vector3;
-
 use super::cue::Cue;
 use super::distortion;
-use super::guessed;
-use super::health::Health;
 use super::input::RigView;
 use super::optima::{self, Optimum};
 use super::planes::Planes;
 use super::readings::Rereading;
-use super::reason::{CheckReason, Warning, WarningKind};
+use super::reason::{Warning, WarningKind};
 use super::registration::{
     ARRIVED, Findings, MOST_RIMS_OF_STARTS, MOST_SETTLING, Round, SIGMAS, SURVIVORS, Scene, Start,
 };
-use super::report::{CheckReport, CueReport, FrameReport};
+use super::report::CheckReport;
 use super::search;
 use super::sensitivity::curves;
-use super::unknowns::{Matrix, POSE, State};
+use super::unknowns::State;
 use super::unseen::leave_unseen_out;
-use super::verdict::{CandidateReport, CheckVerdict, Judge};
+use super::verdict::CheckVerdict;
 use crate::error::{Error, ErrorKind, Result};
 use crate::pose::Similarity;
 

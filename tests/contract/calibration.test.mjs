@@ -86,7 +86,7 @@ describe("a rig before boxes", () => {
 
   test("an inverted direction is named", async () => {
     const { verdict, code, warnings } = await checkCalibration([frame], { told: inverse(truth) });
-    assert.deepEqual([verdict, code], ["off", "off-target"]);
+    assert.deepEqual([verdict, code], ["off", "misread"]);
     const [warning] = warnings;
     assert.deepEqual([warning.code, warning.field], ["fits-inverted", "candidates.told"]);
     assert.match(warning.message, /^told: fits inverted .* invert it/);
