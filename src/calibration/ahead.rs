@@ -15,7 +15,7 @@ pub(super) enum Ahead {
 }
 
 impl Ahead {
-    /// The direction nearest to the mean of those of all valid points; z where there is none.
+    /// The axis nearest to the mean direction of all valid points; z without any valid point.
     pub fn of(points: &[[f32; 3]]) -> Self {
         let (mut sum, mut count) = ([0.0_f64; 3], 0.0);
         for point in points.iter().filter(|point| !point[2].is_nan()) {
@@ -33,7 +33,7 @@ impl Ahead {
         Self::Along { axis, sign: if sum[axis] < 0.0 { -1.0 } else { 1.0 } }
     }
 
-    /// How far ahead a point lies.
+    /// Depth of a point along the viewing direction, or its distance for a scanner that looks all around.
     pub fn depth(self, point: &[f32; 3]) -> f32 {
         match self {
             Self::Along { axis, sign } => sign * point[axis],

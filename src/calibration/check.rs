@@ -1,7 +1,9 @@
-//! The check from frames to report, slice by slice.
+//! The check from frames to report, one slice of work at a time.
 //!
-//! Starts (the candidates, their inverses, and what the coarse search finds beside the first) are each brought to rest by
-//! edges alone; the best by its score is settled with all cues; then the candidates are judged by its covariance.
+//! The initial poses are the candidates, the inverse of the first, and what the coarse search finds near the first. Each
+//! converges by its edges alone, and the best few are refined with all cues, together with every candidate that lies
+//! elsewhere. The best of these optima is the estimate, and its covariance judges the candidates. If the first candidate
+//! does not pass, it is registered again in other conventions.
 
 use super::cue::Cue;
 use super::distortion;
@@ -22,21 +24,21 @@ use super::verdict::CheckVerdict;
 use crate::error::{Error, ErrorKind, Result};
 use crate::pose::Similarity;
 
-/// Most frames of one check: their images fill the memory of a page.
+/// Maximum number of frames in a check: their images fill the memory of a page.
 const MOST_FRAMES: usize = 24;
-/// Most candidates.
+/// Maximum number of candidates.
 const MOST_CANDIDATES: usize = 16;
-/// Two starts whose scenes are within so many pixels are one.
+/// Two poses count as the same if the scene moves by less than this between them, pixels of an image 640 wide.
 const SAME_START: f64 = 1.5;
-/// Levels at which rims are looked for anew: their visibility changes little in between.
+/// Levels at which depth discontinuities are found anew: their visibility changes little in between.
 const FINDING_ANEW: [usize; 2] = [1, 3];
-/// The level at which candidates come in once more, with windows of some pixels.
+/// The level at which candidates enter once more, with windows of a few pixels.
 const ENTERING: usize = 2;
 
-/// How far an entry of a rotation may be from the nearest rotation's: trackers write matrices that have drifted by 1e-3.
+/// Largest deviation of an entry of a rotation from the nearest rotation: matrices of trackers drift by 1e-3.
 const ROTATION_TOLERANCE: f64 = 0.01;
 
-/// What the search begins at: the first candidate that puts points onto the image.
+/// The initial pose of the search: the first candidate that puts points onto the image.
 fn told(scene: &Scene, candidates: &[(String, State)]) -> State {
     let seen = candidates.iter().find(|candidate| scene.is_seen(&candidate.1));
     seen.or(candidates.first()).map_or_else(|| State::at(Similarity::identity()), |candidate| candidate.1)
@@ -52,25 +54,25 @@ enum Stage {
     Done,
 }
 
-/// A check under way.
+/// A check in progress.
 pub struct CalibrationCheck {
     pub(super) scene: Scene,
     pub(super) candidates: Vec<(String, State)>,
     pub(super) warnings: Vec<Warning>,
-    /// Width of the first image as it was given.
+    /// Width of the first image as given.
     pub(super) width: f64,
-    /// Best first once they have arrived.
+    /// Sorted by score after each level, best first.
     starts: Vec<Start>,
     best: Round,
     stage: Stage,
-    /// A distortion that seems to have been left out.
+    /// First radial coefficient of a distortion that was probably left out.
     pub(super) lens: Option<f64>,
     report: Option<CheckReport>,
 }
 
 impl CalibrationCheck {
     /// # Errors
-    /// Naming the frame's or candidate's member at fault.
+    /// The error names the member of the frame or candidate at fault.
     pub fn new(views: Vec<RigView>, candidates: Vec<(String, Similarity)>, cues: &[Cue]) -> Result<Self> {
         if views.is_empty() || views.len() > MOST_FRAMES {
             let message = format!("needs 1 to {MOST_FRAMES} frames");
@@ -116,7 +118,7 @@ impl CalibrationCheck {
         })
     }
 
-    /// Share of the work that is done, and what comes next.
+    /// Share of the work that is done, and a description of the current stage.
     #[must_use]
     pub fn progress(&self) -> (f64, &'static str) {
         match &self.stage {
@@ -139,13 +141,13 @@ impl CalibrationCheck {
         }
     }
 
-    /// The report, once it is there.
+    /// The report, once it is available.
     #[must_use]
     pub const fn report(&self) -> Option<&CheckReport> {
         self.report.as_ref()
     }
 
-    /// One slice of the work; whether the report is there.
+    /// Does one slice of the work and returns whether the check is complete.
     pub fn step(&mut self) -> bool {
         self.stage = match std::mem::replace(&mut self.stage, Stage::Done) {
             Stage::Starting => {
@@ -179,7 +181,8 @@ impl CalibrationCheck {
         matches!(self.stage, Stage::Done)
     }
 
-    /// The candidates, what the coarse search finds beside the first, and its inverse.
+    /// Initial poses: what the coarse search finds near the first candidate, the other candidates, and the inverse of the
+    /// first.
     fn find_starts(&mut self) {
         let told = self.best.told;
         let units = self.scene.units(&told);
@@ -199,7 +202,7 @@ impl CalibrationCheck {
         self.starts = starts;
     }
 
-    /// Candidates that are nearly right come in late once more: among texture wide windows would lead them away.
+    /// Candidates that are nearly right enter once more at a late level: wide windows would lead them away among texture.
     fn enter_candidates(&mut self) {
         let told = self.best.told;
         let states = self.candidates.iter().map(|candidate| candidate.1);
@@ -217,7 +220,7 @@ impl CalibrationCheck {
         self.scene.planes(SIGMAS[level] * self.scene.scale)
     }
 
-    /// One start at one level; after the last start the next level, with the best of them.
+    /// Refines one pose at one level. After the last pose, the best ones proceed to the next level.
     fn approach(&mut self, level: usize, index: usize, planes: Vec<Planes>) -> Stage {
         if let Some(start) = self.starts.get_mut(index) {
             if FINDING_ANEW.contains(&level) {
@@ -246,7 +249,7 @@ impl CalibrationCheck {
         Stage::Settling { rounds, at: 0, done: 0, planes }
     }
 
-    /// The best starts that are not one place, at most so many.
+    /// Keeps the best poses that differ from each other, at most `most`.
     fn keep_apart(&mut self, most: usize) {
         let units = self.scene.units(&self.best.told);
         let mut kept: Vec<Start> = vec![];
@@ -261,7 +264,7 @@ impl CalibrationCheck {
         self.starts = kept;
     }
 
-    /// The first report; where the first candidate does not pass, other readings of it come next.
+    /// Writes the first report. If the first candidate does not pass, the search over its other readings follows.
     fn judge(&mut self, rounds: &[Round], planes: Vec<Planes>) -> Stage {
         let optima = optima::ranked(&self.scene, rounds, &planes);
         self.best = optima[0].round;
@@ -280,7 +283,7 @@ impl CalibrationCheck {
         }
     }
 
-    /// The report with the best reading, if that fits clearly better than what was found near the candidate.
+    /// Adopts the best reading if it fits clearly better than every pose found near the candidate.
     fn adopt(&mut self, search: Box<Rereading>, planes: Vec<Planes>) -> Stage {
         let mut optima = search.end(&self.scene, &planes);
         let likely = self.judge_of(&optima[0]).0.likely();
@@ -295,7 +298,7 @@ impl CalibrationCheck {
         curves_of(optima, planes)
     }
 
-    /// One round of one of the states; after the last of all the verdict.
+    /// Refines one of the poses by one round with all cues. After the last pose, the candidates are judged.
     fn settle(&mut self, mut rounds: Vec<Round>, at: usize, done: usize, planes: Vec<Planes>) -> Stage {
         let moved = self.scene.settle(&mut rounds[at], &planes);
         if moved >= ARRIVED && done + 1 < MOST_SETTLING {
@@ -312,13 +315,13 @@ fn curves_of(mut optima: Vec<Optimum>, planes: Vec<Planes>) -> Stage {
     Stage::Curves { planes, findings: Box::new(optima.swap_remove(0).findings), done: 0 }
 }
 
-/// A pose with the rotation nearest to the matrix that was given.
+/// The pose with the rotation nearest to the given matrix.
 pub(super) fn rigid(pose: &Similarity) -> Result<State> {
     let wrong = |member, message: &str| Error::new(ErrorKind::Range, member, message.to_owned());
     if (pose.scale - 1.0).abs() > ROTATION_TOLERANCE {
         return Err(wrong("scale", "must be 1: extrinsics do not change sizes").value(pose.scale));
     }
-    // Written so that NaN is refused.
+    // The comparison is written so that it rejects NaN.
     if !pose.translation.iter().all(|value| value.abs() < crate::view::FARTHEST) {
         return Err(wrong("translation", "must be finite, and below 1e12 m"));
     }
@@ -328,9 +331,9 @@ pub(super) fn rigid(pose: &Similarity) -> Result<State> {
     Ok(State::at(Similarity { scale: 1.0, ..nearest }))
 }
 
-/// Millimetres where metres were asked for.
+/// Warns of translations that are probably in millimetres.
 fn warn_of_translations(candidates: &[(String, State)], warnings: &mut Vec<Warning>) {
-    /// Metres: farther apart than any rig.
+    /// Metres: larger than any rig.
     const FARTHEST_APART: f64 = 10.0;
     for (name, candidate) in candidates {
         let length = candidate.pose.translation.norm();

@@ -1,4 +1,4 @@
-//! From the optima of a check to its report: the estimate's distribution, and what it says about each candidate.
+//! From the optima of a check to its report: the distribution of the estimate and the verdicts on the candidates.
 
 use nalgebra::Vector3;
 
@@ -13,13 +13,15 @@ use super::report::{CheckReport, CueReport, FrameReport};
 use super::unknowns::{Matrix, POSE, State};
 use super::verdict::{CandidateReport, CheckVerdict, Judge};
 
-/// Variance where nothing at all is known, squared pixels.
+/// Variance if nothing at all is known, squared pixels.
 const FARTHEST: f64 = 1e6;
-/// A reading of a candidate fits clearly better if the candidate's error is so many times its own.
+/// Another reading of a candidate fits clearly better if the candidate's error is at least this multiple of the error of
+/// the reading.
 const CLEARLY: f64 = 3.0;
 
 impl CalibrationCheck {
-    /// The report on the settled optima, best first, and on another reading of the first candidate if that is the best.
+    /// The report on the optima, best first. `reading` is the reading of the first candidate from which the best optimum
+    /// was reached, if any.
     pub(super) fn conclude(&self, optima: &[Optimum], reading: Option<Reading>) -> CheckReport {
         let Optimum { findings, round, .. } = &optima[0];
         let (units, state) = (findings.units, round.state);
@@ -49,7 +51,7 @@ impl CalibrationCheck {
         }
     }
 
-    /// Where optima that are about as likely contradict each other on a candidate, it is undecided.
+    /// Makes a candidate undecided if another optimum within the estimate's distribution contradicts its verdict.
     fn hear_other_optima(&self, reports: &mut [CandidateReport], judge: &Judge, others: &[Optimum]) {
         let likely = judge.likely();
         for other in others.iter().filter(|other| other.behind <= likely && self.scene.is_seen(&other.round.state)) {
@@ -68,7 +70,7 @@ impl CalibrationCheck {
         }
     }
 
-    /// Says of a first candidate that is off in which other reading it fits.
+    /// If the first candidate is off and fits in another reading, names that reading as the reason.
     fn name_reading(&self, reports: &mut [CandidateReport], judge: &Judge, best: State, found: Option<Reading>) {
         let (Some(report), Some((name, candidate))) = (reports.first_mut(), self.candidates.first()) else { return };
         if report.verdict != CheckVerdict::Off {
@@ -86,7 +88,7 @@ impl CalibrationCheck {
         }
     }
 
-    /// The distribution about an optimum, and its covariance in its units.
+    /// The distribution about an optimum, and its covariance in the optimum's units.
     pub(super) fn judge_of(&self, Optimum { round, findings, .. }: &Optimum) -> (Judge, Matrix) {
         let state = round.state;
         let frame = &self.scene.frames[0];
@@ -125,7 +127,7 @@ impl CalibrationCheck {
         warnings
     }
 
-    /// Of the estimate's distribution; where sums are beyond rounding nothing is known but what was told.
+    /// Scale of the estimate's distribution. If the sums overflow, it is that of the prior.
     fn scale(&self, findings: &Findings, state: &State, cloud: &[Vector3<f64>]) -> Matrix {
         let told = || findings.prior.cholesky().map_or(Matrix::identity() * FARTHEST, |c| c.inverse());
         let scale = findings.total.covariance(&findings.prior).unwrap_or_else(told);
@@ -137,7 +139,7 @@ impl CalibrationCheck {
         scale + guessed::covariance(&findings.units, &camera, cloud, width, &findings.prior)
     }
 
-    /// The commonest mistake: P_depth = R P_colour + t.
+    /// Warns of the most common mistake, P_depth = R P_colour + t.
     fn warn_of_inverses(&self, judge: &Judge, best: &State, warnings: &mut Vec<Warning>) {
         for (name, candidate) in &self.candidates {
             let inverse = State::at(candidate.pose.inverse());

@@ -1,24 +1,24 @@
-//! What a check looks at.
+//! The cues of a check.
 
-/// What of a frame bears on the calibration.
+/// A property of the frames that constrains the calibration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
 pub enum Cue {
-    /// Colours within patches follow their normals.
+    /// Colours within a patch follow the normals.
     Shading,
-    /// Depth edges on image edges.
+    /// Depth edges lie on image edges.
     Edges,
-    /// Mutual information of colours and patches.
+    /// Mutual information of colours and patches is large.
     Information,
-    /// The masked object on the image's mask.
+    /// The masked object lies on the image's mask.
     Silhouette,
 }
 
 impl Cue {
-    /// All of them.
+    /// All cues.
     pub const ALL: [Self; 4] = [Self::Shading, Self::Edges, Self::Information, Self::Silhouette];
 
-    /// Its name.
+    /// Name of the cue.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {

@@ -1,12 +1,13 @@
-//! Derivatives by differences of a log likelihood that is evaluated tile by tile.
+//! Finite differences of a log likelihood that is evaluated tile by tile.
 
 use super::evidence::{Share, positive};
 use super::unknowns::{POSE, State, Units, Vector};
 
-/// Pixels: wide enough to step over the raster, narrow enough for a curvature.
+/// Step in pixels: wide enough to step over the raster, narrow enough for a curvature.
 const STEP: f64 = 1.0;
 
-/// Values and gradients of the tiles, and the whole's curvature in equal parts: that of a single tile is too uncertain.
+/// Values and gradients of the tiles. Each used tile gets an equal part of the total curvature, because the curvature of
+/// a single tile is too uncertain.
 pub(super) fn differences(
     units: &Units,
     state: &State,

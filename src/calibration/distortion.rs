@@ -1,23 +1,25 @@
-//! Whether the colour camera's distortion was left out: some radial term then brings depth edges much nearer to image
-//! edges than none does.
+//! Detects a distortion of the colour camera that was left out: with some radial term, depth edges lie much nearer to
+//! image edges than without any.
 //!
-//! Only a camera that came without any is asked. A few terms k1 are tried, each with a pose of its own, and the mean log
-//! likelihoods of their rims compared.
+//! Only cameras without distortion are examined. A pose is registered for each of a few terms k1, and the mean log
+//! likelihoods of the depth discontinuities are compared.
 
 use super::planes::Planes;
 use super::registration::{MOST_RIMS_OF_STARTS, Round, Scene, Start};
 use crate::view::Lens;
 
-/// Terms that are tried: from what moves a usual image's corner by ten pixels to a wide lens.
+/// Terms k1 that are tried: the smallest move the corner of a common image by ten pixels, the largest belong to wide
+/// lenses.
 const TERMS: [f64; 6] = [-0.3, -0.15, -0.06, 0.06, 0.15, 0.3];
-/// Windows of edges, sigma in pixels of an image 640 wide: wide ones first, as a lens and its pose move together.
+/// Windows of edges, sigma in pixels of an image 640 wide. The first ones are wide, because a lens and its pose move
+/// together.
 const SIGMAS: [f64; 3] = [5.0, 2.5, 1.3];
-/// Mean log likelihood of a rim that a lens has to gain: six times what a sigma of the prior is worth. One rig of boxes
-/// without its lens of k1 = -0.08 passes it, and so do four or five of 13 captures of small objects without any: outlines that do not
-/// fit anyhow fit some lens better. That tiles agree by three of their sigmas was tried, and lost the boxes.
+/// Gain in the mean log likelihood of a depth discontinuity from which a lens is reported: six times `SCORE_PRIOR`, the
+/// value of one sigma of the prior. A silhouette that fits badly fits some lens better, so small objects without
+/// distortion may exceed it as well (docs/lab/thresholds.md).
 const GAIN: f64 = 0.06;
 
-/// The term k1 that explains the edges better than a camera without distortion.
+/// The term k1 that fits the edges clearly better than a camera without distortion.
 pub(super) fn left_out(scene: &mut Scene, round: &Round) -> Option<f64> {
     if scene.frames.iter().any(|frame| frame.camera.lens != Lens::None) {
         return None;
@@ -29,7 +31,7 @@ pub(super) fn left_out(scene: &mut Scene, round: &Round) -> Option<f64> {
     (scores[best] > without + GAIN).then_some(TERMS[best])
 }
 
-/// From the estimate, or from what was told if that ends better: a lens that is left out leads the estimate astray.
+/// Score from the estimate or from the initial pose, whichever ends better: a missing lens biases the estimate.
 fn score(scene: &mut Scene, round: &Round, lens: Lens, planes: &[Vec<Planes>]) -> f64 {
     let told = Round { state: round.told, ..*round };
     score_from(scene, round, lens, planes).max(score_from(scene, &told, lens, planes))

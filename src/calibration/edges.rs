@@ -1,13 +1,17 @@
-//! Depth edges on image edges: log likelihood of where the image's edges are, given where rims project to.
+//! Depth edges on image edges: the log likelihood of the positions of image edges, given the projected depth
+//! discontinuities.
 //!
-//! Along the normal of each rim the image has some edges, at offsets u_k with strengths a_k. One of them is the rim's, with
-//! a probability in proportion to its strength, and then off by the loss of outlines d and normal noise sigma; or none is:
+//! Along the normal of each depth discontinuity the image has edges at offsets u_k with strengths a_k. With probability 1
+//! - e, one of them belongs to the discontinuity; each is chosen in proportion to its strength, and its position deviates
+//! by the edge bias d and by normal noise s:
 //!
-//! l = sum over rims of log(e / 2 L + (1 - e) sum_k p_k N(u + d - u_k; sigma)), p_k = a_k / sum a,
+//! l = sum over discontinuities of log(e / 2 L + (1 - e) sum_k p_k N(u + d - u_k; s)), p_k = a_k / sum a, s^2 = sigma^2 + g^2 / 12,
 //!
-//! where u moves with the pose. Which edge is whose is thus never decided, and a rim before texture weighs little by itself.
-//! Coarse to fine: wide windows on a blurred image first. Each round looks for edges anew and takes a Gauss-Newton step by
-//! the responsibilities (expectation maximisation).
+//! where u moves with the pose. The near surface ends anywhere within the gap g between two samples of the depth map, so
+//! that a coarse map weighs less than a fine one. The check never decides which edge belongs to which discontinuity, and
+//! a discontinuity in front of texture has little weight. The levels go from wide windows on a blurred image to narrow
+//! ones. Each round finds the edges anew and takes a Gauss-Newton step with the responsibilities (expectation
+//! maximisation).
 
 use super::evidence::{Share, Tiles};
 use super::frame::{Frame, Projection};
@@ -16,54 +20,55 @@ use super::planes::Planes;
 use super::rims::{self, Rim};
 use super::unknowns::{LOSS, State, Units, Vector, add_square};
 
-/// Share of rims whose edge the image does not show.
+/// e, the share of depth discontinuities whose edge is not visible in the image.
 const MISSING: f64 = 0.3;
-/// L at the least, pixels of an image 640 wide.
+/// Least half width L of a window, pixels of an image 640 wide.
 const WIDEST: f64 = 14.0;
-/// Width of an even distribution over its standard deviation, the root of twelve.
+/// Width of a uniform distribution over its standard deviation, the square root of twelve.
 const EVEN: f64 = 3.464_101_615_137_754_6;
-/// L in sigmas.
+/// Half width L of a window in standard deviations s.
 const WINDOW: f64 = 3.0;
-/// Edges of a profile, the strongest ones.
+/// Maximum number of edges in a profile; the strongest are kept.
 const MOST_EDGES: usize = 12;
-/// An edge weaker than this is noise: differences of encoded intensities, all channels.
+/// Weaker edges are noise: differences of encoded intensities, norm over the channels.
 const FAINTEST: f32 = 0.012;
-/// Of the bound's curvature at the least: what is left of it varies from round to round, and steps may not run away.
+/// Least factor of the bound's curvature: the factor varies from round to round, and a small one would make steps
+/// diverge.
 const LEAST_LEFT: f64 = 0.1;
-/// Blur of the image over sigma, and the least, pixels.
+/// Blur of the image over sigma, and the least blur in pixels.
 const BLUR: f64 = 0.35;
 const LEAST_BLUR: f64 = 0.7;
 
-/// The edges beside one rim.
+/// The image edges near one depth discontinuity.
 struct Profile {
-    /// d u / d unknowns.
+    /// Derivative of u with respect to the unknowns.
     row: Vector,
-    /// Standard deviation of where the near surface ends, pixels.
+    /// Standard deviation s of the position at which the near surface ends, pixels.
     sigma: f64,
     window: f64,
     tile: u32,
     edges: Vec<(f64, f64)>,
 }
 
-/// Rims of one frame with their profiles, for one state.
+/// The depth discontinuities of one frame with their profiles, for one state.
 pub(super) struct EdgeField {
     profiles: Vec<Profile>,
 }
 
-/// Blur, pixels, of the planes on which edges known within `sigma` pixels are looked for.
+/// Blur, in pixels, of the image in which edges are looked for that are known to within `sigma` pixels.
 pub(super) fn blur(sigma: f64) -> f64 {
     (BLUR * sigma).max(LEAST_BLUR)
 }
 
 impl EdgeField {
-    /// The rims that the colour camera sees, at most so many.
+    /// The depth discontinuities that the colour camera sees, at most about `most`.
     pub fn rims(frame: &Frame, projection: &Projection, most: usize) -> Vec<Rim> {
         let all = rims::find(frame, projection);
         let stride = all.len().div_ceil(most).max(1);
         all.into_iter().step_by(stride).collect()
     }
 
-    /// Rims that were found at one state where another one puts them.
+    /// Depth discontinuities found at one state, moved to where another state projects them.
     pub fn moved(frame: &Frame, rims: &[Rim], found: &State, state: &State) -> Vec<Rim> {
         let camera = state.camera(&frame.camera);
         let place = |state: &State, rim: &Rim| {
@@ -77,7 +82,8 @@ impl EdgeField {
         rims.iter().filter_map(moved).collect()
     }
 
-    /// The edges beside rims as `state` sees them, on planes blurred for edges known within `sigma` pixels.
+    /// Finds the image edges near discontinuities as `state` projects them, on planes blurred for edges known to within
+    /// `sigma` pixels.
     pub fn new(Sight { frame, planes }: Sight<'_>, rims: &[Rim], state: &State, units: &Units, sigma: f64) -> Self {
         let blur = blur(sigma);
         let camera = state.camera(&frame.camera);
@@ -89,7 +95,7 @@ impl EdgeField {
             let mut row = rows[0] * rim.normal[0] + rows[1] * rim.normal[1];
             row[LOSS] = 1.0;
             let start = [0, 1].map(|k| rim.pixel[k] + state.loss * rim.normal[k]);
-            // An even distribution over the gap, as a normal one.
+            // The variance of a uniform distribution over the gap adds to that of the edges.
             let sigma = sigma.hypot(rim.gap / EVEN);
             let window = (WINDOW * sigma).max(widest);
             let edges = edges(planes, start, rim.normal, window, blur)?;
@@ -98,8 +104,9 @@ impl EdgeField {
         Self { profiles: rims.iter().filter_map(profile).collect() }
     }
 
-    /// Log likelihood with its gradient at the state of the field, tile by tile; the curvature is that of expectation
-    /// maximisation's bound, which is never negative, times how much of it is left once rims may change their edges.
+    /// Adds the log likelihood and its gradient at the state of the field, tile by tile. The curvature is that of the
+    /// bound of expectation maximisation, which is never negative, times the factor that remains because discontinuities
+    /// may change their edges.
     pub fn evidence(&self, shares: &mut [Share]) {
         let (mut bounds, mut own) = (0.0, 0.0);
         for profile in &self.profiles {
@@ -124,7 +131,7 @@ impl EdgeField {
             share.gradient += profile.row * slope;
             add_square(&mut share.curvature, &profile.row, bound);
         }
-        // Without any rim there is no curvature of which something could be left.
+        // Without discontinuities the curvature is zero, and its factor is arbitrary.
         let left = if bounds > 0.0 { (own / bounds).clamp(LEAST_LEFT, 1.0) } else { 1.0 };
         shares.iter_mut().for_each(|share| share.curvature *= left);
     }
@@ -134,9 +141,9 @@ impl EdgeField {
     }
 }
 
-/// Offsets and shares of the strongest edges along a normal; `None` where the rim is off the image.
+/// Offsets and shares of the strongest edges along a normal; `None` if the discontinuity lies off the image.
 fn edges(planes: &Planes, start: [f64; 2], normal: [f64; 2], window: f64, blur: f64) -> Option<Vec<(f64, f64)>> {
-    // Samples at half the blur, so that a parabola through three of them finds the top of an edge.
+    // Samples are half a blur apart, so that a parabola through three of them finds the maximum of an edge.
     let pace = (0.5 * blur).max(0.5);
     let half = (window / pace).ceil() as isize;
     let at = |k: isize| {

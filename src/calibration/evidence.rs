@@ -1,20 +1,21 @@
-//! Log likelihood with its derivatives, and how sure it is of them.
+//! A log likelihood with its derivatives, and the reliability of these.
 //!
-//! Neighbouring rims and pixels share their errors, so a sum over them is a composite likelihood: its maximum is right,
-//! its curvature is not. What a scene can say is estimated from the scene: the sum is split into tiles of the image, whose
-//! errors are independent. A cue is weighed by trace(H) / trace(J), the curvature H over J = sum over tiles g g^T, which
-//! would be one for a true likelihood (Pauli, Racugno and Ventura 2011); the covariance of the estimate is H^-1 and the jackknife
-//! over tiles (Efron 1982), which unlike H^-1 J H^-1 stays honest where a few tiles carry it.
+//! Neighbouring depth discontinuities and pixels share their errors, so a sum over them is a composite likelihood: its
+//! maximum is right, but its curvature is too large. The check estimates the information from the scene itself. It splits
+//! the sum into tiles of the image whose errors are independent. A cue is weighted by trace(H) / trace(J), with the
+//! curvature H and J = sum over tiles g g^T; this ratio would be one for a true likelihood (Pauli, Racugno and Ventura
+//! 2011). The covariance of the estimate is H^-1 plus the jackknife over tiles (Efron 1982), which unlike H^-1 J H^-1 is
+//! not overconfident if a few tiles hold most of the information.
 
 use super::unknowns::{Matrix, UNKNOWNS, Vector, add_square, solve, spectral};
 use crate::numeric::eigen::symmetric_eigen;
 use crate::view::Size;
 
-/// Tiles along the longer side of an image: wide enough that errors of different tiles are independent, many enough to
-/// tell their scatter.
+/// Tiles along the longer side of an image: wide enough that errors of different tiles are independent, and many enough
+/// to estimate their scatter.
 const TILES_ACROSS: usize = 10;
 
-/// A partition of an image.
+/// A partition of an image into tiles.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tiles {
     side: f64,
@@ -39,7 +40,7 @@ impl Tiles {
     }
 }
 
-/// The share of one tile in a log likelihood: value, gradient, and minus its second derivative.
+/// The contribution of one tile to a log likelihood: value, gradient, and negative second derivative.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Share {
     pub value: f64,
@@ -70,7 +71,7 @@ impl Evidence {
         self.shares.iter().map(|share| share.curvature).sum()
     }
 
-    /// trace(H) / trace(J) with the tiles' gradients where the whole's would vanish; at most one.
+    /// trace(H) / trace(J), with the gradients of tiles extrapolated to where their sum vanishes; at most one.
     pub fn weight(&self) -> f64 {
         let curvature = self.curvature();
         let ridge = 1e-3 * curvature.trace().abs() / UNKNOWNS as f64 + f64::MIN_POSITIVE;
@@ -81,7 +82,7 @@ impl Evidence {
         if trace <= 0.0 || scatter <= 0.0 { 0.0 } else { (trace / scatter).min(1.0) }
     }
 
-    /// This log likelihood times `weight`, added to another over the same tiles.
+    /// Adds this log likelihood, times `weight`, to another one over the same tiles.
     pub fn add_to(&self, total: &mut Self, weight: f64) {
         total.shares.resize(total.shares.len().max(self.shares.len()), Share::none());
         for (sum, share) in total.shares.iter_mut().zip(&self.shares) {
@@ -91,15 +92,16 @@ impl Evidence {
         }
     }
 
-    /// Covariance of the maximum of this log likelihood with a prior: what the likelihood itself leaves open, and what its tiles
-    /// disagree by beyond that, by leaving out one after the other.
+    /// Covariance of the maximum of this log likelihood with a prior: the inverse curvature plus the jackknife, which
+    /// leaves out one tile after the other.
     pub fn covariance(&self, prior: &Matrix) -> Option<Matrix> {
         let curvature = self.curvature() + prior;
         let whole = curvature.cholesky()?.inverse();
         let gradient = self.gradient();
         let mut covariance = whole;
         for share in self.shares.iter().filter(|share| share.gradient.norm() > 0.0) {
-            // Nothing of the sum is left over at the maximum; what is left of it before belongs to all.
+            // The gradient of the tile extrapolated to the maximum, so that a remaining total gradient does not count as
+            // scatter.
             let own = share.gradient - share.curvature * (whole * gradient);
             let step = solve(&(curvature - share.curvature), &own).unwrap_or_else(|| whole * own);
             add_square(&mut covariance, &step, 1.0);

@@ -1,4 +1,4 @@
-//! One pair of frames as the check works on it.
+//! One pair of frames in the form that the check uses.
 
 use nalgebra::Vector3;
 
@@ -7,36 +7,39 @@ use super::planes::Planes;
 use super::unknowns::State;
 use crate::view::{Pinhole, Size, depth_noise};
 
-/// Points behind the nearest one by more than this are hidden, as a share of their distance: twice the step of a Kinect
-/// at three metres.
+/// A point farther behind the nearest one than this share of the distance is hidden: twice the depth step of a Kinect at
+/// three metres.
 const HIDDEN_SHARE: f64 = 0.02;
-/// .. and at least this, metres: flying pixels and noise of a near object.
+/// Least distance behind the nearest point, metres, from which a point is hidden: above flying pixels and the noise of a
+/// near object.
 const HIDDEN_LEAST: f64 = 0.015;
 
-/// .. and at least so many sigmas of the map's own noise: a rim compares a depth with one that is continued from two
-/// others, which is off by 1.9 sigma; three of these. At five sigmas in all a receding floor is full of rims.
+/// Least distance behind the nearest point, in sigmas of the map's own noise, from which a point is hidden: about three
+/// standard deviations of 1.9 sigma. A depth discontinuity compares a depth with one that is extrapolated from two
+/// others, and this difference has 1.9 times the sigma of a depth. A lower bound would find discontinuities all over a
+/// receding floor.
 const NOISE_SIGMAS: f64 = 6.0;
 
-/// Colours, points, and what is known of the colour camera.
+/// Colours, points, and the known parameters of the colour camera.
 #[derive(Clone, Debug)]
 pub(super) struct Frame {
     pub name: String,
     pub planes: Planes,
     pub camera: Pinhole,
-    /// Where the object is on the image, if it was told.
+    /// Where the object is in the image, if a mask was given.
     pub image_mask: Option<Vec<bool>>,
     /// Raster of the depth map.
     pub grid: Size,
-    /// In the depth camera's frame, metres; NaN where missing or not asked for.
+    /// In the depth camera's frame, metres; NaN where missing or outside the mask.
     pub points: Vec<[f32; 3]>,
     pub has_depth_mask: bool,
-    /// Pixels of the image as given in one of `planes`.
+    /// Width of a pixel of `planes` in pixels of the image as given.
     pub pixel: f64,
-    /// Standard deviation of 1 / z, which is about the same at all depths for what measures disparities; 1 / m.
+    /// Standard deviation of 1 / z, 1 / m. It is about the same at all depths for cameras that measure disparities.
     noise: f64,
 }
 
-/// Noise of the inverse depth of a raster of points, in which planes stay planes, whatever their slope.
+/// Noise of the inverse depth of a raster of points. Planes stay planes in inverse depth, whatever their slope.
 fn noise(grid: Size, points: &[[f32; 3]]) -> f64 {
     let ahead = Ahead::of(points);
     let inverses: Vec<f32> = points.iter().map(|point| 1.0 / ahead.depth(point)).collect();
@@ -50,12 +53,12 @@ impl Frame {
         Self { name, planes, camera, image_mask: None, grid, points, has_depth_mask: false, pixel: 1.0, noise }
     }
 
-    /// How far behind something has to lie to count as behind it, metres.
+    /// Distance, metres, from which a point counts as behind another one at `distance`.
     pub fn clear_gap(&self, distance: f64) -> f64 {
         HIDDEN_LEAST.max(HIDDEN_SHARE * distance).max(NOISE_SIGMAS * self.noise * distance * distance)
     }
 
-    /// Works on an image of half the size; an odd last row or column is left out.
+    /// Halves the image and the mask, and adapts the camera; an odd last row or column is dropped.
     pub fn halve(&mut self) {
         let (from, to) = (self.planes.size, self.planes.halved());
         self.image_mask = self.image_mask.take().map(|mask| {
@@ -65,7 +68,7 @@ impl Frame {
                 .collect()
         });
         let Pinhole { fx, fy, cx, cy, lens } = self.camera;
-        // The middle of two pixels lies between them.
+        // The centre of two pixels lies between them.
         self.camera = Pinhole { fx: fx / 2.0, fy: fy / 2.0, cx: (cx - 0.5) / 2.0, cy: (cy - 0.5) / 2.0, lens };
         self.planes = to;
         self.pixel *= 2.0;
@@ -84,11 +87,11 @@ impl Frame {
     }
 }
 
-/// The cloud as the colour camera sees it: where each point falls, and what is hidden.
+/// The cloud in the colour camera's view: the pixel of each point, and which points are hidden.
 pub(super) struct Projection {
     /// Colour camera's frame; NaN where missing.
     pub positions: Vec<[f32; 3]>,
-    /// Column and row, perhaps off the image; NaN where missing or behind the camera.
+    /// Column and row, possibly off the image; NaN where missing or behind the camera.
     pub pixels: Vec<[f32; 2]>,
     pub is_hidden: Vec<bool>,
 }
@@ -111,7 +114,7 @@ impl Projection {
     }
 }
 
-/// A z-buffer whose cells are wide enough to be hit by neighbours of one surface.
+/// A z-buffer whose cells are wide enough to be hit by neighbours on one surface.
 fn hidden(frame: &Frame, positions: &[[f32; 3]], pixels: &[[f32; 2]]) -> Vec<bool> {
     let cell = 2.0 * spacing(frame.grid, pixels).max(1.0);
     let size = frame.planes.size;
@@ -133,7 +136,7 @@ fn hidden(frame: &Frame, positions: &[[f32; 3]], pixels: &[[f32; 2]]) -> Vec<boo
     positions.iter().zip(pixels).map(is_behind).collect()
 }
 
-/// Median distance of neighbours on the image, pixels.
+/// Median distance of neighbouring points in the image, pixels.
 pub(super) fn spacing(grid: Size, pixels: &[[f32; 2]]) -> f32 {
     const SAMPLES: usize = 2000;
     let stride = (grid.len() / SAMPLES).max(1);

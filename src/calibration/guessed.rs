@@ -1,29 +1,30 @@
-//! What a guessed colour camera leaves open.
+//! The uncertainty that a guessed colour camera adds.
 //!
-//! Where no intrinsics are given the focal length is looked for. The principal point and the lens are not: one frame hardly
-//! tells them from a turn, a shift, and the focal length. The estimate makes up for their errors instead, by as much as least
-//! squares over the scene's points do, which its covariance has to hold (consider parameters; Bierman 1977, chapter 8).
+//! If no intrinsics are given, the focal length is estimated. The principal point and the lens are not, because one frame
+//! hardly distinguishes them from a rotation, a shift and the focal length. The estimate compensates for their errors
+//! instead, as much as least squares over the scene's points would, and the covariance includes this effect (consider
+//! parameters; Bierman 1977, chapter 8).
 
 use nalgebra::Vector3;
 
 use super::unknowns::{Matrix, Units, Vector, add_square, solve};
 use crate::view::Pinhole;
 
-/// Sigma of either coordinate of the principal point, shares of the image's width: cameras as made are off its middle by one
-/// to three hundredths.
+/// Sigma of either coordinate of the principal point, as a share of the image's width: typical cameras deviate from the
+/// centre by one to three hundredths.
 const PRINCIPAL_POINT: f64 = 0.02;
-/// Sigma of Brown's k1: webcams and depth cameras' own colour cameras have up to a tenth or two.
+/// Sigma of Brown's k1: webcams and the colour cameras of depth cameras have up to 0.1 or 0.2.
 const LENS: f64 = 0.1;
 const PARAMETERS: usize = 3;
 
-/// Pixels by which a camera that was guessed moves a scene, two sigmas of its principal point: a calibration that is off by less
-/// can't be told from one that is right.
+/// Motion of a scene, in pixels, that a guessed camera can explain: two sigmas of its principal point. An error below it
+/// cannot be distinguished from none.
 pub(super) fn explains(width: f64) -> f64 {
     2.0 * PRINCIPAL_POINT * width
 }
 
-/// Covariance of the estimate by an unknown principal point and lens. `cloud` in the colour camera's frame, `width` of the
-/// image in pixels of the units; `prior` is the information of what was told.
+/// Covariance of the estimate due to an unknown principal point and lens. `cloud` is in the colour camera's frame,
+/// `width` is that of the image in pixels of the units, and `prior` is the information of the prior.
 pub(super) fn covariance(
     units: &Units,
     camera: &Pinhole,
@@ -64,7 +65,8 @@ mod tests {
             .map(|k| Vector3::new((k % 20) as f64 / 100.0 - 0.095, (k / 20) as f64 / 100.0 - 0.095, 1.0))
             .collect();
         let units = Units::new(&cloud, &camera);
-        // Turns about the middle and shifts along the axis are held, so that shifts across it alone can make up for it.
+        // Rotations about the centre and shifts along the axis are held, so that only shifts across the axis can
+        // compensate.
         let mut prior = Matrix::identity() * 1e12;
         (3..5).for_each(|k| prior[(k, k)] = 1e-6);
         let found = covariance(&units, &camera, &cloud, 640.0, &prior);

@@ -1,4 +1,4 @@
-//! How good a calibration is, in pixels.
+//! Accuracy of a calibration in pixels.
 
 /// Expected reprojection error, pixels of the colour image, and its 95 % interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -6,6 +6,6 @@
 pub struct Health {
     /// Root mean square.
     pub pixels: f64,
-    /// From, to.
+    /// Lower and upper end.
     pub interval: [f64; 2],
 }

@@ -1,18 +1,18 @@
 //! Mutual information of colours and surface patches (Viola and Wells 1997, with patches in place of a second image).
 //!
-//! The depth map is split into patches of like normal and place. Under the right pose a patch shows few colours, since a
-//! surface is painted and lit more evenly than a scene; under a wrong one its colours mix with its neighbours'. The
-//! log likelihood is that of colours given patches over that of colours alone, sum over points and channels of
-//! log p(c | patch) / p(c), with both densities read off the image under the same pose.
+//! The depth map is split into patches of similar normal and position. Under the right pose a patch shows few colours,
+//! because albedo and light vary less on a surface than in a scene; under a wrong pose its colours mix with those of its
+//! neighbours. The log likelihood is that of colours given patches over that of colours alone, the sum over points and
+//! channels of log p(c | patch) / p(c), with both densities measured in the image under the same pose.
 //!
-//! Method: histograms with linear weights, so that derivatives by differences are smooth.
+//! Method: histograms with linear weights, so that finite differences are smooth.
 
 use super::patches::{PATCHES, Patches, Sight};
 use super::unknowns::State;
 
 /// Levels of a channel.
 const BINS: usize = 16;
-/// Pixels that a bin holds before any: keeps the logarithm of an empty one finite.
+/// Initial count of each bin, which keeps the logarithm of an empty bin finite.
 const FLOOR: f64 = 0.5;
 
 /// The cue over the patches of one frame.
@@ -52,7 +52,7 @@ impl Information<'_> {
     }
 }
 
-/// Lightness and two differences of colours, each about 0 .. 1.
+/// Lightness and two colour differences, each about 0 .. 1.
 fn features([r, g, b]: [f32; 3]) -> [f32; 3] {
     [(r + g + b) / 3.0, 0.5 + (r - g), 0.5 + (0.5 * (r + g) - b)]
 }
