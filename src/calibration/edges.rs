@@ -1,9 +1,9 @@
 //! Depth edges on image edges: the log likelihood of the positions of image edges, given the projected depth
 //! discontinuities.
 //!
-//! Along the normal of each depth discontinuity the image has edges at offsets u_k with strengths a_k. With probability 1
-//! - e, one of them belongs to the discontinuity; each is chosen in proportion to its strength, and its position deviates
-//! by the edge bias d and by normal noise s:
+//! Along the normal of each depth discontinuity the image has edges at offsets u_k with strengths a_k. One of them
+//! belongs to the discontinuity, except with probability e. Each is chosen in proportion to its strength, and its
+//! position deviates by the edge bias d and by normal noise s:
 //!
 //! l = sum over discontinuities of log(e / 2 L + (1 - e) sum_k p_k N(u + d - u_k; s)), p_k = a_k / sum a, s^2 = sigma^2 + g^2 / 12,
 //!
@@ -61,7 +61,7 @@ pub(super) fn blur(sigma: f64) -> f64 {
 }
 
 impl EdgeField {
-    /// The depth discontinuities that the colour camera sees, at most about `most`.
+    /// The depth discontinuities that the colour camera sees, at most `most`.
     pub fn rims(frame: &Frame, projection: &Projection, most: usize) -> Vec<Rim> {
         let all = rims::find(frame, projection);
         let stride = all.len().div_ceil(most).max(1);

@@ -10,14 +10,13 @@ use crate::view::{Pinhole, Size, depth_noise};
 /// A point farther behind the nearest one than this share of the distance is hidden: twice the depth step of a Kinect at
 /// three metres.
 const HIDDEN_SHARE: f64 = 0.02;
-/// Least distance behind the nearest point, metres, from which a point is hidden: above flying pixels and the noise of a
-/// near object.
+/// Least distance behind the nearest point from which a point is hidden, metres: larger than flying pixels and the noise
+/// of a near object.
 const HIDDEN_LEAST: f64 = 0.015;
 
-/// Least distance behind the nearest point, in sigmas of the map's own noise, from which a point is hidden: about three
-/// standard deviations of 1.9 sigma. A depth discontinuity compares a depth with one that is extrapolated from two
-/// others, and this difference has 1.9 times the sigma of a depth. A lower bound would find discontinuities all over a
-/// receding floor.
+/// Least distance behind a point, in sigmas of the map's own noise, from which another one counts as behind it. This is
+/// about three standard deviations: a depth discontinuity compares a depth with one that is extrapolated from two others,
+/// and the difference has 1.9 times the sigma of a depth. With five sigmas a receding floor has discontinuities all over.
 const NOISE_SIGMAS: f64 = 6.0;
 
 /// Colours, points, and the known parameters of the colour camera.

@@ -1,4 +1,4 @@
-//! What comes in, checked once: frames with their cameras, and what looks wrong about them.
+//! Input of a check: frames with their cameras, validated once, and warnings about implausible ones.
 
 use super::ahead::Ahead;
 use super::frame::Frame;
@@ -9,66 +9,68 @@ use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
 use crate::view::{ColourSamples, DepthSamples, Lens, Pinhole, Size, Transfer, to_srgb, transfer_of};
 
-/// Widest image that is worked on as it is: beyond, halves say as much as a depth map can.
+/// Largest side of an image that is used at full size, pixels. Larger images are halved: a depth map determines no finer
+/// detail.
 const WIDEST: usize = 1000;
-/// Metres within which depth cameras measure.
+/// Range of depth cameras, metres.
 const NEAREST: f32 = 0.1;
 const FARTHEST: f32 = 20.0;
-/// The same for organised clouds, which LiDARs make as well.
+/// Largest usual median depth of organised clouds, metres, which LiDARs produce as well.
 const FARTHEST_OF_CLOUDS: f32 = 200.0;
-/// Metres from which on a depth is missing, as in all depth maps: of its square f32 holds none.
+/// Depths from this value on are missing, as in all depth maps, metres: the square of larger ones overflows f32.
 const BEYOND: f32 = crate::view::FARTHEST as f32;
-/// Above this share of missing depths a map says so.
+/// Share of missing depths above which a depth map without a mask gets a warning.
 const MANY_HOLES: f64 = 0.4;
-/// More distinct levels than this are not 8 bits.
+/// Integer depths with a level above this one have more than 8 bits.
 const LEVELS_OF_A_BYTE: u16 = 255;
-/// Above this share of neighbours that jump by a tenth of their depth, a depth map is something else.
+/// Share of neighbours that differ by a tenth of their depth above which a depth map is probably not one.
 const ROUGH_SHARE: f64 = 0.25;
 const ROUGH_JUMP: f32 = 0.1;
-/// An image whose intensities differ by less, of 1, shows nothing.
+/// An image whose intensities differ by less than this, of 1, is blank.
 const BLANK: f32 = 0.02;
-/// Fewest depths that a frame needs.
+/// Minimum number of depths in a frame.
 const FEWEST_DEPTHS: usize = 200;
-/// Focal length over width where nothing is known: 62 degrees from side to side.
+/// Focal length over the longer side of the image if no intrinsics are given: 62 degrees.
 const USUAL_FOCAL: f64 = 0.83;
 
-/// One pair of frames, not yet checked.
+/// One pair of frames, not yet validated.
 #[derive(Clone, Debug)]
 pub struct RigView {
-    /// How the report calls it.
+    /// Name of the frame in the report.
     pub name: String,
     /// Columns and rows of the colour image.
     pub image_size: [usize; 2],
-    /// Its samples.
+    /// Samples of the colour image.
     pub image: ColourSamples,
-    /// Encoding of integer samples; `None`: that of a display.
+    /// Encoding of integer samples; `None` means that of a display.
     pub transfer: Option<Transfer>,
-    /// Non-zero where the object is.
+    /// Non-zero where the object is in the image.
     pub image_mask: Option<Vec<u8>>,
-    /// `None`: its focal length is looked for.
+    /// Intrinsics of the colour camera; if `None`, the focal length is estimated.
     pub image_camera: Option<Pinhole>,
     /// Columns and rows of the depth map.
     pub depth_size: [usize; 2],
-    /// Its samples; a cloud needs no camera.
+    /// Samples of the depth map; a cloud needs no camera.
     pub depth: DepthSamples,
-    /// Metres of a stored unit; `None`: 1, and 0.001 for integers.
+    /// Metres per stored unit; `None` means 0.001 for integers and 1 otherwise.
     pub unit: Option<f64>,
-    /// Non-zero where the depth map is to be used.
+    /// Non-zero where depths may be used.
     pub depth_mask: Option<Vec<u8>>,
-    /// Needed unless the depth map is a cloud.
+    /// Intrinsics of the depth camera, required unless the depth map is a cloud.
     pub depth_camera: Option<Pinhole>,
 }
 
 impl RigView {
-    /// Whether its depths are an organised cloud, whose axes may be those of a LiDAR.
+    /// Whether the depths are an organised cloud, whose axes may be those of a LiDAR.
     pub(super) const fn is_cloud(&self) -> bool {
         matches!(self.depth, DepthSamples::Cloud(_))
     }
 
-    /// The frame of this number as the check works on it, and warnings.
+    /// The frame in the form that the check uses, and whether its colour camera is guessed. `index` is the frame's number
+    /// in messages.
     ///
     /// # Errors
-    /// Naming the member at fault below `frames`.
+    /// The error names the member at fault below `frames`.
     pub(super) fn prepare(self, index: usize, warnings: &mut Vec<Warning>) -> Result<(Frame, bool)> {
         let name = self.name.clone();
         let of = |view: &str, kind| Warning { name: name.clone(), field: format!("frames[{index}].{view}"), kind };
@@ -116,12 +118,12 @@ impl RigView {
     }
 }
 
-/// A camera whose lens is one over most of its image: of coefficients with a slipped decimal point it folds near the middle, or
-/// sees next to nothing.
+/// Requires that a camera sees most of its image through its lens. Coefficients with a slipped decimal point fold the
+/// image near its centre, or leave hardly any ray.
 fn validate(camera: &Pinhole, size: Size, field: &str) -> Result<()> {
-    /// Rows and columns of pixels that are tried.
+    /// Rows and columns of pixels that are tested.
     const TRIED: usize = 9;
-    /// Of the slope of a ray without a lens; the strongest pincushions leave two thirds.
+    /// Least slope of a ray relative to that without a lens; the strongest pincushion distortions leave two thirds.
     const LEAST_SLOPE: f64 = 0.25;
     camera.validate(field)?;
     let at = |k: usize, side: usize| (k as f64 + 0.5) / TRIED as f64 * side as f64;
@@ -144,7 +146,7 @@ fn must_be(field: &'static str, length: usize, needed: usize) -> Result<()> {
     Err(Error::new(ErrorKind::Size, field, format!("needs {needed} values, not {length}")))
 }
 
-/// Intensities in the encoding of a display, 0 .. 1.
+/// Intensities in the encoding of a display, 0 .. 1, whatever the encoding of the samples.
 fn encoded(samples: &ColourSamples, transfer: Option<Transfer>, size: Size) -> Result<Vec<[f32; 3]>> {
     let encode = match transfer_of(samples, transfer) {
         Transfer::Linear => |value: f32| to_srgb(f64::from(value)) as f32,
@@ -171,14 +173,14 @@ fn encoded(samples: &ColourSamples, transfer: Option<Transfer>, size: Size) -> R
     })
 }
 
-/// Whether all of a point's coordinates are numbers to compute with.
+/// Whether all coordinates of a point are numbers within the range of depths.
 fn is_near(point: &[f32; 3]) -> bool {
     point.iter().all(|value| value.abs() < BEYOND)
 }
 
 const MISSING: [f32; 3] = [f32::NAN; 3];
 
-/// Points in metres, NaN where missing, outside the mask, or where the lens has no ray.
+/// Points in metres; NaN where a depth is missing, lies outside the mask, or has no ray through the lens.
 fn points(view: &RigView, grid: Size) -> Result<Vec<[f32; 3]>> {
     let default = if matches!(view.depth, DepthSamples::Integer(_)) { 0.001 } else { 1.0 };
     let unit = view.unit.unwrap_or(default);
@@ -194,7 +196,7 @@ fn points(view: &RigView, grid: Size) -> Result<Vec<[f32; 3]>> {
         }
         DepthSamples::Integer(data) => {
             must_be("depth.data", data.len(), grid.len())?;
-            // The largest number of 16 bits marks pixels without a measurement in several cameras.
+            // Several cameras mark pixels without a measurement with the largest number of 16 bits.
             let level = |index: usize| if data[index] == u16::MAX { 0.0 } else { f64::from(data[index]) };
             points_of_depths(view, grid, |index| level(index) * unit)?
         }
@@ -208,7 +210,7 @@ fn points(view: &RigView, grid: Size) -> Result<Vec<[f32; 3]>> {
     Ok(points)
 }
 
-/// The points on the pixels' rays at depths in metres.
+/// Points on the rays of the pixels at given depths in metres.
 fn points_of_depths(view: &RigView, grid: Size, depth: impl Fn(usize) -> f64) -> Result<Vec<[f32; 3]>> {
     let camera = view.depth_camera.ok_or_else(|| {
         Error::new(ErrorKind::Missing, "depth.camera", "is required: without intrinsics a depth map has no points")
@@ -228,7 +230,7 @@ fn points_of_depths(view: &RigView, grid: Size, depth: impl Fn(usize) -> f64) ->
     Ok((0..grid.len()).map(point).collect())
 }
 
-/// Plausibility of a depth map; each doubt caps the verdict.
+/// Plausibility checks of a depth map; each warning caps the verdict.
 fn doubts(view: &RigView, grid: Size, points: &[[f32; 3]]) -> Vec<WarningKind> {
     let mut doubts = Vec::new();
     let ahead = Ahead::of(points);
@@ -266,10 +268,10 @@ fn doubts(view: &RigView, grid: Size, points: &[[f32; 3]]) -> Vec<WarningKind> {
 mod tests {
     use super::*;
 
-    /// Found by the fuzzer: a focal length of almost nothing put points at infinity, and the estimate with them.
+    /// A tiny focal length puts points at infinity, and the estimate with them (a case of the fuzzer).
     #[test]
     fn points_beyond_all_distances_are_missing() {
-        // Almost nothing that is still a camera, and what is none.
+        // The smaller focal length is not a valid one; the larger one is tiny, but valid.
         let camera = |fx| Pinhole { fx, fy: 20.0, cx: 10.5, cy: 8.0, lens: Lens::None };
         let size = [16, 16];
         let grid = Size::new("depth", 16, 16).unwrap();
@@ -308,7 +310,7 @@ mod tests {
         for lens in [Lens::None, brown(-0.4), brown(0.5), Lens::Fisheye([0.1, -0.05, 0.0, 0.0])] {
             assert_eq!(validate(&with(lens), size, "camera"), Ok(()));
         }
-        // Wide: a fisheye whose rim looks aside.
+        // A wide fisheye lens, whose border sees to the side.
         let wide = Pinhole { fx: 200.0, fy: 200.0, ..with(Lens::Fisheye([0.0; 4])) };
         assert_eq!(validate(&wide, size, "camera"), Ok(()));
         for lens in

@@ -1,23 +1,27 @@
 //! Whether a calibration between a colour camera and a depth camera is right (docs/method/check.md).
 //!
-//! Frames of a rig and some candidates for its extrinsics go in; an estimate with its covariance and a verdict on each
-//! candidate come out. Whole frames are looked at, because what stands before a background carries most of the answer.
+//! The check takes frames of a rig and some candidates for its extrinsics. It returns an estimate with its covariance and
+//! a verdict on each candidate. It uses whole frames, because objects in front of a background carry most of the
+//! information.
 //!
-//! | file | what it holds |
+//! | file | contents |
 //! |---|---|
 //! | `cue` | names of the cues |
-//! | `input`, `frame`, `planes` | what comes in, guards, the colour camera's view of the depth points |
+//! | `input`, `frame`, `planes` | input, plausibility checks, the colour camera's view of the depth points |
 //! | `ahead` | the viewing direction of a cloud's scanner |
 //! | `unseen` | leaves out the points that the colour camera cannot see |
+//! | `sampling` | gathers sparse depth maps into cells |
 //! | `rims`, `edges` | depth edges, and their log likelihood on image edges |
-//! | `surface`, `patches` | samples of the depth map with normals, grouped |
-//! | `information`, `shading`, `silhouette`, `differences` | cues over samples, derivatives by differences |
+//! | `surface`, `patches` | samples of the depth map with normals, in groups |
+//! | `information`, `shading`, `silhouette`, `differences` | cues over samples, finite differences |
 //! | `unknowns`, `evidence` | the unknowns in pixels; log likelihoods by tiles, weights, covariance |
-//! | `search`, `registration` | starts, rounds |
-//! | `distortion`, `guessed` | whether a lens was left out; what a guessed camera leaves open |
-//! | `sensitivity`, `verdict`, `reason`, `check` | curves, verdicts, their reasons, and the order of it all |
-//! | `report`, `serialised` | what a check found; its shapes for serde |
-//! | `overlay` | a frame as a pose lays it over its image |
+//! | `search`, `registration` | initial poses, rounds of the registration |
+//! | `optima`, `readings` | the optima and their ranking; other conventions of a candidate |
+//! | `distortion`, `guessed` | whether a lens was left out; the uncertainty of a guessed camera |
+//! | `conclusion`, `verdict`, `reason`, `health` | from the optima to verdicts, their reasons and errors |
+//! | `check`, `sensitivity` | the order of all stages; curves of the cues |
+//! | `report`, `serialised` | the result of a check, and its forms for serde |
+//! | `overlay` | a frame with the points and depth edges of a pose |
 
 mod ahead;
 mod check;

@@ -1,23 +1,24 @@
-//! Poses at which the likelihood of a frame has a maximum, and how far each is behind the best.
+//! The poses at which the posterior has a maximum, ranked.
 //!
-//! A few starts survive the search by their edges. Each is settled with all cues, and so is each candidate that lies
-//! elsewhere. Their log likelihoods are compared with one set of weights, those of the best.
+//! A few poses survive the search, which compares edges alone. Each of them is refined with all cues, and so is each
+//! candidate that lies elsewhere. Their posteriors are compared with one set of weights of the cues, those of the best
+//! pose.
 
 use super::planes::Planes;
 use super::readings::Reading;
 use super::registration::{Findings, Round, Scene};
 
-/// A settled round.
+/// A pose refined with all cues, and the findings there.
 pub(super) struct Optimum {
     pub round: Round,
     pub findings: Findings,
-    /// How the first candidate was read to begin there, if not as it is.
+    /// Reading of the first candidate from which the registration began; `None` if it began elsewhere.
     pub reading: Option<Reading>,
-    /// Log posterior of the best optimum over that of this one.
+    /// How far the log posterior lies below that of the best optimum.
     pub behind: f64,
 }
 
-/// The settled rounds, best first.
+/// The optima of the refined rounds, best first.
 pub(super) fn ranked(scene: &Scene, rounds: &[Round], planes: &[Planes]) -> Vec<Optimum> {
     let mut optima: Vec<Optimum> = rounds.iter().map(|round| Optimum::at(scene, *round, None, planes)).collect();
     rank(&mut optima);
@@ -30,13 +31,13 @@ impl Optimum {
     }
 }
 
-/// Sorts by the posterior with the weights of the first, then with those of the best.
+/// Sorts by posterior, with the weights of the first optimum and then again with those of the best.
 pub(super) fn rank(optima: &mut [Optimum]) {
     rank_as_first(optima);
     rank_as_first(optima);
 }
 
-/// Sorts by the posterior with the weights of the first.
+/// Sorts by posterior with the weights of the first optimum.
 fn rank_as_first(optima: &mut [Optimum]) {
     let Some(first) = optima.first() else { return };
     let weights: Vec<f64> = first.findings.cues.iter().map(|cue| cue.2).collect();

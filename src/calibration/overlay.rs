@@ -1,4 +1,4 @@
-//! A frame with a pose's points and depth edges over its image.
+//! A frame with the points and depth edges of a pose over its image.
 
 use super::check::rigid;
 use super::frame::Projection;
@@ -7,10 +7,10 @@ use super::rims;
 use crate::error::Result;
 use crate::pose::Similarity;
 
-/// A frame as a calibration lays it over its image.
+/// The points and depth edges of a frame, projected into its image by a calibration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Overlay {
-    /// Column, row, metres of each visible point.
+    /// Column, row, depth in metres of each visible point.
     pub points: Vec<f32>,
     /// x, y, z of the same points in the colour camera's frame, metres.
     pub positions: Vec<f32>,
@@ -18,7 +18,7 @@ pub struct Overlay {
     pub edges: Vec<f32>,
 }
 
-/// A frame as a pose lays it over its image, in the image's own pixels.
+/// Projects a frame into its image by a pose, in the pixels of the image as given.
 ///
 /// # Errors
 /// As [`CalibrationCheck::new`](crate::CalibrationCheck::new).
@@ -26,7 +26,7 @@ pub fn overlay(view: RigView, pose: &Similarity) -> Result<Overlay> {
     let (frame, _) = view.prepare(0, &mut vec![])?;
     let state = rigid(pose).map_err(|error| error.below("pose"))?;
     let projection = Projection::new(&frame, &state);
-    // Back from halves of pixels.
+    // From pixels of a halved image to those of the image as given.
     let original = |value: f64| ((value + 0.5) * frame.pixel - 0.5) as f32;
     let size = frame.planes.size;
     let is_seen = |index: &usize| {

@@ -1,4 +1,4 @@
-//! Patches of the depth map's surface, and the colours that the image shows on them.
+//! Patches of the depth map's surface, and their colours in the image.
 
 use nalgebra::Vector3;
 
@@ -8,11 +8,12 @@ use super::planes::Planes;
 use super::surface::Sample;
 use super::unknowns::State;
 
-/// Patches of a frame: some ten for each thing of a scene.
+/// Patches of a frame: about ten for each object of a scene.
 pub(super) const PATCHES: usize = 48;
 /// Rounds of k-means.
 const ROUNDS: usize = 6;
-/// A right angle between normals counts as much as this share of the cloud's spread.
+/// Weight of normals relative to positions, in units of the cloud's spread: a right angle between normals counts as much
+/// as one spread.
 const NORMAL_WEIGHT: f64 = 0.7;
 
 /// An image and its camera.
@@ -22,7 +23,7 @@ pub(super) struct Sight<'a> {
     pub planes: &'a Planes,
 }
 
-/// Visible samples of a frame, in patches of like place and normal.
+/// Visible samples of a frame, in patches of similar position and normal.
 pub(super) struct Patches {
     pub points: Vec<Vector3<f64>>,
     pub normals: Vec<Vector3<f64>>,
@@ -31,7 +32,7 @@ pub(super) struct Patches {
 }
 
 impl Patches {
-    /// Those of the samples that are visible under a projection.
+    /// The samples that are visible under a projection, in patches.
     pub fn new(samples: &[Sample], projection: &Projection, frame: &Frame) -> Self {
         let tiling = Tiles::new(frame.planes.size);
         let is_seen =
@@ -45,7 +46,7 @@ impl Patches {
         }
     }
 
-    /// The image's colour at each sample, `None` off the image.
+    /// The image's colour at each sample; `None` off the image.
     pub fn colours<'a>(&'a self, sight: &'a Sight, state: &'a State) -> impl Iterator<Item = Option<[f32; 3]>> + 'a {
         let camera = state.camera(&sight.frame.camera);
         self.points.iter().map(move |point| {
@@ -55,7 +56,7 @@ impl Patches {
     }
 }
 
-/// k-means of place and normal; starts from samples far from each other.
+/// k-means of position and normal, which begins with samples far from each other.
 fn group(samples: &[&Sample]) -> Vec<u8> {
     if samples.is_empty() {
         return vec![];

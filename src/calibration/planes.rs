@@ -1,19 +1,20 @@
-//! The colour image as a check of a calibration sees it: three channels in the encoding of a display, blurred as much as
-//! a level asks for, and their values between pixels.
+//! The colour image as the check uses it: three channels in the encoding of a display, blurred as each level requires,
+//! and interpolated between pixels.
 //!
-//! Encoded intensities, not linear ones: their noise is about the same everywhere, and an edge in shadow counts as one
-//! in light does.
+//! Intensities are encoded rather than linear: their noise is about the same everywhere, and an edge in shadow counts as
+//! much as one in light.
 
 use crate::pose::Silhouette;
 use crate::view::{Gaussian, Size};
 
-/// Reach of a Gaussian in sigmas; what lies beyond weighs 1 %.
+/// Reach of a Gaussian in sigmas; 1 % of its weight lies beyond.
 const REACH: f64 = 2.6;
 
-/// Pixels around the mask that still count, of an image 640 wide: the object's own edges lie on the mask's border.
+/// Width of the margin around the mask that is still used, pixels of an image 640 wide: the object's own edges lie on the
+/// mask's border.
 const MARGIN: f64 = 4.0;
 
-/// Three channels side by side, 0 .. 1; NaN where the image is not to be used.
+/// Three interleaved channels, 0 .. 1; NaN where the image is not used.
 #[derive(Clone, Debug)]
 pub(super) struct Planes {
     pub size: Size,
@@ -21,7 +22,7 @@ pub(super) struct Planes {
 }
 
 impl Planes {
-    /// The Gaussian mean, sigma in pixels; at the border of those pixels that exist.
+    /// The image blurred by a Gaussian of this sigma, pixels; at the border, by the part of it that lies on the image.
     pub fn blurred(&self, sigma: f32) -> Self {
         if sigma <= 0.0 {
             return self.clone();
@@ -34,7 +35,7 @@ impl Planes {
         Self { size: self.size, pixels }
     }
 
-    /// Leaves out what lies beyond a margin around the mask.
+    /// Excludes the pixels beyond a margin around the mask.
     pub fn keep_near(&mut self, mask: &[bool]) {
         let margin = (MARGIN * self.size.width as f64 / 640.0).max(1.0);
         let mask = Silhouette::new(self.size, mask);
@@ -58,7 +59,7 @@ impl Planes {
         Self { size, pixels: (0..size.len()).map(mean).collect() }
     }
 
-    /// Bilinear values at a position, `None` outside and where the image is not to be used.
+    /// Bilinear values at a position; `None` outside the image and where it is not used.
     pub fn at(&self, [column, row]: [f64; 2]) -> Option<[f32; 3]> {
         let Size { width, height } = self.size;
         let inside = column >= 0.0 && row >= 0.0 && column <= (width - 1) as f64 && row <= (height - 1) as f64;

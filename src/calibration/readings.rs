@@ -1,8 +1,8 @@
-//! Other ways to read a candidate: what files of extrinsics are commonly taken for.
+//! Other readings of a candidate: the conventions in which files of extrinsics are commonly misread.
 //!
-//! A candidate that the frames contradict may be right in another convention. Each reading is registered from where it
-//! puts the depth camera, with the candidate's own prior, and has to fit clearly better than what was found near the
-//! candidate itself.
+//! A candidate that the frames contradict may be right in another convention. Each reading is a pose. It is registered
+//! from there with a prior about that pose, and has to fit clearly better than every pose found near the candidate
+//! itself.
 
 use std::fmt;
 
@@ -14,10 +14,10 @@ use super::registration::{ARRIVED, MOST_RIMS_OF_STARTS, MOST_SETTLING, Round, SI
 use super::unknowns::State;
 use crate::pose::{Similarity, rotation_vector};
 
-/// How many readings go on after each level, the best by score.
+/// How many readings proceed after each level, the best by score.
 const SURVIVORS: [usize; 4] = [6, 3, 2, 1];
 
-/// From x forward, y left, z up to x right, y down, z forward.
+/// Rotation from axes x forward, y left, z up to axes x right, y down, z forward.
 const OPTICAL_OF_BODY: Matrix3<f64> = Matrix3::new(0.0, -1.0, 0.0, 0.0, 0.0, -1.0, 1.0, 0.0, 0.0);
 
 /// A convention that a candidate may follow.
@@ -27,29 +27,29 @@ pub enum Reading {
     Inverse,
     /// The rotation is stored column by column.
     TransposedRotation,
-    /// The translation is the colour camera's place in the depth camera's frame.
+    /// The translation is the position of the colour camera in the depth camera's frame.
     CameraCentre,
-    /// The quaternion's scalar comes first, and was read last.
+    /// The quaternion's scalar comes first, but was read as the last.
     ScalarFirst,
-    /// The quaternion's scalar comes last, and was read first.
+    /// The quaternion's scalar comes last, but was read as the first.
     ScalarLast,
-    /// Both frames have x forward, y left, z up.
+    /// The axes of both frames are x forward, y left, z up.
     BodyFrames,
-    /// The depth frame has.
+    /// The axes of the depth frame are x forward, y left, z up.
     BodyDepth,
-    /// The colour frame has.
+    /// The axes of the colour frame are x forward, y left, z up.
     BodyColour,
     /// The translation is in millimetres.
     Millimetres,
-    /// Angles are in radians, and were read in degrees.
+    /// Angles are in radians, but were read as degrees.
     Radians,
     /// The depth map is registered to the colour image.
     Registered,
-    /// The colour image is turned by a quarter, clockwise.
+    /// The colour image is rotated by 90 degrees clockwise.
     QuarterTurn,
-    /// The colour image is upside down.
+    /// The colour image is rotated by 180 degrees.
     HalfTurn,
-    /// The colour image is turned by a quarter, counter-clockwise.
+    /// The colour image is rotated by 90 degrees counter-clockwise.
     QuarterBack,
 }
 
@@ -72,7 +72,7 @@ impl Reading {
         Self::QuarterBack,
     ];
 
-    /// The pose that a candidate stands for if it follows this convention; `None` if it cannot.
+    /// The pose of a candidate that follows this convention; `None` if the candidate cannot follow it.
     pub(super) fn of(self, pose: &Similarity) -> Option<Similarity> {
         let Similarity { rotation, translation, .. } = *pose;
         let rigid = |rotation, translation| Some(Similarity { scale: 1.0, rotation, translation });
@@ -121,7 +121,7 @@ impl fmt::Display for Reading {
     }
 }
 
-/// A rotation whose quaternion x y z w is put in another order.
+/// A rotation whose quaternion x y z w is reordered.
 fn requaternion(rotation: &Matrix3<f64>, order: fn([f64; 4]) -> [f64; 4]) -> Option<Matrix3<f64>> {
     let quaternion = UnitQuaternion::from_matrix(rotation);
     let [x, y, z, w] = order([quaternion.i, quaternion.j, quaternion.k, quaternion.w]);
@@ -135,14 +135,14 @@ fn about_axis(degrees: f64) -> Similarity {
 
 /// The search over readings of one candidate, level by level.
 pub(super) struct Rereading {
-    /// Poses found near the candidate itself.
+    /// Optima found near the candidate itself.
     optima: Vec<Optimum>,
     starts: Vec<(Reading, Start)>,
     level: usize,
 }
 
 impl Rereading {
-    /// Readings that put points onto the image.
+    /// Begins with the readings that put points onto the image.
     pub fn new(scene: &Scene, candidate: &State, optima: Vec<Optimum>) -> Self {
         let start = |reading: Reading| {
             let state = State::at(reading.of(&candidate.pose)?);
@@ -152,7 +152,8 @@ impl Rereading {
         Self { optima, starts: Reading::ALL.into_iter().filter_map(start).collect(), level: 0 }
     }
 
-    /// One level for all that are left, in the end with all cues; whether it is over.
+    /// Does one level for all remaining readings, and at last a refinement with all cues. Returns whether that was the
+    /// last step.
     pub fn step(&mut self, scene: &Scene, planes: &[Planes]) -> bool {
         if self.level == SIGMAS.len() {
             let settle = |round: &mut Round| (0..MOST_SETTLING).any(|_| scene.settle(round, planes) < ARRIVED);
@@ -172,7 +173,7 @@ impl Rereading {
         false
     }
 
-    /// All optima, best first.
+    /// All optima, those of the candidate and of its readings, best first.
     pub fn end(self, scene: &Scene, planes: &[Planes]) -> Vec<Optimum> {
         let Self { mut optima, starts, .. } = self;
         optima

@@ -1,5 +1,5 @@
-//! Why a candidate has its verdict, and what looks wrong about the input: values with their numbers, whose words are made where they
-//! leave the crate.
+//! The reason for each verdict, and warnings about the input: values with their numbers, which become sentences where
+//! they leave the crate.
 
 use std::fmt;
 
@@ -8,53 +8,54 @@ use super::readings::Reading;
 use crate::pose::{Axis, Unknown};
 use crate::text::{Brief, Fixed};
 
-/// Why a verdict is what it is. Its [`code`](CheckReason::code) is stable; its [`Display`](fmt::Display) is the sentence for people.
+/// The reason for a verdict. Its [`code`](CheckReason::code) is stable; its [`Display`](fmt::Display) is the sentence for
+/// people.
 #[derive(Clone, Debug, PartialEq, strum::IntoStaticStr, strum::VariantNames)]
 #[strum(serialize_all = "kebab-case")]
 #[non_exhaustive]
 pub enum CheckReason {
-    /// Consistent: all of the interval passes.
+    /// Consistent: all of the interval lies within the tolerance.
     WithinTolerance(Margin),
-    /// Consistent: nothing contradicts the candidate, and the scene shows errors beyond so many pixels.
+    /// Consistent: nothing contradicts the candidate, and the scene would show errors above `shown` pixels.
     NothingAgainst {
-        /// Its error.
+        /// Error of the candidate.
         margin: Margin,
-        /// Errors that the scene would show.
+        /// Errors above this many pixels would show.
         shown: f64,
     },
-    /// Off: all of the interval is beyond what passes.
+    /// Off: all of the interval lies beyond the tolerance.
     OffTarget {
-        /// Its error.
+        /// Error of the candidate.
         margin: Margin,
-        /// By how much.
+        /// Difference from the estimate.
         offset: Offset,
     },
     /// Off: the candidate fits if it is read in another convention.
     Misread {
-        /// Which.
+        /// That convention.
         reading: Reading,
-        /// Its error in that convention.
+        /// Error of the candidate in that convention.
         margin: Margin,
     },
     /// Off: the candidate puts no points onto the image.
     NoPointsOnImage,
     /// Undecided: poses that fit about as well contradict each other on the candidate.
     BetweenOptima(Margin),
-    /// Undecided: behind a colour camera that was guessed.
+    /// Undecided: a guessed colour camera can explain the error.
     GuessedCamera {
-        /// Its error.
+        /// Error of the candidate.
         margin: Margin,
-        /// Errors that the guess explains.
+        /// Largest error that the guess can explain, pixels.
         explained: f64,
     },
-    /// Undecided: the scene hardly constrains one of the six numbers.
+    /// Undecided: the scene hardly constrains one of the six parameters of the pose.
     Unconstrained {
-        /// Its error.
+        /// Error of the candidate.
         margin: Margin,
-        /// Which.
+        /// The parameter.
         weakest: Unknown,
     },
-    /// Undecided: the interval holds what passes and what does not.
+    /// Undecided: the interval holds errors within the tolerance and errors beyond it.
     TooClose(Margin),
     /// Undecided: no pose puts points onto the image.
     NoPoseOnImage,
@@ -65,36 +66,36 @@ pub enum CheckReason {
         /// Error of the estimate.
         pixels: f64,
     },
-    /// Consistent, but for a warning about the input.
+    /// Consistent but for a warning about the input.
     Doubtful {
         /// The first warning.
         warning: Box<Warning>,
-        /// Why it would be consistent.
+        /// The reason for the verdict without the warning.
         reason: Box<CheckReason>,
     },
 }
 
-/// A reprojection error beside what passes, pixels of the colour image.
+/// A reprojection error and the tolerance, pixels of the colour image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Margin {
     /// The error.
     pub health: Health,
-    /// What passes.
+    /// The largest error that passes.
     pub tolerance: f64,
 }
 
-/// How far a candidate is from the estimate.
+/// Difference between a candidate and the estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Offset {
-    /// Turn.
+    /// Angle of the rotation.
     pub degrees: f64,
-    /// The axis of most of it.
+    /// The axis with the largest part of the rotation.
     pub about: Axis,
-    /// Shift of the middle of the scene.
+    /// Shift of the centre of the scene.
     pub millimetres: f64,
-    /// The axis of most of it.
+    /// The axis with the largest part of the shift.
     pub along: Axis,
-    /// Distance of the middle of the scene, metres.
+    /// Distance of the centre of the scene, metres.
     pub distance: f64,
 }
 
@@ -169,7 +170,7 @@ impl fmt::Display for Margin {
 impl fmt::Display for Offset {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { degrees, about, millimetres, along, distance } = *self;
-        // A turn about a camera moves the scene as far as the scene is away.
+        // A rotation about a camera moves the scene in proportion to its distance.
         write!(
             f,
             "{} degrees, most of it about {about}, and {} mm at the middle of the scene, {} m away, most of it along {along}",
@@ -180,18 +181,19 @@ impl fmt::Display for Offset {
     }
 }
 
-/// A warning about the input, which keeps the verdict from being better than the input is.
+/// A warning about the input. It caps the verdict: no candidate is consistent if the input may have been misread.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Warning {
-    /// The frame or the candidate at fault; empty where it is all of them.
+    /// The frame or the candidate at fault; empty if all frames are.
     pub name: String,
-    /// The same as a path of the JavaScript contract.
+    /// Path of the member at fault in the JavaScript contract.
     pub field: String,
-    /// What looks wrong.
+    /// The kind of warning.
     pub kind: WarningKind,
 }
 
-/// What looks wrong. Its [`code`](WarningKind::code) is stable; the [`Display`](fmt::Display) of a [`Warning`] is the sentence for people.
+/// The kind of a warning. Its [`code`](WarningKind::code) is stable; the [`Display`](fmt::Display) of a [`Warning`] is
+/// the sentence for people.
 #[derive(Clone, Copy, Debug, PartialEq, strum::IntoStaticStr, strum::VariantNames)]
 #[strum(serialize_all = "kebab-case")]
 #[cfg_attr(
@@ -201,22 +203,22 @@ pub struct Warning {
 )]
 #[non_exhaustive]
 pub enum WarningKind {
-    /// The image shows nothing.
+    /// The image is blank.
     BlankImage,
-    /// The intrinsics of the colour camera were not given.
+    /// The intrinsics of the colour camera are missing.
     IntrinsicsGuessed,
-    /// Much of a depth map without a mask is missing.
+    /// Many depths of a depth map without a mask are missing.
     ManyHoles {
-        /// Of its pixels.
+        /// Share of the pixels.
         percent: f64,
     },
-    /// A depth map of integers has no more than 256 levels.
+    /// No level of an integer depth map exceeds 255.
     EightBits,
-    /// Depths are not those of a depth camera.
+    /// The median depth is outside the range of depth cameras.
     UnusualDepths {
-        /// Their median.
+        /// The median depth.
         metres: f64,
-        /// The smallest and the largest that are usual.
+        /// The range of usual depths.
         usual: [f64; 2],
     },
     /// The depth map is as rough as a photograph.
@@ -228,14 +230,14 @@ pub enum WarningKind {
     },
     /// The inverse of the candidate fits.
     FitsInverted {
-        /// Error of the candidate.
+        /// Expected error of the candidate, pixels.
         pixels: f64,
-        /// Error of its inverse.
+        /// Expected error of its inverse, pixels.
         inverted_pixels: f64,
     },
-    /// A lens was probably left out.
+    /// The distortion of the colour camera was probably left out.
     LensLeftOut {
-        /// Its first radial coefficient.
+        /// The first radial coefficient.
         k1: f64,
     },
 }
@@ -257,7 +259,8 @@ impl WarningKind {
     }
 }
 
-/// A median above it is probably in millimetres, and one below the other a thousand times too small, metres.
+/// Median depths, metres: above the first the unit is probably the millimetre, and below the second it is probably a
+/// thousand times too small.
 const MILLIMETRES: f64 = 100.0;
 const KILOMETRES: f64 = 0.02;
 

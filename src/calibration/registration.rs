@@ -1,9 +1,9 @@
-//! One round of the registration: all cues over all frames at one state, and the step that they ask for.
+//! One round of the registration: all cues over all frames at one state, and the resulting step.
 //!
-//! Unknowns: [`super::unknowns`]. Objective: sum of the cues' log likelihoods, each weighed by how far its curvature goes
-//! with its tiles' scatter ([`Evidence::weight`]), and the prior about the candidate. Solver: Gauss-Newton with the
-//! bound of expectation maximisation for edges; the other cues by differences, in the last rounds only, because they
-//! have no basin to speak of.
+//! Unknowns: [`super::unknowns`]. Objective: the sum of the log likelihoods of the cues, each weighted by the ratio of
+//! its curvature to the scatter of its tiles ([`Evidence::weight`]), and the prior about the initial pose. Solver:
+//! Gauss-Newton, with the bound of expectation maximisation for edges and finite differences for the other cues. These
+//! have a small basin of convergence and take part in the last rounds only.
 
 use nalgebra::Vector3;
 
@@ -21,56 +21,57 @@ use super::silhouette::Silhouette;
 use super::surface::{self, Sample};
 use super::unknowns::{FOCAL, LOSS, Matrix, State, Units, Vector, solve};
 
-/// sigma of edges along the way, pixels of an image 640 wide: from what is left of a few degrees after the coarse search
-/// to what an image resolves. Half as wide each other time.
+/// Sigma of edges at each level, pixels of an image 640 wide: from the error that the coarse search leaves of a few
+/// degrees to the resolution of an image. It halves every two levels.
 pub(super) const SIGMAS: [f64; 4] = [4.0, 2.8, 1.9, 1.3];
-/// How many starts go on after each, the best by score.
+/// How many poses proceed after each level, the best by score.
 pub(super) const SURVIVORS: [usize; 4] = [10, 6, 4, 3];
-/// Rims of all frames that starts are judged by.
+/// Depth discontinuities of all frames that score an initial pose.
 pub(super) const MOST_RIMS_OF_STARTS: usize = 1200;
-/// Rounds at each.
+/// Rounds at each level.
 pub(super) const ROUNDS: usize = 3;
-/// Of the last rounds, all cues.
+/// Maximum number of rounds with all cues.
 pub(super) const MOST_SETTLING: usize = 8;
-/// A step that moves the scene by less has arrived, pixels.
+/// A step that moves the scene by less than this has converged, pixels.
 pub(super) const ARRIVED: f64 = 0.02;
-/// Longest step of a settling round, pixels: beyond it derivatives by differences mean nothing.
+/// Longest step of a round with all cues, pixels: finite differences are valid no farther.
 const LONGEST: f64 = 3.0;
-/// Blur for the cues of surfaces: that of a depth map's own pixel.
+/// Blur of the image for the cues over surfaces, pixels: about the size of a pixel of the depth map.
 const SURFACE_BLUR: f32 = 1.2;
-/// Rims and samples of all frames together.
+/// Maximum numbers of depth discontinuities and samples, for all frames together and for a single one.
 const MOST_RIMS: usize = 6000;
 const MOST_RIMS_OF_ONE: usize = 1500;
 const MOST_SAMPLES: usize = 24000;
 const MOST_SAMPLES_OF_ONE: usize = 8000;
-/// Points of all frames together that stand for the scene's extent.
+/// Points of all frames together that represent the extent of the scene.
 const MOST_POINTS: usize = 3000;
 
-/// How far a candidate is believed, one sigma each: its turn about the colour camera, degrees, and its shift, metres.
-/// Hand-measured rigs are off by so much; what is off by more is found all the same where the scene says so.
+/// Sigma of the prior about a candidate: rotation about the colour camera, degrees, and shift, metres. Rigs measured by
+/// hand are off by this much. The check finds larger errors too if the scene shows them.
 const PRIOR_DEGREES: f64 = 4.0;
 const PRIOR_METRES: f64 = 0.05;
-/// Share of the scene's points on the image below which nothing can be said: what fields of view that hardly overlap still have.
+/// Share of the scene's points on the image below which a pose cannot be judged; fields of view that hardly overlap have
+/// more.
 const LEAST_SEEN: f64 = 0.02;
-/// Of the loss of outlines, pixels, and of ln f where it is unknown.
+/// Sigma of the edge bias, pixels, and of ln f if the focal length is unknown.
 const PRIOR_LOSS: f64 = 1.0;
 const PRIOR_FOCAL: f64 = 0.15;
 
-/// All frames, and what of them does not change with the state.
+/// All frames, and the quantities that do not depend on the state.
 pub(super) struct Scene {
     pub frames: Vec<Frame>,
     pub samples: Vec<Vec<Sample>>,
-    /// Some points of all frames, which stand for the scene where its extent matters.
+    /// Some points of all frames, which represent the extent of the scene.
     sparse: Vec<Vector3<f64>>,
     pub surface_planes: Vec<Planes>,
     pub cues: Vec<Cue>,
-    /// Whether the focal length is looked for.
+    /// Whether the focal length is estimated.
     pub focal_is_free: bool,
     /// The first image's width over 640, at least one.
     pub scale: f64,
 }
 
-/// A state, what it was told, and the sigma of its edges.
+/// A state, the initial state that the prior is about, and the sigma of edges.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Round {
     pub state: State,
@@ -78,7 +79,7 @@ pub(super) struct Round {
     pub sigma: f64,
 }
 
-/// A start on its way, with rims that were found at one of its states.
+/// An initial pose during its registration, with depth discontinuities that were found at one of its states.
 pub(super) struct Start {
     pub round: Round,
     pub found: State,
@@ -86,14 +87,14 @@ pub(super) struct Start {
     pub score: f64,
 }
 
-/// What the cues say at a state.
+/// The evidence of all cues at a state.
 pub(super) struct Findings {
     pub units: Units,
     pub prior: Matrix,
-    /// By cue, each with its weight.
+    /// The cues, each with its weight.
     pub cues: Vec<(Cue, Evidence, f64)>,
     pub total: Evidence,
-    /// From the state to the told one.
+    /// Step from the initial state of the prior to the state.
     pub back: Vector,
 }
 
@@ -112,7 +113,7 @@ impl Scene {
         self.sparse.iter().map(|point| state.pose.apply(*point)).collect()
     }
 
-    /// Whether a state puts enough of the scene's points in front of the colour camera and onto its image to say anything.
+    /// Whether a state projects enough of the scene's points onto the image for a judgement.
     pub fn is_seen(&self, state: &State) -> bool {
         let frame = &self.frames[0];
         let camera = state.camera(&frame.camera);
@@ -130,12 +131,12 @@ impl Scene {
         Units::new(&self.cloud(state), &state.camera(&self.frames[0].camera))
     }
 
-    /// The images as edges of this sigma want them.
+    /// The images, blurred for edges of this sigma.
     pub fn planes(&self, sigma: f64) -> Vec<Planes> {
         self.frames.iter().map(|frame| frame.planes.blurred(blur(sigma) as f32)).collect()
     }
 
-    /// Information of what was told: w and t of the candidate are off by their sigmas, and t = v + c x w.
+    /// Information of the prior: w and t of the candidate deviate by their sigmas, and t = v + c x w.
     pub fn prior(&self, units: &Units) -> Matrix {
         let cross = units.middle.cross_matrix();
         let mut rows = Matrix::zeros();
@@ -145,13 +146,13 @@ impl Scene {
             (0..3).for_each(|j| rows[(3 + k, j)] = cross[(k, j)] / PRIOR_METRES);
         }
         rows[(LOSS, LOSS)] = 1.0 / PRIOR_LOSS;
-        // Held where it is known: a millionth.
+        // A known focal length is held with a sigma of a millionth.
         rows[(FOCAL, FOCAL)] = if self.focal_is_free { 1.0 / PRIOR_FOCAL } else { 1e6 };
         let rows = rows * Matrix::from_diagonal(&units.of);
         rows.transpose() * rows
     }
 
-    /// Edges alone: log likelihood by tiles.
+    /// The log likelihood of edges by tiles.
     fn edges(&self, round: &Round, units: &Units, planes: &[Planes], projections: &[Projection]) -> Evidence {
         let most = MOST_RIMS_OF_ONE.min(MOST_RIMS / self.frames.len());
         let mut evidence = Evidence::default();
@@ -162,7 +163,7 @@ impl Scene {
         evidence
     }
 
-    /// One of the cues that look at surfaces.
+    /// The log likelihood of one of the cues over surfaces by tiles.
     fn surfaces(&self, cue: Cue, state: &State, units: &Units, patches: &[Patches]) -> Evidence {
         let mut evidence = Evidence::default();
         for ((frame, planes), patches) in self.frames.iter().zip(&self.surface_planes).zip(patches) {
@@ -187,7 +188,7 @@ impl Scene {
         evidence
     }
 
-    /// All cues.
+    /// The evidence of all cues at the state of a round.
     pub fn findings(&self, round: &Round, planes: &[Planes]) -> Findings {
         let units = self.units(&round.state);
         let projections: Vec<_> = self.frames.iter().map(|frame| Projection::new(frame, &round.state)).collect();
@@ -210,7 +211,7 @@ impl Scene {
         Findings { prior: self.prior(&units), units, cues, total, back }
     }
 
-    /// Brings a start nearer by edges alone, its rims staying what they are; what it is then worth.
+    /// Refines an initial pose by edges alone with its depth discontinuities fixed, and updates its score.
     pub fn approach(&self, start: &mut Start, sigma: f64, planes: &[Planes]) {
         start.round.sigma = sigma;
         for _ in 0..ROUNDS {
@@ -231,7 +232,7 @@ impl Scene {
         }
     }
 
-    /// Rims of all frames as a state sees them.
+    /// The depth discontinuities of all frames as a state sees them.
     pub fn rims(&self, state: &State, most: usize) -> Vec<Vec<Rim>> {
         self.frames
             .iter()
@@ -239,7 +240,7 @@ impl Scene {
             .collect()
     }
 
-    /// A round by all cues; how far it went, pixels.
+    /// Takes one round with all cues and returns the length of its step, pixels.
     pub fn settle(&self, round: &mut Round, planes: &[Planes]) -> f64 {
         let findings = self.findings(round, planes);
         let step = step(&findings.total, &findings.prior, &findings.back);
@@ -248,16 +249,16 @@ impl Scene {
     }
 }
 
-/// Of the weight of cues over surfaces: shadows, half-hidden strips and paint move all tiles' maxima alike, which the scatter
-/// of tiles does not show. On six of seven rendered rigs the truth was fewer sigmas away with edges alone; where there are no
-/// edges this much still decides.
+/// Factor of the weight of cues over surfaces. Shadows, half-occluded strips and varying albedo move the maxima of all
+/// tiles alike, so that the scatter of tiles does not show these errors. In scenes without edges the remaining weight
+/// still determines the pose.
 const SURFACE_TRUST: f64 = 0.25;
 
-/// What a sigma of the prior is worth in mean log likelihood of a rim: neighbouring rims are one, so that some hundred
-/// of a scene's thousands are independent.
+/// Mean log likelihood of a depth discontinuity that one sigma of the prior is worth: neighbouring discontinuities count
+/// as one, so that about a hundred of the thousands in a scene are independent.
 const SCORE_PRIOR: f64 = 0.01;
 
-/// Adds the evidence of a frame's edges, and returns how many rims have any.
+/// Adds the evidence of a frame's edges, and returns the number of depth discontinuities on its image.
 fn add_edges(sight: Sight<'_>, rims: &[Rim], round: &Round, units: &Units, evidence: &mut Evidence) -> usize {
     let mut shares = vec![Share::none(); Tiles::new(sight.planes.size).count()];
     let field = EdgeField::new(sight, rims, &round.state, units, round.sigma);
@@ -268,7 +269,7 @@ fn add_edges(sight: Sight<'_>, rims: &[Rim], round: &Round, units: &Units, evide
 
 fn step(total: &Evidence, prior: &Matrix, back: &Vector) -> Vector {
     let gradient = total.gradient() - prior * back;
-    // Where sums are beyond all numbers there is no way to go.
+    // If sums overflow, the state stays.
     let solution = solve(&(total.curvature() + prior), &gradient).filter(|step| step.norm().is_finite());
     solution.unwrap_or_else(Vector::zeros)
 }

@@ -1,4 +1,4 @@
-//! What a check found, as it is given out.
+//! The result of a check.
 
 use nalgebra::SMatrix;
 
@@ -13,64 +13,65 @@ use super::unknowns::POSE;
 use super::verdict::{CandidateReport, CheckVerdict};
 use crate::pose::Similarity;
 
-/// What one cue contributed.
+/// The contribution of one cue.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct CueReport {
-    /// Which.
+    /// The cue.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub cue: Cue,
-    /// Of the answer's information, 0 .. 1.
+    /// Share of the estimate's information, 0 .. 1.
     pub share: f64,
-    /// One over its sigma, pixels of the colour image.
+    /// The inverse of the sigma of this cue alone, in pixels of the colour image.
     pub sharpness: f64,
 }
 
-/// What one frame contributed.
+/// The contribution of one frame.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct FrameReport {
-    /// Its name.
+    /// Name of the frame.
     pub name: String,
-    /// Of the answer's information, 0 .. 1.
+    /// Share of the estimate's information, 0 .. 1.
     pub share: f64,
-    /// What should be known about it.
+    /// A remark about the frame, if there is one.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub note: Option<String>,
 }
 
-/// What a check found.
+/// The result of a check.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct CheckReport {
-    /// Of the first candidate; undecided without one.
+    /// Verdict on the first candidate; undecided without a candidate.
     pub verdict: CheckVerdict,
-    /// Why.
+    /// The reason for the verdict.
     #[cfg_attr(feature = "serde", serde(flatten, serialize_with = "super::serialised::coded"))]
     pub reason: CheckReason,
-    /// What was guessed or looks wrong.
+    /// Warnings about guessed or implausible input.
     pub warnings: Vec<Warning>,
     /// The extrinsics that fit best.
     pub estimate: Similarity,
-    /// The scene's middle, colour frame, metres.
+    /// The centre of the scene in the colour camera's frame, metres.
     pub middle: [f64; 3],
-    /// Rotation vector in rad about the scene's middle, then translation in m; colour frame.
+    /// Covariance of the rotation vector in rad about the scene's centre, then of the translation in m; colour camera's
+    /// frame.
     #[cfg_attr(feature = "serde", serde(serialize_with = "super::serialised::rows"))]
     pub covariance: SMatrix<f64, POSE, POSE>,
-    /// Factor of the colour camera's focal length, and its sigma, where it was looked for.
+    /// Factor of the colour camera's focal length and the sigma of its logarithm, if the focal length was estimated.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub focal: Option<[f64; 2]>,
-    /// Of the estimate.
+    /// Expected error of the estimate.
     pub health: Health,
-    /// In the order given.
+    /// Reports on the candidates, in the order given.
     #[cfg_attr(feature = "serde", serde(serialize_with = "super::serialised::candidates_by_name"))]
     pub candidates: Vec<CandidateReport>,
-    /// Each that was asked for.
+    /// Reports on the requested cues.
     #[cfg_attr(feature = "serde", serde(serialize_with = "super::serialised::cues_by_name"))]
     pub cues: Vec<CueReport>,
-    /// In the order given.
+    /// Reports on the frames, in the order given.
     pub frames: Vec<FrameReport>,
-    /// By cue and axis.
+    /// Curves by cue and axis.
     pub sensitivity: Vec<Sensitivity>,
 }
 

@@ -1,34 +1,36 @@
-//! Rims: where a near surface ends before a farther one, as the colour camera would see it.
+//! Depth discontinuities: where a near surface ends in front of a farther one, in the colour camera's view.
 //!
-//! A pixel of the depth map is on a rim if the next one that has a depth, along its row or column, lies clearly farther
-//! from the colour camera. Next ones are looked for across holes: a depth camera that is offset from its projector or its
-//! own colours has a shadow of missing depth on one side of all that is near. Far sides of rims are not used; they start
-//! wherever that shadow ends.
+//! A pixel of the depth map is on a discontinuity if the next pixel with a depth, along its row or column, lies clearly
+//! farther from the colour camera. The next pixel may lie beyond a hole: a depth camera that is offset from its projector
+//! or its own colour camera misses depths on one side of each near object. The far side of a discontinuity is not used,
+//! because it begins wherever this hole ends.
 
 use super::frame::{Frame, Projection};
 
-/// Holes up to this many pixels wide are looked across: the shadow of an object 0.3 m before its wall is 15 to 30 pixels of a
-/// Kinect (baseline 75 mm) wide. One half a metre away before a wall at two has 60, and loses that side of its rims.
+/// Farthest pixel at which the next depth is looked for. Beside an object 0.3 m in front of its wall, a Kinect (baseline
+/// 75 mm) has a hole of 15 to 30 pixels. An object at half a metre in front of a wall at two metres has one of 60 pixels,
+/// and its discontinuities on that side are not found.
 const WIDEST_HOLE: usize = 40;
-/// Neighbours to each side that say how rim and image lie to each other.
+/// Neighbours to each side that determine the local map from raster to image.
 const REACH: isize = 2;
-/// Near pixels that determine the map from raster to image at a rim.
+/// Minimum number of near pixels that determine this map.
 const FEWEST_NEIGHBOURS: usize = 4;
 
-/// A point of a rim.
+/// A point of a depth discontinuity.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rim {
     /// Index of the near pixel in the depth map.
     pub index: usize,
-    /// Where the near surface ends on the image: half a depth pixel beyond the near pixel.
+    /// Position at which the near surface ends on the image: half a depth pixel beyond the near pixel.
     pub pixel: [f64; 2],
-    /// Unit normal of the rim on the image, away from the near surface.
+    /// Unit normal of the discontinuity on the image, away from the near surface.
     pub normal: [f64; 2],
-    /// Distance along the normal from the near pixel to the next on the raster: the near surface ends anywhere in between.
+    /// Distance on the image along the normal, in pixels, from the near pixel to the next one of the raster. The near
+    /// surface ends anywhere in between.
     pub gap: f64,
 }
 
-/// All rims that the colour camera sees.
+/// All depth discontinuities that the colour camera sees.
 pub(super) fn find(frame: &Frame, projection: &Projection) -> Vec<Rim> {
     let near = |index: usize| {
         let depth = projection.positions[index][2];
@@ -41,13 +43,13 @@ fn depth(projection: &Projection, index: usize) -> f64 {
     f64::from(projection.positions[index][2])
 }
 
-/// Whether any of the next pixels with a depth is clearly farther than the surface goes on.
+/// Whether any of the next pixels with a depth is clearly farther than the continued surface.
 fn ends_before_farther(frame: &Frame, projection: &Projection, index: usize) -> bool {
     let grid = frame.grid;
     let (column, row) = grid.position(index);
     let here = depth(projection, index);
     let gap = frame.clear_gap(here);
-    // Distance of neighbours in memory, pixels from here to the raster's end, and to its other end.
+    // Distance of neighbours in memory, and the number of pixels to the end of the raster ahead and behind.
     let ways = [
         (1, grid.width - 1 - column, column),
         (-1, column, grid.width - 1 - column),
@@ -59,23 +61,25 @@ fn ends_before_farther(frame: &Frame, projection: &Projection, index: usize) -> 
         let mut steps = 1..=ahead.min(WIDEST_HOLE) as isize;
         let Some(steps) = steps.find(|&steps| !at(steps).is_nan()) else { return false };
         let farther = at(steps) - here;
-        // Of all pixels but a few hundred this is enough: a surface that falls away makes it less.
+        // Most pixels stop here: a continued slope only reduces the distance.
         if farther <= gap {
             return false;
         }
-        // How steeply the surface falls away already, over the two pixels before.
+        // Slope of the surface over the two pixels on the other side.
         let before = if behind < 2 { f64::NAN } else { at(-2) };
         let slope = if before.is_nan() { 0.0 } else { ((here - before) / 2.0).max(0.0) };
         farther - slope.min(gap) * steps as f64 > gap
     })
 }
 
-/// The pixels around one on a rim.
+/// The pixels around a pixel on a depth discontinuity.
 #[derive(Default)]
 struct Neighbourhood {
-    /// Sum of the offsets on the raster of farther pixels, less those of near and nearer ones: away from the near surface.
+    /// Sum of the offsets on the raster of farther and missing pixels, less those of near and nearer ones: the direction
+    /// away from the near surface.
     away: [f64; 2],
-    /// Near pixels, their moments on the raster (xx, xy, yy), and their offsets on the image times those on the raster, row by row.
+    /// Number of near pixels, their moments on the raster (xx, xy, yy), and their offsets on the image times those on the
+    /// raster, row by row.
     count: usize,
     moments: [f64; 3],
     by_image: [[f64; 2]; 2],
@@ -98,7 +102,7 @@ impl Neighbourhood {
                 let other = grid.index(column as usize, row as usize);
                 let is_near = (depth(projection, other) - here).abs() <= gap;
                 let offset = [right as f64, down as f64];
-                // Nearer ones belong to something before the rim.
+                // Nearer pixels belong to something in front of the discontinuity.
                 let side = if is_near || depth(projection, other) < here { -1.0 } else { 1.0 };
                 (0..2).for_each(|k| sums.away[k] += side * offset[k]);
                 let pixel = projection.pixels[other];
@@ -119,7 +123,8 @@ impl Neighbourhood {
         self.count += 1;
     }
 
-    /// The unit direction away from the near surface on the raster, and the fitted map d image / d raster, row by row.
+    /// The unit direction away from the near surface on the raster, and the fitted derivative of the position on the
+    /// image with respect to that on the raster, row by row.
     fn fitted(&self) -> Option<([f64; 2], [[f64; 2]; 2])> {
         let [xx, xy, yy] = self.moments;
         let length = self.away[0].hypot(self.away[1]);
@@ -132,7 +137,7 @@ impl Neighbourhood {
     }
 }
 
-/// Position and normal of the rim at a near pixel.
+/// Position and normal of the depth discontinuity at a near pixel.
 fn rim(frame: &Frame, projection: &Projection, index: usize) -> Option<Rim> {
     let centre = projection.pixels[index];
     if centre[0].is_nan() {

@@ -1,12 +1,14 @@
-//! Where to start: what may be wrong with a candidate, tried on a lattice.
+//! The coarse search for initial poses: a lattice of possible errors of a candidate.
 //!
-//! The prior says how far a candidate may be off. In the directions along which it moves the scene's pixels the most
-//! (eigenvectors of J^T J in sigmas of the prior, J being how rims move) that is tens of pixels for two of them, which
-//! are shifts of the image, some for a turn about the optical axis, a shift along it and an unknown focal length, and few
-//! for turns and shifts that cancel at one depth but not at another. A lattice of one pace in pixels covers all of them;
-//! rims move along straight lines on it. The best few that are no neighbours are starts for the registration.
+//! The prior states how far a candidate may be off. The eigenvectors of J^T J in sigmas of the prior, with J the motion
+//! of the depth discontinuities, are the errors that move the image the most. A sigma of two of them, shifts of the
+//! image, moves it by tens of pixels. A rotation about the optical axis, a shift along it and an unknown focal length
+//! move it less, and rotations and shifts that cancel at one depth but not at another move it by a few pixels. A lattice
+//! with one pace in pixels covers all of them, and discontinuities move along straight lines on it. The best places that
+//! are not neighbours become initial poses of the registration.
 //!
-//! score = mean over rims of s, s = |n . grad I| / (|grad I| + mean of |grad I| around), less half the squared sigmas.
+//! score = mean over discontinuities of s - PRIOR_WEIGHT / 2 * squared distance in sigmas of the prior,
+//! s = |n . grad I| / (|grad I| + mean of |grad I| in the surroundings + FAINTEST)
 
 use super::frame::Frame;
 use super::planes::Planes;
@@ -15,28 +17,29 @@ use super::rims::Rim;
 use super::unknowns::{Matrix, State, UNKNOWNS, Units, Vector, add_square, spectral};
 use crate::numeric::eigen::symmetric_eigen;
 
-/// Pace of the lattice, root mean square over rims, pixels of an image 640 wide.
+/// Pace of the lattice, pixels of an image 640 wide: root mean square motion of the depth discontinuities.
 const PACE: f64 = 4.0;
-/// How far it reaches, sigmas of the prior.
+/// Half width of the lattice, sigmas of the prior.
 const REACH: f64 = 1.5;
-/// Places of the lattice at most, some tenths of a second of work; the pace grows until so many are enough.
+/// Maximum number of places, which takes a few tenths of a second; the pace grows until the lattice has no more.
 const MOST_PLACES: f64 = 6e4;
-/// Rims of all frames that are laid onto edges.
+/// Depth discontinuities of all frames that are compared with image edges.
 const MOST_RIMS: usize = 400;
-/// Starts.
+/// Number of initial poses besides the candidate itself.
 const STARTS: usize = 16;
-/// Two starts differ by this much, paces.
+/// Least distance between two initial poses, paces.
 const APART: f64 = 1.5;
-/// Blur of the image, paces: an edge is seen from half a pace away.
+/// Sigma of the image's blur, paces: an edge is visible from half a pace away.
 const BLUR: f64 = 0.5;
-/// sigma of what counts as around, paces.
+/// Sigma of the surroundings of a gradient, paces.
 const AROUND: f64 = 2.0;
-/// Gradients weaker than this are noise: sum of three encoded channels over two pixels.
+/// Gradients weaker than this are noise: sum of three encoded channels, difference over two pixels.
 const FAINTEST: f32 = 0.03;
-/// Weight of the prior against the mean score: a shift of one sigma costs what one rim of fifty on an edge is worth.
+/// Weight of the prior against the mean score: one sigma costs 0.01, as much as one discontinuity of fifty gains on an
+/// edge with s = 0.5.
 const PRIOR_WEIGHT: f64 = 0.02;
 
-/// Gradient of lightness over its surroundings.
+/// Gradient of lightness relative to its surroundings.
 struct EdgeMap {
     width: usize,
     height: usize,
@@ -55,7 +58,7 @@ impl EdgeMap {
                 gradient[at] = [light[at + 1] - light[at - 1], light[at + width] - light[at - width]];
             }
         }
-        // Beside pixels that are not to be used there is no gradient.
+        // The gradient is zero beside pixels that are not used.
         gradient.iter_mut().filter(|[x, y]| (x + y).is_nan()).for_each(|gradient| *gradient = [0.0; 2]);
         let size: Vec<[f32; 3]> = gradient.iter().map(|[x, y]| [x.hypot(*y), 0.0, 0.0]).collect();
         let around = Planes { size: planes.size, pixels: size.clone() }.blurred((AROUND * pace) as f32);
@@ -67,7 +70,7 @@ impl EdgeMap {
     }
 
     fn at(&self, [column, row]: [f32; 2], normal: [f32; 2]) -> f32 {
-        // The nearest pixel: what is below zero rounds to zero as a whole number.
+        // The nearest pixel: half a pixel is added, and the cast truncates.
         let (column, row) = (column + 0.5, row + 0.5);
         if column < 0.0 || row < 0.0 || column >= self.width as f32 || row >= self.height as f32 {
             return 0.0;
@@ -77,7 +80,7 @@ impl EdgeMap {
     }
 }
 
-/// A rim where the candidate puts it, and how it moves with a pace along each direction.
+/// A depth discontinuity as the candidate projects it, and its motion by one pace along each direction.
 struct Mark {
     frame: usize,
     pixel: [f32; 2],
@@ -85,18 +88,19 @@ struct Mark {
     motion: [[f32; 2]; UNKNOWNS],
 }
 
-/// Places k_0 .. k_7, each from -reach to reach, paces along directions that move rims the most first.
+/// Places k_0 .. k_7, each from -reach to reach, in paces along directions. The first directions move the discontinuities
+/// the most.
 struct Lattice {
-    /// A step of one pace along each.
+    /// A step of one pace along each direction.
     steps: [Vector; UNKNOWNS],
-    /// Sigmas of a pace along each.
+    /// Sigmas of the prior in a pace along each direction.
     sigmas: [f64; UNKNOWNS],
     reach: [i8; UNKNOWNS],
 }
 
 type Place = [i8; UNKNOWNS];
 
-/// The rims as `state` sees them, and starts near it, itself the first.
+/// The depth discontinuities as `state` sees them, and initial poses near it, itself the first.
 pub(super) fn starts(scene: &Scene, state: &State) -> (Vec<Vec<Rim>>, Vec<State>) {
     let units = scene.units(state);
     let rims = scene.rims(state, MOST_RIMS);
@@ -113,7 +117,7 @@ pub(super) fn starts(scene: &Scene, state: &State) -> (Vec<Vec<Rim>>, Vec<State>
     (rims, states)
 }
 
-/// How the pixel of each rim moves with the unknowns.
+/// Derivatives of the pixel of each discontinuity with respect to the unknowns.
 fn rows(frames: &[Frame], state: &State, units: &Units, rims: &[Vec<Rim>]) -> Vec<(usize, Rim, [Vector; 2])> {
     let of_frame = |(index, (frame, rims)): (usize, (&Frame, &Vec<Rim>))| -> Vec<_> {
         let camera = state.camera(&frame.camera);
@@ -127,7 +131,7 @@ fn rows(frames: &[Frame], state: &State, units: &Units, rims: &[Vec<Rim>]) -> Ve
 }
 
 impl Lattice {
-    /// `pace` in pixels, wider where the lattice would have too many places.
+    /// `pace` is in pixels, and grows if the lattice would have too many places.
     fn new(rows: &[(usize, Rim, [Vector; 2])], prior: &Matrix, pace: &mut f64) -> Option<Self> {
         let mut squares = Matrix::zeros();
         rows.iter().flat_map(|(_, _, rows)| rows).for_each(|row| add_square(&mut squares, row, 1.0));
@@ -136,7 +140,7 @@ impl Lattice {
         let eigen = symmetric_eigen(&(root * motion * root))?;
         let mut order: [usize; UNKNOWNS] = std::array::from_fn(|k| k);
         order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
-        // Pixels of a sigma along each.
+        // Pixels by which one sigma moves the discontinuities along each direction.
         let lengths: [f64; UNKNOWNS] =
             std::array::from_fn(|k| eigen.eigenvalues[order[k]].max(f64::MIN_POSITIVE).sqrt());
         let reach = |pace: f64| lengths.map(|length| (REACH * length / pace).min(f64::from(i8::MAX)) as i8);
@@ -154,13 +158,13 @@ impl Lattice {
         Mark { frame: *frame, pixel: narrow(rim.pixel), normal: narrow(rim.normal), motion }
     }
 
-    /// The best places that are no neighbours, after the middle.
+    /// The best places that are not neighbours, after the centre.
     fn best(&self, maps: &[EdgeMap], marks: &[Mark]) -> Vec<Place> {
         let mut scores: Vec<(f64, Place)> = vec![];
         let mut pixels = vec![[0.0; 2]; marks.len()];
         let mut place = self.reach.map(|k| -k);
         loop {
-            // All but the first two are the same for a whole plane of places.
+            // The motion along all but the first two directions is the same for a whole plane of places.
             for (pixel, mark) in pixels.iter_mut().zip(marks) {
                 *pixel = (2..UNKNOWNS).fold(mark.pixel, |at, k| moved(at, mark.motion[k], place[k]));
             }
@@ -187,7 +191,7 @@ impl Lattice {
         chosen
     }
 
-    /// Of a place, its marks lying where all but its first two directions put them.
+    /// Score of a place. `pixels` are the marks moved along all but the first two directions.
     fn score(&self, maps: &[EdgeMap], marks: &[Mark], pixels: &[[f32; 2]], place: &Place) -> f64 {
         let at = |(mark, pixel): (&Mark, &[f32; 2])| {
             let pixel = moved(moved(*pixel, mark.motion[0], place[0]), mark.motion[1], place[1]);

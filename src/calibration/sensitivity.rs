@@ -1,4 +1,4 @@
-//! How each cue falls as the calibration is moved away from the estimate, axis by axis.
+//! Decrease of each cue's log likelihood as the calibration moves away from the estimate, axis by axis.
 
 use super::cue::Cue;
 use super::edges::EdgeField;
@@ -12,28 +12,28 @@ use super::shading::Shading;
 use super::silhouette::Silhouette;
 use super::unknowns::{POSE, State, Units, Vector};
 
-/// Offsets to each side: degrees about an axis, millimetres along one.
+/// Farthest offsets to each side: degrees about an axis, millimetres along one.
 const FARTHEST_DEGREES: f64 = 5.0;
 const FARTHEST_MILLIMETRES: f64 = 50.0;
-/// Offsets to each side.
+/// Number of offsets to each side.
 const OFFSETS: i32 = 8;
-/// Rims of a frame whose edges are looked at.
+/// Maximum number of depth discontinuities of a frame.
 const MOST_RIMS: usize = 400;
 
 /// Names of the axes in the order of the unknowns.
 const AXES: [&str; POSE] = ["rx", "ry", "rz", "tx", "ty", "tz"];
 
-/// One curve.
+/// The curve of one cue along one axis.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Sensitivity {
-    /// Which cue.
+    /// The cue.
     pub cue: Cue,
     /// rx, ry, rz about the scene's middle, tx, ty, tz; colour camera's frame.
     pub axis: &'static str,
     /// Degrees or millimetres from the estimate.
     pub offsets: Vec<f64>,
-    /// Log likelihood, its weight applied, less that at the estimate.
+    /// Weighted log likelihood relative to that at the estimate.
     pub values: Vec<f64>,
 }
 
@@ -45,7 +45,7 @@ pub(super) fn curves(
     planes: &[Planes],
     (cue, weight): (Cue, f64),
 ) -> Vec<Sensitivity> {
-    // Evenly spread in the square root: a minimum is narrow.
+    // Offsets are evenly spaced in their square roots, because a maximum is narrow.
     let shares = (-OFFSETS..=OFFSETS).map(|k| f64::from(k * k.abs()) / f64::from(OFFSETS * OFFSETS));
     let shares: Vec<f64> = shares.collect();
     let states: Vec<State> = (0..POSE)
@@ -78,7 +78,7 @@ pub(super) fn curves(
     values.chunks(shares.len()).enumerate().map(curve).collect()
 }
 
-/// The log likelihood by edges of one frame at some states.
+/// The log likelihood by edges of one frame at the given states.
 fn edges_along(sight: Sight<'_>, round: &Round, units: &Units, states: &[State]) -> Vec<f64> {
     let Sight { frame, planes } = sight;
     let rims = EdgeField::rims(frame, &Projection::new(frame, &round.state), MOST_RIMS);
@@ -92,7 +92,7 @@ fn edges_along(sight: Sight<'_>, round: &Round, units: &Units, states: &[State])
     states.iter().map(value).collect()
 }
 
-/// The log likelihood by a cue of surfaces of one frame at some states.
+/// The log likelihood by a cue over surfaces of one frame at the given states.
 fn surfaces_along(scene: &Scene, round: &Round, cue: Cue, index: usize, states: &[State]) -> Vec<f64> {
     let frame = &scene.frames[index];
     let planes = &scene.surface_planes[index];

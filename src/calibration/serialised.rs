@@ -1,4 +1,4 @@
-//! Reports as the JavaScript contract has them: codes with their words, lists of numbers, members by name.
+//! Reports in the form of the JavaScript contract: codes with their sentences, lists of numbers, members by name.
 
 use nalgebra::SMatrix;
 use serde::{Serialize, Serializer};

@@ -1,9 +1,9 @@
 //! Shading: log colours within a patch follow the nine harmonics of the normal (Eq. 3).
 //!
-//! Under order-2 light log S is a quadratic of the normal, whatever the pose; the light is unknown and fitted. Paint and
-//! shadow are taken as constant on a patch: means over patches are removed from colours and harmonics alike. The log
-//! likelihood is that of residuals under Cauchy's density, whose scale is measured at the pose that the cue is asked about
-//! first. Limits: print within a patch is noise to it.
+//! Under light of order 2, log S is a quadratic of the normal, whatever the pose; the light is unknown and fitted. Albedo
+//! and shadow are assumed constant on a patch, so the means over patches are removed from colours and harmonics alike.
+//! The log likelihood is that of residuals with Cauchy's density, whose scale is measured at the first pose at which the
+//! cue is evaluated. Limit: texture within a patch acts as noise.
 
 use nalgebra::{SMatrix, SVector, Vector3};
 
@@ -13,11 +13,11 @@ use super::unknowns::State;
 const HARMONICS: usize = 9;
 type Harmonics = SVector<f64, HARMONICS>;
 
-/// Added before a logarithm: the noise of a dark pixel of 8 bits.
+/// Added to intensities before the logarithm: the noise of a dark pixel of 8 bits.
 const DARKEST: f32 = 0.02;
-/// A ridge on the fit of the light, as a share of its largest term: a patchwork of planes determines no light.
+/// Ridge of the fit of the light, as a share of its largest term, because a few planes do not determine the light.
 const RIDGE: f64 = 1e-3;
-/// The median of |x| of Cauchy's density is its scale.
+/// Least scale of the residuals, log units. The scale is their median, as for Cauchy's density.
 const LEAST_SCALE: f64 = 0.005;
 
 /// The cue over the patches of one frame.
@@ -49,7 +49,7 @@ impl<'a> Shading<'a> {
         }
     }
 
-    /// Log colours less their patches' means and the fitted light.
+    /// Log colours less the means of their patches and the fitted light.
     fn residuals(&self, sight: &Sight, state: &State) -> Vec<Option<Vector3<f64>>> {
         let log = |colour: [f32; 3]| Vector3::from(colour.map(|value| f64::from((value + DARKEST).ln())));
         let known: Vec<Option<Vector3<f64>>> =
@@ -59,7 +59,7 @@ impl<'a> Shading<'a> {
         let mut matrix = SMatrix::<f64, HARMONICS, HARMONICS>::zeros();
         let mut sums = SMatrix::<f64, HARMONICS, 3>::zeros();
         for (index, harmonics) in self.harmonics.iter().enumerate().filter(|&(index, _)| known[index].is_some()) {
-            // The lower half, which is all that the factorisation reads.
+            // Only the lower half is filled; the factorisation reads no more.
             for column in 0..HARMONICS {
                 (column..HARMONICS).for_each(|row| matrix[(row, column)] += harmonics[row] * harmonics[column]);
             }
@@ -73,12 +73,12 @@ impl<'a> Shading<'a> {
     }
 }
 
-/// 1, the normal and its products.
+/// The linear and quadratic terms of a normal, and 1.
 fn basis(n: &Vector3<f64>) -> Harmonics {
     Harmonics::from([n.x, n.y, n.z, n.x * n.x, n.y * n.y, n.x * n.y, n.x * n.z, n.y * n.z, 1.0])
 }
 
-/// Takes from each value the mean over its patch.
+/// Subtracts from each value the mean over its patch.
 fn remove_means<const N: usize>(patches: &[u8], values: &mut [SVector<f64, N>], is_known: impl Fn(usize) -> bool) {
     let mut sums = [(SVector::<f64, N>::zeros(), 0.0); PATCHES];
     for (index, value) in values.iter().enumerate().filter(|&(index, _)| is_known(index)) {

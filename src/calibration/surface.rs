@@ -1,4 +1,4 @@
-//! Samples of the depth map with their normals: what shading and information look at.
+//! Samples of the depth map with their normals, for shading, information and silhouette.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -6,12 +6,12 @@ use crate::numeric::eigen::symmetric_eigen;
 
 use super::frame::Frame;
 
-/// Neighbours to each side of a plane's fit: wide enough for the steps of a quantised map.
+/// Neighbours to each side in the fit of a plane: enough to average the steps of a quantised map.
 const REACH: usize = 3;
-/// Fewest neighbours that determine a plane.
+/// Minimum number of neighbours that determine a plane.
 const FEWEST: usize = 12;
 
-/// A point of the depth map with its normal, depth camera's frame.
+/// A point of the depth map with its normal, in the depth camera's frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sample {
     pub index: usize,
@@ -19,7 +19,7 @@ pub(super) struct Sample {
     pub normal: Vector3<f64>,
 }
 
-/// About `most` samples, evenly spread over the map.
+/// About `most` samples, evenly spaced on the raster.
 pub(super) fn samples(frame: &Frame, most: usize) -> Vec<Sample> {
     let valid = frame.points.iter().filter(|point| !point[2].is_nan()).count();
     let stride = ((valid as f64 / most as f64).sqrt().ceil() as usize).max(1);

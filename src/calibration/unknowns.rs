@@ -1,9 +1,9 @@
-//! The unknowns of a check, and how a point's pixel moves with each.
+//! The unknowns of a check, and the derivatives of pixels with respect to them.
 //!
-//! P -> c + exp([w]) (P - c) + v about the scene's middle c, in the colour camera's frame; the loss d of depth outlines in
-//! pixels (a depth camera loses or adds a rim of constant width, one number for a device), and ln f of the colour camera
-//! where it is not known. Each is measured in a unit that moves the scene's pixels by one pixel at the root mean square,
-//! so that all of them are alike and steps, derivatives and tolerances have one size.
+//! P -> c + exp([w]) (P - c) + v about the scene's centre c, in the colour camera's frame; the edge bias d in pixels (a
+//! depth camera removes or adds a strip of constant width at depth discontinuities, one number for a device); and ln f of
+//! the colour camera if it is unknown. The unit of each moves the scene's pixels by one pixel, root mean square. All
+//! unknowns are then comparable, and steps, derivatives and tolerances have one size.
 
 use nalgebra::{Rotation3, SMatrix, SVector, Vector3};
 
@@ -13,7 +13,7 @@ use crate::view::Pinhole;
 
 /// w (3), v (3), d, ln f.
 pub(super) const UNKNOWNS: usize = 8;
-/// The first six are the pose.
+/// Number of unknowns of the pose, which come first.
 pub(super) const POSE: usize = 6;
 pub(super) const LOSS: usize = 6;
 pub(super) const FOCAL: usize = 7;
@@ -21,7 +21,8 @@ pub(super) const FOCAL: usize = 7;
 pub(super) type Vector = SVector<f64, UNKNOWNS>;
 pub(super) type Matrix = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
 
-/// `matrix` with a row's square added. Here and in the next two not inlined: each place's own copy would be a kilobyte to download.
+/// Adds a row's square to `matrix`. This function and the next two are not inlined, because each inlined copy would add a
+/// kilobyte to the .wasm file.
 #[inline(never)]
 pub(super) fn add_square(matrix: &mut Matrix, row: &Vector, weight: f64) {
     for k in 0..UNKNOWNS {
@@ -37,20 +38,20 @@ pub(super) fn solve(matrix: &Matrix, right: &Vector) -> Option<Vector> {
     matrix.cholesky().map(|factors| factors.solve(right))
 }
 
-/// V f(L) V^T of a symmetric matrix V L V^T, of which only this is known.
+/// V f(L) V^T of the eigendecomposition V L V^T of a symmetric matrix.
 #[inline(never)]
 pub(super) fn spectral(eigen: &Eigen<UNKNOWNS>, of: fn(f64) -> f64) -> Matrix {
     eigen.eigenvectors * Matrix::from_diagonal(&eigen.eigenvalues.map(of)) * eigen.eigenvectors.transpose()
 }
 
-/// Pixels that a radian or a metre moves the scene by at the least, so that what is not on the image has finite units.
+/// Least motion in pixels per radian or metre, which keeps units finite if no point lies in front of the camera.
 const LEAST_MOTION: f64 = 1e-6;
 
-/// What a check looks for: extrinsics, and what goes with them.
+/// The state of a check: the extrinsics and the other unknowns.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct State {
     pub pose: Similarity,
-    /// d in pixels of the colour image.
+    /// Edge bias d in pixels of the colour image.
     pub loss: f64,
     /// Factor of the colour camera's focal length.
     pub focal: f64,
@@ -66,17 +67,17 @@ impl State {
     }
 }
 
-/// The middle c and the units.
+/// The centre c and the units.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Units {
-    /// In the colour camera's frame, metres.
+    /// Mean x and y of the points and their median depth, in the colour camera's frame, metres.
     pub middle: Vector3<f64>,
-    /// Radians, metres, pixels, and ln f of one unit of each unknown.
+    /// Size of one unit of each unknown in radians, metres, pixels, and ln f.
     pub of: Vector,
 }
 
 impl Units {
-    /// The units at which a cloud moves by one pixel; points in the colour camera's frame.
+    /// The units by which a cloud moves by one pixel; its points are in the colour camera's frame.
     pub fn new(points: &[Vector3<f64>], camera: &Pinhole) -> Self {
         let mut depths: Vec<f32> = points.iter().map(|point| point.z as f32).collect();
         let mean = points.iter().sum::<Vector3<f64>>() / points.len().max(1) as f64;
@@ -97,7 +98,8 @@ impl Units {
         units
     }
 
-    /// Pixel of a point in the colour camera's frame, and how its column and row move with each unknown.
+    /// Pixel of a point in the colour camera's frame, and the derivatives of its column and row with respect to the
+    /// unknowns.
     pub fn rows(&self, point: &Vector3<f64>, camera: &Pinhole) -> Option<([f64; 2], [Vector; 2])> {
         let (pixel, gradient) = camera.project_with_gradient([point.x, point.y, point.z])?;
         let arm = point - self.middle;

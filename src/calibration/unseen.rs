@@ -1,14 +1,15 @@
-//! The part of a scanner's cloud that the colour camera may see. The rest of a cloud that looks all around is left out.
+//! Leaves out the part of a cloud that the colour camera cannot see, if the scanner looks all around.
 
 use super::frame::Frame;
 use super::unknowns::State;
 
-/// A cloud with a larger share of its points behind the colour camera looks all around. A depth camera beside it has none.
+/// A cloud with a larger share of its points behind the colour camera looks all around. The cloud of a depth camera has
+/// no point there.
 const BEHIND: f64 = 0.01;
 /// Margin around the image, in focal lengths: 8 degrees, because candidates may be off by some degrees.
 const MARGIN: f64 = 0.14;
 
-/// Leaves out the points that no state projects near the image.
+/// Leaves out the points that no state projects near the image, if the cloud looks all around.
 pub(super) fn leave_unseen_out(frame: &mut Frame, states: &[State]) {
     let Some(first) = states.first() else { return };
     let is_behind = |index: usize| frame.point(index).is_some_and(|point| first.pose.apply(point).z <= 0.0);

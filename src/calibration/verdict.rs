@@ -1,16 +1,20 @@
-//! What is said of a candidate, with numbers.
+//! The verdict on a candidate, from the distribution of the estimate.
 //!
-//! A calibration is worth what its reprojection error at the scene's depth is: a turn and a shift that cancel there do no
-//! harm there. The error of a candidate is the distance of its pixels from those of the estimate, root mean square over
-//! the scene, and uncertain as the estimate is: its interval holds 95 % of Student's distribution about the estimate.
+//! The quality of a calibration is its reprojection error at the scene's depth: a rotation and a shift that cancel at
+//! this depth do no harm there. The error of a candidate is the distance of its pixels from those of the estimate, root
+//! mean square over the scene. It is as uncertain as the estimate: its interval holds 95 % of Student's distribution
+//! about the estimate.
 //!
-//! Consistent: all of the interval is below the tolerance; or nothing speaks against the candidate (the estimate is farther from
-//! the truth than from it in 5 % of cases and more), and the scene would show an error that counts (the estimate's own
-//! error is below the tolerance in 95 % of cases). Off: all of the interval is above the tolerance, and the candidate is farther from the
-//! estimate than the truth is in 95 % of cases; with six unknowns open hardly any draw is near a candidate, wherever it is.
-//! Where the colour camera was guessed, all of the interval has to be above what that explains. An estimate that would itself be
-//! off by its own interval speaks against nobody.
-//! Else the scene can't tell.
+//! Consistent: all of the interval lies below the tolerance. Or the candidate is not contradicted (at least 5 % of draws
+//! from the distribution are farther from the estimate), and the scene would show a relevant error (the estimate's own
+//! error is below the tolerance in 95 % of cases).
+//!
+//! Off: all of the interval lies above the tolerance, and 95 % of the draws are nearer to the estimate than the
+//! candidate. The second condition is needed because with six unknowns hardly any draw is near a candidate, wherever it
+//! is. If the colour camera was guessed, all of the interval has to lie above the error that the guess explains. The
+//! interval of the estimate's own error must not lie above the tolerance.
+//!
+//! Undecided: otherwise.
 
 use nalgebra::{SMatrix, SVector, Vector3};
 
@@ -21,81 +25,83 @@ use crate::numeric::quantile;
 use crate::numeric::random::Random;
 use crate::pose::{Axis, Unknown};
 
-/// Reprojection error that passes, pixels of an image 640 wide: 0.4 degrees at a usual focal length, what a
-/// careful calibration by hand reaches and colours of points at rims need.
+/// Largest reprojection error that passes, pixels of an image 640 wide: 0.4 degrees at a common focal length. Careful
+/// calibrations by hand reach this accuracy, and colours of points at depth discontinuities need it.
 pub(super) const TOLERANCE: f64 = 3.5;
-/// Draws from the estimate's distribution; its quantiles are then certain to about a twentieth of their sigma.
+/// Number of draws from the estimate's distribution. Its quantiles then have an error of about a twentieth of their
+/// sigma.
 const DRAWS: usize = 2000;
 const SEED: u64 = 1;
 /// Share of draws inside an interval.
 const INSIDE: f64 = 0.95;
-/// Degrees of freedom of the estimate's distribution, the only number here that was fitted: what all of an outline shares moves its
-/// tiles alike, so that their scatter is a guess of the error's size, on some scenes by far too small. The likelihood of 112 rendered
-/// rigs' true errors is highest at 3.3 (docs/lab/thresholds.md); at 3 the distribution has a covariance still.
+/// Degrees of freedom of the estimate's distribution, the only number here that was fitted (docs/lab/thresholds.md).
+/// Errors that a whole silhouette shares move its tiles alike, so their scatter is only an estimate of the error's size,
+/// in some scenes far too small. Three is the smallest whole number with a finite covariance.
 const DEGREES: f64 = 3.0;
-/// Above this sigma an axis is not seen by a scene: about half of what the prior alone leaves open.
+/// Sigma above which the scene does not constrain an axis: about half the sigma of the prior.
 const UNSEEN_DEGREES: f64 = 2.0;
 const UNSEEN_METRES: f64 = 0.03;
 
 type PoseVector = SVector<f64, POSE>;
 type PoseMatrix = SMatrix<f64, POSE, POSE>;
 
-/// What can be said.
+/// The answer of a check about a candidate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
 pub enum CheckVerdict {
-    /// Within the tolerance.
+    /// The error is within the tolerance.
     Consistent,
-    /// Beyond it.
+    /// The error is beyond the tolerance.
     Off,
-    /// The scene can't tell.
+    /// The scene does not determine the verdict.
     Undecided,
 }
 
-/// What is said of one candidate.
+/// The report on one candidate.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "camelCase"))]
 pub struct CandidateReport {
-    /// Its name.
+    /// Name of the candidate.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub name: String,
-    /// The word.
+    /// The verdict.
     pub verdict: CheckVerdict,
-    /// Why.
+    /// The reason for the verdict.
     #[cfg_attr(feature = "serde", serde(flatten, serialize_with = "super::serialised::coded"))]
     pub reason: CheckReason,
-    /// Turn from the estimate.
+    /// Rotation from the estimate, degrees.
     pub off_degrees: f64,
-    /// Shift of the scene's middle from the estimate's.
+    /// Shift of the scene's centre from that of the estimate, millimetres.
     pub off_millimetres: f64,
-    /// Its reprojection error.
+    /// Expected reprojection error of the candidate.
     #[cfg_attr(feature = "serde", serde(flatten))]
     pub health: Health,
-    /// Probability of a distance as large, were it right.
+    /// Probability of a distance at least this large if the candidate is right.
     pub probability: f64,
 }
 
-/// The estimate's distribution in pixels of the scene.
+/// The distribution of the estimate, which judges candidates by the motion of the scene's pixels.
 pub(super) struct Judge {
     units: Units,
-    /// Mean squared motion of the scene's pixels, original pixels.
+    /// Mean squared motion of the scene's pixels, in pixels of the image as given.
     motion: PoseMatrix,
     inverse: PoseMatrix,
     draws: Vec<PoseVector>,
     tolerance: f64,
-    /// Errors below these pixels have another explanation than a wrong candidate.
+    /// Errors below this many pixels may be those of a guessed camera.
     explained: f64,
-    /// Of the estimate.
+    /// Expected error of the estimate.
     own: Health,
-    /// What the estimate's error stays below in 95 % of cases.
+    /// The estimate's error is below this in 95 % of cases, pixels.
     reach: f64,
 }
 
 impl Judge {
-    /// Student's covariance over its scale.
+    /// Ratio of the covariance of Student's distribution to its scale.
     pub const VARIANCE: f64 = DEGREES / (DEGREES - 2.0);
 
-    /// `cloud` in the colour camera's frame; `scale` of the distribution; `pixel` of the original image in one worked on; `width` of the original.
+    /// `cloud` is in the colour camera's frame, and `scale` is that of the distribution. `pixel` is the width of a
+    /// working pixel in pixels of the image as given, and `width` is the width of that image.
     pub fn new(
         units: Units,
         camera: &crate::view::Pinhole,
@@ -120,7 +126,7 @@ impl Judge {
         let mut normal = || (0..12).map(|_| random.uniform()).sum::<f64>() - 6.0;
         let draws = (0..DRAWS)
             .map(|_| {
-                // Student's: a normal over the root of a mean square; chi-square by Wilson and Hilferty (1931).
+                // Student's t: a normal vector over the root of a mean square; chi-square by Wilson and Hilferty (1931).
                 let h = 2.0 / (9.0 * DEGREES);
                 let mean_square = (1.0 - h + h.sqrt() * normal()).powi(3).max(1e-3);
                 root * PoseVector::from_fn(|_, _| normal()) / mean_square.sqrt()
@@ -143,7 +149,7 @@ impl Judge {
         judge
     }
 
-    /// The same where errors below these pixels have another explanation.
+    /// The same judge, for which errors below this many pixels may be those of a guessed camera.
     pub fn explaining(self, pixels: f64) -> Self {
         Self { explained: pixels, ..self }
     }
@@ -157,7 +163,7 @@ impl Judge {
         self.draws.iter().map(error).collect()
     }
 
-    /// What these errors come to.
+    /// The expected error and its interval at an offset from the estimate.
     fn health(&self, offset: &PoseVector) -> Health {
         let mut errors = self.errors(offset);
         let mean = errors.iter().map(|error| f64::from(*error).powi(2)).sum::<f64>() / errors.len() as f64;
@@ -166,12 +172,12 @@ impl Judge {
         Health { pixels: mean.sqrt(), interval: [at(tail), at(1.0 - tail)] }
     }
 
-    /// The estimate's own.
+    /// Expected error of the estimate.
     pub const fn estimate(&self) -> Health {
         self.own
     }
 
-    /// What a scene shows least of a pose, where it is next to nothing.
+    /// The axis that the scene constrains the least, if it hardly constrains it.
     pub fn weakest(&self, covariance: &Matrix) -> Option<Unknown> {
         const ORDER: [Unknown; POSE] = [
             Unknown::Rotation(Axis::X),
@@ -189,19 +195,19 @@ impl Judge {
         (worst(k) > 1.0).then_some(ORDER[k])
     }
 
-    /// How far the log posterior may fall within the distribution: half the squared distance of all but the farthest draws.
+    /// Decrease of the log posterior within the distribution: half the squared distance of the nearest 95 % of the draws.
     pub fn likely(&self) -> f64 {
         let squared = |draw: &PoseVector| draw.dot(&(self.inverse * draw)) as f32;
         let mut distances: Vec<f32> = self.draws.iter().map(squared).collect();
         0.5 * f64::from(quantile(&mut distances, INSIDE))
     }
 
-    /// Reprojection error that passes, pixels of the image.
+    /// Largest reprojection error that passes, pixels of the image as given.
     pub const fn tolerance(&self) -> f64 {
         self.tolerance
     }
 
-    /// Nothing is known of a pose that puts hardly any point onto the image.
+    /// The error of a pose that puts hardly any point onto the image, of which nothing is known.
     pub fn blind(width: f64) -> Health {
         Health { pixels: width, interval: [0.0, width] }
     }
@@ -256,7 +262,7 @@ impl Judge {
         }
     }
 
-    /// The turn and the shift of a difference of states, with the axis of the largest part of each.
+    /// The rotation and the shift between two states, with the axis of the largest part of each.
     fn offset(&self, between: &Vector) -> Offset {
         let metric = between.component_mul(&self.units.of);
         let axis = |first: usize| {
@@ -274,19 +280,20 @@ impl Judge {
 }
 
 impl CandidateReport {
-    /// What is said where no cue found anything to compare: the estimate is the first candidate, and its distribution the prior.
+    /// Overrides the verdict if no cue found anything to compare: the estimate is then the first candidate, and its
+    /// distribution the prior.
     pub(super) fn without_evidence(&mut self) {
         self.verdict = CheckVerdict::Undecided;
         self.reason = CheckReason::NoEvidence;
     }
 
-    /// What is said where optima that are about as likely contradict each other.
+    /// Overrides the verdict if optima that are about as likely contradict each other on the candidate.
     pub(super) fn between_optima(&mut self, tolerance: f64) {
         self.verdict = CheckVerdict::Undecided;
         self.reason = CheckReason::BetweenOptima(Margin { health: self.health, tolerance });
     }
 
-    /// What is said where the check's end or the candidate puts hardly any point onto the image.
+    /// Overrides the verdict if the estimate or the candidate puts hardly any point onto the image.
     #[inline(never)]
     pub(super) fn without_points(&mut self, is_end_seen: bool, width: f64) {
         (self.verdict, self.reason, self.probability) = if is_end_seen {
