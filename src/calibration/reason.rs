@@ -122,27 +122,31 @@ impl fmt::Display for CheckReason {
             ),
             Self::OffTarget { margin, offset } => write!(f, "Off by about {offset}: {margin}; {}.", margin.passes()),
             Self::Misread { reading, margin } => {
-                write!(f, "Off as it is. Read {reading}, it fits: its error is then {margin}; {}.", margin.passes())
+                write!(
+                    f,
+                    "Off as given, but it fits if read {reading}: its error is then {margin}; {}.",
+                    margin.passes()
+                )
             }
             Self::NoPointsOnImage => {
                 f.write_str("Off, or read in a wrong convention: it puts no points onto the image.")
             }
             Self::BetweenOptima(margin) => write!(
                 f,
-                "Its error is {margin} from the best fit, but another pose, nearer to it or farther from it, fits about as well."
+                "Its error relative to the best fit is {margin}, but another pose fits about as well and leads to a different verdict."
             ),
             Self::GuessedCamera { margin, explained } => write!(
                 f,
-                "Behind a guessed camera its error is {margin}, around the {} px that pass.",
+                "Its error is {margin}; the guessed colour camera alone can explain up to {} px.",
                 Fixed(*explained, 0)
             ),
             Self::Unconstrained { margin, weakest } => write!(
                 f,
-                "This scene hardly constrains {weakest}: its error is {margin}, around the {} px that pass.",
-                Fixed(margin.tolerance, 1)
+                "This scene hardly constrains {weakest}, so the error is too uncertain to decide: {margin}; {}.",
+                margin.passes()
             ),
             Self::TooClose(margin) => {
-                write!(f, "Its error is {margin}, around the {} px that pass.", Fixed(margin.tolerance, 1))
+                write!(f, "Its error is too uncertain to decide: {margin}; {}.", margin.passes())
             }
             Self::NoPoseOnImage => f.write_str("No pose puts its points onto the image."),
             Self::NoEvidence => f.write_str("None of the chosen cues finds anything to compare in this scene."),
@@ -275,7 +279,9 @@ impl fmt::Display for Warning {
                 f.write_str("the colour camera's intrinsics are not given; its focal length is estimated.")
             }
             WarningKind::ManyHoles { percent } => write!(f, "{} % of the depth map are holes.", Fixed(percent, 0)),
-            WarningKind::EightBits => f.write_str("the depth map has 8 bits; steps of a 256th are no measurement."),
+            WarningKind::EightBits => {
+                f.write_str("the depth map has 8 bits; 256 levels are too coarse for a calibration.")
+            }
             WarningKind::UnusualDepths { metres, usual } => {
                 let [nearest, farthest] = usual.map(Brief);
                 write!(f, "depths are {} m at the median, outside {nearest} to {farthest} m", Brief(metres))?;
