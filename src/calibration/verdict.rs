@@ -11,8 +11,8 @@
 //!
 //! Off: all of the interval lies above the tolerance, and 95 % of the draws are nearer to the estimate than the
 //! candidate. The second condition is needed because with six unknowns hardly any draw is near a candidate, wherever it
-//! is. If the colour camera was guessed, all of the interval has to lie above the error that the guess explains. The
-//! interval of the estimate's own error must not lie above the tolerance.
+//! is. If the colour camera was guessed, all of the interval has to lie above the error that the guess explains, too. The
+//! interval of the estimate's own error must not lie above these limits.
 //!
 //! Undecided: otherwise.
 
