@@ -26,7 +26,7 @@ use super::unknowns::{FOCAL, LOSS, Matrix, State, Units, Vector, solve};
 pub(super) const SIGMAS: [f64; 4] = [4.0, 2.8, 1.9, 1.3];
 /// How many poses proceed after each level, the best by score.
 pub(super) const SURVIVORS: [usize; 4] = [10, 6, 4, 3];
-/// Depth discontinuities of all frames that score an initial pose.
+/// Maximum number of depth discontinuities, over all frames, that score an initial pose.
 pub(super) const MOST_RIMS_OF_STARTS: usize = 1200;
 /// Rounds at each level.
 pub(super) const ROUNDS: usize = 3;
@@ -43,7 +43,7 @@ const MOST_RIMS: usize = 6000;
 const MOST_RIMS_OF_ONE: usize = 1500;
 const MOST_SAMPLES: usize = 24000;
 const MOST_SAMPLES_OF_ONE: usize = 8000;
-/// Points of all frames together that represent the extent of the scene.
+/// Maximum number of points, over all frames, that represent the extent of the scene.
 const MOST_POINTS: usize = 3000;
 
 /// Sigma of the prior about a candidate: rotation about the colour camera, degrees, and shift, metres. Rigs measured by

@@ -7,7 +7,7 @@
 
 use super::frame::{Frame, Projection};
 
-/// Farthest pixel at which the next depth is looked for. Beside an object 0.3 m in front of its wall, a Kinect (baseline
+/// Distance in pixels within which the next depth is looked for. Beside an object 0.3 m in front of its wall, a Kinect (baseline
 /// 75 mm) has a hole of 15 to 30 pixels. An object at half a metre in front of a wall at two metres has one of 60 pixels,
 /// and its discontinuities on that side are not found.
 const WIDEST_HOLE: usize = 40;

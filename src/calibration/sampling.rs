@@ -50,12 +50,12 @@ impl Occupied {
     }
 }
 
-/// Columns and rows of the smallest cells with neighbours enough.
+/// Columns and rows of the smallest cells of which enough have neighbours.
 fn cell(grid: Size, points: &[[f32; 3]]) -> [usize; 2] {
     let mut cell = [1, 1];
     loop {
         let coverage = Occupied::of(grid, points, cell).coverage();
-        // The axis with fewer neighbours grows. Equal axes grow in turn, so that cells stay square.
+        // The axis with fewer neighbours grows, and of equal ones the shorter, so that cells stay square.
         let axis = usize::from((coverage[1], cell[1]) < (coverage[0], cell[0]));
         if coverage[axis] >= COVERED || cell[axis] == LARGEST_CELL {
             return cell;

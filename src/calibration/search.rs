@@ -23,7 +23,7 @@ const PACE: f64 = 4.0;
 const REACH: f64 = 1.5;
 /// Maximum number of places, which takes a few tenths of a second; the pace grows until the lattice has no more.
 const MOST_PLACES: f64 = 6e4;
-/// Depth discontinuities of all frames that are compared with image edges.
+/// Maximum number of depth discontinuities, over all frames, that are compared with image edges.
 const MOST_RIMS: usize = 400;
 /// Number of initial poses besides the candidate itself.
 const STARTS: usize = 16;
