@@ -142,11 +142,15 @@ impl fmt::Display for CheckReason {
             ),
             Self::Unconstrained { margin, weakest } => write!(
                 f,
-                "This scene hardly constrains {weakest}, so the error is too uncertain to decide: {margin}; {}.",
-                margin.passes()
+                "This scene hardly constrains {weakest}, so the error is too uncertain to decide: {margin}; up to {} px pass.",
+                Fixed(margin.tolerance, 1)
             ),
             Self::TooClose(margin) => {
-                write!(f, "Its error is too uncertain to decide: {margin}; {}.", margin.passes())
+                write!(
+                    f,
+                    "Its error is too uncertain to decide: {margin}; up to {} px pass.",
+                    Fixed(margin.tolerance, 1)
+                )
             }
             Self::NoPoseOnImage => f.write_str("No pose puts its points onto the image."),
             Self::NoEvidence => f.write_str("None of the chosen cues finds anything to compare in this scene."),
@@ -279,9 +283,7 @@ impl fmt::Display for Warning {
                 f.write_str("the colour camera's intrinsics are not given; its focal length is estimated.")
             }
             WarningKind::ManyHoles { percent } => write!(f, "{} % of the depth map are holes.", Fixed(percent, 0)),
-            WarningKind::EightBits => {
-                f.write_str("the depth map has 8 bits; 256 levels are too coarse for a calibration.")
-            }
+            WarningKind::EightBits => f.write_str("the depth map has 8 bits, too coarse for a calibration."),
             WarningKind::UnusualDepths { metres, usual } => {
                 let [nearest, farthest] = usual.map(Brief);
                 write!(f, "depths are {} m at the median, outside {nearest} to {farthest} m", Brief(metres))?;
