@@ -111,7 +111,7 @@ export function pairOf(parts: Parts, say: Say): Pair {
   const [image, { depth: map, found }] = [wholeImage(parts, notes), wholeDepth(parts, notes)];
   const thin = least(map);
   if (thin > 1) {
-    notes.depth = `${inPixels(map)} is more than the library takes: one pixel in ${thin} is used`;
+    notes.depth = `${inPixels(map)} exceeds the library's limit; one pixel in ${thin} is used`;
     say(`${parts.depth.name}: ${notes.depth}.`);
   }
   const depth = thin > 1 ? reducedDepth(map, thin) : map;
@@ -123,10 +123,10 @@ export function pairOf(parts: Parts, say: Say): Pair {
   const factor = Math.max(needed, useful);
   if (factor > 1) {
     const why =
-      needed >= useful ? "is more than the library takes" : `is ${finer.toFixed(1)} times as fine as the depth map`;
+      needed >= useful ? "exceeds the library's limit" : `is ${finer.toFixed(1)} times as fine as the depth map`;
     // Poses of views without a camera are in pixels.
     const whose = needed < useful && image.camera === undefined ? "; pixels are those of the smaller picture" : "";
-    notes.image = `${inPixels(image)} ${why}: scaled down by ${factor}${whose}`;
+    notes.image = `${inPixels(image)} ${why}; scaled down by ${factor}${whose}`;
     say(`${parts.colour.name}: ${notes.image}.`);
   }
   return {

@@ -93,7 +93,7 @@ describe("a large image beside a coarse depth map", () => {
     }
     assert.equal(
       notes.image,
-      "1280 × 960 px is 20.0 times as fine as the depth map: scaled down by 20; pixels are those of the smaller picture",
+      "1280 × 960 px is 20.0 times as fine as the depth map; scaled down by 20; pixels are those of the smaller picture",
     );
     assert.deepEqual(said, [`c.png: ${notes.image}.`]);
   });
@@ -142,7 +142,7 @@ test("more pixels than the library takes are scaled down, whatever the depth map
     nothing,
   );
   assert.deepEqual([small.width, small.height, depth.width, depth.height], [2052, 8, 2733, 5]);
-  assert.match(notes.image, /more than the library takes: scaled down by 2/);
+  assert.match(notes.image, /exceeds the library's limit; scaled down by 2/);
   assert.match(notes.depth, /one pixel in 3 is used/);
   close([depth.camera.fx, depth.camera.cx], [1000, (4099.5 - 1) / 3], 1e-9);
 });

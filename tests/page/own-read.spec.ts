@@ -76,13 +76,13 @@ test("a file that gives the unit fills the field, unless the visitor has", async
   await drop(page, "body", [colourPng(), depthPng(), bop]);
   await lab.reaches("ready");
   await expect(unit(lab)).toHaveValue("0.0001");
-  await expect(remarks(lab)).toContainText("camera.json: 0.1 mm for each stored number of depth.");
+  await expect(remarks(lab)).toContainText("camera.json: one stored unit of depth is 0.1 mm.");
   await unfoldDepth(lab);
   await unit(lab).fill("0.5");
   await page.keyboard.press("Enter");
   await lab.reaches("ready");
   await drop(page, "body", [bop]);
-  await expect(remarks(lab)).toContainText("0.1 mm for each stored number of depth; the unit that was typed stays.");
+  await expect(remarks(lab)).toContainText("one stored unit of depth is 0.1 mm; the unit that you typed stays.");
   await expect(unit(lab)).toHaveValue("0.5");
 });
 
@@ -115,7 +115,7 @@ test("intrinsics of another picture size are scaled and named; of another aspect
   const fx = (side: string) => page.locator(`#fields-${side}`).getByLabel("fx", { exact: true });
   await own(lab);
   await drop(page, "body", [cameraJson("color.json", 2 * SIDE)]);
-  await expect(remarks(lab)).toContainText("color.json: intrinsics, used once both pictures are here.");
+  await expect(remarks(lab)).toContainText("color.json: intrinsics. They are used once both pictures are here.");
   await drop(page, "body", [colourPng(), depthPng()]);
   await lab.reaches("ready");
   await expect(fx("colour")).toHaveValue("30.5");
@@ -221,7 +221,7 @@ test("disparities by their name are read as such, and with a camera wait for foc
   await expect(factor).toBeHidden();
   await drop(page, "body", [colour, depth("disparity.png")]);
   await expect(numbers).toHaveValue("inverse");
-  await expect(remarks(lab)).toContainText("disparity.png: by its name it holds disparities or inverse depths");
+  await expect(remarks(lab)).toContainText("disparity.png: its name says disparities or inverse depths");
   await lab.reaches("ready");
   await drop(page, "body", [cameraJson("depth.json")]);
   await expect(page.locator("#status")).toHaveText("depth camera: waiting for focal length × baseline");
@@ -250,7 +250,7 @@ test("a photograph much finer than the depth map is scaled down to it, and each 
     buffer: Buffer.from(encode({ width, height, data, channels: 3, depth: 8 })),
   };
   await drop(page, "body", [photo, depthPng()]);
-  await expect(slot(lab, 0)).toContainText("1600 × 1200 px is 28.9 times as fine as the depth map: scaled down by 28");
+  await expect(slot(lab, 0)).toContainText("1600 × 1200 px is 28.9 times as fine as the depth map; scaled down by 28");
   await lab.reaches("ready");
   await expect(page.locator('canvas[aria-label^="Colour:"]')).toHaveAttribute("width", "57");
   expect(await messages.count("read")).toBe(2);
