@@ -3,11 +3,13 @@
 // --rigs N     rigs of each kind (default 5), seeds from --from (default 100; seeds below 20 were used to choose constants)
 // --frames K   frames of a rig (default 1 and 3)
 // --kinds A,B  of objects, sheet, boxes, room
+// --keep S     share of the depths that are kept at random (default 1), as in a sparse map
+// --rings N    rows of the depth map that are kept, evenly spaced, as the rings of a LiDAR
 // --json FILE  one row for each check
 import { writeFileSync } from "node:fs";
 import { parseArgs } from "node:util";
 import { build } from "./build.mjs";
-import { chance, offset, percent, quantile, sizes, wrong } from "./rigs/draws.mjs";
+import { chance, offset, percent, quantile, sizes, thinned, wrong } from "./rigs/draws.mjs";
 import { Failure, inRoot, say, script, seconds } from "./shell.mjs";
 
 /** Candidates: degrees about a random axis through the colour camera, millimetres in a random direction. */
@@ -85,6 +87,8 @@ await script(async () => {
       from: { type: "string", default: "100" },
       frames: { type: "string", default: "1,3" },
       kinds: { type: "string", default: KINDS.join(",") },
+      keep: { type: "string", default: "1" },
+      rings: { type: "string" },
       json: { type: "string" },
     },
   });
@@ -93,6 +97,9 @@ await script(async () => {
   const counts = values.frames.split(",").map(Number);
   if (!(rigs >= 1) || !Number.isInteger(from) || counts.some((count) => !(count >= 1)))
     throw new Failure("--rigs, --from and --frames take whole numbers.");
+  const [keep, rings] = [Number(values.keep), values.rings === undefined ? Infinity : Number(values.rings)];
+  if (!(keep > 0 && keep <= 1) || !(rings >= 2))
+    throw new Failure("--keep takes a share up to 1, --rings a number from 2.");
   const unknown = kinds.find((kind) => !KINDS.includes(kind));
   if (unknown !== undefined) throw new Failure(`There is no kind "${unknown}"; there are ${KINDS.join(", ")}.`);
   await build();
@@ -102,7 +109,8 @@ await script(async () => {
   for (const kind of kinds) {
     for (let seed = from; seed < from + rigs; seed++) {
       const all = [];
-      for (let frame = 0; frame < Math.max(...counts); frame++) all.push(await sampleRig({ kind, seed, frame }));
+      for (let frame = 0; frame < Math.max(...counts); frame++)
+        all.push(thinned(await sampleRig({ kind, seed, frame }), { keep, rings }));
       const truth = all[0].pose;
       for (const frames of counts) {
         // The right candidate, and a wrong one whose size varies with the seed.

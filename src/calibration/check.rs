@@ -159,7 +159,7 @@ impl CalibrationCheck {
             Stage::Judging { rounds, planes } => self.judge(&rounds, planes),
             Stage::Rereading { mut search, planes } => {
                 if search.step(&self.scene, &planes) {
-                    self.adopt(search, planes)
+                    self.adopt(*search, planes)
                 } else {
                     Stage::Rereading { search, planes }
                 }
@@ -284,7 +284,7 @@ impl CalibrationCheck {
     }
 
     /// Adopts the best reading if it fits clearly better than every pose found near the candidate.
-    fn adopt(&mut self, search: Box<Rereading>, planes: Vec<Planes>) -> Stage {
+    fn adopt(&mut self, search: Rereading, planes: Vec<Planes>) -> Stage {
         let mut optima = search.end(&self.scene, &planes);
         let likely = self.judge_of(&optima[0]).0.likely();
         let is_clear = optima.iter().all(|other| other.reading.is_some() || other.behind > likely);
@@ -293,7 +293,12 @@ impl CalibrationCheck {
                 self.best = optima[0].round;
                 self.report = Some(self.conclude(&optima, Some(reading)));
             }
-            _ => optima.retain(|optimum| optimum.reading.is_none()),
+            _ => {
+                // The curves are those of the pose of the report.
+                let is_best = |optimum: &Optimum| optimum.round.state.pose == self.best.state.pose;
+                let best = optima.iter().position(is_best).unwrap_or(0);
+                optima.swap(0, best);
+            }
         }
         curves_of(optima, planes)
     }

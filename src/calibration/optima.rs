@@ -29,24 +29,26 @@ impl Optimum {
     pub fn at(scene: &Scene, round: Round, reading: Option<Reading>, planes: &[Planes]) -> Self {
         Self { round, findings: scene.findings(&round, planes), reading, behind: 0.0 }
     }
+
+    fn weights(&self) -> Vec<f64> {
+        self.findings.cues.iter().map(|cue| cue.2).collect()
+    }
+
+    /// Weighted log likelihood of the cues and log prior.
+    fn posterior(&self, weights: &[f64]) -> f64 {
+        let Findings { cues, back, prior, .. } = &self.findings;
+        let likelihood: f64 = cues.iter().zip(weights).map(|((_, cue, _), weight)| weight * cue.value()).sum();
+        likelihood - 0.5 * back.dot(&(prior * back))
+    }
 }
 
-/// Sorts by posterior, with the weights of the first optimum and then again with those of the best.
+/// Sorts by posterior, each with its own weights, and then all with those of the best: a pose that puts nothing onto the
+/// image has no weights that could compare others.
 pub(super) fn rank(optima: &mut [Optimum]) {
-    rank_as_first(optima);
-    rank_as_first(optima);
-}
-
-/// Sorts by posterior with the weights of the first optimum.
-fn rank_as_first(optima: &mut [Optimum]) {
-    let Some(first) = optima.first() else { return };
-    let weights: Vec<f64> = first.findings.cues.iter().map(|cue| cue.2).collect();
-    let posterior = |Optimum { findings, .. }: &Optimum| {
-        let likelihood: f64 =
-            findings.cues.iter().zip(&weights).map(|((_, cue, _), weight)| weight * cue.value()).sum();
-        likelihood - 0.5 * findings.back.dot(&(findings.prior * findings.back))
-    };
-    let posteriors: Vec<f64> = optima.iter().map(posterior).collect();
+    let own = |optimum: &Optimum| optimum.posterior(&optimum.weights());
+    optima.sort_by(|a, b| own(b).total_cmp(&own(a)));
+    let Some(weights) = optima.first().map(Optimum::weights) else { return };
+    let posteriors: Vec<f64> = optima.iter().map(|optimum| optimum.posterior(&weights)).collect();
     let best = posteriors.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     optima.iter_mut().zip(posteriors).for_each(|(optimum, posterior)| optimum.behind = best - posterior);
     optima.sort_by(|a, b| a.behind.total_cmp(&b.behind));

@@ -182,3 +182,47 @@ impl Rereading {
         optima
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A rig, and what each convention makes of its file when it is read as if there were none.
+    #[test]
+    fn each_reading_undoes_its_own_mistake() {
+        let rotation = Rotation3::new(Vector3::new(0.3, -0.5, 0.2)).into_inner();
+        let truth = Similarity { scale: 1.0, rotation, translation: Vector3::new(0.05, -0.02, 0.01) };
+        let Similarity { translation, .. } = truth;
+        let read = |rotation, translation| Similarity { scale: 1.0, rotation, translation };
+        let quaternion = UnitQuaternion::from_matrix(&rotation);
+        let of = |[w, x, y, z]: [f64; 4]| {
+            UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z)).to_rotation_matrix().into_inner()
+        };
+        let [w, x, y, z] = [quaternion.w, quaternion.i, quaternion.j, quaternion.k];
+        let body = OPTICAL_OF_BODY.transpose();
+        let turn = rotation_vector(&rotation);
+        let mistakes = [
+            (Reading::Inverse, truth.inverse()),
+            (Reading::TransposedRotation, read(rotation.transpose(), translation)),
+            (Reading::CameraCentre, read(rotation, truth.inverse().translation)),
+            // The file has w x y z, and x y z w was expected; and the other way round.
+            (Reading::ScalarFirst, read(of([z, w, x, y]), translation)),
+            (Reading::ScalarLast, read(of([x, y, z, w]), translation)),
+            (Reading::BodyFrames, read(body * rotation * body.transpose(), body * translation)),
+            (Reading::BodyDepth, read(rotation * body.transpose(), translation)),
+            (Reading::BodyColour, read(body * rotation, body * translation)),
+            (Reading::Millimetres, read(rotation, translation * 1000.0)),
+            (Reading::Radians, read(Rotation3::new(turn.map(f64::to_radians)).into_inner(), translation)),
+            (Reading::QuarterTurn, about_axis(-90.0).after(&truth)),
+            (Reading::HalfTurn, about_axis(180.0).after(&truth)),
+            (Reading::QuarterBack, about_axis(90.0).after(&truth)),
+        ];
+        for (reading, mistake) in mistakes {
+            let found = reading.of(&mistake).unwrap();
+            assert!((found.rotation - truth.rotation).norm() < 1e-9, "{reading:?}: {}", found.rotation);
+            assert!((found.translation - truth.translation).norm() < 1e-9, "{reading:?}: {}", found.translation);
+        }
+        assert_eq!(Reading::Registered.of(&truth), Some(Similarity::identity()));
+        assert_eq!(mistakes.len() + 1, Reading::ALL.len());
+    }
+}

@@ -55,11 +55,9 @@ fn cell(grid: Size, points: &[[f32; 3]]) -> [usize; 2] {
     let mut cell = [1, 1];
     loop {
         let coverage = Occupied::of(grid, points, cell).coverage();
-        // The axis with fewer neighbours grows, and of equal ones the shorter, so that cells stay square.
-        let axis = usize::from((coverage[1], cell[1]) < (coverage[0], cell[0]));
-        if coverage[axis] >= COVERED || cell[axis] == LARGEST_CELL {
-            return cell;
-        }
+        let can_grow = |&axis: &usize| coverage[axis] < COVERED && cell[axis] < LARGEST_CELL;
+        // Of two axes with few neighbours the shorter grows, so that cells stay square.
+        let Some(axis) = [0, 1].into_iter().filter(can_grow).min_by_key(|&axis| cell[axis]) else { return cell };
         cell[axis] += 1;
     }
 }
@@ -83,4 +81,52 @@ pub(super) fn gathered(grid: Size, points: Vec<[f32; 3]>) -> (Size, Vec<[f32; 3]
         }
     }
     (size, nearest.into_iter().map(|kept| kept.1).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numeric::random::Random;
+
+    const GRID: Size = Size { width: 120, height: 90 };
+
+    /// The points of a plane, of which some pixels are kept.
+    fn plane(is_kept: impl FnMut(usize) -> bool) -> Vec<[f32; 3]> {
+        let mut is_kept = is_kept;
+        let point = |index: usize| {
+            let (column, row) = GRID.position(index);
+            if is_kept(index) { [column as f32, row as f32, 1.0] } else { [f32::NAN; 3] }
+        };
+        (0..GRID.len()).map(point).collect()
+    }
+
+    #[test]
+    fn a_dense_map_with_a_hole_stays_as_it_is() {
+        let points = plane(|index| GRID.position(index).0 < 50);
+        assert_eq!(cell(GRID, &points), [1, 1]);
+        assert_eq!(gathered(GRID, points).0, GRID);
+    }
+
+    #[test]
+    fn rings_are_gathered_along_columns_alone() {
+        let [columns, rows] = cell(GRID, &plane(|index| GRID.position(index).1 % 9 == 4));
+        // At seven rows two of three cells have a ring in the next.
+        assert!(columns == 1 && (6..=9).contains(&rows), "{columns} {rows}");
+    }
+
+    #[test]
+    fn scattered_samples_are_gathered_into_nearly_square_cells_and_kept_as_measured() {
+        let mut random = Random::new(1, 0);
+        let points = plane(|_| random.uniform() < 0.05);
+        let [columns, rows] = cell(GRID, &points);
+        assert!(columns.abs_diff(rows) <= 1 && (3..=6).contains(&rows), "{columns} {rows}");
+        let (size, kept) = gathered(GRID, points.clone());
+        assert_eq!(size, Size { width: GRID.width.div_ceil(columns), height: GRID.height.div_ceil(rows) });
+        let valid: Vec<_> = kept.iter().enumerate().filter(|(_, point)| !point[2].is_nan()).collect();
+        assert!(2 * valid.len() > size.len());
+        for (index, point) in valid {
+            let (column, row) = size.position(index);
+            assert_eq!([point[0] as usize / columns, point[1] as usize / rows], [column, row]);
+        }
+    }
 }

@@ -93,6 +93,15 @@ describe("a rig before boxes", () => {
     assert.ok(3 * warning.invertedPixels < warning.pixels, JSON.stringify(warning));
   });
 
+  test("the convention of a candidate that was misread is named in the verdict", LONG, async () => {
+    const millimetres = { ...truth, translation: truth.translation.map((value) => 1000 * value) };
+    const told = await checkCalibration([frame], { told: millimetres });
+    assert.deepEqual([told.verdict, told.code], ["off", "misread"]);
+    assert.match(told.reason, /^Off as given, but it fits if read with its translation in millimetres/);
+    const { degrees } = sizes(offset(told.estimate, truth, told.middle));
+    assert.ok(degrees < 0.5, `${degrees}`);
+  });
+
   test("a distortion that was left out is named", LONG, async () => {
     const { distortion, ...camera } = frame.image.camera;
     assert.ok(distortion.some((value) => value !== 0));
