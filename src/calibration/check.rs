@@ -10,12 +10,12 @@ use super::distortion;
 use super::input::RigView;
 use super::optima::{self, Optimum};
 use super::planes::Planes;
-use super::readings::Rereading;
 use super::reason::{Warning, WarningKind};
 use super::registration::{
     ARRIVED, Findings, MOST_RIMS_OF_STARTS, MOST_SETTLING, Round, SIGMAS, SURVIVORS, Scene, Start,
 };
 use super::report::CheckReport;
+use super::rereading::Rereading;
 use super::search;
 use super::sensitivity::curves;
 use super::unknowns::State;

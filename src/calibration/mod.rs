@@ -16,7 +16,8 @@
 //! | `information`, `shading`, `silhouette`, `differences` | cues over samples, finite differences |
 //! | `unknowns`, `evidence` | the unknowns in pixels; log likelihoods by tiles, weights, covariance |
 //! | `search`, `registration` | initial poses, rounds of the registration |
-//! | `optima`, `readings` | the optima and their ranking; other conventions of a candidate |
+//! | `optima` | the optima and their ranking |
+//! | `readings`, `rereading` | other conventions of a candidate, and the search over them |
 //! | `distortion`, `guessed` | whether a lens was left out; the uncertainty of a guessed camera |
 //! | `conclusion`, `verdict`, `reason`, `health` | from the optima to verdicts, their reasons and errors |
 //! | `check`, `sensitivity` | the order of all stages; curves of the cues |
@@ -44,6 +45,7 @@ mod readings;
 mod reason;
 mod registration;
 mod report;
+mod rereading;
 mod rims;
 mod sampling;
 mod search;

@@ -1,21 +1,12 @@
 //! Other readings of a candidate: the conventions in which files of extrinsics are commonly misread.
 //!
-//! A candidate that the frames contradict may be right in another convention. Each reading is a pose. It is registered
-//! from there with a prior about that pose, and has to fit clearly better than every pose found near the candidate
-//! itself.
+//! A candidate that the frames contradict may be right in another convention. Each reading of it is a pose.
 
 use std::fmt;
 
 use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 
-use super::optima::{self, Optimum};
-use super::planes::Planes;
-use super::registration::{ARRIVED, MOST_RIMS_OF_STARTS, MOST_SETTLING, Round, SIGMAS, Scene, Start};
-use super::unknowns::State;
 use crate::pose::{Similarity, rotation_vector};
-
-/// How many readings proceed after each level, the best by score.
-const SURVIVORS: [usize; 4] = [6, 3, 2, 1];
 
 /// Rotation from axes x forward, y left, z up to axes x right, y down, z forward.
 const OPTICAL_OF_BODY: Matrix3<f64> = Matrix3::new(0.0, -1.0, 0.0, 0.0, 0.0, -1.0, 1.0, 0.0, 0.0);
@@ -123,7 +114,8 @@ impl fmt::Display for Reading {
 
 /// A rotation whose quaternion x y z w is reordered.
 fn requaternion(rotation: &Matrix3<f64>, order: fn([f64; 4]) -> [f64; 4]) -> Option<Matrix3<f64>> {
-    let quaternion = UnitQuaternion::from_matrix(rotation);
+    // The iterative `from_matrix` can end at the identity for half turns.
+    let quaternion = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(*rotation));
     let [x, y, z, w] = order([quaternion.i, quaternion.j, quaternion.k, quaternion.w]);
     UnitQuaternion::try_new(Quaternion::new(w, x, y, z), 1e-9).map(|turned| turned.to_rotation_matrix().into_inner())
 }
@@ -131,56 +123,6 @@ fn requaternion(rotation: &Matrix3<f64>, order: fn([f64; 4]) -> [f64; 4]) -> Opt
 fn about_axis(degrees: f64) -> Similarity {
     let turn = Vector3::new(0.0, 0.0, degrees.to_radians());
     Similarity { scale: 1.0, rotation: Rotation3::new(turn).into_inner(), translation: Vector3::zeros() }
-}
-
-/// The search over readings of one candidate, level by level.
-pub(super) struct Rereading {
-    /// Optima found near the candidate itself.
-    optima: Vec<Optimum>,
-    starts: Vec<(Reading, Start)>,
-    level: usize,
-}
-
-impl Rereading {
-    /// Begins with the readings that put points onto the image.
-    pub fn new(scene: &Scene, candidate: &State, optima: Vec<Optimum>) -> Self {
-        let start = |reading: Reading| {
-            let state = State::at(reading.of(&candidate.pose)?);
-            let round = Round { state, told: state, sigma: 0.0 };
-            scene.is_seen(&state).then(|| (reading, Start { round, found: state, rims: vec![], score: 0.0 }))
-        };
-        Self { optima, starts: Reading::ALL.into_iter().filter_map(start).collect(), level: 0 }
-    }
-
-    /// Does one level for all remaining readings, and at last a refinement with all cues. Returns whether that was the
-    /// last step.
-    pub fn step(&mut self, scene: &Scene, planes: &[Planes]) -> bool {
-        if self.level == SIGMAS.len() {
-            let settle = |round: &mut Round| (0..MOST_SETTLING).any(|_| scene.settle(round, planes) < ARRIVED);
-            self.starts.iter_mut().for_each(|(_, start)| _ = settle(&mut start.round));
-            return true;
-        }
-        let sigma = SIGMAS[self.level] * scene.scale;
-        let planes = scene.planes(sigma);
-        for (_, start) in &mut self.starts {
-            start.found = start.round.state;
-            start.rims = scene.rims(&start.found, MOST_RIMS_OF_STARTS);
-            scene.approach(start, sigma, &planes);
-        }
-        self.starts.sort_by(|a, b| b.1.score.total_cmp(&a.1.score));
-        self.starts.truncate(SURVIVORS[self.level]);
-        self.level += 1;
-        false
-    }
-
-    /// All optima, those of the candidate and of its readings, best first.
-    pub fn end(self, scene: &Scene, planes: &[Planes]) -> Vec<Optimum> {
-        let Self { mut optima, starts, .. } = self;
-        optima
-            .extend(starts.into_iter().map(|(reading, start)| Optimum::at(scene, start.round, Some(reading), planes)));
-        optima::rank(&mut optima);
-        optima
-    }
 }
 
 #[cfg(test)]
@@ -194,7 +136,7 @@ mod tests {
         let truth = Similarity { scale: 1.0, rotation, translation: Vector3::new(0.05, -0.02, 0.01) };
         let Similarity { translation, .. } = truth;
         let read = |rotation, translation| Similarity { scale: 1.0, rotation, translation };
-        let quaternion = UnitQuaternion::from_matrix(&rotation);
+        let quaternion = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(rotation));
         let of = |[w, x, y, z]: [f64; 4]| {
             UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z)).to_rotation_matrix().into_inner()
         };

@@ -1,0 +1,73 @@
+//! The search over other readings of a candidate that does not pass.
+//!
+//! Each reading is registered from its own pose with a prior about that pose, level by level, and the worst drop out. The
+//! best has to fit clearly better than every pose found near the candidate itself.
+
+use super::optima::{self, Optimum};
+use super::planes::Planes;
+use super::readings::Reading;
+use super::registration::{ARRIVED, MOST_RIMS_OF_STARTS, MOST_SETTLING, Round, SIGMAS, Scene, Start};
+use super::unknowns::State;
+
+/// How many readings proceed after each level, the best by score.
+const SURVIVORS: [usize; 4] = [6, 3, 2, 1];
+
+/// The readings under way.
+pub(super) struct Rereading {
+    /// Poses found near the candidate itself.
+    optima: Vec<Optimum>,
+    starts: Vec<(Reading, Start)>,
+    level: usize,
+    /// Of the start that comes next.
+    index: usize,
+    /// The images at this level.
+    planes: Vec<Planes>,
+}
+
+impl Rereading {
+    /// The readings of a candidate that put points onto the image.
+    pub fn new(scene: &Scene, candidate: &State, optima: Vec<Optimum>) -> Self {
+        let start = |reading: Reading| {
+            let state = State::at(reading.of(&candidate.pose)?);
+            let round = Round { state, told: state, sigma: 0.0 };
+            scene.is_seen(&state).then(|| (reading, Start { round, found: state, rims: vec![], score: 0.0 }))
+        };
+        let starts = Reading::ALL.into_iter().filter_map(start).collect();
+        Self { optima, starts, level: 0, index: 0, planes: scene.planes(SIGMAS[0] * scene.scale) }
+    }
+
+    /// One reading at one level, in the end the best one with all cues on the finest images; whether the search is over.
+    pub fn step(&mut self, scene: &Scene, finest: &[Planes]) -> bool {
+        if self.level == SIGMAS.len() {
+            if let Some((_, start)) = self.starts.first_mut() {
+                // Ends early where a step is short.
+                let _ = (0..MOST_SETTLING).any(|_| scene.settle(&mut start.round, finest) < ARRIVED);
+            }
+            return true;
+        }
+        if let Some((_, start)) = self.starts.get_mut(self.index) {
+            start.found = start.round.state;
+            start.rims = scene.rims(&start.found, MOST_RIMS_OF_STARTS);
+            scene.approach(start, SIGMAS[self.level] * scene.scale, &self.planes);
+            self.index += 1;
+            return false;
+        }
+        self.starts.sort_by(|a, b| b.1.score.total_cmp(&a.1.score));
+        self.starts.truncate(SURVIVORS[self.level]);
+        self.level += 1;
+        self.index = 0;
+        if let Some(sigma) = SIGMAS.get(self.level) {
+            self.planes = scene.planes(sigma * scene.scale);
+        }
+        false
+    }
+
+    /// All optima, best first.
+    pub fn end(self, scene: &Scene, planes: &[Planes]) -> Vec<Optimum> {
+        let Self { mut optima, starts, .. } = self;
+        optima
+            .extend(starts.into_iter().map(|(reading, start)| Optimum::at(scene, start.round, Some(reading), planes)));
+        optima::rank(&mut optima);
+        optima
+    }
+}
