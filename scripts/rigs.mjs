@@ -124,7 +124,7 @@ await script(async () => {
             seed,
             frames,
             error,
-            verdict: report.verdict,
+            verdict: report.candidates.told.verdict,
             probability: report.candidates.told.probability,
             interval: report.health.interval,
             bounds: report.candidates.told.interval,

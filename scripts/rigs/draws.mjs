@@ -42,6 +42,17 @@ export function wrong(pose, { degrees, millimetres }, direction, centre = [0, 0,
   return { ...pose, ...after(poseOf(rotation, held), pose) };
 }
 
+/** A frame of which a share of the depths, drawn at random, or that many evenly spaced rows are kept. */
+export function thinned(frame, { keep, rings }) {
+  if (keep === 1 && rings === Infinity) return frame;
+  const { width, height, data } = frame.depth;
+  const count = Math.min(rings, height);
+  const rows = new Set(Array.from({ length: count }, (_, k) => Math.floor(((k + 0.5) * height) / count)));
+  const { uniform } = chance(1);
+  const kept = data.map((depth, index) => (rows.has(Math.floor(index / width)) && uniform() < keep ? depth : 0));
+  return { ...frame, depth: { ...frame.depth, data: kept } };
+}
+
 /** Rotation vector from one pose to another, and shift of a point of the colour frame. */
 export function offset(estimate, truth, middle) {
   const w = offBy(truth.rotation, estimate.rotation).map((degrees) => (degrees * Math.PI) / 180);

@@ -10,7 +10,7 @@ use super::distortion;
 use super::input::RigView;
 use super::optima::{self, Optimum};
 use super::planes::Planes;
-use super::reason::{Warning, WarningKind};
+use super::reason::{CheckReason, Warning, WarningKind};
 use super::registration::{
     ARRIVED, Findings, MOST_RIMS_OF_STARTS, MOST_SETTLING, Round, SIGMAS, SURVIVORS, Scene, Start,
 };
@@ -270,12 +270,11 @@ impl CalibrationCheck {
         self.best = optima[0].round;
         self.lens = distortion::left_out(&mut self.scene, &self.best);
         let report = self.conclude(&optima, None);
-        let first = report.candidates.first().map(|first| (first.verdict, first.reason.code()));
+        let is_settled = names_reading(&report)
+            || report.candidates.first().is_none_or(|first| first.verdict == CheckVerdict::Consistent);
         self.report = Some(report);
-        match (first, self.candidates.first()) {
-            (Some((verdict, code)), Some((_, candidate)))
-                if verdict != CheckVerdict::Consistent && code != "misread" =>
-            {
+        match self.candidates.first() {
+            Some((_, candidate)) if !is_settled => {
                 let search = Box::new(Rereading::new(&self.scene, candidate, optima));
                 Stage::Rereading { search, planes }
             }
@@ -288,18 +287,21 @@ impl CalibrationCheck {
         let mut optima = search.end(&self.scene, &planes);
         let likely = self.judge_of(&optima[0]).0.likely();
         let is_clear = optima.iter().all(|other| other.reading.is_some() || other.behind > likely);
-        match optima[0].reading {
-            Some(reading) if is_clear => {
+        let lens = self.lens;
+        if let (Some(reading), true) = (optima[0].reading, is_clear) {
+            self.lens = distortion::left_out(&mut self.scene, &optima[0].round);
+            let report = self.conclude(&optima, Some(reading));
+            if names_reading(&report) {
                 self.best = optima[0].round;
-                self.report = Some(self.conclude(&optima, Some(reading)));
-            }
-            _ => {
-                // The curves are those of the pose of the report.
-                let is_best = |optimum: &Optimum| optimum.round.state.pose == self.best.state.pose;
-                let best = optima.iter().position(is_best).unwrap_or(0);
-                optima.swap(0, best);
+                self.report = Some(report);
+                return curves_of(optima, planes);
             }
         }
+        // The first report stands, and the curves are those of its pose.
+        self.lens = lens;
+        let is_best = |optimum: &Optimum| optimum.round.state.pose == self.best.state.pose;
+        let best = optima.iter().position(is_best).unwrap_or(0);
+        optima.swap(0, best);
         curves_of(optima, planes)
     }
 
@@ -314,6 +316,11 @@ impl CalibrationCheck {
             Stage::Judging { rounds, planes }
         }
     }
+}
+
+/// Whether the first candidate is off, and fits in another reading.
+fn names_reading(report: &CheckReport) -> bool {
+    report.candidates.first().is_some_and(|first| matches!(first.reason, CheckReason::Misread { .. }))
 }
 
 fn curves_of(mut optima: Vec<Optimum>, planes: Vec<Planes>) -> Stage {

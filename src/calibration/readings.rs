@@ -164,7 +164,10 @@ mod tests {
             assert!((found.rotation - truth.rotation).norm() < 1e-9, "{reading:?}: {}", found.rotation);
             assert!((found.translation - truth.translation).norm() < 1e-9, "{reading:?}: {}", found.translation);
         }
-        assert_eq!(Reading::Registered.of(&truth), Some(Similarity::identity()));
+        assert_eq!(OPTICAL_OF_BODY * Vector3::x(), Vector3::z());
+        assert_eq!(OPTICAL_OF_BODY * Vector3::y(), -Vector3::x());
+        assert_eq!(OPTICAL_OF_BODY * Vector3::z(), -Vector3::y());
+        assert!((about_axis(90.0).apply(Vector3::x()) - Vector3::y()).norm() < 1e-12);
         assert_eq!(mistakes.len() + 1, Reading::ALL.len());
     }
 }

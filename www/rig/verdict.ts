@@ -104,7 +104,7 @@ export function advise({ report, plans, estimateOnly, guessed, doubts, candidate
   const isOpen = report.verdict === "undecided" && Object.values(report.candidates)[0]?.verdict === "undecided";
   const confirm = guessed.length > 0 ? [`Confirm the guess in step 1: ${guessed.join("; ")}.`] : [];
   if (!isOpen) list.push(...confirm);
-  if (report.code === "misread")
+  if (!estimateOnly && report.code === "misread")
     list.push("Convert the calibration of step 2 as the verdict says, and check it again.");
   else if (!estimateOnly && report.verdict === "off")
     list.push("Save the calibration found here, use it instead of yours, and check it with new frames.");
