@@ -1,10 +1,12 @@
-//! The viewing direction of a cloud's scanner: depth cameras look along z, LiDARs along x or y of their vehicle, or all around.
+//! The viewing direction of a cloud's scanner: depth cameras look along z, LiDARs along x or y of their vehicle, or all
+//! around.
 //!
 //! The check works in the colour camera's frame, except where it measures the noise of the depth map and tests its
 //! plausibility. These need depths in the scanner's frame: the coordinate along the axis nearest to the mean direction,
 //! or the distance if the scanner looks all around.
 
-/// A scanner looks all around if the mean of its unit directions is shorter than this; for a cone of 120 degrees it is 0.75 long.
+/// A scanner looks all around if the mean of its unit directions is shorter than this; for a cone of 120 degrees it is
+/// 0.75 long.
 const ALL_AROUND: f64 = 0.5;
 
 /// A direction along an axis of the cloud's frame, or all around.

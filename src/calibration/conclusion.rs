@@ -51,7 +51,8 @@ impl CalibrationCheck {
         }
     }
 
-    /// Makes a candidate undecided if another optimum within the estimate's distribution contradicts its verdict.
+    /// Makes a candidate undecided if another optimum, whose log posterior is at most `Judge::likely` lower, contradicts
+    /// its verdict. An undecided verdict contradicts "off" as well, but not "consistent".
     fn hear_other_optima(&self, reports: &mut [CandidateReport], judge: &Judge, others: &[Optimum]) {
         let likely = judge.likely();
         for other in others.iter().filter(|other| other.behind <= likely && self.scene.is_seen(&other.round.state)) {

@@ -5,7 +5,8 @@
 //! belongs to the discontinuity, except with probability e. Each is chosen in proportion to its strength, and its
 //! position deviates by the edge bias d and by normal noise s:
 //!
-//! l = sum over discontinuities of log(e / 2 L + (1 - e) sum_k p_k N(u + d - u_k; s)), p_k = a_k / sum a, s^2 = sigma^2 + g^2 / 12,
+//! l = sum over discontinuities of log(e / 2 L + (1 - e) sum_k p_k N(u + d - u_k; s)),
+//! p_k = a_k / sum a, s^2 = sigma^2 + g^2 / 12,
 //!
 //! where u moves with the pose. The near surface ends anywhere within the gap g between two samples of the depth map, so
 //! that a coarse map weighs less than a fine one. The check never decides which edge belongs to which discontinuity, and

@@ -7,9 +7,9 @@
 
 use super::frame::{Frame, Projection};
 
-/// Distance in pixels within which the next depth is looked for. Beside an object 0.3 m in front of its wall, a Kinect (baseline
-/// 75 mm) has a hole of 15 to 30 pixels. An object at half a metre in front of a wall at two metres has one of 60 pixels,
-/// and its discontinuities on that side are not found.
+/// Distance in pixels within which the next depth is looked for. Beside an object 0.3 m in front of its wall, a Kinect
+/// (baseline 75 mm) has a hole of 15 to 30 pixels. An object at half a metre in front of a wall at two metres has one of
+/// 60 pixels, and its discontinuities on that side are not found. In a gathered map these are cells.
 const WIDEST_HOLE: usize = 40;
 /// Neighbours to each side that determine the local map from raster to image.
 const REACH: isize = 2;

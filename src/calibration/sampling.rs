@@ -72,7 +72,7 @@ pub(super) fn gathered(grid: Size, points: Vec<[f32; 3]>) -> (Size, Vec<[f32; 3]
     let mut nearest = vec![(usize::MAX, [f32::NAN; 3]); size.len()];
     for (index, point) in points.iter().enumerate().filter(|(_, point)| !point[2].is_nan()) {
         let (column, row) = grid.position(index);
-        // Twice the distance from the centre of the cell, which is a whole number.
+        // The square of twice the distance from the centre of the cell, which is a whole number.
         let off = |at: usize, side: usize| (2 * (at % side) + 1).abs_diff(side).pow(2);
         let distance = off(column, columns) + off(row, rows);
         let kept = &mut nearest[size.index(column / columns, row / rows)];
