@@ -60,7 +60,9 @@ function checkDwa(body: Uint8Array, length: number): void {
     ...[number, number, number, number],
   ];
   if (unknown > 0 || (ac > 0 && method !== 0))
-    throw badFile("this EXR is compressed by a kind of DWA (DWAA or DWAB) that is not read here; save it by ZIP");
+    throw badFile(
+      "this EXR has a variant of DWA compression (DWAA or DWAB) that is not read here; save it with ZIP compression",
+    );
   const start = 88 + view.getUint16(88, true);
   if (Math.max(2 * acCount, 2 * dcCount, rleRaw) > 2 * length || start + ac + dc + rle > body.length)
     throw badFile("this EXR is damaged: a block of it declares more than the picture holds");

@@ -22,7 +22,7 @@ export const paint: Lesson = {
     ),
   formulaWords: "Log intensity is log albedo plus shading plus a remainder.",
   text: [
-    "Print is not shape. A model with a single albedo would interpret every painted edge as a fold. So once the pose has converged, the program tests whether a few paints explain the picture better: each pixel has the shading of its measured normal plus one of a few offsets {a}. The number of paints is chosen by the evidence in the picture.",
+    "Print is not shape. A model with a single albedo would interpret every painted edge as a fold. So once the pose has converged, the program tests whether a few albedos fit the picture better: the log intensity of each pixel is then the shading of its measured normal plus one of a few log albedos {a}. The evidence in the picture determines how many.",
     "Chromaticity decides: coloured paint changes red, green and blue by different amounts, while shading under whitish light changes them almost equally. Grey paint is much harder to separate, and so is any paint under light of many colours.",
     "A cast shadow violates the model, because the light there is different. Robust weights reduce the influence of such pixels on light and pose. A hard shadow edge can still be mistaken for paint, and the inside of the shadow stays in the remainder {e}.",
   ],
