@@ -105,10 +105,9 @@ function header({ kept }: Parts): Header {
   const channels = CHANNELS[type];
   const interlaced = view.getUint8(12) === 1;
   if (width === 0 || height === 0) throw badFile(`this PNG says that it is ${width}x${height} pixels large`);
-  if (channels === undefined)
-    throw badFile(`this PNG says that its colours are of the type ${type}, which there is not`);
+  if (channels === undefined) throw badFile(`this PNG has colours of the type ${type}, which does not exist`);
   if (!(BITS[type] ?? WHOLE_BYTES).includes(bits))
-    throw badFile(`this PNG says that it has ${bits} bits of a channel, which its type of colours has not`);
+    throw badFile(`this PNG has ${bits} bits of a channel, which its type of colours does not allow`);
   if (view.getUint8(10) !== 0 || view.getUint8(11) !== 0 || view.getUint8(12) > 1)
     throw badFile("this PNG is packed in a way that there is not");
   if (interlaced && bits < 8)

@@ -69,7 +69,7 @@ const bad = (what: string, cause?: unknown) =>
   new BimodalError("state", `state: ${what}`, "state", cause === undefined ? undefined : { cause });
 
 export const otherNumbers = () =>
-  bad("was saved by a version or a build of this package that comes to other numbers; run the pair again instead");
+  bad("was saved by a version or a build of this package that computes different numbers; run the pair again instead");
 
 /** Whatever is refused of what was saved is refused as a state. */
 export function unusable<T>(call: () => T): T {
@@ -185,7 +185,7 @@ function readHeader(bytes: Uint8Array): { header: Header; end: number } {
   if (bytes.length > MOST_BYTES) throw bad(`has ${bytes.length} bytes; ${MOST_BYTES} are the most`);
   const end = bytes.length - WORD;
   if (numberAt(bytes, end) !== crc32(bytes.subarray(0, end)))
-    throw bad("is damaged or cut off: its checksum is another");
+    throw bad("is damaged or cut off: its checksum does not match");
   const length = numberAt(bytes, MARK);
   if (length > Math.min(LONGEST_HEADER, end - MARK - WORD)) throw bad("has a header that is too long");
   const text = bytes.subarray(MARK + WORD, MARK + WORD + length);

@@ -133,7 +133,7 @@ def read_header(whole: bytes) -> tuple[dict[str, Any], int]:
         raise bad(f"has {len(whole)} bytes; {MOST_BYTES} are the most")
     end = len(whole) - WORD
     if struct.unpack_from("<I", whole, end)[0] != crc32(memoryview(whole)[:end]):
-        raise bad("is damaged or cut off: its checksum is another")
+        raise bad("is damaged or cut off: its checksum does not match")
     length = struct.unpack_from("<I", whole, MARK)[0]
     start = MARK + WORD
     if length > min(LONGEST_HEADER, end - start):

@@ -25,7 +25,7 @@ for (const [names, size, read] of [
 const typeOf = (name = "") => {
   const type = Object.hasOwn(TYPES, name) ? TYPES[name] : undefined;
   if (type === undefined)
-    throw badFile(`this PLY has a property of the type "${name.slice(0, 20)}", which there is not`);
+    throw badFile(`this PLY has a property of the type "${name.slice(0, 20)}", which does not exist`);
   return type;
 };
 
@@ -173,7 +173,7 @@ function inCells(source: Source, grid: Element, cloud: Float32Array): Float32Arr
 export function readPly(bytes: Uint8Array): Cloud | Points {
   const { format, elements, columns, rows, end } = header(bytes);
   if (!["ascii", "binary_little_endian", "binary_big_endian"].includes(format))
-    throw badFile(`this PLY is of the format "${format.slice(0, 30)}", which there is not`);
+    throw badFile(`this PLY has the format "${format.slice(0, 30)}", which does not exist`);
   const [vertices, ...others] = elements;
   if (vertices?.name !== "vertex") throw badFile("this PLY does not begin with points");
   checkPoints(vertices.count);
