@@ -71,7 +71,7 @@ async function decoded(bytes: Uint8Array, name: string, signal: AbortSignal | un
   if (kindOf(bytes) === undefined && canDraw()) return shown(bytes, name);
   const { readRigFile } = await import("./rig/read.js");
   const reading = await readRigFile({ name, bytes }, { as: "colour", ...(signal && { signal }) });
-  if (reading.kind !== "colour") throw badNamed(name, "it is no colour image");
+  if (reading.kind !== "colour") throw badNamed(name, "it is not a colour image");
   return reading.image as ColorImage;
 }
 

@@ -31,7 +31,7 @@ export const surface: Lesson = {
   ],
   tasks: [
     "Raise the step. The estimated height across it falls short of the true one.",
-    "Switch the robust weights off and on at a step of 6 px: the error of the depth falls with them.",
+    "Switch the robust weights off and on at a step of 6 px: with them, the error of the depth is smaller.",
     "Let the step cut the plate in two: robust or not, its height is wrong, because nothing in the slopes determines it.",
     "Set the step to 0 and raise the noise: the dome comes out too high.",
   ],

@@ -12,7 +12,7 @@ const CALIBRATORS: readonly Row[] = [
     warnings: [],
     taken:
       "Pinhole cameras with radtan or equidistant lenses; poses from each camera to the next, and through the inertial unit.",
-    guessed: "Nothing. Cameras of the models omni, ds and eucm are named and left out.",
+    guessed: "Nothing. Cameras of the models omni, ds and eucm are left out, and a message names them.",
     exported: "`kalibr_calibrate_cameras` writes it beside the bag",
   },
   {
