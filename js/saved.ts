@@ -69,7 +69,7 @@ const bad = (what: string, cause?: unknown) =>
   new BimodalError("state", `state: ${what}`, "state", cause === undefined ? undefined : { cause });
 
 export const otherNumbers = () =>
-  bad("was saved by a version or a build of this package that computes different numbers; run the pair again instead");
+  bad("was saved by a version or a build of this package that comes to other numbers; run the pair again instead");
 
 /** Whatever is refused of what was saved is refused as a state. */
 export function unusable<T>(call: () => T): T {

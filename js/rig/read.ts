@@ -80,7 +80,7 @@ async function ofCloud(cloud: Cloud | Points, options: ReadOptions): Promise<Con
   if (options.as !== undefined && options.as !== "depth")
     throw badFile(`it is a cloud of points (${cloud.format}) where ${options.as} was expected`);
   if (options.inverse)
-    throw badFile(`it is a cloud of points (${cloud.format}), whose z is a depth, not an inverse depth`);
+    throw badFile(`it is a cloud of points (${cloud.format}), whose z is a depth and no inverse depth`);
   return "scan" in cloud ? (await clouds()).pointsDepth(cloud, options) : cloudDepth(cloud, options);
 }
 

@@ -157,7 +157,7 @@ class Estimator:
         if own.reached["begun"]:
             estimator._repeat(own.reached)
         if crc32(estimator._own.reached()[1]) != own.found:
-            raise _saved.bad("was saved by a version or a build of this package that computes different numbers; run the pair again instead")
+            raise _saved.bad("was saved by a version or a build of this package that comes to other numbers; run the pair again instead")
         return estimator
 
     def _repeat(self, reached: dict[str, Any]) -> None:
