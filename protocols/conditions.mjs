@@ -11,7 +11,7 @@ const LARGE = 128;
 
 /** The changes of each condition; the aims refer to its kind. */
 export const CONDITIONS = [
-  { condition: "told 8 degrees off", kind: "told", changes: { photograph: "lab_diffuse", off: OFF } },
+  { condition: "initial pose 8 degrees off", kind: "told", changes: { photograph: "lab_diffuse", off: OFF } },
   { condition: "three lamps", kind: "lamps", changes: { lamps: LAMPS }, objects: UNDER_LAMPS },
   { condition: "natural light", kind: "natural", changes: { photograph: "natural_diffuse" } },
   { condition: "128x128", kind: "large", changes: { photograph: "lab_diffuse" }, size: LARGE },

@@ -28,7 +28,7 @@ const GROUPS = {
   ],
   errors: [
     "Errors",
-    "`code` of a `BimodalError`, beside its `message`, and where they help its `field`, `index` and `value`; `ErrorKind::code()` in Rust.",
+    "`code` of a `BimodalError`, with a `message` and, where they help, `field`, `index` and `value`; `ErrorKind::code()` in Rust.",
   ],
 };
 

@@ -32,7 +32,7 @@ const verdict = (ok) => (ok === null ? "not measured" : ok ? "ok" : "missed");
 
 /** The aims of the tables, from their JSON. */
 export function tablesLines({ aims, quick, data }) {
-  const from = `Version ${version()}, ${quick ? "the quick selection of cells (`--quick`), which is less than what is aimed at" : "all cells"}${data ? "" : "; built-in surfaces and lights, without the data beside the project"}.`;
+  const from = `Version ${version()}, ${quick ? "the quick selection of cells (`--quick`), too few rows to judge the aims" : "all cells"}${data ? "" : "; built-in surfaces and lights, without the data beside the project"}.`;
   const rows = aims.map(({ table: name, what, rows, measured, sense, limit, ok }) => [
     name,
     what,

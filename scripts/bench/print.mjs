@@ -49,7 +49,7 @@ const convergedTable = ({ timeToConverged }) =>
 
 const searchTable = ({ search }) =>
   columns([
-    ["size", "where", "scenes", "to the end, s", "of it search, s", "longest slice, ms", "found", "median degrees"],
+    ["size", "where", "scenes", "whole run, s", "of which search, s", "longest slice, ms", "found", "median degrees"],
     ...search.map((row) => [
       ...[
         row.size,

@@ -48,7 +48,7 @@ const RECONSTRUCTIONS: readonly Row[] = [
     sample: "nerfstudio",
     reads: "cameras",
     warnings: ["camera-to-world"],
-    taken: "The camera, or one of each frame. Its place is not used as extrinsics.",
+    taken: "One camera for all frames, or one for each frame. Its pose is not used as extrinsics.",
     guessed: NOTHING,
     exported: "`ns-process-data` writes it",
   },
@@ -88,7 +88,7 @@ const VEHICLES: readonly Row[] = [
     reads: "cameras",
     warnings: [],
     taken:
-      "The camera of the pictures' folder (`image_2`); the LiDAR, through the rectification and the baseline, in each picture's frame.",
+      "The camera that the folder's name selects (`image_2`); the pose of the LiDAR in the frame of that camera, rectification and baseline included.",
     guessed: NOTHING,
     exported: DOWNLOAD,
   },
@@ -113,7 +113,7 @@ const VEHICLES: readonly Row[] = [
     reads: "cameras",
     warnings: [],
     taken:
-      "Cameras; sensors in the vehicle, quaternions w x y z. If the file has one LiDAR and one camera, the pose between them.",
+      "Cameras; the pose of each sensor in the vehicle, with quaternions w x y z. If the file has one LiDAR and one camera, the pose between them.",
     guessed: NOTHING,
     exported: DOWNLOAD,
   },
@@ -126,7 +126,7 @@ const VEHICLES: readonly Row[] = [
     reads: "cameras",
     warnings: [],
     taken:
-      "Cameras, turned from axes with x forward; sensors in the vehicle. If the file has one LiDAR and one camera, the pose between them.",
+      "Cameras, converted from axes with x forward; the pose of each sensor in the vehicle. If the file has one LiDAR and one camera, the pose between them.",
     guessed: NOTHING,
     exported: "`MessageToJson` of Protocol Buffers",
   },
@@ -150,7 +150,7 @@ const VEHICLES: readonly Row[] = [
     sample: "argoverse",
     reads: "cameras",
     warnings: [],
-    taken: "Cameras and sensors in the vehicle, quaternions w x y z.",
+    taken: "Cameras; the pose of each sensor in the vehicle, with quaternions w x y z.",
     guessed: NOTHING,
     exported: DOWNLOAD,
   },
@@ -162,7 +162,7 @@ const VEHICLES: readonly Row[] = [
     sample: "argoverse2-csv",
     reads: "poses",
     warnings: [],
-    taken: "Cameras and sensors in the vehicle.",
+    taken: "Cameras; the pose of each sensor in the vehicle.",
     guessed: NOTHING,
     exported: "The dataset has them as Feather: `pandas.read_feather(FILE).to_csv(OUT, index=False)`",
   },
@@ -202,7 +202,8 @@ const INDOOR: readonly Row[] = [
     reads: "cameras",
     warnings: [],
     taken: "The camera of both pictures, of each image if it changes; `depth_scale` in millimetres.",
-    guessed: "A `depth_scale` far from a millimetre counts as metres or per metre, as other programs write it.",
+    guessed:
+      "A `depth_scale` that cannot be in millimetres is read as metres per unit or as units to the metre, because other programs write those.",
     exported: DOWNLOAD,
   },
   {

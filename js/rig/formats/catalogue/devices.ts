@@ -25,7 +25,7 @@ const REALSENSE: readonly Row[] = [
     warnings: ["lens-approximated"],
     taken: "Cameras and the pose. Rotations are read column by column, as librealsense stores them.",
     guessed:
-      "Names of streams from the words before each print. Inverse Brown-Conrady is read as Brown-Conrady, with a warning.",
+      "The stream that each print belongs to, from the words before it. Inverse Brown-Conrady is read as Brown-Conrady, with a warning.",
     exported: "`print(profile.as_video_stream_profile().get_intrinsics())` and `print(depth.get_extrinsics_to(color))`",
   },
   {
@@ -153,7 +153,7 @@ const OTHERS: readonly Row[] = [
     reads: "cameras",
     warnings: [],
     taken: "Cameras whose lens is linear or Kannala-Brandt's, and their poses in the device.",
-    guessed: "Nothing. Aria's own lens model is named and its camera left out.",
+    guessed: "Nothing. A camera with Aria's own lens model is left out, and a message names it.",
     exported:
       "`get_device_calibration()` of projectaria_tools reads it from a recording; see the product's documentation for the file",
   },
@@ -201,7 +201,7 @@ const OTHERS: readonly Row[] = [
     sample: "arkit",
     reads: "cameras",
     warnings: ["camera-to-world"],
-    taken: "The camera. Its place is not used as extrinsics.",
+    taken: "The camera. Its pose is not used as extrinsics.",
     guessed: NOTHING,
     exported: SEE_PRODUCT,
   },

@@ -12,7 +12,7 @@ const CALIBRATORS: readonly Row[] = [
     warnings: [],
     taken:
       "Pinhole cameras with radtan or equidistant lenses; poses from each camera to the next, and through the inertial unit.",
-    guessed: "Nothing. Cameras of the models omni, ds and eucm are named and left out.",
+    guessed: "Nothing. Cameras of the models omni, ds and eucm are left out, and a message names them.",
     exported: "`kalibr_calibrate_cameras` writes it beside the bag",
   },
   {
@@ -119,7 +119,7 @@ const CALIBRATORS: readonly Row[] = [
     sample: "opencalib",
     reads: "cameras",
     warnings: [],
-    taken: "The camera with its size; the pose between the sensors that the name gives.",
+    taken: "The camera with its size; the pose between the two sensors that the file's name states.",
     guessed: NOTHING,
     exported: "The save button of `run_lidar2camera` and the others",
   },
@@ -207,7 +207,7 @@ const ROBOTS: readonly Row[] = [
     sample: "camera-info",
     reads: "cameras",
     warnings: [],
-    taken: "K, D and the size, not P; frame ids as names.",
+    taken: "K, D and the size, but not P; the frame id names the camera.",
     guessed: NOTHING,
     exported: "`ros2 topic echo --once /camera/color/camera_info > color.yaml`",
   },
