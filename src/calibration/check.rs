@@ -8,7 +8,7 @@
 use super::cue::Cue;
 use super::distortion;
 use super::input::RigView;
-use super::optima::{self, Optimum};
+use super::optima::{self, Optimum, SAME_START};
 use super::planes::Planes;
 use super::reason::{CheckReason, Warning, WarningKind};
 use super::registration::{
@@ -28,8 +28,6 @@ use crate::pose::Similarity;
 const MOST_FRAMES: usize = 24;
 /// Maximum number of candidates.
 const MOST_CANDIDATES: usize = 16;
-/// Two poses count as the same if the scene moves by less than this between them, pixels of an image 640 wide.
-const SAME_START: f64 = 1.5;
 /// Levels at which depth discontinuities are found anew: their visibility changes little in between.
 const FINDING_ANEW: [usize; 2] = [1, 3];
 /// The level at which candidates enter once more, with windows of a few pixels.
@@ -266,10 +264,17 @@ impl CalibrationCheck {
 
     /// Writes the first report. If the first candidate does not pass, the search over its other readings follows.
     fn judge(&mut self, rounds: &[Round], planes: Vec<Planes>) -> Stage {
-        let optima = optima::ranked(&self.scene, rounds, &planes);
+        let mut optima = optima::ranked(&self.scene, rounds, &planes);
+        // The best start stands unless another one is clearly better, so that rounding does not choose between poses that
+        // fit about as well.
+        let likely = self.judge_of(&optima[0]).0.likely();
+        let is_start = |optimum: &Optimum| optimum.behind <= likely && optimum.round.state.pose == rounds[0].state.pose;
+        if let Some(start) = optima.iter().position(is_start) {
+            optima[..=start].rotate_right(1);
+        }
         self.best = optima[0].round;
         self.lens = distortion::left_out(&mut self.scene, &self.best);
-        let report = self.conclude(&optima, None);
+        let report = self.conclude(&optima);
         let is_settled = names_reading(&report)
             || report.candidates.first().is_none_or(|first| first.verdict == CheckVerdict::Consistent);
         self.report = Some(report);
@@ -288,9 +293,9 @@ impl CalibrationCheck {
         let likely = self.judge_of(&optima[0]).0.likely();
         let is_clear = optima.iter().all(|other| other.reading.is_some() || other.behind > likely);
         let lens = self.lens;
-        if let (Some(reading), true) = (optima[0].reading, is_clear) {
+        if optima[0].reading.is_some() && is_clear {
             self.lens = distortion::left_out(&mut self.scene, &optima[0].round);
-            let report = self.conclude(&optima, Some(reading));
+            let report = self.conclude(&optima);
             if names_reading(&report) {
                 self.best = optima[0].round;
                 self.report = Some(report);

@@ -20,16 +20,15 @@ const FARTHEST: f64 = 1e6;
 const CLEARLY: f64 = 3.0;
 
 impl CalibrationCheck {
-    /// The report on the optima, best first. `reading` is the reading of the first candidate from which the best optimum
-    /// was reached, if any.
-    pub(super) fn conclude(&self, optima: &[Optimum], reading: Option<Reading>) -> CheckReport {
+    /// The report on the optima, best first.
+    pub(super) fn conclude(&self, optima: &[Optimum]) -> CheckReport {
         let Optimum { findings, round, .. } = &optima[0];
         let (units, state) = (findings.units, round.state);
         let frame = &self.scene.frames[0];
         let (judge, covariance) = self.judge_of(&optima[0]);
         let mut candidates = self.candidate_reports(&judge, &optima[0], &covariance);
         self.hear_other_optima(&mut candidates, &judge, &optima[1..]);
-        self.name_reading(&mut candidates, &judge, state, reading);
+        self.name_reading(&mut candidates, &judge, state);
         let warnings = self.all_warnings(&judge, &state);
         let health = if self.scene.is_seen(&state) { judge.estimate() } else { Judge::blind(self.width) };
         let (verdict, reason) = first_verdict(&candidates, &warnings, health);
@@ -72,7 +71,7 @@ impl CalibrationCheck {
     }
 
     /// If the first candidate is off and fits in another reading, names that reading as the reason.
-    fn name_reading(&self, reports: &mut [CandidateReport], judge: &Judge, best: State, found: Option<Reading>) {
+    fn name_reading(&self, reports: &mut [CandidateReport], judge: &Judge, best: State) {
         let (Some(report), Some((name, candidate))) = (reports.first_mut(), self.candidates.first()) else { return };
         if report.verdict != CheckVerdict::Off {
             return;
@@ -80,7 +79,7 @@ impl CalibrationCheck {
         let error = |reading: Reading| {
             let state = State::at(reading.of(&candidate.pose)?);
             let own = judge.judge(name, &best, &state, None);
-            let fits = found == Some(reading) || own.verdict != CheckVerdict::Off;
+            let fits = own.verdict != CheckVerdict::Off;
             (fits && CLEARLY * own.health.pixels < report.health.pixels).then_some((own.health, reading))
         };
         let fitting = Reading::ALL.into_iter().filter_map(error);

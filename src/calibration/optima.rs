@@ -7,6 +7,10 @@
 use super::planes::Planes;
 use super::readings::Reading;
 use super::registration::{Findings, Round, Scene};
+use super::unknowns::POSE;
+
+/// Two poses count as the same if the scene moves by less than this between them, pixels of an image 640 wide.
+pub(super) const SAME_START: f64 = 1.5;
 
 /// A pose refined with all cues, and the findings there.
 pub(super) struct Optimum {
@@ -20,9 +24,21 @@ pub(super) struct Optimum {
 
 /// The optima of the refined rounds, best first.
 pub(super) fn ranked(scene: &Scene, rounds: &[Round], planes: &[Planes]) -> Vec<Optimum> {
-    let mut optima: Vec<Optimum> = rounds.iter().map(|round| Optimum::at(scene, *round, None, planes)).collect();
+    let mut optima = vec![];
+    rounds.iter().for_each(|round| add(&mut optima, scene, Optimum::at(scene, *round, None, planes)));
     rank(&mut optima);
     optima
+}
+
+/// Adds an optimum unless another one is at the same place: of rounds that meet the first stands, and rounding decides nothing.
+pub(super) fn add(optima: &mut Vec<Optimum>, scene: &Scene, optimum: Optimum) {
+    let is_same = |other: &Optimum| {
+        let apart = other.findings.units.between(&other.round.state, &optimum.round.state);
+        apart.fixed_rows::<POSE>(0).norm() <= SAME_START * scene.scale
+    };
+    if !optima.iter().any(is_same) {
+        optima.push(optimum);
+    }
 }
 
 impl Optimum {

@@ -65,8 +65,9 @@ impl Rereading {
     /// All optima, best first.
     pub fn end(self, scene: &Scene, planes: &[Planes]) -> Vec<Optimum> {
         let Self { mut optima, starts, .. } = self;
-        optima
-            .extend(starts.into_iter().map(|(reading, start)| Optimum::at(scene, start.round, Some(reading), planes)));
+        for (reading, start) in starts {
+            optima::add(&mut optima, scene, Optimum::at(scene, start.round, Some(reading), planes));
+        }
         optima::rank(&mut optima);
         optima
     }
