@@ -59,9 +59,12 @@ export interface ErrorDetails {
   readonly reason?: string;
   /**
    * "too-large": it exceeds a limit of the readers; "picture": an image in a format that browsers read and these readers do not;
-   * "disparity": by its name it holds disparities or inverse depths, which the option `inverse` reads.
+   * "disparity": by its name it holds disparities or inverse depths, which the option `inverse` reads; "kind": its name or its numbers
+   * are those of another kind of file, and the option `as` overrides that.
    */
-  readonly problem?: "too-large" | "picture" | "disparity";
+  readonly problem?: "too-large" | "picture" | "disparity" | "kind";
+  /** What its name or its numbers show, without the remedy, if its kind is the problem. */
+  readonly finding?: string;
   /** Its columns, if its size is the problem. */
   readonly width?: number;
   /** Its rows, if its size is the problem. */

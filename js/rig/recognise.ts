@@ -38,14 +38,21 @@ function kindOfFloats(picture: Picture, role: Role | undefined): Kind {
   return picture.channels === 3 && isGrey(picture) && (isBright || role === "depth") ? "depth" : "colour";
 }
 
+/** A file whose name or numbers are those of another kind. */
+const ofOtherKind = (finding: string, remedy: string) =>
+  badFile(`${finding}. ${remedy}`, undefined, { problem: "kind", finding });
+
 const refusal = (role: Other) =>
-  badFile(
-    role === "disparity"
-      ? "its name says that it holds disparities or inverse depths rather than depths: read it as such (the option `inverse`), or compute z = focal length * baseline / (disparity + doffs) and save that. Give the unit if it holds depths"
-      : `its name says that it holds ${CONTENTS[role]}: that is neither a colour image nor a depth map nor a mask. If it is one, give the kind to read it as`,
-    undefined,
-    role === "disparity" ? { problem: "disparity" } : {},
-  );
+  role === "disparity"
+    ? badFile(
+        "its name says that it holds disparities or inverse depths rather than depths: read it as such (the option `inverse`), or compute z = focal length * baseline / (disparity + doffs) and save that. Give the unit if it holds depths",
+        undefined,
+        { problem: "disparity" },
+      )
+    : ofOtherKind(
+        `its name says that it holds ${CONTENTS[role]}: that is neither a colour image nor a depth map nor a mask`,
+        "If it is one, give the kind to read it as",
+      );
 
 /** The kind of a picture, by its content where that is clear, else by its name. */
 export function kindOfPicture(name: string, picture: Picture): Kind {
@@ -62,8 +69,9 @@ export function kindOfPicture(name: string, picture: Picture): Kind {
   if (isOther(role)) throw refusal(role);
   if (picture.format === "COLMAP" || picture.format === "table" || picture.format === "raw") return "depth";
   if (looksLikeLabels(picture))
-    throw badFile(
-      "its few small integers are labels of objects rather than depths. If it is a depth map, give that as the kind to read it as",
+    throw ofOtherKind(
+      "its few small integers are labels of objects rather than depths",
+      "If it is a depth map, give that as the kind to read it as",
     );
   return looksLikeDepth(picture) ? "depth" : "colour";
 }

@@ -131,7 +131,9 @@ impl CalibrationCheck {
                 (0.7 + 0.15 * share, "refining with all cues")
             }
             Stage::Judging { .. } => (0.85, "judging the candidates"),
-            Stage::Rereading { .. } => (0.86, "reading the candidate in other conventions"),
+            Stage::Rereading { search, .. } => {
+                (0.86 + 0.02 * search.progress(), "reading the candidate in other conventions")
+            }
             Stage::Curves { done, .. } => {
                 (0.88 + 0.12 * *done as f64 / self.scene.cues.len() as f64, "measuring sensitivity")
             }

@@ -8,11 +8,12 @@
 //! l = sum over discontinuities of log(e / 2 L + (1 - e) sum_k p_k N(u + d - u_k; s)),
 //! p_k = a_k / sum a, s^2 = sigma^2 + g^2 / 12,
 //!
-//! where u moves with the pose. The near surface ends anywhere within the gap g between two samples of the depth map, so
-//! that a coarse map weighs less than a fine one. The check never decides which edge belongs to which discontinuity, and
-//! a discontinuity in front of texture has little weight. The levels go from wide windows on a blurred image to narrow
-//! ones. Each round finds the edges anew and takes a Gauss-Newton step with the responsibilities (expectation
-//! maximisation).
+//! where u moves with the pose. The value reported is the sum of l + log 2 L: poses with different discontinuities are
+//! compared, and one whose edge may lie anywhere in its window must not count. The near surface ends anywhere within
+//! the gap g between two samples of the depth map, so that a coarse map weighs less than a fine one. The check never
+//! decides which edge belongs to which discontinuity, and a discontinuity in front of texture has little weight. The
+//! levels go from wide windows on a blurred image to narrow ones. Each round finds the edges anew and takes a
+//! Gauss-Newton step with the responsibilities (expectation maximisation).
 
 use super::evidence::{Share, Tiles};
 use super::frame::{Frame, Projection};
@@ -20,6 +21,7 @@ use super::patches::Sight;
 use super::planes::Planes;
 use super::rims::{self, Rim};
 use super::unknowns::{LOSS, State, Units, Vector, add_square};
+use crate::numeric::thin;
 
 /// e, the share of depth discontinuities whose edge is not visible in the image.
 const MISSING: f64 = 0.3;
@@ -64,9 +66,9 @@ pub(super) fn blur(sigma: f64) -> f64 {
 impl EdgeField {
     /// The depth discontinuities that the colour camera sees, at most `most`.
     pub fn rims(frame: &Frame, projection: &Projection, most: usize) -> Vec<Rim> {
-        let all = rims::find(frame, projection);
-        let stride = all.len().div_ceil(most).max(1);
-        all.into_iter().step_by(stride).collect()
+        let mut rims = rims::find(frame, projection);
+        thin(&mut rims, most);
+        rims
     }
 
     /// Depth discontinuities found at one state, moved to where another state projects them.
@@ -128,7 +130,7 @@ impl EdgeField {
             bounds += bound;
             own += bound - second / whole / (sigma * sigma) + slope * slope;
             let share = &mut shares[profile.tile as usize];
-            share.value += (whole / background).ln();
+            share.value += (whole * 2.0 * profile.window).ln();
             share.gradient += profile.row * slope;
             add_square(&mut share.curvature, &profile.row, bound);
         }

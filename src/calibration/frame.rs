@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use super::ahead::Ahead;
 use super::planes::Planes;
 use super::unknowns::State;
+use crate::numeric::quantile;
 use crate::view::{Pinhole, Size, depth_noise};
 
 /// A point farther behind the nearest one than this share of the distance is hidden: twice the depth step of a Kinect at
@@ -29,6 +30,8 @@ pub(super) struct Frame {
     pub image_mask: Option<Vec<bool>>,
     /// Raster of the depth map.
     pub grid: Size,
+    /// Columns and rows of the depth map in a cell of `grid`: one unless the map is sparse.
+    pub cell: [usize; 2],
     /// In the depth camera's frame, metres; NaN where missing or outside the mask.
     pub points: Vec<[f32; 3]>,
     pub has_depth_mask: bool,
@@ -49,7 +52,18 @@ impl Frame {
     /// `points` in the depth camera's frame, metres.
     pub fn new(name: String, planes: Planes, camera: Pinhole, grid: Size, points: Vec<[f32; 3]>) -> Self {
         let noise = noise(grid, &points);
-        Self { name, planes, camera, image_mask: None, grid, points, has_depth_mask: false, pixel: 1.0, noise }
+        Self {
+            name,
+            planes,
+            camera,
+            image_mask: None,
+            grid,
+            cell: [1, 1],
+            points,
+            has_depth_mask: false,
+            pixel: 1.0,
+            noise,
+        }
     }
 
     /// Distance, metres, from which a point counts as behind another one at `distance`.
@@ -135,15 +149,20 @@ fn hidden(frame: &Frame, positions: &[[f32; 3]], pixels: &[[f32; 2]]) -> Vec<boo
     positions.iter().zip(pixels).map(is_behind).collect()
 }
 
-/// Median distance of neighbouring points in the image, pixels.
-pub(super) fn spacing(grid: Size, pixels: &[[f32; 2]]) -> f32 {
+/// Median distance of neighbouring points in the image, pixels, along rows or columns, whichever is larger.
+fn spacing(grid: Size, pixels: &[[f32; 2]]) -> f32 {
     const SAMPLES: usize = 2000;
     let stride = (grid.len() / SAMPLES).max(1);
-    let mut distances: Vec<f32> = (0..grid.len() - 1)
-        .step_by(stride)
-        .filter(|index| index % grid.width != grid.width - 1)
-        .map(|index| (pixels[index + 1][0] - pixels[index][0]).hypot(pixels[index + 1][1] - pixels[index][1]))
-        .filter(|distance| distance.is_finite())
-        .collect();
-    if distances.is_empty() { 1.0 } else { crate::numeric::quantile(&mut distances, 0.5) }
+    let along = |pace: usize, is_last: &dyn Fn(usize) -> bool| {
+        let mut distances: Vec<f32> = (0..grid.len() - pace)
+            .step_by(stride)
+            .filter(|&index| !is_last(index))
+            .map(|index| [0, 1].map(|k| pixels[index + pace][k] - pixels[index][k]))
+            .map(|[x, y]| x.hypot(y))
+            .filter(|distance| distance.is_finite())
+            .collect();
+        if distances.is_empty() { 1.0 } else { quantile(&mut distances, 0.5) }
+    };
+    let across = along(1, &|index| index % grid.width == grid.width - 1);
+    across.max(along(grid.width, &|_| false))
 }

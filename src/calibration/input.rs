@@ -103,8 +103,9 @@ impl RigView {
             Pinhole { fx: focal, fy: focal, cx, cy, lens: Lens::None }
         });
         validate(&camera, size, "image.camera")?;
-        let (grid, points) = gathered(grid, points);
+        let (grid, cell, points) = gathered(grid, points);
         let mut frame = Frame::new(self.name, planes, camera, grid, points);
+        frame.cell = cell;
         let mask = self.image_mask.map(|mask| mask.into_iter().map(|value| value != 0).collect::<Vec<bool>>());
         if let Some(mask) = &mask {
             frame.planes.keep_near(mask);

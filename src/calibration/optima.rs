@@ -69,3 +69,40 @@ pub(super) fn rank(optima: &mut [Optimum]) {
     optima.iter_mut().zip(posteriors).for_each(|(optimum, posterior)| optimum.behind = best - posterior);
     optima.sort_by(|a, b| a.behind.total_cmp(&b.behind));
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::calibration::cue::Cue;
+    use crate::calibration::evidence::{Evidence, Share};
+    use crate::calibration::unknowns::{Matrix, State, Units, Vector};
+    use crate::pose::Similarity;
+    use crate::view::{Lens, Pinhole};
+    use nalgebra::Vector3;
+
+    /// An optimum at a pose so many sigmas from the prior's, with a log likelihood of its edges and their weight.
+    fn optimum(sigmas: f64, value: f64, weight: f64) -> Optimum {
+        let camera = Pinhole { fx: 500.0, fy: 500.0, cx: 320.0, cy: 240.0, lens: Lens::None };
+        let cloud = [[-0.3, -0.2, 1.0], [0.3, -0.2, 1.2], [0.0, 0.3, 0.9]].map(Vector3::from);
+        let units = Units::new(&cloud, &camera);
+        let told = State::at(Similarity::identity());
+        let mut back = Vector::zeros();
+        back[0] = sigmas;
+        let round = Round { state: units.step(&told, &back), told, sigma: 1.0 };
+        let evidence = Evidence { shares: vec![Share { value, ..Share::none() }] };
+        let cues = vec![(Cue::Edges, evidence.clone(), weight)];
+        let findings = Findings { units, prior: Matrix::identity(), cues, total: evidence, back };
+        Optimum { round, findings, reading: None, behind: 0.0 }
+    }
+
+    #[test]
+    fn the_weights_of_the_best_rank_all_and_the_prior_counts() {
+        // The first fits best, but five sigmas of the prior cost more than it gains.
+        let mut optima = vec![optimum(5.0, 12.0, 0.5), optimum(0.0, 8.0, 0.1), optimum(1.0, 10.0, 0.5)];
+        rank(&mut optima);
+        let behind: Vec<f64> = optima.iter().map(|optimum| optimum.behind).collect();
+        let sigmas: Vec<f64> = optima.iter().map(|optimum| optimum.findings.back[0]).collect();
+        // Posteriors with the weight 0.5: 4.5, 4 and -6.5.
+        assert_eq!((sigmas, behind), (vec![1.0, 0.0, 5.0], vec![0.0, 0.5, 11.0]));
+    }
+}

@@ -36,6 +36,12 @@ impl Rereading {
         Self { optima, starts, level: 0, index: 0, planes: scene.planes(SIGMAS[0] * scene.scale) }
     }
 
+    /// Share of the search that is done.
+    pub fn progress(&self) -> f64 {
+        let of_level = self.index as f64 / self.starts.len().max(1) as f64;
+        (self.level as f64 + of_level) / (SIGMAS.len() + 1) as f64
+    }
+
     /// One reading at one level, in the end the best one with all cues on the finest images; whether the search is over.
     pub fn step(&mut self, scene: &Scene, finest: &[Planes]) -> bool {
         if self.level == SIGMAS.len() {

@@ -1,16 +1,19 @@
 //! Depth discontinuities: where a near surface ends in front of a farther one, in the colour camera's view.
 //!
 //! A pixel of the depth map is on a discontinuity if the next pixel with a depth, along its row or column, lies clearly
-//! farther from the colour camera. The next pixel may lie beyond a hole: a depth camera that is offset from its projector
+//! farther from the colour camera than the surface that continues from the pixels behind. The next pixel may lie beyond a hole: a depth camera that is offset from its projector
 //! or its own colour camera misses depths on one side of each near object. The far side of a discontinuity is not used,
 //! because it begins wherever this hole ends.
 
 use super::frame::{Frame, Projection};
 
-/// Distance in pixels within which the next depth is looked for. Beside an object 0.3 m in front of its wall, a Kinect
+/// Distance in pixels of the depth map within which the next depth is looked for. Beside an object 0.3 m in front of its wall, a Kinect
 /// (baseline 75 mm) has a hole of 15 to 30 pixels. An object at half a metre in front of a wall at two metres has one of
-/// 60 pixels, and its discontinuities on that side are not found. In a gathered map these are cells.
+/// 60 pixels, and its discontinuities on that side are not found.
 const WIDEST_HOLE: usize = 40;
+/// Distances at which a pixel on the near side is looked for that tells the slope of the surface: two pixels average
+/// the steps of a quantised map, and farther ones stand in for missing depths.
+const BEHIND: [isize; 4] = [2, 1, 3, 4];
 /// Neighbours to each side that determine the local map from raster to image.
 const REACH: isize = 2;
 /// Minimum number of near pixels that determine this map.
@@ -49,26 +52,30 @@ fn ends_before_farther(frame: &Frame, projection: &Projection, index: usize) -> 
     let (column, row) = grid.position(index);
     let here = depth(projection, index);
     let gap = frame.clear_gap(here);
-    // Distance of neighbours in memory, and the number of pixels to the end of the raster ahead and behind.
+    let hole = frame.cell.map(|side| WIDEST_HOLE.div_ceil(side));
+    // Distance of neighbours in memory, the widest hole, and the number of pixels to the end of the raster ahead and
+    // behind.
     let ways = [
-        (1, grid.width - 1 - column, column),
-        (-1, column, grid.width - 1 - column),
-        (grid.width as isize, grid.height - 1 - row, row),
-        (-(grid.width as isize), row, grid.height - 1 - row),
+        (1, hole[0], grid.width - 1 - column, column),
+        (-1, hole[0], column, grid.width - 1 - column),
+        (grid.width as isize, hole[1], grid.height - 1 - row, row),
+        (-(grid.width as isize), hole[1], row, grid.height - 1 - row),
     ];
-    ways.into_iter().any(|(stride, ahead, behind)| {
+    ways.into_iter().any(|(stride, hole, ahead, behind)| {
         let at = |steps: isize| depth(projection, index.wrapping_add_signed(stride * steps));
-        let mut steps = 1..=ahead.min(WIDEST_HOLE) as isize;
+        let mut steps = 1..=ahead.min(hole) as isize;
         let Some(steps) = steps.find(|&steps| !at(steps).is_nan()) else { return false };
-        let farther = at(steps) - here;
         // Most pixels stop here: a continued slope only reduces the distance.
-        if farther <= gap {
+        if at(steps) - here <= gap {
             return false;
         }
-        // Slope of the surface over the two pixels on the other side.
-        let before = if behind < 2 { f64::NAN } else { at(-2) };
-        let slope = if before.is_nan() { 0.0 } else { ((here - before) / 2.0).max(0.0) };
-        farther - slope.min(gap) * steps as f64 > gap
+        let is_known = |&back: &isize| back as usize <= behind && !at(-back).is_nan();
+        // One sample alone may lie on a floor that recedes.
+        let Some(back) = BEHIND.into_iter().find(is_known) else { return false };
+        // Planes are linear in the inverse depth.
+        let slope = ((1.0 / here - 1.0 / at(-back)) / back as f64).min(0.0);
+        let continued = 1.0 / here + slope * steps as f64;
+        continued > 0.0 && at(steps) - 1.0 / continued > gap
     })
 }
 
@@ -155,4 +162,64 @@ fn rim(frame: &Frame, projection: &Projection, index: usize) -> Option<Rim> {
     }
     let pixel = [0, 1].map(|k| f64::from(centre[k]) + 0.5 * outwards * normal[k]);
     Some(Rim { index, pixel, normal, gap: outwards })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::calibration::planes::Planes;
+    use crate::calibration::unknowns::State;
+    use crate::pose::Similarity;
+    use crate::view::{Lens, Pinhole, Size};
+
+    /// The discontinuities that a camera at the depth camera's place sees, on cells of a raster of 64 by 48 rays with
+    /// this depth along them.
+    fn seen(cell: [usize; 2], depth: impl Fn([f64; 2]) -> f64) -> Vec<Rim> {
+        let camera = Pinhole { fx: 60.0, fy: 60.0, cx: 31.5, cy: 23.5, lens: Lens::None };
+        let size = Size { width: 64, height: 48 };
+        let grid = Size { width: size.width / cell[0], height: size.height / cell[1] };
+        let point = |index: usize| {
+            let (column, row) = grid.position(index);
+            let ray =
+                [((column * cell[0]) as f64 - camera.cx) / camera.fx, ((row * cell[1]) as f64 - camera.cy) / camera.fy];
+            let z = depth(ray);
+            [ray[0] * z, ray[1] * z, z].map(|value| value as f32)
+        };
+        let points = (0..grid.len()).map(point).collect();
+        let planes = Planes { size, pixels: vec![[0.5; 3]; size.len()] };
+        let mut frame = Frame::new(String::new(), planes, camera, grid, points);
+        frame.cell = cell;
+        let projection = Projection::new(&frame, &State::at(Similarity::identity()));
+        find(&frame, &projection)
+    }
+
+    /// A floor 0.4 m below the camera in front of a wall 5 m away.
+    fn floor([_, y]: [f64; 2]) -> f64 {
+        if y > 0.08 { 0.4 / y } else { 5.0 }
+    }
+
+    #[test]
+    fn a_floor_that_recedes_between_coarse_rows_has_no_discontinuity() {
+        for rows in [1, 2, 4, 6] {
+            let found = seen([1, rows], floor);
+            assert!(found.is_empty(), "{rows}: {}", found.len());
+        }
+    }
+
+    #[test]
+    fn a_surface_ends_within_the_gap_between_two_samples() {
+        for columns in [1, 2, 4] {
+            let found = seen([columns, 1], |[x, _]| if x.abs() < 0.2 { 1.0 } else { 3.0 });
+            // Both sides of the box in nearly all rows. Above and below, the raster ends.
+            assert!(found.len() >= 90, "{columns}: {}", found.len());
+            for rim in found.into_iter().filter(|rim| (2.5..44.5).contains(&rim.pixel[1])) {
+                assert!((rim.gap - columns as f64).abs() < 0.05 * columns as f64, "{columns}: {}", rim.gap);
+                let side = (rim.pixel[0] - 31.5).signum();
+                assert!((rim.normal[0] - side).abs() < 1e-6);
+                // It ends between 0.2 and the next sample of the wall.
+                let beyond = rim.pixel[0] * side - 31.5 * side - 12.0;
+                assert!(beyond.abs() <= columns as f64, "{columns}: {beyond}");
+            }
+        }
+    }
 }

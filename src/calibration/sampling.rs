@@ -62,11 +62,11 @@ fn cell(grid: Size, points: &[[f32; 3]]) -> [usize; 2] {
     }
 }
 
-/// The raster and its points, in cells if the samples are sparse.
-pub(super) fn gathered(grid: Size, points: Vec<[f32; 3]>) -> (Size, Vec<[f32; 3]>) {
+/// The raster, columns and rows of its cells, and its points: gathered if the samples are sparse.
+pub(super) fn gathered(grid: Size, points: Vec<[f32; 3]>) -> (Size, [usize; 2], Vec<[f32; 3]>) {
     let [columns, rows] = cell(grid, &points);
     if columns * rows == 1 {
-        return (grid, points);
+        return (grid, [1, 1], points);
     }
     let size = Size { width: grid.width.div_ceil(columns), height: grid.height.div_ceil(rows) };
     let mut nearest = vec![(usize::MAX, [f32::NAN; 3]); size.len()];
@@ -80,7 +80,7 @@ pub(super) fn gathered(grid: Size, points: Vec<[f32; 3]>) -> (Size, Vec<[f32; 3]
             *kept = (distance, *point);
         }
     }
-    (size, nearest.into_iter().map(|kept| kept.1).collect())
+    (size, [columns, rows], nearest.into_iter().map(|kept| kept.1).collect())
 }
 
 #[cfg(test)]
@@ -120,7 +120,7 @@ mod tests {
         let points = plane(|_| random.uniform() < 0.05);
         let [columns, rows] = cell(GRID, &points);
         assert!(columns.abs_diff(rows) <= 1 && (3..=6).contains(&rows), "{columns} {rows}");
-        let (size, kept) = gathered(GRID, points.clone());
+        let (size, _, kept) = gathered(GRID, points.clone());
         assert_eq!(size, Size { width: GRID.width.div_ceil(columns), height: GRID.height.div_ceil(rows) });
         let valid: Vec<_> = kept.iter().enumerate().filter(|(_, point)| !point[2].is_nan()).collect();
         assert!(2 * valid.len() > size.len());

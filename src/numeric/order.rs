@@ -15,7 +15,7 @@ pub(crate) fn evenly_spread<I: Iterator<Item = usize>>(
 }
 
 /// Keeps at most `most` of the elements, evenly spread.
-pub(crate) fn thin(elements: &mut Vec<usize>, most: usize) {
+pub(crate) fn thin<T: Copy>(elements: &mut Vec<T>, most: usize) {
     let count = elements.len();
     if count > most {
         (0..most).for_each(|k| elements[k] = elements[k * count / most]);

@@ -68,6 +68,9 @@ export function release(files: Files): void {
   }
 }
 
+/** The remedy on this page for a file that looks like another kind. */
+const BY_HAND = "To use it all the same, choose it by hand in its place in the settings";
+
 type Reading = Omit<Calls["read"]["ask"], "file" | "name" | "blob">;
 
 async function seen(file: File, number: number, how: Reading): Promise<Look> {
@@ -110,7 +113,8 @@ async function look(file: File): Promise<Look> {
     const details = error instanceof RigError ? error.fault.details : undefined;
     if (details?.problem === "disparity")
       return { ...(await glance(file, { as: "depth", inverse: {} })), isInverse: true };
-    return unread(file, details?.reason ?? (error instanceof Error ? error.message : String(error)), details);
+    const reason = details?.reason ?? (error instanceof Error ? error.message : String(error));
+    return unread(file, details?.finding === undefined ? reason : `${details.finding}. ${BY_HAND}`, details);
   }
 }
 

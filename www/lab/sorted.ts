@@ -85,10 +85,6 @@ function fieldsOf(
   return fields;
 }
 
-/** The remedy on this page; the readers name an option. */
-const byHand = (words: string): string =>
-  words.replace(/give (?:that as )?the kind to read it as/, "choose it by hand in its place in the settings");
-
 function sayOthers(seen: readonly Seen[], say: (words: string, wrong?: boolean) => void): void {
   for (const { file, look } of seen) {
     if (look.kind === "poses")
@@ -96,7 +92,7 @@ function sayOthers(seen: readonly Seen[], say: (words: string, wrong?: boolean) 
         `${file.name}: a pose. The Lab does not need one; to begin from it, enter its angles under Settings, Start, near.`,
       );
     else if (look.kind === "recording") say(`${file.name}: a recording. Open it in Check a rig.`, true);
-    else if (look.kind === undefined) say(`${file.name}: ${byHand(look.says)}`, true);
+    else if (look.kind === undefined) say(`${file.name}: ${look.says}`, true);
   }
 }
 
