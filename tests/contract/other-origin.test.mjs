@@ -9,6 +9,7 @@ import { atTheEnd, folder, freshProject, html, served, visit, write } from "./fr
 /** A search by two threads that prints the estimator's warnings. */
 const script = (address) => `
 import init, { Estimator, sample } from "${address}index.js";
+import { LONG } from "./long.mjs";
 await init();
 const { image, depth } = sample({ surface: "bust", light: "window", size: 48, angles: { beta: 30 }, noise: 0.01 });
 const estimator = new Estimator(image, depth, { workers: 2 });
@@ -38,7 +39,7 @@ async function pageFor(address, policy = "") {
   return served(page);
 }
 
-describe("a package from another origin", () => {
+describe("a package from another origin", LONG, () => {
   test("starts its threads by a worker of the page's own origin", async () => {
     const { address } = await packageElsewhere();
     const { lines, missing, threads } = await visit(await pageFor(address), { threads: 1 });
