@@ -155,6 +155,8 @@ const contract = () => {
   return watch(
     process.execPath,
     [
+      // Node 20 can wait forever at its exit, for a compiler thread that waits for the garbage collection of the thread that exits.
+      "--no-concurrent-recompilation",
       "--test",
       "--test-reporter=spec",
       `--test-concurrency=${Math.max(2, availableParallelism() - 1)}`,
