@@ -10,6 +10,7 @@ import { decodeDepth } from "../../pkg/files.js";
 import { depthPng } from "../../pkg/write.js";
 import { inRoot } from "../../scripts/shell.mjs";
 import { examples, freshProject, html, pairFiles, run, served, visit, write } from "./fresh.mjs";
+import { LONG } from "./long.mjs";
 
 const README = inRoot("pkg/README.md");
 const [MADE, OWN] = examples(README, "js");
@@ -35,7 +36,6 @@ function line(name, body, options = {}) {
 /** README's example, followed by a thread and by a file that loads on demand. */
 const APP = `${MADE}
 import { projectFrame } from "bimodal-stereo";
-import { LONG } from "./long.mjs";
 const together = new Estimator(image, depth, { workers: 2 });
 await together.run({ maxIterations: 1 });
 const view = { width: 16, height: 16, camera: { fx: 20, fy: 20, cx: 7.5, cy: 7.5 } };

@@ -5,11 +5,11 @@ import { join } from "node:path";
 import { describe, test } from "node:test";
 import { serveSite } from "../../scripts/site/serve.mjs";
 import { atTheEnd, folder, freshProject, html, served, visit, write } from "./fresh.mjs";
+import { LONG } from "./long.mjs";
 
 /** A search by two threads that prints the estimator's warnings. */
 const script = (address) => `
 import init, { Estimator, sample } from "${address}index.js";
-import { LONG } from "./long.mjs";
 await init();
 const { image, depth } = sample({ surface: "bust", light: "window", size: 48, angles: { beta: 30 }, noise: 0.01 });
 const estimator = new Estimator(image, depth, { workers: 2 });
