@@ -1,5 +1,5 @@
-// npm test: sets up, builds, and runs every test that does not take long. `npm test -- contract page` runs only these parts,
-// `npm test -- --long` also runs the tests that take over three seconds.
+// npm test: sets up, builds, and runs what shows most mistakes within minutes. `npm test -- contract page` runs only these parts.
+// `npm test -- --long` adds the other parts, and in each part the tests that take over three seconds.
 import { readFileSync, rmSync } from "node:fs";
 import { createServer } from "node:net";
 import { availableParallelism } from "node:os";
@@ -155,6 +155,8 @@ const contract = () => {
   return watch(
     process.execPath,
     [
+      // Node 20 can wait forever at its exit, for a compiler thread that waits for the garbage collection of the thread that exits.
+      "--no-concurrent-recompilation",
       "--test",
       "--test-reporter=spec",
       `--test-concurrency=${Math.max(2, availableParallelism() - 1)}`,
@@ -216,46 +218,53 @@ function notRun(output) {
 }
 
 /**
- * In the order of running. A part with a lane keeps one processor busy, so parts of the two lanes run in parallel; only parts of one lane
- * build the page.
+ * In the order of running. The two lanes run in parallel: cargo's in one, what needs the package in the other, which alone builds the page.
+ * Parts that are `long` run with `--long` or by name.
  */
 const PARTS = [
   { name: "format", run: cargo("fmt", "--check") },
   // Layout and lint of all TypeScript and JavaScript.
   { name: "biome", run: biome, closing: /^(?:Checked \d+ files.*|Found .*)$/gm },
-  { name: "clippy", run: cargo("clippy", "--all-targets", ...FEATURES, ...DENY), closing: CARGO },
+  { name: "rust", run: rust, lane: 0, closing: CARGO },
+  { name: "clippy", run: cargo("clippy", "--all-targets", ...FEATURES, ...DENY), long: true, lane: 0, closing: CARGO },
   {
     name: "clippy-wasm",
     run: cargo("clippy", ...LIBRARY, "--target", WASM, "--all-targets", "--features", "bindings", ...DENY),
+    long: true,
+    lane: 0,
     closing: CARGO,
   },
   // The bindings of the calibration check and of its rendered rigs, which are separate files.
   {
     name: "clippy-check",
     run: cargo("clippy", ...LIBRARY, "--target", WASM, "--lib", "--features", "bindings-check", ...DENY),
+    long: true,
+    lane: 0,
     closing: CARGO,
   },
   {
     name: "clippy-rigs",
     run: cargo("clippy", ...LIBRARY, "--target", WASM, "--lib", "--features", "bindings-rigs", ...DENY),
+    long: true,
+    lane: 0,
     closing: CARGO,
   },
-  { name: "docs", run: docs, closing: CARGO },
-  { name: "deny", run: deny, closing: /^.*bans \w+, .*$/gm },
-  { name: "rust", run: rust, closing: CARGO },
-  { name: "wasm-node", run: wasmInNode, lane: 0, closing: CARGO },
-  { name: "wasm-browser", run: wasmIn("WASM_BINDGEN_USE_BROWSER"), lane: 0, closing: CARGO },
-  { name: "wasm-worker", run: wasmIn("WASM_BINDGEN_USE_DEDICATED_WORKER"), lane: 0, closing: CARGO },
+  { name: "docs", run: docs, long: true, lane: 0, closing: CARGO },
+  { name: "deny", run: deny, long: true, lane: 0, closing: /^.*bans \w+, .*$/gm },
+  { name: "wasm-node", run: wasmInNode, long: true, lane: 0, closing: CARGO },
+  { name: "wasm-browser", run: wasmIn("WASM_BINDGEN_USE_BROWSER"), long: true, lane: 0, closing: CARGO },
+  { name: "wasm-worker", run: wasmIn("WASM_BINDGEN_USE_DEDICATED_WORKER"), long: true, lane: 0, closing: CARGO },
   { name: "sizes", run: downloads, needsBuild: true, lane: 1, closing: /^size of .*$/gm },
   {
     name: "firefox",
     run: secondEngine,
     needsBuild: true,
+    long: true,
     lane: 1,
     closing: /^(?: +\d+ (?:passed|failed|skipped|flaky)|test result: ).*$/gm,
   },
   { name: "types", run: types, needsBuild: true, lane: 1, closing: /^tsc .*$/gm },
-  { name: "python", run: python, needsBuild: true, lane: 1, closing: PYTHON },
+  { name: "python", run: python, needsBuild: true, long: true, lane: 1, closing: PYTHON },
   { name: "contract", run: contract, needsBuild: true, lane: 1, closing: NODE },
   {
     name: "tables",
@@ -340,7 +349,9 @@ await script(async () => {
   const failed = results.filter((result) => !result.passed).map((result) => result.name);
   const left = results.reduce((sum, result) => sum + result.notRun, 0);
   if (left > 0) console.log(`\n${left} tests were NOT RUN; the lines above say which and why.`);
-  if (!LONG) console.log("\nWhat takes long was left out: `npm test -- --long` runs it, too.");
+  const out = PARTS.filter((part) => !parts.includes(part)).map((part) => part.name);
+  const names = out.length > 0 ? ` Parts left out: ${out.join(", ")}.` : "";
+  if (!LONG) console.log(`\nLong tests were left out: \`npm test -- --long\` runs everything.${names}`);
   console.log(
     failed.length === 0
       ? `\nAll parts passed in ${seconds(start)}.`

@@ -212,39 +212,6 @@ mod tests {
     }
 
     #[test]
-    fn what_has_settled_ends_within_a_tenth_of_its_sigma_of_the_full_solve() {
-        let joint = Options::default();
-        let fixed = Options { registration: Registration::Fixed, ..joint.clone() };
-        let known = Options { light: LightSource::Known(light("window").unwrap()), ..joint.clone() };
-        let mut left_out = 0;
-        for (options, sample) in [
-            (&joint, sample("vase", "overcast", 128, 30.0, 0.0, false)),
-            (&joint, sample("vase", "window", 256, 40.0, 0.0, false)),
-            (&joint, sample("ripples", "window", 256, 20.0, 0.0, true)),
-            (&joint, sample("vase", "window", 256, 40.0, 0.1, true)),
-            (&joint, sample("bust", "window", 128, 20.0, 0.3, false)),
-            (&known, sample("bust", "window", 128, 20.0, 0.1, false)),
-            (&known, sample("bust", "window", 128, 20.0, 0.0, false)),
-            (&fixed, sample("bust", "overcast", 128, 60.0, 0.0, true)),
-        ] {
-            let (full, none) = ended(&sample, options, -1.0);
-            let (found, kept) = ended(&sample, options, TOLERANCE);
-            let [before, after] = [&full, &found].map(|it| it.report());
-            assert!(none == 0 && after.status == before.status && after.iteration <= before.iteration, "{after:?}");
-            assert!(after.pose.degrees_to(&before.pose) < 1e-9, "{after:?}");
-            let image = [&*full.image_depth(), &*found.image_depth(), &sample.truth.image_depth];
-            let depth = [full.refined_depth(), found.refined_depth(), &sample.truth.depth];
-            for [full, found, truth] in [image, depth] {
-                let (apart, sigma) = (deviation(full, found), deviation(full, truth));
-                assert!(apart < 0.1 * sigma, "{apart} of {sigma}: {after:?}");
-            }
-            left_out += kept;
-        }
-        // At least one per scene; otherwise this would compare full solves with themselves.
-        assert!(left_out >= 8, "{left_out}");
-    }
-
-    #[test]
     fn where_nothing_moves_outputs_keep_their_bits() {
         // The first of some scenes that keeps everything before its loop ends.
         let settled = |degrees: f64| {
@@ -288,5 +255,43 @@ mod tests {
         assert!(!settling.keeps_image());
         settling.advance([Moved { normals: 0.0, heights: 0.2 }, moved(0.0)]);
         assert!(!settling.keeps_image());
+    }
+
+    /// Tests of over three seconds: `cargo test` runs them, `npm test` only with `--long`.
+    mod long {
+        use super::*;
+
+        #[test]
+        fn what_has_settled_ends_within_a_tenth_of_its_sigma_of_the_full_solve() {
+            let joint = Options::default();
+            let fixed = Options { registration: Registration::Fixed, ..joint.clone() };
+            let known = Options { light: LightSource::Known(light("window").unwrap()), ..joint.clone() };
+            let mut left_out = 0;
+            for (options, sample) in [
+                (&joint, sample("vase", "overcast", 128, 30.0, 0.0, false)),
+                (&joint, sample("vase", "window", 256, 40.0, 0.0, false)),
+                (&joint, sample("ripples", "window", 256, 20.0, 0.0, true)),
+                (&joint, sample("vase", "window", 256, 40.0, 0.1, true)),
+                (&joint, sample("bust", "window", 128, 20.0, 0.3, false)),
+                (&known, sample("bust", "window", 128, 20.0, 0.1, false)),
+                (&known, sample("bust", "window", 128, 20.0, 0.0, false)),
+                (&fixed, sample("bust", "overcast", 128, 60.0, 0.0, true)),
+            ] {
+                let (full, none) = ended(&sample, options, -1.0);
+                let (found, kept) = ended(&sample, options, TOLERANCE);
+                let [before, after] = [&full, &found].map(|it| it.report());
+                assert!(none == 0 && after.status == before.status && after.iteration <= before.iteration, "{after:?}");
+                assert!(after.pose.degrees_to(&before.pose) < 1e-9, "{after:?}");
+                let image = [&*full.image_depth(), &*found.image_depth(), &sample.truth.image_depth];
+                let depth = [full.refined_depth(), found.refined_depth(), &sample.truth.depth];
+                for [full, found, truth] in [image, depth] {
+                    let (apart, sigma) = (deviation(full, found), deviation(full, truth));
+                    assert!(apart < 0.1 * sigma, "{apart} of {sigma}: {after:?}");
+                }
+                left_out += kept;
+            }
+            // At least one per scene; otherwise this would compare full solves with themselves.
+            assert!(left_out >= 8, "{left_out}");
+        }
     }
 }

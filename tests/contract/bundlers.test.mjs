@@ -10,6 +10,7 @@ import { decodeDepth } from "../../pkg/files.js";
 import { depthPng } from "../../pkg/write.js";
 import { inRoot } from "../../scripts/shell.mjs";
 import { examples, freshProject, html, pairFiles, run, served, visit, write } from "./fresh.mjs";
+import { LONG } from "./long.mjs";
 
 const README = inRoot("pkg/README.md");
 const [MADE, OWN] = examples(README, "js");
@@ -27,9 +28,9 @@ const table = new Map(
 );
 const tested = [];
 /** A test of a line of the table. */
-function line(name, body) {
+function line(name, body, options = {}) {
   tested.push(name);
-  test(name, () => body(...table.get(name)));
+  test(name, options, () => body(...table.get(name)));
 }
 
 /** README's example, followed by a thread and by a file that loads on demand. */
@@ -60,46 +61,55 @@ const page = (folder, head = '<script type="module" src="app.js"></script>') =>
   write(project, { [`${folder}/index.html`]: html(head) });
 
 describe("README's example in", () => {
-  line("Vite", async (_, config) => {
-    write(project, {
-      "vite/index.html": html('<script type="module" src="./app.js"></script>'),
-      "vite/app.js": APP,
-      "vite/older.config.js": `export default { ${config} };`,
-    });
-    const root = join(project, "vite");
-    const options = { root, configFile: false, logLevel: "silent", cacheDir: join(root, "cache") };
-    await build(options);
-    complete(await visit(await served(join(root, "dist")), { threads: 1 }));
-    for (const configFile of [false, join(root, "older.config.js")]) {
-      const server = await createServer({
-        ...options,
-        configFile,
-        server: { port: 0, host: "127.0.0.1", fs: { allow: [project] } },
+  line(
+    "Vite",
+    async (_, config) => {
+      write(project, {
+        "vite/index.html": html('<script type="module" src="./app.js"></script>'),
+        "vite/app.js": APP,
+        "vite/older.config.js": `export default { ${config} };`,
       });
-      await server.listen();
-      complete(await visit(server.resolvedUrls.local[0], { threads: 1 }));
-      await server.close();
-    }
-  });
+      const root = join(project, "vite");
+      const options = { root, configFile: false, logLevel: "silent", cacheDir: join(root, "cache") };
+      await build(options);
+      complete(await visit(await served(join(root, "dist")), { threads: 1 }));
+      for (const configFile of [false, join(root, "older.config.js")]) {
+        const server = await createServer({
+          ...options,
+          configFile,
+          server: { port: 0, host: "127.0.0.1", fs: { allow: [project] } },
+        });
+        await server.listen();
+        complete(await visit(server.resolvedUrls.local[0], { threads: 1 }));
+        await server.close();
+      }
+    },
+    LONG,
+  );
 
-  line("webpack 5", async () => {
-    const path = join(project, "webpack");
-    const stats = await new Promise((done, fail) => {
-      const options = {
-        context: project,
-        mode: "production",
-        entry: "./app.js",
-        output: { path, filename: "app.js" },
-        performance: false,
-      };
-      webpack(options, (error, result) => (error ? fail(error) : done(result)));
-    });
-    assert.equal(stats.toString({ all: false, errors: true, warnings: true }), "");
-    page("webpack");
-    complete(await visit(await served(path), { threads: 1 }));
-    // A bundle must not contain the path of its project.
-    for (const file of readdirSync(path)) assert.ok(!readFileSync(join(path, file), "latin1").includes(project), file);
-  });
+  line(
+    "webpack 5",
+    async () => {
+      const path = join(project, "webpack");
+      const stats = await new Promise((done, fail) => {
+        const options = {
+          context: project,
+          mode: "production",
+          entry: "./app.js",
+          output: { path, filename: "app.js" },
+          performance: false,
+        };
+        webpack(options, (error, result) => (error ? fail(error) : done(result)));
+      });
+      assert.equal(stats.toString({ all: false, errors: true, warnings: true }), "");
+      page("webpack");
+      complete(await visit(await served(path), { threads: 1 }));
+      // A bundle must not contain the path of its project.
+      for (const file of readdirSync(path))
+        assert.ok(!readFileSync(join(path, file), "latin1").includes(project), file);
+    },
+    LONG,
+  );
 
   line("esbuild", async (command, script) => {
     run("sh", ["-c", command], project);

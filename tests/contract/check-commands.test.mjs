@@ -10,6 +10,7 @@ import { writePose } from "../../pkg/rig-write.js";
 import { writePng } from "../../pkg/write.js";
 import { ask, inRoot } from "../../scripts/shell.mjs";
 import { freshProject } from "./fresh.mjs";
+import { LONG } from "./long.mjs";
 
 /**
  * Native code and wasm sum in different orders and compute other sines. Limits of the differences between their reports: for the estimate in
@@ -170,7 +171,7 @@ describe("check by npm, Rust and Python", () => {
     });
   }
 
-  test("a rendered rig has one verdict and one JSON", async () => {
+  test("a rendered rig has one verdict and one JSON", LONG, async () => {
     const { frames, calibration } = await rendered();
     const { status, report } = checkAll(frames, calibration, DECISIONS, ["--unit", "0.001"]);
     assert.deepEqual([status, report.verdict, report.warnings], [0, "consistent", []]);

@@ -8,6 +8,7 @@ import { build } from "vite";
 import { inRoot } from "../../scripts/shell.mjs";
 import { decodeDepth } from "../../pkg/files.js";
 import { chrome, folder, pairFiles, run, served } from "./fresh.mjs";
+import { LONG } from "./long.mjs";
 
 /** No test measures time; this ends a test that hangs, milliseconds. */
 const NEVER = 300_000;
@@ -58,7 +59,7 @@ describe("pages", () => {
       await says(page, "#out", /^converged .* beta (19|20)\.\d+/);
     }));
 
-  test("worker.html draws in a worker, and stops", () =>
+  test("worker.html draws in a worker, and stops", LONG, () =>
     onPage(`${address}examples/worker.html`, async (page) => {
       await says(page, "#out", /^converged .*beta (49|50)\.\d+ \(true: 50\)/);
       assert.ok(
@@ -82,7 +83,8 @@ describe("pages", () => {
       await page.addInitScript(() => addEventListener("load", () => document.getElementById("stop").click()));
       await page.reload();
       await says(page, "#out", "stopped");
-    }));
+    }),
+  );
 });
 
 describe("react", () => {
@@ -105,7 +107,7 @@ describe("react", () => {
       says(page, "[role=status]", /^converged .*beta (19|20)\./),
     ));
 
-  test("a component that goes ends what is under way, in strict mode, and frees it", () =>
+  test("a component that goes ends what is under way, in strict mode, and frees it", LONG, () =>
     onPage(`${address}tests/contract/react/index.html`, async (page) => {
       const counts = () => page.evaluate(() => window.counts);
       await says(page, "[role=status]", /^running/);
@@ -117,7 +119,8 @@ describe("react", () => {
       await says(page, "[role=status]", /^converged/);
       await page.waitForFunction(() => window.counts.freed === window.counts.made);
       assert.deepEqual(await counts(), { made: 2, freed: 2, ended: 1 });
-    }));
+    }),
+  );
 });
 
 describe("batch.mjs", () => {

@@ -96,7 +96,7 @@ describe("faults", () => {
       run(input, options);
     });
 
-    test(`${name} everywhere`, () => {
+    test(`${name} everywhere`, LONG, () => {
       for (const side of ["image", "depth"]) {
         const [input] = spoiled((image, depth) => ({ image, depth })[side].data.fill(value));
         run(input);
@@ -116,7 +116,7 @@ describe("faults", () => {
     run(input, options);
   });
 
-  test("depths all denormal, or all as large as can be", () => {
+  test("depths all denormal, or all as large as can be", LONG, () => {
     for (const factor of [1e-42, 1e9, 1e30]) {
       const [input] = spoiled((_, depth) => depth.data.forEach((value, i) => (depth.data[i] = value * factor)));
       run(input);
@@ -189,7 +189,7 @@ describe("faults", () => {
     run({ image, depth: { width, height, mask, points: four } });
   });
 
-  test("saturated colours, black ones, and a light that does not vary", () => {
+  test("saturated colours, black ones, and a light that does not vary", LONG, () => {
     const count = SIDE * SIDE;
     for (const level of [255, 0, 1]) {
       const [{ depth, image }] = spoiled(() => {});
@@ -222,7 +222,7 @@ describe("faults", () => {
     run(blocks, same);
   });
 
-  test("4096 x 4096 pixels are refused by name, or worked on at the depth map's resolution", () => {
+  test("4096 x 4096 pixels are refused by name, or worked on at the depth map's resolution", LONG, () => {
     const [width, height] = [4096, 4096];
     const { depth } = pair({ size: 32, light: "window" });
     const large = { width, height, data: new Uint8Array(4 * width * height).fill(90) };

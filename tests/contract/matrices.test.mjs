@@ -5,6 +5,7 @@ import { checkCalibration, projectFrame, sampleRig } from "../../pkg/index.js";
 import { writePose } from "../../pkg/rig-write.js";
 import { matrixText, poseJson } from "../../pkg/write.js";
 import { Estimator, init, outcome, pair, refused } from "./support.mjs";
+import { LONG } from "./long.mjs";
 
 const TURN = (25 * Math.PI) / 180;
 const [C, S] = [Math.cos(TURN), Math.sin(TURN)];
@@ -164,7 +165,7 @@ describe("a camera", () => {
   });
 });
 
-test("frames and candidates of a check in matrices give the report of those in members", async () => {
+test("frames and candidates of a check in matrices give the report of those in members", LONG, async () => {
   const frame = await sampleRig({ kind: "objects" });
   const { fx, fy, cx, cy, ...lens } = frame.image.camera;
   const withK = { ...frame, image: { ...frame.image, camera: { K: [fx, 0, cx, 0, fy, cy, 0, 0, 1], ...lens } } };

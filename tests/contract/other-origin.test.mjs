@@ -5,6 +5,7 @@ import { join } from "node:path";
 import { describe, test } from "node:test";
 import { serveSite } from "../../scripts/site/serve.mjs";
 import { atTheEnd, folder, freshProject, html, served, visit, write } from "./fresh.mjs";
+import { LONG } from "./long.mjs";
 
 /** A search by two threads that prints the estimator's warnings. */
 const script = (address) => `
@@ -38,7 +39,7 @@ async function pageFor(address, policy = "") {
   return served(page);
 }
 
-describe("a package from another origin", () => {
+describe("a package from another origin", LONG, () => {
   test("starts its threads by a worker of the page's own origin", async () => {
     const { address } = await packageElsewhere();
     const { lines, missing, threads } = await visit(await pageFor(address), { threads: 1 });

@@ -93,7 +93,7 @@ describe("a refinement worker", () => {
     estimator.free();
   });
 
-  test("that answers nonsense, or dies, changes nothing", async () => {
+  test("that answers nonsense, or dies, changes nothing", LONG, async () => {
     const given = scene();
     const expected = await endOf(alone(given));
     const deaths = [
@@ -152,7 +152,7 @@ describe("a refinement worker", () => {
     assert.equal(seen.begun, before);
   });
 
-  test("goes when the loop begins anew or the estimator is freed, also while a run waits", async (t) => {
+  test("goes when the loop begins anew or the estimator is freed, also while a run waits", LONG, async (t) => {
     withoutHaste(t);
     const given = scene();
     const expected = await endOf(alone(given));

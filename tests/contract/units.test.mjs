@@ -28,8 +28,8 @@ for (const [surface, light, beta, [status, code, times]] of [
   ["ripples", "window", 30, BY_UNIT],
   ["bust", "window", 20, BY_CONTRAST],
 ]) {
-  // In short runs, the bust and the factors below stand for the other cases.
-  test(`relief ten times as deep as it is, ${surface} under ${light} light`, surface === "bust" ? {} : LONG, () => {
+  // In short runs, the factors below stand for these cases.
+  test(`relief ten times as deep as it is, ${surface} under ${light} light`, LONG, () => {
     const made = pair({ surface, light, size: 64, angles: { beta }, noise: 0.01 });
     const right = found(made, 1);
     assert.equal(right.status, "converged", right.message);
@@ -77,7 +77,7 @@ for (const [unit, size, factor] of [
 }
 
 // The residuals here come from errors of the normals, not from noise; half or twice the relief reduces them by up to a fifth.
-test("the right relief of a view of 48 pixels without noise is doubted by no other unit", () => {
+test("the right relief of a view of 48 pixels without noise is doubted by no other unit", LONG, () => {
   for (const [light, beta] of [
     ["colourful", 0],
     ["window", 10],

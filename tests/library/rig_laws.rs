@@ -112,34 +112,43 @@ fn silhouettes_without_masks_leave_every_candidate_undecided() {
     }
 }
 
-/// Pixels outside the image's mask have no effect: other colours there change no digit of any cue's result.
-#[test]
-fn every_cue_obeys_the_mask_of_the_image() {
-    let size = Size { width: 192, height: 144 };
-    let request =
-        RigRequest { colour_size: Some(size), depth_size: Some(size), ..RigRequest::new(RigKind::Boxes, 3, 0) };
-    let frame = render(&request).expect("a frame");
-    let is_used = |index: usize| (48..144).contains(&(index % size.width)) && (36..108).contains(&(index / size.width));
-    let far = |index: usize| !((40..152).contains(&(index % size.width)) && (28..116).contains(&(index / size.width)));
-    let mask: Vec<u8> = (0..size.len()).map(|index| u8::from(is_used(index))).collect();
-    let mut other = frame.colour.clone();
-    for index in (0..size.len()).filter(|&index| far(index)) {
-        other[4 * index..4 * index + 3].fill((37 * index % 251) as u8);
-    }
-    for cue in [Cue::Edges, Cue::Shading, Cue::Information, Cue::Silhouette] {
-        let report = |colour: &[u8], mask: Option<&[u8]>| {
-            let view = RigView {
-                image: ColourSamples::Rgba8(colour.to_vec()),
-                image_mask: mask.map(<[u8]>::to_vec),
-                depth_mask: Some(vec![1; size.len()]),
-                ..view(&frame, true)
+/// Tests of over three seconds: `cargo test` runs them, `npm test` only with `--long`.
+mod long {
+    #[cfg(target_arch = "wasm32")]
+    use super::test;
+    use super::*;
+
+    /// Pixels outside the image's mask have no effect: other colours there change no digit of any cue's result.
+    #[test]
+    fn every_cue_obeys_the_mask_of_the_image() {
+        let size = Size { width: 192, height: 144 };
+        let request =
+            RigRequest { colour_size: Some(size), depth_size: Some(size), ..RigRequest::new(RigKind::Boxes, 3, 0) };
+        let frame = render(&request).expect("a frame");
+        let is_used =
+            |index: usize| (48..144).contains(&(index % size.width)) && (36..108).contains(&(index / size.width));
+        let far =
+            |index: usize| !((40..152).contains(&(index % size.width)) && (28..116).contains(&(index / size.width)));
+        let mask: Vec<u8> = (0..size.len()).map(|index| u8::from(is_used(index))).collect();
+        let mut other = frame.colour.clone();
+        for index in (0..size.len()).filter(|&index| far(index)) {
+            other[4 * index..4 * index + 3].fill((37 * index % 251) as u8);
+        }
+        for cue in [Cue::Edges, Cue::Shading, Cue::Information, Cue::Silhouette] {
+            let report = |colour: &[u8], mask: Option<&[u8]>| {
+                let view = RigView {
+                    image: ColourSamples::Rgba8(colour.to_vec()),
+                    image_mask: mask.map(<[u8]>::to_vec),
+                    depth_mask: Some(vec![1; size.len()]),
+                    ..view(&frame, true)
+                };
+                let report = check(view, &[frame.pose], &[cue]);
+                (report.estimate.matrix(), report.candidates[0].probability)
             };
-            let report = check(view, &[frame.pose], &[cue]);
-            (report.estimate.matrix(), report.candidates[0].probability)
-        };
-        assert_eq!(report(&frame.colour, Some(&mask)), report(&other, Some(&mask)), "{cue:?}");
-        if cue != Cue::Silhouette {
-            assert_ne!(report(&frame.colour, None), report(&other, None), "{cue:?}");
+            assert_eq!(report(&frame.colour, Some(&mask)), report(&other, Some(&mask)), "{cue:?}");
+            if cue != Cue::Silhouette {
+                assert_ne!(report(&frame.colour, None), report(&other, None), "{cue:?}");
+            }
         }
     }
 }

@@ -88,58 +88,6 @@ fn middle(sample: &Sample) -> Vector3<f64> {
 }
 
 #[test]
-fn outlines_bring_a_painted_object_home() {
-    let sample = perspective("window");
-    let middle = middle(&sample);
-    for (axis, degrees) in [(Vector3::new(0.2, 1.0, 0.3), 3.0), (Vector3::new(1.0, 0.1, -0.5), 4.0)] {
-        let start = turned_about_the_sensor(&sample, axis, degrees);
-        let report = run(&sample, Paint::Patches, told(&start));
-        let off = |pose: &Similarity| pose.apply(middle) - sample.pose.apply(middle);
-        let (before, after) = (off(&start), off(&report.pose));
-        // A pixel measures one unit at the object.
-        assert!(after.xy().norm() < 1.5 && before.norm() > 10.0, "{before} {after} {report:?}");
-        assert!(report.pose.degrees_to(&sample.pose) < 3.5, "{report:?}");
-        // The error is within the sigmas of the silhouettes.
-        let sigma = report.uncertainty.as_ref().expect("sigmas");
-        let turned = Rotation3::from_matrix_unchecked(report.pose.rotation * sample.pose.rotation.transpose());
-        let turned = turned.scaled_axis().map(f64::to_degrees);
-        for axis in 0..3 {
-            assert!(turned[axis].abs() < 3.0 * sigma.rotation_degrees[axis], "{turned} {sigma:?}");
-        }
-    }
-}
-
-#[test]
-fn outlines_find_the_place_of_a_painted_object_whose_rotation_alone_is_told() {
-    let sample = perspective("window");
-    let middle = middle(&sample);
-    for degrees in [0.0, 3.0] {
-        let start = turned_about_the_sensor(&sample, Vector3::new(0.2, 1.0, 0.3), degrees);
-        let rotation_alone = Start::Pose { rotation: start.rotation, scale: None, translation: None };
-        let report = run(&sample, Paint::Patches, Options { start: rotation_alone, ..Options::default() });
-        let off = report.pose.apply(middle) - sample.pose.apply(middle);
-        assert!(off.xy().norm() < 1.5, "{off} {report:?}");
-        assert!(report.pose.degrees_to(&sample.pose) < 3.5, "{report:?}");
-    }
-}
-
-#[test]
-fn fine_print_is_not_taken_for_noise_that_explains_the_colours() {
-    // Letters of one pixel are uncorrelated between neighbours, as noise is; only their amplitude distinguishes them from a camera's noise.
-    let sample = perspective("window");
-    let middle = middle(&sample);
-    for (axis, degrees) in [(Vector3::new(0.2, 1.0, 0.3), 3.0), (Vector3::new(1.0, 0.1, -0.5), 4.0)] {
-        let start = turned_about_the_sensor(&sample, axis, degrees);
-        let report = run(&sample, Paint::FinePrint, told(&start));
-        let off = |pose: &Similarity| (pose.apply(middle) - sample.pose.apply(middle)).xy().norm();
-        assert!(off(&report.pose) < 1.5 && off(&start) > 10.0, "{} {report:?}", off(&report.pose));
-        let by_silhouettes =
-            matches!(report.reason, Some(Reason::AlbedoVaries { .. } | Reason::SilhouetteBlind { .. }));
-        assert!(by_silhouettes, "{report:?}");
-    }
-}
-
-#[test]
 fn what_never_moved_has_no_sigmas() {
     let sample = perspective("window");
     let start = turned_about_the_sensor(&sample, Vector3::y(), 2.0);
@@ -208,5 +156,57 @@ mod long {
         let plain = run(&sample, Paint::None, Options::default());
         let by_silhouettes = matches!(plain.reason, Some(Reason::AlbedoVaries { .. } | Reason::SilhouetteBlind { .. }));
         assert!(plain.pose.degrees_to(&sample.pose) < 2.0 && !by_silhouettes, "{plain:?}");
+    }
+
+    #[test]
+    fn outlines_find_the_place_of_a_painted_object_whose_rotation_alone_is_told() {
+        let sample = perspective("window");
+        let middle = middle(&sample);
+        for degrees in [0.0, 3.0] {
+            let start = turned_about_the_sensor(&sample, Vector3::new(0.2, 1.0, 0.3), degrees);
+            let rotation_alone = Start::Pose { rotation: start.rotation, scale: None, translation: None };
+            let report = run(&sample, Paint::Patches, Options { start: rotation_alone, ..Options::default() });
+            let off = report.pose.apply(middle) - sample.pose.apply(middle);
+            assert!(off.xy().norm() < 1.5, "{off} {report:?}");
+            assert!(report.pose.degrees_to(&sample.pose) < 3.5, "{report:?}");
+        }
+    }
+
+    #[test]
+    fn outlines_bring_a_painted_object_home() {
+        let sample = perspective("window");
+        let middle = middle(&sample);
+        for (axis, degrees) in [(Vector3::new(0.2, 1.0, 0.3), 3.0), (Vector3::new(1.0, 0.1, -0.5), 4.0)] {
+            let start = turned_about_the_sensor(&sample, axis, degrees);
+            let report = run(&sample, Paint::Patches, told(&start));
+            let off = |pose: &Similarity| pose.apply(middle) - sample.pose.apply(middle);
+            let (before, after) = (off(&start), off(&report.pose));
+            // A pixel measures one unit at the object.
+            assert!(after.xy().norm() < 1.5 && before.norm() > 10.0, "{before} {after} {report:?}");
+            assert!(report.pose.degrees_to(&sample.pose) < 3.5, "{report:?}");
+            // The error is within the sigmas of the silhouettes.
+            let sigma = report.uncertainty.as_ref().expect("sigmas");
+            let turned = Rotation3::from_matrix_unchecked(report.pose.rotation * sample.pose.rotation.transpose());
+            let turned = turned.scaled_axis().map(f64::to_degrees);
+            for axis in 0..3 {
+                assert!(turned[axis].abs() < 3.0 * sigma.rotation_degrees[axis], "{turned} {sigma:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn fine_print_is_not_taken_for_noise_that_explains_the_colours() {
+        // Letters of one pixel are uncorrelated between neighbours, as noise is; only their amplitude distinguishes them from a camera's noise.
+        let sample = perspective("window");
+        let middle = middle(&sample);
+        for (axis, degrees) in [(Vector3::new(0.2, 1.0, 0.3), 3.0), (Vector3::new(1.0, 0.1, -0.5), 4.0)] {
+            let start = turned_about_the_sensor(&sample, axis, degrees);
+            let report = run(&sample, Paint::FinePrint, told(&start));
+            let off = |pose: &Similarity| (pose.apply(middle) - sample.pose.apply(middle)).xy().norm();
+            assert!(off(&report.pose) < 1.5 && off(&start) > 10.0, "{} {report:?}", off(&report.pose));
+            let by_silhouettes =
+                matches!(report.reason, Some(Reason::AlbedoVaries { .. } | Reason::SilhouetteBlind { .. }));
+            assert!(by_silhouettes, "{report:?}");
+        }
     }
 }
