@@ -27,7 +27,7 @@ impl CalibrationCheck {
         let frame = &self.scene.frames[0];
         let (judge, covariance) = self.judge_of(&optima[0]);
         let mut candidates = self.candidate_reports(&judge, &optima[0], &covariance);
-        self.hear_other_optima(&mut candidates, &judge, &optima[1..]);
+        self.hear_other_optima(&mut candidates, &optima[1..]);
         self.name_reading(&mut candidates, &judge, state);
         let warnings = self.all_warnings(&judge, &state);
         let health = if self.scene.is_seen(&state) { judge.estimate() } else { Judge::blind(self.width) };
@@ -50,11 +50,12 @@ impl CalibrationCheck {
         }
     }
 
-    /// Makes a candidate undecided if another optimum, whose log posterior is at most `Judge::likely` lower, contradicts
+    /// Makes a candidate undecided if another optimum, whose log posterior is at most `Judge::ALTERNATIVE` lower, contradicts
     /// its verdict. An undecided verdict contradicts "off" as well, but not "consistent".
-    fn hear_other_optima(&self, reports: &mut [CandidateReport], judge: &Judge, others: &[Optimum]) {
-        let likely = judge.likely();
-        for other in others.iter().filter(|other| other.behind <= likely && self.scene.is_seen(&other.round.state)) {
+    fn hear_other_optima(&self, reports: &mut [CandidateReport], others: &[Optimum]) {
+        let is_alternative =
+            |other: &&Optimum| other.behind <= Judge::ALTERNATIVE && self.scene.is_seen(&other.round.state);
+        for other in others.iter().filter(is_alternative) {
             let (judge, _) = self.judge_of(other);
             for (report, (name, candidate)) in reports.iter_mut().zip(&self.candidates) {
                 let own = judge.judge(name, &other.round.state, candidate, None).verdict;

@@ -8,12 +8,11 @@
 //! l = sum over discontinuities of log(e / 2 L + (1 - e) sum_k p_k N(u + d - u_k; s)),
 //! p_k = a_k / sum a, s^2 = sigma^2 + g^2 / 12,
 //!
-//! where u moves with the pose. The value reported is the sum of l + log 2 L: poses with different discontinuities are
-//! compared, and one whose edge may lie anywhere in its window must not count. The near surface ends anywhere within
-//! the gap g between two samples of the depth map, so that a coarse map weighs less than a fine one. The check never
-//! decides which edge belongs to which discontinuity, and a discontinuity in front of texture has little weight. The
-//! levels go from wide windows on a blurred image to narrow ones. Each round finds the edges anew and takes a
-//! Gauss-Newton step with the responsibilities (expectation maximisation).
+//! where u moves with the pose. The near surface ends anywhere within the gap g between two samples of the depth map,
+//! so that a coarse map weighs less than a fine one. The check never decides which edge belongs to which discontinuity,
+//! and a discontinuity in front of texture has little weight. The levels go from wide windows on a blurred image to
+//! narrow ones. Each round finds the edges anew and takes a Gauss-Newton step with the responsibilities (expectation
+//! maximisation).
 
 use super::evidence::{Share, Tiles};
 use super::frame::{Frame, Projection};
@@ -130,7 +129,7 @@ impl EdgeField {
             bounds += bound;
             own += bound - second / whole / (sigma * sigma) + slope * slope;
             let share = &mut shares[profile.tile as usize];
-            share.value += (whole * 2.0 * profile.window).ln();
+            share.value += (whole / background).ln();
             share.gradient += profile.row * slope;
             add_square(&mut share.curvature, &profile.row, bound);
         }

@@ -34,6 +34,8 @@ const DRAWS: usize = 2000;
 const SEED: u64 = 1;
 /// Share of draws inside an interval.
 const INSIDE: f64 = 0.95;
+/// The 95 % quantile of chi-squared with as many degrees of freedom as a pose has.
+const CHI_SQUARED: f64 = 12.59;
 /// Degrees of freedom of the estimate's distribution, the only number here that was fitted (docs/lab/thresholds.md).
 /// Errors that a whole silhouette shares move its tiles alike, so their scatter is only an estimate of the error's size,
 /// in some scenes far too small. Three is the smallest whole number with a finite covariance.
@@ -99,6 +101,9 @@ pub(super) struct Judge {
 impl Judge {
     /// Ratio of the covariance of Student's distribution to its scale.
     pub const VARIANCE: f64 = DEGREES / (DEGREES - 2.0);
+    /// Decrease of the log posterior, in units of the scale, at the border of the ellipsoid that holds 95 % of a normal
+    /// distribution with the reported covariance: a pose as likely as those within is an alternative.
+    pub const ALTERNATIVE: f64 = 0.5 * Self::VARIANCE * CHI_SQUARED;
 
     /// `cloud` is in the colour camera's frame, and `scale` is that of the distribution. `pixel` is the width of a
     /// working pixel in pixels of the image as given, and `width` is the width of that image.
@@ -193,14 +198,6 @@ impl Judge {
         };
         let k = (0..POSE).max_by(|&a, &b| worst(a).total_cmp(&worst(b)))?;
         (worst(k) > 1.0).then_some(ORDER[k])
-    }
-
-    /// Decrease of the log posterior within the distribution: half the squared distance of the nearest 95 % of the draws.
-    /// It is about 28 for every scene, because distances in units of the scale do not depend on the scale.
-    pub fn likely(&self) -> f64 {
-        let squared = |draw: &PoseVector| draw.dot(&(self.inverse * draw)) as f32;
-        let mut distances: Vec<f32> = self.draws.iter().map(squared).collect();
-        0.5 * f64::from(quantile(&mut distances, INSIDE))
     }
 
     /// Largest reprojection error that passes, pixels of the image as given.

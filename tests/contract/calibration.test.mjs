@@ -305,14 +305,15 @@ test("noise of a receding floor is no rim", LONG, async () => {
 });
 
 test("the health number's interval holds the estimate's error, not one several times as large", LONG, async () => {
-  // A covariance with the same inflation for all scenes would overstate these errors.
-  for (const seed of [0, 1]) {
+  // A covariance with the same inflation for all scenes would overstate these errors. Each of four intervals holds its error with a
+  // probability of 95 %, at least three of them with one of 99 %.
+  const outside = [];
+  for (const seed of [0, 1, 2, 3]) {
     const { own, health } = await found("boxes", seed, 3);
-    assert.ok(
-      health.interval[0] < own && own < health.interval[1],
-      `${own} px, said to be ${health.interval.join(" to ")}`,
-    );
+    const [low, high] = health.interval;
+    if (own <= low || own >= high) outside.push(`${own} px, said to be ${low} to ${high}`);
   }
+  assert.ok(outside.length <= 1, outside.join("; "));
 });
 
 test("one frame is found where wide windows lead elsewhere", LONG, async () => {
