@@ -73,6 +73,7 @@ export function textOf(report: Whole): string {
     ...[0, 1, 2].map((i) => `  ${[...r.slice(3 * i, 3 * i + 3), t[i]].join(" ")}`),
     "  0 0 0 1",
     "",
+    `depth points on the image: ${percent(report.overlap)}`,
     `cues: ${cues.join(", ")}`,
     `frames: ${frames.join(", ")}`,
     ...report.warnings.map(({ message }) => `warning: ${message}`),

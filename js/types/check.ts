@@ -75,6 +75,8 @@ export interface CandidateReport {
   offDegrees: number;
   /** Shift of the scene's centre between the candidate and the estimate, millimetres. */
   offMillimetres: number;
+  /** The same by axis, from the estimate to the candidate: degrees about x, y, z, then millimetres along them, in the colour frame. */
+  offAxes: [number, number, number, number, number, number];
   /** Expected reprojection error of the candidate at the scene's depth, pixels of the colour image, and its 95 % interval. */
   pixels: number;
   /** 95 % interval of `pixels`. */
@@ -95,6 +97,8 @@ export interface CheckReport {
   warnings: Warning[];
   /** The extrinsics that fit best, scale 1: P_colour = R P_depth + t, metres. */
   estimate: Pose;
+  /** Share of the depth points that the estimate puts onto the image, 0 to 1. Below 0.15 no verdict rests on it. */
+  overlap: number;
   /** The centre of the scene in the colour frame, metres. */
   middle: [number, number, number];
   /** 36 numbers, row-major: a rotation vector in rad about the scene's centre, then a translation in m, in the colour frame. */

@@ -40,6 +40,7 @@ export type CheckCode =
   | "unconstrained"
   | "too-close"
   | "no-pose-on-image"
+  | "little-overlap"
   | "no-evidence"
   | "no-candidate"
   | "doubtful";

@@ -39,7 +39,8 @@ class RigSample(CheckFrame):
 class CandidateReport:
     """The verdict on one candidate, "consistent", "off" or "undecided", and the reason with its numbers; ``code`` names it for programs.
 
-    ``off_degrees``, ``off_millimetres``: rotation from the estimate, and shift at the centre of the scene. ``pixels``, ``interval``:
+    ``off_degrees``, ``off_millimetres``: rotation from the estimate, and shift at the centre of the scene.
+    ``off_axes``: the same by axis, from the estimate to the candidate: degrees about x, y, z, then millimetres along them. ``pixels``, ``interval``:
     expected reprojection error at the scene's depth, pixels of the colour image, and its 95 % interval. ``probability``: of a distance at least this large if it
     were right.
     """
@@ -49,6 +50,7 @@ class CandidateReport:
     reason: str
     off_degrees: float
     off_millimetres: float
+    off_axes: tuple[float, ...]
     pixels: float
     interval: tuple[float, float]
     probability: float
@@ -84,7 +86,7 @@ class CheckReport:
 
     ``code`` names the reason for programs. ``warnings``: what was guessed or looks wrong, each a ``code``, a ``message``, the ``field`` and its
     numbers. ``estimate``: the extrinsics that fit best, P_colour = rotation @ P_depth + translation,
-    metres. ``middle``: (3,), the scene's, in the colour frame, metres. ``covariance``: (6, 6), of a rotation vector in rad about the middle,
+    metres. ``overlap``: share of the depth points that the estimate puts onto the image, 0 .. 1. ``middle``: (3,), the scene's, in the colour frame, metres. ``covariance``: (6, 6), of a rotation vector in rad about the middle,
     then a translation in m. ``focal``: factor of the assumed focal length and the logarithm's sigma, where the colour camera was
     not given. ``pixels``, ``interval``: expected reprojection error of the estimate, and its 95 % interval.
     """
@@ -94,6 +96,7 @@ class CheckReport:
     reason: str
     warnings: Sequence[Mapping[str, Any]]
     estimate: Pose
+    overlap: float
     middle: Floats
     covariance: Floats
     focal: Optional[tuple[float, float]]
@@ -139,7 +142,7 @@ def check_calibration(
         focal=tuple(raw["focal"]) if "focal" in raw else None,
         pixels=health["pixels"],
         interval=tuple(health["interval"]),
-        candidates={name: made(CandidateReport, one, interval=tuple(one["interval"])) for name, one in raw["candidates"].items()},
+        candidates={name: made(CandidateReport, one, interval=tuple(one["interval"]), off_axes=tuple(one["offAxes"])) for name, one in raw["candidates"].items()},
         cues={name: CueReport(**one) for name, one in raw["cues"].items()},
         frames=[made(FrameReport, one) for one in raw["frames"]],
         sensitivity=[

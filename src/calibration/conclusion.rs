@@ -18,6 +18,9 @@ const FARTHEST: f64 = 1e6;
 /// Another reading of a candidate fits clearly better if the candidate's error is at least this multiple of the error of
 /// the reading.
 const CLEARLY: f64 = 3.0;
+/// Least share of the depth points that the estimate puts onto the image if it is to judge a candidate. The rest is not
+/// compared with anything, and a wrong pose can always fit a small part.
+const LEAST_OVERLAP: f64 = 0.15;
 
 impl CalibrationCheck {
     /// The report on the optima, best first.
@@ -39,6 +42,7 @@ impl CalibrationCheck {
             reason,
             warnings,
             estimate: state.pose,
+            overlap: self.scene.overlap(&state),
             middle: units.middle.into(),
             covariance: metric.fixed_view::<POSE, POSE>(0, 0).into(),
             focal: self.scene.focal_is_free.then(|| [state.focal, metric[(7, 7)].sqrt()]),
@@ -104,6 +108,7 @@ impl CalibrationCheck {
         let estimate = best.round.state;
         let weakest = judge.weakest(covariance);
         let is_seen = self.scene.is_seen(&estimate);
+        let overlap = self.scene.overlap(&estimate);
         let is_silent = best.findings.cues.iter().all(|(.., weight)| *weight == 0.0);
         let report = |(name, candidate): &(String, State)| {
             let mut report = judge.judge(name, &estimate, candidate, weakest);
@@ -112,6 +117,9 @@ impl CalibrationCheck {
             }
             if !is_seen || !self.scene.is_seen(candidate) {
                 report.without_points(is_seen, self.width);
+            }
+            if is_seen && overlap < LEAST_OVERLAP {
+                report.with_little_overlap(overlap);
             }
             report
         };

@@ -59,6 +59,11 @@ pub enum CheckReason {
     TooClose(Margin),
     /// Undecided: no pose puts points onto the image.
     NoPoseOnImage,
+    /// Undecided: the estimate puts few of the depth points onto the image.
+    LittleOverlap {
+        /// Their share.
+        percent: f64,
+    },
     /// Undecided: no cue finds anything to compare.
     NoEvidence,
     /// Undecided: no candidate was given.
@@ -153,6 +158,11 @@ impl fmt::Display for CheckReason {
                 )
             }
             Self::NoPoseOnImage => f.write_str("No pose puts its points onto the image."),
+            Self::LittleOverlap { percent } => write!(
+                f,
+                "The best fit puts only {} % of the depth points onto the image, too few to rely on.",
+                Fixed(*percent, 0)
+            ),
             Self::NoEvidence => f.write_str("None of the chosen cues finds anything to compare in this scene."),
             Self::NoCandidate { pixels } => {
                 write!(f, "No candidate was given; the estimate is good to {} px.", Fixed(*pixels, 1))

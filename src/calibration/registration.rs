@@ -113,8 +113,8 @@ impl Scene {
         self.sparse.iter().map(|point| state.pose.apply(*point)).collect()
     }
 
-    /// Whether a state projects enough of the scene's points onto the image for a judgement.
-    pub fn is_seen(&self, state: &State) -> bool {
+    /// Share of the scene's points that a state projects onto the image.
+    pub fn overlap(&self, state: &State) -> f64 {
         let frame = &self.frames[0];
         let camera = state.camera(&frame.camera);
         let seen = self.sparse.iter().filter(|point| {
@@ -124,7 +124,12 @@ impl Scene {
                 x >= 0.0 && y >= 0.0 && x < size.width as f64 && y < size.height as f64
             })
         });
-        seen.count() as f64 >= LEAST_SEEN * self.sparse.len() as f64
+        seen.count() as f64 / self.sparse.len().max(1) as f64
+    }
+
+    /// Whether a state projects enough of the scene's points onto the image for a judgement.
+    pub fn is_seen(&self, state: &State) -> bool {
+        self.overlap(state) >= LEAST_SEEN
     }
 
     pub fn units(&self, state: &State) -> Units {

@@ -52,6 +52,8 @@ pub struct CheckReport {
     pub warnings: Vec<Warning>,
     /// The extrinsics that fit best.
     pub estimate: Similarity,
+    /// Share of the depth points that the estimate puts onto the image, 0 .. 1.
+    pub overlap: f64,
     /// The centre of the scene in the colour camera's frame, metres.
     pub middle: [f64; 3],
     /// Covariance of the rotation vector in rad about the scene's centre, then of the translation in m; colour camera's

@@ -75,6 +75,9 @@ pub struct CandidateReport {
     pub off_degrees: f64,
     /// Shift of the scene's centre from that of the estimate, millimetres.
     pub off_millimetres: f64,
+    /// The same by axis, from the estimate to the candidate: degrees about x, y, z, then millimetres along them; colour
+    /// camera's frame.
+    pub off_axes: [f64; POSE],
     /// Expected reprojection error of the candidate.
     #[cfg_attr(feature = "serde", serde(flatten))]
     pub health: Health,
@@ -227,6 +230,7 @@ impl Judge {
             reason,
             off_degrees: offset.degrees,
             off_millimetres: offset.millimetres,
+            off_axes: self.offset_by_axis(&between),
             health,
             probability,
         }
@@ -260,6 +264,12 @@ impl Judge {
         }
     }
 
+    /// Degrees about the axes, then millimetres along them.
+    fn offset_by_axis(&self, between: &Vector) -> [f64; POSE] {
+        let metric = between.component_mul(&self.units.of);
+        std::array::from_fn(|k| if k < 3 { metric[k].to_degrees() } else { metric[k] * 1000.0 })
+    }
+
     /// The rotation and the shift between two states, with the axis of the largest part of each.
     fn offset(&self, between: &Vector) -> Offset {
         let metric = between.component_mul(&self.units.of);
@@ -283,6 +293,12 @@ impl CandidateReport {
     pub(super) fn without_evidence(&mut self) {
         self.verdict = CheckVerdict::Undecided;
         self.reason = CheckReason::NoEvidence;
+    }
+
+    /// Overrides the verdict if the estimate puts only this share of the depth points onto the image.
+    pub(super) fn with_little_overlap(&mut self, overlap: f64) {
+        self.verdict = CheckVerdict::Undecided;
+        self.reason = CheckReason::LittleOverlap { percent: 100.0 * overlap };
     }
 
     /// Overrides the verdict if optima that are about as likely contradict each other on the candidate.

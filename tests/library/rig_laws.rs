@@ -6,7 +6,7 @@ use wasm_bindgen_test::wasm_bindgen_test as test;
 use crate::common::laws;
 use bimodal_stereo::scenes::rig::{RigFrame, RigKind, RigRequest, render};
 use bimodal_stereo::{
-    CalibrationCheck, CheckReport, CheckVerdict, ColourSamples, Cue, DepthSamples, RigView, Similarity, Size,
+    CalibrationCheck, CheckReport, CheckVerdict, ColourSamples, Cue, DepthSamples, Pinhole, RigView, Similarity, Size,
 };
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::*;
@@ -43,11 +43,14 @@ fn check(view: RigView, candidates: &[Similarity], cues: &[Cue]) -> CheckReport 
 
 /// Every number of a report, by name.
 fn numbers(report: &CheckReport) -> Vec<(String, f64)> {
-    let CheckReport { estimate, middle, covariance, focal, health, candidates, cues, frames, sensitivity, .. } = report;
+    let CheckReport {
+        estimate, overlap, middle, covariance, focal, health, candidates, cues, frames, sensitivity, ..
+    } = report;
     let mut all = vec![];
     let mut add = |name: &str, values: &[f64]| all.extend(values.iter().map(|value| (name.to_owned(), *value)));
     add("estimate", estimate.rotation.as_slice());
     add("estimate", estimate.translation.as_slice());
+    add("overlap", &[*overlap]);
     add("middle", middle);
     add("covariance", covariance.as_slice());
     add("focal", focal.as_ref().map_or(&[], |focal| focal.as_slice()));
@@ -55,6 +58,7 @@ fn numbers(report: &CheckReport) -> Vec<(String, f64)> {
     for one in candidates {
         let [low, high] = one.health.interval;
         add(&one.name, &[one.off_degrees, one.off_millimetres, one.health.pixels, low, high, one.probability]);
+        add(&one.name, &one.off_axes);
     }
     cues.iter().for_each(|cue| add(cue.cue.name(), &[cue.share, cue.sharpness]));
     frames.iter().for_each(|frame| add(&frame.name, &[frame.share]));
@@ -93,9 +97,40 @@ proptest! {
         }
         let has_evidence = report.cues.iter().any(|cue| cue.sharpness > 0.0);
         for candidate in report.candidates {
+            let [turn, shift] = [0, 3].map(|first| Vector3::from_column_slice(&candidate.off_axes[first..first + 3]).norm());
+            prop_assert!((turn - candidate.off_degrees).abs() < 1e-9, "{candidate:?}");
+            prop_assert!((shift - candidate.off_millimetres).abs() < 1e-9, "{candidate:?}");
             prop_assert!(has_evidence || candidate.verdict == CheckVerdict::Undecided, "{candidate:?} by {cues:?}");
         }
     }
+}
+
+/// The image is cut to its last tenth, which shows about as much of the depth map.
+#[test]
+fn an_estimate_that_shows_few_of_the_points_judges_no_candidate() {
+    const KEPT: usize = 16;
+    let size = Size { width: 160, height: 120 };
+    let request =
+        RigRequest { colour_size: Some(size), depth_size: Some(size), ..RigRequest::new(RigKind::Boxes, 1, 0) };
+    let frame = render(&request).expect("a frame");
+    let first = size.width - KEPT;
+    let strip: Vec<u8> = frame.colour.chunks_exact(4 * size.width).flat_map(|row| row[4 * first..].to_vec()).collect();
+    let camera = Pinhole { cx: frame.colour_camera.cx - first as f64, ..frame.colour_camera };
+    let cut = RigView {
+        image_size: [KEPT, size.height],
+        image: ColourSamples::Rgba8(strip),
+        image_camera: Some(camera),
+        ..view(&frame, true)
+    };
+    let wrong = turned(&frame.pose, Vector3::new(0.0, 0.03, 0.0), Vector3::zeros());
+    let report = check(cut, &[frame.pose, wrong], &Cue::ALL);
+    assert!(report.overlap > 0.02 && report.overlap < 0.15, "{}", report.overlap);
+    for candidate in &report.candidates {
+        assert_eq!(candidate.verdict, CheckVerdict::Undecided, "{candidate:?}");
+        assert_eq!(candidate.reason.code(), "little-overlap", "{candidate:?}");
+    }
+    let whole = check(view(&frame, true), &[frame.pose], &Cue::ALL);
+    assert!(whole.overlap > 0.5 && whole.overlap <= 1.0, "{}", whole.overlap);
 }
 
 /// Without masks there is no silhouette: the estimate equals the candidate to the last digit, and nothing is known about its error.

@@ -118,6 +118,25 @@ test("a verdict comes with its numbers, curves, shares and advice", async ({ lab
   await expect(page.locator(".rig-curves figure")).toHaveCount(6);
   await expect(page.locator(".rig-curves")).toContainText(/Minimum at −?\d+\.\d+°; ± \d+\.\d+° \(95 %\)/);
   await expect(page.getByRole("row", { name: /frame 1 50 %/ })).toBeVisible();
+  // The minimum of all cues about y lies away from the narrow interval, that along z within its own.
+  const curve = (title: string) => page.locator(".rig-curves figure", { hasText: title });
+  await expect(curve("Rotation about y")).toContainText("your calibration at 2.04°");
+  await expect(curve("Rotation about y")).toContainText("the minimum lies outside this interval");
+  await expect(curve("Shift along z")).not.toContainText("outside this interval");
+  await expect(page.locator(".rig-placement")).toHaveText(
+    /^Best fit: The depth camera sits 50\.0 mm to the right of, 3\.0 mm behind and 2\.0 mm below the colour camera, rotated by 0\.00°\. It puts 87 % of the depth points onto the image\. Your calibration puts it \d+\.\d mm from there, rotated by \d+\.\d\d°\.$/,
+  );
+  expect(lab.complaints).toEqual([]);
+});
+
+test("a fit that shows little of the depth map is not offered for use", async ({ lab, page }) => {
+  await answerChecks(page, "undecided", 0.08);
+  await openExample(page);
+  await run(page);
+  await expect(page.locator(".rig-verdict")).toContainText("It puts 8 % of the depth points onto the image.");
+  await expect(page.getByText("Check that image and depth map show the same scene").first()).toBeVisible();
+  await expect(page.getByText("Save the calibration found here")).toHaveCount(0);
+  await expect(page.getByLabel("Calibration", { exact: true }).locator("option")).not.toContainText(["found"]);
   expect(lab.complaints).toEqual([]);
 });
 

@@ -55,14 +55,20 @@ export const matrixFile = (name: string, tx: number) => ({
 const AXES = ["rx", "ry", "rz", "tx", "ty", "tz"] as const;
 
 /** A report in the form of the check's, about these candidates and frames. */
-export function reportOf(verdict: CheckReport["verdict"], candidates: string[], frames: string[]): CheckReport {
+export function reportOf(
+  verdict: CheckReport["verdict"],
+  candidates: string[],
+  frames: string[],
+  overlap = 0.87,
+): CheckReport {
   const offsets = Array.from({ length: 41 }, (_, i) => i - 20);
   const candidate = (i: number) => ({
     verdict: i === 0 ? verdict : ("off" as const),
-    code: "off-target" as const,
+    code: overlap < 0.15 ? ("little-overlap" as const) : ("off-target" as const),
     reason: `It is ${2 + i}.04 degrees off about y.`,
     offDegrees: 2.04 + i,
     offMillimetres: 1.2,
+    offAxes: [0, 2.04 + i, 0, 0, 0, 1.2] as [number, number, number, number, number, number],
     pixels: 10.7 + i,
     interval: [9.8 + i, 11.6 + i] as [number, number],
     probability: 0.0001,
@@ -91,6 +97,7 @@ export function reportOf(verdict: CheckReport["verdict"], candidates: string[], 
         [0, 0, 0, 1],
       ],
     },
+    overlap,
     middle: [0, 0, 1.1],
     covariance,
     health: { pixels: 0.42, interval: [0.21, 0.83] },
@@ -107,7 +114,8 @@ export function reportOf(verdict: CheckReport["verdict"], candidates: string[], 
         cue,
         axis,
         offsets: offsets.map((x) => (a < 3 ? x / 4 : 2.5 * x)),
-        values: offsets.map((x) => -((x - k + 1) ** 2) / (4 + 3 * k + 4 * a)),
+        // About y the optimum lies away from the estimate, by more than the covariance allows.
+        values: offsets.map((x) => -((x - k + 1 - (a === 1 ? 3 : 0)) ** 2) / (4 + 3 * k + 4 * a)),
       })),
     ),
   };
@@ -117,14 +125,19 @@ export function reportOf(verdict: CheckReport["verdict"], candidates: string[], 
  * The check answers with this report after some progress; the worker handles everything else. "never" keeps the check waiting; "dead" is a
  * worker that ignores all messages from a check on.
  */
-export async function answerChecks(page: Page, verdict: CheckReport["verdict"] | "never" | "dead"): Promise<void> {
+export async function answerChecks(
+  page: Page,
+  verdict: CheckReport["verdict"] | "never" | "dead",
+  overlap?: number,
+): Promise<void> {
   const source = `${reportOf.toString()}`;
   await page.addInitScript(
-    ({ source, verdict, axes }) => {
+    ({ source, verdict, axes, overlap }) => {
       const report = new Function("AXES", `return ${source}`)(axes) as (
         verdict: string,
         candidates: string[],
         frames: string[],
+        overlap?: number,
       ) => unknown;
       const send = Worker.prototype.postMessage;
       let frames: string[] = [];
@@ -142,9 +155,9 @@ export async function answerChecks(page: Page, verdict: CheckReport["verdict"] |
           this.dispatchEvent(new MessageEvent("message", { data: { id: message.id, ...data } }));
         setTimeout(() => say({ share: 0.4, message: "aligning depth edges" }));
         if (verdict !== "never" && verdict !== "dead")
-          setTimeout(() => say({ answer: report(verdict, Object.keys(message.candidates ?? {}), frames) }), 20);
+          setTimeout(() => say({ answer: report(verdict, Object.keys(message.candidates ?? {}), frames, overlap) }), 20);
       };
     },
-    { source, verdict, axes: [...AXES] },
+    { source, verdict, axes: [...AXES], overlap },
   );
 }

@@ -37,11 +37,14 @@ export class SensitivityCharts {
   #observers: ResizeObserver[] = [];
   #shown: readonly Sensitivity[] = [];
   #covariance: readonly number[] = [];
+  /** The calibration being checked, relative to the estimate, by axis. */
+  #checked: readonly number[] = [];
 
-  show({ sensitivity, covariance }: CheckReport): void {
+  show({ sensitivity, covariance, candidates }: CheckReport, isGiven: boolean): void {
     if (this.#shown === sensitivity) return;
     this.#shown = sensitivity;
     this.#covariance = covariance;
+    this.#checked = (isGiven && Object.values(candidates)[0]?.offAxes) || [];
     this.#build();
   }
 
@@ -77,7 +80,13 @@ export class SensitivityCharts {
     const inside: [number, number] = [Math.max(xs[0] ?? 0, -reach), Math.min(xs.at(-1) ?? 0, reach)];
     const [digits, gap] = unit === "mm" ? [1, " "] : [2, ""];
     const box = make("div", { class: "chart" });
-    const words = `Minimum at ${decimals(place, digits)}${gap}${unit}; ± ${decimals(reach, digits)}${gap}${unit} (95 %)`;
+    const amount = (value: number) => `${decimals(value, digits)}${gap}${unit}`;
+    const checked = this.#checked[(Object.keys(axes) as Axis[]).indexOf(axis)];
+    const words = [
+      `Minimum at ${amount(place)}; ± ${amount(reach)} (95 %)`,
+      ...(isOutside(xs, best, reach) ? ["the minimum lies outside this interval, so do not trust it for this axis"] : []),
+      ...(checked === undefined ? [] : [`your calibration at ${amount(checked)}`]),
+    ].join("; ");
     this.#figures.append(
       make(
         "figure",
@@ -114,7 +123,13 @@ export class SensitivityCharts {
           ...lines.map(({ cue }) => ({ stroke: ink(tokens[cue] ?? "ink-soft"), width: 1.5, points: { show: false } })),
           { stroke: ink("ink"), width: 2, points: { show: false } },
         ],
-        hooks: { drawClear: [(plot) => band(plot, inside)], draw: [(plot) => mark(plot, place, total[best] ?? 0)] },
+        hooks: {
+          drawClear: [(plot) => band(plot, inside)],
+          draw: [
+            (plot) => mark(plot, place, total[best] ?? 0),
+            (plot) => checked !== undefined && triangle(plot, Math.max(xs[0] ?? 0, Math.min(xs.at(-1) ?? 0, checked))),
+          ],
+        },
       },
       [xs, ...lines.map(({ losses }) => losses), total],
       box,
@@ -147,6 +162,25 @@ function certainty(covariance: readonly number[], axis: Axis): number {
   const index = (Object.keys(axes) as Axis[]).indexOf(axis);
   const sigma = Math.sqrt(Math.max(0, covariance[7 * index] ?? 0));
   return WITHIN * sigma * (index < 3 ? 180 / Math.PI : 1000);
+}
+
+/** Whether the whole step about the minimum lies outside of the interval: offsets are too coarse to tell less. */
+function isOutside(xs: readonly number[], best: number, reach: number): boolean {
+  const [before, after] = [xs[best - 1] ?? -Infinity, xs[best + 1] ?? Infinity];
+  return before > reach || after < -reach;
+}
+
+/** Marks an offset on the axis; one beyond the curve's ends is marked at the end. */
+function triangle({ ctx, bbox, valToPos }: uPlot, x: number): void {
+  const [column, row, size] = [valToPos(x, "x", true), bbox.top + bbox.height, 6 * devicePixelRatio];
+  ctx.save();
+  ctx.fillStyle = ink("ink");
+  ctx.beginPath();
+  ctx.moveTo(column, row - 1.6 * size);
+  ctx.lineTo(column - size, row);
+  ctx.lineTo(column + size, row);
+  ctx.fill();
+  ctx.restore();
 }
 
 function band({ ctx, bbox, valToPos }: uPlot, inside: readonly [number, number]): void {

@@ -4,6 +4,7 @@ import type { CandidateReport, CheckReport } from "../../pkg/index.js";
 import { decimals } from "../draw/numbers";
 import { make } from "../dom";
 import { svg } from "./parts";
+import { isUsable, placement } from "./placement";
 import type { Run } from "./rig";
 
 export type Tone = "good" | "wrong" | "open";
@@ -96,7 +97,8 @@ const ADVICE: readonly [code: string, advice: string][] = [
 ];
 
 /** What to do next, the most useful first. */
-export function advise({ report, plans, estimateOnly, guessed, doubts, candidates }: Run): string[] {
+export function advise(run: Run): string[] {
+  const { report, plans, estimateOnly, guessed, doubts, candidates } = run;
   const list: string[] = [];
   const codes = new Set([...doubts, ...report.warnings].map(({ code }) => code));
   const name = Object.keys(candidates)[0] ?? "";
@@ -108,7 +110,9 @@ export function advise({ report, plans, estimateOnly, guessed, doubts, candidate
     list.push("Convert the calibration of step 2 as the verdict says, and check it again.");
   else if (!estimateOnly && report.verdict === "off")
     list.push("Save the calibration found here, use it instead of yours, and check it with new frames.");
-  if (estimateOnly) list.push("Save the calibration found here, or add your own in step 2 to have it checked.");
+  if (!isUsable(run))
+    list.push("Check that image and depth map show the same scene: the best fit leaves most of the depth map outside the image.");
+  else if (estimateOnly) list.push("Save the calibration found here, or add your own in step 2 to have it checked.");
   if (plans.length < 3)
     list.push(
       plans.length === 1
@@ -157,6 +161,7 @@ export function card(run: Run): HTMLElement {
       make("h3", { class: "rig-word", tabindex: "-1" }, word),
       make("p", {}, sentence),
       figures(run),
+      make("p", { class: "rig-placement soft" }, placement(run)),
       make("p", { class: "rig-next" }, make("strong", {}, "Next: "), next),
       ...(all.length > 0 ? [make("ul", { class: "rig-notes" }, ...all.map((words) => make("li", {}, words)))] : []),
     ),

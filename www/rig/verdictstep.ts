@@ -8,6 +8,7 @@ import type { SensitivityCharts } from "./curves";
 import { Overlay } from "./overlay";
 import { choose, labelled, press, saveFile } from "./parts";
 import type { PoseFormat, WholeReport } from "./protocol";
+import { isUsable } from "./placement";
 import { messageOf, type Rig, type Run } from "./rig";
 import { wasCancelled } from "./session";
 import { candidatesTable, card, CUES, ending, nextCard, sharesCard } from "./verdict";
@@ -58,7 +59,7 @@ export class VerdictStep {
       make(
         "p",
         { class: "soft" },
-        "Loss of log likelihood when the calibration found is moved. A narrow valley means a certain result; a flat one means that this scene does not constrain the axis. The dot marks the minimum of all cues together, the band the 95 % interval of the result.",
+        "Loss of log likelihood when the calibration found is moved. A narrow valley means a certain result; a flat one means that this scene does not constrain the axis. The dot marks the minimum of all cues together, the band the 95 % interval of the result, the triangle your calibration.",
       ),
     );
     this.#results.append(
@@ -155,7 +156,7 @@ export class VerdictStep {
     const { SensitivityCharts } = await import("./curves");
     if (!this.#curves) this.#curvesBox.append((this.#curves = new SensitivityCharts()).element);
     this.#curvesBox.hidden = run.report.sensitivity.length === 0;
-    this.#curves.show(run.report);
+    this.#curves.show(run.report, !run.estimateOnly);
   }
 
   #cueChoice(): HTMLElement {
@@ -189,8 +190,8 @@ export class VerdictStep {
       );
     };
     const poses = [
-      { value: "", label: "found" },
-      ...Object.keys(run.candidates).map((name) => ({ value: name, label: name })),
+      ...(isUsable(run) ? [{ value: "", label: "found" }] : []),
+      ...(run.estimateOnly ? [] : Object.keys(run.candidates)).map((name) => ({ value: name, label: name })),
     ];
     // A consistent calibration is the default choice.
     const isKept = !run.estimateOnly && Object.values(run.report.candidates)[0]?.verdict === "consistent";
@@ -217,7 +218,7 @@ export class VerdictStep {
         saveFile(name, text, "text/plain");
         remark.textContent = notes.length > 0 ? `Note: ${notes.join("; ")}.` : `Saved as ${name}.`;
       }),
-      { class: "primary" },
+      { class: "primary", disabled: poses.length === 0 },
     );
     const clouds = press(
       "Save clouds (PLY)",

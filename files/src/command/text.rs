@@ -75,6 +75,7 @@ pub fn text(checked: &Checked) -> String {
     lines.extend(["  0 0 0 1".into(), none()]);
     let cues: Vec<String> =
         report.cues.iter().map(|one| format!("{} {}", one.cue.name(), percent(one.share))).collect();
+    lines.push(format!("depth points on the image: {}", percent(report.overlap)));
     lines.push(format!("cues: {}", cues.join(", ")));
     let frame = |one: &bimodal_stereo::FrameReport| {
         let note = one.note.as_ref().map(|note| format!(" ({})", plain(note))).unwrap_or_default();

@@ -12,7 +12,7 @@ const verdictOf = (verdict: CheckVerdict): CheckVerdict => (Object.hasOwn(WORDS,
 
 const within = (interval: readonly [number, number]): string => `95\u202f%: ${span(interval, "px")}`;
 
-export function verdictCard({ verdict: given, reason, candidates, health }: Checked): Markup {
+export function verdictCard({ verdict: given, reason, candidates, health, overlap }: Checked): Markup {
   const verdict = verdictOf(given);
   const [first] = Object.entries(candidates);
   const [name, candidate] = first ?? [];
@@ -25,7 +25,9 @@ export function verdictCard({ verdict: given, reason, candidates, health }: Chec
       ),
       fact("Expected reprojection error", measure(candidate.pixels, "px"), within(candidate.interval)),
     ]
-  }${fact("Expected error of the best fit", measure(health.pixels, "px"), within(health.interval))}</dl></div></section>`;
+  }${fact("Expected error of the best fit", measure(health.pixels, "px"), within(health.interval))}${
+    fact("Depth points that the best fit puts onto the image", percent(overlap))
+  }</dl></div></section>`;
 }
 
 export const warningList = ({ warnings }: Checked): Markup =>

@@ -1,0 +1,21 @@
+/** The best fit in words, and whether it may be offered for use. */
+
+import { decimals } from "../draw/numbers";
+import { degreesOf, inWords, inverse, poseOf, times } from "./poses";
+import type { Run } from "./rig";
+
+/** Where the best fit puts the depth camera, its overlap, and how far the checked calibration puts the camera from there. */
+export function placement({ report: { estimate, overlap }, candidates, estimateOnly }: Run): string {
+  const found = `Best fit: ${inWords(estimate)} It puts ${(100 * overlap).toFixed(0)} % of the depth points onto the image.`;
+  const given = Object.values(candidates)[0];
+  if (estimateOnly || !given) return found;
+  const shift = given.translation.map((metres, axis) => metres - (estimate.translation[axis] ?? 0));
+  const turn = degreesOf(poseOf(times(given.rotation, inverse(estimate).rotation), shift));
+  return `${found} Your calibration puts it ${decimals(1000 * Math.hypot(...shift), 1)} mm from there, rotated by ${decimals(turn, 2)}°.`;
+}
+
+/** Candidates' codes where the best fit shows too little of the depth map to rely on. */
+const UNFIT: readonly string[] = ["little-overlap", "no-pose-on-image"];
+
+export const isUsable = ({ report }: Run): boolean =>
+  !Object.values(report.candidates).some(({ code }) => UNFIT.includes(code));
