@@ -73,7 +73,7 @@ export async function setup() {
   const start = performance.now();
   checkNode();
   await toolchain();
-  await wasmBindgen();
-  await nodeModules();
+  // The one waits for the network, the other for the compiler.
+  await Promise.all([wasmBindgen(), nodeModules()]);
   say(`set up (${seconds(start)})`);
 }

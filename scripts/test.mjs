@@ -169,8 +169,16 @@ const contract = () => {
   );
 };
 
-/** Tests that need the data beside the project are marked as ignored, with that reason, and included if the data are there. */
-const rust = () => watch("cargo", ["test", ...FEATURES, "--", ...(hasData() ? ["--include-ignored"] : []), ...SHORT]);
+/**
+ * Without `--long` the library alone: compiling the readers and the command line takes longer than their tests. Tests that need the data
+ * beside the project are marked as ignored, with that reason, and included if the data are there.
+ */
+const rust = () =>
+  watch("cargo", [
+    ...["test", ...(LONG ? [] : LIBRARY), ...FEATURES, "--"],
+    ...(hasData() ? ["--include-ignored"] : []),
+    ...SHORT,
+  ]);
 
 /** Accuracy does not decide: aims are shown with their verdicts. The part fails if a cell throws or the JSON lacks a key. */
 async function tables() {

@@ -5,7 +5,7 @@ import { before, describe, test } from "node:test";
 import { projectFrame, sampleRig } from "../../pkg/index.js";
 import { decodeColour, decodeDepth } from "../../pkg/files.js";
 import { aboutAxis, degreesBetween as degreesOf, product, transpose, turn } from "../../protocols/rotations.mjs";
-import { LONG } from "./long.mjs";
+import { LONG, longUnless } from "./long.mjs";
 import { BimodalError, checkCalibration } from "./support.mjs";
 
 /** A pose with an error about the camera, degrees and metres. */
@@ -84,7 +84,7 @@ describe("a rig before boxes", () => {
     assert.deepEqual(Object.keys(a.cues), ["edges"]);
   });
 
-  test("an inverted direction is named", async () => {
+  test("an inverted direction is named", LONG, async () => {
     const { verdict, code, warnings } = await checkCalibration([frame], { told: inverse(truth) });
     assert.deepEqual([verdict, code], ["off", "misread"]);
     const [warning] = warnings;
@@ -151,7 +151,7 @@ describe("a rig before boxes", () => {
     },
   );
 
-  test("a blank image is named, and speaks against nobody", async () => {
+  test("a blank image is named, and speaks against nobody", LONG, async () => {
     const data = new Uint8ClampedArray(frame.image.data.length).fill(255);
     const report = await checkCalibration([{ ...frame, image: { ...frame.image, data } }], {
       told: wrong(truth, [1, 2, 1], 3, [0.02, 0, 0]),
@@ -161,7 +161,7 @@ describe("a rig before boxes", () => {
     assert.equal(report.verdict, "undecided", report.reason);
   });
 
-  test("a wall alone can't tell, and says so", async () => {
+  test("a wall alone can't tell, and says so", LONG, async () => {
     // Without a depth edge, the given candidate is the only information.
     const data = new Uint16Array(frame.depth.data.length).fill(1500);
     for (const cues of [["edges"], undefined]) {
@@ -322,9 +322,8 @@ test("one frame is found where wide windows lead elsewhere", LONG, async () => {
   assert.ok(degrees < 0.4 && millimetres < 10, `${degrees} degrees, ${millimetres} mm`);
 });
 
-test("a raw Kinect: calibrations that are off are off, and the estimate is near its makers'", {
-  skip: !existsSync(NYU) && "other people's data are not here",
-}, async () => {
+const RAW_KINECT = longUnless(!existsSync(NYU) && "other people's data are not here");
+test("a raw Kinect: calibrations that are off are off, and the estimate is near its makers'", RAW_KINECT, async () => {
   const read = (name) => readFileSync(new URL(name, NYU));
   const calib = JSON.parse(read("calib.json").toString());
   const camera = ({ fx, fy, cx, cy, dist_k1k2p1p2k3: distortion }) => ({ fx, fy, cx, cy, distortion });

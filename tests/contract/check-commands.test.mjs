@@ -40,23 +40,6 @@ function run(name, args) {
   return { status, stdout, stderr };
 }
 
-before(() => {
-  const project = freshProject();
-  COMMANDS.npm = { ...COMMANDS.npm, program: "npx", before: ["--no-install", "bimodal-stereo"], cwd: project };
-  // With all features and an example, as in cli.test.mjs.
-  const { status } = spawnSync(
-    "cargo",
-    ["build", "--quiet", "--all-features", "--bin", "bimodal-stereo", "--example", "pair"],
-    {
-      cwd: inRoot(),
-      stdio: "inherit",
-    },
-  );
-  assert.equal(status, 0);
-  COMMANDS.rust = { ...COMMANDS.rust, program: inRoot("target/debug/bimodal-stereo") };
-  COMMANDS.python = { ...COMMANDS.python, program: PYTHON, before: ["-m", "bimodal_stereo"] };
-});
-
 /** A rendered rig as files of this project: two frames, the cameras of both, and its extrinsics. */
 async function rendered() {
   await init();
@@ -140,7 +123,24 @@ function checkAll(frames, calibration, near, more = []) {
   return theirs;
 }
 
-describe("check by npm, Rust and Python", () => {
+describe("check by npm, Rust and Python", LONG, () => {
+  before(() => {
+    const project = freshProject();
+    COMMANDS.npm = { ...COMMANDS.npm, program: "npx", before: ["--no-install", "bimodal-stereo"], cwd: project };
+    // With all features and an example, as in cli.test.mjs.
+    const { status } = spawnSync(
+      "cargo",
+      ["build", "--quiet", "--all-features", "--bin", "bimodal-stereo", "--example", "pair"],
+      {
+        cwd: inRoot(),
+        stdio: "inherit",
+      },
+    );
+    assert.equal(status, 0);
+    COMMANDS.rust = { ...COMMANDS.rust, program: inRoot("target/debug/bimodal-stereo") };
+    COMMANDS.python = { ...COMMANDS.python, program: PYTHON, before: ["-m", "bimodal_stereo"] };
+  });
+
   for (const [name, { skip }] of Object.entries(COMMANDS)) {
     test(`${name}: the manual and the version`, { skip }, () => {
       const manual = readFileSync(inRoot("files/src/command/help.txt"), "utf8");
@@ -171,7 +171,7 @@ describe("check by npm, Rust and Python", () => {
     });
   }
 
-  test("a rendered rig has one verdict and one JSON", LONG, async () => {
+  test("a rendered rig has one verdict and one JSON", async () => {
     const { frames, calibration } = await rendered();
     const { status, report } = checkAll(frames, calibration, DECISIONS, ["--unit", "0.001"]);
     assert.deepEqual([status, report.verdict, report.warnings], [0, "consistent", []]);

@@ -11,6 +11,7 @@ import { decodeColour, decodeDepth } from "../../pkg/files.js";
 import { readRigFile } from "../../pkg/rig.js";
 import { lightCsv, writeNpy, writePng } from "../../pkg/write.js";
 import { inRoot } from "../../scripts/shell.mjs";
+import { LONG } from "./long.mjs";
 
 /** Native code and wasm sum in different orders: limits of the differences, in degrees and as a share. */
 const DEGREES = 1e-3;
@@ -64,7 +65,7 @@ function alike(told, report, degrees) {
   );
 }
 
-describe("command line", () => {
+describe("command line", LONG, () => {
   before(async () => {
     await init();
     // With all features and an example, as the Rust tests are built: cargo keeps one build of the library for all choices of features, and the

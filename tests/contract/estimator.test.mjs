@@ -1,6 +1,7 @@
 // The life cycle of an estimator: its results, their types, and its end.
 import assert from "node:assert/strict";
 import { before, describe, test } from "node:test";
+import { LONG } from "./long.mjs";
 import { Estimator, estimator, init, pair, refused, sample, sampleLights, sampleSurfaces } from "./support.mjs";
 
 const SIDE = 32;
@@ -98,7 +99,7 @@ test("log S is albedo and shading and a remainder of the residual's length", asy
   made.free();
 });
 
-test("a photograph of twelve megapixels is taken with a small depth map, in its own pixels", () => {
+test("a photograph of twelve megapixels is taken with a small depth map, in its own pixels", LONG, () => {
   const { image, depth } = pair({ size: 64 });
   const [width, height, side] = [4000, 3000, 40];
   const [data, mask] = [new Uint8Array(4 * width * height), new Uint8Array(width * height)];

@@ -189,7 +189,7 @@ describe("batch.mjs", () => {
     assert.ok(!existsSync(csv));
   });
 
-  test("broken off it goes on where it was; a bad pair has its line and ends nothing", async () => {
+  test("broken off it goes on where it was; a bad pair has its line and ends nothing", LONG, async () => {
     const first = await batch([pairs, "--csv", csv, "--threads", "1"], ({ stderr }) => /: converged/.test(stderr));
     assert.equal(first.code, 130, first.stderr);
     assert.match(first.stderr, /interrupted/);

@@ -6,6 +6,7 @@ import { join, relative } from "node:path";
 import { before, describe, test } from "node:test";
 import { readRigFile } from "../../pkg/rig.js";
 import { inRoot } from "../../scripts/shell.mjs";
+import { LONG } from "./long.mjs";
 
 /** Limit of the difference between rotations that are made orthonormal with another order of sums. */
 const NEAR = 1e-9;
@@ -47,7 +48,7 @@ function same(one, other, path) {
   } else assert.equal(one, other, path);
 }
 
-describe("readers in Rust and in JavaScript", () => {
+describe("readers in Rust and in JavaScript", LONG, () => {
   before(() => {
     // With a binary and an example of the library, as in cli.test.mjs.
     const built = spawnSync(

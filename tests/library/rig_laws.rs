@@ -78,33 +78,6 @@ fn vector(size: f64) -> impl Strategy<Value = Vector3<f64>> {
     prop::array::uniform3(-size..size).prop_map(Vector3::from)
 }
 
-proptest! {
-    #![proptest_config(laws(10))]
-
-    #[test]
-    fn a_report_holds_numbers_alone_and_no_verdict_without_evidence(
-        kind in prop::sample::select(RigKind::ALL.to_vec()),
-        seed in 0_u64..1000,
-        cues in prop::sample::subsequence(Cue::ALL.to_vec(), 1..=4),
-        turn in vector(0.05),
-        shift in vector(0.02),
-        is_known in prop::bool::weighted(0.8),
-    ) {
-        let frame = small(kind, seed);
-        let report = check(view(&frame, is_known), &[frame.pose, turned(&frame.pose, turn, shift)], &cues);
-        for (name, value) in numbers(&report) {
-            prop_assert!(value.is_finite(), "{name}: {value} of {kind:?} {seed} by {cues:?}");
-        }
-        let has_evidence = report.cues.iter().any(|cue| cue.sharpness > 0.0);
-        for candidate in report.candidates {
-            let [turn, shift] = [0, 3].map(|first| Vector3::from_column_slice(&candidate.off_axes[first..first + 3]).norm());
-            prop_assert!((turn - candidate.off_degrees).abs() < 1e-9, "{candidate:?}");
-            prop_assert!((shift - candidate.off_millimetres).abs() < 1e-9, "{candidate:?}");
-            prop_assert!(has_evidence || candidate.verdict == CheckVerdict::Undecided, "{candidate:?} by {cues:?}");
-        }
-    }
-}
-
 /// The image is cut to its last tenth, which shows about as much of the depth map.
 #[test]
 fn an_estimate_that_shows_few_of_the_points_judges_no_candidate() {
@@ -133,25 +106,52 @@ fn an_estimate_that_shows_few_of_the_points_judges_no_candidate() {
     assert!(whole.overlap > 0.5 && whole.overlap <= 1.0, "{}", whole.overlap);
 }
 
-/// Without masks there is no silhouette: the estimate equals the candidate to the last digit, and nothing is known about its error.
-#[test]
-fn silhouettes_without_masks_leave_every_candidate_undecided() {
-    for kind in RigKind::ALL {
-        for seed in 0..4 {
-            let frame = small(kind, seed);
-            let report = check(view(&frame, true), &[frame.pose], &[Cue::Silhouette]);
-            let candidate = &report.candidates[0];
-            assert_eq!((report.verdict, candidate.verdict), (CheckVerdict::Undecided, CheckVerdict::Undecided));
-            assert!(candidate.off_degrees < 1e-4 && candidate.probability > 0.99, "{kind:?} {seed}: {candidate:?}");
-        }
-    }
-}
-
 /// Tests of over three seconds: `cargo test` runs them, `npm test` only with `--long`.
 mod long {
     #[cfg(target_arch = "wasm32")]
     use super::test;
     use super::*;
+
+    proptest! {
+        #![proptest_config(laws(10))]
+
+        #[test]
+        fn a_report_holds_numbers_alone_and_no_verdict_without_evidence(
+            kind in prop::sample::select(RigKind::ALL.to_vec()),
+            seed in 0_u64..1000,
+            cues in prop::sample::subsequence(Cue::ALL.to_vec(), 1..=4),
+            turn in vector(0.05),
+            shift in vector(0.02),
+            is_known in prop::bool::weighted(0.8),
+        ) {
+            let frame = small(kind, seed);
+            let report = check(view(&frame, is_known), &[frame.pose, turned(&frame.pose, turn, shift)], &cues);
+            for (name, value) in numbers(&report) {
+                prop_assert!(value.is_finite(), "{name}: {value} of {kind:?} {seed} by {cues:?}");
+            }
+            let has_evidence = report.cues.iter().any(|cue| cue.sharpness > 0.0);
+            for candidate in report.candidates {
+                let [turn, shift] = [0, 3].map(|first| Vector3::from_column_slice(&candidate.off_axes[first..first + 3]).norm());
+                prop_assert!((turn - candidate.off_degrees).abs() < 1e-9, "{candidate:?}");
+                prop_assert!((shift - candidate.off_millimetres).abs() < 1e-9, "{candidate:?}");
+                prop_assert!(has_evidence || candidate.verdict == CheckVerdict::Undecided, "{candidate:?} by {cues:?}");
+            }
+        }
+    }
+
+    /// Without masks there is no silhouette: the estimate equals the candidate to the last digit, and nothing is known about its error.
+    #[test]
+    fn silhouettes_without_masks_leave_every_candidate_undecided() {
+        for kind in RigKind::ALL {
+            for seed in 0..4 {
+                let frame = small(kind, seed);
+                let report = check(view(&frame, true), &[frame.pose], &[Cue::Silhouette]);
+                let candidate = &report.candidates[0];
+                assert_eq!((report.verdict, candidate.verdict), (CheckVerdict::Undecided, CheckVerdict::Undecided));
+                assert!(candidate.off_degrees < 1e-4 && candidate.probability > 0.99, "{kind:?} {seed}: {candidate:?}");
+            }
+        }
+    }
 
     /// Pixels outside the image's mask have no effect: other colours there change no digit of any cue's result.
     #[test]

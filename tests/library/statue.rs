@@ -81,25 +81,30 @@ fn run(pair: &Pair, start: &Similarity) -> (f64, f64) {
     (pose.degrees_to(&pair.truth), off.xy().norm())
 }
 
-/// Silhouettes alone pull a depth map that sees part of the object until it fills the image's mask, even from the true
-/// pose.
-#[test]
-#[ignore = "needs ../shared/data"]
-fn views_of_a_statue_from_different_places_register_from_a_pose_that_is_roughly_right() {
-    for (name, axis, shift) in [
-        ("c10_d06", Vector3::new(0.6, -0.5, 0.62), Vector3::new(-0.012, 0.014, 0.007)),
-        ("c52_d53", Vector3::new(-0.2, 0.9, 0.38), Vector3::new(0.015, -0.008, 0.01)),
-    ] {
-        let pair = load(name);
-        let turn = Rotation3::new(axis.normalize() * 3.0_f64.to_radians()).into_inner();
-        let off = Similarity {
-            rotation: pair.truth.rotation * turn,
-            translation: pair.truth.translation + shift,
-            ..pair.truth
-        };
-        for start in [pair.truth, off] {
-            let (degrees, across) = run(&pair, &start);
-            assert!(degrees < 2.0 && across < 0.005, "{name}: {degrees} degrees, {across} m");
+/// Tests of over three seconds: `cargo test` runs them, `npm test` only with `--long`.
+mod long {
+    use super::*;
+
+    /// Silhouettes alone pull a depth map that sees part of the object until it fills the image's mask, even from the true
+    /// pose.
+    #[test]
+    #[ignore = "needs ../shared/data"]
+    fn views_of_a_statue_from_different_places_register_from_a_pose_that_is_roughly_right() {
+        for (name, axis, shift) in [
+            ("c10_d06", Vector3::new(0.6, -0.5, 0.62), Vector3::new(-0.012, 0.014, 0.007)),
+            ("c52_d53", Vector3::new(-0.2, 0.9, 0.38), Vector3::new(0.015, -0.008, 0.01)),
+        ] {
+            let pair = load(name);
+            let turn = Rotation3::new(axis.normalize() * 3.0_f64.to_radians()).into_inner();
+            let off = Similarity {
+                rotation: pair.truth.rotation * turn,
+                translation: pair.truth.translation + shift,
+                ..pair.truth
+            };
+            for start in [pair.truth, off] {
+                let (degrees, across) = run(&pair, &start);
+                assert!(degrees < 2.0 && across < 0.005, "{name}: {degrees} degrees, {across} m");
+            }
         }
     }
 }

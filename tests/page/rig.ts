@@ -155,7 +155,10 @@ export async function answerChecks(
           this.dispatchEvent(new MessageEvent("message", { data: { id: message.id, ...data } }));
         setTimeout(() => say({ share: 0.4, message: "aligning depth edges" }));
         if (verdict !== "never" && verdict !== "dead")
-          setTimeout(() => say({ answer: report(verdict, Object.keys(message.candidates ?? {}), frames, overlap) }), 20);
+          setTimeout(
+            () => say({ answer: report(verdict, Object.keys(message.candidates ?? {}), frames, overlap) }),
+            20,
+          );
       };
     },
     { source, verdict, axes: [...AXES], overlap },

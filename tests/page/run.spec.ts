@@ -233,7 +233,10 @@ test("a hint unfolds at a tap", async ({ lab, page }) => {
 /** The error that the table shows for the initial pose. */
 const AT_START = /[\d.]+° at the start/;
 
-test("nothing known: the search comes first, says how far it is, and the loop converges", async ({ lab, page }) => {
+test("nothing known: the search comes first, says how far it is, and the loop converges", { tag: "@long" }, async ({
+  lab,
+  page,
+}) => {
   await lab.visit("size=64&light=window&beta=50&gamma=15&overlap=0.7&noise=0.01");
   const search = page.getByRole("button", { name: /^search/ });
   // Polling could miss the search, so every text of its chip while lit is recorded.

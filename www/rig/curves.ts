@@ -84,7 +84,9 @@ export class SensitivityCharts {
     const checked = this.#checked[(Object.keys(axes) as Axis[]).indexOf(axis)];
     const words = [
       `Minimum at ${amount(place)}; ± ${amount(reach)} (95 %)`,
-      ...(isOutside(xs, best, reach) ? ["the minimum lies outside this interval, so do not trust it for this axis"] : []),
+      ...(isOutside(xs, best, reach)
+        ? ["the minimum lies outside this interval, so do not trust it for this axis"]
+        : []),
       ...(checked === undefined ? [] : [`your calibration at ${amount(checked)}`]),
     ].join("; ");
     this.#figures.append(

@@ -111,7 +111,9 @@ export function advise(run: Run): string[] {
   else if (!estimateOnly && report.verdict === "off")
     list.push("Save the calibration found here, use it instead of yours, and check it with new frames.");
   if (!isUsable(run))
-    list.push("Check that image and depth map show the same scene: the best fit leaves most of the depth map outside the image.");
+    list.push(
+      "Check that image and depth map show the same scene: the best fit leaves most of the depth map outside the image.",
+    );
   else if (estimateOnly) list.push("Save the calibration found here, or add your own in step 2 to have it checked.");
   if (plans.length < 3)
     list.push(

@@ -25,9 +25,10 @@ export function verdictCard({ verdict: given, reason, candidates, health, overla
       ),
       fact("Expected reprojection error", measure(candidate.pixels, "px"), within(candidate.interval)),
     ]
-  }${fact("Expected error of the best fit", measure(health.pixels, "px"), within(health.interval))}${
-    fact("Depth points that the best fit puts onto the image", percent(overlap))
-  }</dl></div></section>`;
+  }${fact("Expected error of the best fit", measure(health.pixels, "px"), within(health.interval))}${fact(
+    "Depth points that the best fit puts onto the image",
+    percent(overlap),
+  )}</dl></div></section>`;
 }
 
 export const warningList = ({ warnings }: Checked): Markup =>
