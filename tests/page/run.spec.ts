@@ -233,36 +233,37 @@ test("a hint unfolds at a tap", async ({ lab, page }) => {
 /** The error that the table shows for the initial pose. */
 const AT_START = /[\d.]+° at the start/;
 
-test("nothing known: the search comes first, says how far it is, and the loop converges", { tag: "@long" }, async ({
-  lab,
-  page,
-}) => {
-  await lab.visit("size=64&light=window&beta=50&gamma=15&overlap=0.7&noise=0.01");
-  const search = page.getByRole("button", { name: /^search/ });
-  // Polling could miss the search, so every text of its chip while lit is recorded.
-  const said = await search.evaluateHandle((chip) => {
-    const said: string[] = [];
-    const record = () => chip.hasAttribute("data-lit") && said.push(chip.textContent ?? "");
-    new MutationObserver(record).observe(chip, {
-      attributes: true,
-      childList: true,
-      characterData: true,
-      subtree: true,
+test(
+  "nothing known: the search comes first, says how far it is, and the loop converges",
+  LONG,
+  async ({ lab, page }) => {
+    await lab.visit("size=64&light=window&beta=50&gamma=15&overlap=0.7&noise=0.01");
+    const search = page.getByRole("button", { name: /^search/ });
+    // Polling could miss the search, so every text of its chip while lit is recorded.
+    const said = await search.evaluateHandle((chip) => {
+      const said: string[] = [];
+      const record = () => chip.hasAttribute("data-lit") && said.push(chip.textContent ?? "");
+      new MutationObserver(record).observe(chip, {
+        attributes: true,
+        childList: true,
+        characterData: true,
+        subtree: true,
+      });
+      return said;
     });
-    return said;
-  });
-  const error = page.locator("#pose-error");
-  await expect(error).toContainText(AT_START);
-  const before = AT_START.exec((await error.textContent()) ?? "")?.[0] ?? "";
-  await page.getByRole("button", { name: "Play" }).click();
-  await expect(page.locator("#status")).toHaveAttribute("data-state", "converged");
-  // The table still refers to the visitor's initial pose, not to the pose of the search.
-  await expect(error).toContainText(before);
-  expect((await said.jsonValue()).join(" ")).toMatch(/\d+ %/);
-  expect(await lab.errorDegrees()).toBeLessThanOrEqual(1);
-  await expect(page.locator("#status")).toHaveAttribute("data-tone", "good");
-  await expect(search).toContainText("100 %");
-});
+    const error = page.locator("#pose-error");
+    await expect(error).toContainText(AT_START);
+    const before = AT_START.exec((await error.textContent()) ?? "")?.[0] ?? "";
+    await page.getByRole("button", { name: "Play" }).click();
+    await expect(page.locator("#status")).toHaveAttribute("data-state", "converged");
+    // The table still refers to the visitor's initial pose, not to the pose of the search.
+    await expect(error).toContainText(before);
+    expect((await said.jsonValue()).join(" ")).toMatch(/\d+ %/);
+    expect(await lab.errorDegrees()).toBeLessThanOrEqual(1);
+    await expect(page.locator("#status")).toHaveAttribute("data-tone", "good");
+    await expect(search).toContainText("100 %");
+  },
+);
 
 test("what a search tries is a candidate, and the pose has the words of the messages", LONG, async ({ lab, page }) => {
   await lab.visit("size=64");

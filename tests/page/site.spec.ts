@@ -185,7 +185,7 @@ async function tabTo(page: Page, selector: string): Promise<void> {
   throw new Error(`The key Tab does not lead to ${selector}.`);
 }
 
-test("from the first key to a pose in a file, by keyboard alone", { tag: "@long" }, async ({ lab, page }) => {
+test("from the first key to a pose in a file, by keyboard alone", LONG, async ({ lab, page }) => {
   await page.emulateMedia({ reducedMotion: "reduce" });
   await lab.visit();
   await page.keyboard.press("Tab");

@@ -49,7 +49,7 @@ test("the Lab alone loads nothing of the Tables", async ({ lab, page }) => {
   expect(asked.filter((path) => path.endsWith(".wasm"))).toHaveLength(1);
 });
 
-test("a cell is run where it is pressed, and the Lab plays that very run", { tag: "@long" }, async ({ lab, page }) => {
+test("a cell is run where it is pressed, and the Lab plays that very run", LONG, async ({ lab, page }) => {
   const id = "table2B/64/colourful/unknown/20/0.5";
   await openTables(page, "show=table2B&size=64&light=unknown&lightName=colourful");
   await expect(cell(page, id)).toHaveAccessibleName(/β 20°, overlap 0.5: not run; the paper: 0\.344°/);
