@@ -232,6 +232,18 @@ function sortedFiles(files: NamedFile[]): Sorted {
   return found;
 }
 
+/** Names of sensors that take no pictures and no points. */
+const INERTIAL = /(?:^|[^a-z])(?:imu|gps|oxts|gyro\w*|accel\w*)(?:[^a-z]|$)/i;
+
+/** Leaves out the poses of inertial sensors, which relate no colour camera to a depth camera. */
+function withoutInertial(poses: NamedPose[], { warnings }: FolderReader): NamedPose[] {
+  const isInertial = ({ from = "", to = "" }: NamedPose) => INERTIAL.test(from) || INERTIAL.test(to);
+  const left = new Set(poses.filter(isInertial).map(({ from, to }) => `${from} to ${to}`));
+  if (left.size > 0)
+    warnings.push(warning("pose-left-out", `The poses of inertial sensors were left out: ${[...left].join(", ")}.`));
+  return poses.filter((pose) => !isInertial(pose));
+}
+
 /** The poses of a file that are not of the world; a camera without a name is called as its file there, too. */
 function ofRig(text: Extract<RigReading, { poses: NamedPose[] }>, file: string): NamedPose[] {
   const isUnnamed = text.kind === "cameras" && text.cameras.length === 1 && text.cameras[0]?.name === undefined;
@@ -260,7 +272,7 @@ async function calibrationOf({ texts, others }: Sorted, frames: ReadonlySet<stri
     }
     if (text?.kind === "cameras" || text?.kind === "poses") poses.push(...ofRig(text, stem(file.name)));
   }
-  return { cameras, poses, depthUnit };
+  return { cameras, poses: withoutInertial(poses, reader), depthUnit };
 }
 
 /** How many reasons an error gives. */

@@ -123,10 +123,10 @@ export function grouped(warnings: readonly ReaderWarning[]): ReaderWarning[] {
   return [...alike.values()].flatMap((all) => {
     const [first, ...others] = all.filter(({ file }) => file !== undefined);
     const single = all.filter(({ file }) => file === undefined);
-    if (first === undefined || others.length === 0) return all;
+    if (first === undefined || others.length === 0) return distinct(all);
     const files = new Set([first, ...others].map(({ file }) => file)).size;
     const more = files > 1 ? ` (and ${files - 1} more like it)` : "";
-    return [{ ...first, message: `${first.message}${more}`, ...(files > 1 && { files }) }, ...single];
+    return [{ ...first, message: `${first.message}${more}`, ...(files > 1 && { files }) }, ...distinct(single)];
   });
 }
 

@@ -220,6 +220,35 @@ describe("scans in a folder and a check", () => {
     }
   });
 
+  test("what several calibrations have in common is said once, and an inertial sensor's pose is left out", async () => {
+    const rows = [
+      [1, 0, 0, 0.1],
+      [0, 1, 0, 0],
+      [0, 0, 1, 0],
+      [0, 0, 0, 1],
+    ];
+    const pose = (name) => ({ name, bytes: text(JSON.stringify({ depth_to_color: rows })) });
+    const line = (name, rows) => `${name}: ${rows}\n`;
+    const kittiText = [
+      line("P2", "500 0 160 0 0 500 120 0 0 0 1 0"),
+      line("R0_rect", "1 0 0 0 1 0 0 0 1"),
+      line("Tr_velo_to_cam", "0 -1 0 0.1 0 0 -1 0 1 0 0 0"),
+      line("Tr_imu_to_velo", "1 0 0 0.1 0 1 0 0 0 0 1 0"),
+    ].join("");
+    const { poses, warnings } = await readRigFolder([
+      { name: "image_2/000000.ppm", bytes: await picture() },
+      { name: "velodyne/000000.bin", bytes: kitti() },
+      { name: "calib/000000.txt", bytes: text(kittiText) },
+      ...["a.json", "b.json"].map(pose),
+    ]);
+    assert.equal(warnings.filter(({ code }) => code === "pose-turned").length, 1);
+    assert.equal(poses.length, 3);
+    assert.ok(poses.every(({ from = "", to = "" }) => ![from, to].includes("imu")));
+    const [left] = warnings.filter(({ code }) => code === "pose-left-out");
+    assert.match(left.message, /imu to velodyne/);
+    assert.equal(left.isDoubt, false);
+  });
+
   test(
     "the true pose of a scan is not off, in its own axes, turned to a camera's and cut to the view alike",
     LONG,

@@ -198,6 +198,42 @@ test("without a calibration there is an estimate only, and what was guessed is s
   expect(lab.complaints).toEqual([]);
 });
 
+test("depth maps that are registered to their images are checked with the identity, by one press", async ({
+  lab,
+  page,
+}) => {
+  await answerChecks(page, "consistent");
+  await openPair(page);
+  await page.getByRole("button", { name: "Next: your calibration" }).click();
+  await page.getByRole("button", { name: "Add the identity" }).click();
+  await expect(page.locator(".rig-words")).toHaveText("The two cameras coincide: no offset, no rotation.");
+  await expect(page.getByRole("button", { name: "Add the identity" })).toBeHidden();
+  await expect(page.getByRole("button", { name: "Run the check" }).locator("visible=true")).toBeEnabled();
+  expect(lab.complaints).toEqual([]);
+});
+
+test("clouds need no depth camera, and one that is given is not doubted", async ({ lab, page }) => {
+  await open(page);
+  const points = Array.from({ length: 160 * 120 }, (_, i) => `${(i % 160) - 80} ${Math.floor(i / 160) - 60} 1000`);
+  const header = `ply\nformat ascii 1.0\nobj_info num_cols 160\nobj_info num_rows 120\nelement vertex ${points.length}\nproperty float x\nproperty float y\nproperty float z\nend_header\n`;
+  const camera = { width: 640, height: 480, fx: 500, fy: 500, cx: 319.5, cy: 239.5 };
+  await put(page, [
+    { name: "color_0001.png", mimeType: "image/png", buffer: colourPng() },
+    {
+      name: "depth_0001.ply",
+      mimeType: "application/octet-stream",
+      buffer: Buffer.from(`${header}${points.join("\n")}\n`),
+    },
+    { name: "depth_camera.json", mimeType: "application/json", buffer: Buffer.from(JSON.stringify({ depth: camera })) },
+  ]);
+  await expect(page.locator(".rig-frame")).toHaveCount(1);
+  const depth = page.getByRole("group", { name: "Depth camera" });
+  await expect(depth).toContainText("Not needed: the depth maps are clouds");
+  await expect(depth).not.toContainText("these are for");
+  await expect(page.locator(".rig-missing")).not.toContainText("depth camera");
+  expect(lab.complaints).toEqual([]);
+});
+
 test("what is chosen to be written stays chosen when the check runs again", async ({ lab, page }) => {
   await answerChecks(page, "consistent");
   await openFrames(page);

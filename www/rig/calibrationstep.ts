@@ -4,7 +4,17 @@ import { make } from "../dom";
 import { decimals } from "../draw/numbers";
 import { dropTarget } from "./drop";
 import { choose, Keyed, labelled, numberField, press } from "./parts";
-import { fromEuler, fromQuaternion, inWords, inverse, isOfWorld, matrixText, poseOf, type EulerOrder } from "./poses";
+import {
+  fromEuler,
+  fromQuaternion,
+  identity,
+  inWords,
+  inverse,
+  isOfWorld,
+  matrixText,
+  poseOf,
+  type EulerOrder,
+} from "./poses";
 import { messageOf, type Candidate, type Rig } from "./rig";
 
 type By = "quaternion" | EulerOrder;
@@ -27,7 +37,8 @@ export class CalibrationStep {
     "p",
     { class: "rig-none" },
     make("strong", {}, "No calibration given. "),
-    "The check only estimates one; add yours to have it checked.",
+    "The check only estimates one; add yours to have it checked. Depth maps that are already registered to the images, as phones and many drivers save them, have the identity. ",
+    press("Add the identity", () => this.#rig.addPose({ name: "identity", pose: identity }, "the identity")),
   );
   readonly #alert = make("p", { class: "rig-error", role: "alert", hidden: true });
   readonly #next: HTMLButtonElement;

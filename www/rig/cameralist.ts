@@ -121,14 +121,17 @@ export class CameraForm {
       source,
     );
     this.#form.hidden = source !== "typed";
-    const camera = this.#rig.cameraOf(this.#side);
+    const isNeeded = this.#side === "colour" || this.#rig.needsDepthCamera;
+    const camera = isNeeded ? this.#rig.cameraOf(this.#side) : undefined;
     const isFile = source !== "" && source !== "typed" && camera !== undefined;
     this.#edit.hidden = !isFile;
     this.#numbers.textContent = camera
       ? words(camera, cameraDoubt(this.#rig, this.#side))
       : source === "typed"
         ? "Some numbers are missing."
-        : "";
+        : isNeeded
+          ? ""
+          : "Not needed: the depth maps are clouds, which hold the positions of their points.";
     this.#by.value = typed.by;
     this.#model.value = typed.model;
     for (const { key } of fields) {

@@ -7,6 +7,7 @@ const OFF_CENTRE = 0.2;
 
 /** Parameters for another image size are the second most common mistake. */
 export function cameraDoubt(rig: RigState, side: Side): string {
+  if (side === "depth" && !rig.needsDepthCamera) return "";
   const file = rig.given.find(({ source }) => source === rig.cameras[side].source)?.camera;
   const size = rig.sizeOf(side);
   if (!size) return "";

@@ -368,13 +368,18 @@ export class Rig implements RigState {
     return this.frames.filter(({ colour, depth }) => colour !== undefined && depth !== undefined);
   }
 
+  /** Clouds hold the positions of their points, so that only depth maps need a camera. */
+  get needsDepthCamera(): boolean {
+    const summaries = this.complete.map(({ depth }) => this.item(depth)?.summary);
+    return summaries.length === 0 || summaries.some((summary) => summary?.organised === false);
+  }
+
   /** What is missing for a check, in words; empty if it can run. */
   get missing(): string[] {
     const missing: string[] = [];
     if (this.complete.length === 0) missing.push("a colour image and a depth map taken at the same moment");
-    const depths = this.complete.map(({ depth }) => this.item(depth)?.summary);
     const isShared = this.cameras.depth.source === "same";
-    if (depths.some((summary) => summary?.organised === false) && !this.cameraOf("depth"))
+    if (this.complete.length > 0 && this.needsDepthCamera && !this.cameraOf("depth"))
       missing.push(
         isShared
           ? "the colour camera's parameters, which the depth camera shares"

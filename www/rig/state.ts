@@ -121,4 +121,5 @@ export interface RigState {
   of(kind: Kind): Item[];
   sizeOf(side: Side): { width: number; height: number } | undefined;
   cameraOf(side: Side): Pinhole | undefined;
+  readonly needsDepthCamera: boolean;
 }

@@ -93,7 +93,10 @@ const ADVICE: readonly [code: string, advice: string][] = [
   ],
   ["files-swapped", SWAPPED],
   ["rough-depth", SWAPPED],
-  ["camera-size", "Use camera parameters that belong to the size of the files."],
+  [
+    "camera-size",
+    "Use camera parameters that belong to the size of the files; check frames of another size, or of another rig, by themselves.",
+  ],
 ];
 
 /** What to do next, the most useful first. */
