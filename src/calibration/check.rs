@@ -20,7 +20,7 @@ use super::search;
 use super::sensitivity::curves;
 use super::unknowns::State;
 use super::unseen::leave_unseen_out;
-use super::verdict::{CheckVerdict, Judge};
+use super::verdict::CheckVerdict;
 use crate::error::{Error, ErrorKind, Result};
 use crate::pose::Similarity;
 
@@ -269,9 +269,7 @@ impl CalibrationCheck {
         let mut optima = optima::ranked(&self.scene, rounds, &planes);
         // The best start stands unless another one is clearly better, so that rounding does not choose between poses that
         // fit about as well.
-        let is_start = |optimum: &Optimum| {
-            optimum.behind <= Judge::ALTERNATIVE && optimum.round.state.pose == rounds[0].state.pose
-        };
+        let is_start = |optimum: &Optimum| optimum.is_equal() && optimum.round.state.pose == rounds[0].state.pose;
         if let Some(start) = optima.iter().position(is_start) {
             optima[..=start].rotate_right(1);
         }
@@ -293,7 +291,7 @@ impl CalibrationCheck {
     /// Adopts the best reading if it fits clearly better than every pose found near the candidate.
     fn adopt(&mut self, search: Rereading, planes: Vec<Planes>) -> Stage {
         let mut optima = search.end(&self.scene, &planes);
-        let is_clear = optima.iter().all(|other| other.reading.is_some() || other.behind > Judge::ALTERNATIVE);
+        let is_clear = optima.iter().all(|other| other.reading.is_some() || !other.is_possible());
         let lens = self.lens;
         if optima[0].reading.is_some() && is_clear {
             self.lens = distortion::left_out(&mut self.scene, &optima[0].round);

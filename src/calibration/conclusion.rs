@@ -54,18 +54,18 @@ impl CalibrationCheck {
         }
     }
 
-    /// Makes a candidate undecided if another optimum, whose log posterior is at most `Judge::ALTERNATIVE` lower, contradicts
-    /// its verdict. An undecided verdict contradicts "off" as well, but not "consistent".
+    /// Makes a candidate undecided if another optimum contradicts its verdict. "Off" excludes the candidate, so every
+    /// optimum that the frames do not exclude counts, and an undecided verdict there contradicts as well. A candidate that
+    /// is consistent hardly met the best optimum by chance, so only optima that fit about as well count.
     fn hear_other_optima(&self, reports: &mut [CandidateReport], others: &[Optimum]) {
-        let is_alternative =
-            |other: &&Optimum| other.behind <= Judge::ALTERNATIVE && self.scene.is_seen(&other.round.state);
-        for other in others.iter().filter(is_alternative) {
+        let is_seen = |other: &&Optimum| other.is_possible() && self.scene.is_seen(&other.round.state);
+        for other in others.iter().filter(is_seen) {
             let (judge, _) = self.judge_of(other);
             for (report, (name, candidate)) in reports.iter_mut().zip(&self.candidates) {
                 let own = judge.judge(name, &other.round.state, candidate, None).verdict;
                 let is_contradicted = match report.verdict {
                     CheckVerdict::Off => own != CheckVerdict::Off,
-                    CheckVerdict::Consistent => own == CheckVerdict::Off,
+                    CheckVerdict::Consistent => own == CheckVerdict::Off && other.is_equal(),
                     CheckVerdict::Undecided => false,
                 };
                 if is_contradicted {
