@@ -12,6 +12,12 @@ const RUNTIME = /^\0(rolldown|vite)\//;
 /** The end of Vite's licence file lists Vite's dependencies, none of which reaches the output. */
 const REST = /\n# Licenses of bundled dependencies[\s\S]*$/;
 
+/** What a reader of a package's texts would otherwise ask. */
+const REMARKS = {
+  "@openpgp/seek-bzip":
+    "The manifest and the licence of this package state MIT. The headers of two of its sources, below, name the LGPL 2.1.",
+};
+
 /** Comments: blocks, or consecutive lines with the empty lines between them. */
 const COMMENT = /\/\*[\s\S]*?\*\/|(?:^[ \t]*\/\/.*(?:\n\s*)?)+/gm;
 const CLAIM = /\bcopyright\b|\(c\) \d{4}|\bred?istributions? /i;
@@ -47,6 +53,7 @@ function entryOf([folder, modules]) {
   if (texts.length === 0 && GENERAL[licence]) texts.push(readFileSync(inRoot(GENERAL[licence]), "utf8"));
   for (const path of modules) texts.push(...claimsIn(readFileSync(path, "utf8")));
   if (texts.length === 0) throw new Failure(`The package ${name} ${version} carries no licence text.`);
+  if (REMARKS[name]) texts.unshift(REMARKS[name]);
   return { name, version, licence, texts };
 }
 
