@@ -95,8 +95,9 @@ function ofMatrix4(matrix: Matrix4, field: string): PoseMembers {
 /** A pose with its matrix as members; whatever is no matrix and has none passes as it is. */
 export function poseOf(value: unknown, field: string): unknown {
   if (isMatrix(value)) return ofMatrix4(value as Matrix4, field);
-  if (!isObject(value) || !("matrix" in value) || value.matrix === undefined) return value;
+  if (!isObject(value) || !("matrix" in value)) return value;
   const { matrix, ...members } = value;
+  if (matrix === undefined) return members;
   // A pose of a report has both, and whoever changed its rotation meant that.
   if ("rotation" in value && value.rotation !== undefined) return Object.hasOwn(value, "matrix") ? members : value;
   if (!isMatrix(matrix)) throw wrong(`${field}.matrix`, "a 4x4 matrix", matrix);

@@ -10,7 +10,7 @@ import {
   symlinkSync,
   writeFileSync,
 } from "node:fs";
-import { join } from "node:path";
+import { dirname, join } from "node:path";
 import { deflateSync, gzipSync } from "node:zlib";
 import { collector } from "./notices/bundled.mjs";
 import { NOTICES, section } from "./notices/text.mjs";
@@ -185,11 +185,20 @@ function readme() {
     .replaceAll(/\{gzipped size of (.+?)\}/g, (_, file) => sizes(file)[1]);
 }
 
-/** Links the package, because the examples import it by name, as any application does; npm does not know the link. */
+/**
+ * Links the package and its command, because the examples import it by name and the README calls `npx bimodal-stereo`, as in any project
+ * that installed it; npm does not know the links.
+ */
 function link() {
-  const at = inRoot("node_modules/bimodal-stereo");
-  rmSync(at, { recursive: true, force: true });
-  symlinkSync("../pkg", at, "dir");
+  const links = [
+    ["../pkg", inRoot("node_modules/bimodal-stereo"), "dir"],
+    ["../bimodal-stereo/cli.js", inRoot("node_modules/.bin/bimodal-stereo"), "file"],
+  ];
+  for (const [target, at, kind] of links) {
+    rmSync(at, { recursive: true, force: true });
+    mkdirSync(dirname(at), { recursive: true });
+    symlinkSync(target, at, kind);
+  }
 }
 
 export async function build() {

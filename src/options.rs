@@ -313,6 +313,24 @@ mod tests {
         assert!(serde_json::from_value::<Options>(json!({ "registration": "best" })).is_err());
     }
 
+    #[test]
+    fn a_start_is_a_matrix_or_a_reported_pose() {
+        let rows = json!([[0.0, -2.0, 0.0, 1.0], [2.0, 0.0, 0.0, 2.0], [0.0, 0.0, 2.0, 3.0], [0.0, 0.0, 0.0, 1.0]]);
+        let turn = Matrix3::new(0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
+        let translation = Vector3::new(1.0, 2.0, 3.0);
+        let expected = Start::Pose { rotation: turn, scale: Some(2.0), translation: Some(translation) };
+        let pose = crate::pose::Similarity { scale: 2.0, rotation: turn, translation };
+        for given in [rows.clone(), json!({ "matrix": rows }), serde_json::to_value(pose).unwrap()] {
+            let found: Options = serde_json::from_value(json!({ "start": given })).unwrap();
+            let Start::Pose { rotation, scale, translation } = &found.start else { panic!("{found:?}") };
+            let Start::Pose { rotation: turn, .. } = &expected else { unreachable!() };
+            assert!((rotation - turn).abs().max() < 1e-12 && (scale.unwrap() - 2.0).abs() < 1e-12, "{found:?}");
+            assert_eq!(*translation, Some(Vector3::new(1.0, 2.0, 3.0)));
+        }
+        let mirrored = json!({ "start": [[-1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]] });
+        assert!(serde_json::from_value::<Options>(mirrored).is_err());
+    }
+
     /// Threads are not an option here; use `Estimator::with_threads`.
     #[test]
     fn a_member_that_there_is_not_is_an_error_with_its_name() {

@@ -262,22 +262,26 @@ fn spread(all: Vec<Pair>, most: usize) -> Vec<Pair> {
 }
 
 /// Merges equal warnings of several files: a calibration of a hundred frames warns once, not a hundred times.
+/// Files that were left out are merged only if they have the same reason.
 fn grouped(warnings: Vec<Warning>) -> Vec<Warning> {
-    let mut codes: Vec<&str> = Vec::new();
-    for warning in &warnings {
-        if !codes.contains(&warning.code) {
-            codes.push(warning.code);
+    fn likeness(warning: &Warning) -> (&str, &str) {
+        (warning.code, if warning.code == "file-left-out" { &warning.reason } else { "" })
+    }
+    let mut kinds: Vec<(&str, &str)> = Vec::new();
+    for kind in warnings.iter().map(likeness) {
+        if !kinds.contains(&kind) {
+            kinds.push(kind);
         }
     }
-    let of_code = |code: &&str| {
-        let all = || warnings.iter().filter(|warning| warning.code == *code);
+    let of_kind = |kind: &(&str, &str)| {
+        let all = || warnings.iter().filter(|warning| likeness(warning) == *kind);
         let files: HashSet<&String> = all().filter_map(|warning| warning.field.as_ref()).collect();
         let Some(first) = all().find(|warning| warning.field.is_some()) else { return all().cloned().collect() };
         let more = if files.len() > 1 { format!(" (and {} more like it)", files.len() - 1) } else { String::new() };
         let first = Warning { message: format!("{}{more}", first.message), ..first.clone() };
         [first].into_iter().chain(all().filter(|warning| warning.field.is_none()).cloned()).collect::<Vec<_>>()
     };
-    codes.iter().flat_map(of_code).collect()
+    kinds.iter().flat_map(of_kind).collect()
 }
 
 /// Warns if the depth maps were read with different units, since each one's unit is guessed separately.

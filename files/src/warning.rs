@@ -7,6 +7,9 @@ use std::fmt;
 pub struct Warning {
     pub code: &'static str,
     pub message: String,
+    /// The message without the file's name, by which equal warnings of several files are merged.
+    #[serde(skip)]
+    pub reason: String,
     /// The file or input concerned.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub field: Option<String>,
@@ -34,13 +37,15 @@ impl Warning {
     }
 
     pub fn new(code: &'static str, message: impl Into<String>) -> Self {
-        Self { code, message: message.into(), field: None }
+        let message = message.into();
+        Self { code, reason: message.clone(), message, field: None }
     }
 
     /// The same for a file, with its name in the message as well.
     #[must_use]
     pub fn of_file(&self, name: &str) -> Self {
-        Self { code: self.code, message: format!("{name}: {}", self.message), field: Some(name.into()) }
+        let message = format!("{name}: {}", self.message);
+        Self { code: self.code, reason: self.reason.clone(), message, field: Some(name.into()) }
     }
 }
 

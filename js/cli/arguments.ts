@@ -2,8 +2,17 @@
 import { parseArgs } from "node:util";
 import type { CheckCue } from "../types/index.js";
 
-/** Something that the user can mend; its message is all that is printed. */
-export class Mistake extends Error {}
+/** Something that the user can mend; its message is all that is printed. The code and the field are those of the contract's errors. */
+export class Mistake extends Error {
+  readonly code: "option" | "file";
+  readonly field: string;
+
+  constructor(message: string, field?: string) {
+    super(message);
+    this.code = field === "file" ? "file" : "option";
+    this.field = field ?? "arguments";
+  }
+}
 
 export interface Arguments {
   folder: string;

@@ -24,7 +24,7 @@ export function candidatesOf(readings: RigReading[], isInverted: boolean, warnin
       throw new Mistake(
         `${name}: it says where a camera stood in the world (camera to world), and holds no extrinsics`,
       );
-    if (poses.length === 0) throw new Mistake(`${name}: it holds no extrinsics`);
+    if (poses.length === 0) throw new Mistake(`${name}: it holds no extrinsics`, "file");
     poses.forEach((pose, index) => {
       const own = pose.name ?? (pose.from && pose.to ? `${pose.from} to ${pose.to}` : `pose ${index + 1}`);
       const title = poses.length === 1 ? basename(name) : `${basename(name)}, ${own}`;

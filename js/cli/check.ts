@@ -1,6 +1,7 @@
 /** The command `check`: the calibration of a rig over a folder of frames, for a shell and for continuous integration. */
 import { writeFileSync } from "node:fs";
 import { basename } from "node:path";
+import { reasonOf } from "../errors.js";
 import { posesForClouds } from "../rig/turned.js";
 import type { NamedFile, RigReading } from "../rig/types.js";
 import type { CheckReport } from "../types/index.js";
@@ -43,11 +44,38 @@ async function checked(
   }
 }
 
-/** The exit code. */
+/** An error as `--json` prints it. */
+function errorJson(error: unknown): string {
+  const { name, code, field } = error as { name?: unknown; code?: unknown; field?: unknown };
+  const known = error instanceof Mistake || name === "BimodalError" ? { code, field } : { code: "internal" };
+  return `${JSON.stringify({ error: { ...known, message: reasonOf(error) } }, null, 2)}\n`;
+}
+
+/** The exit code. With `--json -` an error leaves as JSON as well. */
 export async function check(args: Arguments): Promise<number> {
+  try {
+    return await checkFolder(args);
+  } catch (error) {
+    const isAbort = error instanceof Error && error.name === "AbortError";
+    if (args.json === "-" && !isAbort) process.stdout.write(errorJson(error));
+    throw error;
+  }
+}
+
+/** Intrinsics that were named have to be there. */
+async function checkCameras(cameras: NamedFile[], { readRigFile }: Modules): Promise<void> {
+  for (const each of cameras) {
+    const found = await readRigFile(each);
+    if (found.kind !== "cameras" || found.cameras.length === 0)
+      throw new Mistake(`${each.name}: it holds no intrinsics`, "file");
+  }
+}
+
+async function checkFolder(args: Arguments): Promise<number> {
   const loaded = await modules();
   const calibrations = args.calibrations.map((path) => file(path));
   const cameras = args.cameras.map((path) => file(path));
+  await checkCameras(cameras, loaded);
   const found: RigReading[] = [];
   for (const each of calibrations) found.push(await loaded.readRigFile(each));
   const warnings: Judged[] = found.flatMap(({ name, warnings: own }) =>
@@ -60,7 +88,10 @@ export async function check(args: Arguments): Promise<number> {
   const read = await loaded.readRigFolder([...named, ...files], args.reading);
   if (read.frames.length === 0) {
     const first = read.warnings[0] ? `: ${read.warnings[0].message}` : "";
-    throw new Mistake(`${args.folder}: it holds no pair of a colour image and a depth map that could be read${first}`);
+    throw new Mistake(
+      `${args.folder}: it holds no pair of a colour image and a depth map that could be read${first}`,
+      "file",
+    );
   }
   const given = Object.entries(candidates).map(([name, pose]) => ({ name, pose }));
   const poses = posesForClouds(given, read.frames, read.warnings).map(({ name = "", pose }) => [name, pose]);

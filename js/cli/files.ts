@@ -3,6 +3,7 @@ import { createHash } from "node:crypto";
 import { readFileSync, readdirSync, statSync } from "node:fs";
 import { join, relative, resolve } from "node:path";
 import type { NamedFile } from "../rig/types.js";
+import { reasonOf } from "../errors.js";
 import { Mistake } from "./arguments.js";
 
 /** Bytes that a folder may hold, since all of it is read: some hundreds of pairs. */
@@ -10,8 +11,16 @@ const MOST_BYTES = 2 ** 31;
 
 export const file = (path: string, name = path): NamedFile => ({
   name: name.replaceAll("\\", "/").replace(/^\.\//, ""),
-  bytes: new Uint8Array(readFileSync(path)),
+  bytes: new Uint8Array(contentOf(path)),
 });
+
+function contentOf(path: string): Uint8Array {
+  try {
+    return readFileSync(path);
+  } catch (error) {
+    throw new Mistake(`${path}: it cannot be read (${reasonOf(error)})`, "file");
+  }
+}
 
 const isHidden = (folder: string, path: string): boolean =>
   relative(folder, path)

@@ -63,7 +63,7 @@ function wholeImage({ colour, colourMask, colourCamera, transfer }: Parts, notes
 function guessInWords({ warnings, guessed }: Parts["depth"]): string {
   const doubt = guessed.length > 0 ? warnings.find(({ code }) => code === "unit-guessed") : undefined;
   const range = warnings.find(({ code }) => code === "depth-range");
-  return [doubt?.message.replace("; give the unit if that is wrong", ""), range?.message].filter(Boolean).join(" ");
+  return [doubt?.message, range?.message].filter(Boolean).join(" ");
 }
 
 const RELATIVE =

@@ -284,7 +284,7 @@ function nothingFound(count: number, warnings: ReaderWarning[], pictures: NamedF
   const rank = (each: ReaderWarning) => (each.reason === undefined ? 1 : isPicture(each) ? 0 : 2);
   const reasons = new Map<string, string>();
   for (const each of [...warnings].sort((a, b) => rank(a) - rank(b))) {
-    const reason = String(each.reason ?? each.message.slice(each.file?.length ?? 0));
+    const reason = String(each.reason ?? each.code);
     if (!reasons.has(reason)) reasons.set(reason, each.message);
   }
   const messages = [...reasons.values()].slice(0, REASONS);

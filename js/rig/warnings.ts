@@ -105,16 +105,17 @@ export const warning = (
   details: Readonly<Record<string, unknown>> = {},
 ): ReaderWarning => ({ code, message, isDoubt: !HARMLESS.has(code), ...details });
 
-/** The warning of a file, with the file's name, for those of its folder. */
+/** The warning of a file, with the file's name, for those of its folder. `reason` stays without the name. */
 export const ofFile = (file: string, found: ReaderWarning): ReaderWarning => ({
+  reason: found.message,
   ...found,
   message: `${file}: ${found.message}`,
   file,
 });
 
-/** The key by which warnings are grouped: the code, and for files that were left out the reason without its numbers. */
-const likeness = ({ code, message, file = "" }: ReaderWarning): string =>
-  code === "file-left-out" ? message.slice(file.length).replace(/\d+/g, "#") : code;
+/** The key by which warnings are grouped: the code, and for files that were left out the reason as well. */
+const likeness = ({ code, reason }: ReaderWarning): string =>
+  code === "file-left-out" ? `${code}: ${String(reason)}` : code;
 
 /** One warning for all files of a folder that have it, so that a calibration of a hundred frames warns once. */
 export function grouped(warnings: readonly ReaderWarning[]): ReaderWarning[] {

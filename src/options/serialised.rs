@@ -4,14 +4,14 @@
 use std::array::from_fn;
 use std::fmt::Formatter;
 
-use nalgebra::{Matrix3, Vector3};
-use serde::de::value::MapAccessDeserializer;
-use serde::de::{Error, IntoDeserializer, MapAccess, Visitor};
+use nalgebra::{Matrix3, Matrix4, Vector3};
+use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
+use serde::de::{Error, IntoDeserializer, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
 use super::{LightSource, Start};
 use crate::light::Light;
-use crate::pose::Angles;
+use crate::pose::{Angles, Similarity};
 
 #[derive(Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -65,6 +65,22 @@ pub struct GivenPose {
     translation: Option<[f64; 3]>,
     #[serde(skip_serializing)]
     angles: GivenAngles,
+    /// It adds nothing to a rotation, which a reported pose has as well.
+    #[serde(skip_serializing)]
+    matrix: Option<GivenMatrix>,
+}
+
+/// Four rows of four numbers.
+#[derive(Deserialize)]
+#[serde(try_from = "[[f64; 4]; 4]")]
+struct GivenMatrix(Similarity);
+
+impl TryFrom<[[f64; 4]; 4]> for GivenMatrix {
+    type Error = crate::error::Error;
+
+    fn try_from(rows: [[f64; 4]; 4]) -> Result<Self, Self::Error> {
+        Similarity::try_from(Matrix4::from_fn(|row, column| rows[row][column])).map(Self)
+    }
 }
 
 /// The members of [`Angles`], all optional, without unknown ones.
@@ -84,6 +100,7 @@ impl From<GivenAngles> for Angles {
 
 #[derive(Serialize)]
 #[serde(untagged)]
+#[expect(clippy::large_enum_variant, reason = "lives no longer than a conversion")]
 pub enum GivenStart {
     Word(StartWord),
     Pose(GivenPose),
@@ -103,7 +120,7 @@ impl<'de> Visitor<'de> for WordOrPose {
     type Value = GivenStart;
 
     fn expecting(&self, formatter: &mut Formatter<'_>) -> std::fmt::Result {
-        formatter.write_str("\"search\", \"identity\" or a pose")
+        formatter.write_str("\"search\", \"identity\", a pose or a 4x4 matrix")
     }
 
     fn visit_str<E: Error>(self, word: &str) -> Result<GivenStart, E> {
@@ -113,6 +130,11 @@ impl<'de> Visitor<'de> for WordOrPose {
     fn visit_map<A: MapAccess<'de>>(self, members: A) -> Result<GivenStart, A::Error> {
         GivenPose::deserialize(MapAccessDeserializer::new(members)).map(GivenStart::Pose)
     }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, rows: A) -> Result<GivenStart, A::Error> {
+        let matrix = GivenMatrix::deserialize(SeqAccessDeserializer::new(rows))?;
+        Ok(GivenStart::Pose(GivenPose { matrix: Some(matrix), ..GivenPose::default() }))
+    }
 }
 
 impl From<GivenStart> for Start {
@@ -120,9 +142,18 @@ impl From<GivenStart> for Start {
         match given {
             GivenStart::Word(StartWord::Search) => Self::Search,
             GivenStart::Word(StartWord::Identity) => Self::Identity,
-            GivenStart::Pose(GivenPose { scale, rotation, translation, angles }) => Self::Pose {
-                rotation: rotation
-                    .map_or_else(|| Angles::from(angles).rotation(), |rows| Matrix3::from_row_slice(&rows)),
+            GivenStart::Pose(GivenPose { scale, rotation: Some(rows), translation, .. }) => Self::Pose {
+                rotation: Matrix3::from_row_slice(&rows),
+                scale,
+                translation: translation.map(Vector3::from),
+            },
+            GivenStart::Pose(GivenPose { scale, matrix: Some(GivenMatrix(pose)), translation, .. }) => Self::Pose {
+                rotation: pose.rotation,
+                scale: scale.or(Some(pose.scale)),
+                translation: translation.map(Vector3::from).or(Some(pose.translation)),
+            },
+            GivenStart::Pose(GivenPose { scale, translation, angles, .. }) => Self::Pose {
+                rotation: Angles::from(angles).rotation(),
                 scale,
                 translation: translation.map(Vector3::from),
             },
@@ -140,6 +171,7 @@ impl From<Start> for GivenStart {
                 rotation: Some(from_fn(|at| rotation[(at / 3, at % 3)])),
                 translation: translation.map(Into::into),
                 angles: GivenAngles::default(),
+                matrix: None,
             }),
         }
     }

@@ -82,6 +82,7 @@ write("two.json", {
 write("7", { kind: "poses", poses: [{ pose: pose(7) }] });
 write("world.json", { kind: "poses", poses: [{ pose: pose(4), from: "camera", to: "world" }] });
 write("empty.json", { kind: "poses", poses: [] });
+write("lens.json", { kind: "cameras", cameras: [{}], poses: [] });
 writeFileSync(join(root, "damaged.json"), "{");
 
 const command = [join(root, "examples/check-folder.mjs")];
@@ -128,6 +129,9 @@ describe("exit codes", () => {
       "world.json: it says where a camera stood in the world": ["off", "--calibration", "world.json"],
       "none: it holds no pair": ["none", "--calibration", "one.json"],
       "ENOENT.*missing.json": ["off", "--calibration", "missing.json"],
+      "missing.json: it cannot be read": ["off", "--calibration", "one.json", "--cameras", "missing.json"],
+      "damaged.json: damaged[^]*$": ["off", "--calibration", "one.json", "--cameras", "damaged.json"],
+      "one.json: it holds no intrinsics": ["off", "--calibration", "one.json", "--cameras", "one.json"],
       "ENOENT.*nowhere": ["nowhere", "--calibration", "one.json"],
       '--workers needs a number, not "many"': ["off", "--calibration", "one.json", "--workers", "many"],
       "Unknown option '--jsn'": ["off", "--calibration", "one.json", "--jsn", "x"],
@@ -137,6 +141,19 @@ describe("exit codes", () => {
       assert.equal(status, 3, message);
       assert.match(stderr.trim().split("\n").at(-1), new RegExp(message));
       assert.equal(stdout, "");
+    }
+  });
+
+  test("with --json - an error is JSON with its code", () => {
+    for (const [code, field, ...args] of [
+      ["file", "file", "off", "--calibration", "damaged.json"],
+      ["file", "file", "off", "--calibration", "one.json", "--cameras", "missing.json"],
+      ["file", "file", "none", "--calibration", "one.json"],
+    ]) {
+      const { status, stdout, stderr } = check(...args, "--json", "-");
+      const { error } = JSON.parse(stdout);
+      assert.deepEqual([status, error.code, error.field], [3, code, field]);
+      assert.ok(stderr.trim().endsWith(error.message), stderr);
     }
   });
 
@@ -228,9 +245,9 @@ describe("what is checked", () => {
 
   test("options reach readers and check; intrinsics that were named come first, hidden files not at all", () => {
     const args = ["--cues", "edges, shading", "--workers", "2", "--unit", "0.001", "--frames", "5"];
-    const { stdout } = check("off", "--calibration", "two.json", "--cameras", "one.json", ...args);
+    const { stdout } = check("off", "--calibration", "two.json", "--cameras", "lens.json", ...args);
     assert.deepEqual(asked(stdout).options, { workers: 2, cues: ["edges", "shading"] });
-    assert.ok(stdout.includes('warning: read one.json,two.json,0001.json {"frames":5,"unit":0.001}'), stdout);
+    assert.ok(stdout.includes('warning: read lens.json,two.json,0001.json {"frames":5,"unit":0.001}'), stdout);
   });
 
   test("a calibration that lies in the folder is read once", () => {

@@ -52,7 +52,7 @@ describe("the unit", () => {
     assert.deepEqual([depth.unit, unit], [0.001, 0.001]);
     assert.match(
       notes["depth.unit"],
-      /^The file does not state its unit\. It was guessed to be millimetres, .* 0\.90 m\.$/,
+      /^The file does not state its unit\. It was guessed to be millimetres, .* 0\.90 m; give the unit/,
     );
     // A unit that a file states is not guessed.
     const stated = pairOf({ colour, depth: map(8, 8, { unit: 1 / 256, warnings: [] }), depthCamera }, nothing);

@@ -30,7 +30,7 @@ test("the unit of a depth map with a camera is guessed into its field, said, and
   await lab.reaches("ready");
   await expect(unit(lab)).toHaveValue("0.001");
   const row = page.locator(".field", { has: unit(lab) });
-  await expect(row).toContainText(/guessed to be millimetres, so depths are 0\.10 to 0\.\d\d m\. Change it here/);
+  await expect(row).toContainText(/guessed to be millimetres, so depths are 0\.10 to 0\.\d\d m; give the unit/);
   await expect(remarks(lab)).toContainText(
     "Unit of depth: The file does not state its unit. It was guessed to be milli",
   );

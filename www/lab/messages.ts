@@ -45,7 +45,7 @@ export class Messages {
     for (const [path, note] of Object.entries(notes)) {
       // A missing mask is said beside a way to draw one.
       if (path === "image.mask" || this.#intake.remark(path, note)) continue;
-      this.#form.remark(path, path === "depth.unit" ? `${note} Change it here if that is wrong.` : note);
+      this.#form.remark(path, note);
     }
   }
 

@@ -23,7 +23,6 @@ import { Takings } from "./takings";
 import { Undo } from "./undo";
 
 export { messageOf } from "./state";
-
 export type { CameraChoice, Candidate, Frame, Item, Run, Side, TypedCamera } from "./state";
 
 const emptyCamera = (): TypedCamera => ({
@@ -56,6 +55,8 @@ export class Rig implements RigState {
   /** The precision of each run, with its number of frames. */
   history: { frames: number; pixels: number; interval: [number, number] }[] = [];
   #last = 0;
+  #listeners: (() => void)[] = [];
+  #told = false;
 
   constructor() {
     // A robot's pictures cannot be read again.
@@ -64,9 +65,6 @@ export class Rig implements RigState {
       this.changed();
     };
   }
-
-  #listeners: (() => void)[] = [];
-  #told = false;
 
   freshId(): number {
     return ++this.#last;
@@ -370,18 +368,17 @@ export class Rig implements RigState {
 
   /** Clouds hold the positions of their points, so that only depth maps need a camera. */
   get needsDepthCamera(): boolean {
-    const summaries = this.complete.map(({ depth }) => this.item(depth)?.summary);
-    return summaries.length === 0 || summaries.some((summary) => summary?.organised === false);
+    const isMap = ({ depth }: Frame) => this.item(depth)?.summary?.organised === false;
+    return this.complete.length === 0 || this.complete.some(isMap);
   }
 
   /** What is missing for a check, in words; empty if it can run. */
   get missing(): string[] {
     const missing: string[] = [];
     if (this.complete.length === 0) missing.push("a colour image and a depth map taken at the same moment");
-    const isShared = this.cameras.depth.source === "same";
     if (this.complete.length > 0 && this.needsDepthCamera && !this.cameraOf("depth"))
       missing.push(
-        isShared
+        this.cameras.depth.source === "same"
           ? "the colour camera's parameters, which the depth camera shares"
           : "the depth camera's parameters (or its field of view)",
       );

@@ -23,7 +23,7 @@ use serde_json::json;
 use sha2::{Digest, Sha256};
 
 use crate::problem::{Problem, Result, own_name};
-use crate::rig::{FolderOptions, RigFolder, read_rig_folder};
+use crate::rig::{FolderOptions, RigFolder, read_calibration, read_rig_folder};
 use crate::warning::Warnings;
 use arguments::Arguments;
 use candidates::{Candidates, candidates};
@@ -62,8 +62,12 @@ impl From<Problem> for End {
 pub fn run(arguments: impl IntoIterator<Item = OsString>, terminal: &mut Terminal<'_>) -> u8 {
     let name = OsString::from("check");
     let parsed = Arguments::try_parse_from([name].into_iter().chain(arguments));
+    let mut is_json = false;
     let ended = match parsed {
-        Ok(arguments) => arguments.checked().map_err(End::from).and_then(|()| check(&arguments, terminal)),
+        Ok(arguments) => {
+            is_json = arguments.json.as_deref() == Some(Path::new("-"));
+            arguments.checked().map_err(End::from).and_then(|()| check(&arguments, terminal))
+        }
         Err(said) if said.use_stderr() => {
             let _ = write!(terminal.err, "{said}");
             return BAD;
@@ -78,6 +82,11 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, terminal: &mut Termina
         }
         Err(End::Problem(problem)) => {
             let _ = writeln!(terminal.err, "{problem}");
+            if is_json {
+                let Problem { code, field, .. } = &problem;
+                let error = json!({ "error": { "code": code, "field": field, "message": problem.to_string() } });
+                let _ = writeln!(terminal.out, "{error:#}");
+            }
             BAD
         }
     }
@@ -86,6 +95,11 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, terminal: &mut Termina
 fn check(arguments: &Arguments, terminal: &mut Terminal<'_>) -> std::result::Result<u8, End> {
     let mut warnings = Warnings::default();
     let Candidates { poses, readings, cameras } = candidates(arguments, &mut warnings)?;
+    for path in &arguments.cameras {
+        if read_calibration(path)?.cameras.is_empty() {
+            return Err(Problem::file(path, "it holds no intrinsics").into());
+        }
+    }
     let options = FolderOptions {
         unit: arguments.unit,
         frames: arguments.frames,
