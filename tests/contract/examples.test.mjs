@@ -239,7 +239,8 @@ describe("batch.mjs", () => {
     }
   });
 
-  test("what failed can be tried again, with settings for all pairs", async () => {
+  // It continues the results of the test of an interruption.
+  test("what failed can be tried again, with settings for all pairs", LONG, async () => {
     const settings = join(data, "settings.json");
     writeFileSync(settings, JSON.stringify({ options: { maxIterations: -1 } }));
     const refused = await batch([pairs, "--csv", csv, "--retry", "--settings", settings]);
