@@ -73,7 +73,7 @@ export async function setup() {
   const start = performance.now();
   checkNode();
   await toolchain();
-  // The one waits for the network, the other for the compiler.
+  // One waits for the compiler, the other for the network.
   await Promise.all([wasmBindgen(), nodeModules()]);
   say(`set up (${seconds(start)})`);
 }

@@ -23,6 +23,7 @@ export function candidatesOf(readings: RigReading[], isInverted: boolean, warnin
     if (poses.length < all.length && poses.length === 0)
       throw new Mistake(
         `${name}: it says where a camera stood in the world (camera to world), and holds no extrinsics`,
+        "file",
       );
     if (poses.length === 0) throw new Mistake(`${name}: it holds no extrinsics`, "file");
     poses.forEach((pose, index) => {

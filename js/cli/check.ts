@@ -47,7 +47,13 @@ async function checked(
 /** An error as `--json` prints it. */
 function errorJson(error: unknown): string {
   const { name, code, field } = error as { name?: unknown; code?: unknown; field?: unknown };
-  const known = error instanceof Mistake || name === "BimodalError" ? { code, field } : { code: "internal" };
+  const isOfSystem = error instanceof Error && "syscall" in error;
+  const known =
+    error instanceof Mistake || name === "BimodalError"
+      ? { code, field }
+      : isOfSystem
+        ? { code: "file", field: "file" }
+        : { code: "internal" };
   return `${JSON.stringify({ error: { ...known, message: reasonOf(error) } }, null, 2)}\n`;
 }
 

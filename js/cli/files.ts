@@ -40,6 +40,7 @@ export function filesOf(folder: string, except: string[]): NamedFile[] {
     const size = (bytes / 2 ** 30).toFixed(1);
     throw new Mistake(
       `${folder}: it holds ${size} GB, and at most ${MOST_BYTES / 2 ** 30} are read: copy some of its pairs into a folder of their own`,
+      "file",
     );
   }
   return paths.map((path) => file(path, relative(folder, path)));

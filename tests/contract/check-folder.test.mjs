@@ -149,6 +149,8 @@ describe("exit codes", () => {
       ["file", "file", "off", "--calibration", "damaged.json"],
       ["file", "file", "off", "--calibration", "one.json", "--cameras", "missing.json"],
       ["file", "file", "none", "--calibration", "one.json"],
+      ["file", "file", "nowhere", "--calibration", "one.json"],
+      ["file", "file", "off", "--calibration", "world.json"],
     ]) {
       const { status, stdout, stderr } = check(...args, "--json", "-");
       const { error } = JSON.parse(stdout);

@@ -166,7 +166,7 @@ function certainty(covariance: readonly number[], axis: Axis): number {
   return WITHIN * sigma * (index < 3 ? 180 / Math.PI : 1000);
 }
 
-/** Whether the whole step about the minimum lies outside of the interval: offsets are too coarse to tell less. */
+/** Whether the minimum lies outside the interval by more than one step of the offsets, which are too coarse for a finer test. */
 function isOutside(xs: readonly number[], best: number, reach: number): boolean {
   const [before, after] = [xs[best - 1] ?? -Infinity, xs[best + 1] ?? Infinity];
   return before > reach || after < -reach;
