@@ -27,8 +27,14 @@ const cargo =
  * also chooses their crates' features, and cargo keeps only one build of the library: a build with another choice discards it.
  */
 const LIBRARY = ["-p", "bimodal-stereo"];
-/** A test in a browser runs to its end as well; the runner's own limit is twenty seconds. */
-const PATIENCE = { WASM_BINDGEN_TEST_TIMEOUT: "1800" };
+/**
+ * A test in a browser runs to its end as well. The runner's own limit is twenty seconds, and the browser's driver gives up a script that
+ * waits thirty seconds for a page that computes.
+ */
+const PATIENCE = {
+  WASM_BINDGEN_TEST_TIMEOUT: "1800",
+  WASM_BINDGEN_TEST_WEBDRIVER_JSON: inRoot("tests/webdriver.json"),
+};
 /** Modules of `tests/library` with searches and sweeps: they always run natively, and as wasm only with `--long`. */
 const SEARCHES = [
   "initialisation",
@@ -49,15 +55,7 @@ const wasmTests = (where, skipped = WITHOUT_SEARCHES) =>
   });
 /** In Node, `--long` runs all of them. A page and a worker have the same engine, so long tests would only repeat the computation. */
 const wasmInNode = () => wasmTests({}, LONG ? [] : WITHOUT_SEARCHES);
-const wasmIn = (variable) => async () => {
-  const run = async () => wasmTests({ [variable]: "1", CHROMEDRIVER: (await browser()).chromedriver });
-  const first = await run();
-  // The tests keep the page busy for a minute, in which a loaded machine may lose the driver. A failing test is not repeated.
-  const isDriverLost = first.code !== 0 && /^driver status: /m.test(first.output) && !/ FAILED/.test(first.output);
-  if (!isDriverLost) return first;
-  say("the driver was lost before the tests ended: once more");
-  return run();
-};
+const wasmIn = (variable) => async () => wasmTests({ [variable]: "1", CHROMEDRIVER: (await browser()).chromedriver });
 /** Native builds check all optional features; builds for browsers have none. */
 const FEATURES = ["--all-features"];
 
