@@ -49,12 +49,16 @@ const SEARCHES = [
 ];
 const WITHOUT_SEARCHES = [...SEARCHES.flatMap((name) => ["--skip", `${name}::`]), "--skip", "::long::"];
 /** The library's tests that read no files, compiled for wasm. */
-const wasmTests = (where, skipped = WITHOUT_SEARCHES) =>
-  watch("cargo", ["test", ...LIBRARY, "--target", WASM, "--lib", "--test", "library", "--", ...skipped], {
+const wasmTests = (where, chosen = WITHOUT_SEARCHES, targets = ["--lib", "--test", "library"]) =>
+  watch("cargo", ["test", ...LIBRARY, "--target", WASM, ...targets, "--", ...chosen], {
     env: { ...PATIENCE, ...where },
   });
-/** In Node, `--long` runs all of them. A page and a worker have the same engine, so long tests would only repeat the computation. */
-const wasmInNode = () => wasmTests({}, LONG ? [] : WITHOUT_SEARCHES);
+/**
+ * In Node, `--long` runs all of them, the longest as a part of their own. A page and a worker have the same engine, so long tests would
+ * only repeat the computation.
+ */
+const wasmInNode = () => wasmTests({}, LONG ? ["--skip", "::long::"] : WITHOUT_SEARCHES);
+const longWasmInNode = () => wasmTests({}, ["::long::"], ["--test", "library"]);
 const wasmIn = (variable) => async () => wasmTests({ [variable]: "1", CHROMEDRIVER: (await browser()).chromedriver });
 /** Native builds check all optional features; builds for browsers have none. */
 const FEATURES = ["--all-features"];
@@ -223,8 +227,12 @@ function notRun(output) {
   return { count: found.length, lines };
 }
 
+/** The lane of a part that may run in either. */
+const EITHER = -1;
+
 /**
  * In the order of running. The two lanes run in parallel: cargo's in one, what needs the package in the other, which alone builds the page.
+ * The lane that is done first goes on with the parts of either.
  * Parts that are `long` run with `--long` or by name.
  */
 const PARTS = [
@@ -260,6 +268,7 @@ const PARTS = [
   { name: "wasm-node", run: wasmInNode, long: true, lane: 0, closing: CARGO },
   { name: "wasm-browser", run: wasmIn("WASM_BINDGEN_USE_BROWSER"), long: true, lane: 0, closing: CARGO },
   { name: "wasm-worker", run: wasmIn("WASM_BINDGEN_USE_DEDICATED_WORKER"), long: true, lane: 0, closing: CARGO },
+  { name: "wasm-long", run: longWasmInNode, long: true, lane: EITHER, closing: CARGO },
   { name: "sizes", run: downloads, needsBuild: true, lane: 1, closing: /^size of .*$/gm },
   {
     name: "firefox",
@@ -277,6 +286,7 @@ const PARTS = [
     run: tables,
     needsBuild: true,
     long: true,
+    lane: EITHER,
     closing: /^(?:.* (?:ok|MISSED)$|.* cells failed:|tables: .*)$/gm,
   },
   {
@@ -326,10 +336,19 @@ async function inTurn(parts, run) {
 /** Runs consecutive parts with lanes in parallel, the others alone. */
 async function attemptAll(parts) {
   const first = parts.findIndex(isInLane);
-  const lanes = [0, 1].map((lane) => parts.filter((part) => part.lane === lane)).filter((lane) => lane.length > 0);
+  const ofLane = (lane) => parts.filter((part) => part.lane === lane);
+  const lanes = [0, 1].map(ofLane).filter((lane) => lane.length > 0);
   if (lanes.length < 2) return inTurn(parts, attempt);
   const before = await inTurn(parts.slice(0, first), attempt);
-  const beside = await Promise.all(lanes.map((lane) => inTurn(lane, (part) => inOnePiece(() => attempt(part)))));
+  const either = ofLane(EITHER);
+  const inOne = (part) => inOnePiece(() => attempt(part));
+  const beside = await Promise.all(
+    lanes.map(async (lane) => {
+      const results = await inTurn(lane, inOne);
+      while (either.length > 0) results.push(await inOne(either.shift()));
+      return results;
+    }),
+  );
   return [
     ...before,
     ...beside.flat(),
