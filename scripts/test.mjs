@@ -54,7 +54,7 @@ const wasmTests = (where, chosen = WITHOUT_SEARCHES, targets = ["--lib", "--test
     env: { ...PATIENCE, ...where },
   });
 /**
- * In Node, `--long` runs all of them, the longest as a part of their own. A page and a worker have the same engine, so long tests would
+ * In Node, `--long` runs all of them, the longest as a separate part. A page and a worker have the same engine, so long tests would
  * only repeat the computation.
  */
 const wasmInNode = () => wasmTests({}, LONG ? ["--skip", "::long::"] : WITHOUT_SEARCHES);
