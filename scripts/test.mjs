@@ -27,14 +27,8 @@ const cargo =
  * also chooses their crates' features, and cargo keeps only one build of the library: a build with another choice discards it.
  */
 const LIBRARY = ["-p", "bimodal-stereo"];
-/**
- * A test in a browser runs to its end as well. The runner's own limit is twenty seconds, and the browser's driver gives up a script that
- * waits thirty seconds for a page that computes.
- */
-const PATIENCE = {
-  WASM_BINDGEN_TEST_TIMEOUT: "1800",
-  WASM_BINDGEN_TEST_WEBDRIVER_JSON: inRoot("tests/webdriver.json"),
-};
+/** A test in a browser runs to its end as well; the runner's own limit is twenty seconds. */
+const PATIENCE = { WASM_BINDGEN_TEST_TIMEOUT: "1800" };
 /** Modules of `tests/library` with searches and sweeps: they always run natively, and as wasm only with `--long`. */
 const SEARCHES = [
   "initialisation",
@@ -59,11 +53,11 @@ const wasmTests = (where, chosen = WITHOUT_SEARCHES, targets = ["--lib", "--test
  */
 const wasmInNode = () => wasmTests({}, LONG ? ["--skip", "::long::"] : WITHOUT_SEARCHES);
 const longWasmInNode = () => wasmTests({}, ["::long::"], ["--test", "library"]);
-/** Runs of the tests in a browser: a loaded machine may lose the browser's driver before they end. A failing test is not repeated. */
+/** Maximum number of runs in a browser, if a loaded machine loses its driver before the tests end. A failing test is not repeated. */
 const MOST_RUNS = 3;
 const wasmIn = (variable) => async () => {
   const run = async () => wasmTests({ [variable]: "1", CHROMEDRIVER: (await browser()).chromedriver });
-  const isDriverLost = ({ code, output }) => code !== 0 && !/ FAILED|could not compile/.test(output);
+  const isDriverLost = ({ code, output }) => code !== 0 && /^driver status: /m.test(output) && !/ FAILED/.test(output);
   let result = await run();
   for (let runs = 1; runs < MOST_RUNS && isDriverLost(result); runs++) {
     say("the driver was lost before the tests ended: once more");
@@ -243,7 +237,7 @@ const EITHER = -1;
 
 /**
  * In the order of running. The two lanes run in parallel: cargo's in one, what needs the package in the other, which alone builds the page.
- * The lane that is done first goes on with the parts of either.
+ * The lane that ends first takes the parts that may run in either.
  * Parts that are `long` run with `--long` or by name.
  */
 const PARTS = [

@@ -47,13 +47,10 @@ async function checked(
 /** An error as `--json` prints it. */
 function errorJson(error: unknown): string {
   const { name, code, field } = error as { name?: unknown; code?: unknown; field?: unknown };
-  const isOfSystem = error instanceof Error && "syscall" in error;
-  const known =
-    error instanceof Mistake || name === "BimodalError"
-      ? { code, field }
-      : isOfSystem
-        ? { code: "file", field: "file" }
-        : { code: "internal" };
+  let known: { code: unknown; field?: unknown } = { code: "internal" };
+  if (error instanceof Mistake || name === "BimodalError") known = { code, field };
+  // The system refused a file or a folder.
+  else if (error instanceof Error && "syscall" in error) known = { code: "file", field: "file" };
   return `${JSON.stringify({ error: { ...known, message: reasonOf(error) } }, null, 2)}\n`;
 }
 
