@@ -147,9 +147,11 @@ impl Lattice {
         while reach(*pace).iter().map(|&k| 2.0 * f64::from(k) + 1.0).product::<f64>() > MOST_PLACES {
             *pace *= 1.1;
         }
-        let sigmas = lengths.map(|length| *pace / length);
+        let reach = reach(*pace);
+        // A direction that moves no discontinuity has no places: a step of one pace along it would overflow.
+        let sigmas: [f64; UNKNOWNS] = std::array::from_fn(|k| if reach[k] > 0 { *pace / lengths[k] } else { 0.0 });
         let steps = std::array::from_fn(|k| root * eigen.eigenvectors.column(order[k]) * sigmas[k]);
-        Some(Self { steps, sigmas, reach: reach(*pace) })
+        Some(Self { steps, sigmas, reach })
     }
 
     fn mark(&self, (frame, rim, rows): &(usize, Rim, [Vector; 2])) -> Mark {
@@ -209,4 +211,38 @@ fn moved(pixel: [f32; 2], motion: [f32; 2], paces: i8) -> [f32; 2] {
 
 fn squared_distance(a: &Place, b: &Place) -> f64 {
     a.iter().zip(b).map(|(&a, &b)| (f64::from(a) - f64::from(b)).powi(2)).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Rotation3, Vector3};
+
+    use super::*;
+    use crate::numeric::noise;
+    use crate::view::{Lens, Pinhole};
+
+    /// The edge bias moves no discontinuity, so one eigenvalue is zero and rounds to either side. A step along it must
+    /// not make the places of the other directions useless.
+    #[test]
+    fn every_step_of_the_lattice_is_finite() {
+        let camera = Pinhole { fx: 600.0, fy: 600.0, cx: 320.0, cy: 240.0, lens: Lens::None };
+        let mut random = noise::white_noise(3);
+        let points: Vec<Vector3<f64>> =
+            (0..60).map(|_| Vector3::new(0.3 * random(), 0.2 * random(), 2.0 + 0.3 * random())).collect();
+        for turn in 0..40 {
+            let rotation = Rotation3::new(Vector3::y() * 1e-7 * f64::from(turn));
+            let points: Vec<Vector3<f64>> = points.iter().map(|point| rotation * point).collect();
+            let units = Units::new(&points, &camera);
+            let row = |point: &Vector3<f64>| {
+                let (pixel, rows) = units.rows(point, &camera)?;
+                Some((0, Rim { index: 0, pixel, normal: [1.0, 0.0], gap: 1.0 }, rows))
+            };
+            let rows: Vec<_> = points.iter().filter_map(row).collect();
+            let mut pace = PACE;
+            let lattice = Lattice::new(&rows, &Matrix::identity(), &mut pace).unwrap();
+            let marks = rows.iter().map(|row| lattice.mark(row));
+            assert!(marks.flat_map(|mark| mark.motion).flatten().all(f32::is_finite), "turn {turn}");
+            assert!(lattice.sigmas.iter().all(|sigma| sigma.is_finite()), "turn {turn}");
+        }
+    }
 }
