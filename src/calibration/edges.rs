@@ -48,6 +48,8 @@ struct Profile {
     /// Standard deviation s of the position at which the near surface ends, pixels.
     sigma: f64,
     window: f64,
+    /// How many independent discontinuities it stands for, at most one.
+    weight: f64,
     tile: u32,
     edges: Vec<(f64, f64)>,
 }
@@ -66,7 +68,10 @@ impl EdgeField {
     /// The depth discontinuities that the colour camera sees, at most `most`.
     pub fn rims(frame: &Frame, projection: &Projection, most: usize) -> Vec<Rim> {
         let mut rims = rims::find(frame, projection);
+        let found = rims.len();
         thin(&mut rims, most);
+        let kept = rims.len() as f64 / found.max(1) as f64;
+        rims.iter_mut().for_each(|rim| rim.alike = 1.0 + kept * (rim.alike - 1.0));
         rims
     }
 
@@ -98,10 +103,13 @@ impl EdgeField {
             row[LOSS] = 1.0;
             let start = [0, 1].map(|k| rim.pixel[k] + state.loss * rim.normal[k]);
             // The variance of a uniform distribution over the gap adds to that of the edges.
-            let sigma = sigma.hypot(rim.gap / EVEN);
+            let of_gap = rim.gap / EVEN;
+            let sigma = sigma.hypot(of_gap);
+            // Neighbours in one gap share its error: the variance of their mean is that of so many independent ones.
+            let weight = 1.0 / (1.0 + (rim.alike - 1.0) * (of_gap / sigma).powi(2));
             let window = (WINDOW * sigma).max(widest);
             let edges = edges(planes, start, rim.normal, window, blur)?;
-            Some(Profile { row, sigma, window, tile: tiles.of(rim.pixel), edges })
+            Some(Profile { row, sigma, window, weight, tile: tiles.of(rim.pixel), edges })
         };
         Self { profiles: rims.iter().filter_map(profile).collect() }
     }
@@ -126,12 +134,13 @@ impl EdgeField {
             let whole = total + background;
             let slope = first / whole / sigma;
             let bound = total / whole / (sigma * sigma);
-            bounds += bound;
-            own += bound - second / whole / (sigma * sigma) + slope * slope;
+            let weight = profile.weight;
+            bounds += weight * bound;
+            own += weight * (bound - second / whole / (sigma * sigma) + slope * slope);
             let share = &mut shares[profile.tile as usize];
-            share.value += (whole / background).ln();
-            share.gradient += profile.row * slope;
-            add_square(&mut share.curvature, &profile.row, bound);
+            share.value += weight * (whole / background).ln();
+            share.gradient += profile.row * (weight * slope);
+            add_square(&mut share.curvature, &profile.row, weight * bound);
         }
         // Without discontinuities the curvature is zero, and its factor is arbitrary.
         let left = if bounds > 0.0 { (own / bounds).clamp(LEAST_LEFT, 1.0) } else { 1.0 };
@@ -140,6 +149,11 @@ impl EdgeField {
 
     pub fn len(&self) -> usize {
         self.profiles.len()
+    }
+
+    /// The number of independent discontinuities.
+    pub fn weight(&self) -> f64 {
+        self.profiles.iter().map(|profile| profile.weight).sum()
     }
 }
 

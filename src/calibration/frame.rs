@@ -32,6 +32,8 @@ pub(super) struct Frame {
     pub grid: Size,
     /// Columns and rows of the depth map in a cell of `grid`: one unless the map is sparse.
     pub cell: [usize; 2],
+    /// Column and row of the depth map of each cell's sample; empty if every pixel of the map is a cell.
+    pub places: Vec<(usize, usize)>,
     /// In the depth camera's frame, metres; NaN where missing or outside the mask.
     pub points: Vec<[f32; 3]>,
     pub has_depth_mask: bool,
@@ -59,11 +61,24 @@ impl Frame {
             image_mask: None,
             grid,
             cell: [1, 1],
+            places: vec![],
             points,
             has_depth_mask: false,
             pixel: 1.0,
             noise,
         }
+    }
+
+    /// Column and row of the depth map at which the sample of a cell was measured.
+    pub fn place(&self, index: usize) -> (usize, usize) {
+        self.places.get(index).copied().unwrap_or_else(|| self.grid.position(index))
+    }
+
+    /// From one sample to another on the raster, in cells.
+    pub fn step(&self, from: usize, to: usize) -> [f64; 2] {
+        let ((column, row), (to_column, to_row)) = (self.place(from), self.place(to));
+        let [columns, rows] = self.cell.map(|side| side as f64);
+        [(to_column as f64 - column as f64) / columns, (to_row as f64 - row as f64) / rows]
     }
 
     /// Distance, metres, from which a point counts as behind another one at `distance`.

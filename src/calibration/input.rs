@@ -4,7 +4,7 @@ use super::ahead::Ahead;
 use super::frame::Frame;
 use super::planes::Planes;
 use super::reason::{Warning, WarningKind};
-use super::sampling::gathered;
+use super::sampling::{Gathered, gathered};
 use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
 use crate::view::{ColourSamples, DepthSamples, Lens, Pinhole, Size, Transfer, to_srgb, transfer_of};
@@ -103,9 +103,10 @@ impl RigView {
             Pinhole { fx: focal, fy: focal, cx, cy, lens: Lens::None }
         });
         validate(&camera, size, "image.camera")?;
-        let (grid, cell, points) = gathered(grid, points);
-        let mut frame = Frame::new(self.name, planes, camera, grid, points);
+        let Gathered { grid: cells, cell, points, sources } = gathered(grid, points);
+        let mut frame = Frame::new(self.name, planes, camera, cells, points);
         frame.cell = cell;
+        frame.places = sources.into_iter().map(|index| grid.position(index)).collect();
         let mask = self.image_mask.map(|mask| mask.into_iter().map(|value| value != 0).collect::<Vec<bool>>());
         if let Some(mask) = &mask {
             frame.planes.keep_near(mask);

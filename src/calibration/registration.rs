@@ -222,12 +222,12 @@ impl Scene {
         for _ in 0..ROUNDS {
             let state = start.round.state;
             let units = self.units(&state);
-            let (mut evidence, mut count) = (Evidence::default(), 0);
+            let (mut evidence, mut count) = (Evidence::default(), 0.0);
             for ((frame, planes), rims) in self.frames.iter().zip(planes).zip(&start.rims) {
                 let moved = EdgeField::moved(frame, rims, &start.found, &state);
                 count += add_edges(Sight { frame, planes }, &moved, &start.round, &units, &mut evidence);
             }
-            let mean = evidence.value() / count.max(1) as f64;
+            let mean = evidence.value() / f64::max(count, 1.0);
             let mut total = Evidence::default();
             evidence.add_to(&mut total, evidence.weight());
             let back = units.between(&start.round.told, &state);
@@ -263,13 +263,13 @@ const SURFACE_TRUST: f64 = 0.25;
 /// as one, so that about a hundred of the thousands in a scene are independent.
 const SCORE_PRIOR: f64 = 0.01;
 
-/// Adds the evidence of a frame's edges, and returns the number of depth discontinuities on its image.
-fn add_edges(sight: Sight<'_>, rims: &[Rim], round: &Round, units: &Units, evidence: &mut Evidence) -> usize {
+/// Adds the evidence of a frame's edges, and returns the number of independent depth discontinuities on its image.
+fn add_edges(sight: Sight<'_>, rims: &[Rim], round: &Round, units: &Units, evidence: &mut Evidence) -> f64 {
     let mut shares = vec![Share::none(); Tiles::new(sight.planes.size).count()];
     let field = EdgeField::new(sight, rims, &round.state, units, round.sigma);
     field.evidence(&mut shares);
     evidence.shares.extend(shares);
-    field.len()
+    field.weight()
 }
 
 fn step(total: &Evidence, prior: &Matrix, back: &Vector) -> Vector {

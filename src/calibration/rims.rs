@@ -16,6 +16,8 @@ const WIDEST_HOLE: usize = 40;
 const BEHIND: [isize; 4] = [2, 1, 3, 4];
 /// Neighbours to each side that determine the local map from raster to image.
 const REACH: isize = 2;
+/// Pixels to each side along which a boundary counts as straight.
+const STRAIGHT: usize = 8;
 /// Minimum number of near pixels that determine this map.
 const FEWEST_NEIGHBOURS: usize = 4;
 
@@ -24,30 +26,60 @@ const FEWEST_NEIGHBOURS: usize = 4;
 pub(super) struct Rim {
     /// Index of the near pixel in the depth map.
     pub index: usize,
-    /// Position at which the near surface ends on the image: half a depth pixel beyond the near pixel.
+    /// Position at which the near surface ends on the image: in the middle of the gap.
     pub pixel: [f64; 2],
     /// Unit normal of the discontinuity on the image, away from the near surface.
     pub normal: [f64; 2],
-    /// Distance on the image along the normal, in pixels, from the near pixel to the next one of the raster. The near
-    /// surface ends anywhere in between.
+    /// Distance on the image along the normal, in pixels, from the near pixel to the nearest next one of the raster that
+    /// is not on the near surface. This surface ends anywhere in between.
     pub gap: f64,
+    /// Number of neighbours along a row or column of the raster, itself among them, whose surface ends in the same gap.
+    /// Where a straight boundary lies in its gap is one unknown for all of them.
+    pub alike: f64,
 }
 
 /// All depth discontinuities that the colour camera sees.
 pub(super) fn find(frame: &Frame, projection: &Projection) -> Vec<Rim> {
-    let near = |index: usize| {
-        let depth = projection.positions[index][2];
-        !depth.is_nan() && !projection.is_hidden[index] && ends_before_farther(frame, projection, index)
+    let is_near = |index: &usize| !depth(projection, *index).is_nan() && !projection.is_hidden[*index];
+    let mut found: Vec<Rim> = vec![];
+    let mut ways = vec![usize::MAX; frame.grid.len()];
+    for index in (0..frame.grid.len()).filter(is_near) {
+        if let Some((rim, way)) = rim(frame, projection, index) {
+            ways[index] = way;
+            found.push(rim);
+        }
+    }
+    found.iter_mut().for_each(|rim| rim.alike = alike(frame, &ways, rim.index) as f64);
+    found
+}
+
+/// The number of neighbours, the pixel among them, along a row or column of the raster whose surface ends in the same gap:
+/// a boundary between two rows goes on along the row, one between two columns along the column.
+fn alike(frame: &Frame, ways: &[usize], index: usize) -> usize {
+    let (way, (column, row)) = (ways[index], frame.grid.position(index));
+    let is_between_rows = way >= 2;
+    let (at, length, stride) =
+        if is_between_rows { (column, frame.grid.width, 1) } else { (row, frame.grid.height, frame.grid.width) };
+    let of = |place: (usize, usize)| if is_between_rows { place.1 } else { place.0 };
+    let line = of(frame.place(index));
+    let neighbours = at.saturating_sub(STRAIGHT)..(at + STRAIGHT + 1).min(length);
+    let is_alike = |other: &usize| {
+        let other = index + other * stride - at * stride;
+        ways[other] == way && of(frame.place(other)) == line
     };
-    (0..frame.grid.len()).filter(|&index| near(index)).filter_map(|index| rim(frame, projection, index)).collect()
+    neighbours.filter(is_alike).count()
 }
 
 fn depth(projection: &Projection, index: usize) -> f64 {
     f64::from(projection.positions[index][2])
 }
 
-/// Whether any of the next pixels with a depth is clearly farther than the continued surface.
-fn ends_before_farther(frame: &Frame, projection: &Projection, index: usize) -> bool {
+/// The steps on the raster in the four ways.
+const STEPS: [[f64; 2]; 4] = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
+
+/// In each of the four ways, the step on the raster to the next pixel beyond the near surface, if the next depth is
+/// clearly farther than the continued surface.
+fn ends_before_farther(frame: &Frame, projection: &Projection, index: usize) -> [Option<[f64; 2]>; 4] {
     let grid = frame.grid;
     let (column, row) = grid.position(index);
     let here = depth(projection, index);
@@ -61,21 +93,27 @@ fn ends_before_farther(frame: &Frame, projection: &Projection, index: usize) -> 
         (grid.width as isize, hole[1], grid.height - 1 - row, row),
         (-(grid.width as isize), hole[1], row, grid.height - 1 - row),
     ];
-    ways.into_iter().any(|(stride, hole, ahead, behind)| {
+    let mut way = 0;
+    ways.map(|(stride, hole, ahead, behind)| {
+        let beside = STEPS[way];
+        way += 1;
         let at = |steps: isize| depth(projection, index.wrapping_add_signed(stride * steps));
         let mut steps = 1..=ahead.min(hole) as isize;
-        let Some(steps) = steps.find(|&steps| !at(steps).is_nan()) else { return false };
+        let steps = steps.find(|&steps| !at(steps).is_nan())?;
         // Most pixels stop here: a continued slope only reduces the distance.
         if at(steps) - here <= gap {
-            return false;
+            return None;
         }
         let is_known = |&back: &isize| back as usize <= behind && !at(-back).is_nan();
         // One sample alone may lie on a floor that recedes.
-        let Some(back) = BEHIND.into_iter().find(is_known) else { return false };
+        let back = BEHIND.into_iter().find(is_known)?;
         // Planes are linear in the inverse depth.
         let slope = ((1.0 / here - 1.0 / at(-back)) / back as f64).min(0.0);
         let continued = 1.0 / here + slope * steps as f64;
-        continued > 0.0 && at(steps) - 1.0 / continued > gap
+        let is_beyond = continued > 0.0 && at(steps) - 1.0 / continued > gap;
+        // Beyond a hole, the surface ends before the first missing pixel.
+        let step = if steps == 1 { frame.step(index, index.wrapping_add_signed(stride)) } else { beside };
+        is_beyond.then_some(step)
     })
 }
 
@@ -114,7 +152,7 @@ impl Neighbourhood {
                 (0..2).for_each(|k| sums.away[k] += side * offset[k]);
                 let pixel = projection.pixels[other];
                 if is_near && !pixel[0].is_nan() {
-                    sums.add(offset, [0, 1].map(|k| f64::from(pixel[k] - centre[k])));
+                    sums.add(frame.step(index, other), [0, 1].map(|k| f64::from(pixel[k] - centre[k])));
                 }
             }
         }
@@ -144,10 +182,41 @@ impl Neighbourhood {
     }
 }
 
-/// Position and normal of the depth discontinuity at a near pixel.
-fn rim(frame: &Frame, projection: &Projection, index: usize) -> Option<Rim> {
+/// Where the near surface ends along the normal, from the steps to the pixels beyond it.
+struct Gap {
+    /// The way that is nearest to the normal.
+    way: usize,
+    gap: f64,
+}
+
+impl Gap {
+    /// Each step s at an angle to the normal ends after |s| cos. The gap is the root of the mean of the inverse squares,
+    /// weighted by the fourth power of the cosine: the nearest sample beyond counts most, and one beside the normal, which
+    /// only noise puts beyond a straight boundary, counts for nothing as its cosine vanishes.
+    fn of(ends: &[Option<[f64; 2]>; 4], normal: [f64; 2], on_image: impl Fn([f64; 2]) -> [f64; 2]) -> Option<Self> {
+        let (mut precision, mut weights, mut best) = (0.0, 0.0, (0.0, 0));
+        for (way, step) in ends.iter().enumerate() {
+            let Some(step) = step else { continue };
+            let [x, y] = on_image(*step);
+            let (along, length) = (x * normal[0] + y * normal[1], x.hypot(y));
+            let cosine = along / length;
+            if cosine > 0.0 {
+                precision += cosine.powi(2) / length.powi(2);
+                weights += cosine.powi(4);
+                if cosine > best.0 {
+                    best = (cosine, way);
+                }
+            }
+        }
+        (weights > 0.0).then(|| Self { way: best.1, gap: (weights / precision).sqrt() })
+    }
+}
+
+/// Position and normal of the depth discontinuity at a near pixel, and the way in which it ends the nearest.
+fn rim(frame: &Frame, projection: &Projection, index: usize) -> Option<(Rim, usize)> {
+    let ends = ends_before_farther(frame, projection, index);
     let centre = projection.pixels[index];
-    if centre[0].is_nan() {
+    if centre[0].is_nan() || ends == [None; 4] {
         return None;
     }
     let (away, [[a, b], [c, d]]) = Neighbourhood::of(frame, projection, index).fitted()?;
@@ -156,12 +225,9 @@ fn rim(frame: &Frame, projection: &Projection, index: usize) -> Option<Rim> {
     let normal = [sign * (d * away[0] - c * away[1]), sign * (a * away[1] - b * away[0])];
     let length = normal[0].hypot(normal[1]);
     let normal = normal.map(|value| value / length);
-    let outwards = (a * away[0] + b * away[1]) * normal[0] + (c * away[0] + d * away[1]) * normal[1];
-    if outwards.is_nan() || outwards <= 0.0 {
-        return None;
-    }
-    let pixel = [0, 1].map(|k| f64::from(centre[k]) + 0.5 * outwards * normal[k]);
-    Some(Rim { index, pixel, normal, gap: outwards })
+    let Gap { way, gap } = Gap::of(&ends, normal, |[x, y]| [a * x + b * y, c * x + d * y])?;
+    let pixel = [0, 1].map(|k| f64::from(centre[k]) + 0.5 * gap * normal[k]);
+    Some((Rim { index, pixel, normal, gap, alike: 1.0 }, way))
 }
 
 #[cfg(test)]
@@ -189,6 +255,8 @@ mod tests {
         let planes = Planes { size, pixels: vec![[0.5; 3]; size.len()] };
         let mut frame = Frame::new(String::new(), planes, camera, grid, points);
         frame.cell = cell;
+        frame.places =
+            (0..grid.len()).map(|index| grid.position(index)).map(|(x, y)| (x * cell[0], y * cell[1])).collect();
         let projection = Projection::new(&frame, &State::at(Similarity::identity()));
         find(&frame, &projection)
     }
@@ -204,6 +272,39 @@ mod tests {
             let found = seen([1, rows], floor);
             assert!(found.is_empty(), "{rows}: {}", found.len());
         }
+    }
+
+    /// Between coarse rows an oblique boundary passes the samples of a row at different distances: the gap of each is
+    /// that to the nearest sample beyond.
+    #[test]
+    fn an_oblique_boundary_lies_within_the_gap_of_each_of_its_samples() {
+        for rows in [1, 2, 4] {
+            // Half a pixel off the centres, so that no sample lies on the boundary.
+            let found = seen([1, rows], |[x, y]| if 60.0 * (x + y) < -0.5 { 1.0 } else { 3.0 });
+            let inner: Vec<_> = found.iter().filter(|rim| (8.0..40.0).contains(&rim.pixel[1])).collect();
+            assert!(inner.len() >= 25, "{rows}: {}", inner.len());
+            let off = |rim: &&Rim| (rim.pixel[0] - 31.5 + rim.pixel[1] - 23.5 + 0.5) * 0.5_f64.sqrt();
+            let mean = inner.iter().map(off).sum::<f64>() / inner.len() as f64;
+            assert!(mean.abs() < 0.35, "{rows}: {mean}");
+            let outside = inner.iter().filter(|rim| off(rim).abs() > 0.5 * rim.gap + 0.1).count();
+            assert!(outside == 0, "{rows}: {outside} of {}", inner.len());
+            let nearest = inner.iter().filter(|rim| rim.gap < 0.95).count();
+            assert!(nearest >= inner.len() / rows - 1, "{rows}: {nearest} of {}", inner.len());
+        }
+    }
+
+    #[test]
+    fn a_straight_boundary_along_the_raster_has_many_alike() {
+        let found = seen([1, 4], |[_, y]| if y < 0.1 { 1.0 } else { 3.0 });
+        assert!(found.len() > 50, "{}", found.len());
+        let inner = found.iter().filter(|rim| (12.0..52.0).contains(&rim.pixel[0]));
+        assert!(inner.clone().all(|rim| rim.alike == 17.0), "{:?}", inner.map(|rim| rim.alike).collect::<Vec<_>>());
+        let oblique = seen([1, 1], |[x, y]| if 60.0 * (x + y) < -0.5 { 1.0 } else { 3.0 });
+        assert!(
+            oblique.iter().all(|rim| rim.alike < 3.0),
+            "{:?}",
+            oblique.iter().map(|rim| rim.alike).collect::<Vec<_>>()
+        );
     }
 
     #[test]

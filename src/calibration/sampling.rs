@@ -62,14 +62,25 @@ fn cell(grid: Size, points: &[[f32; 3]]) -> [usize; 2] {
     }
 }
 
-/// The raster, columns and rows of its cells, and its points: gathered if the samples are sparse.
-pub(super) fn gathered(grid: Size, points: Vec<[f32; 3]>) -> (Size, [usize; 2], Vec<[f32; 3]>) {
+/// The raster of the check, and the sample in each of its cells.
+pub(super) struct Gathered {
+    pub grid: Size,
+    /// Columns and rows of the depth map in a cell.
+    pub cell: [usize; 2],
+    /// NaN where a cell holds no sample.
+    pub points: Vec<[f32; 3]>,
+    /// Index in the depth map of each cell's sample; empty if every pixel is a cell.
+    pub sources: Vec<usize>,
+}
+
+/// A raster on which most samples have neighbours.
+pub(super) fn gathered(grid: Size, points: Vec<[f32; 3]>) -> Gathered {
     let [columns, rows] = cell(grid, &points);
     if columns * rows == 1 {
-        return (grid, [1, 1], points);
+        return Gathered { grid, cell: [1, 1], points, sources: vec![] };
     }
     let size = Size { width: grid.width.div_ceil(columns), height: grid.height.div_ceil(rows) };
-    let mut nearest = vec![(usize::MAX, [f32::NAN; 3]); size.len()];
+    let mut nearest = vec![(usize::MAX, 0, [f32::NAN; 3]); size.len()];
     for (index, point) in points.iter().enumerate().filter(|(_, point)| !point[2].is_nan()) {
         let (column, row) = grid.position(index);
         // The square of twice the distance from the centre of the cell, which is a whole number.
@@ -77,10 +88,11 @@ pub(super) fn gathered(grid: Size, points: Vec<[f32; 3]>) -> (Size, [usize; 2], 
         let distance = off(column, columns) + off(row, rows);
         let kept = &mut nearest[size.index(column / columns, row / rows)];
         if distance < kept.0 {
-            *kept = (distance, *point);
+            *kept = (distance, index, *point);
         }
     }
-    (size, [columns, rows], nearest.into_iter().map(|kept| kept.1).collect())
+    let (sources, points) = nearest.into_iter().map(|(_, index, point)| (index, point)).unzip();
+    Gathered { grid: size, cell: [columns, rows], points, sources }
 }
 
 #[cfg(test)]
@@ -104,7 +116,7 @@ mod tests {
     fn a_dense_map_with_a_hole_stays_as_it_is() {
         let points = plane(|index| GRID.position(index).0 < 50);
         assert_eq!(cell(GRID, &points), [1, 1]);
-        assert_eq!(gathered(GRID, points).0, GRID);
+        assert_eq!(gathered(GRID, points).grid, GRID);
     }
 
     #[test]
@@ -120,12 +132,13 @@ mod tests {
         let points = plane(|_| random.uniform() < 0.05);
         let [columns, rows] = cell(GRID, &points);
         assert!(columns.abs_diff(rows) <= 1 && (3..=6).contains(&rows), "{columns} {rows}");
-        let (size, _, kept) = gathered(GRID, points.clone());
+        let Gathered { grid: size, points: kept, sources, .. } = gathered(GRID, points.clone());
         assert_eq!(size, Size { width: GRID.width.div_ceil(columns), height: GRID.height.div_ceil(rows) });
         let valid: Vec<_> = kept.iter().enumerate().filter(|(_, point)| !point[2].is_nan()).collect();
         assert!(2 * valid.len() > size.len());
         for (index, point) in valid {
             let (column, row) = size.position(index);
+            assert_eq!(*point, points[sources[index]]);
             assert_eq!([point[0] as usize / columns, point[1] as usize / rows], [column, row]);
         }
     }
