@@ -11,9 +11,7 @@ use super::input::RigView;
 use super::optima::{self, Optimum, SAME_START};
 use super::planes::Planes;
 use super::reason::{CheckReason, Warning, WarningKind};
-use super::registration::{
-    ARRIVED, Findings, MOST_RIMS_OF_STARTS, MOST_SETTLING, Round, SIGMAS, SURVIVORS, Scene, Start,
-};
+use super::registration::{ARRIVED, Findings, MOST_SETTLING, Round, SIGMAS, SURVIVORS, Scene, Start};
 use super::report::CheckReport;
 use super::rereading::Rereading;
 use super::search;
@@ -101,7 +99,7 @@ impl CalibrationCheck {
         let cues = if cues.is_empty() { Cue::ALL.to_vec() } else { cues.to_vec() };
         let scene = Scene::new(frames, cues, is_guessed);
         let told = told(&scene, &candidates);
-        let best = Round { state: told, told, sigma: 0.0 };
+        let best = Round::from(told, told);
         warn_of_translations(&candidates, &mut warnings);
         Ok(Self {
             scene,
@@ -187,16 +185,14 @@ impl CalibrationCheck {
         let told = self.best.told;
         let units = self.scene.units(&told);
         let (rims, states) = search::starts(&self.scene, &told);
-        let start =
-            |state| Start { round: Round { state, told, sigma: 0.0 }, found: told, rims: rims.clone(), score: 0.0 };
+        let start = |state| Start { round: Round::from(state, told), rims: rims.clone(), score: 0.0 };
         let mut starts: Vec<Start> = states.into_iter().map(start).collect();
         let others = self.candidates.iter().skip(1).map(|candidate| candidate.1);
         for state in others.chain([State::at(told.pose.inverse())]) {
             let is_near =
                 |other: &Start| units.between(&other.round.state, &state).norm() <= SAME_START * self.scene.scale;
             if !starts.iter().any(is_near) {
-                let rims = self.scene.rims(&state, MOST_RIMS_OF_STARTS);
-                starts.push(Start { round: Round { state, told, sigma: 0.0 }, found: state, rims, score: 0.0 });
+                starts.push(self.scene.start(state, told));
             }
         }
         self.starts = starts;
@@ -206,12 +202,7 @@ impl CalibrationCheck {
     fn enter_candidates(&mut self) {
         let told = self.best.told;
         let states = self.candidates.iter().map(|candidate| candidate.1);
-        let entering = states.map(|state| Start {
-            round: Round { state, told, sigma: 0.0 },
-            found: state,
-            rims: self.scene.rims(&state, MOST_RIMS_OF_STARTS),
-            score: 0.0,
-        });
+        let entering = states.map(|state| self.scene.start(state, told));
         let entering: Vec<Start> = entering.collect();
         self.starts.extend(entering);
     }
@@ -224,8 +215,7 @@ impl CalibrationCheck {
     fn approach(&mut self, level: usize, index: usize, planes: Vec<Planes>) -> Stage {
         if let Some(start) = self.starts.get_mut(index) {
             if FINDING_ANEW.contains(&level) {
-                start.found = start.round.state;
-                start.rims = self.scene.rims(&start.found, MOST_RIMS_OF_STARTS);
+                self.scene.find_anew(start);
             }
             self.scene.approach(start, SIGMAS[level] * self.scene.scale, &planes);
             return Stage::Approaching { level, index: index + 1, planes };
@@ -243,7 +233,7 @@ impl CalibrationCheck {
         for (_, state) in &self.candidates {
             let is_near = |round: &Round| units.between(&round.state, state).norm() <= SAME_START * self.scene.scale;
             if !rounds.iter().any(is_near) {
-                rounds.push(Round { state: *state, ..rounds[0] });
+                rounds.push(Round { sigma: rounds[0].sigma, ..Round::from(*state, rounds[0].told) });
             }
         }
         Stage::Settling { rounds, at: 0, done: 0, planes }
@@ -275,7 +265,7 @@ impl CalibrationCheck {
         }
         self.best = optima[0].round;
         self.lens = distortion::left_out(&mut self.scene, &self.best);
-        let report = self.conclude(&optima);
+        let report = self.conclude(&optima, &planes);
         let is_settled = names_reading(&report)
             || report.candidates.first().is_none_or(|first| first.verdict == CheckVerdict::Consistent);
         self.report = Some(report);
@@ -295,7 +285,7 @@ impl CalibrationCheck {
         let lens = self.lens;
         if optima[0].reading.is_some() && is_clear {
             self.lens = distortion::left_out(&mut self.scene, &optima[0].round);
-            let report = self.conclude(&optima);
+            let report = self.conclude(&optima, &planes);
             if names_reading(&report) {
                 self.best = optima[0].round;
                 self.report = Some(report);

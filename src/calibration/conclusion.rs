@@ -3,14 +3,16 @@
 use nalgebra::Vector3;
 
 use super::check::CalibrationCheck;
+use super::distribution::{Distribution, Part, VARIANCE};
 use super::guessed;
 use super::health::Health;
 use super::optima::Optimum;
+use super::planes::Planes;
 use super::readings::Reading;
 use super::reason::{CheckReason, Margin, Warning, WarningKind};
 use super::registration::Findings;
 use super::report::{CheckReport, CueReport, FrameReport};
-use super::unknowns::{Matrix, POSE, State};
+use super::unknowns::{Matrix, POSE, State, UNKNOWNS, Vector};
 use super::verdict::{CandidateReport, CheckVerdict, Judge};
 
 /// Variance if nothing at all is known, squared pixels.
@@ -24,13 +26,14 @@ const LEAST_OVERLAP: f64 = 0.15;
 
 impl CalibrationCheck {
     /// The report on the optima, best first.
-    pub(super) fn conclude(&self, optima: &[Optimum]) -> CheckReport {
+    pub(super) fn conclude(&self, optima: &[Optimum], planes: &[Planes]) -> CheckReport {
         let Optimum { findings, round, .. } = &optima[0];
         let (units, state) = (findings.units, round.state);
         let frame = &self.scene.frames[0];
-        let (judge, covariance) = self.judge_of(&optima[0]);
-        let mut candidates = self.candidate_reports(&judge, &optima[0], &covariance);
-        self.hear_other_optima(&mut candidates, &optima[1..]);
+        let optima = self.possible(optima);
+        let (judge, covariance) = self.judge_of(&optima);
+        let mut candidates = self.candidate_reports(&judge, optima[0], &covariance);
+        self.hear_other_optima(&mut candidates, &optima, planes);
         self.name_reading(&mut candidates, &judge, state);
         let warnings = self.all_warnings(&judge, &state);
         let health = if self.scene.is_seen(&state) { judge.estimate() } else { Judge::blind(self.width) };
@@ -54,23 +57,40 @@ impl CalibrationCheck {
         }
     }
 
-    /// Makes a candidate undecided if another optimum contradicts its verdict. "Off" excludes the candidate, so every
-    /// optimum that the frames do not exclude counts, and an undecided verdict there contradicts as well. A candidate that
-    /// is consistent hardly met the best optimum by chance, so only optima that fit about as well count.
-    fn hear_other_optima(&self, reports: &mut [CandidateReport], others: &[Optimum]) {
-        let is_seen = |other: &&Optimum| other.is_possible() && self.scene.is_seen(&other.round.state);
-        for other in others.iter().filter(is_seen) {
-            let (judge, _) = self.judge_of(other);
-            for (report, (name, candidate)) in reports.iter_mut().zip(&self.candidates) {
-                let own = judge.judge(name, &other.round.state, candidate, None).verdict;
-                let is_contradicted = match report.verdict {
-                    CheckVerdict::Off => own != CheckVerdict::Off,
-                    CheckVerdict::Consistent => own == CheckVerdict::Off && other.is_equal(),
-                    CheckVerdict::Undecided => false,
-                };
-                if is_contradicted {
-                    report.between_optima(judge.tolerance());
+    /// The best optimum and those that the frames do not exclude. A candidate that is consistent hardly met the best optimum
+    /// by chance, so only optima that fit about as well count then.
+    fn possible<'a>(&self, optima: &'a [Optimum]) -> Vec<&'a Optimum> {
+        let (alone, _) = self.judge_of(&[&optima[0]]);
+        let state = optima[0].round.state;
+        let is_consistent = |(name, candidate): &(String, State)| {
+            alone.judge(name, &state, candidate, None).verdict == CheckVerdict::Consistent
+        };
+        let is_met = self.candidates.iter().any(is_consistent);
+        let counts = |other: &&Optimum| if is_met { other.is_equal() } else { other.is_possible() };
+        let is_seen = |other: &&Optimum| self.scene.is_seen(&other.round.state);
+        std::iter::once(&optima[0]).chain(optima[1..].iter().filter(counts).filter(is_seen)).collect()
+    }
+
+    /// Makes a candidate undecided if an optimum contradicts its verdict: "off" has to hold for each of them, and the
+    /// candidate itself has to fit worse than the best.
+    fn hear_other_optima(&self, reports: &mut [CandidateReport], optima: &[&Optimum], planes: &[Planes]) {
+        let judges: Vec<Judge> = optima.iter().map(|optimum| self.judge_of(&[*optimum]).0).collect();
+        for (report, (name, candidate)) in reports.iter_mut().zip(&self.candidates) {
+            let verdict = |(judge, optimum): (&Judge, &&Optimum)| {
+                judge.judge(name, &optimum.round.state, candidate, None).verdict
+            };
+            let mut verdicts = judges.iter().zip(optima).map(verdict);
+            let alone = verdicts.next().unwrap_or(report.verdict);
+            let is_contradicted = match report.verdict {
+                CheckVerdict::Off => {
+                    verdicts.any(|other| other != CheckVerdict::Off)
+                        || self.scene.is_seen(candidate) && !optima[0].excludes(&self.scene, *candidate, planes)
                 }
+                CheckVerdict::Consistent => false,
+                CheckVerdict::Undecided => is_open(&report.reason) && alone != CheckVerdict::Undecided,
+            };
+            if is_contradicted {
+                report.between_optima(judges[0].tolerance());
             }
         }
     }
@@ -93,15 +113,37 @@ impl CalibrationCheck {
         }
     }
 
-    /// The distribution about an optimum, and its covariance in the optimum's units.
-    pub(super) fn judge_of(&self, Optimum { round, findings, .. }: &Optimum) -> (Judge, Matrix) {
-        let state = round.state;
+    /// The distribution of the estimate over some optima, and its covariance in the units of the best, the first.
+    pub(super) fn judge_of(&self, optima: &[&Optimum]) -> (Judge, Matrix) {
+        let best = optima[0];
+        let (state, units) = (best.round.state, best.findings.units);
         let frame = &self.scene.frames[0];
         let cloud = self.scene.cloud(&state);
-        let scale = self.scale(findings, &state, &cloud);
-        let judge = Judge::new(findings.units, &state.camera(&frame.camera), &cloud, &scale, frame.pixel, self.width)
+        let distribution = Distribution::new(optima.iter().map(|optimum| self.part(optimum, best)).collect());
+        let mut covariance = self.scale(&best.findings, &state, &cloud) * VARIANCE;
+        covariance.fixed_view_mut::<POSE, POSE>(0, 0).copy_from(&distribution.covariance());
+        let judge = Judge::new(units, &state.camera(&frame.camera), &cloud, distribution, frame.pixel, self.width)
             .explaining(if self.scene.focal_is_free { guessed::explains(self.width) } else { 0.0 });
-        (judge, scale * Judge::VARIANCE)
+        (judge, covariance)
+    }
+
+    /// The distribution about an optimum in the units of the best.
+    fn part(&self, optimum: &Optimum, best: &Optimum) -> Part {
+        let (from, own) = (best.round.state, optimum.round.state);
+        let scale = self.scale(&optimum.findings, &own, &self.scene.cloud(&own));
+        let middle = best.findings.units.between(&from, &own);
+        // A unit of the optimum, seen from the best.
+        let column = |k: usize| {
+            let unit = Vector::from_fn(|j, _| f64::from(u8::from(j == k)));
+            best.findings.units.between(&from, &optimum.findings.units.step(&own, &unit)) - middle
+        };
+        let turn = Matrix::from_columns(&std::array::from_fn::<Vector, UNKNOWNS, _>(column));
+        let scale = turn * scale * turn.transpose();
+        Part {
+            weight: optimum.weight(),
+            middle: middle.fixed_rows::<POSE>(0).into(),
+            scale: scale.fixed_view::<POSE, POSE>(0, 0).into(),
+        }
     }
 
     fn candidate_reports(&self, judge: &Judge, best: &Optimum, covariance: &Matrix) -> Vec<CandidateReport> {
@@ -160,6 +202,11 @@ impl CalibrationCheck {
             }
         }
     }
+}
+
+/// Whether the distribution of the estimate alone left the verdict open.
+const fn is_open(reason: &CheckReason) -> bool {
+    matches!(reason, CheckReason::TooClose(_) | CheckReason::Unconstrained { .. } | CheckReason::GuessedCamera { .. })
 }
 
 /// The verdict on the first candidate. A warning caps it, because the inputs may have been misread.

@@ -12,9 +12,9 @@ pub(super) fn differences(
     units: &Units,
     state: &State,
     tiles: usize,
-    mut evaluate: impl FnMut(&State, &mut [f64]),
+    evaluate: impl Fn(&State, &mut [f64]),
 ) -> Vec<Share> {
-    let mut at = |moves: &[(usize, f64)]| {
+    let at = |moves: &[(usize, f64)]| {
         let mut step = Vector::zeros();
         moves.iter().for_each(|&(k, by)| step[k] += by);
         let mut out = vec![0.0; tiles];

@@ -5,7 +5,7 @@
 //! likelihoods of the depth discontinuities are compared.
 
 use super::planes::Planes;
-use super::registration::{MOST_RIMS_OF_STARTS, Round, Scene, Start};
+use super::registration::{Round, Scene, Start};
 use crate::view::Lens;
 
 /// Terms k1 that are tried: the smallest move the corner of a common image by ten pixels, the largest belong to wide
@@ -39,10 +39,9 @@ fn score(scene: &mut Scene, round: &Round, lens: Lens, planes: &[Vec<Planes>]) -
 
 fn score_from(scene: &mut Scene, round: &Round, lens: Lens, planes: &[Vec<Planes>]) -> f64 {
     scene.frames.iter_mut().for_each(|frame| frame.camera.lens = lens);
-    let mut start = Start { round: *round, found: round.state, rims: vec![], score: 0.0 };
+    let mut start = Start { round: *round, rims: vec![], score: 0.0 };
     for (sigma, planes) in SIGMAS.iter().zip(planes) {
-        start.found = start.round.state;
-        start.rims = scene.rims(&start.found, MOST_RIMS_OF_STARTS);
+        scene.find_anew(&mut start);
         scene.approach(&mut start, sigma * scene.scale, planes);
     }
     scene.frames.iter_mut().for_each(|frame| frame.camera.lens = Lens::None);

@@ -20,7 +20,7 @@ use super::patches::Sight;
 use super::planes::Planes;
 use super::rims::{self, Rim};
 use super::unknowns::{LOSS, State, Units, Vector, add_square};
-use crate::numeric::thin;
+use crate::view::Size;
 
 /// e, the share of depth discontinuities whose edge is not visible in the image.
 const MISSING: f64 = 0.3;
@@ -69,7 +69,7 @@ impl EdgeField {
     pub fn rims(frame: &Frame, projection: &Projection, most: usize) -> Vec<Rim> {
         let mut rims = rims::find(frame, projection);
         let found = rims.len();
-        thin(&mut rims, most);
+        keep(&mut rims, frame.grid, most);
         let kept = rims.len() as f64 / found.max(1) as f64;
         rims.iter_mut().for_each(|rim| rim.alike = 1.0 + kept * (rim.alike - 1.0));
         rims
@@ -155,6 +155,23 @@ impl EdgeField {
     pub fn weight(&self) -> f64 {
         self.profiles.iter().map(|profile| profile.weight).sum()
     }
+}
+
+/// Keeps at most `most` discontinuities, evenly spread. Each pixel of the raster has a fixed rank, so that one
+/// discontinuity that appears replaces one other, and the sample of all others stays.
+fn keep(rims: &mut Vec<Rim>, grid: Size, most: usize) {
+    if rims.len() <= most {
+        return;
+    }
+    // The fractional parts of multiples of these irrational numbers fill the unit interval evenly along any line of the
+    // raster (Roberts 2018, the sequence R2).
+    let rank = |rim: &Rim| {
+        let (column, row) = grid.position(rim.index);
+        (0.754_877_666_246_692_8 * column as f64 + 0.569_840_290_998_053_3 * row as f64).fract()
+    };
+    let mut ranks: Vec<f64> = rims.iter().map(rank).collect();
+    let limit = *ranks.select_nth_unstable_by(most, f64::total_cmp).1;
+    rims.retain(|rim| rank(rim) < limit);
 }
 
 /// Offsets and shares of the strongest edges along a normal; `None` if the discontinuity lies off the image.

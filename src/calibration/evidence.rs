@@ -7,6 +7,8 @@
 //! 2011). The covariance of the estimate is H^-1 plus the jackknife over tiles (Efron 1982), which unlike H^-1 J H^-1 is
 //! not overconfident if a few tiles hold most of the information.
 
+use std::ops::AddAssign;
+
 use super::unknowns::{Matrix, UNKNOWNS, Vector, add_square, solve, spectral};
 use crate::numeric::eigen::symmetric_eigen;
 use crate::view::Size;
@@ -54,6 +56,27 @@ impl Share {
     }
 }
 
+/// Traces of the curvature H and of the scatter J of a log likelihood's tiles.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Traces {
+    pub curvature: f64,
+    pub scatter: f64,
+}
+
+impl Traces {
+    /// The weight trace(H) / trace(J), at most one.
+    pub fn weight(self) -> f64 {
+        if self.curvature <= 0.0 || self.scatter <= 0.0 { 0.0 } else { (self.curvature / self.scatter).min(1.0) }
+    }
+}
+
+impl AddAssign for Traces {
+    fn add_assign(&mut self, other: Self) {
+        self.curvature += other.curvature;
+        self.scatter += other.scatter;
+    }
+}
+
 /// A log likelihood over all frames, tile by tile.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Evidence {
@@ -71,15 +94,14 @@ impl Evidence {
         self.shares.iter().map(|share| share.curvature).sum()
     }
 
-    /// trace(H) / trace(J), with the gradients of tiles extrapolated to where their sum vanishes; at most one.
-    pub fn weight(&self) -> f64 {
+    /// trace(H) and trace(J), with the gradients of tiles extrapolated to where their sum vanishes.
+    pub fn traces(&self) -> Traces {
         let curvature = self.curvature();
         let ridge = 1e-3 * curvature.trace().abs() / UNKNOWNS as f64 + f64::MIN_POSITIVE;
         let step = solve(&(curvature + Matrix::identity() * ridge), &self.gradient()).unwrap_or_else(Vector::zeros);
         let scatter: f64 =
             self.shares.iter().map(|share| (share.gradient - share.curvature * step).norm_squared()).sum();
-        let trace = curvature.trace();
-        if trace <= 0.0 || scatter <= 0.0 { 0.0 } else { (trace / scatter).min(1.0) }
+        Traces { curvature: curvature.trace(), scatter }
     }
 
     /// Adds this log likelihood, times `weight`, to another one over the same tiles.

@@ -11,7 +11,7 @@
 use super::planes::Planes;
 use super::readings::Reading;
 use super::registration::{Findings, Round, Scene};
-use super::unknowns::POSE;
+use super::unknowns::{POSE, State};
 use super::verdict::Judge;
 
 /// Two poses count as the same if the scene moves by less than this between them, pixels of an image 640 wide.
@@ -66,6 +66,21 @@ impl Optimum {
         self.is_equal() || self.behind <= SIGNIFICANT * self.scatter
     }
 
+    /// Probability that the best optimum fits this much better by chance, one if it is the best.
+    pub fn weight(&self) -> f64 {
+        if self.behind <= 0.0 { 1.0 } else { libm::erfc(self.behind / self.scatter * std::f64::consts::FRAC_1_SQRT_2) }
+    }
+
+    /// Whether the frames exclude another pose: it fits worse, clearly and significantly.
+    pub fn excludes(&self, scene: &Scene, state: State, planes: &[Planes]) -> bool {
+        let round = Round { state, seen_from: state, ..self.round };
+        let mut other = Self::at(scene, round, None, planes);
+        let weights = self.weights();
+        other.behind = self.posterior(&weights) - other.posterior(&weights);
+        other.scatter = scatter(&self.by_tile(&weights), &other.by_tile(&weights));
+        !other.is_possible()
+    }
+
     fn weights(&self) -> Vec<f64> {
         self.findings.cues.iter().map(|cue| cue.2).collect()
     }
@@ -112,7 +127,7 @@ mod tests {
     use super::*;
     use crate::calibration::cue::Cue;
     use crate::calibration::evidence::{Evidence, Share};
-    use crate::calibration::unknowns::{Matrix, State, Units, Vector};
+    use crate::calibration::unknowns::{Matrix, Units, Vector};
     use crate::pose::Similarity;
     use crate::view::{Lens, Pinhole};
     use nalgebra::Vector3;
@@ -125,10 +140,11 @@ mod tests {
         let told = State::at(Similarity::identity());
         let mut back = Vector::zeros();
         back[0] = sigmas;
-        let round = Round { state: units.step(&told, &back), told, sigma: 1.0 };
+        let round = Round::from(units.step(&told, &back), told);
         let evidence = Evidence { shares: vec![Share { value, ..Share::none() }] };
         let cues = vec![(Cue::Edges, evidence.clone(), weight)];
-        let findings = Findings { units, prior: Matrix::identity(), cues, total: evidence, back };
+        let findings =
+            Findings { units, prior: Matrix::identity(), cues, total: evidence, traces: Default::default(), back };
         Optimum { round, findings, reading: None, behind: 0.0, scatter: 0.0 }
     }
 

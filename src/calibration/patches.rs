@@ -42,7 +42,7 @@ impl Patches {
             points: visible.iter().map(|sample| sample.point).collect(),
             normals: visible.iter().map(|sample| sample.normal).collect(),
             tiles: visible.iter().map(|sample| tiling.of(projection.pixels[sample.index].map(f64::from))).collect(),
-            patches: group(&visible),
+            patches: visible.iter().map(|sample| sample.patch).collect(),
         }
     }
 
@@ -56,10 +56,11 @@ impl Patches {
     }
 }
 
-/// k-means of position and normal, which begins with samples far from each other.
-fn group(samples: &[&Sample]) -> Vec<u8> {
+/// Groups all samples of a frame, seen or not, so that a patch does not depend on the pose: k-means of position and
+/// normal, which begins with samples far from each other.
+pub(super) fn group(samples: &mut [Sample]) {
     if samples.is_empty() {
-        return vec![];
+        return;
     }
     let mean = samples.iter().map(|sample| sample.point).sum::<Vector3<f64>>() / samples.len() as f64;
     let spread = (samples.iter().map(|s| (s.point - mean).norm_squared()).sum::<f64>() / samples.len() as f64).sqrt();
@@ -68,7 +69,7 @@ fn group(samples: &[&Sample]) -> Vec<u8> {
         let normal = NORMAL_WEIGHT * sample.normal;
         [place.x, place.y, place.z, normal.x, normal.y, normal.z]
     };
-    let features: Vec<[f64; 6]> = samples.iter().map(|sample| feature(sample)).collect();
+    let features: Vec<[f64; 6]> = samples.iter().map(feature).collect();
     let square = |a: &[f64; 6], b: &[f64; 6]| (0..6).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>();
     let mut centres = vec![features[0]];
     let mut far: Vec<f64> = features.iter().map(|f| square(f, &centres[0])).collect();
@@ -77,23 +78,21 @@ fn group(samples: &[&Sample]) -> Vec<u8> {
         centres.push(features[next]);
         far.iter_mut().zip(&features).for_each(|(far, f)| *far = far.min(square(f, &features[next])));
     }
-    let mut patches = vec![0_u8; features.len()];
     for _ in 0..ROUNDS {
         let (mut sums, mut counts) = (vec![[0.0; 6]; centres.len()], vec![0.0; centres.len()]);
-        for (feature, patch) in features.iter().zip(&mut patches) {
+        for (feature, sample) in features.iter().zip(samples.iter_mut()) {
             let mut least = f64::INFINITY;
             for (k, centre) in centres.iter().enumerate() {
                 let distance = square(feature, centre);
                 if distance < least {
-                    (least, *patch) = (distance, k as u8);
+                    (least, sample.patch) = (distance, k as u8);
                 }
             }
-            counts[*patch as usize] += 1.0;
-            (0..6).for_each(|k| sums[*patch as usize][k] += feature[k]);
+            counts[sample.patch as usize] += 1.0;
+            (0..6).for_each(|k| sums[sample.patch as usize][k] += feature[k]);
         }
         for (k, centre) in centres.iter_mut().enumerate().filter(|&(k, _)| counts[k] > 0.0) {
             *centre = sums[k].map(|sum| sum / counts[k]);
         }
     }
-    patches
 }

@@ -10,16 +10,14 @@ use nalgebra::Vector3;
 use super::cue::Cue;
 use super::differences::differences;
 use super::edges::{EdgeField, blur};
-use super::evidence::{Evidence, Share, Tiles};
+use super::evidence::{Evidence, Share, Tiles, Traces};
 use super::frame::{Frame, Projection};
-use super::information::Information;
 use super::patches::{Patches, Sight};
 use super::planes::Planes;
 use super::rims::Rim;
-use super::shading::Shading;
-use super::silhouette::Silhouette;
 use super::surface::{self, Sample};
-use super::unknowns::{FOCAL, LOSS, Matrix, State, Units, Vector, solve};
+use super::surfaces::{LogLikelihood, log_likelihood};
+use super::unknowns::{FOCAL, LOSS, Matrix, POSE, State, UNKNOWNS, Units, Vector, solve};
 
 /// Sigma of edges at each level, pixels of an image 640 wide: from the error that the coarse search leaves of a few
 /// degrees to the resolution of an image. It halves every two levels.
@@ -27,11 +25,18 @@ pub(super) const SIGMAS: [f64; 4] = [4.0, 2.8, 1.9, 1.3];
 /// How many poses proceed after each level, the best by score.
 pub(super) const SURVIVORS: [usize; 4] = [10, 6, 4, 3];
 /// Maximum number of depth discontinuities, over all frames, that score an initial pose.
-pub(super) const MOST_RIMS_OF_STARTS: usize = 1200;
+const MOST_RIMS_OF_STARTS: usize = 1200;
 /// Rounds at each level.
 pub(super) const ROUNDS: usize = 3;
 /// Maximum number of rounds with all cues.
 pub(super) const MOST_SETTLING: usize = 8;
+/// Spacing of the states from which the scene is seen, pixels of an image 640 wide.
+const SPACING: f64 = 1.0;
+/// Maximum number of times that a step with all cues is halved.
+const MOST_HALVINGS: usize = 5;
+/// Decrease of the log posterior that does not make a step too long: the objective is rough on the scale of a pixel, and a
+/// ratio of less than e says nothing.
+const ROUGHNESS: f64 = 1.0;
 /// A step that moves the scene by less than this has converged, pixels.
 pub(super) const ARRIVED: f64 = 0.02;
 /// Longest step of a round with all cues, pixels: finite differences are valid no farther.
@@ -71,18 +76,34 @@ pub(super) struct Scene {
     pub scale: f64,
 }
 
-/// A state, the initial state that the prior is about, and the sigma of edges.
+/// A state, the initial state that the prior is about, the sigma of edges, and what determines the weights of the cues.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Round {
     pub state: State,
     pub told: State,
+    /// The state from which the scene is seen: visible discontinuities and samples are those of this state.
+    pub seen_from: State,
     pub sigma: f64,
+    /// Sums over the rounds so far, by cue: the scatter of few tiles is too uncertain for the weights of a single round.
+    pub traces: [Traces; Cue::ALL.len()],
 }
 
-/// An initial pose during its registration, with depth discontinuities that were found at one of its states.
+impl Round {
+    /// The first round from a state.
+    pub fn from(state: State, told: State) -> Self {
+        Self { state, told, seen_from: told, sigma: 0.0, traces: Default::default() }
+    }
+}
+
+/// What a state sees of the scene.
+struct Seen {
+    rims: Vec<Vec<Rim>>,
+    patches: Vec<Patches>,
+}
+
+/// An initial pose during its registration, with the depth discontinuities that are seen.
 pub(super) struct Start {
     pub round: Round,
-    pub found: State,
     pub rims: Vec<Vec<Rim>>,
     pub score: f64,
 }
@@ -94,6 +115,7 @@ pub(super) struct Findings {
     /// The cues, each with its weight.
     pub cues: Vec<(Cue, Evidence, f64)>,
     pub total: Evidence,
+    pub traces: [Traces; Cue::ALL.len()],
     /// Step from the initial state of the prior to the state.
     pub back: Vector,
 }
@@ -157,37 +179,48 @@ impl Scene {
         rows.transpose() * rows
     }
 
-    /// The log likelihood of edges by tiles.
-    fn edges(&self, round: &Round, units: &Units, planes: &[Planes], projections: &[Projection]) -> Evidence {
-        let most = MOST_RIMS_OF_ONE.min(MOST_RIMS / self.frames.len());
-        let mut evidence = Evidence::default();
-        for ((frame, planes), projection) in self.frames.iter().zip(planes).zip(projections) {
-            let found = EdgeField::rims(frame, projection, most);
-            add_edges(Sight { frame, planes }, &found, round, units, &mut evidence);
+    /// Moves the state from which a round sees the scene if its own state went farther from it than the spacing, and returns
+    /// whether it did. What is hidden depends on the pose by leaps. It changes little within a pixel, so it is taken from
+    /// the nearest state on a lattice about the initial state, which rounding does not move.
+    pub fn look(&self, round: &mut Round) -> bool {
+        let spacing = SPACING * self.scale;
+        let units = self.units(&round.told);
+        let [from, to] = [round.seen_from, round.state].map(|state| units.between(&round.told, &state));
+        let moves = |k: &usize| *k < POSE || *k == FOCAL;
+        if (0..UNKNOWNS).filter(moves).all(|k| (to[k] - from[k]).abs() <= spacing) {
+            return false;
         }
-        evidence
+        let place = |k: usize, _| if moves(&k) { (to[k] / spacing).round() * spacing } else { 0.0 };
+        round.seen_from = units.step(&round.told, &Vector::from_fn(place));
+        true
     }
 
-    /// The log likelihood of one of the cues over surfaces by tiles.
-    fn surfaces(&self, cue: Cue, state: &State, units: &Units, patches: &[Patches]) -> Evidence {
+    fn seen(&self, state: &State) -> Seen {
+        let most = MOST_RIMS_OF_ONE.min(MOST_RIMS / self.frames.len());
+        let (mut rims, mut patches) = (vec![], vec![]);
+        for (frame, samples) in self.frames.iter().zip(&self.samples) {
+            let projection = Projection::new(frame, state);
+            rims.push(EdgeField::rims(frame, &projection, most));
+            patches.push(Patches::new(samples, &projection, frame));
+        }
+        Seen { rims, patches }
+    }
+
+    /// The log likelihood of one of the cues by tiles, with its derivatives at the state of a round.
+    fn evidence(&self, cue: Cue, round: &Round, units: &Units, planes: &[Planes], seen: &Seen) -> Evidence {
         let mut evidence = Evidence::default();
-        for ((frame, planes), patches) in self.frames.iter().zip(&self.surface_planes).zip(patches) {
-            let sight = Sight { frame, planes };
-            let count = Tiles::new(planes.size).count();
-            evidence.shares.extend(match cue {
-                Cue::Information => {
-                    let cue = Information(patches);
-                    differences(units, state, count, |state, out| cue.evaluate(&sight, state, out))
-                }
-                Cue::Shading => {
-                    let cue = Shading::new(patches, &sight, state);
-                    differences(units, state, count, |state, out| cue.evaluate(&sight, state, out))
-                }
-                Cue::Silhouette => match Silhouette::new(patches, &sight) {
-                    Some(cue) => differences(units, state, count, |state, out| cue.evaluate(&sight, state, out)),
-                    None => vec![Share::none(); count],
-                },
-                Cue::Edges => vec![Share::none(); count],
+        for (index, frame) in self.frames.iter().enumerate() {
+            if cue == Cue::Edges {
+                let sight = Sight { frame, planes: &planes[index] };
+                let rims = EdgeField::moved(frame, &seen.rims[index], &round.seen_from, &round.state);
+                add_edges(sight, &rims, round, units, &mut evidence);
+                continue;
+            }
+            let sight = Sight { frame, planes: &self.surface_planes[index] };
+            let count = Tiles::new(sight.planes.size).count();
+            evidence.shares.extend(match log_likelihood(cue, &seen.patches[index], sight, &round.state) {
+                Some(of_cue) => differences(units, &round.state, count, of_cue),
+                None => vec![Share::none(); count],
             });
         }
         evidence
@@ -195,25 +228,60 @@ impl Scene {
 
     /// The evidence of all cues at the state of a round.
     pub fn findings(&self, round: &Round, planes: &[Planes]) -> Findings {
+        self.findings_of(round, planes, &self.seen(&round.seen_from))
+    }
+
+    fn findings_of(&self, round: &Round, planes: &[Planes], seen: &Seen) -> Findings {
         let units = self.units(&round.state);
-        let projections: Vec<_> = self.frames.iter().map(|frame| Projection::new(frame, &round.state)).collect();
-        let seen = self.samples.iter().zip(&projections).zip(&self.frames);
-        let patches: Vec<_> =
-            seen.map(|((samples, projection), frame)| Patches::new(samples, projection, frame)).collect();
         let mut total = Evidence::default();
         let mut cues = vec![];
-        for &cue in &self.cues {
-            let evidence = match cue {
-                Cue::Edges => self.edges(round, &units, planes, &projections),
-                _ => self.surfaces(cue, &round.state, &units, &patches),
-            };
+        let mut traces = round.traces;
+        for (&cue, traces) in self.cues.iter().zip(&mut traces) {
+            let evidence = self.evidence(cue, round, &units, planes, seen);
+            *traces += evidence.traces();
             let trust = if cue == Cue::Edges { 1.0 } else { SURFACE_TRUST };
-            let weight = trust * evidence.weight();
+            let weight = trust * traces.weight();
             evidence.add_to(&mut total, weight);
             cues.push((cue, evidence, weight));
         }
         let back = units.between(&round.told, &round.state);
-        Findings { prior: self.prior(&units), units, cues, total, back }
+        Findings { prior: self.prior(&units), units, cues, total, traces, back }
+    }
+
+    /// Log posteriors of states, with what the state of a round sees and the weights of its findings.
+    fn posterior<'a>(
+        &'a self,
+        round: &'a Round,
+        planes: &'a [Planes],
+        seen: &'a Seen,
+        findings: &'a Findings,
+    ) -> impl Fn(&State) -> f64 + 'a {
+        let weighed = findings.cues.iter().flat_map(move |(cue, _, weight)| {
+            let of_frame = move |(index, frame): (usize, &'a Frame)| {
+                let sight = Sight { frame, planes: &self.surface_planes[index] };
+                let of_cue = log_likelihood(*cue, &seen.patches[index], sight, &round.state)?;
+                Some((*weight, Tiles::new(sight.planes.size).count(), of_cue))
+            };
+            self.frames.iter().enumerate().filter_map(of_frame)
+        });
+        let surfaces: Vec<_> = weighed.collect();
+        let edges: f64 = findings.cues.iter().filter(|cue| cue.0 == Cue::Edges).map(|cue| cue.2).sum();
+        move |state| {
+            let of_surface = |(weight, count, of_cue): &(f64, usize, LogLikelihood)| {
+                let mut out = vec![0.0; *count];
+                of_cue(state, &mut out);
+                weight * out.iter().sum::<f64>()
+            };
+            let mut evidence = Evidence::default();
+            let moved = Round { state: *state, ..*round };
+            for ((frame, planes), rims) in self.frames.iter().zip(planes).zip(&seen.rims) {
+                let rims = EdgeField::moved(frame, rims, &round.seen_from, state);
+                add_edges(Sight { frame, planes }, &rims, &moved, &findings.units, &mut evidence);
+            }
+            let back = findings.units.between(&round.told, state);
+            let prior = 0.5 * back.dot(&(findings.prior * back));
+            surfaces.iter().map(of_surface).sum::<f64>() + edges * evidence.value() - prior
+        }
     }
 
     /// Refines an initial pose by edges alone with its depth discontinuities fixed, and updates its score.
@@ -224,16 +292,29 @@ impl Scene {
             let units = self.units(&state);
             let (mut evidence, mut count) = (Evidence::default(), 0.0);
             for ((frame, planes), rims) in self.frames.iter().zip(planes).zip(&start.rims) {
-                let moved = EdgeField::moved(frame, rims, &start.found, &state);
+                let moved = EdgeField::moved(frame, rims, &start.round.seen_from, &state);
                 count += add_edges(Sight { frame, planes }, &moved, &start.round, &units, &mut evidence);
             }
             let mean = evidence.value() / f64::max(count, 1.0);
             let mut total = Evidence::default();
-            evidence.add_to(&mut total, evidence.weight());
+            evidence.add_to(&mut total, evidence.traces().weight());
             let back = units.between(&start.round.told, &state);
             let prior = self.prior(&units);
             start.score = mean - 0.5 * SCORE_PRIOR * back.dot(&(prior * back));
             start.round.state = units.step(&state, &step(&total, &prior, &back));
+        }
+    }
+
+    /// A start from a state that is seen as it is.
+    pub fn start(&self, state: State, told: State) -> Start {
+        let round = Round { seen_from: state, ..Round::from(state, told) };
+        Start { round, rims: self.rims(&state, MOST_RIMS_OF_STARTS), score: 0.0 }
+    }
+
+    /// Finds the depth discontinuities of a start anew if it moved.
+    pub fn find_anew(&self, start: &mut Start) {
+        if self.look(&mut start.round) || start.rims.is_empty() {
+            start.rims = self.rims(&start.round.seen_from, MOST_RIMS_OF_STARTS);
         }
     }
 
@@ -245,11 +326,30 @@ impl Scene {
             .collect()
     }
 
-    /// Takes one round with all cues and returns the length of its step, pixels.
+    /// Takes one round with all cues and returns the length of its step, pixels. A step that lowers the posterior is
+    /// halved.
     pub fn settle(&self, round: &mut Round, planes: &[Planes]) -> f64 {
-        let findings = self.findings(round, planes);
+        self.look(round);
+        let seen = self.seen(&round.seen_from);
+        let findings = self.findings_of(round, planes, &seen);
         let step = step(&findings.total, &findings.prior, &findings.back);
-        round.state = findings.units.step(&round.state, &(step * (LONGEST / step.norm()).min(1.0)));
+        let step = step * (LONGEST / step.norm()).min(1.0);
+        let from = *round;
+        let posterior = self.posterior(&from, planes, &seen, &findings);
+        let here = posterior(&round.state);
+        let mut step = step;
+        let mut state = findings.units.step(&round.state, &step);
+        let mut halvings = 0;
+        while posterior(&state) < here - ROUGHNESS {
+            if halvings == MOST_HALVINGS {
+                (step, state) = (Vector::zeros(), round.state);
+                break;
+            }
+            step *= 0.5;
+            state = findings.units.step(&round.state, &step);
+            halvings += 1;
+        }
+        *round = Round { state, traces: findings.traces, ..*round };
         step.norm()
     }
 }

@@ -6,7 +6,7 @@
 use super::optima::{self, Optimum};
 use super::planes::Planes;
 use super::readings::Reading;
-use super::registration::{ARRIVED, MOST_RIMS_OF_STARTS, MOST_SETTLING, Round, SIGMAS, Scene, Start};
+use super::registration::{ARRIVED, MOST_SETTLING, Round, SIGMAS, Scene, Start};
 use super::unknowns::State;
 
 /// How many readings proceed after each level, the best by score.
@@ -29,8 +29,8 @@ impl Rereading {
     pub fn new(scene: &Scene, candidate: &State, optima: Vec<Optimum>) -> Self {
         let start = |reading: Reading| {
             let state = State::at(reading.of(&candidate.pose)?);
-            let round = Round { state, told: state, sigma: 0.0 };
-            scene.is_seen(&state).then(|| (reading, Start { round, found: state, rims: vec![], score: 0.0 }))
+            let round = Round::from(state, state);
+            scene.is_seen(&state).then(|| (reading, Start { round, rims: vec![], score: 0.0 }))
         };
         let starts = Reading::ALL.into_iter().filter_map(start).collect();
         Self { optima, starts, level: 0, index: 0, planes: scene.planes(SIGMAS[0] * scene.scale) }
@@ -52,8 +52,7 @@ impl Rereading {
             return true;
         }
         if let Some((_, start)) = self.starts.get_mut(self.index) {
-            start.found = start.round.state;
-            start.rims = scene.rims(&start.found, MOST_RIMS_OF_STARTS);
+            scene.find_anew(start);
             scene.approach(start, SIGMAS[self.level] * scene.scale, &self.planes);
             self.index += 1;
             return false;

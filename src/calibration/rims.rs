@@ -274,8 +274,8 @@ mod tests {
         }
     }
 
-    /// Between coarse rows an oblique boundary passes the samples of a row at different distances: the gap of each is
-    /// that to the nearest sample beyond.
+    /// Between coarse rows an oblique boundary passes the samples of a row at different distances: the next sample of the
+    /// row may be nearer than the next row.
     #[test]
     fn an_oblique_boundary_lies_within_the_gap_of_each_of_its_samples() {
         for rows in [1, 2, 4] {
@@ -288,8 +288,12 @@ mod tests {
             assert!(mean.abs() < 0.35, "{rows}: {mean}");
             let outside = inner.iter().filter(|rim| off(rim).abs() > 0.5 * rim.gap + 0.1).count();
             assert!(outside == 0, "{rows}: {outside} of {}", inner.len());
-            let nearest = inner.iter().filter(|rim| rim.gap < 0.95).count();
-            assert!(nearest >= inner.len() / rows - 1, "{rows}: {nearest} of {}", inner.len());
+            // Rows of the raster are this far apart along the normal; a normal that is fitted to few samples errs.
+            let spacing = rows as f64 * 0.5_f64.sqrt();
+            let mean = inner.iter().map(|rim| rim.gap).sum::<f64>() / inner.len() as f64;
+            assert!(mean < 1.05 * spacing && inner.iter().all(|rim| rim.gap <= rows as f64), "{rows}: {mean}");
+            let nearest = inner.iter().filter(|rim| rim.gap < 0.8 * spacing).count();
+            assert!(rows == 1 || nearest >= inner.len() / rows - 1, "{rows}: {nearest} of {}", inner.len());
         }
     }
 

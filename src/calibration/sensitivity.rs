@@ -4,12 +4,10 @@ use super::cue::Cue;
 use super::edges::EdgeField;
 use super::evidence::{Share, Tiles};
 use super::frame::Projection;
-use super::information::Information;
 use super::patches::{Patches, Sight};
 use super::planes::Planes;
 use super::registration::{Round, Scene};
-use super::shading::Shading;
-use super::silhouette::Silhouette;
+use super::surfaces::log_likelihood;
 use super::unknowns::{POSE, State, Units, Vector};
 
 /// Farthest offsets to each side: degrees about an axis, millimetres along one.
@@ -99,16 +97,11 @@ fn surfaces_along(scene: &Scene, round: &Round, cue: Cue, index: usize, states: 
     let sight = Sight { frame, planes };
     let patches = Patches::new(&scene.samples[index], &Projection::new(frame, &round.state), frame);
     let mut out = vec![0.0; Tiles::new(planes.size).count()];
-    let shading = (cue == Cue::Shading).then(|| Shading::new(&patches, &sight, &round.state));
-    let silhouette = if cue == Cue::Silhouette { Silhouette::new(&patches, &sight) } else { None };
+    let of_cue = log_likelihood(cue, &patches, sight, &round.state);
     let mut value = |state: &State| {
         out.fill(0.0);
-        if let Some(shading) = &shading {
-            shading.evaluate(&sight, state, &mut out);
-        } else if let Some(silhouette) = &silhouette {
-            silhouette.evaluate(&sight, state, &mut out);
-        } else if cue == Cue::Information {
-            Information(&patches).evaluate(&sight, state, &mut out);
+        if let Some(of_cue) = &of_cue {
+            of_cue(state, &mut out);
         }
         out.iter().sum::<f64>()
     };

@@ -43,9 +43,9 @@ impl<'a> Shading<'a> {
     pub fn evaluate(&self, sight: &Sight, state: &State, out: &mut [f64]) {
         out.fill(0.0);
         for (residual, &tile) in self.residuals(sight, state).iter().zip(&self.patches.tiles) {
-            if let Some(residual) = residual {
-                out[tile as usize] -= (1.0 + residual.norm_squared() / (self.scale * self.scale)).ln();
-            }
+            // A point off the image counts as the median does, so that a pose gains nothing by losing points.
+            let square = residual.map_or(1.0, |residual| residual.norm_squared() / (self.scale * self.scale));
+            out[tile as usize] -= (1.0 + square).ln();
         }
     }
 

@@ -2,50 +2,38 @@
 //!
 //! The quality of a calibration is its reprojection error at the scene's depth: a rotation and a shift that cancel at
 //! this depth do no harm there. The error of a candidate is the distance of its pixels from those of the estimate, root
-//! mean square over the scene. It is as uncertain as the estimate: its interval holds 95 % of Student's distribution
-//! about the estimate.
+//! mean square over the scene. It is as uncertain as the estimate: its interval holds 95 % of the draws from the
+//! estimate's distribution.
 //!
-//! Consistent: all of the interval lies below the tolerance. Or the candidate is not contradicted (at least 5 % of draws
-//! from the distribution are farther from the estimate), and the scene would show a relevant error (the estimate's own
-//! error is below the tolerance in 95 % of cases).
+//! Consistent: all of the interval lies below the tolerance. Or the candidate is not contradicted (at least 5 % of the
+//! draws are less likely), and the scene would show a relevant error (the estimate's own error is below the tolerance in
+//! 95 % of cases).
 //!
-//! Off: all of the interval lies above the tolerance, and 95 % of the draws are nearer to the estimate than the
-//! candidate. The second condition is needed because with six unknowns hardly any draw is near a candidate, wherever it
+//! Off: all of the interval lies above the tolerance, and 95 % of the draws are more likely than the candidate. The second condition is needed because with six unknowns hardly any draw is near a candidate, wherever it
 //! is. If the colour camera was guessed, all of the interval has to lie above the error that the guess explains, too. The
 //! interval of the estimate's own error must not lie above these limits.
 //!
 //! Undecided: otherwise.
 
-use nalgebra::{SMatrix, SVector, Vector3};
+use nalgebra::Vector3;
 
+use super::distribution::{Distribution, PoseMatrix, PoseVector, VARIANCE};
 use super::health::Health;
 use super::reason::{CheckReason, Margin, Offset};
 use super::unknowns::{Matrix, POSE, State, Units, Vector};
 use crate::numeric::quantile;
-use crate::numeric::random::Random;
 use crate::pose::{Axis, Unknown};
 
 /// Largest reprojection error that passes, pixels of an image 640 wide: 0.4 degrees at a common focal length. Careful
 /// calibrations by hand reach this accuracy, and colours of points at depth discontinuities need it.
 pub(super) const TOLERANCE: f64 = 3.5;
-/// Number of draws from the estimate's distribution. Its quantiles then have an error of about a twentieth of their
-/// sigma.
-const DRAWS: usize = 2000;
-const SEED: u64 = 1;
 /// Share of draws inside an interval.
 const INSIDE: f64 = 0.95;
 /// The 95 % quantile of chi-squared with as many degrees of freedom as a pose has.
 const CHI_SQUARED: f64 = 12.59;
-/// Degrees of freedom of the estimate's distribution, the only number here that was fitted (docs/lab/thresholds.md).
-/// Errors that a whole silhouette shares move its tiles alike, so their scatter is only an estimate of the error's size,
-/// in some scenes far too small. Three is the smallest whole number with a finite covariance.
-const DEGREES: f64 = 3.0;
 /// Sigma above which the scene does not constrain an axis: about half the sigma of the prior.
 const UNSEEN_DEGREES: f64 = 2.0;
 const UNSEEN_METRES: f64 = 0.03;
-
-type PoseVector = SVector<f64, POSE>;
-type PoseMatrix = SMatrix<f64, POSE, POSE>;
 
 /// The answer of a check about a candidate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,8 +78,7 @@ pub(super) struct Judge {
     units: Units,
     /// Mean squared motion of the scene's pixels, in pixels of the image as given.
     motion: PoseMatrix,
-    inverse: PoseMatrix,
-    draws: Vec<PoseVector>,
+    distribution: Distribution,
     tolerance: f64,
     /// Errors below this many pixels may be those of a guessed camera.
     explained: f64,
@@ -102,19 +89,17 @@ pub(super) struct Judge {
 }
 
 impl Judge {
-    /// Ratio of the covariance of Student's distribution to its scale.
-    pub const VARIANCE: f64 = DEGREES / (DEGREES - 2.0);
     /// Decrease of the log posterior, in units of the scale, at the border of the ellipsoid that holds 95 % of a normal
     /// distribution with the reported covariance: a pose as likely as those within is an alternative.
-    pub const ALTERNATIVE: f64 = 0.5 * Self::VARIANCE * CHI_SQUARED;
+    pub const ALTERNATIVE: f64 = 0.5 * VARIANCE * CHI_SQUARED;
 
-    /// `cloud` is in the colour camera's frame, and `scale` is that of the distribution. `pixel` is the width of a
+    /// `cloud` is in the colour camera's frame, and the distribution in `units`. `pixel` is the width of a
     /// working pixel in pixels of the image as given, and `width` is the width of that image.
     pub fn new(
         units: Units,
         camera: &crate::view::Pinhole,
         cloud: &[Vector3<f64>],
-        scale: &Matrix,
+        distribution: Distribution,
         pixel: f64,
         width: f64,
     ) -> Self {
@@ -128,25 +113,11 @@ impl Judge {
             count += 1.0;
         }
         motion *= pixel * pixel / f64::max(count, 1.0);
-        let scale: PoseMatrix = scale.fixed_view::<POSE, POSE>(0, 0).into();
-        let root = scale.cholesky().map_or_else(PoseMatrix::zeros, |c| c.l());
-        let mut random = Random::new(SEED, 0);
-        let mut normal = || (0..12).map(|_| random.uniform()).sum::<f64>() - 6.0;
-        let draws = (0..DRAWS)
-            .map(|_| {
-                // Student's t: a normal vector over the root of a mean square; chi-square by Wilson and Hilferty (1931).
-                let h = 2.0 / (9.0 * DEGREES);
-                let mean_square = (1.0 - h + h.sqrt() * normal()).powi(3).max(1e-3);
-                root * PoseVector::from_fn(|_, _| normal()) / mean_square.sqrt()
-            })
-            .collect();
-        let inverse = scale.try_inverse().unwrap_or_else(PoseMatrix::zeros);
         let own = Health { pixels: 0.0, interval: [0.0; 2] };
         let mut judge = Self {
             units,
             motion,
-            inverse,
-            draws,
+            distribution,
             tolerance: TOLERANCE * (width / 640.0).max(1.0),
             explained: 0.0,
             own,
@@ -165,10 +136,10 @@ impl Judge {
     /// Errors of a state that is `offset` from the estimate, one for each draw.
     fn errors(&self, offset: &PoseVector) -> Vec<f32> {
         let error = |draw: &PoseVector| {
-            let off = offset + draw;
+            let off = offset - draw;
             off.dot(&(self.motion * off)).max(0.0).sqrt() as f32
         };
-        self.draws.iter().map(error).collect()
+        self.distribution.draws.iter().map(error).collect()
     }
 
     /// The expected error and its interval at an offset from the estimate.
@@ -218,9 +189,7 @@ impl Judge {
         let between = self.units.between(estimate, candidate);
         let offset: PoseVector = between.fixed_rows::<POSE>(0).into();
         let health = self.health(&offset);
-        let distance = offset.dot(&(self.inverse * offset));
-        let farther = self.draws.iter().filter(|draw| draw.dot(&(self.inverse * **draw)) > distance).count();
-        let probability = farther as f64 / self.draws.len() as f64;
+        let probability = self.distribution.probability(&offset);
         let is_likely = probability >= 1.0 - INSIDE;
         let offset = self.offset(&between);
         let (verdict, reason) = self.decide(health, is_likely, offset, weakest);

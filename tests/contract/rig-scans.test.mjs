@@ -275,9 +275,9 @@ describe("scans in a folder and a check", () => {
         reports.push({ off: candidates.pose, estimate });
       }
       const [whole, own, turnedOnes] = reports;
-      // Swapping axes only changes the order of sums.
+      // Swapping axes only changes the order of sums, which moves the estimate by a small share of its uncertainty.
       assert.ok(Math.abs(own.off.offDegrees - turnedOnes.off.offDegrees) < 1e-3);
-      assert.ok(Math.abs(own.off.pixels - turnedOnes.off.pixels) < 0.01);
+      assert.ok(Math.abs(own.off.pixels - turnedOnes.off.pixels) < 0.003 * own.off.pixels);
       for (const at of [0, 1, 2])
         assert.ok(Math.abs(own.estimate.translation[at] - turnedOnes.estimate.translation[at]) < 1e-4);
       assert.ok(whole.off.offDegrees < 2, whole.off.reason);
