@@ -12,7 +12,7 @@ use super::differences::differences;
 use super::edges::{EdgeField, blur};
 use super::evidence::{Evidence, Share, Tiles, Traces};
 use super::frame::{Frame, Projection};
-use super::patches::{Patches, Sight};
+use super::patches::{Patches, Sight, group};
 use super::planes::Planes;
 use super::rims::Rim;
 use super::surface::{self, Sample};
@@ -124,7 +124,8 @@ impl Scene {
     pub fn new(frames: Vec<Frame>, cues: Vec<Cue>, focal_is_free: bool) -> Self {
         let scale = (frames[0].planes.size.width as f64 / 640.0).max(1.0);
         let most = MOST_SAMPLES_OF_ONE.min(MOST_SAMPLES / frames.len());
-        let samples = frames.iter().map(|frame| surface::samples(frame, most)).collect();
+        let mut samples: Vec<Vec<Sample>> = frames.iter().map(|frame| surface::samples(frame, most)).collect();
+        samples.iter_mut().for_each(|samples| group(samples));
         let surface_planes = frames.iter().map(|frame| frame.planes.blurred(SURFACE_BLUR)).collect();
         let sparse = frames.iter().flat_map(|frame| frame.sparse(MOST_POINTS / frames.len())).collect();
         Self { frames, samples, sparse, surface_planes, cues, focal_is_free, scale }

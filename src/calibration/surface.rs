@@ -5,7 +5,6 @@ use nalgebra::{Matrix3, Vector3};
 use crate::numeric::eigen::symmetric_eigen;
 
 use super::frame::Frame;
-use super::patches::group;
 
 /// Neighbours to each side in the fit of a plane: enough to average the steps of a quantised map.
 const REACH: usize = 3;
@@ -18,20 +17,18 @@ pub(super) struct Sample {
     pub index: usize,
     pub point: Vector3<f64>,
     pub normal: Vector3<f64>,
-    /// The patch of the surface that it belongs to.
+    /// The patch of the surface that it belongs to; the first until samples are grouped.
     pub patch: u8,
 }
 
-/// About `most` samples, evenly spaced on the raster, in patches.
+/// About `most` samples, evenly spaced on the raster.
 pub(super) fn samples(frame: &Frame, most: usize) -> Vec<Sample> {
     let valid = frame.points.iter().filter(|point| !point[2].is_nan()).count();
     let stride = ((valid as f64 / most as f64).sqrt().ceil() as usize).max(1);
     let grid = frame.grid;
     let rows = (stride / 2..grid.height).step_by(stride);
     let places = rows.flat_map(|row| (stride / 2..grid.width).step_by(stride).map(move |column| (column, row)));
-    let mut samples: Vec<Sample> = places.filter_map(|(column, row)| sample(frame, column, row)).collect();
-    group(&mut samples);
-    samples
+    places.filter_map(|(column, row)| sample(frame, column, row)).collect()
 }
 
 fn sample(frame: &Frame, column: usize, row: usize) -> Option<Sample> {
