@@ -12,7 +12,7 @@ use super::readings::Reading;
 use super::reason::{CheckReason, Margin, Warning, WarningKind};
 use super::registration::Findings;
 use super::report::{CheckReport, CueReport, FrameReport};
-use super::unknowns::{Matrix, POSE, State, UNKNOWNS, Vector};
+use super::unknowns::{Matrix, POSE, State, Vector, add_square};
 use super::verdict::{CandidateReport, CheckVerdict, Judge};
 
 /// Variance if nothing at all is known, squared pixels.
@@ -130,15 +130,17 @@ impl CalibrationCheck {
     /// The distribution about an optimum in the units of the best.
     fn part(&self, optimum: &Optimum, best: &Optimum) -> Part {
         let (from, own) = (best.round.state, optimum.round.state);
-        let scale = self.scale(&optimum.findings, &own, &self.scene.cloud(&own));
-        let middle = best.findings.units.between(&from, &own);
-        // A unit of the optimum, seen from the best.
-        let column = |k: usize| {
-            let unit = Vector::from_fn(|j, _| f64::from(u8::from(j == k)));
-            best.findings.units.between(&from, &optimum.findings.units.step(&own, &unit)) - middle
-        };
-        let turn = Matrix::from_columns(&std::array::from_fn::<Vector, UNKNOWNS, _>(column));
-        let scale = turn * scale * turn.transpose();
+        let units = best.findings.units;
+        let middle = units.between(&from, &own);
+        let mut scale = Matrix::zeros();
+        // The columns of the scale's root, seen from the best.
+        if let Some(root) = self.scale(&optimum.findings, &own, &self.scene.cloud(&own)).cholesky() {
+            for column in root.l_dirty().column_iter().enumerate() {
+                let sigma = Vector::from_fn(|row, _| if row < column.0 { 0.0 } else { column.1[row] });
+                let moved = units.between(&from, &optimum.findings.units.step(&own, &sigma)) - middle;
+                add_square(&mut scale, &moved, 1.0);
+            }
+        }
         Part {
             weight: optimum.weight(),
             middle: middle.fixed_rows::<POSE>(0).into(),

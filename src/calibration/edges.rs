@@ -20,6 +20,7 @@ use super::patches::Sight;
 use super::planes::Planes;
 use super::rims::{self, Rim};
 use super::unknowns::{LOSS, State, Units, Vector, add_square};
+use crate::numeric::quantile;
 use crate::view::Size;
 
 /// e, the share of depth discontinuities whose edge is not visible in the image.
@@ -167,10 +168,10 @@ fn keep(rims: &mut Vec<Rim>, grid: Size, most: usize) {
     // raster (Roberts 2018, the sequence R2).
     let rank = |rim: &Rim| {
         let (column, row) = grid.position(rim.index);
-        (0.754_877_666_246_692_8 * column as f64 + 0.569_840_290_998_053_3 * row as f64).fract()
+        (0.754_877_666_246_692_8 * column as f64 + 0.569_840_290_998_053_3 * row as f64).fract() as f32
     };
-    let mut ranks: Vec<f64> = rims.iter().map(rank).collect();
-    let limit = *ranks.select_nth_unstable_by(most, f64::total_cmp).1;
+    let mut ranks: Vec<f32> = rims.iter().map(rank).collect();
+    let limit = quantile(&mut ranks, most as f64 / rims.len() as f64);
     rims.retain(|rim| rank(rim) < limit);
 }
 
