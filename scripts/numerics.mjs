@@ -62,7 +62,15 @@ export const GLUE = ALL.map(({ target, name = MODULE }) => `${target}/wasm-bindg
 
 export const node = (module, ...args) => must(process.execPath, [inRoot("node_modules", module), ...args]);
 
-async function numerics({ file, target, flags, features = ["--features", "bindings"], name = MODULE, sources = ".", level = "2" }) {
+async function numerics({
+  file,
+  target,
+  flags,
+  features = ["--features", "bindings"],
+  name = MODULE,
+  sources = ".",
+  level = "2",
+}) {
   // Panic messages name files; this strips their location on the building machine.
   const registry = `${process.env.CARGO_HOME ?? `${homedir()}/.cargo`}/registry/src/`;
   const config = `target.${WASM}.rustflags=${JSON.stringify([...flags, `--remap-path-prefix=${registry}=`])}`;
