@@ -42,15 +42,12 @@ const CHECK = {
   flags: ["-C", `target-feature=-${REFERENCES},-simd128`],
   features: ["--features", "bindings-check"],
   name: `${MODULE}_check`,
-  // Keeps the download within its budget; a check takes 1.7 times as long as at level 2.
-  level: "s",
 };
 /** The rendered rigs of the check's tests and of the page's example; nobody else downloads them. */
 const RIGS = {
   ...CHECK,
   file: `${MODULE}_rigs_bg.wasm`,
   target: "target/rigs",
-  level: "2",
   features: ["--features", "bindings-rigs"],
   name: `${MODULE}_rigs`,
 };
@@ -62,22 +59,14 @@ export const GLUE = ALL.map(({ target, name = MODULE }) => `${target}/wasm-bindg
 
 export const node = (module, ...args) => must(process.execPath, [inRoot("node_modules", module), ...args]);
 
-async function numerics({
-  file,
-  target,
-  flags,
-  features = ["--features", "bindings"],
-  name = MODULE,
-  sources = ".",
-  level = "2",
-}) {
+async function numerics({ file, target, flags, features = ["--features", "bindings"], name = MODULE, sources = "." }) {
   // Panic messages name files; this strips their location on the building machine.
   const registry = `${process.env.CARGO_HOME ?? `${homedir()}/.cargo`}/registry/src/`;
   const config = `target.${WASM}.rustflags=${JSON.stringify([...flags, `--remap-path-prefix=${registry}=`])}`;
   // Level 3 would unroll and inline: a tenth faster and a sixth larger; see .cargo/config.toml.
   const crate = ["--manifest-path", `${sources}/Cargo.toml`, "-p", "bimodal-stereo", "--lib", ...features];
   await must("cargo", ["build", "--release", ...crate, "--target", WASM, "--target-dir", target, "--config", config], {
-    env: { CARGO_PROFILE_RELEASE_OPT_LEVEL: level },
+    env: { CARGO_PROFILE_RELEASE_OPT_LEVEL: "2" },
   });
   // The standard library was compiled with references, so the linker declares the feature for the whole module.
   const linked = inRoot(`${target}/${MODULE}.wasm`);

@@ -10,7 +10,6 @@ import { pictureColour, pictureMask } from "./colour.js";
 import { cloudDepth, pictureDepth } from "./depth.js";
 import { colmapText } from "./formats/colmap-others.js";
 import { withEnds } from "./formats/filename.js";
-import { readExr } from "./formats/exr.js";
 import { type RasterKind, rasterKind } from "./formats/headerless.js";
 import { readJpeg, readWebp } from "./formats/jpeg.js";
 import { MOST_BYTES } from "./formats/limits.js";
@@ -22,7 +21,6 @@ import { readPfm, readPnm } from "./formats/pnm.js";
 import { isRawName, pointsRefused, rawRefused, readColmapMap, readRaw } from "./formats/raw.js";
 import { pointList, readTable } from "./formats/table.js";
 import { textOf } from "./formats/decode.js";
-import { readTiff } from "./formats/tiff.js";
 import { kindOfPicture, nameWarnings, unitOfName } from "./recognise.js";
 import { once } from "./once.js";
 import type { NamedFile, ReadOptions, RigReading, Unnamed } from "./types.js";
@@ -35,6 +33,8 @@ type Content = Unnamed<RigReading>;
 const refusals = once(() => import("./formats/containers.js"));
 const texts = once(() => import("./formats/text.js"));
 const clouds = () => import("./formats/pointclouds.js");
+const exr = once(() => import("./formats/exr.js"));
+const tiff = once(() => import("./formats/tiff.js"));
 const CLOUDS: Record<"ply" | "pcd" | "las", (bytes: Uint8Array) => Promise<Cloud | Points>> = {
   ply: async (bytes) => (await clouds()).readPly(bytes),
   pcd: async (bytes) => (await clouds()).readPcd(bytes),
@@ -49,8 +49,8 @@ const PICTURES: Record<
   png: (bytes) => pngPicture(bytes),
   jpeg: readJpeg,
   webp: readWebp,
-  tiff: readTiff,
-  exr: (bytes, { as }) => readExr(bytes, as === "depth"),
+  tiff: async (bytes) => (await tiff()).readTiff(bytes),
+  exr: async (bytes, { as }) => (await exr()).readExr(bytes, as === "depth"),
   pfm: readPfm,
   pnm: readPnm,
   npy: (bytes) => npyPicture(bytes),
