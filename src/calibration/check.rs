@@ -35,7 +35,7 @@ const ENTERING: usize = 2;
 const ROTATION_TOLERANCE: f64 = 0.01;
 
 /// The initial pose of the search: the first candidate that puts points onto the image.
-fn told(scene: &Scene, candidates: &[(String, State)]) -> State {
+fn initial(scene: &Scene, candidates: &[(String, State)]) -> State {
     let seen = candidates.iter().find(|candidate| scene.is_seen(&candidate.1));
     seen.or(candidates.first()).map_or_else(|| State::at(Similarity::identity()), |candidate| candidate.1)
 }
@@ -98,8 +98,8 @@ impl CalibrationCheck {
         }
         let cues = if cues.is_empty() { Cue::ALL.to_vec() } else { cues.to_vec() };
         let scene = Scene::new(frames, cues, is_guessed);
-        let told = told(&scene, &candidates);
-        let best = Round::from(told, told);
+        let initial = initial(&scene, &candidates);
+        let best = Round::from(initial, initial);
         warn_of_translations(&candidates, &mut warnings);
         Ok(Self {
             scene,
@@ -182,17 +182,17 @@ impl CalibrationCheck {
     /// Initial poses: what the coarse search finds near the first candidate, the other candidates, and the inverse of the
     /// first.
     fn find_starts(&mut self) {
-        let told = self.best.told;
-        let units = self.scene.units(&told);
-        let (rims, states) = search::starts(&self.scene, &told);
-        let start = |state| Start { round: Round::from(state, told), rims: rims.clone(), score: 0.0 };
+        let initial = self.best.initial;
+        let units = self.scene.units(&initial);
+        let (rims, states) = search::starts(&self.scene, &initial);
+        let start = |state| Start { round: Round::from(state, initial), rims: rims.clone(), score: 0.0 };
         let mut starts: Vec<Start> = states.into_iter().map(start).collect();
         let others = self.candidates.iter().skip(1).map(|candidate| candidate.1);
-        for state in others.chain([State::at(told.pose.inverse())]) {
+        for state in others.chain([State::at(initial.pose.inverse())]) {
             let is_near =
                 |other: &Start| units.between(&other.round.state, &state).norm() <= SAME_START * self.scene.scale;
             if !starts.iter().any(is_near) {
-                starts.push(self.scene.start(state, told));
+                starts.push(self.scene.start(state, initial));
             }
         }
         self.starts = starts;
@@ -200,9 +200,9 @@ impl CalibrationCheck {
 
     /// Candidates that are nearly right enter once more at a late level: wide windows would lead them away among texture.
     fn enter_candidates(&mut self) {
-        let told = self.best.told;
+        let initial = self.best.initial;
         let states = self.candidates.iter().map(|candidate| candidate.1);
-        let entering = states.map(|state| self.scene.start(state, told));
+        let entering = states.map(|state| self.scene.start(state, initial));
         let entering: Vec<Start> = entering.collect();
         self.starts.extend(entering);
     }
@@ -233,7 +233,7 @@ impl CalibrationCheck {
         for (_, state) in &self.candidates {
             let is_near = |round: &Round| units.between(&round.state, state).norm() <= SAME_START * self.scene.scale;
             if !rounds.iter().any(is_near) {
-                rounds.push(Round { sigma: rounds[0].sigma, ..Round::from(*state, rounds[0].told) });
+                rounds.push(Round { sigma: rounds[0].sigma, ..Round::from(*state, rounds[0].initial) });
             }
         }
         Stage::Settling { rounds, at: 0, done: 0, planes }
@@ -241,7 +241,7 @@ impl CalibrationCheck {
 
     /// Keeps the best poses that differ from each other, at most `most`.
     fn keep_apart(&mut self, most: usize) {
-        let units = self.scene.units(&self.best.told);
+        let units = self.scene.units(&self.best.initial);
         let mut kept: Vec<Start> = vec![];
         for start in self.starts.drain(..) {
             let is_same = |other: &Start| {

@@ -30,12 +30,14 @@ impl CalibrationCheck {
         let Optimum { findings, round, .. } = &optima[0];
         let (units, state) = (findings.units, round.state);
         let frame = &self.scene.frames[0];
-        let optima = self.possible(optima);
-        let (judge, covariance) = self.judge_of(&optima);
-        let mut candidates = self.candidate_reports(&judge, optima[0], &covariance);
-        self.hear_other_optima(&mut candidates, &optima, planes);
-        self.name_reading(&mut candidates, &judge, state);
-        let warnings = self.all_warnings(&judge, &state);
+        let first = self.judge_of(&[&optima[0]]);
+        let optima = self.possible(optima, &first.0);
+        let of_all = (optima.len() > 1).then(|| self.judge_of(&optima));
+        let (judge, covariance) = of_all.as_ref().unwrap_or(&first);
+        let mut candidates = self.candidate_reports(judge, optima[0], covariance);
+        self.hear_other_optima(&mut candidates, &optima, &first.0, planes);
+        self.name_reading(&mut candidates, judge, state);
+        let warnings = self.all_warnings(judge, &state);
         let health = if self.scene.is_seen(&state) { judge.estimate() } else { Judge::blind(self.width) };
         let (verdict, reason) = first_verdict(&candidates, &warnings, health);
         let scaled = Matrix::from_diagonal(&units.of);
@@ -59,38 +61,40 @@ impl CalibrationCheck {
 
     /// The best optimum and those that the frames do not exclude. A candidate that is consistent hardly met the best optimum
     /// by chance, so only optima that fit about as well count then.
-    fn possible<'a>(&self, optima: &'a [Optimum]) -> Vec<&'a Optimum> {
-        let (alone, _) = self.judge_of(&[&optima[0]]);
+    fn possible<'a>(&self, optima: &'a [Optimum], first: &Judge) -> Vec<&'a Optimum> {
         let state = optima[0].round.state;
-        let is_consistent = |(name, candidate): &(String, State)| {
-            alone.judge(name, &state, candidate, None).verdict == CheckVerdict::Consistent
+        let agrees = |(name, candidate): &(String, State)| {
+            first.judge(name, &state, candidate, None).verdict == CheckVerdict::Consistent
         };
-        let is_met = self.candidates.iter().any(is_consistent);
-        let counts = |other: &&Optimum| if is_met { other.is_equal() } else { other.is_possible() };
+        let is_confirmed = self.candidates.iter().any(agrees);
+        let counts = |other: &&Optimum| if is_confirmed { other.is_equal() } else { other.is_possible() };
         let is_seen = |other: &&Optimum| self.scene.is_seen(&other.round.state);
         std::iter::once(&optima[0]).chain(optima[1..].iter().filter(counts).filter(is_seen)).collect()
     }
 
     /// Makes a candidate undecided if an optimum contradicts its verdict: "off" has to hold for each of them, and the
     /// candidate itself has to fit worse than the best.
-    fn hear_other_optima(&self, reports: &mut [CandidateReport], optima: &[&Optimum], planes: &[Planes]) {
-        let judges: Vec<Judge> = optima.iter().map(|optimum| self.judge_of(&[*optimum]).0).collect();
+    fn hear_other_optima(
+        &self,
+        reports: &mut [CandidateReport],
+        optima: &[&Optimum],
+        first: &Judge,
+        planes: &[Planes],
+    ) {
+        let (best, others) = (optima[0], &optima[1..]);
+        let judges: Vec<Judge> = others.iter().map(|optimum| self.judge_of(&[*optimum]).0).collect();
         for (report, (name, candidate)) in reports.iter_mut().zip(&self.candidates) {
-            let verdict = |(judge, optimum): (&Judge, &&Optimum)| {
-                judge.judge(name, &optimum.round.state, candidate, None).verdict
-            };
-            let mut verdicts = judges.iter().zip(optima).map(verdict);
-            let alone = verdicts.next().unwrap_or(report.verdict);
+            let verdict = |judge: &Judge, at: &Optimum| judge.judge(name, &at.round.state, candidate, None).verdict;
             let is_contradicted = match report.verdict {
                 CheckVerdict::Off => {
-                    verdicts.any(|other| other != CheckVerdict::Off)
-                        || self.scene.is_seen(candidate) && !optima[0].excludes(&self.scene, *candidate, planes)
+                    judges.iter().zip(others).any(|(judge, other)| verdict(judge, other) != CheckVerdict::Off)
+                        || self.scene.is_seen(candidate) && !best.excludes(&self.scene, *candidate, planes)
                 }
                 CheckVerdict::Consistent => false,
-                CheckVerdict::Undecided => is_open(&report.reason) && alone != CheckVerdict::Undecided,
+                CheckVerdict::Undecided => is_open(&report.reason) && verdict(first, best) != CheckVerdict::Undecided,
             };
             if is_contradicted {
-                report.between_optima(judges[0].tolerance());
+                report.between_optima(first.tolerance());
             }
         }
     }
@@ -182,8 +186,8 @@ impl CalibrationCheck {
 
     /// Scale of the estimate's distribution. If the sums overflow, it is that of the prior.
     fn scale(&self, findings: &Findings, state: &State, cloud: &[Vector3<f64>]) -> Matrix {
-        let told = || findings.prior.cholesky().map_or(Matrix::identity() * FARTHEST, |c| c.inverse());
-        let scale = findings.total.covariance(&findings.prior).unwrap_or_else(told);
+        let of_prior = || findings.prior.cholesky().map_or(Matrix::identity() * FARTHEST, |c| c.inverse());
+        let scale = findings.total.covariance(&findings.prior).unwrap_or_else(of_prior);
         if !self.scene.focal_is_free {
             return scale;
         }

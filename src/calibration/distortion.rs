@@ -33,8 +33,8 @@ pub(super) fn left_out(scene: &mut Scene, round: &Round) -> Option<f64> {
 
 /// Score from the estimate or from the initial pose, whichever ends better: a missing lens biases the estimate.
 fn score(scene: &mut Scene, round: &Round, lens: Lens, planes: &[Vec<Planes>]) -> f64 {
-    let told = Round { state: round.told, ..*round };
-    score_from(scene, round, lens, planes).max(score_from(scene, &told, lens, planes))
+    let initial = Round { state: round.initial, ..*round };
+    score_from(scene, round, lens, planes).max(score_from(scene, &initial, lens, planes))
 }
 
 fn score_from(scene: &mut Scene, round: &Round, lens: Lens, planes: &[Vec<Planes>]) -> f64 {

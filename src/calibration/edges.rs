@@ -72,7 +72,7 @@ impl EdgeField {
         let found = rims.len();
         keep(&mut rims, frame.grid, most);
         let kept = rims.len() as f64 / found.max(1) as f64;
-        rims.iter_mut().for_each(|rim| rim.alike = 1.0 + kept * (rim.alike - 1.0));
+        rims.iter_mut().for_each(|rim| rim.in_gap = 1.0 + kept * (rim.in_gap - 1.0));
         rims
     }
 
@@ -107,7 +107,7 @@ impl EdgeField {
             let of_gap = rim.gap / EVEN;
             let sigma = sigma.hypot(of_gap);
             // Neighbours in one gap share its error: the variance of their mean is that of so many independent ones.
-            let weight = 1.0 / (1.0 + (rim.alike - 1.0) * (of_gap / sigma).powi(2));
+            let weight = 1.0 / (1.0 + (rim.in_gap - 1.0) * (of_gap / sigma).powi(2));
             let window = (WINDOW * sigma).max(widest);
             let edges = edges(planes, start, rim.normal, window, blur)?;
             Some(Profile { row, sigma, window, weight, tile: tiles.of(rim.pixel), edges })

@@ -66,6 +66,13 @@ impl Optimum {
         self.is_equal() || self.behind <= SIGNIFICANT * self.scatter
     }
 
+    /// Sets how far this optimum lies behind the best, with the weights of the best's cues.
+    fn compare(&mut self, best: &Fit, weights: &[f64]) {
+        let own = Fit::of(&self.findings, weights);
+        self.behind = best.posterior - own.posterior;
+        self.scatter = best.scatter(&own);
+    }
+
     /// Probability that the best optimum fits this much better by chance, one if it is the best.
     pub fn weight(&self) -> f64 {
         if self.behind <= 0.0 { 1.0 } else { libm::erfc(self.behind / self.scatter * std::f64::consts::FRAC_1_SQRT_2) }
@@ -75,51 +82,51 @@ impl Optimum {
     pub fn excludes(&self, scene: &Scene, state: State, planes: &[Planes]) -> bool {
         let round = Round { state, seen_from: state, ..self.round };
         let mut other = Self::at(scene, round, None, planes);
-        let weights = self.weights();
-        other.behind = self.posterior(&weights) - other.posterior(&weights);
-        other.scatter = scatter(&self.by_tile(&weights), &other.by_tile(&weights));
+        let weights = self.findings.weights();
+        other.compare(&Fit::of(&self.findings, &weights), &weights);
         !other.is_possible()
     }
+}
 
-    fn weights(&self) -> Vec<f64> {
-        self.findings.cues.iter().map(|cue| cue.2).collect()
-    }
-
+/// How well a pose fits, with given weights of the cues.
+struct Fit {
     /// Weighted log likelihood of the cues in each tile.
-    fn by_tile(&self, weights: &[f64]) -> Vec<f64> {
-        let mut tiles = vec![0.0; self.findings.total.shares.len()];
-        for ((_, cue, _), weight) in self.findings.cues.iter().zip(weights) {
-            tiles.iter_mut().zip(&cue.shares).for_each(|(sum, share)| *sum += weight * share.value);
+    by_tile: Vec<f64>,
+    /// Their sum and the log prior.
+    posterior: f64,
+}
+
+impl Fit {
+    fn of(findings: &Findings, weights: &[f64]) -> Self {
+        let Findings { cues, total, back, prior, .. } = findings;
+        let mut by_tile = vec![0.0; total.shares.len()];
+        for ((_, cue, _), weight) in cues.iter().zip(weights) {
+            by_tile.iter_mut().zip(&cue.shares).for_each(|(sum, share)| *sum += weight * share.value);
         }
-        tiles
+        let posterior = by_tile.iter().sum::<f64>() - 0.5 * back.dot(&(prior * back));
+        Self { by_tile, posterior }
     }
 
-    /// Weighted log likelihood of the cues and log prior.
-    fn posterior(&self, weights: &[f64]) -> f64 {
-        let Findings { back, prior, .. } = &self.findings;
-        self.by_tile(weights).iter().sum::<f64>() - 0.5 * back.dot(&(prior * back))
+    /// Standard deviation of the difference of two log likelihoods, a sum over independent tiles; those that show nothing do
+    /// not count.
+    fn scatter(&self, other: &Self) -> f64 {
+        let pairs = self.by_tile.iter().zip(&other.by_tile);
+        let differences: Vec<f64> = pairs.map(|(a, b)| a - b).filter(|value| *value != 0.0).collect();
+        let mean = differences.iter().sum::<f64>() / differences.len().max(1) as f64;
+        differences.iter().map(|value| (value - mean).powi(2)).sum::<f64>().sqrt()
     }
 }
 
-/// Standard deviation of the sum of differences between independent tiles; those that show nothing do not count.
-fn scatter(one: &[f64], other: &[f64]) -> f64 {
-    let differences: Vec<f64> = one.iter().zip(other).map(|(a, b)| a - b).filter(|value| *value != 0.0).collect();
-    let mean = differences.iter().sum::<f64>() / differences.len().max(1) as f64;
-    differences.iter().map(|value| (value - mean).powi(2)).sum::<f64>().sqrt()
-}
-
-/// Sorts by posterior, each with its own weights, and then all with those of the best: a pose that puts nothing onto the
-/// image has no weights that could compare others.
+/// Sorts by posterior with the weights of the optimum that is best with its own: a pose that puts nothing onto the image
+/// has no weights that could compare others.
 pub(super) fn rank(optima: &mut [Optimum]) {
-    let own = |optimum: &Optimum| optimum.posterior(&optimum.weights());
-    optima.sort_by(|a, b| own(b).total_cmp(&own(a)));
-    let Some(weights) = optima.first().map(Optimum::weights) else { return };
-    let posteriors: Vec<f64> = optima.iter().map(|optimum| optimum.posterior(&weights)).collect();
-    let best = posteriors.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    optima.iter_mut().zip(posteriors).for_each(|(optimum, posterior)| optimum.behind = best - posterior);
-    optima.sort_by(|a, b| a.behind.total_cmp(&b.behind));
-    let best = optima[0].by_tile(&weights);
-    optima.iter_mut().for_each(|optimum| optimum.scatter = scatter(&best, &optimum.by_tile(&weights)));
+    let own = |optimum: &Optimum| Fit::of(&optimum.findings, &optimum.findings.weights()).posterior;
+    let Some(first) = optima.iter().min_by(|a, b| own(b).total_cmp(&own(a))) else { return };
+    let weights = first.findings.weights();
+    let fit = |optimum: &Optimum| Fit::of(&optimum.findings, &weights);
+    optima.sort_by(|a, b| fit(b).posterior.total_cmp(&fit(a).posterior));
+    let best = fit(&optima[0]);
+    optima.iter_mut().for_each(|optimum| optimum.compare(&best, &weights));
 }
 
 #[cfg(test)]
@@ -137,10 +144,10 @@ mod tests {
         let camera = Pinhole { fx: 500.0, fy: 500.0, cx: 320.0, cy: 240.0, lens: Lens::None };
         let cloud = [[-0.3, -0.2, 1.0], [0.3, -0.2, 1.2], [0.0, 0.3, 0.9]].map(Vector3::from);
         let units = Units::new(&cloud, &camera);
-        let told = State::at(Similarity::identity());
+        let initial = State::at(Similarity::identity());
         let mut back = Vector::zeros();
         back[0] = sigmas;
-        let round = Round::from(units.step(&told, &back), told);
+        let round = Round::from(units.step(&initial, &back), initial);
         let evidence = Evidence { shares: vec![Share { value, ..Share::none() }] };
         let cues = vec![(Cue::Edges, evidence.clone(), weight)];
         let findings =
@@ -166,6 +173,18 @@ mod tests {
         optimum.findings.cues[0].1 = evidence.clone();
         optimum.findings.total = evidence;
         optimum
+    }
+
+    #[test]
+    fn the_difference_of_two_fits_is_their_sum_over_tiles_and_its_standard_deviation() {
+        let (best, mut other) = (tiled(&[4.0, 2.0, 0.0, 3.0]), tiled(&[1.0, 1.0, 0.0, 1.0]));
+        other.compare(&Fit::of(&best.findings, &[0.5]), &[0.5]);
+        // Differences 1.5, .5 and 1 about their mean of 1; the third tile shows nothing.
+        assert_eq!((other.behind, other.scatter), (3.0, 0.5_f64.sqrt()));
+        // In the other direction the difference is negative, and nothing is excluded.
+        let mut best = best;
+        best.compare(&Fit::of(&other.findings, &[0.5]), &[0.5]);
+        assert!(best.behind == -3.0 && best.is_possible());
     }
 
     #[test]

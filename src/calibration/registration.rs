@@ -80,7 +80,7 @@ pub(super) struct Scene {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Round {
     pub state: State,
-    pub told: State,
+    pub initial: State,
     /// The state from which the scene is seen: visible discontinuities and samples are those of this state.
     pub seen_from: State,
     pub sigma: f64,
@@ -90,8 +90,8 @@ pub(super) struct Round {
 
 impl Round {
     /// The first round from a state.
-    pub fn from(state: State, told: State) -> Self {
-        Self { state, told, seen_from: told, sigma: 0.0, traces: Default::default() }
+    pub fn from(state: State, initial: State) -> Self {
+        Self { state, initial, seen_from: initial, sigma: 0.0, traces: Default::default() }
     }
 }
 
@@ -118,6 +118,13 @@ pub(super) struct Findings {
     pub traces: [Traces; Cue::ALL.len()],
     /// Step from the initial state of the prior to the state.
     pub back: Vector,
+}
+
+impl Findings {
+    /// The weight of each cue.
+    pub fn weights(&self) -> Vec<f64> {
+        self.cues.iter().map(|cue| cue.2).collect()
+    }
 }
 
 impl Scene {
@@ -185,14 +192,14 @@ impl Scene {
     /// the nearest state on a lattice about the initial state, which rounding does not move.
     pub fn look(&self, round: &mut Round) -> bool {
         let spacing = SPACING * self.scale;
-        let units = self.units(&round.told);
-        let [from, to] = [round.seen_from, round.state].map(|state| units.between(&round.told, &state));
+        let units = self.units(&round.initial);
+        let [from, to] = [round.seen_from, round.state].map(|state| units.between(&round.initial, &state));
         let moves = |k: &usize| *k < POSE || *k == FOCAL;
         if (0..UNKNOWNS).filter(moves).all(|k| (to[k] - from[k]).abs() <= spacing) {
             return false;
         }
         let place = |k: usize, _| if moves(&k) { (to[k] / spacing).round() * spacing } else { 0.0 };
-        round.seen_from = units.step(&round.told, &Vector::from_fn(place));
+        round.seen_from = units.step(&round.initial, &Vector::from_fn(place));
         true
     }
 
@@ -245,7 +252,7 @@ impl Scene {
             evidence.add_to(&mut total, weight);
             cues.push((cue, evidence, weight));
         }
-        let back = units.between(&round.told, &round.state);
+        let back = units.between(&round.initial, &round.state);
         Findings { prior: self.prior(&units), units, cues, total, traces, back }
     }
 
@@ -279,7 +286,7 @@ impl Scene {
                 let rims = EdgeField::moved(frame, rims, &round.seen_from, state);
                 add_edges(Sight { frame, planes }, &rims, &moved, &findings.units, &mut evidence);
             }
-            let back = findings.units.between(&round.told, state);
+            let back = findings.units.between(&round.initial, state);
             let prior = 0.5 * back.dot(&(findings.prior * back));
             surfaces.iter().map(of_surface).sum::<f64>() + edges * evidence.value() - prior
         }
@@ -299,7 +306,7 @@ impl Scene {
             let mean = evidence.value() / f64::max(count, 1.0);
             let mut total = Evidence::default();
             evidence.add_to(&mut total, evidence.traces().weight());
-            let back = units.between(&start.round.told, &state);
+            let back = units.between(&start.round.initial, &state);
             let prior = self.prior(&units);
             start.score = mean - 0.5 * SCORE_PRIOR * back.dot(&(prior * back));
             start.round.state = units.step(&state, &step(&total, &prior, &back));
@@ -307,8 +314,8 @@ impl Scene {
     }
 
     /// A start from a state that is seen as it is.
-    pub fn start(&self, state: State, told: State) -> Start {
-        let round = Round { seen_from: state, ..Round::from(state, told) };
+    pub fn start(&self, state: State, initial: State) -> Start {
+        let round = Round { seen_from: state, ..Round::from(state, initial) };
         Start { round, rims: self.rims(&state, MOST_RIMS_OF_STARTS), score: 0.0 }
     }
 

@@ -35,49 +35,46 @@ pub(super) struct Rim {
     pub gap: f64,
     /// Number of neighbours along a row or column of the raster, itself among them, whose surface ends in the same gap.
     /// Where a straight boundary lies in its gap is one unknown for all of them.
-    pub alike: f64,
+    pub in_gap: f64,
 }
 
 /// All depth discontinuities that the colour camera sees.
 pub(super) fn find(frame: &Frame, projection: &Projection) -> Vec<Rim> {
     let is_near = |index: &usize| !depth(projection, *index).is_nan() && !projection.is_hidden[*index];
     let mut found: Vec<Rim> = vec![];
-    let mut ways = vec![usize::MAX; frame.grid.len()];
+    let mut directions = vec![usize::MAX; frame.grid.len()];
     for index in (0..frame.grid.len()).filter(is_near) {
-        if let Some((rim, way)) = rim(frame, projection, index) {
-            ways[index] = way;
+        if let Some((rim, direction)) = rim(frame, projection, index) {
+            directions[index] = direction;
             found.push(rim);
         }
     }
-    found.iter_mut().for_each(|rim| rim.alike = alike(frame, &ways, rim.index) as f64);
+    found.iter_mut().for_each(|rim| rim.in_gap = count_in_gap(frame, &directions, rim.index) as f64);
     found
 }
 
 /// The number of neighbours, the pixel among them, along a row or column of the raster whose surface ends in the same gap:
 /// a boundary between two rows goes on along the row, one between two columns along the column.
-fn alike(frame: &Frame, ways: &[usize], index: usize) -> usize {
-    let (way, (column, row)) = (ways[index], frame.grid.position(index));
-    let is_between_rows = way >= 2;
+fn count_in_gap(frame: &Frame, directions: &[usize], index: usize) -> usize {
+    let (direction, (column, row)) = (directions[index], frame.grid.position(index));
+    let is_between_rows = direction >= 2;
     let (at, length, stride) =
         if is_between_rows { (column, frame.grid.width, 1) } else { (row, frame.grid.height, frame.grid.width) };
     let of = |place: (usize, usize)| if is_between_rows { place.1 } else { place.0 };
     let line = of(frame.place(index));
     let neighbours = at.saturating_sub(STRAIGHT)..(at + STRAIGHT + 1).min(length);
-    let is_alike = |other: &usize| {
+    let is_in_gap = |other: &usize| {
         let other = index + other * stride - at * stride;
-        ways[other] == way && of(frame.place(other)) == line
+        directions[other] == direction && of(frame.place(other)) == line
     };
-    neighbours.filter(is_alike).count()
+    neighbours.filter(is_in_gap).count()
 }
 
 fn depth(projection: &Projection, index: usize) -> f64 {
     f64::from(projection.positions[index][2])
 }
 
-/// The steps on the raster in the four ways.
-const STEPS: [[f64; 2]; 4] = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
-
-/// In each of the four ways, the step on the raster to the next pixel beyond the near surface, if the next depth is
+/// In each of the four directions, the step on the raster to the next pixel beyond the near surface, if the next depth is
 /// clearly farther than the continued surface.
 fn ends_before_farther(frame: &Frame, projection: &Projection, index: usize) -> [Option<[f64; 2]>; 4] {
     let grid = frame.grid;
@@ -85,18 +82,15 @@ fn ends_before_farther(frame: &Frame, projection: &Projection, index: usize) -> 
     let here = depth(projection, index);
     let gap = frame.clear_gap(here);
     let hole = frame.cell.map(|side| WIDEST_HOLE.div_ceil(side));
-    // Distance of neighbours in memory, the widest hole, and the number of pixels to the end of the raster ahead and
-    // behind.
-    let ways = [
-        (1, hole[0], grid.width - 1 - column, column),
-        (-1, hole[0], column, grid.width - 1 - column),
-        (grid.width as isize, hole[1], grid.height - 1 - row, row),
-        (-(grid.width as isize), hole[1], row, grid.height - 1 - row),
+    // Step on the raster, distance of neighbours in memory, the widest hole, and the number of pixels to the end of the
+    // raster ahead and behind.
+    let directions = [
+        ([1.0, 0.0], 1, hole[0], grid.width - 1 - column, column),
+        ([-1.0, 0.0], -1, hole[0], column, grid.width - 1 - column),
+        ([0.0, 1.0], grid.width as isize, hole[1], grid.height - 1 - row, row),
+        ([0.0, -1.0], -(grid.width as isize), hole[1], row, grid.height - 1 - row),
     ];
-    let mut way = 0;
-    ways.map(|(stride, hole, ahead, behind)| {
-        let beside = STEPS[way];
-        way += 1;
+    directions.map(|(beside, stride, hole, ahead, behind)| {
         let at = |steps: isize| depth(projection, index.wrapping_add_signed(stride * steps));
         let mut steps = 1..=ahead.min(hole) as isize;
         let steps = steps.find(|&steps| !at(steps).is_nan())?;
@@ -184,8 +178,8 @@ impl Neighbourhood {
 
 /// Where the near surface ends along the normal, from the steps to the pixels beyond it.
 struct Gap {
-    /// The way that is nearest to the normal.
-    way: usize,
+    /// The direction on the raster that is nearest to the normal.
+    direction: usize,
     gap: f64,
 }
 
@@ -195,7 +189,7 @@ impl Gap {
     /// only noise puts beyond a straight boundary, counts for nothing as its cosine vanishes.
     fn of(ends: &[Option<[f64; 2]>; 4], normal: [f64; 2], on_image: impl Fn([f64; 2]) -> [f64; 2]) -> Option<Self> {
         let (mut precision, mut weights, mut best) = (0.0, 0.0, (0.0, 0));
-        for (way, step) in ends.iter().enumerate() {
+        for (direction, step) in ends.iter().enumerate() {
             let Some(step) = step else { continue };
             let [x, y] = on_image(*step);
             let (along, length) = (x * normal[0] + y * normal[1], x.hypot(y));
@@ -204,15 +198,15 @@ impl Gap {
                 precision += cosine.powi(2) / length.powi(2);
                 weights += cosine.powi(4);
                 if cosine > best.0 {
-                    best = (cosine, way);
+                    best = (cosine, direction);
                 }
             }
         }
-        (weights > 0.0).then(|| Self { way: best.1, gap: (weights / precision).sqrt() })
+        (weights > 0.0).then(|| Self { direction: best.1, gap: (weights / precision).sqrt() })
     }
 }
 
-/// Position and normal of the depth discontinuity at a near pixel, and the way in which it ends the nearest.
+/// Position and normal of the depth discontinuity at a near pixel, and the direction on the raster in which it ends the nearest.
 fn rim(frame: &Frame, projection: &Projection, index: usize) -> Option<(Rim, usize)> {
     let ends = ends_before_farther(frame, projection, index);
     let centre = projection.pixels[index];
@@ -225,9 +219,9 @@ fn rim(frame: &Frame, projection: &Projection, index: usize) -> Option<(Rim, usi
     let normal = [sign * (d * away[0] - c * away[1]), sign * (a * away[1] - b * away[0])];
     let length = normal[0].hypot(normal[1]);
     let normal = normal.map(|value| value / length);
-    let Gap { way, gap } = Gap::of(&ends, normal, |[x, y]| [a * x + b * y, c * x + d * y])?;
+    let Gap { direction, gap } = Gap::of(&ends, normal, |[x, y]| [a * x + b * y, c * x + d * y])?;
     let pixel = [0, 1].map(|k| f64::from(centre[k]) + 0.5 * gap * normal[k]);
-    Some((Rim { index, pixel, normal, gap, alike: 1.0 }, way))
+    Some((Rim { index, pixel, normal, gap, in_gap: 1.0 }, direction))
 }
 
 #[cfg(test)]
@@ -298,16 +292,16 @@ mod tests {
     }
 
     #[test]
-    fn a_straight_boundary_along_the_raster_has_many_alike() {
+    fn a_straight_boundary_along_the_raster_has_many_in_one_gap() {
         let found = seen([1, 4], |[_, y]| if y < 0.1 { 1.0 } else { 3.0 });
         assert!(found.len() > 50, "{}", found.len());
         let inner = found.iter().filter(|rim| (12.0..52.0).contains(&rim.pixel[0]));
-        assert!(inner.clone().all(|rim| rim.alike == 17.0), "{:?}", inner.map(|rim| rim.alike).collect::<Vec<_>>());
+        assert!(inner.clone().all(|rim| rim.in_gap == 17.0), "{:?}", inner.map(|rim| rim.in_gap).collect::<Vec<_>>());
         let oblique = seen([1, 1], |[x, y]| if 60.0 * (x + y) < -0.5 { 1.0 } else { 3.0 });
         assert!(
-            oblique.iter().all(|rim| rim.alike < 3.0),
+            oblique.iter().all(|rim| rim.in_gap < 3.0),
             "{:?}",
-            oblique.iter().map(|rim| rim.alike).collect::<Vec<_>>()
+            oblique.iter().map(|rim| rim.in_gap).collect::<Vec<_>>()
         );
     }
 

@@ -235,7 +235,7 @@ mod tests {
             let units = Units::new(&points, &camera);
             let row = |point: &Vector3<f64>| {
                 let (pixel, rows) = units.rows(point, &camera)?;
-                Some((0, Rim { index: 0, pixel, normal: [1.0, 0.0], gap: 1.0, alike: 1.0 }, rows))
+                Some((0, Rim { index: 0, pixel, normal: [1.0, 0.0], gap: 1.0, in_gap: 1.0 }, rows))
             };
             let rows: Vec<_> = points.iter().filter_map(row).collect();
             let mut pace = PACE;
