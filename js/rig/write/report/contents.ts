@@ -64,8 +64,8 @@ export interface ReportOptions {
   /** The command that repeats the check in a shell, and what it cannot repeat. */
   shell?:
     | {
-        /** The command, of one line or more. */
-        command: string;
+        /** The command, of one line or more; none if no command can repeat it. */
+        command?: string | undefined;
         /** Where to type it, and how its result differs. */
         note?: string | undefined;
       }

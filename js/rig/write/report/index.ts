@@ -13,7 +13,6 @@ import { extrinsicsSection, shellSection, summary, verdictHeader, warningList } 
 
 export { type ShellCheck, shellCheck } from "./command.js";
 export type { Checked, Overlay, Picture, ReportEntry, ReportInput, ReportOptions } from "./contents.js";
-export { inWords, verdictReason, verdictWords } from "./words.js";
 
 /** The members that the sections read; a missing word or an invalid number is shown as "not known". */
 const REPORT: Example = {

@@ -159,7 +159,7 @@ export function shellSection({ shell, settings = [], versions = [] }: ReportOpti
   return section(
     "How to reproduce it",
     shell && [
-      html`<pre class="shell" tabindex="0">${shell.command}</pre>`,
+      shell.command ? html`<pre class="shell" tabindex="0">${shell.command}</pre>` : undefined,
       shell.note ? html`<p>${shell.note}</p>` : undefined,
     ],
     entries("Options", settings),
