@@ -46,7 +46,7 @@ function settingsOf(rig: Rig, run: Run): [string, string][] {
   ];
 }
 
-/** Digits of a hash that tell versions apart. */
+/** Digits of a hash that distinguish versions. */
 const HASH = 16;
 const ESTIMATE = "The command checks a calibration; none was given here.";
 const LIKE = "Type it in the folder that holds these files and no others.";

@@ -1,11 +1,11 @@
-/** What a shell is given to repeat a check of the page: the files by their names, and what was typed as files of their own. */
+/** What a shell is given to repeat a check of the page: the files by their names, and typed values as separate files. */
 
 import type { Pinhole, Pose } from "../../pkg/index.js";
 import type { ShellCheck } from "../../pkg/rig/write/report/index.js";
 import type { Rig } from "./rig";
 import type { Run, Side } from "./state";
 
-/** Pairs that the command takes unless it is told of more. */
+/** Pairs that the command takes by default. */
 const FRAMES = 20;
 
 /** All digits, since it is the pose that was judged. */

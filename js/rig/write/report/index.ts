@@ -36,6 +36,20 @@ const OPTIONS: Example = {
 
 const LEGEND = html`<p class="soft"><svg class="key" viewBox="0 0 24 8" aria-hidden="true"><path class="edge" d="M0 4H24"/></svg> depth edges; they should coincide with the silhouettes in the image</p>`;
 
+/** Lines of the lists of a printed page up to which its pictures may be large. */
+const FEW_LINES = 14;
+
+/** Lines that the lists take, each cut at what a full page holds. */
+function linesOf({ warnings, candidates }: Checked, { inputs = [], shell }: ReportOptions): number {
+  const command = String(shell?.command ?? "").split("\n");
+  return (
+    Math.min(warnings.length, 4) +
+    Math.min(Object.keys(candidates).length, 4) +
+    Math.min(inputs.length, 10) +
+    command.length
+  );
+}
+
 /** The report of a check as one HTML file without scripts. `pictures` are shown with the details. */
 export function reportHtml(report: Checked, pictures: readonly Picture[] = [], options: ReportOptions = {}): string {
   like(REPORT, report, "report");
@@ -49,7 +63,12 @@ export function reportHtml(report: Checked, pictures: readonly Picture[] = [], o
   const [first, ...others] = overlays.map(overlayPair);
   return reportPage(title, verdictHeader(report, title, dateOf(made, "options.made"), isEstimate), [
     ...[summary(report, options), warningList(report)],
-    first && section("Depth edges on the image", first, LEGEND),
+    first &&
+      section(
+        "Depth edges on the image",
+        html`<div class="${linesOf(report, options) > FEW_LINES ? "small" : "large"}">${first}</div>`,
+        LEGEND,
+      ),
     ...[extrinsicsSection(report, options), shellSection(options), inputTable(inputs)],
     details(
       report,

@@ -33,7 +33,9 @@ export function overlayPair({ frame, width, height, picture, before, after }: Ov
     throw fault("type", `${field}.picture`, "must be a data URL of a PNG, JPEG, WebP, AVIF or GIF");
   if (![width, height].every((length) => Number.isFinite(length) && length >= 1))
     throw fault("size", field, "needs a width and a height in pixels");
-  for (const [name, edges] of Object.entries({ before: before ?? [], after }))
+  for (const [name, edges] of Object.entries({ before, after }).filter(
+    ([name, edges]) => name === "after" || edges !== undefined,
+  ))
     if (typeof Object(edges).length !== "number") throw fault("type", `${field}.${name}`, "must be a list of numbers");
   const cell = Math.max(1, width / COLUMNS);
   const [columns, rows] = [Math.ceil(width / cell), Math.ceil(height / cell)];

@@ -53,7 +53,7 @@ export function firstOf<T>(
   return all.length > most ? [...shown, rest(`and ${all.length - most} more, in the JSON`)] : shown;
 }
 
-/** Files that fit on the first page of a printed report with two lines each, and with one; more have a page of their own, which holds so many. */
+/** Files that fit on the first page of a printed report with two lines each, and with one; more are on a second page, which holds so many. */
 const [FEW, BESIDE, ON_A_PAGE] = [5, 10, 60];
 
 function inputRow({ name, says, bytes, notes = [], sha256 }: ReportInput): Markup {
