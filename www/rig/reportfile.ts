@@ -38,7 +38,7 @@ function settingsOf(rig: Rig, run: Run): [string, string][] {
   const units = new Set(run.plans.map(({ depth }) => rig.item(depth)?.unit));
   const given = [...units].map((unit) => (unit === undefined ? "as the files state it or as guessed" : `${unit} m`));
   return [
-    ["cues", rig.cues.length > 0 ? rig.cues.join(",") : "all"],
+    ["cues", run.cues.length > 0 ? run.cues.join(",") : "all"],
     ["frames", String(run.plans.length)],
     ["unit", given.join(" and ")],
     ["masks drawn", run.plans.some(({ paint }) => paint) ? "yes" : "no"],

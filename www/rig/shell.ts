@@ -64,7 +64,7 @@ export function shellOf(rig: Rig, run: Run): ShellCheck {
     ],
     ...(unit !== undefined && units.size === 1 ? { unit } : {}),
     ...(run.plans.length > FRAMES ? { frames: run.plans.length } : {}),
-    ...(rig.cues.length > 0 ? { cues: rig.cues } : {}),
+    ...(run.cues.length > 0 ? { cues: run.cues } : {}),
     written: [
       ...calibrations.flatMap(({ name, text }) => (text === undefined ? [] : [{ name, text }])),
       ...(cameras.text === undefined ? [] : [{ name: "cameras.json", text: cameras.text }]),
