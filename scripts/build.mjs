@@ -31,13 +31,15 @@ const SOURCES = [
   "scripts/notices",
 ];
 const MARK = "pkg/.stamp";
-/** Entries for programs, for files of images and depth maps, for a rig's files (reading, recordings, writing), for writing a run's files, for the page's fields and its visitor's files, for the threads of workers, and for shells. */
+/** Entries for programs, for files of images and depth maps, for a rig's files (reading, recordings, writing, the report of its check, its words), for writing a run's files, for the page's fields and its visitor's files, for the threads of workers, and for shells. */
 const ENTRIES = {
   index: "index",
   files: "files",
   rig: "rig/index",
   "rig-recordings": "rig/recordings/index",
   "rig-write": "rig/write/index",
+  "rig-report": "rig/write/report/index",
+  "rig-words": "rig/write/report/words",
   write: "write/index",
   options: "options",
   pair: "pair/index",

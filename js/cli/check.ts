@@ -1,6 +1,5 @@
 /** The command `check`: the calibration of a rig over a folder of frames, for a shell and for continuous integration. */
 import { writeFileSync } from "node:fs";
-import { basename } from "node:path";
 import { reasonOf } from "../errors.js";
 import { posesForClouds } from "../rig/turned.js";
 import type { NamedFile, RigReading } from "../rig/types.js";
@@ -8,8 +7,9 @@ import type { CheckReport } from "../types/index.js";
 import { type Arguments, Mistake } from "./arguments.js";
 import { candidatesOf } from "./candidates.js";
 import { file, filesOf, inputsOf } from "./files.js";
+import { pageOptions } from "./page.js";
 import { progress } from "./progress.js";
-import { type Judged, type Whole, capped, ofReader, textOf } from "./report.js";
+import { type Judged, capped, ofReader, textOf } from "./report.js";
 
 const CODES: Record<string, number> = { consistent: 0, off: 1, undecided: 2 };
 export const BAD = 3;
@@ -97,26 +97,27 @@ async function checkFolder(args: Arguments): Promise<number> {
     );
   }
   const given = Object.entries(candidates).map(([name, pose]) => ({ name, pose }));
-  const poses = posesForClouds(given, read.frames, read.warnings).map(({ name = "", pose }) => [name, pose]);
-  const report = await checked(loaded, read.frames, Object.fromEntries(poses), args.checking);
+  const poses = posesForClouds(given, read.frames, read.warnings);
+  const judged = Object.fromEntries(poses.map(({ name = "", pose }) => [name, pose]));
+  const report = await checked(loaded, read.frames, judged, args.checking);
   const whole = capped(report, [...report.warnings, ...warnings, ...read.warnings.map(ofReader)]);
-  write(
-    loaded,
-    args,
-    whole,
-    inputsOf([...found, ...read.readings], [...calibrations, ...cameras, ...files] as NamedFile[]),
-  );
+  const inputs = inputsOf([...found, ...read.readings], [...calibrations, ...cameras, ...files] as NamedFile[]);
+  await write(loaded, args, { whole, frames: read.frames, poses, inputs });
   return CODES[whole.verdict] ?? BAD;
 }
 
-function write({ reportHtml }: Modules, args: Arguments, whole: Whole, inputs: ReturnType<typeof inputsOf>): void {
+async function write(
+  { reportHtml, projectFrame }: Modules,
+  args: Arguments,
+  outcome: Parameters<typeof pageOptions>[1],
+): Promise<void> {
+  const { whole } = outcome;
+  const inputs = outcome.inputs.map(({ name, says, sha256 }) => ({ name, says, sha256 }));
   const json = () => `${JSON.stringify({ ...whole, inputs }, null, 2)}\n`;
   // First: a file that cannot be written costs no verdict.
   (args.json === "-" ? process.stderr : process.stdout).write(textOf(whole));
   if (args.json !== undefined && args.json !== "-") writeFileSync(args.json, json());
-  if (args.report !== undefined) {
-    const title = `Check of ${basename(args.calibrations[0] ?? "")}`;
-    writeFileSync(args.report, reportHtml(whole as CheckReport, [], { title, made: new Date(), inputs }));
-  }
+  if (args.report !== undefined)
+    writeFileSync(args.report, reportHtml(whole as CheckReport, [], await pageOptions(args, outcome, projectFrame)));
   if (args.json === "-") process.stdout.write(json());
 }

@@ -2,7 +2,7 @@
 import { createHash } from "node:crypto";
 import { readFileSync, readdirSync, statSync } from "node:fs";
 import { join, relative, resolve } from "node:path";
-import type { NamedFile } from "../rig/types.js";
+import type { NamedFile, Reading } from "../rig/types.js";
 import { reasonOf } from "../errors.js";
 import { Mistake } from "./arguments.js";
 
@@ -50,15 +50,20 @@ export interface Input {
   name: string;
   says: string;
   sha256: string;
+  bytes: number;
+  /** The codes of its warnings, guesses among them. */
+  notes: string[];
 }
 
 /** What was read of each file, with the hash by which it can be recognised later. */
-export function inputsOf(readings: { name: string; says: string }[], files: NamedFile[]): Input[] {
+export function inputsOf(readings: Reading[], files: NamedFile[]): Input[] {
   const bytes = new Map(files.map((each) => [each.name, each.bytes]));
   const seen = new Map<string, Input>();
-  for (const { name, says } of readings) {
+  for (const { name, says, warnings } of readings) {
     const own = bytes.get(name);
-    if (own) seen.set(name, { name, says, sha256: createHash("sha256").update(own).digest("hex") });
+    const sha256 = own && createHash("sha256").update(own).digest("hex");
+    if (sha256)
+      seen.set(name, { name, says, sha256, bytes: own.length, notes: [...new Set(warnings.map(({ code }) => code))] });
   }
   return [...seen.values()];
 }

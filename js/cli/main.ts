@@ -1,9 +1,9 @@
 #!/usr/bin/env node
 /** `npx bimodal-stereo`: the commands of the package. */
-import { readFileSync } from "node:fs";
 import { Mistake, argumentsOf } from "./arguments.js";
 import { BAD, check } from "./check.js";
 import { CHECK_HELP, HELP } from "./help.js";
+import { versionOf } from "./version.js";
 
 const INTERRUPTED = 130;
 
@@ -12,12 +12,6 @@ const isForeseen = (error: unknown): error is Error =>
   error instanceof Mistake ||
   (error instanceof Error && (error.name === "BimodalError" || ("syscall" in error && error.syscall !== undefined)));
 
-function version(): number {
-  const { version: own } = JSON.parse(readFileSync(new URL("./package.json", import.meta.url), "utf8"));
-  process.stdout.write(`bimodal-stereo ${own}\n`);
-  return 0;
-}
-
 function print(text: string): number {
   process.stdout.write(text);
   return 0;
@@ -25,11 +19,11 @@ function print(text: string): number {
 
 async function run([command, ...rest]: string[]): Promise<number> {
   if (command === undefined || command === "--help" || command === "-h") return print(HELP);
-  if (command === "--version" || command === "-V") return version();
+  if (command === "--version" || command === "-V") return print(`bimodal-stereo ${versionOf()}\n`);
   if (command !== "check") throw new Mistake(`there is no command "${command}"; --help lists them`);
   const args = argumentsOf(rest);
   if (args === "help") return print(CHECK_HELP);
-  return args === "version" ? version() : check(args);
+  return args === "version" ? print(`bimodal-stereo ${versionOf()}\n`) : check(args);
 }
 
 try {

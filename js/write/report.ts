@@ -5,7 +5,7 @@ import { type Example, like } from "../rig/write/built.js";
 import type { Picture, ReportInput } from "../rig/write/report/contents.js";
 import { type Markup, html } from "../rig/write/report/markup.js";
 import { digits, measure } from "../rig/write/report/numbers.js";
-import { reportPage } from "../rig/write/report/page.js";
+import { dateOf, heading, reportPage } from "../rig/write/report/page.js";
 import { cell, fact, inputTable, pictureSection, section, sign, table } from "../rig/write/report/parts.js";
 import { checkLight, checkUnit, checkedWholePose, text } from "./check.js";
 import { type Unit, lightCsv, matrixText } from "./results.js";
@@ -154,7 +154,7 @@ function checkedReport(report: RunReport): Checked {
 export function runReportHtml(given: RunReport): string {
   const report = checkedReport(given);
   const { pictures = [], inputs = [], title = "A run of bimodal stereo", made } = report;
-  return reportPage(title, made, "report.made", [
+  return reportPage(title, heading(title, dateOf(made, "report.made")), [
     card(report),
     poseSection(report),
     pictureSection(pictures),

@@ -23,7 +23,7 @@ export async function readRigFile({ name, bytes }) {
 export async function readRigFolder(files, options) {
   const readings = [];
   for (const file of files) readings.push(await readRigFile(file));
-  const frames = readings.filter(({ kind }) => kind === "frame").map((frame) => ({ depth: {}, ...frame }));
+  const frames = readings.filter(({ kind }) => kind === "frame").map((frame) => ({ depth: {}, image: { width: 1, height: 1, data: new Uint8Array(4) }, ...frame }));
   if (frames[0]?.leaves) return { frames, cameras: [], poses: [], readings, warnings: [{ code: "file-left-out", isDoubt: false, message: "left out" }] };
   return { frames, cameras: [], poses: [], readings, warnings: frames[0]?.sure ? [] : [{ code: "unit-guessed", isDoubt: true, message: "read " + files.map(({ name }) => name.split("/").pop()) + " " + JSON.stringify(options) }] };
 }`;
@@ -31,6 +31,7 @@ export async function readRigFolder(files, options) {
 const INDEX = `
 import { report } from ${JSON.stringify(new URL("rig-sample.mjs", import.meta.url).href)};
 export default async () => {};
+export const projectFrame = async () => ({ edges: new Float32Array(2) });
 export async function checkCalibration(frames, candidates, { signal, onProgress, ...options }) {
   const { verdict, sure } = frames[0];
   for (let k = 0; k <= 100; k++) onProgress(k / 100, "edges of " + frames.length);
@@ -44,7 +45,7 @@ mkdirSync(join(root, "examples"));
 writeFileSync(join(root, "package.json"), '{ "type": "module" }');
 cpSync(inRoot("examples/check-folder.mjs"), join(root, "examples/check-folder.mjs"));
 // The command and its dependencies, some of which are replaced below.
-for (const file of readdirSync(inRoot("pkg")).filter((name) => /\.(js|wasm)$/.test(name)))
+for (const file of readdirSync(inRoot("pkg")).filter((name) => /\.(js|json|wasm)$/.test(name)))
   cpSync(inRoot("pkg", file), join(root, "pkg", file));
 writeFileSync(join(root, "pkg/rig.js"), RIG);
 writeFileSync(join(root, "pkg/index.js"), INDEX);

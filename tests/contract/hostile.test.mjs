@@ -73,6 +73,18 @@ function* given(count) {
 
 const PICTURES = [{ title: "a", dataUrl: "data:image/png;base64,AAAA" }];
 const BESIDE = { title: "a", made: new Date(0), inputs: [{ name: "a", says: "b", sha256: "c" }] };
+const OVERLAY = { frame: "a", width: 8, height: 6, picture: PICTURES[0].dataUrl, before: [1, 2], after: [3, 4] };
+/** What a report of a check states besides its numbers. */
+const CHECKED = {
+  ...BESIDE,
+  inputs: [{ ...BESIDE.inputs[0], bytes: 5, notes: ["a"] }],
+  isEstimate: false,
+  calibrations: { "factory.yaml": report().estimate },
+  overlays: [OVERLAY],
+  shell: { command: "a", note: "b" },
+  settings: [["a", "b"]],
+  versions: [["a", "b"]],
+};
 const CAMERA = { model: "brown", fx: 9, fy: 9, cx: 0, cy: 0, distortion: [1, 2, 3, 4] };
 const CONTEXT = {
   colour: CAMERA,
@@ -98,7 +110,7 @@ const SIGMAS = { rotationDegrees: [1, 2, 3], translation: [1, 2, null], scale: n
 const levels = (data, channels = 1) => ({ width: 1, height: 1, channels, data });
 /** Writers with their arguments. */
 const WRITERS = {
-  reportHtml: [rigWrite.reportHtml, report(), PICTURES, BESIDE],
+  reportHtml: [rigWrite.reportHtml, report(), PICTURES, CHECKED],
   runReportHtml: [write.runReportHtml, RUN],
   poseJson: [write.poseJson, POSE, "m", { status: "a", message: "b", uncertainty: SIGMAS }],
   matrixText: [write.matrixText, POSE],

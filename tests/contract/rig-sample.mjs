@@ -34,6 +34,7 @@ export const report = () => ({
     angles: { alpha: 0.461, beta: -1.259, gamma: 0.269 },
   },
   overlap: 0.93,
+  middle: [0.1, -0.05, 1.4],
   covariance: Array.from({ length: 36 }, (_, k) =>
     k % 7 === 0 ? [0.002, 0.0025, 0.004, 0.0011, 0.0013, 0.0048][k / 7] ** 2 : 1e-8 * Math.sin(k),
   ),

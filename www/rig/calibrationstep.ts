@@ -4,17 +4,8 @@ import { make } from "../dom";
 import { decimals } from "../draw/numbers";
 import { dropTarget } from "./drop";
 import { choose, Keyed, labelled, numberField, press } from "./parts";
-import {
-  fromEuler,
-  fromQuaternion,
-  identity,
-  inWords,
-  inverse,
-  isOfWorld,
-  matrixText,
-  poseOf,
-  type EulerOrder,
-} from "./poses";
+import { fromEuler, fromQuaternion, identity, inverse, isOfWorld, matrixText, poseOf, type EulerOrder } from "./poses";
+import { inWords } from "./words";
 import { messageOf, type Candidate, type Rig } from "./rig";
 
 type By = "quaternion" | EulerOrder;

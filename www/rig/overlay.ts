@@ -7,6 +7,7 @@ import { freshId, make } from "../dom";
 import { choose, draw, fill, labelled, press } from "./parts";
 import { between } from "./poses";
 import type { Projection } from "./protocol";
+import type { Overlay as ReportOverlay } from "./report";
 import type { Rig, Run } from "./rig";
 
 type What = "both" | "points" | "edges";
@@ -22,8 +23,8 @@ const WAY = 20;
 const EDGE = [255, 60, 190] as const;
 /** Factor of the point size to the mean distance of points, so that sparse regions are covered. */
 const OVERLAP = 1.2;
-/** Pictures of the report are at most so wide, px. */
-const REPORT_WIDTH = 1280;
+/** Pictures of the report are at most so wide, px, and of so many frames. */
+const [REPORT_WIDTH, REPORT_FRAMES] = [1280, 3];
 
 export class Overlay {
   readonly element = make("section", { class: "rig-card rig-overlay", "aria-label": "Overlay" });
@@ -214,31 +215,34 @@ export class Overlay {
     );
   }
 
-  /** Every frame with the calibration being checked and with the one found, for the report. */
-  async pictures(): Promise<{ title: string; dataUrl: string }[]> {
+  /** The frames that say most, with the depth edges of the calibration in question and of the one found, for the report. */
+  async forReport(): Promise<ReportOverlay[]> {
     const run = this.#run;
     if (!run) return [];
-    const list: { title: string; dataUrl: string }[] = [];
-    for (const [index, { name, colour }] of run.plans.entries()) {
-      const bitmap = await this.#rig.session.call("picture", { file: colour });
-      for (const stop of this.#stops.slice(0, 2)) {
-        const projection = await this.#rig.session.call("overlay", { frame: index, pose: stop.pose });
-        const layer = make("canvas", { width: bitmap.width, height: bitmap.height });
-        paint(layer, projection, "both");
-        const scale = Math.min(1, REPORT_WIDTH / bitmap.width);
-        const canvas = make("canvas", {
-          width: Math.round(scale * bitmap.width),
-          height: Math.round(scale * bitmap.height),
-        });
-        const context = canvas.getContext("2d");
-        context?.drawImage(bitmap, 0, 0, canvas.width, canvas.height);
-        if (context) context.globalAlpha = 0.55;
-        context?.drawImage(layer, 0, 0, canvas.width, canvas.height);
-        list.push({ title: `${name}, ${stop.name}`, dataUrl: canvas.toDataURL("image/jpeg", 0.85) });
-      }
+    const share = (index: number) => run.report.frames[index]?.share ?? 0;
+    const order = [...run.plans.keys()].sort((a, b) => share(b) - share(a)).slice(0, REPORT_FRAMES);
+    const edges = async (frame: number, pose: Pose) => (await this.#rig.session.call("overlay", { frame, pose })).edges;
+    const list: ReportOverlay[] = [];
+    for (const index of order) {
+      const plan = run.plans[index];
+      if (!plan) continue;
+      const bitmap = await this.#rig.session.call("picture", { file: plan.colour });
+      const after = await edges(index, run.report.estimate);
+      const [given] = run.estimateOnly ? [] : Object.values(run.candidates);
+      const before = given && (await edges(index, given));
+      const { width, height } = bitmap;
+      list.push({ frame: plan.name, width, height, picture: jpegOf(bitmap), before, after });
     }
     return list;
   }
+}
+
+/** A picture for the report, scaled down. */
+function jpegOf(bitmap: ImageBitmap): string {
+  const scale = Math.min(1, REPORT_WIDTH / bitmap.width);
+  const canvas = make("canvas", { width: Math.round(scale * bitmap.width), height: Math.round(scale * bitmap.height) });
+  canvas.getContext("2d")?.drawImage(bitmap, 0, 0, canvas.width, canvas.height);
+  return canvas.toDataURL("image/jpeg", 0.85);
 }
 
 /** Points as squares that meet where the depth map is coarser than the image; says the range of depths. */

@@ -79,7 +79,7 @@ export class RigPage {
   }
 
   download(): void {
-    this.#steps.verdict.download();
+    void this.#steps.verdict.download();
   }
 
   #stepper(): HTMLElement {

@@ -1,8 +1,9 @@
 /** The best fit in words, and whether it may be offered for use. */
 
 import { decimals } from "../draw/numbers";
-import { degreesOf, inWords, inverse, poseOf, times } from "./poses";
+import { degreesOf, inverse, poseOf, times } from "./poses";
 import type { Run } from "./rig";
+import { inWords } from "./words";
 
 /** Where the best fit puts the depth camera, its overlap, and how far the checked calibration puts the camera from there. */
 export function placement({ report: { estimate, overlap }, candidates, estimateOnly }: Run): string {

@@ -106,31 +106,6 @@ export function between(a: Pose, b: Pose, share: number): Pose {
   );
 }
 
-const SIDES = [
-  ["to the right of", "to the left of"],
-  ["below", "above"],
-  ["in front of", "behind"],
-] as const;
-
-/** Where the depth camera sits relative to the colour camera, so that the visitor can compare it with the rig. */
-export function inWords(pose: Pose): string {
-  const parts = pose.translation
-    .map((metres, axis) => ({ mm: 1000 * metres, words: SIDES[axis]?.[metres < 0 ? 1 : 0] ?? "" }))
-    .filter(({ mm }) => Math.abs(mm) >= 0.05)
-    .sort((a, b) => Math.abs(b.mm) - Math.abs(a.mm))
-    .map(({ mm, words }) => `${decimals(Math.abs(mm), 1)} mm ${words}`);
-  const place =
-    parts.length === 0
-      ? "in the same position as"
-      : parts.length === 1
-        ? parts[0]
-        : `${parts.slice(0, -1).join(", ")} and ${parts.at(-1)}`;
-  const degrees = degreesOf(pose);
-  return degrees < 0.005 && parts.length === 0
-    ? "The two cameras coincide: no offset, no rotation."
-    : `The depth camera sits ${place} the colour camera, rotated by ${decimals(degrees, 2)}°.`;
-}
-
 /** Four rows, as a text file has them. */
 export const matrixText = ({ rotation, translation }: Pose): string =>
   [0, 1, 2]

@@ -3,6 +3,7 @@
 import type { CheckCue, CheckReport, Pinhole, Pose, Warning } from "../../pkg/index.js";
 import type { Fault, Pair } from "../engine/protocol";
 import type { InverseDepth, NamedPose, ReaderWarning, Reading, RigReading } from "./files";
+import type { ReportInput } from "../../pkg/rig/write/report/index.js";
 import type { Topic } from "./recordings";
 
 /** The result of the check, with the page's guesses among its warnings. */
@@ -143,13 +144,10 @@ export interface Calls {
   pose: { ask: { pose: Pose; format: PoseFormat }; answer: { name: string; text: string; notes: string[] } };
   /** One cloud of the frame for each pose, in the colour camera's frame. */
   clouds: { ask: { frame: number; poses: { name: string; pose: Pose }[] }; answer: Uint8Array };
-  report: {
-    ask: {
-      report: WholeReport;
-      pictures: { title: string; dataUrl: string }[];
-      inputs: { name: string; says: string; sha256?: string }[];
-    };
-    answer: string;
+  /** The files that were read, with sizes and hashes, those of a folder in place of what was made of them; and the hash of the numerics. */
+  inputs: {
+    ask: { items: { file: number; name: string; says: string; notes: string[]; blob?: Blob }[] };
+    answer: { inputs: ReportInput[]; module: string | undefined };
   };
 }
 

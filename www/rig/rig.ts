@@ -425,7 +425,7 @@ export class Rig implements RigState {
       : Object.fromEntries(this.candidates.map(({ name, pose }) => [name, pose]));
     await this.session.call("frames", { frames: plans });
     const report = await this.session.call("check", { candidates, cues }, onProgress);
-    this.run = { report, plans, candidates, estimateOnly, guessed, doubts };
+    this.run = { report, plans, candidates, cues, estimateOnly, guessed, doubts };
     this.history.push({ frames: plans.length, ...report.health });
     this.changed();
   }

@@ -1,6 +1,6 @@
 /** The visitor's files and choices, and the interface through which the parts beside `rig.ts` use them. */
 
-import type { CheckReport, Pinhole, Pose } from "../../pkg/index.js";
+import type { CheckCue, CheckReport, Pinhole, Pose } from "../../pkg/index.js";
 import type { ReaderWarning } from "./files";
 import type { FramePlan, Kind, NamedCamera, Summary } from "./protocol";
 import type { Session } from "./session";
@@ -88,6 +88,8 @@ export interface Run {
   report: CheckReport;
   plans: FramePlan[];
   candidates: Record<string, Pose>;
+  /** The cues that were used; none for all. */
+  cues: CheckCue[];
   /** Whether no calibration was given and the identity stood in. */
   estimateOnly: boolean;
   /** The guesses at the time of the run, in words. */

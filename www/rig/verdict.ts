@@ -6,6 +6,7 @@ import { make } from "../dom";
 import { svg } from "./parts";
 import { isUsable, placement } from "./placement";
 import type { Run } from "./rig";
+import { verdictReason, verdictWords, whole } from "./words";
 
 export type Tone = "good" | "wrong" | "open";
 
@@ -28,17 +29,17 @@ export function icon(tone: Tone): SVGElement {
   );
 }
 
-const ENDS = {
+/** The verdict's words in a sentence. */
+const ENDS: Record<string, string> = {
   Estimated: "a calibration was estimated",
   Consistent: "your calibration is consistent",
   "Looks right, see warnings": "your calibration is consistent, but see the warnings below",
   Off: "your calibration is off",
   "Off, see warnings": "your calibration is off, but see the warnings below",
   Undecided: "this scene does not decide it",
-} as const;
-type Word = keyof typeof ENDS;
+};
 
-const WORDS: Record<CheckReport["verdict"], { word: Word; tone: Tone }> = {
+const WORDS: Record<CheckReport["verdict"], { word: string; tone: Tone }> = {
   consistent: { word: "Consistent", tone: "good" },
   off: { word: "Off", tone: "wrong" },
   undecided: { word: "Undecided", tone: "open" },
@@ -48,22 +49,17 @@ const px = (value: number): string => `${decimals(value, 2)} px`;
 const interval = ([low, high]: [number, number]): string => `${decimals(low, 2)} to ${decimals(high, 2)} px`;
 
 /** Anything guessed prevents a better verdict than the files justify. */
-function headline({ report, estimateOnly, guessed, doubts }: Run): { word: Word; tone: Tone; sentence: string } {
+function headline(run: Run): { word: string; tone: Tone; sentence: string } {
+  const report = whole(run);
   const { pixels, interval: range } = report.health;
-  if (estimateOnly)
+  const word = verdictWords(report, run.estimateOnly);
+  if (run.estimateOnly)
     return {
-      word: "Estimated",
+      word,
       tone: "open",
       sentence: `A calibration was found; expected reprojection error ${px(pixels)} (95 %: ${interval(range)}) at the scene's depth.`,
     };
-  const { word, tone } = WORDS[report.verdict];
-  const [own] = Object.values(report.candidates);
-  const isOpen = guessed.length + doubts.length + report.warnings.length > 0;
-  // The check itself calls a consistent candidate undecided where it warns.
-  if (isOpen && own?.verdict === "consistent")
-    return { word: "Looks right, see warnings", tone: "open", sentence: own.reason };
-  if (isOpen && report.verdict === "off") return { word: "Off, see warnings", tone, sentence: report.reason };
-  return { word, tone, sentence: report.reason };
+  return { word, tone: WORDS[report.verdict].tone, sentence: verdictReason(report) };
 }
 
 /** A whole sentence for use beside the controls, where a single word would read like the state of a switch. */

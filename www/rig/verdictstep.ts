@@ -2,16 +2,16 @@
 
 import type { CheckCue } from "../../pkg/index.js";
 import { make } from "../dom";
-import { sha256 } from "../hash";
 import { saveJson } from "../save";
 import type { SensitivityCharts } from "./curves";
 import { Overlay } from "./overlay";
 import { choose, labelled, press, saveFile } from "./parts";
-import type { PoseFormat, WholeReport } from "./protocol";
+import type { PoseFormat } from "./protocol";
 import { isUsable } from "./placement";
 import { messageOf, type Rig, type Run } from "./rig";
 import { wasCancelled } from "./session";
 import { candidatesTable, card, CUES, ending, nextCard, sharesCard } from "./verdict";
+import { whole } from "./words";
 
 const formats: readonly { value: PoseFormat; label: string }[] = [
   { value: "matrix", label: "4x4 text" },
@@ -132,10 +132,12 @@ export class VerdictStep {
     }
   }
 
-  download(): void {
+  async download(): Promise<void> {
     const { run } = this.#rig;
-    if (run) saveJson("rig-check.json", { format: "bimodal-stereo check", version: 1, ...whole(run) });
-    else this.#complain("There is no verdict to export yet.");
+    if (!run) return this.#complain("There is no verdict to export yet.");
+    const { inputsOf } = await import("./reportfile");
+    const { inputs } = await inputsOf(this.#rig);
+    saveJson("rig-check.json", { format: "bimodal-stereo check", version: 1, ...whole(run), inputs });
   }
 
   #tell(share: number, message: string): void {
@@ -238,14 +240,8 @@ export class VerdictStep {
     const html = press(
       "Save report (HTML)",
       attempt(async () => {
-        const pictures = await this.#overlay.pictures();
-        const inputs = await Promise.all(
-          this.#rig.items.map(async ({ name, summary, blob }) => {
-            const hash = blob && (await sha256(blob));
-            return { name, says: summary?.says ?? "not read", ...(hash ? { sha256: hash } : {}) };
-          }),
-        );
-        saveFile("rig-check.html", await session.call("report", { report: whole(run), pictures, inputs }), "text/html");
+        const { reportOf } = await import("./reportfile");
+        saveFile("rig-check.html", await reportOf(this.#rig, run, await this.#overlay.forReport()), "text/html");
       }),
     );
     return make(
@@ -259,7 +255,10 @@ export class VerdictStep {
         labelled("Frame", frame),
         clouds,
         html,
-        press("Save numbers (JSON)", () => this.download()),
+        press(
+          "Save numbers (JSON)",
+          attempt(() => this.download()),
+        ),
       ),
       note,
       remark,
@@ -271,16 +270,6 @@ export class VerdictStep {
     this.#alert.hidden = message === "";
   }
 }
-
-/** The report with the page's guesses. */
-const whole = ({ report, guessed, doubts }: Run): WholeReport => ({
-  ...report,
-  warnings: [
-    ...guessed.map((what) => ({ code: "unit-guessed", message: `Guessed: ${what}.` })),
-    ...doubts,
-    ...report.warnings,
-  ],
-});
 
 /** Whether the verdict refers to the present state. */
 function isSame(run: Run, rig: Rig): boolean {

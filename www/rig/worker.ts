@@ -8,6 +8,7 @@ import { loadExample } from "./example";
 import { isRecording, readRigFile, readRigFolder, type RigReading } from "./files";
 import { picture } from "./pictures";
 import type { Answer, Assembly, CallKind, Calls, FramePlan, Request, Summary } from "./protocol";
+import type { ReadFolder } from "./inputs";
 import type { Recorded, Taken } from "./recorded";
 
 const MOST_WORKERS = 4;
@@ -25,6 +26,8 @@ const HEAD = 16;
 /** The frames as they were last checked; the overlay and the exported files refer to these. */
 let frames: CheckFrame[] = [];
 let running: AbortController | undefined;
+/** What came out of folders, and their files, for the report. */
+const folders: ReadFolder[] = [];
 
 function post(answer: Answer, transfer: Transferable[] = []): void {
   self.postMessage(answer, { transfer });
@@ -165,7 +168,9 @@ const handlers: Handlers = {
   async folder({ first, files }) {
     const named = await Promise.all(files.map(async ({ name, blob }) => ({ name, bytes: await bytesOf(blob) })));
     const folder = await readRigFolder(named);
-    return assemble("the folder", first, folder.frames, folder);
+    const assembly = assemble("the folder", first, folder.frames, folder);
+    folders.push({ items: assembly.items.map(({ file }) => file), files, readings: folder.readings });
+    return assembly;
   },
   async example({ first }) {
     const { frames, poses } = await loadExample();
@@ -252,9 +257,9 @@ const handlers: Handlers = {
     for (const { name, pose } of poses) clouds.push({ name, ...(await cloudOf(frameAt(frame), pose)) });
     return writeClouds(clouds);
   },
-  async report({ report, pictures, inputs }) {
-    const { reportHtml } = await import("./write");
-    return reportHtml(report, pictures, { made: new Date(), inputs });
+  async inputs({ items }) {
+    const { inputsOf, moduleHash } = await import("./inputs");
+    return { inputs: await inputsOf(items, folders), module: await moduleHash() };
   },
 };
 

@@ -5,4 +5,3 @@ import type * as Write from "../../pkg/rig/write/index.js";
 
 export const writePose = write.writePose as typeof Write.writePose;
 export const writeClouds = write.writeClouds as typeof Write.writeClouds;
-export const reportHtml = write.reportHtml as typeof Write.reportHtml;

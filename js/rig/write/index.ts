@@ -2,4 +2,12 @@
 export { BimodalError } from "../../errors.js";
 export { type Cloud, writeClouds } from "./clouds.js";
 export { type PoseFormat, type RigContext, type Size, type WrittenPose, poseFormats, writePose } from "./pose.js";
-export { type Picture, type ReportInput, type ReportOptions, reportHtml } from "./report/index.js";
+export {
+  type Checked,
+  type Overlay,
+  type Picture,
+  type ReportEntry,
+  type ReportInput,
+  type ReportOptions,
+  reportHtml,
+} from "./report/index.js";

@@ -1,4 +1,4 @@
-/** The report's drawings as inline SVG: bars, intervals, and small multiples of the sensitivity curves. */
+/** The report's drawings as inline SVG: bars, and small multiples of the sensitivity curves. */
 import type { CheckReport } from "../../../types/index.js";
 import { type Curve, SIGMAS_95, curve } from "./curves.js";
 import { type Markup, html } from "./markup.js";
@@ -38,45 +38,10 @@ function ticks(from: number, to: number): number[] {
   return Array.from({ length: Math.max(0, count) }, (_, k) => (first + k) * by);
 }
 
-/** Lengths of both drawings, in their units, named where they are used: a list is shorter to download. */
-const INTERVALS = [400, 120, 14, 24, 34] as const;
+/** Lengths of a panel in its units, named where they are used: a list is shorter to download. */
 const PANEL = [320, 200, 26, 10, 10, 40, 5, 3, 32] as const;
 
-export interface Interval {
-  name: string;
-  value: number;
-  interval: readonly [number, number];
-  isEstimate: boolean;
-}
-
-const short = (name: string, most: number): string => (name.length > most ? `${name.slice(0, most - 1)}…` : name);
 const at = (value: number): string => value.toFixed(2);
-
-/** A dot and its 95 % interval for each, on one scale of pixels from zero. */
-export function intervals(all: readonly Interval[]): Markup | undefined {
-  const known = all.filter(({ value, interval }) =>
-    [value, ...interval].every((number) => Number.isFinite(number) && number >= 0),
-  );
-  const most = Math.max(...known.map(({ value, interval }) => Math.max(value, interval[1])));
-  if (known.length === 0 || most <= 0) return undefined;
-  const [width, left, right, line, axis] = INTERVALS;
-  const height = known.length * line + axis;
-  const end = 1.05 * most;
-  const x = (pixels: number) => at(left + (pixels / end) * (width - left - right));
-  const base = known.length * line + 6;
-  const said = known
-    .map(({ name, value, interval }) => `${name}: ${digits(value)} (${digits(interval[0])} to ${digits(interval[1])})`)
-    .join("; ");
-  return html`<svg class="intervals" viewBox="0 0 ${width} ${height}" role="img" aria-label="Expected reprojection error in pixels, with its 95 % interval. ${said}">
-${ticks(0, end).map((tick) => html`<path class="grid" d="M${x(tick)} 0V${base}"/><text class="tick" x="${x(tick)}" y="${base + 13}" text-anchor="middle">${brief(tick)}</text>`)}
-<text class="tick" x="${(left + width - right) / 2}" y="${height - 1}" text-anchor="middle">expected reprojection error, pixels</text>
-${known.map(({ name, value, interval, isEstimate }, index) => {
-  const y = (index + 0.5) * line;
-  const kind = isEstimate ? "estimate" : "candidate";
-  return html`<text class="label" x="${left - 10}" y="${y + 4}" text-anchor="end">${short(name, 17)}</text><path class="whisker ${kind}" d="M${x(interval[0])} ${y}H${x(interval[1])}M${x(interval[0])} ${y - 5}v10M${x(interval[1])} ${y - 5}v10"/><circle class="${kind}" cx="${x(value)}" cy="${y}" r="5"/>`;
-})}
-</svg>`;
-}
 
 interface Line {
   cue: string;

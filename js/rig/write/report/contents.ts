@@ -1,8 +1,9 @@
 /** The contents of a report: the result of the check, and what the caller adds. */
-import type { CheckReport, Warning } from "../../../types/index.js";
+import type { CheckReport, Pose, Warning } from "../../../types/index.js";
 
 /** The result of a check; its warnings may include messages of the caller. */
 export interface Checked extends Omit<CheckReport, "warnings"> {
+  /** Codes are not needed: the report shows the messages. */
   warnings: readonly (string | Pick<Warning, "message">)[];
 }
 
@@ -14,15 +15,38 @@ export interface Picture {
   dataUrl: string;
 }
 
+/** A frame with its depth edges, which `projectFrame` gives for a pose. */
+export interface Overlay {
+  /** Name of the frame. */
+  frame: string;
+  /** Columns of the colour image, whose pixels the edges refer to. */
+  width: number;
+  /** Rows of the colour image. */
+  height: number;
+  /** The image, at any size: `data:image/jpeg;base64,..`, or PNG, WebP, AVIF or GIF. */
+  picture: string;
+  /** Column, row of each point of a depth edge, with the calibration in question; none if there is only an estimate. */
+  before?: ArrayLike<number> | undefined;
+  /** The same with the best fit. */
+  after: ArrayLike<number>;
+}
+
 /** A file that the report names. */
 export interface ReportInput {
   /** Of the file. */
   name: string;
   /** A description of what was read from it. */
   says?: string | undefined;
+  /** Its size, bytes. */
+  bytes?: number | undefined;
+  /** The codes of its warnings, guesses among them. */
+  notes?: readonly string[] | undefined;
   /** Of its bytes, in hexadecimal. */
   sha256?: string | undefined;
 }
+
+/** A name and a value, as the reader should see them. */
+export type ReportEntry = readonly [name: string, value: string];
 
 /** What a report states besides the result. */
 export interface ReportOptions {
@@ -32,4 +56,23 @@ export interface ReportOptions {
   made?: Date | undefined;
   /** The files that were read. */
   inputs?: readonly ReportInput[] | undefined;
+  /** Whether no calibration was in question: the candidate only stands in for one. */
+  isEstimate?: boolean | undefined;
+  /** The extrinsics that were checked, by the names of the report's candidates. */
+  calibrations?: Readonly<Record<string, Pick<Pose, "rotation" | "translation" | "angles">>> | undefined;
+  /** Frames with their depth edges, the most important first. */
+  overlays?: readonly Overlay[] | undefined;
+  /** The command that repeats the check in a shell, and what it cannot repeat. */
+  shell?:
+    | {
+        /** The command, of one line or more; none if no command can repeat it. */
+        command?: string | undefined;
+        /** Where to type it, and how its result differs. */
+        note?: string | undefined;
+      }
+    | undefined;
+  /** Options of the check with their values. */
+  settings?: readonly ReportEntry[] | undefined;
+  /** Versions of the programs that made it. */
+  versions?: readonly ReportEntry[] | undefined;
 }

@@ -37,3 +37,10 @@ export function probability(value: number): string {
   if (!Number.isFinite(value)) return NONE;
   return value < LEAST_PROBABILITY ? `below ${LEAST_PROBABILITY}` : value.toFixed(3);
 }
+
+/** So many decimals, so that a column lines up. */
+export function fixed(value: number, decimals: number): string {
+  if (!Number.isFinite(value)) return NONE;
+  const text = value.toFixed(decimals);
+  return (Number(text) === 0 ? text.replace("-", "") : text).replace("-", "\u2212");
+}

@@ -5,10 +5,17 @@ import { STYLE, STYLE_SHA256 } from "./style.js";
 
 const POLICY = `default-src 'none'; img-src data:; style-src 'sha256-${STYLE_SHA256}'; base-uri 'none'; form-action 'none'`;
 
-export function reportPage(title: string, made: Date | undefined, field: string, body: Part): string {
+/** A date as a report prints it. */
+export function dateOf(made: Date | undefined, field: string): string | undefined {
   if (made !== undefined && !(made instanceof Date && made.getTime() <= Infinity))
     throw fault("type", field, "must be a Date that holds a time");
-  const date = made && `${made.toISOString().slice(0, 16).replace("T", " ")} UTC`;
+  return made && `${made.toISOString().slice(0, 16).replace("T", " ")} UTC`;
+}
+
+export const heading = (title: string, date: string | undefined): Markup =>
+  html`<header><h1>${title}</h1>${date === undefined ? undefined : html`<p class="soft">${date}</p>`}</header>`;
+
+export function reportPage(title: string, header: Markup, body: Part): string {
   const page = html`<!doctype html>
 <html lang="en">
 <head>
@@ -20,7 +27,7 @@ export function reportPage(title: string, made: Date | undefined, field: string,
 <style>${new Markup(STYLE)}</style>
 </head>
 <body>
-<header><h1>${title}</h1>${date === undefined ? undefined : html`<p class="soft">${date}</p>`}</header>
+${header}
 <main>
 ${body}
 </main>

@@ -1,6 +1,6 @@
 /** Parts that any report is made of. */
 import type { CheckVerdict } from "../../../types/index.js";
-import { fault } from "../built.js";
+import { fault, like } from "../built.js";
 import type { Picture, ReportInput } from "./contents.js";
 import { type Markup, type Part, html } from "./markup.js";
 
@@ -25,23 +25,47 @@ export const cell = (column: string, value: Part): Markup => html`<td data-colum
 export const table = (kind: string, columns: readonly string[], rows: Part): Markup =>
   html`<table class="${kind}"><thead><tr>${columns.map((column) => html`<th scope="col">${column}</th>`)}</tr></thead><tbody>${rows}</tbody></table>`;
 
+/** Text of any length, of which a printed page shows the first lines. */
+export const clamped = (text: Part): Markup => html`<div class="clamp">${text}</div>`;
+
 /** Pixels in the file itself; SVG may load other files. */
-const PICTURE = /^data:image\/(?:png|jpeg|webp|avif|gif);base64,[A-Za-z0-9+/]+={0,2}$/;
+export const isPicture = (dataUrl: unknown): boolean =>
+  /^data:image\/(?:png|jpeg|webp|avif|gif);base64,[A-Za-z0-9+/]+={0,2}$/.test(String(dataUrl));
 
 export function pictureSection(pictures: readonly Picture[]): Markup | undefined {
   if (pictures.length === 0) return undefined;
   const figures = pictures.map(({ title, dataUrl }, index) => {
-    if (!PICTURE.test(String(dataUrl)))
+    if (!isPicture(dataUrl))
       throw fault("type", `pictures[${index}].dataUrl`, "must be a data URL of a PNG, JPEG, WebP, AVIF or GIF");
     return html`<figure><img src="${dataUrl}" alt="${title}"><figcaption>${title}</figcaption></figure>`;
   });
   return section("Pictures", html`<div class="pictures">${figures}</div>`);
 }
 
+/** The first ones of a list, and a remark on how many are left out. */
+export function firstOf<T>(
+  all: readonly T[],
+  most: number,
+  show: (each: T) => Markup,
+  rest: (words: string) => Markup,
+): Markup[] {
+  const shown = all.slice(0, most).map(show);
+  return all.length > most ? [...shown, rest(`and ${all.length - most} more, in the JSON`)] : shown;
+}
+
+/** Files that fit on the first page of a printed report with two lines each, and with one; more are on a second page, which holds so many. */
+const [FEW, BESIDE, ON_A_PAGE] = [5, 10, 60];
+
+function inputRow({ name, says, bytes, notes = [], sha256 }: ReportInput): Markup {
+  like([], notes, "options.inputs.notes");
+  const read = [says ?? "", ...(bytes === undefined ? [] : [`${bytes} bytes`])].filter(Boolean).join(", ");
+  return html`<tr><th scope="row">${clamped(name)}</th>${cell("Read as", clamped([read, notes.length > 0 ? html` <em>${notes.join(", ")}</em>` : undefined]))}${cell("SHA-256", html`<code>${sha256 ?? "not taken"}</code>`)}</tr>`;
+}
+
 export function inputTable(inputs: readonly ReportInput[]): Markup | undefined {
-  const rows = inputs.map(
-    ({ name, says, sha256 }) =>
-      html`<tr><th scope="row">${name}</th>${cell("Read as", says ?? "")}${cell("SHA-256", html`<code>${sha256 ?? "not taken"}</code>`)}</tr>`,
-  );
-  return rows.length === 0 ? undefined : section("Files", table("inputs stacks", ["File", "Read as", "SHA-256"], rows));
+  if (inputs.length === 0) return undefined;
+  const rows = firstOf(inputs, ON_A_PAGE, inputRow, (words) => html`<tr><td colspan="3">${words}</td></tr>`);
+  const isApart = inputs.length > BESIDE;
+  const kind = isApart ? "inputs stacks many apart" : inputs.length > FEW ? "inputs stacks many" : "inputs stacks";
+  return section(isApart ? `Files, ${inputs.length}` : "Files", table(kind, ["File", "Read as", "SHA-256"], rows));
 }

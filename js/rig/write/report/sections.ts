@@ -1,175 +1,168 @@
-/** The parts of a report, each a section of HTML or nothing. */
-import type { CandidateReport, CheckVerdict } from "../../../types/index.js";
-import { bar, intervals, sensitivities } from "./charts.js";
-import type { Checked } from "./contents.js";
+/** The parts of a report's first page, each a section of HTML or nothing. */
+import type { CandidateReport } from "../../../types/index.js";
+import type { Checked, ReportEntry, ReportOptions } from "./contents.js";
 import { type Markup, html } from "./markup.js";
-import { digits, measure, percent, probability, span } from "./numbers.js";
-import { cell, fact, section, sign, table } from "./parts.js";
+import { fixed, measure, percent, span } from "./numbers.js";
+import { cell, clamped, fact, firstOf, section, sign, table } from "./parts.js";
+import { sigmasOf, valuesOf } from "./unknowns.js";
+import { SIGMAS_95 } from "./curves.js";
+import { inWords, verdictOf, verdictReason, verdictWords, wordOf } from "./words.js";
 
-const WORDS: Readonly<Record<CheckVerdict, string>> = { consistent: "Consistent", off: "Off", undecided: "Undecided" };
-
-const verdictOf = (verdict: CheckVerdict): CheckVerdict => (Object.hasOwn(WORDS, verdict) ? verdict : "undecided");
+/** What the first page has room for. */
+const [MOST_WARNINGS, MOST_OTHERS] = [3, 2];
 
 const within = (interval: readonly [number, number]): string => `95\u202f%: ${span(interval, "px")}`;
 
-export function verdictCard({ verdict: given, reason, candidates, health, overlap }: Checked): Markup {
-  const verdict = verdictOf(given);
-  const [first] = Object.entries(candidates);
-  const [name, candidate] = first ?? [];
-  return html`<section class="card ${verdict}">${sign(verdict)}<div><p class="verdict">${WORDS[verdict]}${name === undefined ? undefined : html`<span class="name">${name}</span>`}</p>
-<p>${reason}</p><dl class="facts">${
-    candidate && [
-      fact(
-        "Offset from the best fit, at the centre of the scene",
-        `${measure(candidate.offDegrees, "°")}, ${measure(candidate.offMillimetres, "mm")}`,
-      ),
-      fact("Expected reprojection error", measure(candidate.pixels, "px"), within(candidate.interval)),
-    ]
-  }${fact("Expected error of the best fit", measure(health.pixels, "px"), within(health.interval))}${fact(
-    "Depth points that the best fit puts onto the image",
-    percent(overlap),
-  )}</dl></div></section>`;
-}
-
-export const warningList = ({ warnings }: Checked): Markup =>
-  section(
-    "Warnings",
-    warnings.length === 0
-      ? html`<p>None: nothing was guessed, and nothing looks wrong.</p>`
-      : html`<ul class="warnings">${warnings.map((warning) => html`<li>${typeof warning === "string" ? warning : warning.message}</li>`)}</ul>`,
-  );
-
-const CANDIDATE_COLUMNS = [
-  "Calibration",
-  "Verdict",
-  "Rotation",
-  "Shift",
-  "Expected error",
-  "95\u202f% interval",
-  "Probability",
-  "Reason",
-];
-
-function candidateRow(name: string, found: CandidateReport): Markup {
-  const verdict = verdictOf(found.verdict);
-  const number = (text: string) => html`<span class="number">${text}</span>`;
-  const values = [
-    html`<strong class="word ${verdict}">${WORDS[verdict]}</strong>`,
-    ...[measure(found.offDegrees, "°"), measure(found.offMillimetres, "mm"), measure(found.pixels, "px")].map(number),
-    ...[number(span(found.interval, "px")), number(probability(found.probability)), found.reason],
+/** The verdict with its number, first of all. */
+export function verdictHeader(report: Checked, title: string, date: string | undefined, isEstimate = false): Markup {
+  const verdict = isEstimate ? "undecided" : verdictOf(report.verdict);
+  const [[name, candidate] = []] = Object.entries(report.candidates);
+  const { pixels, interval } = (isEstimate ? undefined : candidate) ?? report.health;
+  const subject = [
+    title,
+    ...(name === undefined || isEstimate || String(title).includes(name) ? [] : [name]),
+    ...(date ? [date] : []),
   ];
-  return html`<tr><th scope="row">${name}</th>${values.map((value, index) => cell(CANDIDATE_COLUMNS[index + 1] ?? "", value))}</tr>`;
+  return html`<header class="card ${verdict}">${sign(verdict)}<div><h1 class="verdict">${verdictWords(report, isEstimate)}: ${
+    candidate && !isEstimate ? "expected reprojection error" : "expected error of the best fit"
+  } ${measure(pixels, "px")} <span class="interval">(${within(interval)})</span></h1>
+<div class="subject">${clamped(subject.join(" \u00b7 "))}</div></div></header>`;
 }
 
-export function candidateTable({ candidates, health }: Checked): Markup {
-  const rows = Object.entries(candidates);
-  const drawn = [
-    ...rows.map(([name, { pixels, interval }]) => ({ name, value: pixels, interval, isEstimate: false })),
-    { name: "best fit", value: health.pixels, interval: health.interval, isEstimate: true },
-  ];
-  return section(
-    "Calibrations compared",
-    rows.length > 0
-      ? table(
-          "candidates stacks",
-          CANDIDATE_COLUMNS,
-          rows.map(([name, found]) => candidateRow(name, found)),
-        )
-      : undefined,
-    intervals(drawn),
-    html`<p class="soft">Rotation and shift: relative to the best fit, the shift at the centre of the scene. Expected error: the distance in the
-colour image between the projection of a scene point and its true place, at the scene's depth. Probability: that of a result at least this far
-from the best fit if the calibration were right.</p>`,
-  );
-}
-
-const AXES = ["x", "y", "z"];
-const DEGREES = 180 / Math.PI;
-const MILLIMETRES = 1000;
-
-/** One sigma of each unknown: degrees, then millimetres. */
-function sigmas(covariance: readonly number[]): number[] {
-  return Array.from({ length: 6 }, (_, k) => Math.sqrt(covariance[7 * k] ?? NaN) * (k < 3 ? DEGREES : MILLIMETRES));
-}
-
-const named = (values: readonly number[], unit: string, about: string): string =>
-  values.map((value, axis) => `${measure(value, unit)} ${about} ${AXES[axis]}`).join(", ");
-
-function worst(values: readonly number[]): string | undefined {
-  const most = Math.max(...values);
-  return Number.isFinite(most) ? AXES[values.indexOf(most)] : undefined;
-}
-
-/** All digits, to be copied. */
-const exact = (value: number): string => (Number.isFinite(value) ? String(value) : "?");
-
-const COVARIANCE = ["rotation x", "rotation y", "rotation z", "shift x", "shift y", "shift z"];
-
-export function estimateSection({ estimate, covariance }: Checked): Markup {
-  const { rotation: r, translation: t, angles } = estimate;
-  const known = sigmas(covariance);
-  const [turn, shift] = [known.slice(0, 3), known.slice(3)];
-  const [axis, along] = [worst(turn), worst(shift)];
-  const weakest = axis && along ? `The rotation about ${axis} and the shift along ${along} are the least certain.` : "";
-  const rows = [0, 1, 2].map((i) => [...r.slice(3 * i, 3 * i + 3), t[i] ?? NaN].map(exact).join("  "));
-  return section(
-    "The best fit",
-    html`<dl class="facts">${fact("Translation", t.map((metres) => measure(MILLIMETRES * metres, "mm")).join(", "))}${fact(
-      "Angles of R = Rx Ry Rz",
-      [angles.alpha, angles.beta, angles.gamma].map((angle) => measure(angle, "°")).join(", "),
-    )}</dl>`,
-    html`<p>One sigma: ${named(turn, "°", "about")}; ${named(shift, "mm", "along")}. ${weakest}</p>`,
-    html`<pre tabindex="0">${[...rows, "0  0  0  1"].join("\n")}</pre>`,
-    html`<p class="soft">P_colour = R P_depth + t, metres; x right, y down, z forward.</p>`,
-    html`<h3>Covariance</h3><div class="scroll" tabindex="0">${table(
-      "matrix",
-      ["", ...COVARIANCE],
-      COVARIANCE.map(
-        (name, i) =>
-          html`<tr><th scope="row">${name}</th>${COVARIANCE.map((_, j) => html`<td>${digits(covariance[6 * i + j] ?? NaN)}</td>`)}</tr>`,
-      ),
-    )}</div><p class="soft">For a rotation vector in rad about the scene's centre, then a translation in m, in the colour camera's frame.</p>`,
-  );
-}
-
-/** What the cues are called, and what they are. */
-const CUES: Readonly<Record<string, readonly [name: string, more: string]>> = {
-  shading: ["Shading", "lighting of the surface's slopes"],
-  edges: ["Edges", "depth edges on image edges"],
-  information: ["Information", "mutual information of colour and shape"],
-  silhouette: ["Silhouettes", "object contours in both views"],
+const CUES: Readonly<Record<string, string>> = {
+  shading: "Shading",
+  edges: "Edges",
+  information: "Information",
+  silhouette: "Silhouettes",
 };
+export const cueName = (cue: string): string => (Object.hasOwn(CUES, cue) ? CUES[cue] : undefined) ?? cue;
 
-const about = (cue: string): readonly [name: string, more: string] =>
-  (Object.hasOwn(CUES, cue) ? CUES[cue] : undefined) ?? [cue, ""];
+/** A pose that is not known is nowhere. */
+const isKnown = ({ rotation, translation }: Placed): boolean =>
+  rotation.length === 9 && translation.length === 3 && [...rotation, ...translation].every(Number.isFinite);
 
-const sharpness = (value: number): string => (value > 0 ? `± ${measure(1 / value, "px")}` : "no information");
-
-export function cueTable({ cues }: Checked): Markup | undefined {
-  const rows = Object.entries(cues).map(
-    ([cue, { share, sharpness: sharp }]) =>
-      html`<tr><th scope="row">${about(cue)[0]} <span class="soft">${about(cue)[1]}</span></th><td class="number">${percent(share)}</td><td class="bars">${bar(share)}</td>${cell("Precision", sharpness(sharp))}</tr>`,
-  );
-  return rows.length === 0
-    ? undefined
-    : section("What the verdict rests on", table("shares", ["Cue", "Share", "", "Precision"], rows));
+/** Where the poses put the depth camera: the calibration in question, and the best fit. */
+function places({ estimate }: Checked, given: Calibration | undefined): Markup[] {
+  const all = [["The calibration in question", given] as const, ["The best fit", estimate] as const];
+  return all.flatMap(([name, pose]) => (pose && isKnown(pose) ? [html`<p>${name}: ${inWords(pose)}</p>`] : []));
 }
 
-export function frameTable({ frames }: Checked): Markup | undefined {
-  const rows = frames.map(
-    ({ name, share, note }) =>
-      html`<tr><th scope="row">${name}</th><td class="number">${percent(share)}</td><td class="bars">${bar(share)}</td><td>${note}</td></tr>`,
-  );
-  return rows.length === 0 ? undefined : section("Frames", table("shares", ["Frame", "Share", "", "Note"], rows));
+type Placed = Pick<Calibration, "rotation" | "translation">;
+type Calibration = NonNullable<ReportOptions["calibrations"]>[string];
+
+/** The calibration in question, if the caller has passed its numbers. */
+export function inQuestion(
+  { candidates }: Checked,
+  { calibrations = {}, isEstimate }: ReportOptions,
+): Calibration | undefined {
+  const [name = ""] = Object.keys(candidates);
+  return !isEstimate && Object.hasOwn(calibrations, name) ? calibrations[name] : undefined;
 }
 
-export function sensitivitySection({ sensitivity }: Checked): Markup | undefined {
-  const panels = sensitivities(sensitivity.map((row) => ({ ...row, cue: about(row.cue)[0] })));
-  if (panels.length === 0) return undefined;
+function others({ candidates }: Checked): Markup[] {
+  const say = ([name, found]: [string, CandidateReport]) =>
+    html`<p class="clamp">Compared with it: ${name}: <strong class="word ${verdictOf(found.verdict)}">${wordOf(found.verdict)}</strong>, ${measure(found.pixels, "px")} (${within(found.interval)})</p>`;
+  return firstOf(Object.entries(candidates).slice(1), MOST_OTHERS, say, (words) => html`<p>${words}</p>`);
+}
+
+export function summary(report: Checked, options: ReportOptions): Markup {
+  const { candidates, health, overlap, cues } = report;
+  const candidate = options.isEstimate ? undefined : Object.values(candidates)[0];
+  const rests = Object.entries(cues).map(([cue, { share }]) => `${cueName(cue)} ${percent(share)}`);
+  return html`<section>${clamped(verdictReason(report))}${places(report, inQuestion(report, options))}${
+    options.isEstimate ? undefined : others(report)
+  }<dl class="facts">${
+    candidate &&
+    fact(
+      "Offset at the scene's centre",
+      `${measure(candidate.offDegrees, "\u00b0")}, ${measure(candidate.offMillimetres, "mm")}`,
+    )
+  }${fact("Error of the best fit", measure(health.pixels, "px"), within(health.interval))}${fact(
+    "Overlap",
+    percent(overlap),
+    "of the depth points lie on the image",
+  )}${fact("Evidence", rests.join(", "))}</dl></section>`;
+}
+
+export function warningList({ warnings }: Checked): Markup {
+  const said = warnings.map((warning) => (typeof warning === "string" ? warning : warning.message));
   return section(
-    "Sensitivity",
-    html`<p class="soft">Loss of likelihood of each cue when the best fit is moved along one axis, with the other axes fixed. Height: sigmas, the square
-root of twice the fall of the log likelihood, drawn up to 8. Triangles mark the optimum of a cue, bars under the axis its 95 % interval,
-where its curve is below the dashed line.</p><div class="panels">${panels}</div>`,
+    "Warnings",
+    said.length === 0
+      ? html`<p>None: nothing was guessed, and nothing looks wrong.</p>`
+      : html`<ul class="warnings">${firstOf(
+          said,
+          MOST_WARNINGS,
+          (each) => html`<li>${clamped(each)}</li>`,
+          (words) => html`<li>${words}</li>`,
+        )}</ul>`,
+  );
+}
+
+const UNKNOWNS = [
+  ...["x", "y", "z"].map((axis) => ({ name: `Rotation about ${axis}`, unit: "\u00b0", decimals: 3 })),
+  ...["x", "y", "z"].map((axis) => ({ name: `Translation ${axis}`, unit: "mm", decimals: 2 })),
+];
+const COLUMNS = ["Unknown", "Candidate", "Found", "Difference", "95\u202f% interval", "Unit"];
+
+/** The shorter way around. */
+const around = (degrees: number): number => degrees - 360 * Math.round(degrees / 360);
+
+/** Candidate, found and difference, with the interval of what was found. */
+function unknownTable(report: Checked, given: Calibration | undefined): Markup {
+  const found = valuesOf(report.estimate);
+  const sigmas = sigmasOf(report);
+  const candidate = given && valuesOf(given);
+  const rows = UNKNOWNS.map(({ name, unit, decimals }, k) => {
+    const [value = NaN, half = NaN] = [found[k], SIGMAS_95 * (sigmas[k] ?? NaN)];
+    const off = (candidate?.[k] ?? NaN) - value;
+    const difference = k < 3 ? around(off) : off;
+    const show = (number: number) => fixed(number, decimals);
+    const range = Number.isFinite(half) ? `${show(value - half)} to ${show(value + half)}` : show(half);
+    const isOutside = Math.abs(difference) > half;
+    const cells = [
+      ...(candidate ? [show(candidate[k] ?? NaN)] : ["\u2013"]),
+      show(value),
+      candidate ? (isOutside ? html`<strong>${show(difference)}</strong>` : show(difference)) : "\u2013",
+      range,
+      unit,
+    ];
+    return html`<tr><th scope="row">${name}</th>${cells.map((each, index) => cell(COLUMNS[index + 1] ?? "", each))}</tr>`;
+  });
+  return table("unknowns stacks", COLUMNS, rows);
+}
+
+/** Nanometres and nanoradians: whoever copies a matrix loses nothing that a calibration knows. */
+const COPIED = 9;
+
+/** Four rows that programs read. */
+function matrix({ rotation: r, translation: t }: Placed): Markup {
+  const shown = (value: number) => (Number.isFinite(value) ? value.toFixed(COPIED) : "?").padStart(COPIED + 4);
+  const rows = [0, 1, 2].map((i) => [0, 1, 2, 3].map((j) => shown((j < 3 ? r[3 * i + j] : t[i]) ?? NaN)).join(""));
+  return html`<pre tabindex="0">${[...rows, "  0 0 0 1"].join("\n")}</pre>`;
+}
+
+export function extrinsicsSection(report: Checked, options: ReportOptions): Markup {
+  const given = inQuestion(report, options);
+  return section(
+    "Extrinsics",
+    html`<div class="extrinsics"><div>${unknownTable(report, given)}<p class="soft">Rotation: R = Rx Ry Rz. Interval: of what was found. Bold: the candidate lies outside it.</p></div>
+<div>${given && html`<h3>Candidate</h3>${matrix(given)}`}<h3>Found</h3>${matrix(report.estimate)}<p class="soft">P_colour = R P_depth + t, metres; x right, y down, z forward.</p></div></div>`,
+  );
+}
+
+const entries = (name: string, all: readonly ReportEntry[]): Markup | undefined =>
+  all.length === 0 ? undefined : html`<p>${name}: ${all.map(([key, value]) => `${key} ${value}`).join("; ")}.</p>`;
+
+export function shellSection({ shell, settings = [], versions = [] }: ReportOptions): Markup | undefined {
+  if (!shell && settings.length + versions.length === 0) return undefined;
+  return section(
+    "How to reproduce it",
+    shell && [
+      shell.command ? html`<pre class="shell" tabindex="0">${shell.command}</pre>` : undefined,
+      shell.note ? html`<p>${shell.note}</p>` : undefined,
+    ],
+    entries("Options", settings),
+    entries("Versions", versions),
   );
 }

@@ -17,10 +17,11 @@ p{margin:.5rem 0;max-width:52rem}
 section{background:var(--card);border:1px solid var(--line);border-radius:.5rem;padding:1rem;margin:1rem 0}
 figure{margin:0}
 .soft,footer,dt,.says,.pictures figcaption{color:var(--soft);font-size:.8125rem}
-.card{display:flex;gap:1rem;border-width:2px}
+.card{display:flex;gap:1rem}
 .card>div{flex:1;min-width:0}
-.verdict{font-size:1.5rem;font-weight:700;line-height:1.2;margin:0}
-.verdict .name{display:block;font-size:1rem;font-weight:400;color:var(--ink)}
+.card{background:var(--card);border:2px solid;border-radius:.5rem;padding:1rem;align-items:center}
+.verdict{font-size:1.5rem;font-weight:700;line-height:1.25;margin:0}.interval{font-weight:400;font-size:1.125rem}
+.subject{margin:.25rem 0 0;color:var(--soft)}
 .consistent{--said:var(--good)}.off{--said:var(--wrong)}.undecided{--said:var(--open)}
 .verdict,.word{color:var(--said)}.card{border-color:var(--said)}
 .sign{stroke:var(--said);flex:none;width:3.5rem;height:3.5rem;fill:none;stroke-width:3;stroke-linecap:round;stroke-linejoin:round}
@@ -33,15 +34,19 @@ th,td{text-align:left;vertical-align:top;padding:.375rem .75rem .375rem 0;border
 thead th{overflow-wrap:normal;border-top:0;color:var(--soft);font-size:.8125rem;font-weight:400}
 tbody th{font-weight:600}
 .shares th:first-child{width:40%}.shares td.number{width:4rem}.shares .bars{width:9rem}.shares th .soft{font-weight:400}
+.overlay{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,20rem),1fr));gap:.75rem;margin-top:.5rem}
+.overlay figcaption{color:var(--soft);font-size:.8125rem}.edge{fill:none;stroke:#ff3cbe;stroke-width:2;stroke-linecap:round}
+.extrinsics{display:grid;grid-template-columns:minmax(0,3fr) minmax(0,2fr);gap:0 1.5rem}.extrinsics h3{margin:0}.extrinsics pre{margin:.25rem 0 .5rem;font-size:.6875rem;padding:.5rem}
+.inputs em{font-style:normal;color:var(--wrong)}.shell{white-space:pre-wrap}
+summary{cursor:pointer;font-weight:600}
+.unknowns td,.unknowns th{white-space:nowrap;overflow-wrap:normal}
 .candidates th:first-child{min-width:7rem}.inputs th:first-child{min-width:12rem}
 .matrix{font-size:.8125rem;white-space:nowrap;overflow-wrap:normal}.scroll{overflow-x:auto}
 pre{overflow-x:auto;background:var(--sunk);border-radius:.25rem;padding:.75rem;margin:.75rem 0;font-size:.8125rem}
 code{font-size:.75rem}
 svg{display:block;width:100%;height:auto;font:11px system-ui,sans-serif}
 .bar{height:.625rem;margin-top:.4rem}.track{fill:var(--sunk)}.fill{fill:var(--c3)}
-.intervals{max-width:34rem;margin-top:1rem}
-.grid{stroke:var(--line);fill:none}.tick{fill:var(--soft)}.label{fill:var(--ink);font-size:12px}
-.candidate{--its:var(--c1)}.estimate{--its:var(--c3)}.whisker{fill:none;stroke:var(--its);stroke-width:2}.intervals circle{fill:var(--its)}
+.grid{stroke:var(--line);fill:none}.tick{fill:var(--soft)}
 .panels{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,19rem),1fr));gap:1.25rem;margin-top:1rem}
 .panel figcaption{font-weight:600}
 .level{fill:none;stroke:var(--ink);stroke-dasharray:3 3;opacity:.6}
@@ -60,17 +65,26 @@ svg{display:block;width:100%;height:auto;font:11px system-ui,sans-serif}
 .shares thead{display:none}.shares tr{display:grid;grid-template-columns:1fr auto;gap:0 1rem;border-top:1px solid var(--line);padding:.5rem 0}
 .shares th,.shares td{border:0;padding:0}.shares th:first-child,.shares td,.shares td.number,.shares .bars{width:auto}.shares td:nth-child(n+3){grid-column:1/-1}
 .shares td[data-column]::before{content:attr(data-column) " ";color:var(--soft)}
-.card{flex-direction:column;gap:.5rem}
+.card{flex-direction:column;align-items:flex-start;gap:.5rem}.extrinsics{grid-template-columns:minmax(0,1fr)}
 }
+@page{margin:8mm}
 @media print{
 :root{color-scheme:light;${LIGHT};--page:#fff}
-body{max-width:none;padding:0;font-size:10pt;print-color-adjust:exact;-webkit-print-color-adjust:exact}
-section{border-color:#bbb;margin:.5rem 0}
-figure,tr,.card,.intervals,pre{break-inside:avoid}h2,h3{break-after:avoid}
-.panels{grid-template-columns:repeat(3,1fr);gap:.75rem}.candidates,.says{font-size:8pt}
-.scroll,pre{overflow:visible}pre{white-space:pre-wrap}.matrix{font-size:7pt}
+body{max-width:none;padding:0;font-size:7.5pt;line-height:1.25;print-color-adjust:exact;-webkit-print-color-adjust:exact}
+section{border:0;border-top:1px solid var(--line);border-radius:0;padding:.6mm 0 0;margin:.6mm 0 0}
+h2{font-size:8.5pt;margin:0 0 .5mm}h3{font-size:7.5pt}p{margin:.3mm 0;max-width:none}
+.soft,dt,.says,thead th,.pictures figcaption,.overlay figcaption,.inputs{font-size:6.5pt}
+.card{padding:1mm 3mm;gap:3mm}.sign{width:8mm;height:8mm}.verdict{font-size:11pt}.interval{font-size:8.5pt}
+.facts{gap:0 3mm;margin:.5mm 0 0}th,td{padding:.3mm 2mm .3mm 0}.warnings{padding-left:3mm}.warnings li{margin:0}
+.clamp{display:-webkit-box;-webkit-box-orient:vertical;-webkit-line-clamp:2;overflow:hidden}.subject .clamp,.many .clamp,p.clamp,figcaption.clamp{-webkit-line-clamp:1}
+figure,tr,.card,pre{break-inside:avoid}h2,h3{break-after:avoid}
+.overlay{grid-template-columns:1fr 1fr;gap:3mm;margin:0}.overlay svg{max-height:45mm}.large svg{max-height:65mm}
+.panels{grid-template-columns:repeat(3,1fr);gap:.75rem}
+.scroll,pre{overflow:visible}pre{white-space:pre-wrap;padding:.5mm 1mm}.matrix{font-size:7pt}.extrinsics pre{font-size:5.5pt;margin:.3mm 0;padding:.3mm 0}.extrinsics h3{margin:0}pre.shell{font-size:6pt;margin:.5mm 0;max-height:20mm;overflow:hidden}
+.inputs code{font-size:5.5pt;white-space:nowrap}
+section:has(.apart){break-before:page}details:not([open]),footer{display:none}
 }
 `;
 
 /** Of STYLE, base64; a test holds it, and says the right one. */
-export const STYLE_SHA256 = "PN+6LlrW9erk4iJ9/2/l/yDMBtEz7EYQ3u5zXpETAaA=";
+export const STYLE_SHA256 = "SUqUAdltWLq4XFhI4Pv7wSjHk4HoMZV/nDM7GaZr13g=";

@@ -1,0 +1,50 @@
+/** The command that repeats a check in a shell. */
+
+/** What the command is given; further members than the first two only where they differ from its defaults. */
+export interface ShellCheck {
+  /** The folder of the frames. */
+  folder: string;
+  /** The files of the calibrations, the one in question first. */
+  calibrations: readonly string[];
+  /** Files of intrinsics that are named. */
+  cameras?: readonly string[] | undefined;
+  /** Whether the calibrations carry colour to depth. */
+  isInverted?: boolean | undefined;
+  /** Metres for each stored number. */
+  unit?: number | undefined;
+  /** At most so many pairs. */
+  frames?: number | undefined;
+  /** The cues to use. */
+  cues?: readonly string[] | undefined;
+  /** Threads. */
+  workers?: number | undefined;
+  /** Files that are written first, because there are none of this content. */
+  written?: readonly { name: string; text: string }[] | undefined;
+}
+
+/** A word for a POSIX shell. A leading dash would be an option. */
+const quoted = (word: string): string => {
+  const path = word.startsWith("-") ? `./${word}` : word;
+  return /^[\w./,:@%+=-]+$/.test(path) ? path : `'${path.replaceAll("'", `'\\''`)}'`;
+};
+
+/** The command, after the files that it needs. */
+export function shellCheck({ written = [], ...given }: ShellCheck): string {
+  const { folder, calibrations, cameras = [], isInverted, unit, frames, cues, workers } = given;
+  const files = written.map(({ name, text }) => `cat > ${quoted(name)} <<'END'\n${text.trimEnd()}\nEND\n`);
+  const option = (name: string, value: string | number | undefined) =>
+    value === undefined ? [] : [`--${name} ${quoted(String(value))}`];
+  const words = [
+    quoted(folder),
+    ...calibrations.flatMap((path) => option("calibration", path)),
+    ...cameras.flatMap((path) => option("cameras", path)),
+    ...(isInverted ? ["--inverted"] : []),
+    ...[
+      ...option("unit", unit),
+      ...option("frames", frames),
+      ...option("cues", cues?.join(",")),
+      ...option("workers", workers),
+    ],
+  ];
+  return `${files.join("")}npx bimodal-stereo check ${words.join(" ")}`;
+}

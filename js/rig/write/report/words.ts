@@ -1,0 +1,51 @@
+/** The verdict and the place of a camera in words, for the report and for the page beside it. */
+import type { CheckReport, CheckVerdict } from "../../../types/index.js";
+import { degreesOf } from "../../formats/poses.js";
+import type { Checked } from "./contents.js";
+
+const WORDS: Readonly<Record<CheckVerdict, string>> = { consistent: "Consistent", off: "Off", undecided: "Undecided" };
+
+export const verdictOf = (verdict: CheckVerdict): CheckVerdict =>
+  Object.hasOwn(WORDS, verdict) ? verdict : "undecided";
+
+/** Of one candidate, whatever the warnings. */
+export const wordOf = (verdict: CheckVerdict): string => WORDS[verdictOf(verdict)];
+
+const firstOf = ({ candidates }: Pick<Checked, "candidates">) => Object.values(candidates)[0];
+
+/** Whether a warning alone keeps the verdict from "consistent". */
+const isCapped = (report: Checked): boolean =>
+  report.verdict === "undecided" && firstOf(report)?.verdict === "consistent";
+
+/** The verdict in a few words; without a calibration in question there is only an estimate. */
+export function verdictWords(report: Checked, isEstimate = false): string {
+  if (isEstimate) return "Estimated";
+  if (isCapped(report)) return "Looks right, see warnings";
+  return wordOf(report.verdict) + (report.verdict === "off" && report.warnings.length > 0 ? ", see warnings" : "");
+}
+
+/** Why, in a sentence. A verdict that is capped by warnings has the candidate's own: the warnings stand beside it. */
+export const verdictReason = (report: Checked): string =>
+  (isCapped(report) ? firstOf(report)?.reason : undefined) ?? report.reason;
+
+const SIDES = [
+  ["to the right of", "to the left of"],
+  ["below", "above"],
+  ["in front of", "behind"],
+] as const;
+/** Millimetres and degrees that are shown as zero. */
+const [LEAST_SHIFT, LEAST_TURN] = [0.05, 0.005];
+
+/** Where the depth camera sits relative to the colour camera, so that one can compare it with the rig. */
+export function inWords({ rotation, translation }: Pick<CheckReport["estimate"], "rotation" | "translation">): string {
+  const parts = translation
+    .map((metres, axis) => ({ mm: 1000 * metres, words: SIDES[axis]?.[metres < 0 ? 1 : 0] ?? "" }))
+    .filter(({ mm }) => Math.abs(mm) >= LEAST_SHIFT)
+    .sort((a, b) => Math.abs(b.mm) - Math.abs(a.mm))
+    .map(({ mm, words }) => `${Math.abs(mm).toFixed(1)} mm ${words}`);
+  const degrees = degreesOf(rotation);
+  if (degrees < LEAST_TURN && parts.length === 0) return "The two cameras coincide: no offset, no rotation.";
+  const last = parts.pop();
+  const place = last === undefined ? "in the same position as" : [parts.join(", "), last].filter(Boolean).join(" and ");
+  return `The depth camera sits ${place} the colour camera, rotated by ${degrees.toFixed(2)}°.`;
+}

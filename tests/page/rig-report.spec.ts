@@ -1,0 +1,56 @@
+/** The report that the page saves: it says what the page says, and its command repeats the check. */
+
+import { spawnSync } from "node:child_process";
+import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import type { Page } from "@playwright/test";
+import { expect, test } from "./lab";
+import { matrixFile, pair } from "./rig";
+import { openPair, put, run } from "./rigsteps";
+
+/** A saved file as text. */
+async function saved(page: Page, button: string): Promise<string> {
+  const download = page.waitForEvent("download");
+  await page.getByRole("button", { name: button }).click();
+  return readFileSync(await (await download).path(), "utf8");
+}
+
+test("the report begins with the page's verdict, and its command gives the same numbers", async ({ lab, page }, {
+  outputDir,
+}) => {
+  const told = matrixFile("it's told.txt", 0.025);
+  await openPair(page);
+  await put(page, [told]);
+  await run(page);
+  await expect(page.locator(".rig-word")).toBeVisible();
+  const word = await page.locator(".rig-word").textContent();
+  const sentence = await page.locator(".rig-verdict p").first().textContent();
+  const report = await saved(page, "Save report (HTML)");
+  const numbers = JSON.parse(await saved(page, "Save numbers (JSON)"));
+  // Under its own policy, not the page's.
+  await page.goto("about:blank");
+  await page.setContent(report);
+  await expect(page.getByRole("heading", { level: 1 })).toContainText(`${word}: expected reprojection error `);
+  await expect(page.locator("main")).toContainText(sentence ?? "");
+  await expect(page.locator("main")).toContainText(/Before, with the calibration in question: \S+/);
+  const command = (await page.locator(".shell").textContent()) ?? "";
+  expect(command).toContain(`--calibration 'it'\\''s told.txt'`);
+  mkdirSync(outputDir, { recursive: true });
+  for (const { name, buffer } of [...pair(), told]) writeFileSync(join(outputDir, name), buffer);
+  const cli = join(process.cwd(), "pkg/cli.js");
+  const npx = `npx() { shift; "${process.execPath}" "${cli}" "$@"; }`;
+  const { stdout, stderr } = spawnSync("sh", ["-c", `${npx}\n${command} --json -`], {
+    cwd: outputDir,
+    encoding: "utf8",
+  });
+  const again = JSON.parse(stdout);
+  expect(again.error, stderr).toBeUndefined();
+  expect(again.verdict).toBe(numbers.verdict);
+  expect(again.estimate).toEqual(numbers.estimate);
+  expect(again.health).toEqual(numbers.health);
+  expect(Object.values(again.candidates)).toEqual(Object.values(numbers.candidates));
+  const hashes = (inputs: { sha256: string }[]) => inputs.map(({ sha256 }) => sha256);
+  expect(hashes(again.inputs)).toEqual(expect.arrayContaining(hashes(numbers.inputs)));
+  for (const hash of hashes(numbers.inputs)) expect(report).toContain(hash);
+  expect(lab.complaints).toEqual([]);
+});

@@ -1,0 +1,21 @@
+/** The verdict and a camera's place in the words of the report, under the types that the package declares for them. */
+
+import * as words from "../../pkg/rig-words.js";
+import type * as Words from "../../pkg/rig/write/report/words.js";
+import type { WholeReport } from "./protocol";
+import type { Run } from "./state";
+
+export const inWords = words.inWords as typeof Words.inWords;
+export const verdictReason = words.verdictReason as typeof Words.verdictReason;
+export const verdictWords = words.verdictWords as typeof Words.verdictWords;
+
+/** The report with the page's guesses and warnings, each of which caps a verdict as the check's own do. */
+export function whole({ report, guessed, doubts }: Run): WholeReport {
+  const own = [...guessed.map((what) => ({ code: "unit-guessed", message: `Guessed: ${what}.` })), ...doubts];
+  const isCapped = own.length > 0 && report.verdict === "consistent";
+  return {
+    ...report,
+    ...(isCapped ? { verdict: "undecided", code: "doubtful" } : {}),
+    warnings: [...own, ...report.warnings],
+  };
+}
