@@ -1,7 +1,8 @@
 // npm run captures: checks calibrations of other people's captures, with the true pose hidden behind a known motion.
 //
-// --draws N    draws of each pair (default 20); a fifth as many of each small object
-// --only A,B   of room, scenes, objects
+// --draws N    draws of each pair (default 20); of each small object a fifth as many, a tenth for its own calibration, and half as many
+//              restarts
+// --only A,B   of room, scenes, objects, truth, restarts
 // --json FILE  one row for each check or candidate
 // --folder DIR --calibration FILE   the draws of the room on your own rig, whose calibration is taken as true
 import { writeFileSync } from "node:fs";
@@ -18,7 +19,9 @@ import {
   scenes,
   verdicts,
 } from "./captures/sections.mjs";
+import { capturesAnew, printTruths, truths } from "./captures/truth.mjs";
 import { MISSING, hasData } from "./real-pairs.mjs";
+import { printRestarts } from "./rigs/restarts.mjs";
 import { Failure, inRoot, say, script, seconds } from "./shell.mjs";
 
 const SECTIONS = {
@@ -31,6 +34,8 @@ const SECTIONS = {
       printTold(rows.filter(({ part }) => part === "told")),
     ],
   ],
+  truth: [truths, printTruths],
+  restarts: [capturesAnew, printRestarts],
 };
 
 await script(async () => {

@@ -13,7 +13,7 @@ export const seedOf = (text, draw) =>
   [...`${text} ${draw}`].reduce((hash, letter) => Math.imul(hash ^ letter.charCodeAt(0), 16777619), -2128831035) >>> 0;
 
 /** Frames of one rig behind one motion; the truth of the first frame holds for all. */
-function hidden(frames, random) {
+export function hidden(frames, random) {
   const motion = wrong(NOWHERE, HIDING, random.direction);
   // Frames with different poses become frames of one rig: the difference is applied to their clouds.
   const first = frames[0].truth;
