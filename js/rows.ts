@@ -1,4 +1,4 @@
-/** How a member of the contract is described once: what is checked, and what the page shows, is made from such rows. */
+/** Describes each member of the contract once: the checks and the page's fields are made from these rows. */
 
 /** How the page shows a member that its visitor may choose. */
 export interface PageField {
@@ -17,7 +17,7 @@ export interface PageField {
 }
 
 interface Common {
-  /** What holds where the member is absent; without one that follows from the data. */
+  /** The value if the member is absent; without a default it follows from the data. */
   readonly default?: number | string | boolean;
   /** The words that may stand in its place, each with its name on the page. */
   readonly words?: Readonly<Record<string, string>>;
@@ -87,7 +87,7 @@ export type RowOf<T> = Kind<Exclude<T, string>> &
   ([Words<T>] extends [never] ? unknown : { readonly words: Readonly<Record<Words<T>, string>> }) & {
     readonly default?: Extract<T, number | string | boolean>;
   };
-/** A row for each member of a type: the compiler misses one that is missing. */
+/** A row for each member of a type; the compiler reports a missing one. */
 export type RowsOf<T> = { readonly [K in keyof T]-?: RowOf<NonNullable<T[K]>> };
 
 /** Every row, with the path of its member below `path`. */

@@ -70,7 +70,7 @@ describe("in Node", () => {
         return true;
       });
     await refused(join(place, "none.png"), "file", /none\.png: it cannot be read .*ENOENT/);
-    await refused(`${address}/none.png`, "file", /none\.png: it answers with status 404/);
+    await refused(`${address}/none.png`, "file", /none\.png: its server answered with status 404/);
     await refused("http://127.0.0.1:1/a.png", "file", /a\.png: it cannot be reached/);
     await refused(join(place, "empty.png"), "file", /empty/);
     await refused(join(place, "broken.png"), "file", /cut off/);

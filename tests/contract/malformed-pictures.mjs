@@ -36,10 +36,10 @@ export const PICTURES = [
     /in its part "IHDR"/,
   ],
   ["twice.png", pngOf(ihdr(2, 2), ihdr(4000, 4000), idat(14)), /cannot inflate to the 48004000/],
-  ["interlace.png", pngOf(ihdr(8, 8, 8, 2, 7), idat(200)), /a way that there is not/],
+  ["interlace.png", pngOf(ihdr(8, 8, 8, 2, 7), idat(200)), /an unknown compression, filter or interlace method/],
   ["depth.png", pngOf(ihdr(8, 8, 7, 0), idat(200)), /7 bits of a channel/],
   ["sixteen.png", pngOf(ihdr(8, 8, 16, 3), chunk("PLTE", Buffer.alloc(3)), idat(200)), /16 bits of a channel/],
-  ["colours.png", pngOf(ihdr(1, 1, 8, 3), idat(2)), /no palette/],
+  ["colours.png", pngOf(ihdr(1, 1, 8, 3), idat(2)), /palette is missing/],
   [
     "index.png",
     pngOf(ihdr(1, 1, 8, 3), chunk("PLTE", Buffer.alloc(3)), chunk("IDAT", deflateSync(Buffer.from([0, 200])))),
@@ -59,11 +59,7 @@ export const PICTURES = [
   ["segment.jpg", bytes([0xff, 0xd8, 0xff, 0xe0, 0, 0]), /no pixels/],
 
   ["order.tif", swappedTiff(), /format is not supported/],
-  [
-    "circle.tif",
-    bytes(tiff(tiffTags(4, 4, { 330: 8, 34665: 8 }), u32(8)), new Uint8Array(300)),
-    /no pixel of it holds a depth/,
-  ],
+  ["circle.tif", bytes(tiff(tiffTags(4, 4, { 330: 8, 34665: 8 }), u32(8)), new Uint8Array(300)), /no valid depth/],
   ["samples.tif", tiff(tiffTags(4, 4, { 277: 65_535 }), new Uint8Array(300)), /65535 channels/],
   ["none.tif", tiff(tiffTags(4, 4, { 258: 0 }), new Uint8Array(300)), /0-bit samples/],
   ["jpeg.tif", tiff(tiffTags(4, 4, { 259: 7, 279: 20 }), new Uint8Array(300)), /compressed by JPEG/],
@@ -106,7 +102,7 @@ export const PICTURES = [
     /no x, y and z/,
   ],
   ["count.ply", text("ply\nformat ascii 1.0\nelement vertex -1\nproperty float x\nend_header\n"), /"-1" of something/],
-  ["nan.ply", ply(300, "nan nan nan\n".repeat(300)), /no point that a sensor/],
+  ["nan.ply", ply(300, "nan nan nan\n".repeat(300)), /no measured point/],
   ["header.ply", text(`ply\n${"comment x\n".repeat(200_000)}`), /header has no end/],
   [
     "properties.ply",
@@ -135,6 +131,6 @@ export const PICTURES = [
     /compressed points/,
   ],
   ["long.pcd", text(`VERSION 0.7\nFIELDS ${"x ".repeat(500_000)}\n`), /no DATA/],
-  ["nan.pcd", pcd({ WIDTH: "300", HEIGHT: "1", POINTS: "300" }, "nan nan nan\n".repeat(300)), /no point that a sensor/],
-  ["noise.png", bytes(pngOf().subarray(0, 8), new Uint8Array(MEGABYTE).fill(0xa5)), /cut off or damaged in its part/],
+  ["nan.pcd", pcd({ WIDTH: "300", HEIGHT: "1", POINTS: "300" }, "nan nan nan\n".repeat(300)), /no measured point/],
+  ["noise.png", bytes(pngOf().subarray(0, 8), new Uint8Array(MEGABYTE).fill(0xa5)), /cut off or damaged in its chunk/],
 ];

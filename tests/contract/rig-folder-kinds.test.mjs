@@ -395,7 +395,7 @@ describe("intrinsics of another size", () => {
     for (const centre of [190, 20]) {
       const rgb = `{"fx": 120, "fy": 120, "cx": ${centre}, "cy": ${0.75 * centre}}`;
       const found = await folder({ ...pair, "rgb.json": rgb, "depth_K.txt": "60 0 23.5\n0 60 17.5\n0 0 1\n" });
-      says(found, "principal-point", centre > 96 ? /outside these/ : /far from the middle/, true);
+      says(found, "principal-point", centre > 96 ? /outside the picture/ : /far from the centre/, true);
     }
   });
 

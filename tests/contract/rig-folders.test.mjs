@@ -83,7 +83,7 @@ describe("TUM RGB-D", () => {
   });
 });
 
-describe("pairs by like names", () => {
+describe("pairs by similar names", () => {
   test("in the order of their numbers, however the folder was handed over", async () => {
     const files = Object.fromEntries(
       [10, 9, 100].flatMap((number) => [
@@ -214,7 +214,7 @@ describe("pairs by like names", () => {
     const alone = found.warnings.filter(({ code }) => code === "file-alone");
     assert.deepEqual(
       alone.map(({ isDoubt, files, message }) => [isDoubt, files, message]),
-      [[false, 2, "depth_3.png: no other file's name fits it alone (left out). (and 1 more like it)"]],
+      [[false, 2, "depth_3.png: its name matches no other file, or several; it was left out. (and 1 more like it)"]],
     );
   });
 

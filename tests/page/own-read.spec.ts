@@ -96,7 +96,7 @@ test("a mask of 16 bits is a mask, and labels are refused in words", async ({ la
   await expect(slot(lab, 2)).toContainText("16-bit grey, a mask of");
   await expect(slot(lab, 1)).toContainText("2.png");
   await expect(remarks(lab)).toContainText(
-    "objects.png: its few small integers are labels of objects rather than depths. To use it all the same, choose it by hand in its place in the settings",
+    "objects.png: its few small integers are labels of objects rather than depths. To use it anyway, choose it by hand in the settings",
   );
   await lab.reaches("ready");
   await drop(page, "body", [mask("soft.png", 30_000)]);

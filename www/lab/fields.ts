@@ -228,7 +228,7 @@ export const fields: readonly Field[] = [
     kind: "choice",
     key: "meaning",
     label: "Numbers",
-    hint: "Depths are larger where a surface is farther; disparities, inverse depths and what networks estimate are larger where it is nearer.",
+    hint: "Depths are larger where a surface is farther; disparities, inverse depths and the estimates of networks are larger where it is nearer.",
     initial: "depth",
     group: "depth",
     path: "depth.inverse",

@@ -85,7 +85,7 @@ export class Form {
     return control.field.label;
   }
 
-  /** A remark that is no error, such as what was guessed. */
+  /** A remark that is not an error, such as what was guessed. */
   remark(path: string, message: string): void {
     const control = [...this.#controls.values()].find(({ field }) => field.path === path);
     if (control) mark(control, message, "note");

@@ -164,7 +164,7 @@ export class Intake {
     return this.#say(path, message, true);
   }
 
-  /** A remark that is no error, such as that the picture was scaled down. */
+  /** A remark that is not an error, such as that the picture was scaled down. */
   remark(path: string, message: string): boolean {
     return this.#say(path, message, false) !== undefined;
   }

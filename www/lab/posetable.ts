@@ -83,7 +83,7 @@ export class PoseTable {
       if (!cells) return;
       cells.unit.textContent = unit;
       cells.found.textContent = decimals(read(pose), count);
-      // An orthographic image cannot see how far away the object is: any number does, so none is the true one.
+      // An orthographic image does not determine the distance of the object, so there is no true value.
       const free = index === "z" && length === "px";
       cells.truth.textContent = truth ? (free ? "free" : decimals(read(truth), count)) : "";
     });

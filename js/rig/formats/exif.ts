@@ -25,18 +25,18 @@ const TURNS = [
   "",
   "",
   "mirrored",
-  "turned by 180 degrees",
+  "rotated by 180 degrees",
   "mirrored upside down",
-  "mirrored and turned",
-  "turned by 90 degrees",
-  "mirrored and turned",
-  "turned by 270 degrees",
+  "mirrored and rotated",
+  "rotated by 90 degrees",
+  "mirrored and rotated",
+  "rotated by 270 degrees",
 ];
 
 /** The note and the warning about a picture that was turned: most intrinsics are those of the sensor's frame. */
 export function turnedWords(orientation: number, why: string): { note: string; turned: ReaderWarning } {
   const note = `${TURNS[orientation]} as ${why}`;
-  const message = `The picture was ${note}; the intrinsics must be those of the turned picture.`;
+  const message = `The picture was ${note}; the intrinsics must be those of the rotated picture.`;
   return { note, turned: warning("image-turned", message, { orientation }) };
 }
 

@@ -45,7 +45,7 @@ export function landscapeOf(
     {
       key: words.key ?? "landscape",
       title: words.title ?? "Cost of every normal at that pixel",
-      alt: `The hemisphere of all visible normals seen from the front; dark is cheap. It has ${minima.length} minima.`,
+      alt: `The hemisphere of all visible normals seen from the front; dark means a low cost. It has ${minima.length} minima.`,
       legend: "dark: explains the pixel; dots: minima; cross: truth; line: solver",
     },
     { width: SIDE, height: SIDE },

@@ -64,7 +64,7 @@ export function* paint(values: Values): Generator<Drawing> {
         pictureOf(
           {
             key: "albedo",
-            title: "Albedo: the estimated paint",
+            title: "Albedo, as estimated",
             alt: "The albedo that the program separates from the lighting.",
           },
           grid,
@@ -84,7 +84,7 @@ export function* paint(values: Values): Generator<Drawing> {
         scalarOf(
           {
             key: "residual",
-            title: "Left over",
+            title: "Remainder",
             alt: "The part that neither albedo nor shading explains.",
             legend: "dark: explained; bright: off by 1 and more",
           },

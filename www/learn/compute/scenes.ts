@@ -3,7 +3,7 @@
 import { Estimator, sample, type Options, type Sample, type SampleRequest } from "../../../pkg/index.js";
 import type { Values } from "../protocol";
 
-/** The last few scenes: dragging a control that is no part of the scene must not render it anew. */
+/** The last few scenes: dragging a control that is not part of the scene must not render it again. */
 const MOST_KEPT = 8;
 const kept = new Map<string, Sample>();
 

@@ -72,5 +72,5 @@ figure,tr,.card,.intervals,pre{break-inside:avoid}h2,h3{break-after:avoid}
 }
 `;
 
-/** Of STYLE, base64; a test holds it, and says the right one. */
+/** Hash of STYLE, base64; a test checks it and prints the right one. */
 export const STYLE_SHA256 = "PN+6LlrW9erk4iJ9/2/l/yDMBtEz7EYQ3u5zXpETAaA=";
