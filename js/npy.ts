@@ -64,7 +64,7 @@ function swap(body: Uint8Array, size: number): void {
   for (let at = 0; at + size <= body.length; at += size) body.subarray(at, at + size).reverse();
 }
 
-/** Data in column order (the first index runs fastest) in row order. */
+/** Converts data from column order (the first index runs fastest) to row order. */
 function inRows<T extends Pixels>(data: T, height: number, width: number, channels: number): T {
   const rows = data.slice() as T;
   for (let row = 0; row < height; row++) {
@@ -164,7 +164,7 @@ export function readNpy(bytes: Uint8Array): Raster<Pixels> & { type: string } {
   const { type, kind, isBigEndian, byColumns, shape, end } = headerOf(bytes);
   const { height, width, channels, isChannelFirst } = shape;
   const count = height * width * channels;
-  // A copy, because typed arrays want aligned memory; Node's Buffer would not make one by its own slice.
+  // A copy, because typed arrays need aligned memory; the slice of a Node Buffer would be only a view.
   const body = new Uint8Array(bytes.subarray(end));
   if (body.byteLength < count * kind.size)
     throw bad(`this .npy file is cut off: ${body.byteLength} of ${count * kind.size} bytes`);

@@ -206,7 +206,7 @@ fn transfer(text: &str) -> std::result::Result<Transfer, String> {
     match text {
         "srgb" => Ok(Transfer::Srgb),
         "linear" => Ok(Transfer::Linear),
-        _ => Err("is srgb or linear".into()),
+        _ => Err("must be srgb or linear".into()),
     }
 }
 
@@ -219,7 +219,7 @@ fn start(text: &str) -> std::result::Result<Start, String> {
                 let rotation = Angles { alpha, beta, gamma }.rotation();
                 Ok(Start::Pose { rotation, scale: None, translation: None })
             }
-            _ => Err("is search, identity or three angles in degrees".into()),
+            _ => Err("must be search, identity or three angles in degrees".into()),
         },
     }
 }
@@ -229,7 +229,7 @@ fn registration(text: &str) -> std::result::Result<Registration, String> {
         "joint" => Ok(Registration::Joint),
         "icp" => Ok(Registration::Icp),
         "fixed" => Ok(Registration::Fixed),
-        _ => Err("is joint, icp or fixed".into()),
+        _ => Err("must be joint, icp or fixed".into()),
     }
 }
 
@@ -237,6 +237,6 @@ fn shading(text: &str) -> std::result::Result<Shading, String> {
     match text {
         "surface" => Ok(Shading::Surface),
         "pixel" => Ok(Shading::Pixel),
-        _ => Err("is surface or pixel".into()),
+        _ => Err("must be surface or pixel".into()),
     }
 }

@@ -189,7 +189,7 @@ pub fn key(name: &str) -> String {
         let word = word.trim_matches('.');
         let digits = word.bytes().take_while(|&letter| letter == b'0').count();
         let follows = word.as_bytes().get(digits).is_some_and(u8::is_ascii_digit);
-        // The last zero of a number that is zero stays.
+        // Keeps one zero of a number that is zero.
         &word[if follows { digits } else { digits.saturating_sub(1) }..]
     });
     words.filter(|word| !word.is_empty() && *word != "mm").collect::<Vec<_>>().join(" ")

@@ -221,7 +221,7 @@ test("disparities by their name are read as such, and with a camera wait for foc
   await expect(factor).toBeHidden();
   await drop(page, "body", [colour, depth("disparity.png")]);
   await expect(numbers).toHaveValue("inverse");
-  await expect(remarks(lab)).toContainText("disparity.png: its name says disparities or inverse depths");
+  await expect(remarks(lab)).toContainText("disparity.png: its name suggests disparities or inverse depths");
   await lab.reaches("ready");
   await drop(page, "body", [cameraJson("depth.json")]);
   await expect(page.locator("#status")).toHaveText("depth camera: waiting for focal length × baseline");

@@ -241,7 +241,7 @@ export const fields: readonly Field[] = [
     kind: "number",
     key: "numerator",
     label: "Focal × baseline",
-    hint: "Depth in metres is this divided by a stored number: for disparities in pixels the focal length (px) times the baseline (m), for inverse metres 1. Without a camera it is not used.",
+    hint: "A depth in metres is this number divided by the stored one. For disparities in pixels enter the focal length (px) times the baseline (m); for inverse metres enter 1. Not used without a camera.",
     initial: null,
     empty: "unknown",
     group: "depth",

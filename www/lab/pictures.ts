@@ -58,7 +58,7 @@ function flat(canvas: HTMLCanvasElement): HTMLCanvasElement {
 export function pngOf(canvas: HTMLCanvasElement): Promise<Blob> {
   return new Promise((resolve, reject) =>
     flat(canvas).toBlob(
-      (blob) => (blob ? resolve(blob) : reject(new Error("This browser made no picture."))),
+      (blob) => (blob ? resolve(blob) : reject(new Error("This browser could not create the picture."))),
       "image/png",
     ),
   );
@@ -70,7 +70,7 @@ export async function dataUrlOf(canvas: HTMLCanvasElement): Promise<string> {
   return new Promise((resolve, reject) => {
     const reader = new FileReader();
     reader.onload = () => resolve(String(reader.result));
-    reader.onerror = () => reject(reader.error ?? new Error("This browser made no picture."));
+    reader.onerror = () => reject(reader.error ?? new Error("This browser could not create the picture."));
     reader.readAsDataURL(blob);
   });
 }

@@ -110,7 +110,7 @@ export function verdict(
   if (status === "ambiguous") return { tone: "open", status: ends[status], words: said.join(" "), next: help };
   const stayed = start !== undefined && angleBetween(pose.rotation, start.rotation) < STAYED;
   const caution = stayed
-    ? "The rotation is still the initial one; that does not confirm it."
+    ? "The rotation did not move from its initial value, which does not confirm it."
     : "The pose has not converged; don't rely on it.";
   return {
     tone: "wrong",

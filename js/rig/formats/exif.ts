@@ -5,7 +5,7 @@ import { type ReaderWarning, warning } from "../warnings.js";
 const ORIENTATION = 0x0112;
 const MOST_TAGS = 500;
 
-/** The orientation, 1 to 8, of what EXIF begins with: a TIFF without pixels. 1 where it says nothing. */
+/** The orientation, 1 to 8, from EXIF, which is a TIFF without pixels; 1 if EXIF does not state it. */
 export function exifOrientation(exif: Uint8Array): number {
   if (exif.length < 14) return 1;
   const view = new DataView(exif.buffer, exif.byteOffset, exif.byteLength);

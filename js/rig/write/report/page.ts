@@ -7,7 +7,7 @@ const POLICY = `default-src 'none'; img-src data:; style-src 'sha256-${STYLE_SHA
 
 export function reportPage(title: string, made: Date | undefined, field: string, body: Part): string {
   if (made !== undefined && !(made instanceof Date && made.getTime() <= Infinity))
-    throw fault("type", field, "must be a Date that holds a time");
+    throw fault("type", field, "must be a valid Date");
   const date = made && `${made.toISOString().slice(0, 16).replace("T", " ")} UTC`;
   const page = html`<!doctype html>
 <html lang="en">
