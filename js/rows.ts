@@ -23,7 +23,7 @@ interface Common {
   readonly words?: Readonly<Record<string, string>>;
 }
 
-/** Of a kind that the page has a control for. */
+/** A row that the page can show as a control. */
 interface Shown extends Common {
   readonly page?: PageField;
 }
@@ -44,7 +44,7 @@ export interface WordRow extends Shown {
   readonly kind: "word";
   readonly words: Readonly<Record<string, string>>;
 }
-/** So many numbers. */
+/** A list of this many numbers. */
 export interface ListRow extends Common {
   readonly kind: "list";
   readonly length: number;
@@ -82,7 +82,7 @@ type Kind<V> = [V] extends [never]
           ? MatrixRow
           : ObjectRow & { readonly members: RowsOf<V> };
 
-/** Ties a row to the type of its member: of the same kind, with all of its words, and a default that it may have. */
+/** Ties a row to the type of its member: the same kind, all of its words, and a valid default. */
 export type RowOf<T> = Kind<Exclude<T, string>> &
   ([Words<T>] extends [never] ? unknown : { readonly words: Readonly<Record<Words<T>, string>> }) & {
     readonly default?: Extract<T, number | string | boolean>;

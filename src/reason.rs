@@ -270,7 +270,7 @@ impl fmt::Display for Reason {
             ),
             Self::SizeRunsAway { times } => write!(
                 f,
-                "the image changes the apparent size of the initial pose by a factor of more than two (got {})",
+                "the apparent size that fits the image differs from that of the initial pose by a factor of more than two (got {})",
                 Brief(*times)
             ),
             Self::BehindCamera => f.write_str("the pose puts the object behind the colour camera"),

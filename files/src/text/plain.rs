@@ -66,7 +66,7 @@ fn nine(values: &[f64; 9], size: Option<[f64; 2]>) -> Result<Calibration, Reason
         return camera(values, size, &[]);
     }
     if is([1, 2, 5]) {
-        return Err("its matrix of intrinsics is transposed: fx 0 cx / 0 fy cy / 0 0 1 are needed".into());
+        return Err("its matrix of intrinsics is transposed; it must be fx 0 cx / 0 fy cy / 0 0 1".into());
     }
     Err("its nine numbers are not a matrix of intrinsics (fx 0 cx / 0 fy cy / 0 0 1), and a rotation needs its translation".into())
 }

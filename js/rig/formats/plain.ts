@@ -48,7 +48,7 @@ const camera = (k: Numbers, size: Numbers, distortion: Numbers = []): Found => {
 function nine(values: Numbers, size: Numbers): Found {
   if (near(values[3], 0) && near(values[6], 0) && near(values[7], 0) && near(values[8], 1)) return camera(values, size);
   if (near(values[1], 0) && near(values[2], 0) && near(values[5], 0) && near(values[8], 1)) {
-    throw badFile("its matrix of intrinsics is transposed: fx 0 cx / 0 fy cy / 0 0 1 are needed");
+    throw badFile("its matrix of intrinsics is transposed; it must be fx 0 cx / 0 fy cy / 0 0 1");
   }
   throw badFile(
     "its nine numbers are not a matrix of intrinsics (fx 0 cx / 0 fy cy / 0 0 1), and a rotation needs its translation",
