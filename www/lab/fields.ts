@@ -6,7 +6,7 @@
 
 import { OPTIONS, RENDERED_ALONE, SAMPLE, paths, type PageField, type Rows, type ShownRow } from "../../pkg/options.js";
 
-/** Where the pair comes from: made by the crate, or the visitor's own. */
+/** Source of the pair: rendered by the crate, or the visitor's files. */
 export type Origin = "sample" | "files";
 export type Value = string | number | boolean | null;
 
@@ -295,7 +295,7 @@ export const defaults: Settings = Object.fromEntries(fields.map(({ key, initial 
 if (Object.keys(defaults).length < fields.length)
   throw new Error("Two fields share a name: give one of their rows a `link`.");
 
-/** Whether a choice can't be made of this origin. */
+/** Whether a choice is unavailable for this source. */
 export const isOff = ({ only }: ChoiceField, value: Value, source: Origin): boolean =>
   (only?.[String(value)] ?? source) !== source;
 

@@ -46,14 +46,14 @@ interface Entry {
   paths: readonly string[];
 }
 
-/** Something to be said of the files, and what may be done about it. */
+/** A remark about the files, with a possible action. */
 export interface Remark {
   words: string;
   wrong: boolean;
   action?: { label: string; press(): void };
 }
 
-/** What remarks are about: files that were dropped, the pair that they make, its cameras. */
+/** Topics of remarks: dropped files, the pair, its cameras. */
 const TOPICS = ["files", "pair", "cameras"] as const;
 type Topic = (typeof TOPICS)[number];
 
@@ -95,7 +95,7 @@ export class Intake {
     return this.#files;
   }
 
-  /** The files with what they were read as. */
+  /** The files with their readings. */
   get said(): { file: File; says: string }[] {
     return slots.flatMap(({ slot, label }) => {
       const [file, entry] = [this.#files[slot], this.#entries.get(slot)];
@@ -129,10 +129,10 @@ export class Intake {
     this.#offer.append(offer.words, " ", button);
   }
 
-  /** What is to be said of one topic, in the place of what was. */
+  /** Replaces the remark about one topic. */
   remarks(topic: Topic, said: readonly Remark[]): void {
     this.#said[topic] = said;
-    // There may be more than is in sight at once.
+    // There may be more remarks than fit on the screen.
     const rank = ({ wrong, action }: Remark) => (wrong ? 0 : action ? 1 : 2);
     const all = TOPICS.flatMap((each) => this.#said[each] ?? []).sort((a, b) => rank(a) - rank(b));
     this.#remarks.hidden = all.length === 0;
@@ -159,7 +159,7 @@ export class Intake {
     this.#forget.hidden = !canForget;
   }
 
-  /** Puts an error beside the slot that the library's path belongs to, and says which that is; nothing when none does. */
+  /** Shows an error beside the slot of this path and returns that slot; nothing if there is none. */
   complain(path: string, message: string): string | undefined {
     return this.#say(path, message, true);
   }

@@ -106,7 +106,7 @@ export class Runner {
     onGone(worker, () => {
       if (worker === this.#worker) this.#breakDown(GONE);
     });
-    // What a worker said before its end may arrive after it.
+    // Messages that a worker sent before its end may arrive afterwards.
     worker.onmessage = (event: MessageEvent<CellAnswer>) => {
       if (worker === this.#worker) this.#receive(event.data);
     };
