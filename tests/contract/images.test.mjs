@@ -193,7 +193,7 @@ describe("on a page", () => {
 
   test("what has no picture says so", () => {
     for (const name of ["video", "nothing", "missing"]) assert.match(lines.get(name), /^BimodalError file /, name);
-    assert.match(lines.get("text"), /^BimodalError file text\.png: it has no picture/);
+    assert.match(lines.get("text"), /^BimodalError file text\.png: the browser cannot decode it/);
     assert.match(lines.get("missing"), /^BimodalError file missing\.png: /);
     assert.match(lines.get("number"), /^BimodalError type source: must be an image/);
     assert.match(lines.get("tainted"), /^BimodalError unsupported source: .*crossOrigin/);

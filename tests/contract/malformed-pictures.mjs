@@ -28,17 +28,17 @@ export const PICTURES = [
   [
     "length.png",
     bytes(pngOf().subarray(0, 8), be32(0x7fffffff), text("IHDR"), new Uint8Array(64)),
-    /in its part "IHDR"/,
+    /in its chunk "IHDR"/,
   ],
   [
     "negative.png",
     bytes(pngOf().subarray(0, 8), be32(0xffffffff), text("IHDR"), new Uint8Array(64)),
-    /in its part "IHDR"/,
+    /in its chunk "IHDR"/,
   ],
   ["twice.png", pngOf(ihdr(2, 2), ihdr(4000, 4000), idat(14)), /cannot inflate to the 48004000/],
   ["interlace.png", pngOf(ihdr(8, 8, 8, 2, 7), idat(200)), /an unknown compression, filter or interlace method/],
-  ["depth.png", pngOf(ihdr(8, 8, 7, 0), idat(200)), /7 bits of a channel/],
-  ["sixteen.png", pngOf(ihdr(8, 8, 16, 3), chunk("PLTE", Buffer.alloc(3)), idat(200)), /16 bits of a channel/],
+  ["depth.png", pngOf(ihdr(8, 8, 7, 0), idat(200)), /7 bits per channel/],
+  ["sixteen.png", pngOf(ihdr(8, 8, 16, 3), chunk("PLTE", Buffer.alloc(3)), idat(200)), /16 bits per channel/],
   ["colours.png", pngOf(ihdr(1, 1, 8, 3), idat(2)), /palette is missing/],
   [
     "index.png",
@@ -55,19 +55,23 @@ export const PICTURES = [
   ["huffman.jpg", withSegment(0xc4, new Uint8Array(17).fill(255)), /Huffman/],
   ["quantum.jpg", withSegment(0xdb, [0x0f, 1, 2]), /damaged or cut off/],
   ["none.jpg", jpeg(8, 8, { channels: 0 }), /0 channels/],
-  ["tall.jpg", jpeg(8, 0), /8x0 pixels/],
+  ["tall.jpg", jpeg(8, 0), /invalid size 8x0/],
   ["segment.jpg", bytes([0xff, 0xd8, 0xff, 0xe0, 0, 0]), /no pixels/],
 
   ["order.tif", swappedTiff(), /format is not supported/],
   ["circle.tif", bytes(tiff(tiffTags(4, 4, { 330: 8, 34665: 8 }), u32(8)), new Uint8Array(300)), /no valid depth/],
   ["samples.tif", tiff(tiffTags(4, 4, { 277: 65_535 }), new Uint8Array(300)), /65535 channels/],
   ["none.tif", tiff(tiffTags(4, 4, { 258: 0 }), new Uint8Array(300)), /0-bit samples/],
-  ["jpeg.tif", tiff(tiffTags(4, 4, { 259: 7, 279: 20 }), new Uint8Array(300)), /compressed by JPEG/],
-  ["tile.tif", tiff(tiffTags(4, 4, { 322: 0, 323: 0, 324: 200, 325: 32 }), new Uint8Array(300)), /0x0 pixels/],
+  ["jpeg.tif", tiff(tiffTags(4, 4, { 259: 7, 279: 20 }), new Uint8Array(300)), /compressed with JPEG/],
+  ["tile.tif", tiff(tiffTags(4, 4, { 322: 0, 323: 0, 324: 200, 325: 32 }), new Uint8Array(300)), /invalid size 0x0/],
   ["complex.tif", tiff(tiffTags(4, 4, { 339: 6 }), new Uint8Array(300)), /samples of format 6/],
   ["negative.tif", tiff(tiffTags(0xffffffff, 0xffffffff), new Uint8Array(300)), /4294967295x4294967295/],
 
-  ["inside-out.exr", exr((_, view, at) => view.setInt32(at("dataWindow\0box2i\0") + 12, -100, true)), /-99x12 pixels/],
+  [
+    "inside-out.exr",
+    exr((_, view, at) => view.setInt32(at("dataWindow\0box2i\0") + 12, -100, true)),
+    /invalid size -99x12/,
+  ],
   [
     "overflow.exr",
     exr((_, view, at) => {
@@ -101,7 +105,11 @@ export const PICTURES = [
     ),
     /no x, y and z/,
   ],
-  ["count.ply", text("ply\nformat ascii 1.0\nelement vertex -1\nproperty float x\nend_header\n"), /"-1" of something/],
+  [
+    "count.ply",
+    text("ply\nformat ascii 1.0\nelement vertex -1\nproperty float x\nend_header\n"),
+    /the invalid count "-1"/,
+  ],
   ["nan.ply", ply(300, "nan nan nan\n".repeat(300)), /no measured point/],
   ["header.ply", text(`ply\n${"comment x\n".repeat(200_000)}`), /header has no end/],
   [
@@ -121,9 +129,9 @@ export const PICTURES = [
     ),
     /47 of 48 bytes/,
   ],
-  ["negative.pcd", pcd({ SIZE: "-4 4 4" }), /x of -4 bytes/],
-  ["count.pcd", pcd({ COUNT: "1 1 1000000000" }), /1000000000 times/],
-  ["type.pcd", pcd({ TYPE: "X X X" }, "1 2 3 ".repeat(4)), /no x of floats/],
+  ["negative.pcd", pcd({ SIZE: "-4 4 4" }), /x with the invalid size -4/],
+  ["count.pcd", pcd({ COUNT: "1 1 1000000000" }), /count 1000000000/],
+  ["type.pcd", pcd({ TYPE: "X X X" }, "1 2 3 ".repeat(4)), /no floating-point field x/],
   ["width.pcd", pcd({ WIDTH: "nan", HEIGHT: "1e9" }), /WIDTH "nan"/],
   [
     "distance.pcd",

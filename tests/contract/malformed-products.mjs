@@ -138,7 +138,7 @@ export const CALIBRATIONS = [
   [
     "record3d-size.json",
     json({ K: [720, 0, 0, 0, 720, 0, 360, 480, 1], w: -720, h: 960, fps: 30 }),
-    /-720x960 pixels, which is not a size/,
+    /invalid image size -720x960/,
   ],
   [
     "nerf-focal.json",
@@ -352,10 +352,10 @@ export const BINARIES = [
     { as: "depth" },
   ],
 
-  ["none.las", las({ count: 0 }), /has 0 points/],
+  ["none.las", las({ count: 0 }), /declares 0 points/],
   ["many.las", las({ count: 0xffffffff }), /4294967295 points; up to/],
   ["beyond.las", las({ from: 0xffffff00 }), /cut off/],
-  ["size.las", las({ size: 3 }), /format 0 and 3 bytes each/],
+  ["size.las", las({ size: 3 }), /format 0, 3 bytes each/],
   ["format.las", las({ format: 77 }), /format 77/],
   ["scale.las", las({ scale: NaN }), /no measured point/],
   ["infinite.las", las({ offset: Infinity }), /no measured point/],

@@ -99,7 +99,11 @@ export const RECORDINGS = [
   ["image-short.mcap", messages(COLOUR, (m) => ({ ...m, data: m.data.subarray(0, 10) })), /10 of 576 bytes/],
   ["image-encoding.mcap", messages(COLOUR, (m) => ({ ...m, encoding: "" })), /stored as ""/],
   ["depth-none.mcap", messages(DEPTH, (m) => ({ ...m, data: new Uint8Array(m.data.length) })), /no valid depth/],
-  ["depth-zero.mcap", messages(DEPTH, (m) => ({ ...m, width: 0, height: 0, data: new Uint8Array(0) })), /0x0 pixels/],
+  [
+    "depth-zero.mcap",
+    messages(DEPTH, (m) => ({ ...m, width: 0, height: 0, data: new Uint8Array(0) })),
+    /invalid size 0x0/,
+  ],
   [
     "info.mcap",
     messages("/camera/color/camera_info", (m) => ({ ...m, k: m.k.map(() => NaN), p: m.p.map(() => NaN) })),

@@ -222,13 +222,13 @@ describe("is refused", () => {
   test("one whose numbers come out otherwise", () =>
     bad(
       changed((header) => void (header.found = (header.found ^ 1) >>> 0)),
-      /other numbers/,
+      /computes different digits/,
     ));
 
   test("an end that is never reached does not take for ever", () => {
     bad(
       changed((header) => void Object.assign(header.reached, { iteration: 1e9, slices: 1e9 })),
-      /other numbers/,
+      /computes different digits/,
     );
   });
 });

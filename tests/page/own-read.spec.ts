@@ -121,7 +121,7 @@ test("intrinsics of another picture size are scaled and named; of another aspect
   await expect(fx("colour")).toHaveValue("30.5");
   await expect(fx("depth")).toHaveValue("");
   await expect(remarks(lab)).toContainText(
-    "The intrinsics of the colour images are for 96x96 pixels, and these have 48x48: they were scaled to that",
+    "The intrinsics of the colour images are for 96x96 pixels, but these pictures have 48x48: the intrinsics were scaled to that",
   );
   await page.getByRole("button", { name: "Undo" }).click();
   await expect(fx("colour")).toHaveValue("");
@@ -129,7 +129,9 @@ test("intrinsics of another picture size are scaled and named; of another aspect
   const wide = cameraJson("color.json");
   wide.buffer = Buffer.from(JSON.stringify({ width: 96, height: 54, fx: 61, fy: 62, cx: 47.5, cy: 26.5 }));
   await drop(page, "body", [wide]);
-  await expect(remarks(lab)).toContainText("for 96x54 pixels, and these have 48x48: scale or crop them first");
+  await expect(remarks(lab)).toContainText(
+    "for 96x54 pixels, but these pictures have 48x48: scale or crop the intrinsics first",
+  );
   await expect(remarks(lab)).toContainText("color.json: not used for the colour images");
   await expect(fx("colour")).toHaveValue("");
 });
