@@ -4,7 +4,7 @@ import { ink, make } from "../dom";
 
 export interface Shown {
   title: string;
-  /** What the curves of a chart are, whose names stand beside its canvas. */
+  /** The names of a chart's curves, which stand beside its canvas. */
   words: string | undefined;
   canvas: HTMLCanvasElement;
 }
@@ -42,7 +42,7 @@ export function offerPictures(root: HTMLElement, select: HTMLSelectElement): voi
   if (titles.includes(before)) select.value = before;
 }
 
-/** As it is shown, on the colour of the page: curves would be lost on another one. */
+/** As it is shown, on the page's background, because curves may be invisible on another one. */
 function flat(canvas: HTMLCanvasElement): HTMLCanvasElement {
   const copy = document.createElement("canvas");
   copy.width = canvas.width;

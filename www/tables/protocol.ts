@@ -14,7 +14,7 @@ import type { Options, SampleRequest, StepReport } from "../../pkg/index.js";
 export { median, worst } from "../../protocols/numbers.mjs";
 export { paperDegrees };
 
-/** What a cell says of itself, and a row of what was measured. */
+/** A cell's description, and a row of its measurements. */
 export type Row = Record<string, unknown>;
 
 export interface Cell {

@@ -19,7 +19,7 @@ const BAND = [0.42, 0.58] as const;
 
 interface Painted {
   pair: Pick<Sample, "image" | "depth">;
-  /** What was painted, log, mean taken off as the module does. */
+  /** The true log albedo, less its mean, as the module has it. */
   paint: Float32Array;
   shadow: Uint8Array;
 }

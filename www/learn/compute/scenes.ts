@@ -88,7 +88,7 @@ export const vectorAt = (field: ArrayLike<number>, index: number): [number, numb
 export const logAt = ({ image }: Sample, index: number): [number, number, number] =>
   vectorAt(image.data, index).map((value) => Math.log(value)) as [number, number, number];
 
-/** Runs a loop to its end, or so many steps, and frees it whatever happens. */
+/** Runs a loop to its end or for a number of steps, and frees it in any case. */
 export function* running(
   made: Pick<Sample, "image" | "depth">,
   options: Options,
