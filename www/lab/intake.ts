@@ -159,7 +159,7 @@ export class Intake {
     this.#forget.hidden = !canForget;
   }
 
-  /** Shows an error beside the slot of this path and returns that slot; nothing if there is none. */
+  /** Shows an error beside the slot of this path and returns that slot; nothing if no slot has this path. */
   complain(path: string, message: string): string | undefined {
     return this.#say(path, message, true);
   }
