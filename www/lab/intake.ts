@@ -58,7 +58,7 @@ const TOPICS = ["files", "pair", "cameras"] as const;
 type Topic = (typeof TOPICS)[number];
 
 export interface IntakeHooks {
-  /** Other files than before. */
+  /** Called when the files have changed. */
   onChange(): void;
   onForget(): void;
 }
@@ -83,7 +83,7 @@ export class Intake {
       this.silence();
       this.#hooks.onForget();
     });
-    // Below the slots, so that these do not move; a note that needs an answer is scrolled into view.
+    // Notes are below the slots, which therefore do not move; one that needs an answer is scrolled into view.
     this.element.append(
       make("div", { class: "said" }, this.#offer, this.#remarks),
       make("p", { class: "note keeping", role: "status" }, this.#keeping),
@@ -117,7 +117,7 @@ export class Intake {
     entry.thumb.setAttribute("aria-label", `Preview of ${file.name}`);
   }
 
-  /** Asks whether files are to change places; nothing where all are where they belong. */
+  /** Proposes to swap files that seem to be in the wrong slots; undefined if all seem right. */
   offer(offer: Offer | undefined): void {
     this.#offer.replaceChildren();
     if (!offer) return;
@@ -184,7 +184,7 @@ export class Intake {
     entry.note.hidden = false;
     entry.note.classList.toggle("error", isError);
     entry.zone.toggleAttribute("data-invalid", isError);
-    // Within the settings, which may be longer than their sheet.
+    // Scrolls only within the settings, which may be longer than their sheet.
     if (isError) entry.note.scrollIntoView({ block: "nearest" });
     return slots.find(({ paths }) => paths === entry.paths)?.label;
   }
@@ -228,20 +228,20 @@ export class Intake {
       event.preventDefault();
       zone.removeAttribute("data-over");
       const files = event.dataTransfer?.files ?? [];
-      // Several are sorted as anywhere else on the page.
+      // Several files are sorted, as everywhere on the page.
       if (files.length > 1) return;
       event.stopPropagation();
       if (files[0]) this.put(slot, files[0]);
     });
   }
 
-  /** Several files at once, which are looked at together. */
+  /** Handles several files at once, which are recognised together. */
   putAll(files: ReadonlyMap<Slot, File>): void {
     for (const [slot, file] of files) this.#set(slot, file);
     this.#hooks.onChange();
   }
 
-  /** These files and no others. */
+  /** Replaces all files by these. */
   replaceAll(files: Partial<Record<Slot, File>>): void {
     for (const { slot } of slots) this.#set(slot, files[slot]);
     this.#hooks.onChange();
