@@ -87,9 +87,7 @@ function pairsBelow(folder) {
     .filter(([, { colour, depth }]) => colour && depth)
     .map(([name, paths]) => ({ name, ...paths }));
   if (pairs.length === 0)
-    throw new Mistake(
-      `${folder} holds no pair of a colour image and a depth map with like names; --help says how they are told`,
-    );
+    throw new Mistake(`${folder} contains no pair of a colour image and a depth map with similar names; see --help`);
   return pairs;
 }
 
@@ -123,7 +121,7 @@ const lineOf = (row) => `${COLUMNS.map((column) => cell(row[column])).join(",")}
 function begun(path) {
   if (!existsSync(path)) writeFileSync(path, HEAD);
   const text = readFileSync(path, "utf8");
-  if (!text.startsWith(HEAD)) throw new Mistake(`${path} is there and is no table of this program: name another file`);
+  if (!text.startsWith(HEAD)) throw new Mistake(`${path} exists and is not a table of this program; name another file`);
   const lines = text.slice(HEAD.length).match(/(?:"(?:[^"]|"")*"|[^"\n])*\n/g) ?? [];
   truncateSync(path, Buffer.byteLength(HEAD + lines.join("")));
   return lines.map((line) => {
@@ -172,9 +170,9 @@ async function run(args) {
   if (values.help) return void process.stdout.write(HELP);
   const [folder, ...rest] = positionals;
   if (folder === undefined || rest.length > 0)
-    throw new Mistake(`one folder is needed, not ${positionals.length}; --help says more`);
-  if (!existsSync(folder) || !statSync(folder).isDirectory()) throw new Mistake(`${folder} is no folder`);
-  if (values.csv === undefined) throw new Mistake("--csv OUT.csv is needed; --help says more");
+    throw new Mistake(`one folder is needed, not ${positionals.length}; see --help`);
+  if (!existsSync(folder) || !statSync(folder).isDirectory()) throw new Mistake(`${folder} is not a folder`);
+  if (values.csv === undefined) throw new Mistake("--csv OUT.csv is needed; see --help");
   const [count, settings, pairs] = [threadsOf(values.threads), settingsOf(values.settings), pairsBelow(folder)];
 
   const rows = begun(values.csv);

@@ -3,16 +3,16 @@ import { BimodalError, translate } from "./errors.js";
 import { nodeModule } from "./node.js";
 import type { WasmSource } from "./types/index.js";
 
-/** The bytes of a file in Node, whose fetch reads none; nothing where the address is no file's. */
+/** The bytes of a file in Node, whose fetch cannot read files; nothing if the address is not that of a file. */
 function fromDisk(wasm: string | URL | Request | Response): Promise<BufferSource> | undefined {
   const address = typeof wasm === "string" || wasm instanceof URL ? String(wasm) : "";
   return address.startsWith("file:") ? nodeModule("node:fs/promises")?.readFile(new URL(address)) : undefined;
 }
 
-/** What helps where a bundler has left a .wasm behind. */
+/** Advice for the case that a bundler has not copied a .wasm. */
 const ADVICE =
-  "Bundlers that do not follow new URL(.., import.meta.url) leave the package's .wasm files behind: copy them beside the bundle, " +
-  "which has to be an ES module, or tell init(url) where they are. Its README has the line for each bundler";
+  "Bundlers that do not follow new URL(.., import.meta.url) do not copy the package's .wasm files. Copy them next to the bundle, " +
+  "which must be an ES module, or pass their address to init(url). The package's README has the line for each bundler";
 
 const leftBehind = (what: string, cause?: unknown): Error => new Error(`${what}. ${ADVICE}`, { cause });
 
@@ -20,12 +20,12 @@ function sourceOf(where: () => WasmSource): WasmSource {
   try {
     return where();
   } catch (error) {
-    // Scripts that are no ES modules have no import.meta.url.
+    // Scripts that are not ES modules have no import.meta.url.
     throw leftBehind("this bundle does not know its own address", error);
   }
 }
 
-/** The code of a .wasm; where it is may be unknown, so it is asked here. */
+/** The code of a .wasm. Its address may be unknown, so it is determined here. */
 export async function compile(where: () => WasmSource): Promise<WebAssembly.Module> {
   const wasm = sourceOf(where);
   if (wasm instanceof WebAssembly.Module) return wasm;
@@ -35,8 +35,8 @@ export async function compile(where: () => WasmSource): Promise<WebAssembly.Modu
   const response = wasm instanceof Response ? wasm : await fetch(wasm);
   const type = response.headers.get("Content-Type") ?? "";
   if (!response.ok) throw leftBehind(`status ${response.status} at ${response.url}`);
-  // Servers of single-page applications answer any address that they do not know with their page.
-  if (type.startsWith("text/html")) throw leftBehind(`a page of HTML is at ${response.url}`);
+  // Servers of single-page applications answer unknown addresses with their page.
+  if (type.startsWith("text/html")) throw leftBehind(`an HTML page is at ${response.url}`);
   // Only what is declared as wasm may be compiled while it arrives.
   return type.startsWith("application/wasm")
     ? WebAssembly.compileStreaming(response)

@@ -1,4 +1,4 @@
-/** What a camera must look like, whichever half of the package it goes to. */
+/** Checks a camera, for the loop and the calibration check alike. */
 import { type Check, isObject, number, numbers, object, word, wrong } from "./check.js";
 import { BimodalError } from "./errors.js";
 import { cameraOf } from "./matrices.js";
@@ -6,7 +6,7 @@ import { cameraOf } from "./matrices.js";
 /** OpenCV's longest list. The numerics refuse the coefficients that they do not support. */
 const MOST_COEFFICIENTS = 14;
 
-/** As many numbers as the lens model has. */
+/** The number of coefficients of the lens model. */
 const coefficients: Check = (value, field) => {
   const length = isObject(value) && "length" in value ? value.length : undefined;
   if (typeof length !== "number") throw wrong(field, "a list of numbers", value);

@@ -34,7 +34,7 @@ function range({ kind, min, above, max, below, unit = "" }: NumberRow): string {
   const what = kind === "number" ? "a finite number" : "a whole number";
   // A unit follows a number, not a zero in words.
   const end = unit && (max ?? below ?? above ?? min) ? ` ${unit}` : "";
-  // Between two ends a number is finite in any case.
+  // A number between two limits is always finite.
   if (min && max) return `${kind === "number" ? "a number" : what} from ${min} to ${max}${end}`;
   const named = (limit: number) => (limit === 0 ? "zero" : `${limit}`);
   const from = above !== undefined ? ` above ${named(above)}` : min !== undefined ? `, ${named(min)} or above` : "";
@@ -55,7 +55,7 @@ export const ranged =
     throw new BimodalError(code, `${field}: must be ${range(row)} (got ${value})`, field, refused(value));
   };
 
-/** A list of so many numbers, typed arrays included. Its length comes first: what claims to be longer is not copied. */
+/** A list of this many numbers, typed arrays included. Its length is checked first, so that a longer list is not copied. */
 export const numbers =
   (count: number): Check =>
   (value, field) => {
@@ -83,7 +83,7 @@ export type ArrayType = { readonly name: string; new (length: number): ArrayBuff
 
 const TYPED_ARRAY: object = Object.getPrototypeOf(Uint8Array.prototype);
 
-/** Whether a typed array is one, of the length that it says: the numerics make room by its word, then copy what is there. */
+/** Whether a typed array has the length that it reports: the numerics allocate that length, then copy the data. */
 function hasItsLength(value: object): boolean {
   try {
     return Reflect.get(TYPED_ARRAY, "length", value) === Reflect.get(value, "length");
@@ -92,7 +92,7 @@ function hasItsLength(value: object): boolean {
   }
 }
 
-/** Whether a typed array without entries has lost them: copying from one is an error, but from one that is merely empty. */
+/** Whether a typed array without entries has lost them: copying from a lost one is an error, from an empty one it is not. */
 function isLost(value: ArrayLike<number>): boolean {
   try {
     new Uint8Array(0).set(value);
@@ -110,13 +110,13 @@ export const array =
       throw wrong(field, types.map((type) => `a ${type.name}`).join(" or "), value);
     }
     const given = value as object & ArrayLike<number>;
-    if (!hasItsLength(given)) throw wrong(field, "a typed array of the length that it says", value);
+    if (!hasItsLength(given)) throw wrong(field, "a typed array of the length that it reports", value);
     if (given.length === 0 && isLost(given)) {
-      throw new BimodalError("empty", `${field}: its memory is gone, given to another thread or shrunk`, field);
+      throw new BimodalError("empty", `${field}: its memory was moved to another thread or shrunk`, field);
     }
   };
 
-/** Longest word that is repeated in a message, and held against those that are known. */
+/** Longest word that a message repeats and compares with the known ones. */
 const LONGEST_WORD = 60;
 export const brief = (given: string): string =>
   given.length > LONGEST_WORD ? `${given.slice(0, LONGEST_WORD)}..` : given;
@@ -132,7 +132,7 @@ export const word =
     }
   };
 
-/** Edits that turn one word into the other (Levenshtein). */
+/** Number of edits that turn one word into the other (Levenshtein). */
 function distance(a: string, b: string): number {
   let row = Array.from({ length: b.length + 1 }, (_, j) => j);
   for (let i = 1; i <= a.length; i++) {

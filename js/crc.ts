@@ -1,4 +1,4 @@
-/** The checksum of PNG's parts. */
+/** The checksum of PNG's chunks. */
 
 const TABLE = Uint32Array.from({ length: 256 }, (_, byte) => {
   let value = byte;

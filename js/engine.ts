@@ -8,14 +8,14 @@ let loading: Promise<void> | undefined;
 let module: WebAssembly.Module | undefined;
 let memory: WebAssembly.Memory | undefined;
 
-/** A function of the numerics. The bindings would keep whatever else starts, for good. */
+/** A function of the numerics. The bindings would otherwise keep a failed start for good. */
 const OWN = "sample";
 
 async function loadOnce(where: () => WasmSource): Promise<void> {
   try {
     const compiled = await compile(where);
     if (!WebAssembly.Module.exports(compiled).some(({ name }) => name === OWN))
-      throw new Error("it is another program");
+      throw new Error("it is not the .wasm of this package");
     ({ memory } = await start({ module_or_path: compiled }));
     module = compiled;
   } catch (error) {
@@ -37,10 +37,10 @@ export function compiled(): WebAssembly.Module {
   return module;
 }
 
-/** Room that a raster of a large view needs, pages of 64 kB: 256 MB. */
+/** Memory that a raster of a large view needs, in pages of 64 kB: 256 MB. */
 const ROOM = 4096;
 
-/** Whether the module is granted no more memory. */
+/** Whether the module cannot get more memory. */
 function isFull(): boolean {
   try {
     memory?.grow(ROOM);
@@ -50,7 +50,7 @@ function isFull(): boolean {
   }
 }
 
-/** What came out of the numerics as what the contract promises: a call that broke off where memory is full did so for lack of it. */
+/** Turns an error of the numerics into that of the contract: a call that crashed when memory was full lacked memory. */
 export function explained(error: unknown): unknown {
   if (!isPanic(error) || !isFull()) return translate(error);
   const message = "image: there is no memory left for this pair; free() estimators that are no longer needed";

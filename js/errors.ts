@@ -36,7 +36,7 @@ export class BimodalError extends Error {
   constructor(code: ErrorCode, message: string, field?: string, options?: BimodalErrorOptions) {
     super(message, options);
     this.code = code;
-    // Absent rather than undefined, so that `"field" in error` tells the truth.
+    // Absent rather than undefined, so that `"field" in error` is right.
     if (field !== undefined) this.field = field;
     if (options?.index !== undefined) this.index = options.index;
     if (options?.value !== undefined) this.value = options.value;
@@ -71,13 +71,13 @@ export interface ErrorDetails {
   readonly height?: number;
 }
 
-/** What an error carries of a refused value: the number that it is, and which entry of its field. */
+/** The part of an error about a refused value: the number itself, and its index in the field. */
 export const refused = (value: unknown, index?: number): { value: number | undefined; index: number | undefined } => ({
   value: typeof value === "number" ? value : undefined,
   index,
 });
 
-/** What an error of whatever kind says. */
+/** The message of any kind of error. */
 export const reasonOf = (error: unknown): string => (error instanceof Error ? error.message : String(error));
 
 /** What is wrong with a file. */
@@ -114,17 +114,17 @@ function isCrossing(value: unknown): value is Crossing {
   );
 }
 
-/** Whether the numerics broke off in the middle: whatever they were working on is suspect from then on. */
+/** Whether the numerics crashed during a call, so that their state can no longer be trusted. */
 export const isPanic = (error: unknown): boolean => error instanceof WebAssembly.RuntimeError;
 
-/** What came out of wasm as what the contract promises; anything else passes unchanged. */
+/** Turns an error of wasm into that of the contract; anything else passes unchanged. */
 export function translate(error: unknown): unknown {
   if (isCrossing(error)) {
     const { code, message, field, index, value } = error;
     return new BimodalError(code, message, field, { index, value });
   }
   if (isPanic(error)) {
-    const message = "the numerics broke off; this is a bug. Free this estimator and make another one";
+    const message = "the numerics crashed, which is a bug. Free this estimator and create another one";
     return new BimodalError("panic", message, undefined, { cause: error });
   }
   return error;

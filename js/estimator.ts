@@ -58,7 +58,7 @@ export interface Given {
 export class Estimator {
   #raw: Raw | undefined;
   #broken = false;
-  /** Those of the loop that is under way. */
+  /** The options of the current loop. */
   #options: PlainOptions;
   /** Copies: the caller may change the pair before it is saved or sent to a worker. */
   readonly #pair: Views;
@@ -336,7 +336,7 @@ export class Estimator {
     this.#raw = undefined;
     this.#searchWorkers?.end();
     this.#refinementWorker?.end();
-    // A broken one can't be freed: wasm-bindgen still counts it as borrowed by the call that broke off.
+    // A crashed one cannot be freed: wasm-bindgen still counts it as borrowed by the call that crashed.
     if (!this.#broken) raw?.free();
   }
 
@@ -345,7 +345,7 @@ export class Estimator {
     this.free();
   }
 
-  /** Said once: an estimator without other threads takes longer and finds the same. */
+  /** Warned once: without other threads an estimator takes longer and finds the same. */
   #warn(reason: unknown): void {
     if (this.#warnings.length > 0) return;
     const message = `options.workers: no other thread could be started (${reason instanceof Error ? reason.message : String(reason)}); this thread does all the work`;
@@ -353,7 +353,7 @@ export class Estimator {
     console.warn(`bimodal-stereo: workers-unavailable: ${message}`);
   }
 
-  /** The workers begin anew: those of the search if the loop starts with one, or else the one that refines. */
+  /** Restarts the workers: those of the search if the loop starts with one, or else the refinement worker. */
   #begin(): void {
     this.#searchWorkers?.end();
     this.#refinementWorker?.end();
@@ -404,7 +404,7 @@ export class Estimator {
     if (answer) this.#call((raw) => raw.acceptRefinement(answer.shape, answer.planes));
   }
 
-  /** Gives the workers what comes next, or ends them. */
+  /** Sends the workers their next tasks, or ends them. */
   #after(report: StepReport): StepReport {
     this.#begun = true;
     if (report.stage === "search") this.#slices++;

@@ -20,7 +20,7 @@ const MOST_PIXELS = 2 ** 27;
 
 function checkSize(width: number, height: number): void {
   if (width * height > MOST_PIXELS)
-    throw badFile(`this PNG says that it is ${width}x${height} pixels large; up to ${MOST_PIXELS} pixels are read`);
+    throw badFile(`this PNG declares ${width}x${height} pixels; up to ${MOST_PIXELS} pixels are supported`);
 }
 
 function read(file: Bytes): Raster<Pixels> {

@@ -28,7 +28,7 @@ async function fetched(address: string | URL, signal: AbortSignal | undefined): 
     const reason = "it cannot be reached, or its server does not permit other origins to read it (CORS)";
     throw badNamed(nameOf(address), reason, error);
   }
-  if (!response.ok) throw badNamed(nameOf(address), `it answers with status ${response.status}`);
+  if (!response.ok) throw badNamed(nameOf(address), `its server answered with status ${response.status}`);
   return new Uint8Array(await response.arrayBuffer());
 }
 
@@ -71,7 +71,7 @@ async function decoded(bytes: Uint8Array, name: string, signal: AbortSignal | un
   if (kindOf(bytes) === undefined && canDraw()) return shown(bytes, name);
   const { readRigFile } = await import("./rig/read.js");
   const reading = await readRigFile({ name, bytes }, { as: "colour", ...(signal && { signal }) });
-  if (reading.kind !== "colour") throw badNamed(name, "it is no colour image");
+  if (reading.kind !== "colour") throw badNamed(name, "it is not a colour image");
   return reading.image as ColorImage;
 }
 
@@ -102,7 +102,7 @@ async function drawn(source: ImageBitmapSource): Promise<ColorImage> {
   } catch (error) {
     if (error instanceof BimodalError) throw error;
     const message =
-      'source: the browser does not give out its pixels; an image of another origin needs crossOrigin = "anonymous" and a server that permits it';
+      'source: the browser does not let scripts read its pixels; an image of another origin needs crossOrigin = "anonymous" and a server that permits it';
     throw new BimodalError("unsupported", message, "source", { cause: error });
   } finally {
     bitmap.close();
@@ -118,7 +118,7 @@ async function bitmapOf(source: ImageBitmapSource): Promise<ImageBitmap> {
   } catch (error) {
     if (error instanceof TypeError)
       throw wrong("source", "an image, a canvas, a video frame, a file, its bytes or its address", source);
-    const reason = `it has no picture that the browser can decode (${error instanceof Error ? error.message : String(error)})`;
+    const reason = `the browser cannot decode it (${error instanceof Error ? error.message : String(error)})`;
     throw new BimodalError("file", `source: ${reason}`, "source", { cause: error, details: { reason } });
   }
 }

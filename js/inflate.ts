@@ -1,4 +1,4 @@
-/** What was compressed by zlib, never more of it than is expected: memory and time are bounded by what the file declares. */
+/** Inflates zlib data, up to the expected length: the file's declaration bounds memory and time. */
 import { Inflate, Unzlib } from "fflate";
 import { badFile } from "./errors.js";
 
@@ -9,7 +9,7 @@ const MOST_OF_ONE = 1032;
 
 class TooLong extends Error {}
 
-/** Up to `most` bytes of what `bytes` inflate to, or why that cannot be had; `Stream` knows what stands around them. */
+/** Up to `most` bytes of what `bytes` inflate to, or the reason why not; `Stream` handles the header around them. */
 export function inflateUpTo(
   bytes: Uint8Array,
   most: number,

@@ -1,4 +1,4 @@
-/** What the loop's inputs must look like: names and types, and whatever the rows of the options say. */
+/** Checks the loop's inputs: names, types, and what the rows of the options say. */
 import { camera } from "./cameras.js";
 import {
   type Check,
@@ -23,7 +23,7 @@ import { poseOf } from "./matrices.js";
 import { OPTIONS, POSE, RENDERED_ALONE, SAMPLE } from "./options.js";
 import type { Row, Rows, WordRow } from "./rows.js";
 
-/** A word, or else something that is no word. */
+/** A word, or a value of another type. */
 const wordOr =
   (words: readonly string[], other: Check, orElse: string): Check =>
   (value, field) => {
@@ -33,7 +33,7 @@ const wordOr =
     throw new BimodalError("option", `${field}: "${brief(value)}" is unknown; known: ${allowed} or ${orElse}`, field);
   };
 
-/** The check of a value that is no word, and what it takes, with an article. */
+/** The check of a value other than a word, and the type that it accepts, with an article. */
 function valueOf(row: Exclude<Row, WordRow>): readonly [check: Check, what: string] {
   switch (row.kind) {
     case "flag":
@@ -88,7 +88,7 @@ function inputs() {
   };
 }
 let made: ReturnType<typeof inputs> | undefined;
-/** Made when first asked for, so that bundlers leave them out of what only checks a rig. */
+/** Made on first use, so that bundlers leave them out of code that only checks a rig. */
 const checks = (): ReturnType<typeof inputs> => (made ??= inputs());
 
 export const checkImage = (value: unknown): void => checks().image(value, "image");
@@ -107,7 +107,7 @@ export function checkSample(value: unknown): void {
   if (given.get("protocol") !== "grid") return;
   const surplus = RENDERED_ALONE.find((key) => given.get(key) !== undefined);
   if (surplus === undefined) return;
-  throw new BimodalError("option", `sample.${surplus}: the grid protocol has no such thing`, `sample.${surplus}`);
+  throw new BimodalError("option", `sample.${surplus}: the grid protocol has no such option`, `sample.${surplus}`);
 }
 
 export const checkLightIsKnown = (value: unknown): void => flag(value, "lightIsKnown");

@@ -87,12 +87,12 @@ function ofMatrix4(matrix: Matrix4, field: string): PoseMembers {
   const upper = [0, 1, 2].flatMap((i) => m.slice(4 * i, 4 * i + 3));
   const size = Math.cbrt(determinant(upper));
   if (!(size > 0))
-    throw range(field, "its upper left 3x3 must be a scale times a rotation, and it mirrors or flattens");
+    throw range(field, "its upper left 3x3 must be a positive scale times a rotation; this one mirrors or flattens");
   const scale = near(size, 1) ? 1 : size;
   return { scale, rotation: upper.map((value) => value / scale), translation: [3, 7, 11].map((index) => at(m, index)) };
 }
 
-/** A pose with its matrix as members; whatever is no matrix and has none passes as it is. */
+/** A pose with its matrix as members; a value without a matrix passes unchanged. */
 export function poseOf(value: unknown, field: string): unknown {
   if (isMatrix(value)) return ofMatrix4(value as Matrix4, field);
   if (!isObject(value) || !("matrix" in value)) return value;
@@ -121,7 +121,7 @@ function ofMatrix3(matrix: Matrix3, field: string): CameraMembers {
   return { fx, fy, cx, cy };
 }
 
-/** A camera with its matrix K as members; whatever is no matrix and has none passes as it is. */
+/** A camera with its matrix K as members; a value without a matrix passes unchanged. */
 export function cameraOf(value: unknown, field: string): unknown {
   if (isMatrix(value)) return ofMatrix3(value as Matrix3, field);
   if (!isObject(value) || !("K" in value) || value.K === undefined) return value;
@@ -131,7 +131,7 @@ export function cameraOf(value: unknown, field: string): unknown {
   if (twice !== undefined)
     throw new BimodalError(
       "option",
-      `${field}.${twice}: K holds it already; leave one of them out`,
+      `${field}.${twice}: K already contains it; leave one of them out`,
       `${field}.${twice}`,
     );
   return { ...members, ...ofMatrix3(K as Matrix3, `${field}.K`) };

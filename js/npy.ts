@@ -56,7 +56,7 @@ function refusal(type: string): string {
     return `a .npy file of type "${type}" holds Python objects (a pickle), which may run code; ${advice}`;
   if (type.startsWith("["))
     return `this .npy file is a structured array (${type.slice(0, 80)}); save the field that holds the depth, as float32 or uint16`;
-  return `a .npy file of type "${type}" is not read here; ${advice}`;
+  return `a .npy file of type "${type}" is not supported; ${advice}`;
 }
 
 /** Elements of `size` bytes from the other byte order, in place. */
@@ -64,7 +64,7 @@ function swap(body: Uint8Array, size: number): void {
   for (let at = 0; at + size <= body.length; at += size) body.subarray(at, at + size).reverse();
 }
 
-/** Data in column order (the first index runs fastest) in row order. */
+/** Converts data from column order (the first index runs fastest) to row order. */
 function inRows<T extends Pixels>(data: T, height: number, width: number, channels: number): T {
   const rows = data.slice() as T;
   for (let row = 0; row < height; row++) {
@@ -118,7 +118,7 @@ function shapeOf(listed: string): Shape {
   if (third <= MOST_CHANNELS) return { height: first, width: second, channels: third, isChannelFirst: false };
   if (first <= MOST_CHANNELS) return { height: second, width: third, channels: first, isChannelFirst: true };
   throw bad(
-    `this .npy file has ${third} channels; 1 to ${MOST_CHANNELS} are read here. If it is a stack of ${first} pictures, save each of them as a file`,
+    `this .npy file has ${third} channels; 1 to ${MOST_CHANNELS} are supported. If it is a stack of ${first} pictures, save each of them as a file`,
   );
 }
 
@@ -152,7 +152,7 @@ function headerOf(bytes: Uint8Array): Header {
   return { type, kind, isBigEndian: order === ">", byColumns: columns === "True", shape, end };
 }
 
-/** Three planes of which none has a value below zero are no cloud, and where some are above 1, no colours. */
+/** Three planes without a value below zero are not a cloud; with values above 1 they are not colours either. */
 const isStack = (data: Pixels): boolean =>
   !data.some((value) => value < 0) && data.some((value) => value > 1 && value < Infinity);
 
@@ -164,7 +164,7 @@ export function readNpy(bytes: Uint8Array): Raster<Pixels> & { type: string } {
   const { type, kind, isBigEndian, byColumns, shape, end } = headerOf(bytes);
   const { height, width, channels, isChannelFirst } = shape;
   const count = height * width * channels;
-  // A copy, because typed arrays want aligned memory; Node's Buffer would not make one by its own slice.
+  // A copy, because typed arrays need aligned memory; the slice of a Node Buffer would be only a view.
   const body = new Uint8Array(bytes.subarray(end));
   if (body.byteLength < count * kind.size)
     throw bad(`this .npy file is cut off: ${body.byteLength} of ${count * kind.size} bytes`);

@@ -1,5 +1,5 @@
 /**
- * Inputs as plain objects of nothing but what the contract names. All threads are given the same: a class with getters, a
+ * Inputs as plain objects with only the members of the contract. All threads get the same: a class with getters, a
  * proxy or memory that is shared would look different in another one.
  */
 import { cameraOf, poseOf } from "./matrices.js";

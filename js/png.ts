@@ -10,7 +10,7 @@ import { badFile } from "./errors.js";
 import { inflateExactly } from "./inflate.js";
 import type { Raster } from "./npy.js";
 
-/** What else a PNG says, as it stands in the file. */
+/** Other contents of a PNG, as the file states them. */
 export interface PngRemarks {
   /** Bits of a channel in the file. */
   bits: number;
@@ -46,11 +46,11 @@ function parts(bytes: Uint8Array): Parts {
     const length = view.getUint32(at);
     const type = String.fromCharCode(...bytes.subarray(at + 4, at + 8));
     if (length > bytes.length - at - FRAME)
-      throw badFile(`this PNG is cut off or damaged in its part ${JSON.stringify(type)}`);
+      throw badFile(`this PNG is cut off or damaged in its chunk ${JSON.stringify(type)}`);
     const body = bytes.subarray(at + 8, at + 8 + length);
     const needed = KEPT.includes(type) || type === "IDAT";
     const intact = () => view.getUint32(at + 8 + length) === crc32(bytes.subarray(at + 4, at + 8 + length));
-    if (needed && !intact()) throw badFile(`this PNG is damaged: the checksum of its part ${type} is wrong`);
+    if (needed && !intact()) throw badFile(`this PNG is damaged: the checksum of its chunk ${type} is wrong`);
     if (type === "IDAT") pieces.push(body);
     else if (KEPT.includes(type)) kept.set(type, body);
     else if (REMARKS.includes(type) && intact()) remarks.set(type, body);
@@ -104,15 +104,16 @@ function header({ kept }: Parts): Header {
   const type = view.getUint8(9);
   const channels = CHANNELS[type];
   const interlaced = view.getUint8(12) === 1;
-  if (width === 0 || height === 0) throw badFile(`this PNG says that it is ${width}x${height} pixels large`);
-  if (channels === undefined)
-    throw badFile(`this PNG says that its colours are of the type ${type}, which there is not`);
+  if (width === 0 || height === 0) throw badFile(`this PNG declares the invalid size ${width}x${height}`);
+  if (channels === undefined) throw badFile(`this PNG has the unknown colour type ${type}`);
   if (!(BITS[type] ?? WHOLE_BYTES).includes(bits))
-    throw badFile(`this PNG says that it has ${bits} bits of a channel, which its type of colours has not`);
+    throw badFile(`this PNG has ${bits} bits per channel, which its colour type does not allow`);
   if (view.getUint8(10) !== 0 || view.getUint8(11) !== 0 || view.getUint8(12) > 1)
-    throw badFile("this PNG is packed in a way that there is not");
+    throw badFile("this PNG has an unknown compression, filter or interlace method");
   if (interlaced && bits < 8)
-    throw badFile("this PNG is interlaced with fewer than 8 bits, which is not read here; save it without interlace");
+    throw badFile(
+      "this PNG is interlaced with fewer than 8 bits per channel, which is not supported; save it without interlacing",
+    );
   if ((kept.get("PLTE")?.length ?? 0) > 768)
     throw badFile("this PNG is damaged: its palette has more than 256 colours");
   const rows = (across: number, down: number) =>
@@ -162,7 +163,7 @@ function samples(bytes: Uint8Array, { width, height, bits, channels, passes }: H
     let above: Uint8Array | undefined;
     for (let line = y; columns > 0 && line < height; line += dy) {
       const filter = bytes[from] ?? 0;
-      if (filter > 4) throw badFile(`this PNG is damaged (there is no filter ${filter})`);
+      if (filter > 4) throw badFile(`this PNG is damaged: it uses the unknown filter ${filter}`);
       const row = bytes.subarray(from + 1, from + 1 + length);
       if (filter > 0) unfilter(filter, row, above, step);
       for (let column = 0, at = 0; column < columns; column++) {
@@ -176,10 +177,10 @@ function samples(bytes: Uint8Array, { width, height, bits, channels, passes }: H
   return out;
 }
 
-/** The colours that the samples are places of. */
+/** Replaces the samples, which are indices into the palette, by their colours. */
 function ofPalette(places: Uint8Array | Uint16Array, { kept }: Parts): { channels: number; data: Uint8Array } {
   const [palette, alpha] = [kept.get("PLTE"), kept.get("tRNS")];
-  if (!palette || palette.length % 3 !== 0) throw badFile("this PNG is damaged: it has no palette of whole colours");
+  if (!palette || palette.length % 3 !== 0) throw badFile("this PNG is damaged: its palette is missing or incomplete");
   const channels = alpha ? 4 : 3;
   const data = new Uint8Array(channels * places.length).fill(255);
   places.forEach((place, pixel) => {
@@ -199,7 +200,7 @@ function pixelsOf(found: Parts, head: Header, bytes: Uint8Array): Raster<Uint8Ar
   return { width, height, channels, data: scale === 1 ? data : data.map((level) => level * scale) };
 }
 
-/** `checkSize` may refuse a size before anything is made of it. */
+/** `checkSize` may refuse a size before memory is allocated. */
 export function readPng(
   bytes: Uint8Array,
   checkSize?: (width: number, height: number) => void,
@@ -208,9 +209,9 @@ export function readPng(
   const head = header(found);
   const { width, height, bits, inflated } = head;
   checkSize?.(width, height);
-  // What deflate cannot make shorter it keeps, with five bytes for 65535.
+  // Deflate stores incompressible data as they are, with five extra bytes for each 65535.
   if (found.pixels.length > inflated + inflated / 1000 + SPARE)
-    throw badFile("this PNG is damaged: its pixels are longer compressed than not");
+    throw badFile("this PNG is damaged: its compressed pixels are longer than the raw ones");
   const unpacked = inflateExactly(found.pixels, inflated, "this PNG");
   return { ...pixelsOf(found, head, unpacked), bits, chunks: found.remarks };
 }

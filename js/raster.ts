@@ -58,7 +58,7 @@ export function single({ width, height, channels, data }: Raster<Pixels>): Pixel
     const level = data[at] ?? 0;
     if (hasColour(channels) && (data[at + 1] !== level || data[at + 2] !== level)) {
       throw badFile(
-        "a depth map has one value for each pixel, and this picture is coloured; is it a rendering of the depth?",
+        "a depth map has one value per pixel, but this picture is coloured; is it a rendering of the depth?",
       );
     }
     levels[pixel] = level;

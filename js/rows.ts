@@ -1,4 +1,4 @@
-/** How a member of the contract is described once: what is checked, and what the page shows, is made from such rows. */
+/** Describes each member of the contract once: the checks and the page's fields are made from these rows. */
 
 /** How the page shows a member that its visitor may choose. */
 export interface PageField {
@@ -17,13 +17,13 @@ export interface PageField {
 }
 
 interface Common {
-  /** What holds where the member is absent; without one that follows from the data. */
+  /** The value if the member is absent; without a default it follows from the data. */
   readonly default?: number | string | boolean;
   /** The words that may stand in its place, each with its name on the page. */
   readonly words?: Readonly<Record<string, string>>;
 }
 
-/** Of a kind that the page has a control for. */
+/** A row that the page can show as a control. */
 interface Shown extends Common {
   readonly page?: PageField;
 }
@@ -44,7 +44,7 @@ export interface WordRow extends Shown {
   readonly kind: "word";
   readonly words: Readonly<Record<string, string>>;
 }
-/** So many numbers. */
+/** A list of this many numbers. */
 export interface ListRow extends Common {
   readonly kind: "list";
   readonly length: number;
@@ -82,12 +82,12 @@ type Kind<V> = [V] extends [never]
           ? MatrixRow
           : ObjectRow & { readonly members: RowsOf<V> };
 
-/** Ties a row to the type of its member: of the same kind, with all of its words, and a default that it may have. */
+/** Ties a row to the type of its member: the same kind, all of its words, and a valid default. */
 export type RowOf<T> = Kind<Exclude<T, string>> &
   ([Words<T>] extends [never] ? unknown : { readonly words: Readonly<Record<Words<T>, string>> }) & {
     readonly default?: Extract<T, number | string | boolean>;
   };
-/** A row for each member of a type: the compiler misses one that is missing. */
+/** A row for each member of a type; the compiler reports a missing one. */
 export type RowsOf<T> = { readonly [K in keyof T]-?: RowOf<NonNullable<T[K]>> };
 
 /** Every row, with the path of its member below `path`. */

@@ -1,7 +1,7 @@
 /**
  * A run as bytes, for `Estimator.save` and `restore`. A run follows from its views, its options and how many stages have been run, to the
- * bit, however the steps were sliced and whatever the number of threads. So these are what is kept, with a checksum of what had been found
- * to tell whether it was found again. That costs the time of the run and saves a format that would change with every stage.
+ * bit, however the steps were sliced and whatever the number of threads. So the file keeps these, with a checksum of what had been found
+ * to tell whether it was found again. Restoring takes the time of the run, but the format does not change with every stage.
  *
  * Sixteen bytes of name and format, the header's length (32 bits, little-endian), the header (JSON), the arrays one after the other, CRC-32
  * of all that.
@@ -28,7 +28,7 @@ export interface Saved {
   depth: DepthMap;
   options: Options;
   reached: Reached;
-  /** What had been found, as `checksumOf` sums it up. */
+  /** The checksum of the results, by `checksumOf`. */
   found: number;
 }
 
@@ -69,15 +69,15 @@ const bad = (what: string, cause?: unknown) =>
   new BimodalError("state", `state: ${what}`, "state", cause === undefined ? undefined : { cause });
 
 export const otherNumbers = () =>
-  bad("was saved by a version or a build of this package that comes to other numbers; run the pair again instead");
+  bad("was saved by a version or build of this package that computes different digits; run the pair again");
 
-/** Whatever is refused of what was saved is refused as a state. */
+/** Every error about saved bytes has the code "state". */
 export function unusable<T>(call: () => T): T {
   try {
     return call();
   } catch (error) {
     if (!(error instanceof BimodalError) || error.code === "init") throw error;
-    throw bad(`holds what can't be run (${error.message})`, error);
+    throw bad(`cannot be run (${error.message})`, error);
   }
 }
 
@@ -91,7 +91,7 @@ interface Outcome {
   refinedDepth(): Float32Array;
 }
 
-/** All that a run says and has found, but for the times. */
+/** All that a run reports and has found, except the times. */
 export function checksumOf(estimator: Outcome): number {
   const { milliseconds: _, ...report } = estimator.report;
   const found = [
@@ -156,7 +156,7 @@ const HEADER = {
   arrays: list,
 };
 
-/** What a file holds, once it is known to be one of ours and whole; what the views and options are worth, the estimator judges. */
+/** The content of a file that is one of ours and complete; the estimator checks its views and options. */
 export function opened(state: unknown): Saved {
   array(Uint8Array)(state, "state");
   // A plain Uint8Array, because `slice` of a Node Buffer is a view.
@@ -172,20 +172,19 @@ export function opened(state: unknown): Saved {
     views[view] = { ...views[view], [member]: values };
     at += size;
   }
-  if (at !== bytes.length - WORD) throw bad("has more in it than it says");
+  if (at !== bytes.length - WORD) throw bad("is longer than it declares");
   return { ...run, image: views.image as ColorImage, depth: views.depth as DepthMap };
 }
 
 function readHeader(bytes: Uint8Array): { header: Header; end: number } {
   const name = new TextDecoder("latin1").decode(bytes.subarray(0, NAME.length));
-  if (name !== NAME) throw bad("is no saved run");
+  if (name !== NAME) throw bad("is not a saved run");
   if (bytes.length < MARK + 2 * WORD) throw bad("is cut off");
-  if (bytes[NAME.length] !== FORMAT)
-    throw bad(`is of format ${bytes[NAME.length]}; this version reads format ${FORMAT}`);
-  if (bytes.length > MOST_BYTES) throw bad(`has ${bytes.length} bytes; ${MOST_BYTES} are the most`);
+  if (bytes[NAME.length] !== FORMAT) throw bad(`has format ${bytes[NAME.length]}; this version reads format ${FORMAT}`);
+  if (bytes.length > MOST_BYTES) throw bad(`has ${bytes.length} bytes; at most ${MOST_BYTES} are allowed`);
   const end = bytes.length - WORD;
   if (numberAt(bytes, end) !== crc32(bytes.subarray(0, end)))
-    throw bad("is damaged or cut off: its checksum is another");
+    throw bad("is damaged or cut off: its checksum does not match");
   const length = numberAt(bytes, MARK);
   if (length > Math.min(LONGEST_HEADER, end - MARK - WORD)) throw bad("has a header that is too long");
   const text = bytes.subarray(MARK + WORD, MARK + WORD + length);
@@ -197,7 +196,7 @@ function checkedHeader(text: string): Header {
   try {
     header = JSON.parse(text);
   } catch (error) {
-    throw bad("has a header that can't be read", error);
+    throw bad("has a header that cannot be read", error);
   }
   object(HEADER, Object.keys(HEADER))(header, "header");
   return header as Header;

@@ -67,7 +67,7 @@ const EXPOSURES = [0.1, 10];
 
 export const exposure = {
   name: "exposure",
-  title: "Exposure: random scenes with all colours times a factor; by how much the pose moves",
+  title: "Exposure: random scenes with all colours times a factor; how far the pose moves",
   cells: (kit, quick) =>
     seeds(quick ? 2 : 40).flatMap((seed) => [
       randomCell(kit, seed),

@@ -55,7 +55,7 @@ const NAMES = Object.keys(FLAWS);
 
 export const cameras = {
   name: "cameras",
-  title: "Renders as cameras leave them: random scenes at 96x96, nothing known",
+  title: "Renders with the faults of cameras: random scenes at 96x96, nothing known",
   notes: [
     `vignetting: cos^4, ${HALF_FIELD} degrees at the corner; shot noise: ${100 * SHOT} % at full signal, ${100 * READING} % of reading; colour filters: Bayer's, bilinear`,
   ],

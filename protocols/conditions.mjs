@@ -33,7 +33,8 @@ const cellsOf = ({ condition, changes, objects, size = PHOTOGRAPH_SIZE }, painte
 
 export const conditions = {
   name: "conditions",
-  title: "Photographs under other conditions: a start told, three lamps as R, G, B, paint under natural light, 128x128",
+  title:
+    "Photographs under other conditions: initial pose given, three lamps as R, G, B, varying albedo under natural light, 128x128",
   cells: ({ painted }, quick) =>
     CONDITIONS.flatMap((condition) =>
       cellsOf(condition, quick ? painted.slice(2, 3) : painted, quick ? [20] : PHOTOGRAPH_BETAS),

@@ -184,7 +184,7 @@ const NAMES = [...Object.keys(KINDS), INTRINSICS];
 
 export const honesty = {
   name: "honesty",
-  title: "Inputs that are worse than they say: random scenes, nothing known; what the reports are worth",
+  title: "Faulty inputs: random scenes, nothing known; how far the reports can be trusted",
   notes: [
     "image noise 1 to 3 %; depth noise to 1 pixel beside it; 32 to 255 steps; JPEG 60 to 95; 32 to 256 pixels; image cut to 40 to 90 % of the object; depth at 0.3 to 0.8 of the image's resolution",
     "unit wrong by 10 and 1000; larger depth nearer; a second object in the image, in half of them in the depth map; 5 to 40 % of the pixels clipped at 8 bits; a focal length wrong by 1 to 5 %",

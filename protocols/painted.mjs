@@ -16,7 +16,8 @@ const STRIPED = 0.4;
 
 export const painted = {
   name: "painted",
-  title: "Renders with paint: random scenes at 96x96, two to eight colours in stripes or patches, nothing known",
+  title:
+    "Renders with varying albedo: random scenes at 96x96, two to eight colours in stripes or patches, nothing known",
   cells: (kit, quick) =>
     Array.from({ length: quick ? QUICK_SCENES : SCENES }, (_, index) => ({
       id: `painted/${index + 1}`,

@@ -30,7 +30,7 @@ const captureCell = ({ name, frame, tuned }, turned, told) => ({
 export const rgbd = {
   name: "rgbd",
   title:
-    "Registered RGB-D captures, depth seen again from further left: a start told 3 degrees and 20 mm off, and nothing known",
+    "Registered RGB-D captures, depth map rendered from further left: initial pose 3 degrees and 20 mm off, and nothing known",
   cells: ({ complete }, quick) => {
     if (!complete) return [];
     const [captures, turns] = quick ? [CAPTURES.slice(3, 4), [20]] : [CAPTURES, TURNS];
@@ -67,7 +67,7 @@ const pinholeCell = (kit, seed, degrees) => ({
 export const pinhole = {
   name: "pinhole",
   title:
-    "Two pinhole cameras: 0.2 m at 0.8 m, 160x120, 0.5 mm of depth noise, 1 % of colour noise; nothing known, and starts turned about the sensor",
+    "Two pinhole cameras: 0.2 m at 0.8 m, 160x120, 0.5 mm of depth noise, 1 % of colour noise; nothing known, and initial poses rotated about the sensor",
   cells: (kit, quick) =>
     Array.from({ length: quick ? QUICK_SCENES : SCENES }, (_, index) => index + 1).flatMap((seed) =>
       (quick ? [null, 8] : STARTS).map((degrees) => pinholeCell(kit, seed, degrees)),

@@ -24,7 +24,7 @@ function table1Cell({ main }, protocol, sign) {
 
 export const table1 = {
   name: "table1",
-  title: "Table 1: 32x32, beta = 20 degrees, light known, start unknown",
+  title: "Table 1: 32x32, beta = 20 degrees, light known, initial pose unknown",
   cells: (kit) => ["2A", "2B"].flatMap((protocol) => [1, -1].map((sign) => table1Cell(kit, protocol, sign))),
 };
 
@@ -50,7 +50,7 @@ const everywhere = BETAS.flatMap((beta) => OVERLAPS.map((overlap) => [beta, over
 
 export const table2A = {
   name: "table2A",
-  title: "Table 2A, the paper's easy reading: 32x32 bare grid, no occlusion, light known, start unknown",
+  title: "Table 2A, the paper's easy reading: 32x32 bare grid, no occlusion, light known, initial pose unknown",
   cells: (kit, quick) => (quick ? QUICK_2A : everywhere).map(([beta, overlap]) => table2ACell(kit, beta, overlap)),
 };
 
@@ -87,7 +87,7 @@ const full2B = (kit) =>
 
 export const table2B = {
   name: "table2B",
-  title: "Table 2B, what a camera sees: rendered with occlusion, sigma = 0.01 on log S, start unknown",
+  title: "Table 2B, what a camera sees: rendered with occlusion, sigma = 0.01 on log S, initial pose unknown",
   notes: [
     "degrees; paper: its one figure for all of this; bound: Cramer-Rao, one sigma; ? flagged, ! wrong and not flagged",
     "Open3D is the baseline: FPFH, RANSAC, point-to-plane ICP to the surface from shading; it can't start where the light is unknown",

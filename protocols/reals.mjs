@@ -26,7 +26,7 @@ const pairCells = ({ complete }, quick, turns) =>
 export const table3 = {
   name: "table3",
   title:
-    "Table 3: real pairs in place of the paper's, nothing known; degrees are off a truth known within the figure beside them",
+    "Table 3: real pairs in place of the paper's, nothing known; degrees from a ground truth that is known within the figure beside them",
   paper: PAPER_TABLE_3,
   cells: (kit, quick) => pairCells(kit, quick, TURNS),
   rows: (results) =>
@@ -105,7 +105,7 @@ const albedoCell = (object, image, pose) => ({
 export const albedo = {
   name: "albedo",
   title:
-    "Albedo: log paint beside the measured one, 96x96, each channel up to an offset; naive takes all of log S for paint",
+    "Albedo: log albedo against the measured one, 96x96, each channel up to an offset; naive takes all of log S for albedo",
   cells: ({ painted }, quick) =>
     quick
       ? painted.slice(0, 2).map((object) => albedoCell(object, "lab_diffuse", "told"))

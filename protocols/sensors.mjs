@@ -48,7 +48,7 @@ export const sensors = {
   title:
     "Sensors: depth refined at the known pose, light estimated; median error before and after, millimetres (mitten) or pixels",
   notes: [
-    "mitten: one frame against the median of twenty, which is a staircase itself and smoothed by 1.5 pixels",
+    "mitten: one frame against the median of twenty, which has steps itself and is smoothed by 1.5 pixels",
     "kinect: 128x128, object 0.2 m wide at 0.8 m, disparity 580 x 0.075 / z rounded to 1/8 pixel; photograph, or light A",
     "scan: bear and cow of DiLiGenT, noise of 0.7 pixel lengths smoothed sideways by 0.8 pixels, then steps of 0.8",
   ],

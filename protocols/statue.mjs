@@ -1,7 +1,7 @@
 // Two real views of one object: colour and depth of a statue from different places, with the pose between them known.
 import { FROM_ANYWHERE } from "./scenes.mjs";
 
-/** Constants were set on pairs of these colour views. The others informed choices of the method, so they are no independent test either. */
+/** Constants were set on pairs of these colour views. The others informed choices of the method, so they are no independent test. */
 const TUNED = ["c10", "c52"];
 /** Error of a given initial pose: a rotation about the sensor, and a shift. */
 const OFF = { degrees: 3, metres: 0.02 };
@@ -30,7 +30,7 @@ const statueCell = (name, start) => ({
 export const statue = {
   name: "statue",
   title:
-    "Two views of a statue: started 3 degrees and 20 mm off, from the truth, and with nothing given; pairs marked * were tuned on",
+    "Two views of a statue: initial pose 3 degrees and 20 mm off, true, and not given; constants were set on pairs marked *",
   cells: ({ statues }, quick) =>
     statues.slice(0, quick ? 1 : undefined).flatMap((name) => STARTS.map((start) => statueCell(name, start))),
 };

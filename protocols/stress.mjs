@@ -32,7 +32,7 @@ const LIGHTS = ["natural", "lamp"];
 export const stress = {
   name: "stress",
   title:
-    "Renders with paint, lamps and their shadows, JPEG 85, depth in noisy steps: random scenes at 96 to 128 pixels, nothing known",
+    "Renders with varying albedo, lamps and their shadows, JPEG 85, depth in noisy steps: random scenes at 96 to 128 pixels, nothing known",
   notes: [
     "paint: two to eight colours in stripes or patches, or print in one; light: natural, or a lamp with attached and cast shadows and ambient light",
     "depth: 0.22 m wide frame at 0.5 to 0.8 m, disparity 580 x 0.075 / z with smoothed noise of 0.4 steps, rounded to 1/8 pixel",

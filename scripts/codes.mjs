@@ -8,7 +8,7 @@ export const DOCUMENT = "docs/codes.md";
 const GROUPS = {
   runs: [
     "Ends of a run",
-    '`report.reason.code` in JavaScript, `report.reason["code"]` in Python and in the command line\'s JSON, `Reason::code()` in Rust. The numbers of a reason stand beside its code. The first four belong to runs that go on.',
+    '`report.reason.code` in JavaScript, `report.reason["code"]` in Python and in the command line\'s JSON, `Reason::code()` in Rust. A reason holds its numbers beside its code. The first four codes belong to runs that continue.',
   ],
   checks: [
     "Verdicts of a calibration check",
@@ -51,7 +51,7 @@ export function documentOf(table) {
   return [
     "# Codes",
     "",
-    "Programs decide by codes, which are stable; the sentences beside them are for people and may change.",
+    "Programs should use the codes, which are stable. The sentences are for people and may change.",
     "",
     ...sections,
   ].join("\n");

@@ -122,7 +122,7 @@ fn checked(range: [f64; 2]) -> Result<[f64; 2]> {
         }
     }
     if range[0] >= range[1] {
-        return Err(Error::new(ErrorKind::Range, "options.range", "must go from less to more").value(range[1]));
+        return Err(Error::new(ErrorKind::Range, "options.range", "must be in ascending order").value(range[1]));
     }
     Ok(range)
 }

@@ -205,14 +205,14 @@ impl fmt::Display for Reason {
             Self::SearchDone { by, rivals } => write_found(f, *by, *rivals),
             Self::TakenBack { before, after } => write!(
                 f,
-                "iteration taken back: the objective would have risen from {} to {}; the next one goes half as far",
+                "iteration rejected: the objective would have risen from {} to {}; the next one takes half the step",
                 Fixed(*before, 4),
                 Fixed(*after, 4)
             ),
             Self::PoseStays => f.write_str("the registration found no better pose"),
             Self::ShapesStay => f.write_str("another iteration would worsen the shapes under this pose"),
             Self::NoBetterPose { iterations } => write!(f, "{iterations} iterations in a row found no better pose"),
-            Self::IterationCap { iterations } => write!(f, "the cap of {iterations} iterations was reached"),
+            Self::IterationCap { iterations } => write!(f, "the limit of {iterations} iterations was reached"),
             Self::LittleOverlap { percent } => {
                 write!(f, "only {} % of the depth pixels have a counterpart in the image", Fixed(*percent, 1))
             }
@@ -244,7 +244,7 @@ impl fmt::Display for Reason {
             Self::FewInliers { percent } => write!(f, "only {} % of the points agree with the pose", whole(*percent)),
             Self::Hollow => f.write_str(
                 "surface normals at the depth map's silhouette face inward: the object is concave, or the depth is \
-                 inverted; mirrored in depth it fits the image as well",
+                 inverted; mirrored in depth it fits the image equally well",
             ),
             Self::Rivals { count, nearest_degrees } => {
                 write_rivals(f, *count)?;
@@ -270,7 +270,7 @@ impl fmt::Display for Reason {
             ),
             Self::SizeRunsAway { times } => write!(
                 f,
-                "the image pulls the apparent size away from that of the initial pose by a factor of more than two (got {})",
+                "the apparent size that fits the image differs from that of the initial pose by a factor of more than two (got {})",
                 Brief(*times)
             ),
             Self::BehindCamera => f.write_str("the pose puts the object behind the colour camera"),
@@ -283,16 +283,20 @@ fn write_found(f: &mut fmt::Formatter<'_>, by: FoundBy, rivals: u32) -> fmt::Res
     f.write_str("100 %: ")?;
     match (rivals, by) {
         (0, FoundBy::Image) => f.write_str("one pose fits the image best"),
-        (0, FoundBy::Contrast) => f.write_str("a single albedo does not fit the image; local contrast tells the pose"),
-        (0, FoundBy::Silhouettes) => f.write_str("a single albedo does not fit the image; silhouettes tell the pose"),
+        (0, FoundBy::Contrast) => {
+            f.write_str("a single albedo does not fit the image; local contrast determines the pose")
+        }
+        (0, FoundBy::Silhouettes) => {
+            f.write_str("a single albedo does not fit the image; silhouettes determine the pose")
+        }
         (count, _) => write_rivals(f, count),
     }
 }
 
 fn write_rivals(f: &mut fmt::Formatter<'_>, count: u32) -> fmt::Result {
     match count {
-        1 => f.write_str("one other pose fits the image as well"),
-        count => write!(f, "{count} other poses fit the image as well"),
+        1 => f.write_str("one other pose fits the image equally well"),
+        count => write!(f, "{count} other poses fit the image equally well"),
     }
 }
 
@@ -323,8 +327,8 @@ mod tests {
     #[test]
     fn one_rival_is_no_plural() {
         let words = |count| Reason::Rivals { count, nearest_degrees: 12.4 }.to_string();
-        assert_eq!(words(1), "one other pose fits the image as well, 12 degrees away");
-        assert_eq!(words(2), "2 other poses fit the image as well, the nearest 12 degrees away");
+        assert_eq!(words(1), "one other pose fits the image equally well, 12 degrees away");
+        assert_eq!(words(2), "2 other poses fit the image equally well, the nearest 12 degrees away");
     }
 
     #[test]

@@ -26,9 +26,9 @@ export function byId<T extends HTMLElement>(id: string, type: abstract new () =>
   return element;
 }
 
-/** Colours that have been asked for, until the theme changes: each question may have the browser style the whole page first. */
+/** Cache of colours until the theme changes, because each query may make the browser style the whole page first. */
 const inks = new Map<string, string>();
-/** In the head, where nothing is laid out; it stays there, because coming and going would have the page styled anew. */
+/** In the head, where nothing is laid out. It stays there, because adding and removing it would restyle the page. */
 const inkwell = document.head.appendChild(make("i"));
 
 /** A colour token as the browser computes it, for canvases that cannot read custom properties. */
@@ -41,7 +41,7 @@ export function ink(token: string): string {
   return color;
 }
 
-/** To be called where the theme changes, before anything is drawn in its colours. */
+/** Call it when the theme changes, before anything is drawn in the new colours. */
 export const forgetInks = (): void => inks.clear();
 
 let counter = 0;

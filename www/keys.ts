@@ -2,7 +2,7 @@
 
 const typing = "input:not([type=checkbox], [type=range], [type=file]), select, textarea, [contenteditable]";
 
-/** Elements that a space or an enter already means something to. */
+/** Elements for which Space or Enter already has a meaning. */
 const pressable = "button, a, summary, label, input";
 
 const KEY = "bimodal-stereo.keys";

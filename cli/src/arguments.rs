@@ -12,18 +12,18 @@ const USAGE: &str = "bimodal-stereo [estimate] [OPTIONS] IMAGE DEPTH
        bimodal-stereo check FOLDER --calibration FILE [OPTIONS]";
 
 const AFTER: &str = "\
-A folder holds pairs with like names (rgb_1.png and depth_1.png, color/0001.jpg and depth/0001.png), masks among them, or TUM RGB-D's
-rgb.txt and depth.txt. Each pair is one line, or one line of JSON.
+A folder holds pairs with similar names (rgb_1.png and depth_1.png, color/0001.jpg and depth/0001.png) and their masks, or TUM RGB-D's
+rgb.txt and depth.txt. Each pair is reported in one line of text or JSON.
 
 The intrinsics are those of --image-camera and --depth-camera, else of --cameras, else of files beside the images that are called
-calib, camera, intrinsics or K. The camera of a crop is that of the whole frame where a NAME_loc.txt lies beside NAME_crop.png.
+calib, camera, intrinsics or K. If NAME_loc.txt lies beside NAME_crop.png, the camera is that of the whole frame.
 
 `bimodal-stereo check --help` is the manual of the check of a rig's calibration.
 
-Exit code: 0 converged, 1 lost or ambiguous, 2 undecided (the cap on iterations came first), 3 the input is bad. Of a folder the worst:
-3 before 1 before 2 before 0.
+Exit code: 0 converged, 1 lost or ambiguous, 2 undecided (the cap on iterations came first), 3 the input is bad. A folder has the worst
+code of its pairs, in the order 3, 1, 2, 0.
 
-The pose carries depth points into the colour view: P_colour = s R P_depth + t, R = Rx(alpha) Ry(beta) Rz(gamma); x right, y down, z
+The pose maps depth points into the colour view: P_colour = s R P_depth + t, R = Rx(alpha) Ry(beta) Rz(gamma); x right, y down, z
 forward. A view without a camera is orthographic and measured in pixels, one with a camera in metres.";
 
 /// Finds the pose between a colour image and a depth map of the same object, taken from different places.
@@ -129,13 +129,13 @@ impl Arguments {
                 if self.image_mask.is_some() || self.depth_mask.is_some() {
                     return Err(Problem::option(
                         "--image-mask, --depth-mask",
-                        "belong to one pair; a folder's masks lie in it",
+                        "belong to one pair; the masks of a folder are in the folder",
                     ));
                 }
                 Ok(Input::Folder(folder.clone()))
             }
             [one] if one.exists() => {
-                Err(Problem::file(one, "is no folder; of a pair both the image and the depth map are needed"))
+                Err(Problem::file(one, "is not a folder; a pair needs both an image and a depth map"))
             }
             [one] => Err(Problem::file(one, "there is no such folder")),
             [image, depth, ..] => Ok(Input::Pair(Files {
@@ -178,14 +178,14 @@ impl Arguments {
 }
 
 fn numbers(text: &str) -> std::result::Result<Vec<f64>, String> {
-    text.split(',').map(|part| part.trim().parse().map_err(|_| format!("{part:?} is no number"))).collect()
+    text.split(',').map(|part| part.trim().parse().map_err(|_| format!("{part:?} is not a number"))).collect()
 }
 
 fn camera(text: &str) -> std::result::Result<Pinhole, String> {
     let numbers = numbers(text)?;
     let (&[fx, fy, cx, cy], lens) = numbers.split_first_chunk().ok_or("needs fx,fy,cx,cy")?;
     if !matches!(lens.len(), 0..=5 | 8) {
-        return Err("needs up to k1,k2,p1,p2,k3, or all of k1,k2,p1,p2,k3,k4,k5,k6, behind fx,fy,cx,cy".into());
+        return Err("needs up to k1,k2,p1,p2,k3, or all of k1,k2,p1,p2,k3,k4,k5,k6, after fx,fy,cx,cy".into());
     }
     let mut coefficients = [0.0; 8];
     coefficients[..lens.len()].copy_from_slice(lens);
@@ -206,7 +206,7 @@ fn transfer(text: &str) -> std::result::Result<Transfer, String> {
     match text {
         "srgb" => Ok(Transfer::Srgb),
         "linear" => Ok(Transfer::Linear),
-        _ => Err("is srgb or linear".into()),
+        _ => Err("must be srgb or linear".into()),
     }
 }
 
@@ -219,7 +219,7 @@ fn start(text: &str) -> std::result::Result<Start, String> {
                 let rotation = Angles { alpha, beta, gamma }.rotation();
                 Ok(Start::Pose { rotation, scale: None, translation: None })
             }
-            _ => Err("is search, identity or three angles in degrees".into()),
+            _ => Err("must be search, identity or three angles in degrees".into()),
         },
     }
 }
@@ -229,7 +229,7 @@ fn registration(text: &str) -> std::result::Result<Registration, String> {
         "joint" => Ok(Registration::Joint),
         "icp" => Ok(Registration::Icp),
         "fixed" => Ok(Registration::Fixed),
-        _ => Err("is joint, icp or fixed".into()),
+        _ => Err("must be joint, icp or fixed".into()),
     }
 }
 
@@ -237,6 +237,6 @@ fn shading(text: &str) -> std::result::Result<Shading, String> {
     match text {
         "surface" => Ok(Shading::Surface),
         "pixel" => Ok(Shading::Pixel),
-        _ => Err("is surface or pixel".into()),
+        _ => Err("must be surface or pixel".into()),
     }
 }

@@ -31,7 +31,7 @@ impl Cameras {
         for path in files {
             let found = read_calibration(path)?;
             if found.cameras.is_empty() {
-                return Err(Problem::file(path, "it holds no camera"));
+                return Err(Problem::file(path, "it contains no camera"));
             }
             all.extend(found.cameras.into_iter().map(|camera| (with_name(camera, path), path.clone())));
         }
@@ -66,7 +66,7 @@ impl Cameras {
             if let Some([width, height]) = named.size.filter(|&known| known != size) {
                 let [w, h] = size;
                 let reason = format!(
-                    "its camera is that of {width}x{height} pixels, and the {what} has {w}x{h}: scale or crop the camera first"
+                    "its camera is for {width}x{height} pixels, but the {what} has {w}x{h}: scale or crop the camera first"
                 );
                 return Err(Problem::file(path, reason));
             }

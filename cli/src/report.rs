@@ -68,7 +68,7 @@ pub fn words(found: &Outcome) -> String {
         let off = rival.degrees_to(&report.pose);
         line!(
             text,
-            "another pose explains the colours as well: {alpha:.2}, {beta:.2}, {gamma:.2} degrees, {off:.1} degrees away"
+            "another pose fits the image equally well: {alpha:.2}, {beta:.2}, {gamma:.2} degrees, {off:.1} degrees away"
         );
     }
     found.notes.iter().for_each(|note| {

@@ -83,7 +83,7 @@ fn image(arguments: &Arguments, said: &mut Said) -> Result<ColourImage> {
     if colour::looks_like_depth(&raster) && !matches!(raster.samples, Samples::F32(_)) {
         said.warn(
             "files-swapped",
-            "it looks like a depth map where a colour image was asked for: were the files swapped?",
+            "it looks like a depth map where a colour image was expected: were the files swapped?",
         );
     }
     Ok(ColourImage {
@@ -108,7 +108,7 @@ fn depth(
     // Metres have no meaning for a view measured in pixels.
     let given = arguments.depth_unit.or(camera.and(of_folder));
     if camera.is_none() && given.is_none() {
-        said.note("depths are taken for pixels, as there is no camera of the depth map");
+        said.note("depths are treated as pixels, because the depth map has no camera");
     }
     if let Samples::F32(data) = &mut raster.samples {
         let (data, has_unit) = (std::mem::take(data), camera.is_some());
@@ -120,23 +120,27 @@ fn depth(
         return Ok(of(&raster, samples, unit, camera));
     }
     if raster.is_lossy {
-        return said
-            .refuse("a JPEG keeps no depths: it has 8 bits, and not even these exactly; use a PNG of 16 bits or .npy");
+        return said.refuse(
+            "a JPEG cannot store depths: it has 8 bits and does not keep them exactly; use a 16-bit PNG or .npy",
+        );
     }
     if !raster.is_grey() {
-        let words = "a depth map has one value for each pixel, and this picture is coloured; were the files swapped, or is it a rendering \
+        let words = "a depth map has one value per pixel, but this picture is coloured; were the files swapped, or is it a rendering \
                      of the depth?";
         return said.refuse(words);
     }
     let data = raster.map_pixels(|pixel| pixel[0]);
     if data.iter().all(|&value| value == 0) {
-        return said.refuse("no pixel of it holds a depth: all are zero");
+        return said.refuse("it has no valid depth: all values are zero");
     }
     if camera.is_none() && given.is_none() && are_metric(&raster, &data, of_folder) {
         return Err(Problem::camera(said.path, METRIC));
     }
     if raster.bits <= 8 {
-        said.warn("eight-bits", "depths of 8 bits are coarse, and often a picture of the depth, not the depth.");
+        said.warn(
+            "eight-bits",
+            "depths of 8 bits are coarse, and often a picture of the depth rather than the depth itself.",
+        );
     }
     let (data, unit) = match camera {
         Some(_) => integer_depths(data, given, said),
@@ -165,7 +169,7 @@ fn integer_depths(mut data: Vec<u16>, given: Option<f64>, said: &mut Said) -> (V
     if data.contains(&u16::MAX) {
         // 16-bit sensors store this where they see nothing.
         data.iter_mut().filter(|value| **value == u16::MAX).for_each(|value| *value = 0);
-        said.note("65535 taken for holes");
+        said.note("65535 treated as holes");
     }
     let sample = Sample::of(data.iter().map(|&value| f64::from(value)));
     if given.is_none() && sample.is_turned() {
@@ -198,8 +202,9 @@ fn cloud(data: Vec<f32>, given: Option<f64>, has_unit: bool, said: &mut Said) ->
     let depths: Vec<f64> = data.chunks_exact(3).map(|point| f64::from(point[2])).collect();
     let behind = depths.iter().filter(|&&depth| depth < 0.0).count();
     if 2 * behind > depths.len() {
-        return said
-            .refuse("its points lie behind the camera (z is negative): turn them so that z looks forward, y down");
+        return said.refuse(
+            "its points lie behind the camera (z is negative): rotate them so that z points forward and y down",
+        );
     }
     let sample = Sample::of(depths.into_iter());
     let unit = if has_unit { Some(chosen(given, || sample.unit_of_floats(), &sample, said)) } else { given };
@@ -210,7 +215,7 @@ fn cloud(data: Vec<f32>, given: Option<f64>, has_unit: bool, said: &mut Said) ->
 fn chosen(given: Option<f64>, guess: impl Fn() -> Unit, sample: &Sample, said: &mut Said) -> f64 {
     let unit = given.map_or_else(guess, Unit::given);
     if unit.is_guessed {
-        said.note(format!("depths read as {}; --depth-unit gives it", unit.says()));
+        said.note(format!("depths read as {}; --depth-unit changes that", unit.says()));
     }
     if let Some(warning) = sample.warning(unit.metres) {
         said.warn("depth-range", warning);

@@ -52,7 +52,7 @@ pub fn assigned(
     if colour.is_none() && range.is_none() && cameras.len() > 1 {
         warn(
             "cameras-by-order",
-            "No name says which camera is which; the first was used for colour and the second for depth.",
+            "The names do not say which camera is which; the first was used for colour and the second for depth.",
         );
         (colour, range) = (Some(0), Some(1));
     }
@@ -77,7 +77,7 @@ pub fn assigned(
             warn(
                 "camera-size",
                 &format!(
-                    "The intrinsics of the {what} are for {w}x{h} pixels, and these have {width}x{height}: scale or crop them first."
+                    "The intrinsics of the {what} are for {w}x{h} pixels, but these pictures have {width}x{height}: scale or crop the intrinsics first."
                 ),
             );
         }
@@ -89,7 +89,7 @@ pub fn assigned(
             warn(
                 "principal-point",
                 &format!(
-                    "The intrinsics of the {what} have their principal point outside these ({}, {} of {width}x{height}): they may be for another size.",
+                    "The intrinsics of the {what} have their principal point outside the picture ({}, {} of {width}x{height}): they may be for another size.",
                     shown(*cx),
                     shown(*cy)
                 ),

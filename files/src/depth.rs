@@ -26,20 +26,20 @@ pub struct Depth {
     pub warnings: Warnings,
 }
 
-const NOTHING: &str = "no pixel of it holds a depth: all are zero, negative or not a number";
+const NOTHING: &str = "it has no valid depth: all values are zero, negative or not a number";
 
 /// The raster as a depth map or, with three channels of floats, as an organised cloud.
 pub fn depth_of(raster: Raster, given: Option<f64>) -> Result<Depth, String> {
     if raster.is_lossy {
         return Err(
-            "a JPEG keeps no depths: it has 8 bits, and not even these exactly; use a PNG of 16 bits or .npy".into()
+            "a JPEG cannot store depths: it has 8 bits and does not keep them exactly; use a 16-bit PNG or .npy".into(),
         );
     }
     if let Samples::F32(_) = raster.samples {
         return of_floats(raster, given);
     }
     if !raster.is_grey() {
-        return Err("it is a colour picture where a depth map was asked for: were the files swapped, or is it a rendering of the depth?".into());
+        return Err("it is a colour picture where a depth map was expected: were the files swapped, or is it a rendering of the depth?".into());
     }
     of_integers(&raster, given)
 }
@@ -57,7 +57,7 @@ fn of_integers(raster: &Raster, given: Option<f64>) -> Result<Depth, String> {
     if data.contains(&u16::MAX) {
         // 16-bit sensors store this where they see nothing.
         data.iter_mut().filter(|value| **value == u16::MAX).for_each(|value| *value = 0);
-        notes.push("65535 taken for holes".into());
+        notes.push("65535 treated as holes".into());
     }
     let sample = |data: &[u16]| Sample::of(data.iter().map(|&value| f64::from(value)));
     let mut values = sample(&data);
@@ -82,7 +82,7 @@ fn of_integers(raster: &Raster, given: Option<f64>) -> Result<Depth, String> {
     if values.looks_like_disparity() {
         warnings.add(
             "raw-disparity",
-            "The largest value is 2047, and common: this looks like a Kinect's raw disparity, which is not depth (z = 351.3 / (1092.5 - d) m or so).",
+            "The largest value is 2047 and occurs often: this looks like a Kinect's raw disparity, not depth (z is about 351.3 / (1092.5 - d) m).",
         );
     }
     let seen = || data.iter().map(|&value| f64::from(value));
@@ -108,7 +108,7 @@ fn of_floats(mut raster: Raster, given: Option<f64>) -> Result<Depth, String> {
     let ahead = depths.iter().filter(|&&depth| is_there(depth)).count();
     if step == 3 && behind > ahead {
         return Err(
-            "its points lie behind the camera (z is negative): turn them so that z looks forward, y down".into()
+            "its points lie behind the camera (z is negative): rotate them so that z points forward and y down".into(),
         );
     }
     if values.is_empty() {

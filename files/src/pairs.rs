@@ -81,7 +81,7 @@ pub fn pairs(folder: &Path, except: Option<&Path>) -> Result<Pairs> {
     let Pairs { pairs, warnings } = among(folder, &mut files)?;
     if pairs.is_empty() {
         let words = format!(
-            "no pair of a colour image and a depth map was found among its {} files; names have to say which is which",
+            "no pair of a colour image and a depth map was found among its {} files; the names must say which is which",
             files.len()
         );
         return Err(Problem::file(folder, words));
@@ -189,7 +189,7 @@ pub fn key(name: &str) -> String {
         let word = word.trim_matches('.');
         let digits = word.bytes().take_while(|&letter| letter == b'0').count();
         let follows = word.as_bytes().get(digits).is_some_and(u8::is_ascii_digit);
-        // The last zero of a number that is zero stays.
+        // Keeps one zero of a number that is zero.
         &word[if follows { digits } else { digits.saturating_sub(1) }..]
     });
     words.filter(|word| !word.is_empty() && *word != "mm").collect::<Vec<_>>().join(" ")
@@ -218,7 +218,7 @@ fn tum(folder: &Path, files: &[PathBuf], warnings: &mut Warnings) -> Result<Opti
     let root = colours.parent().unwrap_or(folder);
     let found = by_time(listed(colours)?, listed(depths)?);
     if found.is_empty() {
-        let words = format!("no time stamp of it lies within {} ms of one of {}", 1000.0 * APART, shown(depths));
+        let words = format!("none of its time stamps lies within {} ms of one in {}", 1000.0 * APART, shown(depths));
         return Err(Problem::file(colours, words));
     }
     let (count, there) = (found.len(), files.iter().collect::<HashSet<_>>());
@@ -292,8 +292,10 @@ fn by_names(folder: &Path, files: &[PathBuf], warnings: &mut Warnings) -> Vec<Pa
                         .of_file(&name),
                 );
             } else {
-                warnings
-                    .push(Warning::new("file-alone", "no other file's name fits it alone (left out).").of_file(&name));
+                warnings.push(
+                    Warning::new("file-alone", "its name matches no other file, or several; it was left out.")
+                        .of_file(&name),
+                );
             }
         }
         return pairs;

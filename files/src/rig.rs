@@ -77,7 +77,7 @@ pub struct RigFolder {
 pub fn read_calibration(path: &Path) -> Result<Calibration> {
     let bytes = read::whole(path)?;
     let found = match text::text_of(&bytes) {
-        Some(_) if is_raster(&bytes) => Err("it is a picture where cameras or poses were asked for".into()),
+        Some(_) if is_raster(&bytes) => Err("it is a picture where cameras or poses were expected".into()),
         Some(text) => text::read_text(&text),
         None => Err(foreign::describe(&bytes)),
     };
@@ -102,7 +102,7 @@ pub fn read_corner(picture: &Path) -> Result<Option<[f64; 2]>> {
         text::numbers::words_of_numbers(&text).take(3).map(text::numbers::number_in).collect();
     match numbers.as_deref() {
         Some(&[x, y]) if x >= 1.0 && y >= 1.0 => Ok(Some([x - 1.0, y - 1.0])),
-        _ => Err(Problem::file(&path, "it is no place of a crop: two numbers from 1 are needed")),
+        _ => Err(Problem::file(&path, "it does not give the place of a crop: two numbers, counted from 1, are needed")),
     }
 }
 
@@ -314,7 +314,7 @@ fn kept(folder: &Path, options: &FolderOptions) -> Result<Vec<(String, PathBuf)>
     let bytes: u64 = files.iter().filter_map(|(_, path)| path.metadata().ok()).map(|data| data.len()).sum();
     if bytes > MOST_BYTES {
         let reason = format!(
-            "it holds {:.1} GB, and at most {} are read: copy some of its pairs into a folder of their own",
+            "it holds {:.1} GB, but at most {} are read: copy some of its pairs into a separate folder",
             bytes as f64 / 2_f64.powi(30),
             MOST_BYTES >> 30
         );
@@ -377,7 +377,7 @@ pub fn read_rig_folder(folder: &Path, options: &FolderOptions) -> Result<RigFold
     if found.frames.is_empty() && found.cameras.is_empty() && found.poses.is_empty() {
         let first = found.warnings.first().map(|warning| format!(": {warning}")).unwrap_or_default();
         let reason = format!(
-            "no pair of a colour image and a depth map was found in it; names have to say which is which{first}"
+            "no pair of a colour image and a depth map was found in it; the names must say which is which{first}"
         );
         return Err(Problem::file(folder, reason));
     }

@@ -63,7 +63,7 @@ impl Unit {
     /// The name of the unit, with a remark if it was guessed.
     pub fn says(&self) -> String {
         match (*self == Self::TURNED, self.is_guessed, self.why) {
-            (true, ..) => "millimetres with their bits turned by three (SUN RGB-D; guessed)".into(),
+            (true, ..) => "millimetres with their bits rotated by three (SUN RGB-D; guessed)".into(),
             (_, false, _) => self.name(),
             (_, true, "") => format!("{} (guessed)", self.name()),
             (_, true, why) => format!("{} (guessed: {why})", self.name()),

@@ -165,9 +165,10 @@ pub fn pose_json(report: &StepReport, length: Length) -> String {
         uncertainty: &'a Option<Uncertainty>,
     }
     let StepReport { pose, status, reason, uncertainty, .. } = report;
-    let sigmas = uncertainty.as_ref().map_or("", |_| {
-        "; uncertainty is one sigma, null where the views cannot see the number: any value of it would do as well, or it was held"
-    });
+    let sigmas = uncertainty.as_ref().map_or(
+        "",
+        |_| "; uncertainty is one sigma, null where the views do not determine the number, or where it was held fixed",
+    );
     let about = format!(
         "P_colour = scale * rotation * P_depth + translation; rotation row by row; angles in degrees; lengths in {}{sigmas}",
         length.word()

@@ -1,4 +1,4 @@
-/** What a check's input must look like: names and types; values are checked in Rust. */
+/** Checks names and types of a check's input; values are checked in Rust. */
 import { camera } from "../cameras.js";
 import {
   type Check,
@@ -19,7 +19,7 @@ import { type PoseMembers, cameraOf, poseOf } from "../matrices.js";
 import type { CheckFrame, CheckFrameInput, Pinhole, PinholeInput } from "../types/index.js";
 
 const name: Check = (value, field) => {
-  if (typeof value !== "string") throw wrong(field, "a text", value);
+  if (typeof value !== "string") throw wrong(field, "a string", value);
 };
 const poseMembers = object(
   {
@@ -60,7 +60,7 @@ const options = object({
 function withCamera<T extends object>(view: T & { camera?: PinholeInput }, field: string): T & { camera?: Pinhole } {
   const camera = cameraOf(view.camera, `${field}.camera`) as Pinhole | undefined;
   if (camera === view.camera) return view as T & { camera?: Pinhole };
-  // Whatever the view inherits stays within reach.
+  // Inherited members of the view stay accessible.
   return Object.create(view, { camera: { value: camera, enumerable: true } });
 }
 
@@ -79,7 +79,7 @@ export function checkedFrames(value: unknown): CheckFrame[] {
   });
 }
 
-/** What a product of rotations with rounding leaves of a scale of one. */
+/** Tolerance of a scale of one after a product of rounded rotations. */
 const SCALE_TOLERANCE = 0.01;
 
 /** The members of a pose that is given in any of its forms. */

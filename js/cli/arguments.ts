@@ -1,8 +1,8 @@
-/** What can be asked of `check`. */
+/** The arguments of `check`. */
 import { parseArgs } from "node:util";
 import type { CheckCue } from "../types/index.js";
 
-/** Something that the user can mend; its message is all that is printed. The code and the field are those of the contract's errors. */
+/** A mistake of the user, of which only the message is printed. The code and the field are those of the contract's errors. */
 export class Mistake extends Error {
   readonly code: "option" | "file";
   readonly field: string;
@@ -16,7 +16,7 @@ export class Mistake extends Error {
 
 export interface Arguments {
   folder: string;
-  /** That in question first. */
+  /** The one to check comes first. */
   calibrations: string[];
   isInverted: boolean;
   cameras: string[];
@@ -58,7 +58,7 @@ function number(written: string | undefined, name: string): number | undefined {
   return value;
 }
 
-/** The arguments, or which text was asked for instead. */
+/** The arguments, or the text that was requested instead. */
 export function argumentsOf(args: string[]): Arguments | "help" | "version" {
   const { values, positionals } = parsed(args);
   if (values.help) return "help";

@@ -1,4 +1,4 @@
-/** The extrinsics in question, from what was read of their files. */
+/** The extrinsics to check, from the readings of their files. */
 import { basename } from "node:path";
 import { inverseOf } from "../rig/formats/poses.js";
 import type { NamedPose, RigReading } from "../rig/types.js";
@@ -9,11 +9,11 @@ import type { Judged } from "./report.js";
 const COLOUR = /colou?r|rgb/i;
 const DEPTH = /depth|infra|\bir\b|tof/i;
 
-/** Whether names state that a pose carries colour to depth. */
+/** Whether names state that a pose maps colour to depth. */
 const isBackwards = ({ from = "", to = "" }: NamedPose): boolean =>
   COLOUR.test(from) && !DEPTH.test(from) && DEPTH.test(to) && !COLOUR.test(to);
 
-/** The poses of all calibrations by name, that in question first. */
+/** The poses of all calibrations by name; the one to check comes first. */
 export function candidatesOf(readings: RigReading[], isInverted: boolean, warnings: Judged[]): Record<string, Pose> {
   const candidates: Record<string, Pose> = {};
   for (const reading of readings) {
@@ -22,10 +22,10 @@ export function candidatesOf(readings: RigReading[], isInverted: boolean, warnin
     const poses = all.filter(({ to }) => to !== "world");
     if (poses.length < all.length && poses.length === 0)
       throw new Mistake(
-        `${name}: it says where a camera stood in the world (camera to world), and holds no extrinsics`,
+        `${name}: it gives the pose of a camera in the world (camera to world), not extrinsics`,
         "file",
       );
-    if (poses.length === 0) throw new Mistake(`${name}: it holds no extrinsics`, "file");
+    if (poses.length === 0) throw new Mistake(`${name}: it contains no extrinsics`, "file");
     poses.forEach((pose, index) => {
       const own = pose.name ?? (pose.from && pose.to ? `${pose.from} to ${pose.to}` : `pose ${index + 1}`);
       const title = poses.length === 1 ? basename(name) : `${basename(name)}, ${own}`;
@@ -33,7 +33,7 @@ export function candidatesOf(readings: RigReading[], isInverted: boolean, warnin
       if (turns && !isInverted)
         warnings.push({
           code: "inverse-checked",
-          message: `${name}: it carries ${pose.from} to ${pose.to}; its inverse was checked.`,
+          message: `${name}: it maps ${pose.from} to ${pose.to}; its inverse was checked.`,
           field: name,
         });
       // Two files may have one name; a number as a name would come first.

@@ -65,12 +65,12 @@ export async function check(args: Arguments): Promise<number> {
   }
 }
 
-/** Intrinsics that were named have to be there. */
+/** Intrinsics given by an option must exist. */
 async function checkCameras(cameras: NamedFile[], { readRigFile }: Modules): Promise<void> {
   for (const each of cameras) {
     const found = await readRigFile(each);
     if (found.kind !== "cameras" || found.cameras.length === 0)
-      throw new Mistake(`${each.name}: it holds no intrinsics`, "file");
+      throw new Mistake(`${each.name}: it contains no intrinsics`, "file");
   }
 }
 
@@ -85,16 +85,13 @@ async function checkFolder(args: Arguments): Promise<number> {
     own.map((each) => ({ ...ofReader(each), message: `${name}: ${each.message}`, field: name })),
   );
   const candidates = candidatesOf(found, args.isInverted, warnings);
-  // Intrinsics that were named go before those that lie in the folder.
+  // Intrinsics given by an option precede those in the folder.
   const named = [...cameras, ...calibrations.filter((_, index) => found[index]?.kind === "cameras")];
   const files = filesOf(args.folder, [...args.calibrations, ...args.cameras]);
   const read = await loaded.readRigFolder([...named, ...files], args.reading);
   if (read.frames.length === 0) {
     const first = read.warnings[0] ? `: ${read.warnings[0].message}` : "";
-    throw new Mistake(
-      `${args.folder}: it holds no pair of a colour image and a depth map that could be read${first}`,
-      "file",
-    );
+    throw new Mistake(`${args.folder}: it contains no readable pair of a colour image and a depth map${first}`, "file");
   }
   const given = Object.entries(candidates).map(([name, pose]) => ({ name, pose }));
   const poses = posesForClouds(given, read.frames, read.warnings);
@@ -114,7 +111,7 @@ async function write(
   const { whole } = outcome;
   const inputs = outcome.inputs.map(({ name, says, sha256 }) => ({ name, says, sha256 }));
   const json = () => `${JSON.stringify({ ...whole, inputs }, null, 2)}\n`;
-  // First: a file that cannot be written costs no verdict.
+  // Opened first, so that a file that cannot be written does not cost a verdict.
   (args.json === "-" ? process.stderr : process.stdout).write(textOf(whole));
   if (args.json !== undefined && args.json !== "-") writeFileSync(args.json, json());
   if (args.report !== undefined)

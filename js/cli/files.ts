@@ -39,7 +39,7 @@ export function filesOf(folder: string, except: string[]): NamedFile[] {
   if (bytes > MOST_BYTES) {
     const size = (bytes / 2 ** 30).toFixed(1);
     throw new Mistake(
-      `${folder}: it holds ${size} GB, and at most ${MOST_BYTES / 2 ** 30} are read: copy some of its pairs into a folder of their own`,
+      `${folder}: it holds ${size} GB, but at most ${MOST_BYTES / 2 ** 30} are read: copy some of its pairs into a separate folder`,
       "file",
     );
   }

@@ -29,7 +29,7 @@ async function run([command, ...rest]: string[]): Promise<number> {
 try {
   process.exitCode = await run(process.argv.slice(2));
 } catch (error) {
-  // Node's own code for what goes wrong is 1, which means "off" here.
+  // Node's own exit code for failures is 1, which means "off" here.
   const isAbort = error instanceof Error && error.name === "AbortError";
   const words = isForeseen(error) ? error.message : error instanceof Error ? error.stack : String(error);
   process.stderr.write(`${isAbort ? "interrupted" : words}\n`);

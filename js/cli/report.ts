@@ -2,7 +2,7 @@
 import type { ReaderWarning } from "../rig/warnings.js";
 import type { CheckReport } from "../types/index.js";
 
-/** As the contract has warnings. */
+/** Warnings in the form of the contract. */
 export interface Warning {
   code: string;
   message: string;
@@ -10,7 +10,7 @@ export interface Warning {
   field?: string;
 }
 
-/** Warnings that do not put the values in question leave the verdict as it is. */
+/** Warnings that do not affect the values leave the verdict unchanged. */
 export type Judged = Warning & { isDoubt?: boolean };
 
 export const ofReader = ({ code, message, isDoubt, file }: ReaderWarning): Judged => ({
@@ -22,7 +22,7 @@ export const ofReader = ({ code, message, isDoubt, file }: ReaderWarning): Judge
 
 export type Whole = Omit<CheckReport, "warnings"> & { warnings: Warning[] };
 
-/** The report with all warnings. What the readers guessed keeps its verdict from green, as the check's own warnings do. */
+/** The report with all warnings. Guesses of the readers keep the verdict from "consistent", as the check's own warnings do. */
 export function capped(report: CheckReport, all: Judged[]): Whole {
   const distinct = [...new Map(all.map((each) => [each.message, each])).values()];
   const doubt = distinct.find(({ isDoubt }) => isDoubt !== false);
@@ -64,7 +64,7 @@ export function textOf(report: Whole): string {
     headline(report),
     "",
     ...table([
-      ["calibration", "verdict", "turned by", "shifted by", "error, pixels (95 %)", "probability"],
+      ["calibration", "verdict", "rotation", "shift", "error, pixels (95 %)", "probability"],
       ...candidates,
       ["best fit", "", "", "", pixels(report.health), ""],
     ]),

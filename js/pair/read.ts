@@ -17,7 +17,7 @@ const MOST_PIXELS = 2 ** 27;
 
 function checkPixels(width: number, height: number): void {
   if (width * height > MOST_PIXELS)
-    throw badFile(`it is ${width}x${height} pixels large; up to ${MOST_PIXELS} pixels are read`);
+    throw badFile(`it has ${width}x${height} pixels; up to ${MOST_PIXELS} pixels are supported`);
 }
 
 /** A picture of any size that fits into memory. */

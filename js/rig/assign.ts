@@ -37,7 +37,7 @@ const isOpen = (camera: NamedCamera): boolean => camera.takes === undefined && s
 const rank = ({ takes: said, name = "" }: NamedCamera): number =>
   said !== undefined ? 0 : /depth|dpt|colou?r|rgb/i.test(name) ? 1 : 2;
 
-/** Those that took these pictures: by their file's word before those by their names, and depth before the infrared it is made of. */
+/** The cameras of these pictures: first by their file, then by their names; depth precedes the infrared that it is made of. */
 function taking(cameras: NamedCamera[], side: Side): NamedCamera[] {
   return cameras.filter((each) => takes(each, side)).sort((a, b) => rank(a) - rank(b));
 }
@@ -49,7 +49,7 @@ const ofSize = (cameras: NamedCamera[], size: Size): NamedCamera | undefined =>
   cameras.find(({ width = 1, height = 1 }) => haveLikeAspects([width, height], [size.width, size.height])) ??
   cameras[0];
 
-/** Poses that lead from a depth to a colour camera first, then those that lead back; those from a frame to itself say nothing. */
+/** Poses from a depth to a colour camera first, then the inverse ones; poses from a frame to itself carry no information. */
 export function inOrder(poses: readonly NamedPose[]): NamedPose[] {
   const rank = ({ from, to }: NamedPose): number => {
     const [a, b] = [sideOf(from), sideOf(to)];
@@ -93,7 +93,7 @@ const isCentred = ({ camera: { cx, cy } }: NamedCamera, { width, height }: Size)
 /** Focal lengths of two cameras that differ by less, as a share, are those of one. */
 const ALIKE = 1e-3;
 
-/** Warns where another camera may have taken these pictures as well. */
+/** Warns if another camera may have taken these pictures as well. */
 function checkOnly(
   pool: NamedCamera[],
   camera: NamedCamera | undefined,
@@ -109,18 +109,16 @@ function checkOnly(
       Math.abs(each.camera.fx / camera.camera.fx - 1) > ALIKE,
   );
   if (other === undefined) return;
-  const called = [camera, other].map(
-    ({ name, camera: { fx } }) => `${name ?? "one without a name"} (fx ${fx.toFixed(1)})`,
-  );
+  const called = [camera, other].map(({ name, camera: { fx } }) => `${name ?? "an unnamed one"} (fx ${fx.toFixed(1)})`);
   warnings.push(
     warning(
       "cameras-by-order",
-      `More than one camera may have taken the ${what}; of ${called.join(" and ")} the first was used.`,
+      `Several cameras may have taken the ${what}; the first of ${called.join(" and ")} was used.`,
     ),
   );
 }
 
-/** Both cameras by what is said of them, then by size, then by order. */
+/** Chooses both cameras by their names, then by size, then by order. */
 export function chosen(
   cameras: NamedCamera[],
   { image, depth }: CheckFrame,
@@ -140,7 +138,7 @@ export function chosen(
     warnings.push(
       warning(
         "cameras-by-order",
-        "No name says which camera is which; the first was used for colour and the second for depth.",
+        "The names do not say which camera is which; the first was used for colour and the second for depth.",
       ),
     );
     [colour, range] = open();
@@ -152,10 +150,10 @@ export function chosen(
   return [colour, range];
 }
 
-/** Principal points lie nearer to the middle, in shares of a side, or in pixels of small pictures. */
+/** Largest distance of a principal point from the centre: a share of a side, or pixels in small pictures. */
 const [OFF_MIDDLE, FEW_PIXELS] = [0.15, 8];
 
-/** The camera for pictures of this size, with a warning where it is of another. */
+/** The camera for pictures of this size, with a warning if it is for another size. */
 export function forSize(
   camera: NamedCamera | undefined,
   size: Size,
@@ -167,12 +165,12 @@ export function forSize(
   const { cx, cy } = camera.camera;
   if (unsized(camera)) {
     const off = Math.max(Math.abs((cx + 0.5) / width - 0.5), Math.abs((cy + 0.5) / height - 0.5));
-    const where = cx > width || cy > height ? "outside these" : "far from the middle of these";
+    const where = cx > width || cy > height ? "outside the picture" : "far from the centre of the picture";
     if (off > Math.max(OFF_MIDDLE, FEW_PIXELS / Math.min(width, height)))
       warnings.push(
         warning(
           "principal-point",
-          `The intrinsics of the ${what} have their principal point ${where} (${cx}, ${cy} of ${width}x${height}): they may be for another size, ${Math.round(2 * cx + 1)}x${Math.round(2 * cy + 1)} or so.`,
+          `The intrinsics of the ${what} have their principal point ${where} (${cx}, ${cy} of ${width}x${height}): they may be for another size, about ${Math.round(2 * cx + 1)}x${Math.round(2 * cy + 1)}.`,
           { cx, cy },
         ),
       );
@@ -181,18 +179,20 @@ export function forSize(
   if (fits(camera, size)) return camera;
   const own: [number, number] = [camera.width ?? 0, camera.height ?? 0];
   const canScale = haveLikeAspects(own, [width, height]);
-  const how = canScale ? "they were scaled to that, as if these showed the same view" : "scale or crop them first";
+  const how = canScale
+    ? "the intrinsics were scaled, as if both sizes showed the same view"
+    : "scale or crop the intrinsics first";
   warnings.push(
     warning(
       "camera-size",
-      `The intrinsics of the ${what} are for ${own.join("x")} pixels, and these have ${width}x${height}: ${how}.`,
+      `The intrinsics of the ${what} are for ${own.join("x")} pixels, but these pictures have ${width}x${height}: ${how}.`,
       { camera: own, picture: [width, height] },
     ),
   );
   return canScale ? scaled(camera, size) : camera;
 }
 
-/** Depth maps that were carried into the colour images: both have the colour camera, and nothing lies between them. */
+/** For depth maps that are aligned with the colour images: both use the colour camera, and the pose is the identity. */
 function align(folder: RigFolder, colour: NamedCamera, why: string): void {
   folder.warnings.push(
     warning(
@@ -253,7 +253,7 @@ export function ofPictures<T extends { cameras: NamedCamera[]; poses: NamedPose[
   };
 }
 
-/** The one camera of both pictures, where one of them was carried into the other's view. */
+/** The one camera of both pictures, where one of them was transformed into the other's view. */
 function carriedInto(
   { frames, cameras, poses }: RigFolder,
   [colour, range]: (NamedCamera | undefined)[],
@@ -274,25 +274,25 @@ function carriedInto(
     if (fits(colour, image) && isNoneOf("depth"))
       return {
         camera: colour,
-        why: `The depth maps have ${size} pixels as the colour images, which no depth camera of the files has, so that they were taken to be aligned with these`,
+        why: `The depth maps have the size of the colour images (${size}), which no depth camera in the files has, so they were treated as aligned with the colour images`,
       };
   }
   if (range !== undefined && colour !== undefined && colour !== range && fits(range, depth) && isNoneOf("colour"))
     return {
       camera: range,
-      why: `The colour images have ${size} pixels as the depth maps, which no colour camera of the files has, so that they were taken to be carried into the depth camera's view`,
+      why: `The colour images have the size of the depth maps (${size}), which no colour camera in the files has, so they were treated as transformed into the depth camera's view`,
     };
   if (colour !== undefined && colour === range && colour.takes === "both" && poses.length > 0)
     return {
       camera: colour,
-      why: "The depth maps were taken to be registered to the colour images, as is usual for this product",
+      why: "The depth maps were treated as registered to the colour images, as is usual for this product",
     };
   return undefined;
 }
 
 /** What the names of a folder's files say. */
 export interface Hints {
-  /** The depth maps were carried into the colour images. */
+  /** The depth maps are aligned with the colour images. */
   isAligned?: boolean;
   /** Cameras that are called as a frame are its own. */
   cameraOf?: (frame: CheckFrame) => NamedCamera | undefined;
@@ -346,7 +346,7 @@ export function addCameras(folder: RigFolder, { isAligned = false, cameraOf }: H
     );
   for (const frame of frames) {
     if (colour) frame.image.camera = colour.camera;
-    // A cloud's points are no picture of the colour camera.
+    // A cloud's points are not a picture of the colour camera.
     if (range && !(frame.depth.points && range.takes === "both")) frame.depth.camera = range.camera;
   }
 }

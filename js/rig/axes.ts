@@ -10,7 +10,7 @@ import { badFile } from "../errors.js";
 const [FEWEST, MOST] = [200, 20_000];
 /** Rows and columns that a correlation needs. */
 const FEWEST_LINES = 8;
-/** Less than this is no camera's. */
+/** Smaller correlations are not those of a camera. */
 const LEAST = 0.6;
 
 interface Size {

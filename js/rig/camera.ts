@@ -13,7 +13,7 @@ export function cameraFromFieldOfView(width: number, height: number, degrees: nu
   if (!(degrees > 0 && degrees < 180))
     throw new BimodalError(
       "range",
-      `degrees: ${degrees} is no field of view; more than 0 and less than 180 are needed`,
+      `degrees: a field of view must be between 0 and 180 (got ${degrees})`,
       "degrees",
       refused(degrees),
     );

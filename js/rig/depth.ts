@@ -2,7 +2,7 @@
  * A raster or a cloud as a depth map in metres: its unit, given, in the file or guessed from the values; the valid part of it, and whether the
  * values look like those of a depth camera.
  *
- * Limits: values alone do not always tell millimetres from fifths of them (TUM), so that every guess is a warning.
+ * Limits: values alone do not always distinguish millimetres from fifths of a millimetre (TUM), so every guess is a warning.
  */
 import { badFile } from "../errors.js";
 import { type Pixels, hasColour, single } from "../raster.js";
@@ -105,7 +105,7 @@ function reading(
   };
 }
 
-const nothing = () => badFile("no pixel of it holds a depth: all are zero, negative or not a number");
+const nothing = () => badFile("it has no valid depth: all values are zero, negative or not a number");
 
 /** SUN RGB-D rotates the bits of its millimetres by three, so that most values are multiples of 8. */
 const isTurned = (values: Float64Array): boolean =>
@@ -113,7 +113,7 @@ const isTurned = (values: Float64Array): boolean =>
 const turnedBack = (data: Uint16Array): Uint16Array => data.map((value) => (value >> 3) | (value << 13));
 const TURNED: Unit = {
   metres: 0.001,
-  says: "millimetres with their bits turned by three (SUN RGB-D; guessed)",
+  says: "millimetres with their bits rotated by three (SUN RGB-D; guessed)",
   isGuessed: true,
 };
 
@@ -143,7 +143,7 @@ function inOrder(picture: Picture, data: Uint16Array, warnings: ReaderWarning[])
   return data.map((value) => (value >> 8) | ((value & 255) << 8));
 }
 
-/** Warnings about integers that are too coarse for depths, or are no depths at all. */
+/** Warnings about integers that are too coarse for depths, or are not depths at all. */
 function lookalikes({ bits, width }: Picture, data: Uint16Array, sample: Float64Array): ReaderWarning[] {
   const isDisparity =
     quantile(sample, 1) === BLIND_DISPARITY && shareOf(sample, (value) => value === BLIND_DISPARITY) > STRAY;
@@ -156,16 +156,16 @@ function lookalikes({ bits, width }: Picture, data: Uint16Array, sample: Float64
 const COARSE =
   "Depths of 8 bits are too coarse for a calibration, and often a picture of the depth rather than the depth itself.";
 const IMAGE =
-  "Its values change from pixel to pixel as those of an image do (infrared or intensities?), not as depths: is it the depth map?";
+  "Its values vary from pixel to pixel like those of an image (infrared or intensities?), not like depths: is it the depth map?";
 const DISPARITY =
-  "The largest value is 2047, and common: this looks like a Kinect's raw disparity, which is not depth (z = 351.3 / (1092.5 - d) m or so).";
+  "The largest value is 2047 and occurs often: this looks like a Kinect's raw disparity, not depth (z is about 351.3 / (1092.5 - d) m).";
 
 function ofIntegers(picture: Picture, integers: Uint8Array | Uint16Array, given: number | undefined): Depth {
   const [warnings, notes] = [[...picture.warnings], [...picture.notes]];
   let data = inOrder(picture, integers instanceof Uint16Array ? integers : new Uint16Array(integers), warnings);
   if (data.includes(SATURATED)) {
     data = data.map((value) => (value === SATURATED ? 0 : value));
-    notes.push("65535 taken for holes");
+    notes.push("65535 treated as holes");
   }
   let sample = sampled(data);
   if (sample.length === 0) throw nothing();
@@ -233,7 +233,7 @@ export function cloudDepth(cloud: Cloud, { unit: given }: ReadOptions): Depth {
   for (let at = 2; at < points.length; at += 3) if (isThere(-(points[at] ?? NaN))) behind++;
   if (extent.count === 0 && behind === 0) throw nothing();
   if (behind > extent.count)
-    throw badFile("its points lie behind the camera (z is negative): turn them so that z looks forward, y down");
+    throw badFile("its points lie behind the camera (z is negative): rotate them so that z points forward and y down");
   const sample = sampled(points, 3, 2);
   const unit = given === undefined ? unitOfFloats(sample) : knownUnit(given);
   checkAxes(points, cloud);

@@ -36,18 +36,18 @@ export interface FolderOptions {
   unit?: number;
   /** Width and height of raw depth maps, of which no header says them (.raw, .bin). */
   size?: readonly [width: number, height: number];
-  /** At most so many pairs are read, evenly spread over the folder; default 20. */
+  /** The largest number of pairs to read, evenly spread over the folder; default 20. */
   frames?: number;
-  /** Breaks the reading off between two files; the promise is rejected with its reason. */
+  /** Cancels the reading between two files; the promise is rejected with its reason. */
   signal?: AbortSignal;
 }
 
 const FRAMES = 20;
 
-/** Neither pictures nor calibrations, and nothing that anybody would miss. */
+/** Files that are neither pictures nor calibrations and can be ignored. */
 const IGNORED =
   /(^|\/)(\.|__MACOSX|thumbs\.db|readme|licen[cs]e|copying|source\.txt|changelog)|\.(md|html?|py|mjs|js)$/i;
-/** A path that leads out of the folder is that of a file which somebody named. */
+/** A path outside the folder is that of a file given by an option. */
 const ELSEWHERE = /^(?:\/|\.\.\/|[a-z]:\/)/i;
 const LISTS = /(^|\/)(rgb|depth|associat\w*|accelerometer|groundtruth|times?(tamps)?)\.(txt|csv)$/i;
 
@@ -81,7 +81,7 @@ class FolderReader {
     this.#signal = signal;
   }
 
-  /** Lets events pass, an abort among them. */
+  /** Lets events pass, such as an abort. */
   async rest(): Promise<void> {
     await breathe();
     this.#signal?.throwIfAborted();
@@ -115,7 +115,7 @@ class FolderReader {
       });
       if (found === undefined) continue;
       const isLevels = found.kind === "depth" && found.depth.data instanceof Uint16Array;
-      // What a text says of stored units goes for whole numbers; floats are metres whatever it says.
+      // A stated unit applies to integers; floats are always metres.
       if (unit !== undefined && mayBeFloats(file) && isLevels) return this.read(file, { as: "depth", unit });
       return found;
     }
@@ -147,7 +147,7 @@ class FolderReader {
     if (!(depth.data instanceof Uint16Array)) return;
     const sample = sampled(depth.data);
     if (!isVaried(sample) || areFives(sample)) return;
-    const message = `no file gives the unit of depth. TUM's ${Math.round(1 / unit)} to the metre was guessed from its lists, though the values are not those of TUM's sensor; millimetres would be ${Number((0.001 / unit).toPrecision(3))} times as far. Give the unit.`;
+    const message = `no file gives the unit of depth. TUM's ${Math.round(1 / unit)} units per metre were guessed from its lists, but the values are not typical of TUM's sensor; read as millimetres, they would be ${Number((0.001 / unit).toPrecision(3))} times as far. Give the unit.`;
     this.warnings.push(ofFile(name, warning("unit-guessed", message, { unit })));
   }
 
@@ -176,7 +176,7 @@ function checkUnits(frames: CheckFrame[], warnings: ReaderWarning[]): void {
     );
 }
 
-/** Where no name says which picture is which, what they hold does. */
+/** If no name says which picture is which, their content decides. */
 async function byContent(pictures: NamedFile[], reader: FolderReader): Promise<Pairs> {
   const kinds = new Map<string, NamedFile[]>();
   for (const file of pictures.slice(0, 2 * FRAMES)) {
@@ -199,7 +199,7 @@ async function byContent(pictures: NamedFile[], reader: FolderReader): Promise<P
     pairs: colours.flatMap((colour, index) =>
       depths[index] ? [{ name: stem(colour.name), colour, depths: [depths[index]], ...(mask && { mask }) }] : [],
     ),
-    says: `${depths.length} pairs by what they hold`,
+    says: `${depths.length} pairs by their content`,
   };
 }
 

@@ -21,7 +21,7 @@ export interface Pairs {
   says: string;
 }
 
-/** Time stamps farther apart than this, in seconds, are no pair; TUM's own tool has the same. */
+/** Time stamps farther apart than this, in seconds, are not a pair; TUM's own tool has the same limit. */
 export const APART = 0.02;
 const TUM_UNIT = 1 / 5000;
 /** Lines of a list of frames. */
@@ -91,7 +91,7 @@ export function tum(files: NamedFile[], warnings: ReaderWarning[]): Pairs | unde
   const found = colours && depths ? byTime(listed(colours), listed(depths)) : both && associated(both);
   if (found === undefined) return undefined;
   if (found.length === 0 && depths)
-    throw badFile(`${first.name}: no time stamp of it lies within ${1000 * APART} ms of one of ${depths.name}`);
+    throw badFile(`${first.name}: none of its time stamps lies within ${1000 * APART} ms of one in ${depths.name}`);
   const names = both ? base(both.name) : "rgb.txt and depth.txt";
   const pairs = presentOf(found, { root: folderOf(first.name), files, names }, warnings);
   return { pairs, supposed: TUM_UNIT, says: `TUM RGB-D, ${pairs.length} pairs within ${1000 * APART} ms` };

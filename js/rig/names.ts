@@ -1,7 +1,7 @@
 /** Names of files: their parts, what the files of one frame have in common, and time stamps. */
 
 export const base = (name: string): string => name.slice(name.lastIndexOf("/") + 1);
-/** Endings in two parts: COLMAP's depth maps keep the name of their image whole, nuScenes' points are no PCD. */
+/** Endings in two parts: COLMAP's depth maps keep the whole name of their image, and nuScenes' points are not PCD. */
 const DOUBLE = /(?:\.[a-z0-9]{1,5})?\.(?:geometric|photometric)\.bin$|\.pcd\.bin$/i;
 export const stem = (name: string): string =>
   DOUBLE.test(name) ? base(name).replace(DOUBLE, "") : base(name).replace(/\.[a-z0-9]{1,5}$/i, "");

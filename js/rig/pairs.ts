@@ -19,7 +19,7 @@ interface Sorted {
 }
 
 const CLOUDS = new Set(["ply", "pcd", "points"]);
-/** What is a depth map whatever its name says nothing of. */
+/** Files that are depth maps although their names do not say so. */
 const MAPS = new Set(["colmap", "table"]);
 const isCloud = ({ bytes }: NamedFile): boolean => CLOUDS.has(rasterKind(bytes) ?? "");
 
@@ -30,7 +30,7 @@ function roleIn(file: NamedFile): Role | "unknown" {
   return MAPS.has(rasterKind(file.bytes) ?? "") ? "depth" : (role ?? "unknown");
 }
 
-/** Pictures by what they hold, with a warning for those that no frame needs. */
+/** Pictures by their content, with a warning for those that no frame needs. */
 function sorted(pictures: NamedFile[], warnings: ReaderWarning[]): Sorted {
   const roles = new Map<Role | "unknown", NamedFile[]>();
   for (const file of pictures) {
@@ -47,7 +47,7 @@ function sorted(pictures: NamedFile[], warnings: ReaderWarning[]): Sorted {
     const more = others.length > 0 ? ` (and ${others.length} more like it)` : "";
     const advice =
       role === "disparity"
-        ? ", which are no depths: compute z = focal length * baseline / (disparity + doffs) and save that"
+        ? ", which are not depths: compute z = focal length * baseline / (disparity + doffs) and save that"
         : "";
     const message = `its name says that it holds ${CONTENTS[role]}${advice}; it was left out.${more}`;
     warnings.push(ofFile(first.name, warning("file-left-out", message)));
@@ -85,7 +85,7 @@ function nearest(depth: NamedFile, colours: NamedFile[]): NamedFile[] {
     (file: NamedFile) => !isSecond(file.name),
     (file: NamedFile) => Number(numberOfFolder(file.name) ?? Infinity) === lowest,
   ];
-  // In one folder names that differ in signs alone are as good as each other.
+  // In one folder, names that differ only in signs are equivalent.
   const folders = new Set(colours.map(({ name }) => folderOf(name)));
   return rules.slice(0, folders.size > 1 ? rules.length : 1).reduce((left, rule) => {
     const kept = left.filter(rule);
@@ -93,7 +93,7 @@ function nearest(depth: NamedFile, colours: NamedFile[]): NamedFile[] {
   }, colours);
 }
 
-/** Of colour images that several depth maps of one name may belong to, those of this one: by their folders. */
+/** Of the colour images that may belong to several depth maps of one name, those of this depth map, by folder. */
 function ownOf(depth: NamedFile, others: NamedFile[], colours: NamedFile[]): NamedFile[] {
   if (others.length === 0) return colours;
   const like = colours.filter(({ name }) => commonPath(name) === commonPath(depth.name));
@@ -112,7 +112,7 @@ function ownOf(depth: NamedFile, others: NamedFile[], colours: NamedFile[]): Nam
 const SECONDARY =
   /(?<![a-z])(?:raw|velodyne|sparse|noisy|aligned|registered|transformed|filtered|filled|inpainted|completed?|pred|predicted|estimated|mono)(?![a-z])/i;
 
-/** Of several depth maps of a frame in folders side by side the plain one, if there is one. */
+/** Of several depth maps of a frame in sibling folders, the plain one if there is one. */
 function plainOf(groups: NamedFile[][], warnings: ReaderWarning[]): NamedFile[][] {
   const parents = new Set(groups.map(([file]) => folderOf(folderOf(file?.name ?? "").slice(0, -1))));
   const length = ([file]: NamedFile[]) => file?.name.length ?? 0;
@@ -126,7 +126,7 @@ function plainOf(groups: NamedFile[][], warnings: ReaderWarning[]): NamedFile[][
       warnings.push(
         ofFile(
           file.name,
-          warning("names-ambiguous", `another depth map has its name, ${only[0]?.name}; it was left out.`),
+          warning("names-ambiguous", `another depth map, ${only[0]?.name}, has the same name; it was left out.`),
         ),
       );
   return [only];
@@ -147,7 +147,7 @@ function alternatives(depths: NamedFile[]): NamedFile[][] {
 const firstsOf = (groups: NamedFile[][], own: NamedFile): NamedFile[] =>
   groups.flatMap(([first]) => (first && first !== own ? [first] : []));
 
-/** Those that go together by their names; `others` are alone or may belong to several. */
+/** Files that match by their names; `others` match none or several. */
 function byNames({ colours, depths, masks }: Sorted, warnings: ReaderWarning[], keyOf = key): Pair[] {
   const maskOf = (name: string, { name: path }: NamedFile) => {
     const like = masks.filter((mask) => keyOf(mask.name) === name);
@@ -156,7 +156,7 @@ function byNames({ colours, depths, masks }: Sorted, warnings: ReaderWarning[], 
     return first ?? (masks.length === 1 && key(masks[0]?.name ?? "") === "" ? masks[0] : undefined);
   };
   const likeColours = byKey(colours, keyOf);
-  /** Files of which something is said already. */
+  /** Files that already have a warning. */
   const said = new Set<string>();
   const pairs = [...byKey(depths, keyOf)].flatMap(([name, likeDepths]) => {
     const theirs = likeColours.get(name) ?? [];
@@ -184,11 +184,13 @@ function byNames({ colours, depths, masks }: Sorted, warnings: ReaderWarning[], 
   if (pairs.length > 0)
     for (const { name } of [...depths, ...colours])
       if (!said.has(name))
-        warnings.push(ofFile(name, warning("file-alone", "no other file's name fits it alone (left out).")));
+        warnings.push(
+          ofFile(name, warning("file-alone", "its name matches no other file, or several; it was left out.")),
+        );
   return pairs;
 }
 
-/** Frames that are farther apart than so many times their distance in time from each other are one. */
+/** A pair is accepted if its frames are this many times nearer in time to each other than to other frames. */
 const CLEARLY = 4;
 
 /** By time stamps as names, which are seldom the same for two cameras; nothing for names without a time. */
@@ -200,7 +202,7 @@ function byStamps({ colours, depths }: Sorted, warnings: ReaderWarning[]): Pairs
     });
   const [ours, theirs] = [stamped(colours), stamped(depths)];
   const isAll = ours.length === colours.length && theirs.length === depths.length;
-  // One of each belong together whatever their names.
+  // A single image and a single depth map belong together, whatever their names.
   if (!isAll || Math.min(ours.length, theirs.length) === 0 || ours.length + theirs.length === 2) return undefined;
   const gaps = [...theirs]
     .sort((a, b) => a.time - b.time)
@@ -224,7 +226,9 @@ function byStamps({ colours, depths }: Sorted, warnings: ReaderWarning[]): Pairs
   const used = new Set(found.flat());
   for (const { name } of [...depths, ...colours])
     if (!used.has(name))
-      warnings.push(ofFile(name, warning("file-alone", "no other file's time stamp is near its own (left out).")));
+      warnings.push(
+        ofFile(name, warning("file-alone", "no other file has a time stamp near this one; it was left out.")),
+      );
   const pairs = found.flatMap(([one, other]): Pair[] => {
     const [colour, depth] = [file.get(one), file.get(other)];
     return colour && depth ? [{ name: key(one), colour, depths: [depth] }] : [];
@@ -261,7 +265,7 @@ export function pairsOf(pictures: NamedFile[], warnings: ReaderWarning[]): Pairs
   if (stamped !== undefined) return stamped;
   const own: ReaderWarning[] = [];
   const strict = byNames(found, own);
-  // What is ambiguous by the very names is not less so without some of their words.
+  // Names that are ambiguous in full are no less ambiguous without some of their words.
   const pairs = strict.length > 0 || own.length > 0 ? strict : byNames(found, own, looseKey);
   warnings.push(...own);
   return pairs.length > 0 ? { pairs, says: `${pairs.length} pairs by their names` } : byOrder(found, warnings);

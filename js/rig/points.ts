@@ -34,7 +34,7 @@ function timed({ times }: Scan): ReaderWarning[] {
   for (const time of times) [least, most] = [Math.min(least, time), Math.max(most, time)];
   if (!(most > least)) return [];
   const words =
-    "Its points were measured at different times, and are taken for one moment: where the rig or the scene moves, the cloud is distorted. Take frames in which both stand still, or correct the cloud for the motion first.";
+    "Its points were measured at different times but are treated as simultaneous: if the rig or the scene moves, the cloud is distorted. Record frames while both stand still, or correct the cloud for the motion first.";
   return [warning("point-times", words, { span: most - least })];
 }
 
@@ -46,11 +46,10 @@ export function pointsDepth(cloud: Points, { unit: given }: ReadOptions): Unname
   const unit = unitOf(sorted, cloud.isMetric, given);
   if (unit.metres !== 1) scan.points = scan.points.map((value) => value * unit.metres);
   const image = rangeImage(scan);
-  if (image === undefined)
-    throw badFile("it holds no point that a sensor may have measured: all are at the origin, or none is a number");
+  if (image === undefined) throw badFile("it has no measured point: all are at the origin or not numbers");
   const size = `${image.width}x${image.height}`;
   const count = scan.points.length / 3;
-  const words = `Its ${count} points are not in rows and columns (unorganised), as with a LiDAR; they were sorted into a range image of ${size} ${HOW[image.how]}, in the cloud's own axes.`;
+  const words = `Its ${count} points are not in rows and columns (unorganised), like those of a LiDAR; they were sorted into a range image of ${size} ${HOW[image.how]}, in the cloud's own axes.`;
   const warnings = [
     ...cloud.warnings,
     warning("points-sorted", words, { points: count, rows: image.height }),

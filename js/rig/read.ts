@@ -80,7 +80,7 @@ async function ofCloud(cloud: Cloud | Points, options: ReadOptions): Promise<Con
   if (options.as !== undefined && options.as !== "depth")
     throw badFile(`it is a cloud of points (${cloud.format}) where ${options.as} was expected`);
   if (options.inverse)
-    throw badFile(`it is a cloud of points (${cloud.format}), whose z is a depth and no inverse depth`);
+    throw badFile(`it is a cloud of points (${cloud.format}), whose z is a depth, not an inverse depth`);
   return "scan" in cloud ? (await clouds()).pointsDepth(cloud, options) : cloudDepth(cloud, options);
 }
 
@@ -92,7 +92,7 @@ async function ofText(file: string, text: string, { as }: ReadOptions): Promise<
   const poses = inOrder(withEnds(found, file));
   const reading = { says: `${format}: ${inWords(cameras, poses)}`, warnings: distinct(warnings) };
   if (as === "cameras" && cameras.length === 0) throw badFile(`it holds ${inWords(cameras, poses)}, but no camera`);
-  if (as === "poses" && poses.length === 0) throw badFile(`it holds ${inWords(cameras, poses)}, but no motion`);
+  if (as === "poses" && poses.length === 0) throw badFile(`it holds ${inWords(cameras, poses)}, but no transform`);
   return cameras.length > 0 && as !== "poses"
     ? { kind: "cameras", cameras, poses, ...(depthUnit !== undefined && { depthUnit }), ...reading }
     : { kind: "poses", poses, ...reading };
@@ -128,7 +128,7 @@ async function content({ name, bytes }: NamedFile, options: ReadOptions): Promis
   if (container !== undefined) throw container;
   if (bytes.length > MOST_BYTES)
     throw badFile(
-      `it is ${(bytes.length / 2 ** 20).toFixed(0)} MB large; up to ${MOST_BYTES / 2 ** 20} MB are read`,
+      `it is ${(bytes.length / 2 ** 20).toFixed(0)} MB large; up to ${MOST_BYTES / 2 ** 20} MB are supported`,
       undefined,
       { problem: "too-large" },
     );
@@ -144,7 +144,7 @@ async function content({ name, bytes }: NamedFile, options: ReadOptions): Promis
 function reasonOf(error: unknown): string {
   if (error instanceof BimodalError) return error.message;
   // A DataView throws a RangeError for an offset beyond its end.
-  if (error instanceof RangeError) return "it is cut off or damaged: it points beyond its own end";
+  if (error instanceof RangeError) return "it is cut off or damaged: an offset in it lies beyond its end";
   return `it is damaged or cut off (${error instanceof Error ? error.message : String(error)})`;
 }
 
@@ -163,18 +163,18 @@ export function checkNamed(file: NamedFile, field: string): void {
 
 export const metresPerUnit: Check = (value, field) => {
   if (!(typeof value === "number" && value > 0 && Number.isFinite(value)))
-    throw new BimodalError("option", `${field}: metres per stored unit, above zero, are needed`, field, refused(value));
+    throw new BimodalError("option", `${field}: must be metres per stored unit, above zero`, field, refused(value));
 };
 export const pixelSize: Check = (value, field) => {
   const isSide = (side: unknown) => Number.isInteger(side) && Number(side) > 0;
   if (!(Array.isArray(value) && value.length === 2 && value.every(isSide)))
-    throw new BimodalError("option", `${field}: width and height in pixels are needed, [640, 480]`, field);
+    throw new BimodalError("option", `${field}: must be width and height in pixels, such as [640, 480]`, field);
 };
 /** A number other than zero. */
 const factor: Check = (value, field) => {
   number(value, field);
   if (value === 0 || !Number.isFinite(value))
-    throw new BimodalError("option", `${field}: a finite number other than zero is needed`, field, refused(value));
+    throw new BimodalError("option", `${field}: must be a finite number other than zero`, field, refused(value));
 };
 const checkOptions = object({
   as: word("colour", "depth", "mask", "cameras", "poses"),

@@ -1,7 +1,7 @@
 /**
  * What a picture holds according to its file name and the folders around it, the innermost first.
  *
- * Limits: names are English and those of common tools; a name that says nothing leaves it to the content.
+ * Limits: names are English and those of common tools; if a name says nothing, the content decides.
  */
 
 /** "rendering": a picture of something for people, such as colour-mapped depths. "view": the second of two cameras of a kind. */
@@ -17,7 +17,7 @@ export type Role =
   | "labels"
   | "rendering";
 
-/** Whole words only: "displayed" is no disparity, "undistorted" no distance. */
+/** Whole words only: "displayed" is not a disparity, "undistorted" not a distance. */
 const whole = (words: string): RegExp => new RegExp(`(?<![a-z])(?:${words})(?![a-z])`);
 
 /** What a picture holds beside colours and depths; these words count before "depth" and "colour" in the same name. */
@@ -46,10 +46,10 @@ const COLOUR_IN_DEPTH =
 const DEPTH = /depth|dpt|(?<![a-z])(?:ranges?|distances?|tof|z ?maps?|z16)(?![a-z])/;
 const CLOUD = whole("velodyne|velodyne ?points|lidars?|clouds?|point ?clouds?|points|pcds?|lasers?|scans?");
 const COLOUR = whole("colou?rs?|rgbs?");
-/** Words that folders of colour images are called by, and files of anything. */
+/** Words that name folders of colour images, but files of any kind. */
 const PICTURES = whole("images?|imgs?|photos?|pictures?|frames?");
 
-/** Lower case, words apart that capitals alone part. */
+/** In lower case, with spaces between words that only capitals separate. */
 const plain = (segment: string): string =>
   segment
     .replace(/\.[a-z0-9]{1,5}$/i, "")

@@ -1,6 +1,6 @@
-/** What the values of neighbouring pixels tell: depths of a LiDAR are scattered, and images change from pixel to pixel. */
+/** What the values of neighbouring pixels reveal: depths of a LiDAR are scattered, and images change from pixel to pixel. */
 
-/** Fewer pixels say nothing. */
+/** Fewer pixels are not conclusive. */
 const FEWEST = 1000;
 
 /** At most this share of pixels is valid in a projected scan, and of their neighbours hardly more. */

@@ -8,7 +8,7 @@ export type { CheckFrame, InverseDepth, Mask, Pinhole, Pose, ReaderWarning, Scan
 
 /** A file as it was dropped or read; the name may hold a path, "depth/0001.png". */
 export interface NamedFile {
-  /** Name or path; it tells depth from colour where the content does not. */
+  /** Name or path; it distinguishes depth from colour if the content does not. */
   name: string;
   /** The whole content. */
   bytes: Uint8Array;

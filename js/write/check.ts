@@ -28,10 +28,10 @@ export function checkRaster(raster: Raster<ArrayLike<number>>, field: string, ..
 }
 
 export const text: Check = (value, field) => {
-  if (typeof value !== "string") throw wrong(field, "a text", value);
+  if (typeof value !== "string") throw wrong(field, "a string", value);
 };
 
-/** So many numbers, none of which is infinite or none at all. */
+/** This many finite numbers. */
 const finite =
   (count: number): Check =>
   (value, field) => {

@@ -68,7 +68,7 @@ function checkTexts(texts: unknown): void {
     if (name.length < 1 || name.length > LONGEST_NAME) {
       throw new BimodalError(
         "range",
-        `texts: a remark's name has 1 to ${LONGEST_NAME} letters, not ${name.length}`,
+        `texts: a name has 1 to ${LONGEST_NAME} characters, not ${name.length}`,
         "texts",
         refused(name.length),
       );
@@ -102,7 +102,7 @@ export async function writePng(
   view.setUint32(0, width);
   view.setUint32(4, height);
   head.set([8 * data.BYTES_PER_ELEMENT, type], 8);
-  // Latin-1 and no zero but the one behind the name: what else there is becomes a question mark.
+  // Latin-1, with a zero only after the name; any other character becomes a question mark.
   const remarks = Object.entries(texts).map(([name, words]) => {
     const plain = (text: string) => text.replace(/[^\x20-\x7e]/g, "?");
     return chunk("tEXt", new TextEncoder().encode(`${plain(name)}\0${plain(words)}`));

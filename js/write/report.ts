@@ -71,7 +71,7 @@ function poseSection({ pose, truth, unit }: Checked): Markup {
     ]),
   ];
   const columns = truth ? COLUMNS : COLUMNS.slice(0, 2);
-  // An orthographic image cannot see how far away the object is: any number does, so none is the true one.
+  // An orthographic image does not determine the distance of the object, so there is no true value.
   const isFree = (name: string) => unit === "px" && name === "Translation z";
   const line = ([name, read]: (typeof rows)[number]) =>
     html`<tr><th scope="row">${name}</th>${cell("Found", read(pose))}${truth ? cell("True", isFree(name) ? "free" : read(truth)) : undefined}</tr>`;

@@ -65,7 +65,7 @@ export function poseJson(given: PoseInput, unit: Unit, report?: PoseStanding): s
     translation,
     angles: { alpha, beta, gamma },
   } = pose;
-  // Nothing but these: what else an object holds may say otherwise.
+  // Only these members, because others of the object may contradict them.
   const told = {
     unit,
     scale,
@@ -79,7 +79,7 @@ export function poseJson(given: PoseInput, unit: Unit, report?: PoseStanding): s
   const { status, reason, message, uncertainty } = report;
   const sigmas =
     uncertainty &&
-    "; uncertainty is one sigma, null where the views cannot see the number: any value of it would do as well, or it was held";
+    "; uncertainty is one sigma, null where the views do not determine the number, or where it was held fixed";
   const standing = {
     status,
     ...(reason ? { reason: plainReason(reason) } : {}),
@@ -142,7 +142,7 @@ function checkDepths(data: Float32Array, unit: Unit): void {
   const at = data.findIndex((value) => (unit === "px" && value < 0) || (isThere(value) && Math.round(value) > LARGEST));
   if (at < 0) return;
   const value = data[at] ?? NaN;
-  const why = value < 0 ? "would be a hole" : `is beyond ${LARGEST} ${unit}, the farthest there is room for`;
+  const why = value < 0 ? "would be a hole" : `is beyond ${LARGEST} ${unit}, the farthest that fits`;
   throw new BimodalError(
     "range",
     `depth.data[${at}]: ${value} ${unit} ${why}; shift the depths, or write them with writeNpy`,

@@ -153,11 +153,11 @@ class Estimator:
         try:
             estimator._begin(own.image, own.depth, own.options)
         except BimodalError as error:
-            raise _saved.bad(f"holds what can't be run ({error})") from error
+            raise _saved.bad(f"cannot be run ({error})") from error
         if own.reached["begun"]:
             estimator._repeat(own.reached)
         if crc32(estimator._own.reached()[1]) != own.found:
-            raise _saved.bad("was saved by a version or a build of this package that comes to other numbers; run the pair again instead")
+            raise _saved.bad("was saved by a version or build of this package that computes different digits; run the pair again")
         return estimator
 
     def _repeat(self, reached: dict[str, Any]) -> None:

@@ -164,7 +164,7 @@ def size(data: NDArray[Any]) -> dict[str, int]:
 
 
 def colours(data: NDArray[Any], field: str) -> NDArray[Any]:
-    """RGBA of integers, RGB of floats, in which transparent pixels are no colour."""
+    """RGBA of integers, RGB of floats, in which transparent pixels have no colour."""
     if data.dtype.kind == "f":
         rgb = singles(data[..., :3])
         return rgb if data.shape[2] == 3 else singles(np.where(data[..., 3:] > 0, rgb, 0))

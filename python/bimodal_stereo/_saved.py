@@ -1,7 +1,7 @@
 """A run as bytes, for ``Estimator.save`` and ``Estimator.restore``.
 
 A run follows from its views, its options and how many stages have been run, to the bit, however the steps were sliced. So these are
-what is kept, with a checksum of what had been found to tell whether it was found again. That costs the time of the run and saves a
+what is kept, with a checksum of the results to verify that they were found again. That costs the time of the run and saves a
 format that would change with every stage.
 
 Laid out as the files of the JavaScript package (js/saved.ts), in a format of another number: native code and WebAssembly differ in their
@@ -115,25 +115,25 @@ def opened(state: Union[bytes, bytearray, memoryview]) -> Saved:
         views[entry["view"]] = {**views[entry["view"]], entry["member"]: values.astype(entry["type"])}
         at += size
     if at != end:
-        raise bad("has more in it than it says")
+        raise bad("is longer than it declares")
     return Saved(**views, **{name: header[name] for name in ("options", "reached", "found")})
 
 
 def read_header(whole: bytes) -> tuple[dict[str, Any], int]:
     if whole[: len(NAME)] != NAME:
-        raise bad("is no saved run")
+        raise bad("is not a saved run")
     if len(whole) < MARK + 2 * WORD:
         raise bad("is cut off")
     given = whole[len(NAME)]
     if given < FOREIGN:
-        raise bad(f"was saved by the JavaScript package (format {given}), which comes to other last digits; run the pair again instead")
+        raise bad(f"was saved by the JavaScript package (format {given}), whose last digits differ; run the pair again")
     if given != FORMAT:
-        raise bad(f"is of format {given}; this version reads format {FORMAT}")
+        raise bad(f"has format {given}; this version reads format {FORMAT}")
     if len(whole) > MOST_BYTES:
-        raise bad(f"has {len(whole)} bytes; {MOST_BYTES} are the most")
+        raise bad(f"has {len(whole)} bytes; at most {MOST_BYTES} are allowed")
     end = len(whole) - WORD
     if struct.unpack_from("<I", whole, end)[0] != crc32(memoryview(whole)[:end]):
-        raise bad("is damaged or cut off: its checksum is another")
+        raise bad("is damaged or cut off: its checksum does not match")
     length = struct.unpack_from("<I", whole, MARK)[0]
     start = MARK + WORD
     if length > min(LONGEST_HEADER, end - start):
@@ -141,24 +141,24 @@ def read_header(whole: bytes) -> tuple[dict[str, Any], int]:
     try:
         header = json.loads(whole[start : start + length])
     except (ValueError, RecursionError) as error:
-        raise bad("has a header that can't be read") from error
+        raise bad("has a header that cannot be read") from error
     typed(header, HEADER, "header")
     typed(header["reached"], REACHED, "header.reached")
     if header["reached"]["stage"] not in STAGES:
-        raise bad(f"holds what can't be run (header.reached.stage: must be one of {', '.join(STAGES)})")
+        raise bad(f"cannot be run (header.reached.stage: must be one of {', '.join(STAGES)})")
     for position, entry in enumerate(header["arrays"]):
         path = f"header.arrays[{position}]"
         typed(entry, ENTRY, path)
         if entry["view"] not in VIEWS or entry["type"] not in MEMBERS.get(entry["member"], ()):
-            raise bad(f"holds what can't be run ({path}: there is no such array)")
+            raise bad(f"cannot be run ({path}: there is no such array)")
     return header, start + length
 
 
 def typed(value: Any, members: Mapping[str, type], path: str) -> None:
     """Refuses what has other members, or members of another type; whole numbers are zero or above."""
     if type(value) is not dict or set(value) != set(members):
-        raise bad(f"holds what can't be run ({path}: must have {', '.join(members)} and nothing else)")
+        raise bad(f"cannot be run ({path}: must have {', '.join(members)} and nothing else)")
     for name, kind in members.items():
         # By type itself: True is an int to isinstance.
         if type(value[name]) is not kind or (kind is int and value[name] < 0):
-            raise bad(f"holds what can't be run ({path}.{name}: must be of another type or range)")
+            raise bad(f"cannot be run ({path}.{name}: must be of another type or range)")

@@ -89,7 +89,7 @@ def camera(value: Any, field: str) -> Any:
         return plain(value)
     twice = next((name for name in ("fx", "fy", "cx", "cy") if value.get(name) is not None), None)
     if twice is not None:
-        raise BimodalError("option", f"{field}.{twice}: K holds it already; leave one of them out", f"{field}.{twice}")
+        raise BimodalError("option", f"{field}.{twice}: K already contains it; leave one of them out", f"{field}.{twice}")
     others = {name: member for name, member in value.items() if name != "K"}
     return {**plain(others), **of_matrix(value["K"], f"{field}.K")}
 

@@ -54,7 +54,7 @@ def write_depth(path: FilePath, depth: ArrayLike, unit: str = "m") -> str:
         lost |= made < 0
     if lost.any():
         value = made[lost][0]
-        said = f"depth: {value} {unit} cannot be stored, for that takes 0 to {LARGEST} {unit}; shift the depths, or write them with numpy.save"
+        said = f"depth: {value} {unit} cannot be stored, because only 0 to {LARGEST} {unit} fit; shift the depths, or write them with numpy.save"
         raise BimodalError("range", said, "depth", int(lost.argmax()), float(value))
     image, says = _native.depth_png({"depth": np.where(made < np.float32(1e12), made, 0), "width": made.shape[1]}, unit == "m")
     _put(path, image)

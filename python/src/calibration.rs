@@ -71,7 +71,7 @@ fn view(index: usize, frame: &Bound<'_, PyAny>) -> PyResult<RigView> {
     let image = Raster::image(&member("image")?, &frame.at("image"))?;
     let depth = Raster::depth(&member("depth")?, &frame.at("depth"))?;
     if depth.members.get("normals")?.is_some() {
-        return Err(failure("option", &depth.members.at("normals"), "a check has no use for normals"));
+        return Err(failure("option", &depth.members.at("normals"), "a check does not use normals"));
     }
     Ok(RigView {
         name: frame.text("name")?.unwrap_or_else(|| format!("frame {}", index + 1)),

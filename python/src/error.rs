@@ -54,10 +54,10 @@ pub fn unbroken<R>(result: Result<R, BrokenOff>) -> PyResult<R> {
     let of = |code: &str, message: String| BimodalError::new_err((code.to_owned(), message, None::<String>));
     result.map_err(|broken| match broken {
         BrokenOff::Now(said) => {
-            of("panic", format!("the numerics broke off; this is a bug ({said}). Make another estimator"))
+            of("panic", format!("the numerics crashed, which is a bug ({said}). Create another estimator"))
         }
         BrokenOff::Earlier => {
-            of("poisoned", "this estimator broke off in an earlier call; make another one".to_owned())
+            of("poisoned", "this estimator crashed in an earlier call; create another one".to_owned())
         }
     })
 }

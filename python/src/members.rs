@@ -24,7 +24,7 @@ impl<'py> Members<'py> {
             let name = key.extract::<String>().map_err(|_| wrong(path, "a dictionary with names", value))?;
             if !names.contains(&name.as_str()) {
                 let known = names.join(", ");
-                return Err(failure("option", &members.at(&name), &format!("there is no such name; known: {known}")));
+                return Err(failure("option", &members.at(&name), &format!("is an unknown name; known: {known}")));
             }
         }
         Ok(members)
@@ -67,7 +67,7 @@ impl<'py> Members<'py> {
     }
 
     pub fn text(&self, name: &str) -> PyResult<Option<String>> {
-        self.typed(name, "a text")
+        self.typed(name, "a string")
     }
 
     /// The value that one of some words stands for.

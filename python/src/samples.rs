@@ -61,7 +61,7 @@ fn made(py: Python<'_>, given: &Members<'_>) -> PyResult<Sample> {
     if is_grid {
         let surplus = RENDERED_ALONE.into_iter().find(|name| matches!(given.get(name), Ok(Some(_))));
         if let Some(name) = surplus {
-            return Err(failure("option", name, "the grid protocol has no such thing"));
+            return Err(failure("option", name, "the grid protocol has no such option"));
         }
     }
     let make = || match is_grid {

@@ -102,7 +102,7 @@ def test_names_are_spelled_by_one_rule():
 def test_a_run_ends_with_a_code_and_its_numbers(near):
     report = near(max_iterations=1, registration="icp").run()
     assert report.reason == {"code": "iteration-cap", "iterations": 1}
-    assert report.message == "the cap of 1 iterations was reached"
+    assert report.message == "the limit of 1 iterations was reached"
     assert bimodal.CODES["runs"][report.reason["code"]]["remedy"]
     matrix = report.pose.matrix
     assert matrix.shape == (4, 4) and (matrix[:3, 3] == report.pose.translation).all()

@@ -130,7 +130,7 @@ def test_what_is_no_state_is_refused():
     for value in (None, "state", [1, 2], np.zeros(8, np.uint8)):
         bad(value, "must be bytes", "type")
     for value in (b"", b"\1\2\3", b"\x89PNG\r\n\x1a\n and so on", bytes(1000)):
-        bad(value, "no saved run")
+        bad(value, "not a saved run")
 
 
 def test_one_that_is_cut_off_is_refused_anywhere(state):
@@ -178,7 +178,7 @@ def put(*path):
         (put("arrays", 0, "length", 2**40), "cut off"),
         (put("arrays", 0, "length", -1), "length"),
         (put("arrays", 0, "length", True), "length"),
-        (lambda header: header["arrays"].pop() and None, "more in it"),
+        (lambda header: header["arrays"].pop() and None, "longer than it declares"),
         (put("arrays", {"length": 3}), "header.arrays"),
         (put("arrays", [3]), "header.arrays.0"),
         (put("reached", "iteration", -1), "iteration"),
@@ -199,7 +199,7 @@ def test_a_header_that_says_something_else_is_refused_though_its_checksum_is_rig
 
 def test_a_header_that_is_no_header_is_refused(state):
     for text in (b"[" * 60_000, b"\xff\xfe", b"{"):
-        bad(checked(state[:MARK] + struct.pack("<I", len(text)) + text), "can't be read")
+        bad(checked(state[:MARK] + struct.pack("<I", len(text)) + text), "cannot be read")
     bad(checked(state[:MARK] + struct.pack("<I", 2**31)), "too long")
 
 

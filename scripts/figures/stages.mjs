@@ -15,7 +15,7 @@ const SCENE = {
   depthNoise: 0.2,
   holes: 0.02,
 };
-/** Places between two neighbouring depth points that a projected surface fills, along either axis. */
+/** Points that are interpolated between two neighbouring depth points, along either axis, so that a projected surface has no gaps. */
 const FILLED = 4;
 /** A step of depth over which no surface is continued, pixel lengths. */
 const JUMP = 6;

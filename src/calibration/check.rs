@@ -122,7 +122,7 @@ impl CalibrationCheck {
             Stage::Approaching { level, index, .. } => {
                 let of_level = *index as f64 / self.starts.len().max(1) as f64;
                 let share = (*level as f64 + of_level) / SIGMAS.len() as f64;
-                (0.1 + 0.6 * share, "bringing depth edges onto image edges")
+                (0.1 + 0.6 * share, "aligning depth edges with image edges")
             }
             Stage::Settling { rounds, at, done, .. } => {
                 let share = (*at as f64 + *done as f64 / MOST_SETTLING as f64) / rounds.len() as f64;
@@ -130,7 +130,7 @@ impl CalibrationCheck {
             }
             Stage::Judging { .. } => (0.85, "judging the candidates"),
             Stage::Rereading { search, .. } => {
-                (0.86 + 0.02 * search.progress(), "reading the candidate in other conventions")
+                (0.86 + 0.02 * search.progress(), "trying other conventions of the candidate")
             }
             Stage::Curves { done, .. } => {
                 (0.88 + 0.12 * *done as f64 / self.scene.cues.len() as f64, "measuring sensitivity")

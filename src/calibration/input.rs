@@ -88,8 +88,7 @@ impl RigView {
         let points = points(&self, grid)?;
         let known = points.iter().filter(|point| !point[2].is_nan()).count();
         if known < FEWEST_DEPTHS {
-            let message =
-                format!("holds {known} depths inside its mask; {FEWEST_DEPTHS} are the fewest that say anything");
+            let message = format!("has {known} depths inside its mask; at least {FEWEST_DEPTHS} are needed");
             return Err(Error::new(ErrorKind::Empty, "depth", message));
         }
         warnings.extend(doubts(&self, grid, &points).into_iter().map(|kind| of("depth", kind)));
@@ -137,7 +136,7 @@ fn validate(camera: &Pinhole, size: Size, field: &str) -> Result<()> {
     if 2 * (0..TRIED * TRIED).filter(is_seen).count() > TRIED * TRIED {
         return Ok(());
     }
-    let message = "is no lens over this image: it folds, or hardly lets a ray through, at half of its pixels and more";
+    let message = "is not a valid lens for this image: at half of its pixels or more it folds or has no ray";
     Err(Error::new(ErrorKind::Range, "distortion", message).below(field))
 }
 

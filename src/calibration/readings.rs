@@ -96,7 +96,7 @@ impl fmt::Display for Reading {
         f.write_str(match self {
             Self::Inverse => "as its inverse, from colour to depth",
             Self::TransposedRotation => "with its rotation transposed",
-            Self::CameraCentre => "with its translation as the place of the colour camera",
+            Self::CameraCentre => "with its translation as the position of the colour camera",
             Self::ScalarFirst => "with its quaternion as w x y z",
             Self::ScalarLast => "with its quaternion as x y z w",
             Self::BodyFrames => "between frames with x forward, y left and z up",
@@ -105,9 +105,9 @@ impl fmt::Display for Reading {
             Self::Millimetres => "with its translation in millimetres",
             Self::Radians => "with its angles in radians instead of degrees",
             Self::Registered => "as the identity, the depth map being registered to the colour image",
-            Self::QuarterTurn => "for a colour image turned by 90 degrees clockwise",
-            Self::HalfTurn => "for a colour image turned by 180 degrees",
-            Self::QuarterBack => "for a colour image turned by 90 degrees counter-clockwise",
+            Self::QuarterTurn => "for a colour image rotated by 90 degrees clockwise",
+            Self::HalfTurn => "for a colour image rotated by 180 degrees",
+            Self::QuarterBack => "for a colour image rotated by 90 degrees counter-clockwise",
         })
     }
 }

@@ -118,19 +118,19 @@ impl CheckReason {
 impl fmt::Display for CheckReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::WithinTolerance(margin) => write!(f, "Its error is {margin}; {}.", margin.passes()),
+            Self::WithinTolerance(margin) => write!(f, "Its error is {margin}; {}.", margin.limit()),
             Self::NothingAgainst { margin, shown } => write!(
                 f,
                 "Nothing contradicts it, and this scene shows errors beyond {} px; its error is {margin}; {}.",
                 Fixed(*shown, 1),
-                margin.passes()
+                margin.limit()
             ),
-            Self::OffTarget { margin, offset } => write!(f, "Off by about {offset}: {margin}; {}.", margin.passes()),
+            Self::OffTarget { margin, offset } => write!(f, "Off by about {offset}: {margin}; {}.", margin.limit()),
             Self::Misread { reading, margin } => {
                 write!(
                     f,
                     "Off as given, but it fits if read {reading}: its error is then {margin}; {}.",
-                    margin.passes()
+                    margin.limit()
                 )
             }
             Self::NoPointsOnImage => {
@@ -147,13 +147,13 @@ impl fmt::Display for CheckReason {
             ),
             Self::Unconstrained { margin, weakest } => write!(
                 f,
-                "This scene hardly constrains {weakest}, so the error is too uncertain to decide: {margin}; up to {} px pass.",
+                "This scene hardly constrains {weakest}, so the error is too uncertain to decide: {margin}; the limit is {} px.",
                 Fixed(margin.tolerance, 1)
             ),
             Self::TooClose(margin) => {
                 write!(
                     f,
-                    "Its error is too uncertain to decide: {margin}; up to {} px pass.",
+                    "Its error is too uncertain to decide: {margin}; the limit is {} px.",
                     Fixed(margin.tolerance, 1)
                 )
             }
@@ -173,8 +173,8 @@ impl fmt::Display for CheckReason {
 }
 
 impl Margin {
-    fn passes(&self) -> impl fmt::Display {
-        format!("up to {} px pass", Fixed(self.tolerance, 1))
+    fn limit(&self) -> impl fmt::Display {
+        format!("the limit is {} px", Fixed(self.tolerance, 1))
     }
 }
 
@@ -191,7 +191,7 @@ impl fmt::Display for Offset {
         // A rotation about a camera moves the scene in proportion to its distance.
         write!(
             f,
-            "{} degrees, most of it about {about}, and {} mm at the middle of the scene, {} m away, most of it along {along}",
+            "{} degrees (mostly about {about}) and {} mm (mostly along {along}) at the centre of the scene, {} m away",
             Fixed(degrees, 2),
             Fixed(millimetres, 1),
             Fixed(distance, 2)
@@ -292,13 +292,13 @@ impl fmt::Display for Warning {
             WarningKind::IntrinsicsGuessed => {
                 f.write_str("the colour camera's intrinsics are not given; its focal length is estimated.")
             }
-            WarningKind::ManyHoles { percent } => write!(f, "{} % of the depth map are holes.", Fixed(percent, 0)),
+            WarningKind::ManyHoles { percent } => write!(f, "{} % of the depth map is missing.", Fixed(percent, 0)),
             WarningKind::EightBits => f.write_str("the depth map has 8 bits, too coarse for a calibration."),
             WarningKind::UnusualDepths { metres, usual } => {
                 let [nearest, farthest] = usual.map(Brief);
                 write!(f, "depths are {} m at the median, outside {nearest} to {farthest} m", Brief(metres))?;
                 if metres > MILLIMETRES {
-                    f.write_str(": is it in millimetres?")
+                    f.write_str(": are they in millimetres?")
                 } else if metres < KILOMETRES {
                     f.write_str(": is its unit a thousand times larger?")
                 } else {
@@ -351,7 +351,7 @@ mod tests {
         let warning = Warning { name: "frame 1".into(), field: "frames[0].depth".into(), kind };
         assert_eq!(
             (warning.kind.code(), warning.to_string().as_str()),
-            ("many-holes", "frame 1: 43 % of the depth map are holes.")
+            ("many-holes", "frame 1: 43 % of the depth map is missing.")
         );
         let doubtful =
             CheckReason::Doubtful { warning: Box::new(warning), reason: Box::new(CheckReason::NoPoseOnImage) };

@@ -26,7 +26,7 @@ pub fn check(image: Size, depth: Size) -> Result<()> {
     }
     let field = if image >= depth { "image" } else { "depth" };
     let [needed, granted] = [bytes, MOST_BYTES].map(|bytes| Fixed(bytes / 1e6, 0));
-    let message = format!("the pair would take {needed} MB and may take {granted}: hand over smaller views");
+    let message = format!("the pair would take {needed} MB, but may take only {granted}: use smaller views");
     Err(Error::new(ErrorKind::Memory, field, message))
 }
 

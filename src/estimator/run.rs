@@ -26,7 +26,7 @@ pub struct History {
     pub proposed_degrees: f64,
     /// Whether it found a better pose than its start.
     pub improved: bool,
-    /// Successive iterations that were taken back or did not improve the pose.
+    /// Successive iterations that were rejected or did not improve the pose.
     pub rejections: u32,
     /// Successive iterations whose registration proposed less than `stop_degrees`.
     pub unmoved: u32,

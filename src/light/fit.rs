@@ -198,7 +198,7 @@ impl LightFitter {
 
 /// Replaces an error about a coefficient, because a fitted light is not an option of the caller.
 fn beyond_any(_: Error) -> Error {
-    Error::new(ErrorKind::Range, "light", "only one beyond any real light would explain the colours by this shape")
+    Error::new(ErrorKind::Range, "light", "only a light beyond any real one would explain the colours with this shape")
 }
 
 #[cfg(test)]
@@ -278,7 +278,10 @@ mod tests {
         let fit = LightFitter::default().fit(&normals, [&log[0], &log[1], &log[2]], &LightPrior::natural(), 1e-4);
         let said = fit.unwrap_err();
         assert_eq!(said.kind(), ErrorKind::Range);
-        assert_eq!(said.to_string(), "light: only one beyond any real light would explain the colours by this shape");
+        assert_eq!(
+            said.to_string(),
+            "light: only a light beyond any real one would explain the colours with this shape"
+        );
     }
 
     #[test]

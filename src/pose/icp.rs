@@ -201,7 +201,7 @@ impl Icp {
             let increment = self.step(problem, &pose, options, point_weight)?;
             pose = increment.change.after(&pose).orthonormal();
             if pose.growth_from(&problem.start) > LARGEST_GROWTH.ln() {
-                return Err(degenerate("the scale runs away").value(pose.scale));
+                return Err(degenerate("the scale diverges").value(pose.scale));
             }
             if distances.present <= distances.last && increment.size < SETTLED {
                 termination = IcpTermination::Settled;
@@ -281,7 +281,7 @@ impl Icp {
                 }
             }
         }
-        equations.solve(DAMPING, options.scale_is_held).ok_or_else(|| degenerate("the pairs determine no step"))
+        equations.solve(DAMPING, options.scale_is_held).ok_or_else(|| degenerate("the pairs do not determine a step"))
     }
 
     /// Scale of the robust function.

@@ -259,7 +259,7 @@ fn check(depth: &[Vector3<f64>], image: &[Vector3<f64>], options: &RansacOptions
     let centre = depth.iter().sum::<Vector3<f64>>() / depth.len() as f64;
     let covariance = depth.iter().map(|point| (point - centre) * (point - centre).transpose()).sum();
     if thickness(&covariance) < LEAST_THICKNESS {
-        return Err(degenerate("the points lie on a plane, a line or a spot"));
+        return Err(degenerate("the points lie in a plane, on a line or at one place"));
     }
     Ok(())
 }

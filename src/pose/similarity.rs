@@ -170,7 +170,7 @@ impl Similarity {
         let rotation = nearest_rotation(matrix)?;
         let scale = rotation.dot(matrix) / 3.0;
         positive("theta", scale).map_err(|_| {
-            Error::new(ErrorKind::Degenerate, "theta", "the linear model is no similarity").value(scale)
+            Error::new(ErrorKind::Degenerate, "theta", "the linear model is not a similarity").value(scale)
         })?;
         Ok(Self { scale, rotation, translation })
     }

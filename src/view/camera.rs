@@ -108,7 +108,7 @@ impl Camera {
         if balance >= 0 {
             return Ok(());
         }
-        let message = "can't be undone: no ray runs through most of the object's pixels";
+        let message = "cannot be inverted: most of the object's pixels have no ray";
         Err(Error::new(ErrorKind::Range, field, message))
     }
 

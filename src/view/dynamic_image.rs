@@ -62,7 +62,7 @@ impl TryFrom<&DynamicImage> for DepthMap {
     /// finite are holes. The unit is [`DepthMap::unit`]'s default until it is set.
     ///
     /// # Errors
-    /// [`ErrorKind::Range`] with the first pixel whose channels differ, because such a picture is no depth map.
+    /// [`ErrorKind::Range`] with the first pixel whose channels differ, because such a picture is not a depth map.
     /// [`ErrorKind::Unsupported`] for a pixel format that this release does not know.
     fn try_from(picture: &DynamicImage) -> Result<Self> {
         let samples = match levels("depth.data", picture)? {
@@ -113,7 +113,7 @@ fn levels(field: &'static str, picture: &DynamicImage) -> Result<Levels> {
 fn grey<T: Copy + Default + PartialEq>(rgba: &[T], is_same: impl Fn(T, T) -> bool) -> Result<impl Iterator<Item = T>> {
     let pixels = rgba.as_chunks().0;
     if let Some(index) = pixels.iter().position(|&[r, g, b, _]| !is_same(r, g) || !is_same(g, b)) {
-        let message = "must have one number a pixel, and this picture is coloured";
+        let message = "must have one number per pixel, but this picture is coloured";
         return Err(Error::new(ErrorKind::Range, "depth.data", message).at(index));
     }
     Ok(pixels.iter().map(|&[depth, _, _, alpha]| if alpha == T::default() { T::default() } else { depth }))

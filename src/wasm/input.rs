@@ -72,7 +72,7 @@ extern "C" {
     fn gamma(this: &JsAngles) -> Option<f64>;
 }
 
-/// Numbers from any list of numbers; `None` if the value is no object.
+/// Numbers from any list of numbers; `None` if the value is not an object.
 pub fn numbers(value: &JsValue) -> Option<Vec<f64>> {
     value.is_object().then(|| Float64Array::new(value).to_vec())
 }

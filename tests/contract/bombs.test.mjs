@@ -121,9 +121,9 @@ for (const [name, decode] of [
   ["depth", decodeDepth],
 ]) {
   test(`the Lab's reader of ${name}: a PNG that inflates to more than it declares, one that declares too much, one without end`, async () => {
-    await refusedSmall(() => decode(pngOf(8, 8)), /longer compressed|inflates to more/);
-    await refusedSmall(() => decode(pngOf(2 ** 31 - 1, 2 ** 31 - 1)), /up to 134217728 pixels are read/);
-    await refusedSmall(() => decode(pngOf(100_000, 2000, { bits: 1 })), /up to 134217728 pixels are read/);
+    await refusedSmall(() => decode(pngOf(8, 8)), /longer than the raw|inflates to more/);
+    await refusedSmall(() => decode(pngOf(2 ** 31 - 1, 2 ** 31 - 1)), /up to 134217728 pixels are supported/);
+    await refusedSmall(() => decode(pngOf(100_000, 2000, { bits: 1 })), /up to 134217728 pixels are supported/);
     await refusedSmall(() => decode(pngOf(11_000, 11_000, { bits: 16, type: 6 })), /cannot inflate to/);
   });
 }
@@ -140,7 +140,7 @@ test("an ICC profile, and texts, that inflate without end are passed over", asyn
 });
 
 test("the rig's readers: PNG, TIFF, OpenEXR", async () => {
-  await refusedSmall(rig("a.png", pngOf(8, 8)), /longer compressed|inflates to more/);
+  await refusedSmall(rig("a.png", pngOf(8, 8)), /longer than the raw|inflates to more/);
   await refusedSmall(rig("b.png", pngOf(70_000, 70_000)), /up to 4096 on a side/);
   await refusedSmall(rig("a.tif", tiffOf(8, 8)), /damaged|inflates to more/);
   await refusedSmall(rig("a.exr", exrOf(8, 8)), /damaged|inflates to more/);

@@ -203,7 +203,7 @@ describe("a .wasm that was left behind is an error that names the cure", () => {
     return join(project, `left-${format}`);
   };
   const CURE =
-    /^BimodalError init wasm init: the \.wasm could not be loaded \((.+?)\. Bundlers .* copy them beside the bundle.* or tell init\(url\)/;
+    /^BimodalError init wasm init: the \.wasm could not be loaded \((.+?)\. Bundlers .* Copy the files beside the bundle.* or pass their address to init\(url\)/;
   const said = async (address) =>
     CURE.exec((await visit(address)).lines.find((text) => text.startsWith("BimodalError")))?.[1];
 
@@ -223,7 +223,7 @@ describe("a .wasm that was left behind is an error that names the cure", () => {
     after(() => server.close());
     await new Promise((done) => server.listen(0, "127.0.0.1", done));
     const address = `http://127.0.0.1:${server.address().port}/`;
-    assert.equal(await said(address), `a page of HTML is at ${address}bimodal_stereo_bg.wasm`);
+    assert.equal(await said(address), `an HTML page is at ${address}bimodal_stereo_bg.wasm`);
   });
 
   test("where the bundle is no ES module", async () => {

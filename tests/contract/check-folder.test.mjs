@@ -126,13 +126,13 @@ describe("exit codes", () => {
       "not 2": ["off", "consistent", "--calibration", "one.json"],
       "--calibration FILE is needed": ["off"],
       "damaged.json: damaged": ["off", "--calibration", "damaged.json"],
-      "empty.json: it holds no extrinsics": ["off", "--calibration", "empty.json"],
-      "world.json: it says where a camera stood in the world": ["off", "--calibration", "world.json"],
-      "none: it holds no pair": ["none", "--calibration", "one.json"],
+      "empty.json: it contains no extrinsics": ["off", "--calibration", "empty.json"],
+      "world.json: it gives the pose of a camera in the world": ["off", "--calibration", "world.json"],
+      "none: it contains no readable pair": ["none", "--calibration", "one.json"],
       "ENOENT.*missing.json": ["off", "--calibration", "missing.json"],
       "missing.json: it cannot be read": ["off", "--calibration", "one.json", "--cameras", "missing.json"],
       "damaged.json: damaged[^]*$": ["off", "--calibration", "one.json", "--cameras", "damaged.json"],
-      "one.json: it holds no intrinsics": ["off", "--calibration", "one.json", "--cameras", "one.json"],
+      "one.json: it contains no intrinsics": ["off", "--calibration", "one.json", "--cameras", "one.json"],
       "ENOENT.*nowhere": ["nowhere", "--calibration", "one.json"],
       '--workers needs a number, not "many"': ["off", "--calibration", "one.json", "--workers", "many"],
       "Unknown option '--jsn'": ["off", "--calibration", "one.json", "--jsn", "x"],
@@ -234,7 +234,7 @@ describe("what is checked", () => {
       ],
     );
     assert.ok(Math.abs(angles.gamma + 90) < 1e-12 && angles.alpha + angles.beta === 0, JSON.stringify(angles));
-    assert.match(stdout, /warning: two.json: it carries color to depth; its inverse was checked/);
+    assert.match(stdout, /warning: two.json: it maps color to depth; its inverse was checked/);
     assert.match(stdout, /warning: two.json: a guess/);
   });
 

@@ -225,7 +225,7 @@ test("a pose says itself as a matrix, and an end its code with its numbers", asy
     [0, 0, 0, 1],
   ]);
   assert.deepEqual(reason, { code: "iteration-cap", iterations: 1 });
-  assert.equal(message, "the cap of 1 iterations was reached");
+  assert.equal(message, "the limit of 1 iterations was reached");
   assert.deepEqual(
     await estimator({ start: pose, registration: "fixed", maxIterations: 1 })
       .run()

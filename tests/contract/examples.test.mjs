@@ -178,9 +178,9 @@ describe("batch.mjs", () => {
       [[pairs, "--csv", csv, "--threads", "0"], /--threads needs a whole number/],
       [[pairs, "--csv", csv, "--settings", join(pairs, "alone-depth.npy")], /alone-depth\.npy: /],
       [[pairs, "--csv", csv, "--nonsense"], /nonsense/],
-      [[join(pairs, "alone-depth.npy"), "--csv", csv], /is no folder/],
-      [[inRoot("docs"), "--csv", csv], /holds no pair/],
-      [[pairs, "--csv", join(pairs, "alone-depth.npy")], /no table of this program/],
+      [[join(pairs, "alone-depth.npy"), "--csv", csv], /is not a folder/],
+      [[inRoot("docs"), "--csv", csv], /contains no pair/],
+      [[pairs, "--csv", join(pairs, "alone-depth.npy")], /not a table of this program/],
     ];
     for (const [args, message] of wrong) {
       const { code, stderr } = await batch(args);

@@ -70,7 +70,7 @@ describe("in Node", () => {
         return true;
       });
     await refused(join(place, "none.png"), "file", /none\.png: it cannot be read .*ENOENT/);
-    await refused(`${address}/none.png`, "file", /none\.png: it answers with status 404/);
+    await refused(`${address}/none.png`, "file", /none\.png: its server answered with status 404/);
     await refused("http://127.0.0.1:1/a.png", "file", /a\.png: it cannot be reached/);
     await refused(join(place, "empty.png"), "file", /empty/);
     await refused(join(place, "broken.png"), "file", /cut off/);
@@ -193,7 +193,7 @@ describe("on a page", () => {
 
   test("what has no picture says so", () => {
     for (const name of ["video", "nothing", "missing"]) assert.match(lines.get(name), /^BimodalError file /, name);
-    assert.match(lines.get("text"), /^BimodalError file text\.png: it has no picture/);
+    assert.match(lines.get("text"), /^BimodalError file text\.png: the browser cannot decode it/);
     assert.match(lines.get("missing"), /^BimodalError file missing\.png: /);
     assert.match(lines.get("number"), /^BimodalError type source: must be an image/);
     assert.match(lines.get("tainted"), /^BimodalError unsupported source: .*crossOrigin/);

@@ -64,7 +64,7 @@ const element = (file, id) => Buffer.from(file).indexOf(Buffer.from(id));
 
 /** File name, a function that makes its bytes, and a pattern for the error, or the code of a warning if the rest is usable. */
 export const RECORDINGS = [
-  ["empty.mcap", async () => new Uint8Array(0), /no recording/],
+  ["empty.mcap", async () => new Uint8Array(0), /not a supported recording/],
   ["magic.mcap", async () => bytes([0x89], text("MCAP0\r\n")), /holds no messages/],
   ["noise.mcap", async () => bytes([0x89], text("MCAP0\r\n"), new Uint8Array(4000).fill(0xa5)), /is too large/],
   ["middle.mcap", async () => (await plain()).subarray(0, 2000), /holds no messages/],
@@ -98,12 +98,12 @@ export const RECORDINGS = [
   ],
   ["image-short.mcap", messages(COLOUR, (m) => ({ ...m, data: m.data.subarray(0, 10) })), /10 of 576 bytes/],
   ["image-encoding.mcap", messages(COLOUR, (m) => ({ ...m, encoding: "" })), /stored as ""/],
+  ["depth-none.mcap", messages(DEPTH, (m) => ({ ...m, data: new Uint8Array(m.data.length) })), /no valid depth/],
   [
-    "depth-none.mcap",
-    messages(DEPTH, (m) => ({ ...m, data: new Uint8Array(m.data.length) })),
-    /no pixel of it holds a depth/,
+    "depth-zero.mcap",
+    messages(DEPTH, (m) => ({ ...m, width: 0, height: 0, data: new Uint8Array(0) })),
+    /invalid size 0x0/,
   ],
-  ["depth-zero.mcap", messages(DEPTH, (m) => ({ ...m, width: 0, height: 0, data: new Uint8Array(0) })), /0x0 pixels/],
   [
     "info.mcap",
     messages("/camera/color/camera_info", (m) => ({ ...m, k: m.k.map(() => NaN), p: m.p.map(() => NaN) })),

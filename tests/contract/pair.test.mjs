@@ -171,7 +171,10 @@ describe("cameras", () => {
     assert.equal(depth, undefined);
     close([colour.camera.fx, colour.camera.cx], [60, 23.5], 1e-12);
     assert.equal(colour.file, "k.json");
-    assert.match(warnings[0].message, /colour images are for 96x96 pixels, and these have 48x48: they were scaled/);
+    assert.match(
+      warnings[0].message,
+      /colour images are for 96x96 pixels, but these pictures have 48x48: the intrinsics were scaled/,
+    );
   });
 
   test("of another aspect are left out, and that is said", () => {

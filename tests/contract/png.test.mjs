@@ -115,10 +115,10 @@ test("what a header may not say is refused", async () => {
     const file = randomPng({ width: 2, height: 2, bits: 8, type: 0, draw: random(1), ...changes });
     return assert.rejects(readRigFile({ name: "a.png", bytes: file }), says);
   };
-  await refused({ bits: 4, type: 2 }, /4 bits of a channel/);
-  await refused({ bits: 16, type: 3, palette: [0, 0, 0] }, /16 bits of a channel/);
-  await refused({ bits: 3 }, /3 bits of a channel/);
-  await refused({ type: 3 }, /no palette/);
-  await refused({ type: 3, palette: [1, 2] }, /no palette of whole colours/);
+  await refused({ bits: 4, type: 2 }, /4 bits per channel/);
+  await refused({ bits: 16, type: 3, palette: [0, 0, 0] }, /16 bits per channel/);
+  await refused({ bits: 3 }, /3 bits per channel/);
+  await refused({ type: 3 }, /palette is missing/);
+  await refused({ type: 3, palette: [1, 2] }, /palette is missing or incomplete/);
   await refused({ type: 3, palette: [1, 2, 3], width: 40 }, /palette has no colour/);
 });

@@ -129,7 +129,7 @@ describe("a third folder", () => {
   test("a depth map and what was made of it", async () => {
     const found = await folder({ "rgb/0.png": colour(), "depth/0.png": depth(), "depth_filled/0.png": depth(1200) });
     assert.deepEqual(marks(found), [[0, 1000]]);
-    says(found, "names-ambiguous", /^depth_filled\/0.png: another depth map has its name/, false);
+    says(found, "names-ambiguous", /^depth_filled\/0.png: another depth map, depth\/0.png, has the same name/, false);
   });
 });
 
@@ -260,7 +260,7 @@ describe("the unit of depth in a text beside the maps", () => {
     saysNot(own, "unit-guessed");
     const doubtful = await folder({ ...pair, ...lists });
     assert.equal(doubtful.frames[0].depth.unit, 0.0002);
-    says(doubtful, "unit-guessed", /TUM's 5000 to the metre was guessed/, true);
+    says(doubtful, "unit-guessed", /TUM's 5000 units per metre were guessed/, true);
     const fives = await folder({ "rgb/0.png": colour(), "depth/0.png": depth(5000, 5, 5), ...lists });
     saysNot(fives, "unit-guessed");
   });
@@ -395,7 +395,7 @@ describe("intrinsics of another size", () => {
     for (const centre of [190, 20]) {
       const rgb = `{"fx": 120, "fy": 120, "cx": ${centre}, "cy": ${0.75 * centre}}`;
       const found = await folder({ ...pair, "rgb.json": rgb, "depth_K.txt": "60 0 23.5\n0 60 17.5\n0 0 1\n" });
-      says(found, "principal-point", centre > 96 ? /outside these/ : /far from the middle/, true);
+      says(found, "principal-point", centre > 96 ? /outside the picture/ : /far from the centre/, true);
     }
   });
 

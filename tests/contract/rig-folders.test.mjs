@@ -74,7 +74,7 @@ describe("TUM RGB-D", () => {
   test("lists that fit nothing", async () => {
     await assert.rejects(folder({ ...files, "fr1/depth.txt": text("9.0 depth/9.png\n") }), {
       code: "file",
-      message: /fr1\/rgb.txt: no time stamp/,
+      message: /fr1\/rgb.txt: none of its time stamps/,
     });
     await assert.rejects(folder({ ...files, "fr1/depth.txt": text("nine depth/9.png\n") }), {
       code: "file",
@@ -83,7 +83,7 @@ describe("TUM RGB-D", () => {
   });
 });
 
-describe("pairs by like names", () => {
+describe("pairs by similar names", () => {
   test("in the order of their numbers, however the folder was handed over", async () => {
     const files = Object.fromEntries(
       [10, 9, 100].flatMap((number) => [
@@ -214,7 +214,7 @@ describe("pairs by like names", () => {
     const alone = found.warnings.filter(({ code }) => code === "file-alone");
     assert.deepEqual(
       alone.map(({ isDoubt, files, message }) => [isDoubt, files, message]),
-      [[false, 2, "depth_3.png: no other file's name fits it alone (left out). (and 1 more like it)"]],
+      [[false, 2, "depth_3.png: its name matches no other file, or several; it was left out. (and 1 more like it)"]],
     );
   });
 
@@ -309,10 +309,10 @@ describe("cameras are given to the pictures they took", () => {
       "rgb.json": text('{"fx": 500, "fy": 500, "cx": 1, "cy": 1, "width": 64, "height": 48}'),
       "depth_K.txt": K(400),
     });
-    has(wrong[2], "camera-size", /are for 64x48 pixels, and these have 2x1/);
+    has(wrong[2], "camera-size", /are for 64x48 pixels, but these pictures have 2x1/);
     // Without a size, the principal point reveals it.
     const outside = await focals({ ...pair, "rgb.json": text('{"fx": 500, "fy": 500, "cx": 320, "cy": 240}') });
-    has(outside[2], "principal-point", /outside these \(320, 240 of 2x1\)/);
+    has(outside[2], "principal-point", /outside the picture \(320, 240 of 2x1\)/);
   });
 
   test("poses between cameras are kept, poses of frames are not", async () => {

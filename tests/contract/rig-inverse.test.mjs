@@ -66,9 +66,9 @@ test("65535 is a depth here: networks stretch their estimates to the largest num
 });
 
 test("what is no inverse depth is refused", async () => {
-  await refusedFile(read("c.ply", cloudText, { inverse: {} }), "c.ply", /a depth and no inverse depth/);
+  await refusedFile(read("c.ply", cloudText, { inverse: {} }), "c.ply", /a depth, not an inverse depth/);
   const none = grey16(pixels(() => 0));
-  await refusedFile(read("d.png", none, { inverse: {} }), "d.png", /no pixel of it holds a depth/);
+  await refusedFile(read("d.png", none, { inverse: {} }), "d.png", /no valid depth/);
   for (const [inverse, field] of [
     [{ numerator: 0 }, "options.inverse.numerator"],
     [{ numerator: NaN }, "options.inverse.numerator"],

@@ -150,7 +150,7 @@ describe("what is not read is named, with the way out", () => {
     "rec.mkv": ["\x1a\x45\xdf\xa3\x01", /Matroska/],
     "0.depth": ["bvx2\x01\x02", /LZFSE.*Record3D/],
     "mesh.glb": ["glTF\x02\x00", /mesh \(glTF\)/],
-    "scan.fls": ["\x01\x02\x03\x00", /format of its maker/],
+    "scan.fls": ["\x01\x02\x03\x00", /manufacturer's format/],
     "IMG_1.dng": ["II*\x00\x08\x00", /raw photograph.*develop/],
     "a.hdr": ["#?RADIANCE\n", /Radiance's HDR; save it as EXR/],
     "a.xz": ["\xfd7zXZ\x00", /xz; unpack/],

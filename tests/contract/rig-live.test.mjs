@@ -59,7 +59,7 @@ test("a lost connection and one that cannot be made are errors that name the add
   await lost;
   assert.match(await found.closed, /closed/);
   await assert.rejects(connectRobot(robot.address), /no foxglove_bridge can be reached there/);
-  await assert.rejects(connectRobot("ftp://robot"), /no address of a bridge/);
+  await assert.rejects(connectRobot("ftp://robot"), /not the address of a bridge/);
 });
 
 test("waiting for a view can be cancelled, and an unknown topic is named", async () => {

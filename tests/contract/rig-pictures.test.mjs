@@ -108,7 +108,7 @@ describe("what a picture holds is told by its name and its values", () => {
 
   test("values that change from pixel to pixel are those of an image", async () => {
     const noisy = grey16(Array.from({ length: COLUMNS * ROWS }, (_, at) => 300 + ((at * 7919) % 211)));
-    await says("files-swapped", /as those of an image do/, "1.png", noisy, { as: "depth" });
+    await says("files-swapped", /like those of an image/, "1.png", noisy, { as: "depth" });
     const steep = grey16(Array.from({ length: COLUMNS * ROWS }, (_, at) => 100 + 10 * (at % COLUMNS)));
     for (const smooth of [depth16, steep]) {
       const { warnings } = await read("1.png", smooth, { as: "depth" });

@@ -174,14 +174,14 @@ test("an unreadable recording is refused with its name, the reason and a remedy"
   const h264 = recorded({ compress: true }, 1).map((each) =>
     each.topic.endsWith("/compressed") ? { ...each, message: { ...each.message, format: "h264" } } : each,
   );
-  await refusedFile((await written(h264)).read(), "a.mcap", /"h264", which is not read here/);
+  await refusedFile((await written(h264)).read(), "a.mcap", /"h264", which is not supported/);
   await refusedFile(
     opened(new Uint8Array([...Buffer.from("\x89MCAP0\r\n", "latin1"), ...new Uint8Array(300)])),
     "a.mcap",
     /damaged|index|cut off/,
   );
   await refusedFile(opened(new TextEncoder().encode("#ROSBAG V2.0\n no more"), "a.bag"), "a.bag", /rosbag reindex/);
-  await refusedFile(opened(new Uint8Array(100), "a.txt"), "a.txt", /no recording/);
+  await refusedFile(opened(new Uint8Array(100), "a.txt"), "a.txt", /not a supported recording/);
   await assert.rejects((await written(recorded())).read({ topics: [] }), { code: "option" });
   const controller = new AbortController();
   controller.abort();
@@ -282,7 +282,7 @@ test("a Matroska file without a calibration, of other codecs or cut off has warn
   );
   const bytes = matroska(frames(2), CALIBRATION);
   const other = Buffer.from(bytes.toString("latin1").replaceAll("MJPG", "H264"), "latin1");
-  await refusedFile((await opened(other, "a.mkv")).read(), "a.mkv", /"H264", which is not read here.+MJPG/);
+  await refusedFile((await opened(other, "a.mkv")).read(), "a.mkv", /"H264", which is not supported.+MJPG/);
   await refusedFile(opened(bytes.subarray(0, 700), "a.mkv"), "a.mkv", /cut off/);
   const half = await opened(bytes.subarray(0, bytes.length - 1000), "a.mkv");
   assert.equal((await half.read()).frames.length, 1);

@@ -96,8 +96,6 @@ const LATER = ["docs/codes.md"];
 
 /** Phrases that stay as they are, each in one file, with the reason. */
 const EXCEPTIONS = [
-  // The same words as in the command of `files/`.
-  ["js/cli/files.ts", "into a folder of their own"],
   // A text in written files, which tests/fixtures hold.
   ["js/write/results.ts", "black is none"],
   // Titles of tests.

@@ -92,7 +92,7 @@ describe("what others read is what was written", () => {
       poseJson(POSE, "px", {
         status: "ambiguous",
         reason: { code: "rivals", count: 1, nearestDegrees: 40.5 },
-        message: "another pose explains the colours as well",
+        message: "another pose fits the image equally well",
         uncertainty,
         iteration: 7,
       }),
@@ -102,11 +102,11 @@ describe("what others read is what was written", () => {
       ...kept,
       status: "ambiguous",
       reason: { code: "rivals", count: 1, nearestDegrees: 40.5 },
-      message: "another pose explains the colours as well",
+      message: "another pose fits the image equally well",
       uncertainty,
     });
     assert.ok(about.startsWith(before));
-    assert.match(about, /null where the views cannot see/);
+    assert.match(about, /null where the views do not determine/);
     // For a run that has not ended, only the status is written.
     assert.deepEqual(JSON.parse(poseJson(POSE, "px", { status: "running" })), { ...plain, status: "running" });
   });

@@ -1,4 +1,4 @@
-//! Checks the order of the layers: which files may use which (docs/method/code.md).
+//! Checks the order of the layers: which files may use which (CONTRIBUTING.md).
 
 mod house;
 mod tokens;

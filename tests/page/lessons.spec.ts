@@ -189,7 +189,7 @@ test("numbers that the text states of the method are the method's own", LONG, as
   await open(page, "at=colours");
   await expect(page.locator(".learn-text")).toContainText(`compares ${constant("DIRECTIONS")} directions`);
   await page.goto("./#learn&at=exercises");
-  await answers(page, `beyond some ${((constant("PRIOR_SCALE") * 180) / Math.PI).toFixed(0)}°`);
+  await answers(page, `beyond about ${((constant("PRIOR_SCALE") * 180) / Math.PI).toFixed(0)}°`);
   const { OPTIONS } = (await import("../../pkg/options.js")) as {
     OPTIONS: {
       lambda: { members: { prior: { default: number } } };

@@ -96,7 +96,7 @@ test("a mask of 16 bits is a mask, and labels are refused in words", async ({ la
   await expect(slot(lab, 2)).toContainText("16-bit grey, a mask of");
   await expect(slot(lab, 1)).toContainText("2.png");
   await expect(remarks(lab)).toContainText(
-    "objects.png: its few small integers are labels of objects rather than depths. To use it all the same, choose it by hand in its place in the settings",
+    "objects.png: its few small integers are labels of objects rather than depths. To use it anyway, choose it by hand in the settings",
   );
   await lab.reaches("ready");
   await drop(page, "body", [mask("soft.png", 30_000)]);
@@ -121,7 +121,7 @@ test("intrinsics of another picture size are scaled and named; of another aspect
   await expect(fx("colour")).toHaveValue("30.5");
   await expect(fx("depth")).toHaveValue("");
   await expect(remarks(lab)).toContainText(
-    "The intrinsics of the colour images are for 96x96 pixels, and these have 48x48: they were scaled to that",
+    "The intrinsics of the colour images are for 96x96 pixels, but these pictures have 48x48: the intrinsics were scaled to that",
   );
   await page.getByRole("button", { name: "Undo" }).click();
   await expect(fx("colour")).toHaveValue("");
@@ -129,7 +129,9 @@ test("intrinsics of another picture size are scaled and named; of another aspect
   const wide = cameraJson("color.json");
   wide.buffer = Buffer.from(JSON.stringify({ width: 96, height: 54, fx: 61, fy: 62, cx: 47.5, cy: 26.5 }));
   await drop(page, "body", [wide]);
-  await expect(remarks(lab)).toContainText("for 96x54 pixels, and these have 48x48: scale or crop them first");
+  await expect(remarks(lab)).toContainText(
+    "for 96x54 pixels, but these pictures have 48x48: scale or crop the intrinsics first",
+  );
   await expect(remarks(lab)).toContainText("color.json: not used for the colour images");
   await expect(fx("colour")).toHaveValue("");
 });
@@ -221,7 +223,7 @@ test("disparities by their name are read as such, and with a camera wait for foc
   await expect(factor).toBeHidden();
   await drop(page, "body", [colour, depth("disparity.png")]);
   await expect(numbers).toHaveValue("inverse");
-  await expect(remarks(lab)).toContainText("disparity.png: its name says disparities or inverse depths");
+  await expect(remarks(lab)).toContainText("disparity.png: its name suggests disparities or inverse depths");
   await lab.reaches("ready");
   await drop(page, "body", [cameraJson("depth.json")]);
   await expect(page.locator("#status")).toHaveText("depth camera: waiting for focal length × baseline");

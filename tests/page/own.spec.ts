@@ -146,7 +146,7 @@ test(
     await lab.reaches("ready");
     // The reader's objection to a file is shown in its slot.
     await put(lab, "Depth map", await fixture("large-b44.exr"));
-    await expect(slot(lab, 1)).toContainText("compressed with loss");
+    await expect(slot(lab, 1)).toContainText("has lossy compression");
     await put(lab, "Depth map", await fixture("colour.jpg"));
     await expect(slot(lab, 1)).toContainText("a colour picture where a depth map");
     await lab.reaches("error");

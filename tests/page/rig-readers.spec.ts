@@ -63,7 +63,7 @@ test("WebP without loss, JPEG, and JPEG that EXIF turns", async ({ page }) => {
   const turned = await read(page, "turned-6.jpg");
   expect([turned.width, turned.height]).toEqual([H, W]);
   expect(off(turned, (x, y) => [y, H - 1 - x])).toBeLessThanOrEqual(5);
-  expect(turned.says).toContain("turned by 90 degrees as EXIF says");
+  expect(turned.says).toContain("rotated by 90 degrees as EXIF says");
   expect(turned.warnings).toHaveLength(1);
 });
 

@@ -91,7 +91,7 @@ test("what a recording lacks is said, its frames are none, and nothing sticks ou
   await open(page);
   await put(page, [file("colour.mcap", await mcap(messages)), file("walk.bag", bag())]);
   await expect(page.locator(".rig-recording").first().getByRole("alert")).toContainText(
-    "holds depth maps or organised clouds that are read here",
+    "has supported depth maps or organised clouds",
   );
   await expect(page.locator(".rig-recording").nth(1).getByRole("status")).toHaveText("3 frames taken");
   await expect(page.locator(".rig-frame")).toHaveCount(3);

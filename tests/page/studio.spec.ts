@@ -252,7 +252,7 @@ test("a pose with a rival says so, and the rival can be seen and chosen", LONG, 
   await page.getByLabel("Speed").selectOption({ label: "fastest" });
   await page.getByRole("button", { name: "Play" }).click();
   await lab.reaches("ambiguous");
-  await expect(page.locator("#verdict")).toContainText("One other pose fits the image as well");
+  await expect(page.locator("#verdict")).toContainText("One other pose fits the image equally well");
   await expect(page.locator("#status-icon")).toHaveText("?");
   await expect(page.locator("#next")).toContainText("poses on the surfaces");
   expect(await panelHeight(lab)).toBe(height);

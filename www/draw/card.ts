@@ -9,7 +9,7 @@ type Units = Opened["units"];
 
 interface Line {
   name: string;
-  /** What its numbers are in. */
+  /** The unit of its numbers. */
   unit(units: Units): string;
   read(probed: Probed): readonly number[] | null | undefined;
 }
@@ -48,7 +48,7 @@ export class Card {
     probe.listen(() => this.#show());
     // Away from the selected pixel, so that the card never covers it.
     document.addEventListener("pointermove", ({ clientX, clientY }) => this.#moveAway(clientX, clientY));
-    // Fingers leave nothing when they go, and scroll where they have begun on a picture.
+    // A touch sends no leave event when it ends, and scrolls if it began on a picture.
     document.addEventListener("pointercancel", () => probe.point(null));
     document.addEventListener("pointerdown", ({ target }) => {
       if (!(target instanceof HTMLCanvasElement)) probe.point(null);
@@ -75,7 +75,7 @@ export class Card {
     for (const { line, unit, cells } of this.#rows) {
       const values = line.read(answer) ?? [];
       unit.textContent = line.unit(this.units);
-      // A single number stands where those of three end.
+      // A single number is aligned with the last of three.
       const first = values.length === 1 ? 2 : 0;
       cells.forEach((cell, c) => (cell.textContent = c < first ? "" : decimals(values[c - first], DIGITS)));
     }

@@ -25,7 +25,7 @@ const objectiveTerms: readonly Line[] = [
   { label: "registration", token: "series-3", value: ({ energy }) => energy.registration },
   { label: "refinement", token: "series-4", value: ({ energy }) => energy.refinement },
 ];
-/** Degrees. A rotation that does not move changes by zero: for that a logarithm has no place, and the curve a gap. */
+/** Degrees. A rotation that does not move changes by zero, which a logarithmic axis cannot show: the curve has a gap. */
 const rotation: readonly Line[] = [
   { label: "change, deg", token: "accent", value: ({ rotationChange }) => rotationChange },
 ];
@@ -168,14 +168,14 @@ export class Plot {
     this.#observer.observe(box);
   }
 
-  /** Draws what was built, in another task than that if the builder likes. */
+  /** Draws what was built, if the builder likes in a separate task. */
   begin(): void {
     const begin = this.#begin;
     this.#begin = undefined;
     begin?.();
   }
 
-  /** A logarithm has no place for zero and below, so such values are gaps. */
+  /** A logarithmic axis cannot show values of zero and below, so these are gaps. */
   show(xs: number[], ys: readonly (number | null)[][]): void {
     const positive = (value: number | null) => (value !== null && value > 0 && Number.isFinite(value) ? value : null);
     const curves = ys.map((values) => values.map(positive));

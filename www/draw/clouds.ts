@@ -18,13 +18,13 @@ const SWING = 220;
 const SIDES = ["image", "depth"] as const;
 /** The largest distance, in CSS pixels, at which the pointer selects a point. */
 const REACH = 10;
-/** What is nearer by a tenth of the depth that is drawn is taken before what is nearer on the screen. */
+/** A point that is nearer by a tenth of the drawn depth is preferred to one that is nearer on the screen. */
 const IN_FRONT = 5;
 
 const still = matchMedia("(prefers-reduced-motion: reduce)");
-/** Share of their radius by which surfaces leave the middle of the view before it follows: iterations move them by less. */
+/** Share of their radius by which surfaces move off the centre before the view follows; iterations move them less. */
 const LEFT_THE_MIDDLE = 0.3;
-/** By what factor a pinned run's object is larger or smaller before it counts as one of another resolution. */
+/** Ratio of sizes beyond which a pinned run's object counts as one of another resolution. */
 const OTHER_SIZE = 1.5;
 /** How far, in half windows, what is drawn may reach, and how much room is then made: what grows at every step is not to be followed at each. */
 const EDGE = 0.98;
@@ -51,7 +51,7 @@ export class Clouds {
     this.#size = { width, height };
     this.#resize();
   });
-  /** What has changed since the drawing under way began. */
+  /** Changes since the present drawing began. */
   #next: Change | undefined;
   #drawing = false;
   #shown: Change["surfaces"];
@@ -80,10 +80,10 @@ export class Clouds {
       depth: make("span", { class: "dot depth", hidden: true }),
     };
     box.append(this.#marks.image, this.#marks.depth);
-    // A finger that moves up or down scrolls the page; across it turns the clouds, and two do so any way.
+    // One finger scrolls the page vertically and rotates the clouds horizontally; two fingers rotate them in any direction.
     canvas.style.touchAction = "pan-y";
     this.#controls.touches.TWO = TOUCH.DOLLY_ROTATE;
-    // Before the browser knows which it is, the clouds have turned a little.
+    // The clouds have rotated a little before the browser knows which it is.
     canvas.addEventListener("pointerdown", ({ pointerType, isPrimary }) => {
       if (pointerType === "touch" && isPrimary) this.#controls.saveState();
     });
@@ -95,7 +95,7 @@ export class Clouds {
     this.recolour();
   }
 
-  /** Leaves the box to others. */
+  /** Frees the box for others. */
   end(): void {
     this.#swings++;
     this.#renderer.end();
@@ -144,7 +144,7 @@ export class Clouds {
     this.#change({ wipe: share });
   }
 
-  /** Where the pinned run stands elsewhere, as far away as an image can't see, or in pixels of another size, it is brought here. */
+  /** Moves the pinned run here if it is elsewhere, at a distance that an image does not determine or in pixels of another size. */
   #placePinned(): void {
     const [then, now] = [this.#pinned, this.#extent];
     if (!then || !now) return;
@@ -162,7 +162,7 @@ export class Clouds {
     return this.#pose ? matrixOf(pose).multiply(this.#pose.clone().invert()) : NOWHERE;
   }
 
-  /** Shows the depth map under another pose than its own, or its own again. */
+  /** Shows the depth map in a pose other than its own, or in its own again. */
   pretend(pose: Pose | undefined): void {
     void this.#swing(this.#standing, pose ? this.#apart(pose) : NOWHERE);
   }
@@ -266,7 +266,7 @@ export class Clouds {
     this.#resize();
   }
 
-  /** Goes along with surfaces that have left the middle, as where the pose settles how far away they are; the viewpoint stays. */
+  /** Follows surfaces that have left the centre, for example when the pose fixes their distance; the viewpoint stays. */
   #follow(): void {
     const center = this.#extent?.center;
     if (!center || center.distanceTo(this.#bounds.center) < LEFT_THE_MIDDLE * this.#bounds.radius) return;
@@ -291,7 +291,7 @@ export class Clouds {
     this.#resize();
   }
 
-  /** Turns the view by hand of the keyboard; degrees about the vertical and the horizontal axis. */
+  /** Rotates the view by keyboard, degrees about the vertical and the horizontal axis. */
   turn(across: number, down: number): void {
     const offset = this.#camera.position.clone().sub(this.#controls.target);
     const side = new Vector3().crossVectors(this.#camera.up, offset).normalize();

@@ -1,8 +1,8 @@
-/** Work for the screen, done in animation frames and never more of it than fits: what does not fit waits for the next. */
+/** Runs drawing jobs in animation frames, as many as fit; the others wait for the next frame. */
 
 /** Milliseconds of a frame that drawing may take; the rest belongs to the browser and the visitor. */
 const BUDGET = 5;
-/** Pixels of canvases after which a frame has enough: the browser copies them after the scripts, where no clock of theirs sees it. */
+/** Pixels of canvases per frame at most: the browser copies them after the scripts, which cannot measure that time. */
 const PIXELS = 400_000;
 
 interface Job {

@@ -28,7 +28,7 @@ export class Pinned {
     this.#kept = undefined;
   }
 
-  /** Lays it where its pixels belong among those that are shown: both are parts of a view, by shares of its sides. */
+  /** Aligns it with the pixels that are shown: both are parts of a view, given as shares of its sides. */
   place(now: Place): void {
     if (!this.#kept) return;
     const { canvas, place } = this.#kept;

@@ -13,7 +13,7 @@ export interface Renderer {
 export interface CloudsHooks {
   /** WebGL was suspended, or has returned. */
   onLost(lost: boolean): void;
-  /** Nothing will be drawn any more. */
+  /** Nothing more will be drawn. */
   onGone(): void;
 }
 

@@ -57,10 +57,10 @@ export interface PinnedSurfaces {
   swing: number[];
 }
 
-/** What a thread is sent that draws: whether it can, which older Safaris' threads can't; then the canvas; then changes. */
+/** Messages to a drawing thread: whether it can draw (in older Safaris it cannot), then the canvas, then changes. */
 export type Asked = "can you draw?" | OffscreenCanvas | Change;
 
-/** What it says: whether it can, whether it has the canvas, then after each change that it is drawn; and in between whether WebGL was lost. */
+/** Its replies: whether it can draw, whether it has the canvas, after each change that it is drawn, and whether WebGL was lost. */
 export type Told = boolean | { lost: boolean };
 
 export class CloudStage {

@@ -63,7 +63,7 @@ export class View {
     this.#canvas.addEventListener("pointermove", point);
     this.#canvas.addEventListener("pointerdown", point);
     this.#canvas.addEventListener("pointerleave", ({ pointerType }) => {
-      // A finger has to leave for what it has touched to be read.
+      // A finger must be lifted before the value under it can be read.
       if (pointerType !== "touch") this.#point(null);
     });
     // Announced when moved by keys; with a pointer the announcements would never end.

@@ -2,7 +2,7 @@
 
 import { shadeNormals } from "../../pkg/index.js";
 
-/** Unit normals of a ball seen from the front, its radius so many halves of the square's side; NaN beside it. */
+/** Unit normals of a ball seen from the front; its radius is this share of half the square's side; NaN outside. */
 export function ballNormals(side: number, radius = 1): Float32Array {
   const normals = new Float32Array(3 * side * side).fill(NaN);
   for (let index = 0; index < side * side; index++) {
@@ -11,7 +11,7 @@ export function ballNormals(side: number, radius = 1): Float32Array {
       number,
     ];
     const rest = 1 - x * x - y * y;
-    // At the very edge a pixel's middle says nothing of its normal.
+    // At the very edge the centre of a pixel does not represent its normal.
     if (rest > 0.002) normals.set([x, y, -Math.sqrt(rest)], 3 * index);
   }
   return normals;

@@ -51,7 +51,7 @@ export class ViewCanvas {
     return this;
   }
 
-  /** RGB of what stands on the canvas at a surface's points; what is clear there is grey. */
+  /** RGB of the canvas at a surface's points; transparent pixels count as grey. */
   colours({ width, height, stride }: Omit<Surface, "colours">): Uint8Array | null {
     if (width === 0) return null;
     const step = stride / this.#frame.stride;
@@ -64,7 +64,7 @@ export class ViewCanvas {
     return colours;
   }
 
-  /** Takes it off; the canvas is then empty. */
+  /** Removes it; the canvas is then empty. */
   take(): Painted {
     return { ...this.#frame, bitmap: this.#part.canvas.transferToImageBitmap() };
   }

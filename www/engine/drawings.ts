@@ -23,7 +23,7 @@ import { cutOfDepth, cutOfImage, depthAt, measured, picture, raster, surface, wh
 
 /** The range of a view that has no values. */
 const NOTHING: Range = { min: 0, max: 1 };
-/** What cannot be negative, and should be zero. */
+/** Values that cannot be negative and should be zero. */
 const isError = (scale: ScaleName): boolean => scale === "residual" || scale.endsWith("Error");
 const mapOf = (scale: ScaleName): MapName => (isError(scale) ? "magma" : "viridis");
 

@@ -50,7 +50,7 @@ export class Engine {
     this.#hooks = hooks;
   }
 
-  /** What is transferred, the page has no longer. */
+  /** The page no longer has what it transfers. */
   call<K extends Kind>(
     kind: K,
     request: Calls[K]["request"],
@@ -80,7 +80,7 @@ export class Engine {
     onGone(worker, () => {
       if (worker === this.#worker) this.#drop({ code: LOST, message: `The run stopped: ${GONE}.`, fatal: true });
     });
-    // What a worker said before its end may arrive after it.
+    // Messages that a worker sent before its end may arrive afterwards.
     worker.onmessage = (event: MessageEvent<Answer>) => {
       if (worker === this.#worker) this.#receive(event.data);
     };

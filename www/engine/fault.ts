@@ -1,9 +1,9 @@
-/** Errors in a form that survives the way between threads. */
+/** Errors in a form that can be sent between threads. */
 
 import { BimodalError } from "../../pkg/index.js";
 import type { Fault } from "./protocol";
 
-/** What went wrong in a worker, whose module may not even have been `loaded`. */
+/** A failure in a worker, whose module may not have been `loaded`. */
 export function faultOf(error: unknown, loaded: boolean): Fault {
   if (error instanceof BimodalError) {
     const { code, message, field, details } = error;

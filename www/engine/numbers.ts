@@ -28,7 +28,7 @@ export class Numbers {
     return this.#keep(`points ${view}`, () => this.#estimator.points(view));
   }
 
-  /** After a step they are others. */
+  /** They change after each step. */
   forget(): void {
     this.#kept.clear();
   }

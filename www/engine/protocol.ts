@@ -1,13 +1,13 @@
-/** What the page and its worker say to each other. Both sides import this file and nothing else of one another. */
+/** Messages between the page and its worker. Both sides import this file and nothing else of each other. */
 
 import type { ErrorDetails } from "../../pkg/index.js";
 import type { ColorImage, DepthMap, Options, Pinhole, Pose, SampleRequest, StepReport } from "../../pkg/index.js";
 
-/** A pair as the library takes it, read of the visitor's files. */
+/** A pair in the form of the library, read from the visitor's files. */
 export interface Pair {
   image: ColorImage;
   depth: DepthMap;
-  /** What was guessed or changed on the way in, in words, by the field that it belongs to. */
+  /** Guesses and changes during reading, in words, by field. */
   notes: Record<string, string>;
   /** The unit of depth that was found where none was given. */
   unit?: number;
@@ -31,7 +31,7 @@ export interface OwnFiles {
 
 /** A sample's light may be turned, degrees about the colour view's x and y. */
 export type SampleSource = { kind: "sample"; request: SampleRequest; turn: { alpha: number; beta: number } };
-/** What is to be seen; a saved run goes on where it stood. */
+/** The input to show; a saved run continues where it stopped. */
 export type Source = SampleSource | { kind: "files"; files: OwnFiles } | { kind: "saved"; file: File };
 /** The same for the worker, with the files read. */
 export type Input = Exclude<Source, { kind: "files" }> | { kind: "pair"; pair: Pair };
@@ -116,9 +116,9 @@ export interface Range {
 export const TEXTURES = ["view", "picture", "normals", "residual"] as const;
 export type Texture = (typeof TEXTURES)[number];
 
-/** How a visitor wants to see what there is. */
+/** The visitor's choices for the display. */
 export interface Look {
-  /** Those that are held; the others follow the values. */
+  /** Fixed ranges; the others follow the values. */
   ranges: Partial<Record<ScaleName, Range>>;
   texture: Texture;
 }
@@ -129,7 +129,7 @@ export interface Painted extends Pick<Raster, "left" | "top" | "width" | "height
   bitmap: ImageBitmap;
 }
 
-/** All that is drawn, but for what does not change with a step. */
+/** Everything that is drawn except what does not change with a step. */
 export interface Drawings {
   views: Partial<Record<ViewName, Painted>>;
   ranges: Record<ScaleName, Range>;
@@ -159,7 +159,7 @@ export interface KnownLight {
 export interface Opened {
   /** Unit of the image's depth and of the depth view's. */
   units: { image: "px" | "m"; depth: "px" | "m" };
-  /** What was guessed or changed on the way in, in words, keyed by the field it belongs to. */
+  /** Guesses and changes during reading, in words, by field. */
   notes: Record<string, string>;
   /** The pose to find, where the input is a sample. */
   truth: Pose | null;
@@ -172,7 +172,7 @@ export interface Opened {
   frame: Frame;
 }
 
-/** What a sample would look like, before it is opened. */
+/** A preview of a sample that is not open yet. */
 export interface Preview {
   picture: Painted;
   trueLight: KnownLight;
@@ -203,7 +203,7 @@ export interface Catalogue {
   lights: string[];
 }
 
-/** What can be taken away, in full. */
+/** The downloads at full resolution. */
 export interface Taken {
   pose: Pose;
   /** Of the colour view and of the depth view. */
@@ -234,7 +234,7 @@ export interface Calls {
 export type Kind = keyof Calls;
 export type Request = { [K in Kind]: { id: number; kind: K } & Calls[K]["request"] }[Kind];
 
-/** An error in a form that survives the way between threads. */
+/** An error in a form that can be sent between threads. */
 export interface Fault {
   code: string;
   message: string;

@@ -116,9 +116,9 @@ export function picture(image: ColorImage, cut: Cut): Picture {
   return { ...drawn, white, encoded };
 }
 
-/** The least distance of white from the middle of log colours: a single albedo, zero everywhere, is shown as middle grey. */
+/** Smallest distance of white from the median log colour, so that a single albedo, zero everywhere, is shown as middle grey. */
 const LEAST_WHITE = Math.LN2;
-/** Share of the numbers that are no brighter than white: single ones must not darken everything else. */
+/** Share of the numbers that are at most as bright as white: outliers must not darken everything else. */
 const UP_TO_WHITE = 0.99;
 
 /** The white level of logarithms of colours. */

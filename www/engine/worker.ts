@@ -34,7 +34,7 @@ import { lit, ratio } from "./sphere";
 interface Input extends Pick<Run, "image" | "depth"> {
   light?: Float64Array;
   truth: Pose | null;
-  /** What a sample is measured against. */
+  /** The ground truth of a sample. */
   shapes?: Sample["truth"];
 }
 
@@ -140,14 +140,14 @@ function prepared(
   return { ...input, estimator: new Estimator(input.image, input.depth, resolve(options, input)) };
 }
 
-/** It is run again as far as it had come. */
+/** It is repeated up to the step that it had reached. */
 async function fromSaved(file: File): Promise<Prepared & { estimator: Estimator }> {
   const estimator = Estimator.restore(new Uint8Array(await file.arrayBuffer()));
   const { image, depth } = estimator.given;
   return { image, depth, estimator, truth: null, notes: {} };
 }
 
-/** What is asked of the library: its own light, or that one turned. */
+/** The light requested from the library: its own, or the rotated one. */
 function requestOf({ request, turn }: SampleSource): SampleRequest {
   return turn.alpha === 0 && turn.beta === 0 ? request : { ...request, light: turnLight(request.light, turn) };
 }

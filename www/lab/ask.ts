@@ -1,4 +1,4 @@
-/** The explanation that a "?" or a stage opens. */
+/** The explanation behind a "?" or a stage. */
 
 import type { Stage } from "../../pkg/index.js";
 import { byId, make } from "../dom";
@@ -23,7 +23,7 @@ export class Explanations {
     this.#popover.showPopover();
   }
 
-  /** A "?" beside what it explains. */
+  /** A "?" beside the explained item. */
   button(term: Term, name: string): HTMLButtonElement {
     const button = make(
       "button",

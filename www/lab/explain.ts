@@ -35,7 +35,7 @@ const sum = o("∑");
 const term = (series: 1 | 2 | 3 | 4, ...parts: string[]) => `<mrow class="series-${series}">${parts.join("")}</mrow>`;
 const math = (...parts: string[]) => `<math display="block">${parts.join("")}</math>`;
 
-/** Around the name of a function, which browsers set close. */
+/** Space around the name of a function, which browsers set too close. */
 const space = "<mspace width='0.1667em'></mspace>";
 const logS = row(i("log"), space, i("S"));
 const n = bold("n");

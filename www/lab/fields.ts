@@ -6,7 +6,7 @@
 
 import { OPTIONS, RENDERED_ALONE, SAMPLE, paths, type PageField, type Rows, type ShownRow } from "../../pkg/options.js";
 
-/** Where the pair comes from: made by the crate, or the visitor's own. */
+/** Source of the pair: rendered by the crate, or the visitor's files. */
 export type Origin = "sample" | "files";
 export type Value = string | number | boolean | null;
 
@@ -228,7 +228,7 @@ export const fields: readonly Field[] = [
     kind: "choice",
     key: "meaning",
     label: "Numbers",
-    hint: "Depths are larger where a surface is farther; disparities, inverse depths and what networks estimate are larger where it is nearer.",
+    hint: "Depths are larger where a surface is farther; disparities, inverse depths and the estimates of networks are larger where it is nearer.",
     initial: "depth",
     group: "depth",
     path: "depth.inverse",
@@ -241,7 +241,7 @@ export const fields: readonly Field[] = [
     kind: "number",
     key: "numerator",
     label: "Focal × baseline",
-    hint: "Depth in metres is this divided by a stored number: for disparities in pixels the focal length (px) times the baseline (m), for inverse metres 1. Without a camera it is not used.",
+    hint: "A depth in metres is this number divided by the stored one. For disparities in pixels enter the focal length (px) times the baseline (m); for inverse metres enter 1. Not used without a camera.",
     initial: null,
     empty: "unknown",
     group: "depth",
@@ -295,7 +295,7 @@ export const defaults: Settings = Object.fromEntries(fields.map(({ key, initial 
 if (Object.keys(defaults).length < fields.length)
   throw new Error("Two fields share a name: give one of their rows a `link`.");
 
-/** Whether a choice can't be made of this origin. */
+/** Whether a choice is unavailable for this source. */
 export const isOff = ({ only }: ChoiceField, value: Value, source: Origin): boolean =>
   (only?.[String(value)] ?? source) !== source;
 

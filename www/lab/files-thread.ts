@@ -19,7 +19,7 @@ const [ORANGE, BLUE] = [
   [199, 100, 26],
   [11, 98, 184],
 ];
-const NORMALS = "(n + 1) / 2 of white, x right, y up, z near";
+const NORMALS = "colour = (n + 1) / 2; x right, y up, z towards the viewer";
 
 const lengthOf = (unit: "m" | "px"): "metres" | "pixels" => (unit === "m" ? "metres" : "pixels");
 

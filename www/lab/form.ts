@@ -70,7 +70,7 @@ export class Form {
     control.show(this.#store.settings[key] ?? null);
   }
 
-  /** Puts an error beside the field it names, and says which that is; nothing when no field answers to that path. */
+  /** Shows an error beside its field and returns that field; nothing if no field has this path. */
   complain(path: string, message: string): string | undefined {
     const candidates = [...this.#controls.values()].filter(
       ({ field, row }) => !row.hidden && (path === field.path || path.startsWith(`${field.path}.`)),
@@ -85,7 +85,7 @@ export class Form {
     return control.field.label;
   }
 
-  /** A remark that is no error, such as what was guessed. */
+  /** A remark other than an error, such as a guess. */
   remark(path: string, message: string): void {
     const control = [...this.#controls.values()].find(({ field }) => field.path === path);
     if (control) mark(control, message, "note");
@@ -170,7 +170,7 @@ const REST = 200;
 function numbers(field: NumberField, id: string, change: Change): Built {
   // The library checks the numbers and has better messages than the browser, so the inputs have no limits.
   const exact = make("input", { id, type: "number", step: "any", inputmode: "decimal", placeholder: field.empty });
-  // Like a slider that has stopped: a run that had been played plays again.
+  // Like a slider that has stopped: a run that was playing plays again.
   const read = (input: HTMLInputElement) => change(input.value === "" ? null : input.valueAsNumber, true);
   exact.addEventListener("change", () => read(exact));
   if (!field.slider) return { inputs: [exact], show: (value) => (exact.value = value === null ? "" : String(value)) };

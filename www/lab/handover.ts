@@ -1,4 +1,4 @@
-/** Hands a file over, and says so below the buttons. */
+/** Saves a file and reports it below the buttons. */
 
 import { byId } from "../dom";
 import { EngineError, type Engine } from "../engine/engine";

@@ -46,19 +46,19 @@ interface Entry {
   paths: readonly string[];
 }
 
-/** Something to be said of the files, and what may be done about it. */
+/** A remark about the files, with a possible action. */
 export interface Remark {
   words: string;
   wrong: boolean;
   action?: { label: string; press(): void };
 }
 
-/** What remarks are about: files that were dropped, the pair that they make, its cameras. */
+/** Topics of remarks: dropped files, the pair, its cameras. */
 const TOPICS = ["files", "pair", "cameras"] as const;
 type Topic = (typeof TOPICS)[number];
 
 export interface IntakeHooks {
-  /** Other files than before. */
+  /** Called when the files have changed. */
   onChange(): void;
   onForget(): void;
 }
@@ -83,7 +83,7 @@ export class Intake {
       this.silence();
       this.#hooks.onForget();
     });
-    // Below the slots, so that these do not move; a note that needs an answer is scrolled into view.
+    // Notes are below the slots, which therefore do not move; one that needs an answer is scrolled into view.
     this.element.append(
       make("div", { class: "said" }, this.#offer, this.#remarks),
       make("p", { class: "note keeping", role: "status" }, this.#keeping),
@@ -95,7 +95,7 @@ export class Intake {
     return this.#files;
   }
 
-  /** The files with what they were read as. */
+  /** The files with their readings. */
   get said(): { file: File; says: string }[] {
     return slots.flatMap(({ slot, label }) => {
       const [file, entry] = [this.#files[slot], this.#entries.get(slot)];
@@ -117,7 +117,7 @@ export class Intake {
     entry.thumb.setAttribute("aria-label", `Preview of ${file.name}`);
   }
 
-  /** Asks whether files are to change places; nothing where all are where they belong. */
+  /** Proposes to swap files that seem to be in the wrong slots; undefined if all seem right. */
   offer(offer: Offer | undefined): void {
     this.#offer.replaceChildren();
     if (!offer) return;
@@ -129,10 +129,10 @@ export class Intake {
     this.#offer.append(offer.words, " ", button);
   }
 
-  /** What is to be said of one topic, in the place of what was. */
+  /** Replaces the remark about one topic. */
   remarks(topic: Topic, said: readonly Remark[]): void {
     this.#said[topic] = said;
-    // There may be more than is in sight at once.
+    // There may be more remarks than fit on the screen.
     const rank = ({ wrong, action }: Remark) => (wrong ? 0 : action ? 1 : 2);
     const all = TOPICS.flatMap((each) => this.#said[each] ?? []).sort((a, b) => rank(a) - rank(b));
     this.#remarks.hidden = all.length === 0;
@@ -159,12 +159,12 @@ export class Intake {
     this.#forget.hidden = !canForget;
   }
 
-  /** Puts an error beside the slot that the library's path belongs to, and says which that is; nothing when none does. */
+  /** Shows an error beside the slot of this path and returns that slot; nothing if no slot has this path. */
   complain(path: string, message: string): string | undefined {
     return this.#say(path, message, true);
   }
 
-  /** A remark that is no error, such as that the picture was scaled down. */
+  /** A remark that is not an error, such as that the picture was scaled down. */
   remark(path: string, message: string): boolean {
     return this.#say(path, message, false) !== undefined;
   }
@@ -184,7 +184,7 @@ export class Intake {
     entry.note.hidden = false;
     entry.note.classList.toggle("error", isError);
     entry.zone.toggleAttribute("data-invalid", isError);
-    // Within the settings, which may be longer than their sheet.
+    // Scrolls only within the settings, which may be longer than their sheet.
     if (isError) entry.note.scrollIntoView({ block: "nearest" });
     return slots.find(({ paths }) => paths === entry.paths)?.label;
   }
@@ -228,20 +228,20 @@ export class Intake {
       event.preventDefault();
       zone.removeAttribute("data-over");
       const files = event.dataTransfer?.files ?? [];
-      // Several are sorted as anywhere else on the page.
+      // Several files are sorted, as everywhere on the page.
       if (files.length > 1) return;
       event.stopPropagation();
       if (files[0]) this.put(slot, files[0]);
     });
   }
 
-  /** Several files at once, which are looked at together. */
+  /** Handles several files at once, which are recognised together. */
   putAll(files: ReadonlyMap<Slot, File>): void {
     for (const [slot, file] of files) this.#set(slot, file);
     this.#hooks.onChange();
   }
 
-  /** These files and no others. */
+  /** Replaces all files by these. */
   replaceAll(files: Partial<Record<Slot, File>>): void {
     for (const { slot } of slots) this.#set(slot, files[slot]);
     this.#hooks.onChange();

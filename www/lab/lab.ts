@@ -85,7 +85,7 @@ export class Lab {
   #willPlay = false;
   /** Whether the run has been replayed because its worker had ended. */
   #resumed = false;
-  /** Whether the run goes on when its visitor comes back from another place of the page. */
+  /** Whether the run continues when the visitor returns from another part of the page. */
   #goesOn = false;
 
   constructor({ store, form, gallery }: { store: Store; form: Form; gallery: Gallery }) {
@@ -145,7 +145,7 @@ export class Lab {
     return this.#playOnce(before === this.#turn ? this.restart() : entered);
   }
 
-  /** The visitor has gone to another place of the page, where nothing of this one plays. */
+  /** The visitor has gone to another part of the page, where this one does not play. */
   leave(): void {
     this.#goesOn ||= this.player.playing || this.#willPlay;
     this.#willPlay = false;
@@ -195,7 +195,7 @@ export class Lab {
     void this.#start(this.#saved);
   }
 
-  /** Files dropped anywhere, each into the slot that its content is of. */
+  /** Puts files that were dropped anywhere into the slots that match their content. */
   drop(files: readonly File[]): Promise<void> {
     return this.#own.drop(files);
   }
@@ -391,7 +391,7 @@ export class Lab {
     this.#panels.show(this.#record, playing, report && this.#verdict(report));
     const notice = this.#notices.now;
     if (notice) this.#panels.announce(notice);
-    // What the status tells of is in the way of a run, unless there is one that it leaves usable.
+    // The reported problem prevents a run, unless an earlier run stays usable.
     const isIdle = typeof this.#wanted === "string" || !this.#good;
     sayVacant(this.#wanted, notice);
     this.#transport.show(playing, isIdle && notice?.cause ? notice.words : "");
@@ -422,7 +422,7 @@ export class Lab {
       setTimeout(() => turn === this.#turn && this.#good && !this.#held && void this.#enter(this.#fail(error)));
   }
 
-  /** A run whose worker was ended plays again, to the same numbers; once, because what it does may be what ends it. */
+  /** Repeats a run whose worker was ended, with the same numbers; only once, because the run itself may be the cause. */
   async #breakOff(error: unknown, playing: boolean): Promise<void> {
     const failed = this.#enter(this.#fail(error));
     const turn = this.#turn;

@@ -69,7 +69,7 @@ export function release(files: Files): void {
 }
 
 /** The remedy on this page for a file that looks like another kind. */
-const BY_HAND = "To use it all the same, choose it by hand in its place in the settings";
+const BY_HAND = "To use it anyway, choose it by hand in the settings";
 
 type Reading = Omit<Calls["read"]["ask"], "file" | "name" | "blob">;
 

@@ -1,4 +1,4 @@
-/** What is wrong, or was guessed, beside the field or the file that it concerns; what belongs to none stands above all. */
+/** Shows errors and guesses beside their field or file, or else above all fields. */
 
 import { byId } from "../dom";
 import { EngineError } from "../engine/engine";
@@ -6,10 +6,10 @@ import type { Opened } from "../engine/protocol";
 import type { Form } from "./form";
 import type { Intake, Remark } from "./intake";
 
-/** What was guessed that may be wrong, in sight beside the files as well: fields may be folded. */
+/** Guesses that may be wrong, shown beside the files as well, because fields may be folded. */
 function standing({ "depth.unit": unit, "image.mask": mask }: Opened["notes"], drawMask: () => void): Remark[] {
   const action = { label: "Draw a mask", press: drawMask };
-  // What other units would come to stands beside the field.
+  // The field itself shows what other units would give.
   const short = unit?.replace(/ \([^()]*\)/, "");
   return [
     ...(short ? [{ words: `Unit of depth: ${short} Settings, Depth camera, Unit changes that.`, wrong: false }] : []),
@@ -30,7 +30,7 @@ export class Messages {
     this.#drawMask = drawMask;
   }
 
-  /** Errors go; what was guessed about the input stays beside the fields. */
+  /** Removes errors; guesses about the input stay beside the fields. */
   clear(): void {
     this.#alert.hidden = true;
     this.note(this.#notes);
@@ -43,13 +43,13 @@ export class Messages {
     this.#intake.clearMessages();
     this.#intake.remarks("pair", standing(notes, this.#drawMask));
     for (const [path, note] of Object.entries(notes)) {
-      // A missing mask is said beside a way to draw one.
+      // A missing mask is reported beside a button that draws one.
       if (path === "image.mask" || this.#intake.remark(path, note)) continue;
       this.#form.remark(path, note);
     }
   }
 
-  /** Says what is wrong; where it stands beside a field, which one and what in short. */
+  /** Reports an error; if it is shown beside a field, names that field in short. */
   fail(error: unknown): { field: string; words: string } | undefined {
     const message = error instanceof Error ? error.message : String(error);
     const field = error instanceof EngineError ? error.field : undefined;
@@ -59,7 +59,7 @@ export class Messages {
     return placed;
   }
 
-  /** A sentence more about what is wrong; `shown` where it has to be seen. */
+  /** Adds a sentence to an error; `shown` is where it must be visible. */
   add(words: string, shown = false): void {
     this.#alert.textContent = `${this.#alert.textContent.replace(/\.?$/, ".")} ${words}`;
     if (shown) this.#alert.hidden = false;

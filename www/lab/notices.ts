@@ -1,4 +1,4 @@
-/** What the page does or fails at apart from the loop; the status shows it until the next frame is on the screen. */
+/** Activities and failures of the page outside the loop; the status shows them until the next frame is on the screen. */
 
 import { wayOut } from "./source";
 import type { Notice } from "./status";
@@ -25,12 +25,12 @@ export class Notices {
     this.announce(names ? "loading" : "waiting", names ? "looking at the files" : lacking, names || wayOut(lacking));
   }
 
-  /** What is being done of what is loading. */
+  /** What is loading. */
   detail(words: string): void {
     if (this.#now?.state === "loading") this.announce("loading", this.#now.words, words);
   }
 
-  /** Says so while something loads, and afterwards what was said before. */
+  /** Reports that something loads, and restores the previous status afterwards. */
   async loading(words: string, load: () => Promise<void>): Promise<void> {
     const before = this.#now;
     this.announce("loading", words);

@@ -37,12 +37,12 @@ export class OwnFiles {
     this.#hooks = hooks;
   }
 
-  /** What seems to be in the wrong place, and how to correct it; empty if all is well. */
+  /** Files that seem to be in the wrong slot, and the correction; empty if all is well. */
   get doubt(): string {
     return this.#doubt;
   }
 
-  /** The visitor turns to their own files, or away from them and from what was wrong with any. */
+  /** The visitor switches to their own files, or away from them and their errors. */
   choose(origin: Origin): void {
     if (origin === "files") void this.#restore();
     else this.intake.silence();

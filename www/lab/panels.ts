@@ -1,4 +1,4 @@
-/** The panels beside the views: the stages of a run, its pose, the rivals, the light, the map of scores, and how it stands. */
+/** The panels beside the views: the stages of a run, its pose, the rivals, the light, the map of scores, and the status. */
 
 import { byId } from "../dom";
 import type { Frame } from "../engine/protocol";
@@ -29,7 +29,7 @@ export class Panels {
     byId("objective-title", HTMLElement).append(explanations.button("objective", "Objective"));
   }
 
-  /** Says of what has been found whether it is of the run before. */
+  /** Whether the results shown are those of the previous run. */
   date(isBefore: boolean): void {
     this.#pose.date(isBefore);
     this.light.date(isBefore);
@@ -52,7 +52,7 @@ export class Panels {
     this.#scores.show(scores, truth);
   }
 
-  /** `doubt` is what seems to be wrong with own files. */
+  /** `doubt` describes what seems wrong with the visitor's files. */
   about(origin: Origin, doubt: string): void {
     this.#status.about(origin, doubt);
   }
@@ -69,7 +69,7 @@ export class Panels {
     this.light.beside(looked !== undefined);
   }
 
-  /** Something other than the loop is going on, or has gone wrong. */
+  /** Something other than the loop is running, or has failed. */
   announce({ state, words, cause }: { state: Notice; words: string; cause: string }): void {
     this.#status.announce(state, words, cause);
   }

@@ -4,7 +4,7 @@ import { ink, make } from "../dom";
 
 export interface Shown {
   title: string;
-  /** What the curves of a chart are, whose names stand beside its canvas. */
+  /** The names of a chart's curves, which stand beside its canvas. */
   words: string | undefined;
   canvas: HTMLCanvasElement;
 }
@@ -42,7 +42,7 @@ export function offerPictures(root: HTMLElement, select: HTMLSelectElement): voi
   if (titles.includes(before)) select.value = before;
 }
 
-/** As it is shown, on the colour of the page: curves would be lost on another one. */
+/** As it is shown, on the page's background, because curves may be invisible on another one. */
 function flat(canvas: HTMLCanvasElement): HTMLCanvasElement {
   const copy = document.createElement("canvas");
   copy.width = canvas.width;
@@ -58,7 +58,7 @@ function flat(canvas: HTMLCanvasElement): HTMLCanvasElement {
 export function pngOf(canvas: HTMLCanvasElement): Promise<Blob> {
   return new Promise((resolve, reject) =>
     flat(canvas).toBlob(
-      (blob) => (blob ? resolve(blob) : reject(new Error("This browser made no picture."))),
+      (blob) => (blob ? resolve(blob) : reject(new Error("This browser could not create the picture."))),
       "image/png",
     ),
   );
@@ -70,7 +70,7 @@ export async function dataUrlOf(canvas: HTMLCanvasElement): Promise<string> {
   return new Promise((resolve, reject) => {
     const reader = new FileReader();
     reader.onload = () => resolve(String(reader.result));
-    reader.onerror = () => reject(reader.error ?? new Error("This browser made no picture."));
+    reader.onerror = () => reject(reader.error ?? new Error("This browser could not create the picture."));
     reader.readAsDataURL(blob);
   });
 }

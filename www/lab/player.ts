@@ -18,7 +18,7 @@ const SLOW = 300;
 export interface PlayerHooks {
   /** Computes and draws one frame; resolves when it is on the screen, true while the loop has more to do. */
   advance(request: Advance): Promise<boolean>;
-  /** Starts the loop over; resolves when that is on the screen, or has been refused. */
+  /** Starts the loop over; resolves when its first frame is on the screen, or it has been refused. */
   restart(): Promise<void>;
   isFinished(): boolean;
   onChange(): void;
@@ -64,7 +64,7 @@ export class Player {
   }
 
   async #play(): Promise<void> {
-    // To pause and play again must not end up with two loops.
+    // Pausing and playing again must not start a second loop.
     const turn = ++this.#turn;
     const isOn = () => this.#playing && turn === this.#turn;
     this.#playing = true;

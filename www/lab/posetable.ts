@@ -1,4 +1,4 @@
-/** The pose in numbers, beside the true one where the input is a sample. */
+/** The pose in numbers, beside the true one if the input is a sample. */
 
 import type { Pose, StepReport } from "../../pkg/index.js";
 import { decimals } from "../draw/numbers";
@@ -54,7 +54,7 @@ export class PoseTable {
     table.tBodies[0]?.append(...lines);
   }
 
-  /** Whether what is shown is of the run before: the settings have changed since, or are about to. */
+  /** Whether the numbers are those of the previous run, because the settings have changed or are about to. */
   date(isBefore: boolean): void {
     this.#isBefore = isBefore;
     this.#head();
@@ -83,7 +83,7 @@ export class PoseTable {
       if (!cells) return;
       cells.unit.textContent = unit;
       cells.found.textContent = decimals(read(pose), count);
-      // An orthographic image cannot see how far away the object is: any number does, so none is the true one.
+      // An orthographic image does not determine the distance of the object, so there is no true value.
       const free = index === "z" && length === "px";
       cells.truth.textContent = truth ? (free ? "free" : decimals(read(truth), count)) : "";
     });
@@ -134,7 +134,7 @@ const change = (degrees: number): string =>
 const sure = ({ status, uncertainty }: StepReport): StepReport["uncertainty"] =>
   status === "lost" ? undefined : uncertainty;
 
-/** One sigma of each part of the pose; what is held or cannot be seen has none. */
+/** One sigma of each part of the pose; parts that are fixed or not observable have none. */
 const extras: readonly Extra[] = [
   { term: "overlap", name: "Overlap", read: ({ overlap }) => `${decimals(100 * overlap, 0)} %` },
   { term: "inliers", name: "Inliers", read: ({ inliers }) => `${decimals(100 * inliers, 0)} %` },

@@ -1,4 +1,4 @@
-/** What a run has shown so far: its reports, where it began, and the truth where that is known. */
+/** The record of a run: its reports, its initial pose, and the truth if known. */
 
 import type { Opened } from "../engine/protocol";
 import type { Pose, StepReport } from "../../pkg/index.js";

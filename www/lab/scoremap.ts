@@ -5,7 +5,7 @@ import { colourAt } from "../draw/colours";
 import { byId } from "../dom";
 import { decimals } from "../draw/numbers";
 
-/** Half of what is shown, degrees: the search leaves out views from behind. */
+/** Half of the range shown, degrees; the search leaves out views from behind. */
 const REACH = 105;
 /** Distance of neighbouring rotations, degrees: the side of a square. */
 const SPACING = 16;

@@ -28,20 +28,20 @@ const number = (settings: Settings, key: string): number | undefined => {
 };
 const text = (settings: Settings, key: string): string => String(settings[key]);
 
-/** Settings that no field shows: what the page has put into a field by itself, until the visitor changes that. */
+/** Values that the page has put into fields by itself, until the visitor changes them. */
 const GUESSED = { unit: "guessedUnit", meaning: "guessedMeaning" } as const;
 
 /** Whether the field holds what the page has put there. */
 export const isGuessed = (settings: Settings, key: keyof typeof GUESSED): boolean =>
   settings[key] !== null && settings[key] === settings[GUESSED[key]];
 
-/** A field as the page fills it; nothing empties it. */
+/** Fills a field for the visitor; nothing empties it. */
 export const guess = (key: keyof typeof GUESSED, value: Value | undefined): Settings => ({
   [key]: value ?? null,
   [GUESSED[key]]: value ?? null,
 });
 
-/** Puts a value where its path says, below what its first name stands for. */
+/** Sets a value at a path below the object of its first name. */
 function place(root: Record<string, unknown>, path: string, value: unknown): void {
   const names = path.split(".").slice(1);
   const last = String(names.pop());
@@ -50,7 +50,7 @@ function place(root: Record<string, unknown>, path: string, value: unknown): voi
   inner[last] = value;
 }
 
-/** What the fields of some rows say; an empty one is left to the library, as is what it would refuse beside the others. */
+/** The values of these rows' fields. Empty fields are left to the library, and so are values that it would refuse beside the others. */
 function told<T extends object>(given: readonly Field[], settings: Settings, source: Origin): Partial<T> {
   const object: Record<string, unknown> = {};
   for (const { key, path, when } of given) {
@@ -80,7 +80,7 @@ export const isLightText = (text: string): boolean => text.includes(" ");
 export const lightText = (coefficients: readonly number[]): string =>
   coefficients.map((value) => String(Number(value.toPrecision(4)))).join(" ");
 
-/** By how much the sample's light is turned. */
+/** The angles by which the sample's light is rotated. */
 export const turnOf = (settings: Settings): { alpha: number; beta: number } => ({
   alpha: number(settings, "lightTilt") ?? 0,
   beta: number(settings, "lightTurn") ?? 0,
@@ -92,7 +92,7 @@ function size(settings: Settings): Pick<SampleRequest, "size" | "height"> {
   return { size: width, height };
 }
 
-/** The numbers in a line of text, however they are set apart. */
+/** The numbers in a line of text, whatever separates them. */
 const listed = (settings: Settings, key: string): number[] =>
   text(settings, key)
     .split(/[\s,;[\]]+/)
@@ -126,7 +126,7 @@ export function startNear({ alpha, beta, gamma }: Record<"alpha" | "beta" | "gam
   return { start: "near", "start.alpha": rounded(alpha), "start.beta": rounded(beta), "start.gamma": rounded(gamma) };
 }
 
-/** The value at a path below what its first name stands for. */
+/** The value at a path below the object of its first name. */
 const valueAt = (root: unknown, path: string): unknown =>
   path
     .split(".")
@@ -151,7 +151,7 @@ export function settingsOf(options: Options): Settings {
   };
 }
 
-/** What the explanations have to know of a run. */
+/** The facts about a run on which explanations depend. */
 export function methodOf(settings: Settings, source: Origin): Method {
   const { light, start, registration = "joint", shading = "surface" } = runOptions(settings, source);
   return { lightIsKnown: light !== "estimate", searches: start === "search", registration, shading };

@@ -12,7 +12,7 @@ const looks = { "clouds-style": "surfaces", "clouds-texture": "view", pace: "1" 
 const selects = () =>
   Object.entries(looks).map(([id, initial]) => ({ id, initial, select: byId(id, HTMLSelectElement) }));
 
-/** Takes over what an address says of them; of what it does not say, nothing changes. */
+/** Applies the choices in an address; the others stay unchanged. */
 export function showLooks(hash: string): void {
   const given = new URLSearchParams(hash.replace(/^#/, ""));
   for (const { id, select } of selects()) {

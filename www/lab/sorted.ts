@@ -72,7 +72,7 @@ function fieldsOf(
   if (depth?.look.isInverse && settings.meaning !== "inverse") {
     Object.assign(fields, guess("meaning", "inverse"));
     say(
-      `${depth.file.name}: its name says disparities or inverse depths, so larger numbers are read as nearer (Depth camera, Numbers).`,
+      `${depth.file.name}: its name suggests disparities or inverse depths, so larger numbers are read as nearer (Depth camera, Numbers).`,
     );
   } else if (depth && !depth.look.isInverse && isGuessed(settings, "meaning")) fields.meaning = "depth";
   const beside = ofKind(seen, "cameras").find(({ look }) => look.unit !== undefined);

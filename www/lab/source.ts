@@ -25,14 +25,14 @@ export function wasOwn(): boolean {
   }
 }
 
-/** Which fields a source has to do with. */
+/** The fields that belong to a source. */
 export const originOf = (source: Source): Origin => (source.kind === "sample" ? "sample" : "files");
 
-/** Which object a sample shows, whatever its light or noise; none that is known of any other source. */
+/** The object of a sample, whatever its light or noise; undefined for other sources. */
 export const objectOf = (source: Source | string, { surface, size, protocol }: Settings): string =>
   typeof source === "string" || source.kind !== "sample" ? "" : [surface, size, protocol].join(" ");
 
-/** The files that are read of a source, in words; nothing of a sample. */
+/** The files of a source, in words; empty for a sample. */
 export function namesIn(source: Source): string {
   if (source.kind === "sample") return "";
   const files = source.kind === "saved" ? [source.file] : [source.files.colour, source.files.depth];
@@ -54,7 +54,7 @@ export function belongings(input: Input): ArrayBuffer[] {
   return [...new Set(arrays.flatMap((array) => (array?.buffer instanceof ArrayBuffer ? [array.buffer] : [])))];
 }
 
-/** What can be done about what is lacking. */
+/** What to do about missing input. */
 export function wayOut(lacking: string): string {
   if (lacking.includes(FACTOR))
     return "Inverse depths are known up to a factor. Enter it in the settings (Depth camera), or leave all fields of that camera empty.";
@@ -70,7 +70,7 @@ export const sampleOf = (settings: Settings): SampleSource => ({
   turn: turnOf(settings),
 });
 
-/** Or in words what it still lacks. */
+/** Or what it still lacks, in words. */
 export function sourceOf(
   origin: Origin,
   settings: Settings,

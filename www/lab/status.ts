@@ -51,7 +51,7 @@ export class Status {
     this.#put(this.#message, end ? "" : (report.message ?? ""));
   }
 
-  /** Something other than the loop is going on, or has gone wrong. */
+  /** Something other than the loop is running, or has failed. */
   announce(state: Notice, words: string, cause: string): void {
     this.#say(state, state === "error" ? "wrong" : "open", words);
     this.#put(this.#cause, cause);
@@ -76,7 +76,7 @@ export class Status {
     this.#put(this.#word, word);
   }
 
-  /** The same words again would be read aloud again. */
+  /** Setting the same words again would have them read aloud again. */
   #put(element: HTMLElement, words: string): void {
     if (element.textContent !== words) element.textContent = words;
   }

@@ -1,6 +1,6 @@
 /** The visitor's files in the browser's own database, so that a reload keeps them. Everything may fail: storage is full, or forbidden. */
 
-/** Where a file of the visitor's belongs. */
+/** The slot of a visitor's file. */
 export type Slot = "colour" | "depth" | "colourMask" | "depthMask";
 
 export type Files = Partial<Record<Slot, File>>;

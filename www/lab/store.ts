@@ -1,4 +1,4 @@
-/** The settings and what they were before: every change can be undone, a reset to the defaults too. */
+/** The settings and their history: every change can be undone, also a reset to the defaults. */
 
 import { defaults, type Settings, type Value } from "./settings";
 
@@ -12,7 +12,7 @@ export class Store {
   #past: Settings[] = [];
   #undone: Settings[] = [];
   #listeners: Listener[] = [];
-  /** What the newest change came of, if it may go on. */
+  /** The gesture of the newest change, if it may continue. */
   #gesture: object | undefined;
 
   constructor(initial: Settings) {
@@ -35,7 +35,7 @@ export class Store {
     this.#listeners.push(listener);
   }
 
-  /** All changes of one `gesture`, as a drag that rests on its way, are one step back. */
+  /** All changes of one `gesture`, such as a drag with pauses, are one step of undo. */
   change(patch: Record<string, Value>, live = false, gesture?: object): void {
     const next = { ...this.#now, ...patch };
     if (differing(next, this.#now).length === 0) return;
@@ -59,7 +59,7 @@ export class Store {
   /** What the page fills in by itself, such as guesses: not a step of undo, and nothing runs because of it. */
   complete(patch: Settings): void {
     const isNew = Object.entries(patch).some(([key, value]) => value !== (this.#now[key] ?? null));
-    // What the visitor is typing meanwhile is shown over by every change.
+    // Every change overwrites what the visitor is typing meanwhile.
     if (!isNew) return;
     const next = { ...this.#now, ...patch };
     this.#now = next;

@@ -70,7 +70,7 @@ const FILES: Readonly<Record<LargeKind, { name: string; type: string }>> = {
   depthNormals: { name: "refined-normals.png", type: "image/png" },
 };
 
-/** A file's name of a title. */
+/** The file name for a title. */
 const slug = (title: string): string =>
   title
     .toLowerCase()
@@ -106,7 +106,7 @@ async function report(run: Run): Promise<Made> {
   return made("bimodal-stereo-report.html", "text/html", html);
 }
 
-/** The run itself, to go on with later. */
+/** The run itself, to resume later. */
 export const fileOfRun = (bytes: Uint8Array): Made =>
   made(
     "run.bimodal",

@@ -28,7 +28,7 @@ export class Transport {
     const focused = bar.contains(document.activeElement) ? document.activeElement : undefined;
     if (low.matches) byId("inputs", HTMLElement).before(bar);
     else document.querySelector("footer")?.after(bar);
-    // What is moved loses the focus.
+    // An element that is moved loses the focus.
     if (focused instanceof HTMLElement) focused.focus();
   }
 

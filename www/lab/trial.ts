@@ -8,7 +8,7 @@ import { sampleOf } from "./source";
 import type { Store } from "./store";
 
 class Trial {
-  /** What is to be looked at next: what it changes in the settings. */
+  /** The next preview: its changes of the settings. */
   #next: Settings | undefined;
   #isLooking = false;
   readonly #look: (patch: Settings) => Promise<void>;
@@ -29,13 +29,13 @@ class Trial {
     this.#isLooking = false;
   }
 
-  /** What is moved has come to rest: nothing more is only looked at. */
+  /** The control has come to rest: the preview ends. */
   end(): void {
     this.#next = undefined;
   }
 }
 
-/** What a light that is moved has to do with. */
+/** The context of a light that is being moved. */
 export interface Lit {
   store: Store;
   engine: Engine;

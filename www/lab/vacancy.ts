@@ -6,7 +6,7 @@ import { sentence } from "./verdict";
 
 const lab = (): HTMLElement => byId("lab", HTMLElement);
 
-/** Nothing of a pair stays in sight. */
+/** Nothing of the previous pair stays visible. */
 export function vacate(): void {
   byId("iteration", HTMLElement).textContent = "0";
   lab().toggleAttribute("data-vacant", true);

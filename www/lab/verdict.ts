@@ -1,15 +1,15 @@
-/** What a run has come to, in words that do not claim more than it is. */
+/** The outcome of a run, in words that do not overstate it. */
 
 import type { Pose, StepReport } from "../../pkg/index.js";
 import { decimals } from "../draw/numbers";
 import { remedyOf } from "../remedies";
 
 export interface Verdict {
-  /** Whether the outcome may be built on: "open" where nothing says so or against it. */
+  /** Whether the outcome can be relied on; "open" if nothing supports or contradicts it. */
   tone: "good" | "open" | "wrong";
   status: string;
   words: string;
-  /** What may help; empty where nothing has to. */
+  /** Advice; empty if none is needed. */
   next: string;
 }
 
@@ -17,7 +17,7 @@ export interface Verdict {
 export const isSearching = ({ status, stage, iteration }: StepReport): boolean =>
   status === "running" && stage === "search" && iteration === 0;
 
-/** What a pose and a light are at this moment: before the first step nothing is found. */
+/** The words for pose and light at this moment: before the first step nothing has been found. */
 export const standing = (report: StepReport): string =>
   isSearching(report) ? "candidate" : report.status === "running" && report.iteration === 0 ? "start" : "found";
 
@@ -52,16 +52,16 @@ const ends: Record<Exclude<StepReport["status"], "running">, string> = {
   lost: "lost",
 };
 
-/** Where all went well there is more to try. */
+/** Suggestions after a successful run. */
 const HARDER = "Rotate the surfaces, drag the light, or try “Too hard”, where no pose can be recovered.";
-/** The right pose, but for what noise does to it. */
+/** The right pose, up to noise. */
 const FINER = "Less noise or a larger image would bring it closer.";
 
 /** Where the pose is not sought at all. */
 const HELD = "The pose stayed at its initial value, as set under Registration.";
 const FREE = "To let it move, choose Settings, Registration, joint.";
 
-/** How a finished loop is to be taken; nothing while it runs. */
+/** The interpretation of a finished loop; undefined while it runs. */
 export function verdict(
   { status, message, reason, pose }: StepReport,
   start: Pose | undefined,
@@ -110,7 +110,7 @@ export function verdict(
   if (status === "ambiguous") return { tone: "open", status: ends[status], words: said.join(" "), next: help };
   const stayed = start !== undefined && angleBetween(pose.rotation, start.rotation) < STAYED;
   const caution = stayed
-    ? "The rotation is still the initial one; that does not confirm it."
+    ? "The rotation did not move from its initial value, which does not confirm it."
     : "The pose has not converged; don't rely on it.";
   return {
     tone: "wrong",

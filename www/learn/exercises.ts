@@ -33,7 +33,7 @@ export const exercises: readonly Exercise[] = [
       "Both pictures have 3 % noise. Compare the mean errors of the normals, and explain the difference by the shapes of the two cost maps.",
     answer: [
       "The coloured lamps leave a few small dark spots. The three curves of equal intensity cross at large angles, so noise moves the crossing only a little. Under the window light the three colours change almost in proportion, so the curves almost coincide. The valley is long and flat, and noise moves its lowest point far along it.",
-      "In numbers: the Gauss-Newton matrix of the pixel is the sum over the colours of gradient times gradient, and the variance of the noise is divided by its smallest eigenvalue. With three nearly parallel gradients that eigenvalue is nearly zero.",
+      "In numbers: the Gauss-Newton matrix of the pixel is the sum over the colours of each gradient times its transpose, and the variance of the normal is that of the noise divided by the smallest eigenvalue. With three nearly parallel gradients that eigenvalue is nearly zero.",
     ],
   },
   {
@@ -59,7 +59,7 @@ export const exercises: readonly Exercise[] = [
       "Raise λ from the left until the pixel has a single minimum. Note λ and how far the solver ends from the truth. Repeat with the pose 20° off, and then with the robust prior. Which λ would you choose for a loop that starts with a wrong pose?",
     answer: [
       "With the right pose a larger λ only helps: the wrong minima vanish and the remaining one is the true normal. With the pose 20° off they vanish, too, but the remaining minimum moves toward the wrong prior; at large λ the pixel simply repeats the prior.",
-      `So λ should be just large enough to choose among the minima and too small to move them; the program uses ${OPTIONS.lambda.members.prior.default} against squared log residuals. The robust prior loses its influence beyond some 23°: at that λ it chooses among nearby minima, and a prior that is far off hardly moves the pixel. A much larger λ moves it nevertheless.`,
+      `So λ should be just large enough to choose among the minima and too small to move them; the program uses ${OPTIONS.lambda.members.prior.default} against squared log residuals. The robust prior loses its influence beyond about 23°: at that λ it chooses among nearby minima, and a prior that is far off hardly moves the pixel. A much larger λ moves it nevertheless.`,
     ],
   },
   {

@@ -1,4 +1,4 @@
-/** What the tables' page and their worker say to each other. */
+/** Messages between the page of tables and its worker. */
 
 import type { Fault } from "../engine/protocol";
 import type { Cell, Result } from "./protocol";

@@ -14,7 +14,7 @@ import type { Options, SampleRequest, StepReport } from "../../pkg/index.js";
 export { median, worst } from "../../protocols/numbers.mjs";
 export { paperDegrees };
 
-/** What a cell says of itself, and a row of what was measured. */
+/** A cell's description, and a row of its measurements. */
 export type Row = Record<string, unknown>;
 
 export interface Cell {
@@ -64,7 +64,7 @@ export interface Aim {
   ok: boolean | null;
 }
 
-/** Names stand for the package's own scenes: other people's surfaces and lights are no part of the page. */
+/** Names stand for the package's own scenes: third-party surfaces and lights are not part of the page. */
 export const library = { surface: (name: string) => name, light: (name: string) => name };
 
 const own = kit(false);

@@ -15,7 +15,7 @@ export class Runner {
   #queue: Cell[] = [];
   #running: Cell | undefined;
   #worker: Worker | undefined;
-  /** What a cell that is run again had come to before: a stop must not lose it. */
+  /** The earlier result of a cell that is run again, which a stop must not lose. */
   #before = new Map<string, State>();
   readonly #onChange: (id: string) => void;
 
@@ -32,7 +32,7 @@ export class Runner {
     return this.#running !== undefined;
   }
 
-  /** Those of the cells that have come to an end, well. */
+  /** The cells that have ended successfully. */
   results(cells: readonly Cell[]): { cell: Cell; result: Result }[] {
     return cells.flatMap((cell) => {
       const state = this.#states.get(cell.id);
@@ -106,7 +106,7 @@ export class Runner {
     onGone(worker, () => {
       if (worker === this.#worker) this.#breakDown(GONE);
     });
-    // What a worker said before its end may arrive after it.
+    // Messages that a worker sent before its end may arrive afterwards.
     worker.onmessage = (event: MessageEvent<CellAnswer>) => {
       if (worker === this.#worker) this.#receive(event.data);
     };

@@ -94,7 +94,7 @@ fn files_that_are_something_else() {
     refused(&[&large, &depth], &["large.png", "5000x1", "4096"]);
     let zero = made.path("zero.png");
     write_png(zero.as_ref(), SIDE, png::ColorType::Grayscale, png::BitDepth::Sixteen, &[0; 2 * SIDE * SIDE]);
-    refused(&[&image, &zero], &["zero.png", "no pixel of it holds a depth"]);
+    refused(&[&image, &zero], &["zero.png", "no valid depth"]);
     refused(&[&zero, &depth], &["zero.png", "black"]);
     refused(&[&image, &depth, "--image-mask", &zero], &["zero.png", "mask is empty"]);
     let small = made.path("small.png");

@@ -66,7 +66,7 @@ fn cameras_that_do_not_fit_are_refused() {
         r#"{"fx": 300, "fy": 300, "cx": 23.5, "cy": 23.5, "distortion_model": "omni", "distortion": [0.1, 0, 0, 0]}"#,
         "omni",
     );
-    refused("1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n", "holds no camera");
+    refused("1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n", "contains no camera");
     refused("no camera at all", "elsewhere.json");
 }
 

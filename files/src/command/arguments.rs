@@ -54,7 +54,7 @@ impl Arguments {
 
 fn cue(name: &str) -> std::result::Result<Cue, String> {
     let found = Cue::ALL.into_iter().find(|cue| cue.name() == name.trim());
-    found.ok_or_else(|| format!("is one of {}", Cue::ALL.map(Cue::name).join(", ")))
+    found.ok_or_else(|| format!("must be one of {}", Cue::ALL.map(Cue::name).join(", ")))
 }
 
 #[cfg(test)]

@@ -56,7 +56,7 @@ fn add(
     warnings: &mut Warnings,
 ) -> Result<()> {
     if calibration.poses.is_empty() {
-        return Err(Problem::file(path, "it holds no extrinsics"));
+        return Err(Problem::file(path, "it contains no extrinsics"));
     }
     let is_only = calibration.poses.len() == 1;
     for (index, pose) in calibration.poses.iter().enumerate() {
@@ -69,7 +69,7 @@ fn add(
         let turns = is_inverted || is_backwards(pose);
         if turns && !is_inverted {
             let [from, to] = [&pose.names.from, &pose.names.to].map(|name| name.as_deref().unwrap_or(""));
-            let words = format!("it carries {from} to {to}; its inverse was checked.");
+            let words = format!("it maps {from} to {to}; its inverse was checked.");
             warnings.push(Warning::new("inverse-checked", words).of_file(name));
         }
         // JavaScript would sort a number used as a name first, and two files may share a name.

@@ -97,7 +97,7 @@ fn check(arguments: &Arguments, terminal: &mut Terminal<'_>) -> std::result::Res
     let Candidates { poses, readings, cameras } = candidates(arguments, &mut warnings)?;
     for path in &arguments.cameras {
         if read_calibration(path)?.cameras.is_empty() {
-            return Err(Problem::file(path, "it holds no intrinsics").into());
+            return Err(Problem::file(path, "it contains no intrinsics").into());
         }
     }
     let options = FolderOptions {
@@ -110,7 +110,7 @@ fn check(arguments: &Arguments, terminal: &mut Terminal<'_>) -> std::result::Res
     if frames.is_empty() {
         let first = doubts.first().map(|warning| format!(": {warning}")).unwrap_or_default();
         let folder = &arguments.folder;
-        let reason = format!("it holds no pair of a colour image and a depth map that could be read{first}");
+        let reason = format!("it contains no readable pair of a colour image and a depth map{first}");
         return Err(Problem::file(folder, reason).into());
     }
     let run = CalibrationCheck::new(frames, poses, &arguments.cues).map_err(|error| Problem::of_check(&error))?;

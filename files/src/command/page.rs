@@ -106,28 +106,21 @@ fn candidates(checked: &Checked) -> String {
             one.reason.to_string(),
         ]
     };
-    let head = [
-        "Calibration",
-        "Verdict",
-        "Turned by",
-        "Shifted by",
-        "Expected error",
-        "95 % interval",
-        "Probability",
-        "Reason",
-    ];
+    let head =
+        ["Calibration", "Verdict", "Rotation", "Shift", "Expected error", "95 % interval", "Probability", "Reason"];
     section("Calibrations compared", &table(&head, checked.report.candidates.iter().map(row)))
 }
 
 fn shares(checked: &Checked) -> String {
     let report = &checked.report;
-    let sharp = |sharpness: f64| if sharpness > 0.0 { measure(1.0 / sharpness, " px") } else { "not at all".into() };
+    let sharp =
+        |sharpness: f64| if sharpness > 0.0 { measure(1.0 / sharpness, " px") } else { "no information".into() };
     let cues = report.cues.iter().map(|one| vec![one.cue.name().to_owned(), percent(one.share), sharp(one.sharpness)]);
     let frames = report
         .frames
         .iter()
         .map(|one| vec![one.name.clone(), percent(one.share), one.note.clone().unwrap_or_default()]);
-    section("What the answer rests on", &table(&["Cue", "Share", "Tells the pose to"], cues))
+    section("What the verdict rests on", &table(&["Cue", "Share", "Precision"], cues))
         + &section("Frames", &table(&["Frame", "Share", "Note"], frames))
 }
 
@@ -167,7 +160,7 @@ pub fn page(checked: &Checked, title: &str) -> String {
          <meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{title}</title>\n<style>{STYLE}</style>\n</head>\n\
          <body>\n<header><h1>{title}</h1></header>\n<main>\n{}</main>\n\
-         <footer class=\"soft\">Made by bimodal-stereo. This file holds everything it shows.</footer>\n</body>\n</html>\n",
+         <footer class=\"soft\">Made by bimodal-stereo. This file is self-contained.</footer>\n</body>\n</html>\n",
         parts.concat()
     )
 }

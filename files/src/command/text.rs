@@ -50,7 +50,7 @@ pub fn headline(checked: &Checked) -> String {
 
 pub fn text(checked: &Checked) -> String {
     let report = &checked.report;
-    let head = ["calibration", "verdict", "turned by", "shifted by", "error, pixels (95 %)", "probability"];
+    let head = ["calibration", "verdict", "rotation", "shift", "error, pixels (95 %)", "probability"];
     let mut rows = vec![head.map(String::from)];
     rows.extend(report.candidates.iter().map(|one| {
         [

@@ -59,7 +59,7 @@ pub fn is_foreign_picture(bytes: &[u8]) -> bool {
 /// A description of what an unread file seems to be.
 pub fn describe(bytes: &[u8]) -> String {
     if let Some(kind) = read_elsewhere(bytes) {
-        return format!("it is {kind}, which is not read here; npx bimodal-stereo check reads it");
+        return format!("it is {kind}, which is not supported here; npx bimodal-stereo check reads it");
     }
     match kind_in(&PICTURES, bytes).or_else(|| kind_in(&OTHERS, bytes)) {
         Some(kind) => format!("it is {kind}"),

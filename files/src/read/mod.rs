@@ -44,7 +44,7 @@ pub fn whole(path: &Path) -> Result<Vec<u8>> {
     match bytes.len() as u64 {
         0 => Err(Problem::file(path, "it is empty")),
         length if length > MOST_BYTES => {
-            Err(Problem::file(path, format!("it is larger than {} MB, which is all that is read", MOST_BYTES >> 20)))
+            Err(Problem::file(path, format!("it is larger than {} MB, the limit", MOST_BYTES >> 20)))
         }
         _ => Ok(bytes),
     }
@@ -70,7 +70,7 @@ pub fn light(path: &Path) -> Result<Light> {
     /// A light takes half a kilobyte.
     const MOST_TEXT: u64 = 1 << 16;
     let bytes = head(path, MOST_TEXT).map_err(|error| Problem::file(path, error))?;
-    let text = String::from_utf8(bytes).map_err(|_| Problem::file(path, "it is no text"))?;
+    let text = String::from_utf8(bytes).map_err(|_| Problem::file(path, "it is not text"))?;
     let numbers: Vec<f64> = text
         .split(|letter: char| letter.is_whitespace() || ",;[]".contains(letter))
         .filter_map(|word| word.parse().ok())

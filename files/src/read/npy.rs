@@ -27,7 +27,7 @@ pub fn read(bytes: &[u8]) -> Result<Raster> {
     let Header { kind, in_columns, shape } = header(text)?;
     let (height, width, channels) = (shape[0], shape[1], shape.get(2).copied().unwrap_or(1));
     if channels > MOST_CHANNELS {
-        return Err(format!("this .npy file has {channels} channels; 1 to {MOST_CHANNELS} are read here"));
+        return Err(format!("this .npy file has {channels} channels; 1 to {MOST_CHANNELS} are supported"));
     }
     check_size(width, height)?;
     let count = height * width * channels;
@@ -43,7 +43,7 @@ pub fn read(bytes: &[u8]) -> Result<Raster> {
         "|u1" | "|b1" => Samples::U8(decoded(1)?.to_vec()),
         _ => {
             return Err(format!(
-                "a .npy file of type {kind:?} is not read here; save it as float32, float64, uint16, uint8 or int32"
+                "a .npy file of type {kind:?} is not supported; save it as float32, float64, uint16, uint8 or int32"
             ));
         }
     };

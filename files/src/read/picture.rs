@@ -72,13 +72,13 @@ fn decoded(bytes: &[u8], format: ImageFormat) -> image::ImageResult<(Raster, Opt
 /// The EXIF orientation in words.
 const fn turned(orientation: Orientation) -> &'static str {
     match orientation {
-        Orientation::NoTransforms => "not turned",
+        Orientation::NoTransforms => "not rotated",
         Orientation::FlipHorizontal => "mirrored",
         Orientation::FlipVertical => "mirrored upside down",
-        Orientation::Rotate90FlipH | Orientation::Rotate270FlipH => "mirrored and turned",
-        Orientation::Rotate90 => "turned by 90 degrees",
-        Orientation::Rotate180 => "turned by 180 degrees",
-        Orientation::Rotate270 => "turned by 270 degrees",
+        Orientation::Rotate90FlipH | Orientation::Rotate270FlipH => "mirrored and rotated",
+        Orientation::Rotate90 => "rotated by 90 degrees",
+        Orientation::Rotate180 => "rotated by 180 degrees",
+        Orientation::Rotate270 => "rotated by 270 degrees",
     }
 }
 
@@ -96,7 +96,7 @@ fn raster_of(picture: DynamicImage, orientation: Orientation) -> Raster {
     let (mut notes, mut warnings) = (Vec::new(), Vec::new());
     if orientation != Orientation::NoTransforms {
         let note = format!("{} as EXIF says", turned(orientation));
-        let words = format!("The picture was {note}; the intrinsics must be those of the turned picture.");
+        let words = format!("The picture was {note}; the intrinsics must be those of the rotated picture.");
         warnings.push(Warning::new("image-turned", words));
         notes.push(note);
     }

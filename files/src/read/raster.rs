@@ -34,7 +34,7 @@ pub struct Raster {
 /// Refuses too large a size before memory is allocated.
 pub(super) fn check_size(width: usize, height: usize) -> Result<(), String> {
     if width.max(height) > MOST_SIDE {
-        return Err(format!("it says that it is {width}x{height} pixels large; up to {MOST_SIDE} on a side are read"));
+        return Err(format!("it declares {width}x{height} pixels; up to {MOST_SIDE} on a side are supported"));
     }
     Ok(())
 }

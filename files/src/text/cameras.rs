@@ -49,7 +49,7 @@ pub fn camera_of(raw: RawCamera, warnings: &mut Warnings) -> Result<NamedCamera,
     let is_focal = |value: f64| value > 0.0 && value < LONGEST;
     if !(is_focal(fx) && is_focal(fy)) {
         return Err(format!(
-            "its camera{called} has the focal lengths {} and {}; numbers of pixels above zero are needed",
+            "its camera{called} has the focal lengths {} and {}; both must be above zero, in pixels",
             shown(fx),
             shown(fy)
         ));
@@ -70,11 +70,11 @@ fn size_of(raw: &RawCamera) -> Result<Option<[usize; 2]>, Reason> {
         (Some(0.0), Some(0.0)) => Ok(None),
         (Some(width), Some(height)) if is_side(width) && is_side(height) => Ok(Some([width as usize, height as usize])),
         (Some(width), Some(height)) => {
-            Err(format!("its camera says that images are {}x{} pixels large", shown(width), shown(height)))
+            Err(format!("its camera has the invalid image size {}x{}", shown(width), shown(height)))
         }
         (width, height) => {
             let (what, side) = (if width.is_none() { "height" } else { "width" }, width.or(height).unwrap_or(0.0));
-            Err(format!("its camera says only one side of its images: a {what} of {}", shown(side)))
+            Err(format!("its camera gives only the {what} of its images, {}", shown(side)))
         }
     }
 }
@@ -120,7 +120,7 @@ fn doubts(raw: &RawCamera, size: Option<[usize; 2]>, label: &str, warnings: &mut
 fn lens_of(raw: &RawCamera, label: &str, warnings: &mut Warnings) -> Result<Lens, Reason> {
     let values = &raw.distortion;
     if !values.iter().all(|value| value.is_finite() && value.abs() < 1e6) {
-        return Err("its distortion is not made of numbers".into());
+        return Err("its distortion contains something other than numbers".into());
     }
     let written = raw.model.as_deref().unwrap_or("").trim();
     let model = written.to_lowercase();

@@ -39,15 +39,15 @@ pub fn is_colmap(text: &str) -> bool {
 fn camera(line: &str) -> Result<RawCamera, Reason> {
     let short = || line.chars().take(60).collect::<String>();
     let parts = (line.len() <= HEAD).then(|| LINE.captures(line)).flatten();
-    let parts = parts.ok_or_else(|| format!("it has a line that is no camera: {}", short()))?;
+    let parts = parts.ok_or_else(|| format!("it has a line that is not a camera: {}", short()))?;
     let (id, name) = (&parts[1], &parts[2]);
     let (focals, lens, is_fisheye) =
-        model(name).ok_or_else(|| format!("its camera {id} is of the model {name}, which is not supported"))?;
+        model(name).ok_or_else(|| format!("its camera {id} has the model {name}, which is not supported"))?;
     let values: Vec<Option<f64>> = parts[5].split_whitespace().map(number_in).collect();
     let needed = focals + 2 + lens;
     let numbers = values.iter().copied().collect::<Option<Vec<f64>>>().filter(|numbers| numbers.len() == needed);
     let numbers =
-        numbers.ok_or_else(|| format!("its camera {id} ({name}) needs {needed} numbers, and has {}", values.len()))?;
+        numbers.ok_or_else(|| format!("its camera {id} ({name}) needs {needed} numbers, but has {}", values.len()))?;
     Ok(RawCamera {
         name: Some(id.into()),
         focal: [numbers[0], numbers[focals - 1]],

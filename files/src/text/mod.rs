@@ -32,7 +32,7 @@ use calibration::Reason;
 const MOST_TEXT: usize = 4 << 20;
 /// Most characters of YAML: calibrations have a few thousand.
 const MOST_YAML: usize = 1 << 18;
-const NO_FORM: &str = "it is a text in none of the forms that are read here";
+const NO_FORM: &str = "it is text in an unknown format";
 
 /// The text of a file; `None` if its bytes are not text.
 pub fn text_of(bytes: &[u8]) -> Option<String> {
@@ -57,7 +57,7 @@ pub fn text_of(bytes: &[u8]) -> Option<String> {
 pub fn read_text(text: &str) -> Result<Calibration, Reason> {
     let text = text.trim_start_matches('\u{feff}').trim();
     if text.is_empty() {
-        return Err("it is empty: there is nothing in it but spaces".into());
+        return Err("it is empty or has only spaces".into());
     }
     if ros::is_publisher(text) {
         return ros::read_publishers(text);
@@ -84,7 +84,7 @@ pub fn read_text(text: &str) -> Result<Calibration, Reason> {
 }
 
 fn searched(value: &Value, format: &str) -> Result<Calibration, Reason> {
-    const NEITHER: &str = "neither a camera (camera_matrix, K, fx fy cx cy, intrinsics) nor a motion (R and T, T_.., rotation and translation, a 4x4 matrix)";
+    const NEITHER: &str = "neither a camera (camera_matrix, K, fx fy cx cy, intrinsics) nor a transform (R and T, T_.., rotation and translation, a 4x4 matrix)";
     let is_text = |value: &Value| !value.is_object() && !value.is_array();
     if is_text(value) || value.as_array().is_some_and(|all| all.iter().all(is_text)) {
         return Err(NO_FORM.into());
@@ -106,10 +106,7 @@ fn json(text: &str) -> Result<Value, Reason> {
 
 fn yaml(text: &str) -> Result<Value, Reason> {
     if text.len() > MOST_YAML {
-        return Err(format!(
-            "it is text of {} characters, in none of the forms that are read here",
-            text.chars().count()
-        ));
+        return Err(format!("it is text of {} characters in an unknown format", text.chars().count()));
     }
     let plain = with_colons(&plain_yaml(text));
     let documents: Result<Vec<_>, _> =
@@ -174,7 +171,10 @@ fn xml(text: &str) -> Result<Value, Reason> {
     let whole = format!("<_all>{text}</_all>");
     // The parser would report a declaration below an element as damage.
     if ["<!DOCTYPE", "<![CDATA["].iter().any(|declaration| text.contains(declaration)) {
-        return Err("this XML declares a document type or raw data, which no calibration needs: not read".to_owned());
+        return Err(
+            "this XML declares a document type or raw data, which is not supported, because no calibration needs it"
+                .to_owned(),
+        );
     }
     let document = roxmltree::Document::parse_with_options(&whole, options)
         .map_err(|error| format!("this XML is damaged or cut off ({error})"))?;

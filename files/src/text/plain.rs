@@ -33,7 +33,7 @@ fn rows_of(text: &str) -> Result<Option<Vec<Vec<f64>>>, Reason> {
         }
         count += row.len();
         if count > MOST_NUMBERS {
-            return Err(format!("it holds more than {MOST_NUMBERS} numbers: no camera and no motion"));
+            return Err(format!("it has more than {MOST_NUMBERS} numbers, too many for cameras and transforms"));
         }
         rows.push(row);
     }
@@ -66,9 +66,9 @@ fn nine(values: &[f64; 9], size: Option<[f64; 2]>) -> Result<Calibration, Reason
         return camera(values, size, &[]);
     }
     if is([1, 2, 5]) {
-        return Err("its matrix of intrinsics is transposed: fx 0 cx / 0 fy cy / 0 0 1 are needed".into());
+        return Err("its matrix of intrinsics is transposed; it must be fx 0 cx / 0 fy cy / 0 0 1".into());
     }
-    Err("its nine numbers are no matrix of intrinsics, fx 0 cx / 0 fy cy / 0 0 1; a rotation needs its translation beside it".into())
+    Err("its nine numbers are not a matrix of intrinsics (fx 0 cx / 0 fy cy / 0 0 1), and a rotation needs its translation".into())
 }
 
 /// TUM: time stamp, translation and quaternion x y z w of the camera in the world.
@@ -83,7 +83,7 @@ fn trajectory(rows: &[Vec<f64>]) -> Result<Calibration, Reason> {
     };
     let poses = rows.iter().map(pose).collect::<Result<Vec<_>, _>>()?;
     warnings.0.truncate(MOST_WARNINGS);
-    let format = if rows.len() == 1 { "a shift and a quaternion" } else { "a trajectory" };
+    let format = if rows.len() == 1 { "a translation and a quaternion" } else { "a trajectory" };
     Ok(Calibration { poses, ..found(format, warnings) })
 }
 
@@ -108,7 +108,7 @@ pub fn read(text: &str) -> Result<Option<Calibration>, Reason> {
 fn of_rows(rows: &[Vec<f64>]) -> Result<Calibration, Reason> {
     let values = rows.concat();
     if values.iter().any(|value| value.is_nan()) {
-        return Err("it holds numbers that are none (nan, inf)".into());
+        return Err("it has nan or inf where numbers are needed".into());
     }
     let is_log = |(index, row): (usize, &Vec<f64>)| row.len() == if index % 5 == 0 { 3 } else { 4 };
     if rows.len().is_multiple_of(5) && rows.iter().enumerate().all(is_log) {
@@ -126,7 +126,7 @@ fn of_rows(rows: &[Vec<f64>]) -> Result<Calibration, Reason> {
     if values.len() == 12 || values.len() == 16 {
         let mut warnings = Warnings::default();
         let pose = motion_of_matrix(&values, Names::default(), &mut warnings, true)?;
-        return Ok(Calibration { poses: vec![pose], ..found("a matrix of a motion", warnings) });
+        return Ok(Calibration { poses: vec![pose], ..found("a matrix of a transform", warnings) });
     }
     if let (&[fx, fy, cx, cy, ref lens @ ..], 1) = (&values[..], rows.len())
         && matches!(values.len(), 4 | 9 | 12)
@@ -136,7 +136,7 @@ fn of_rows(rows: &[Vec<f64>]) -> Result<Calibration, Reason> {
         return camera(&[fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0], None, lens);
     }
     Err(format!(
-        "it holds {} numbers in {} rows: 3x3 of intrinsics, 3x4 or 4x4 of a motion, or rows of a trajectory are read",
+        "it has {} numbers in {} rows; 3x3 of intrinsics, 3x4 or 4x4 of a transform, or rows of a trajectory are needed",
         values.len(),
         rows.len()
     ))

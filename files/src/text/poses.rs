@@ -159,11 +159,11 @@ pub fn motion_of_matrix(
     is_rig: bool,
 ) -> Result<NamedPose, Reason> {
     if values.len() != 12 && values.len() != 16 {
-        return Err(format!("a motion has 3x4 or 4x4 numbers, not {}", values.len()));
+        return Err(format!("a transform has 3x4 or 4x4 numbers, not {}", values.len()));
     }
     if values.len() == 16 && !is_last_row(&values[12..]) {
         if is_last_row(&last_column(values)) {
-            return Err("its matrix is transposed: the translation stands in the last row".into());
+            return Err("its matrix is transposed: the translation is in the last row".into());
         }
         let row: Vec<String> = values[12..].iter().map(|&value| shown(value)).collect();
         return Err(format!("its matrix ends in the row {}, not in 0 0 0 1", row.join(" ")));

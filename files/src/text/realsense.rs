@@ -69,7 +69,7 @@ pub fn read(text: &str) -> Result<Calibration, Reason> {
         return Err(format!("it holds more than {MOST} intrinsics and extrinsics"));
     }
     if starts.is_empty() {
-        return Err("it names intrinsics or extrinsics of RealSense, but of no stream".into());
+        return Err("it has intrinsics or extrinsics of RealSense, but no stream".into());
     }
     for (index, &start) in starts.iter().enumerate() {
         let end = starts.get(index + 1).copied().unwrap_or(lines.len()).min(start + 1 + BLOCK);

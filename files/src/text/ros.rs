@@ -60,7 +60,7 @@ fn of_flags(words: &[String], warnings: &mut Warnings) -> Result<NamedPose, Reas
     let number = |name: &str, missing: f64| match values.get(name) {
         None => Ok(missing),
         Some(text) => {
-            number_in(text).ok_or_else(|| format!("its static transform has --{name} {text}, which is no number"))
+            number_in(text).ok_or_else(|| format!("its static transform has --{name} {text}, which is not a number"))
         }
     };
     let is_quaternion = ["qx", "qy", "qz", "qw"].iter().any(|name| values.contains_key(name));
@@ -123,7 +123,7 @@ pub fn read_echo(text: &str) -> Result<Calibration, Reason> {
         let numbers: Option<Vec<f64>> = listed.split(',').map(number_in).collect();
         numbers
             .filter(|numbers| numbers.len() == count)
-            .ok_or_else(|| format!("its transform has not {count} numbers where they are needed"))
+            .ok_or_else(|| format!("its transform does not have {count} numbers where they are needed"))
     };
     let (turn, shift) = (numbers(&QUATERNION, 4)?, numbers(&TRIPLE, 3)?);
     let mut found = Calibration { format: "a transform of ROS".into(), ..Calibration::default() };

@@ -148,7 +148,7 @@ impl Search {
         if let (Some(fx), Some(cx)) = (number_of(member(node, &["fx"])), number_of(member(node, &["cx", "ppx"]))) {
             let (Some(fy), Some(cy)) = (number_of(member(node, &["fy"])), number_of(member(node, &["cy", "ppy"])))
             else {
-                return Err("it has a camera of fx and cx without fy and cy".into());
+                return Err("its camera has fx and cx, but not fy and cy".into());
             };
             return self.add(RawCamera { name, focal: [fx, fy], centre: [cx, cy], ..rest(node, "")? });
         }
@@ -157,7 +157,7 @@ impl Search {
             if model != "pinhole" {
                 let model = short(&model);
                 return Err(format!(
-                    "its camera \"{called}\" is of Kalibr's model \"{model}\"; only pinhole is supported"
+                    "its camera \"{called}\" has Kalibr's model \"{model}\"; only pinhole is supported"
                 ));
             }
             let [fx, fy, cx, cy] = four[..] else {
@@ -174,7 +174,7 @@ impl Search {
         let Some(k) = intrinsics(matrix.as_ref()) else {
             let is_wrong = matrix.is_some_and(|matrix| matrix.values.len() == 9) && label.is_empty() && key != "M";
             return if is_wrong {
-                Err(format!("its {key} is no matrix of intrinsics, fx 0 cx / 0 fy cy / 0 0 1"))
+                Err(format!("its {key} is not a matrix of intrinsics (fx 0 cx / 0 fy cy / 0 0 1)"))
             } else {
                 Ok(())
             };
@@ -228,7 +228,7 @@ impl Search {
             _ if r.values.len() == 9 => motion(&r.values, &t.values, names, warnings, true)?,
             _ => {
                 return Err(format!(
-                    "its {key} has {} numbers: 9 of a matrix, 4 of a quaternion or 3 of a vector are needed",
+                    "its {key} has {} numbers; a rotation needs 9 (matrix), 4 (quaternion) or 3 (vector or angles)",
                     r.values.len()
                 ));
             }
@@ -320,7 +320,7 @@ fn rest(node: &Node, label: &str) -> Result<RawCamera, Reason> {
         && !written.is_string()
         && !is_empty(written)
     {
-        return Err("its distortion is not made of numbers".into());
+        return Err("its distortion contains something other than numbers".into());
     }
     static ANGLES: Pattern = Pattern::new(|| pattern("(?i)fisheye|kannala|equi"));
     let used: Vec<usize> =

@@ -18,7 +18,7 @@ const LAYOUTS: [floats: number, others: string[], of: string][] = [
 ];
 /** Coordinates of a LiDAR's points, metres, at most. */
 const FARTHEST = 500;
-/** A smaller float other than zero is no coordinate but the bits of another type. */
+/** A smaller float other than zero is not a coordinate but the bits of another type. */
 const LEAST = 1e-6;
 /** Share of points whose coordinates have to be plausible. */
 const NEARLY_ALL = 0.99;
@@ -52,7 +52,7 @@ function isRing(values: Float32Array): boolean {
   return values.every((value) => Number.isInteger(value) && value >= 0 && value < 512) && new Set(values).size > 1;
 }
 
-/** The scan in a file of nothing but floats; undefined where these are no points. */
+/** The scan in a file of nothing but floats; undefined where these are not points. */
 export function readBin(bytes: Uint8Array): Points | undefined {
   if (bytes.length % 4 !== 0 || bytes.length > 24 * MOST_POINTS) return undefined;
   const values = new Float32Array(bytes.slice().buffer);

@@ -75,10 +75,9 @@ function sizeOf(raw: RawCamera): { width: number; height: number } | undefined {
   if (width === 0 && height === 0) return undefined;
   if (width === undefined || height === undefined)
     throw badFile(
-      `its camera has only one side of its images: a ${width === undefined ? "height" : "width"} of ${width ?? height}`,
+      `its camera gives only the ${width === undefined ? "height" : "width"} of its images, ${width ?? height}`,
     );
-  if (!isSide(width) || !isSide(height))
-    throw badFile(`its camera has images of ${width}x${height} pixels, which is not a size`);
+  if (!isSide(width) || !isSide(height)) throw badFile(`its camera has the invalid image size ${width}x${height}`);
   return { width, height };
 }
 
@@ -88,7 +87,7 @@ export function cameraOf(raw: RawCamera, warnings: ReaderWarning[]): NamedCamera
   const [cx = NaN, cy = NaN] = raw.centre;
   const of = raw.name === undefined ? "its camera" : `its camera "${raw.name}"`;
   if (!(fx > 0 && fy > 0 && fx < LONGEST && fy < LONGEST))
-    throw badFile(`${of} has the focal lengths ${fx} and ${fy}; numbers of pixels above zero are needed`);
+    throw badFile(`${of} has the focal lengths ${fx} and ${fy}; both must be above zero, in pixels`);
   if (!(Math.abs(cx) < LONGEST && Math.abs(cy) < LONGEST)) throw badFile(`${of} has the principal point ${cx}, ${cy}`);
   const size = sizeOf(raw);
   const label = raw.name === undefined ? "The camera" : `The camera "${raw.name}"`;
@@ -142,7 +141,7 @@ function lensOf(
   warnings: ReaderWarning[],
 ): Lens {
   if (!values.every((value) => Number.isFinite(value) && Math.abs(value) < 1e6))
-    throw badFile("its distortion is not made of numbers");
+    throw badFile("its distortion contains something other than numbers");
   const model = written.trim().toLowerCase();
   const bent = values.some((value) => value !== 0);
   if (FISHEYE.test(model)) {

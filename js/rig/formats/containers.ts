@@ -61,7 +61,7 @@ const FIRST: Row[] = [
   [/^PAR1/, "a table in Parquet; export its images first"],
   [
     /^\x0a\x0d\x0d\x0a|^\xd4\xc3\xb2\xa1|^\xa1\xb2\xc3\xd4/,
-    "packets of a LiDAR (.pcap); save a scan of it as PCD by the maker's viewer or driver",
+    "packets of a LiDAR (.pcap); save a scan of it as PCD with the manufacturer's viewer or driver",
   ],
 ];
 
@@ -72,8 +72,8 @@ const NAMED: Row[] = [
   [/\.svo2?$/i, `a recording of the ZED (.svo); ${EXPORT} by the ZED SDK`],
   [/\.sens$/i, `a recording of ScanNet (.sens); ${EXPORT} by its SensReader`],
   [/\.e57$/i, `E57: ${CLOUD}`],
-  [/\.(?:fls|fws|zfs|rcp|rcs|ptg|lsproj)$/i, `a scan in the format of its maker: ${CLOUD}`],
-  [/\.(?:xef|rssdk|xed)$/i, `a recording of a Kinect or RealSense in its maker's format; ${EXPORT}`],
+  [/\.(?:fls|fws|zfs|rcp|rcs|ptg|lsproj)$/i, `a scan in its manufacturer's format: ${CLOUD}`],
+  [/\.(?:xef|rssdk|xed)$/i, `a recording of a Kinect or RealSense in its manufacturer's format; ${EXPORT}`],
   [/\.r3d$/i, `a recording of Record3D (.r3d), which is a ZIP archive; ${EXPORT}`],
   [/\.stl$/i, "a mesh (STL); render a depth map from it"],
   [/\.(?:pt|pth|ckpt)$/i, "a file of PyTorch; save the array by numpy.save"],
@@ -84,7 +84,7 @@ const NAMED: Row[] = [
   [/\.lzf$/i, "compressed by LZF; unpack it first"],
 ];
 
-/** Texts that are no calibrations, by their beginning. */
+/** Texts that are not calibrations, by their beginning. */
 const TEXTS: Row[] = [
   [
     /^(?:\s*#[^\n]*\n)*\s*(?:mtllib|usemtl|o\s|g\s|s\s|v\s|vn\s|vt\s)[^\n]*\n[\s\S]{0,4000}?^(?:v|vn|f)\s+[-\d.]/m,

@@ -1,7 +1,7 @@
 /** Decodes the text of a file. text.ts, which is loaded with the first text, reads its content. */
 import { MOST_TEXT } from "./limits.js";
 
-/** The text of a file; undefined where its bytes are no text. */
+/** The text of a file; undefined where its bytes are not text. */
 export function textOf(bytes: Uint8Array): string | undefined {
   if (bytes.length > MOST_TEXT) return undefined;
   const [first, second] = bytes;

@@ -5,7 +5,7 @@ import { type ReaderWarning, warning } from "../warnings.js";
 const ORIENTATION = 0x0112;
 const MOST_TAGS = 500;
 
-/** The orientation, 1 to 8, of what EXIF begins with: a TIFF without pixels. 1 where it says nothing. */
+/** The orientation, 1 to 8, from EXIF, which is a TIFF without pixels; 1 if EXIF does not state it. */
 export function exifOrientation(exif: Uint8Array): number {
   if (exif.length < 14) return 1;
   const view = new DataView(exif.buffer, exif.byteOffset, exif.byteLength);
@@ -25,18 +25,18 @@ const TURNS = [
   "",
   "",
   "mirrored",
-  "turned by 180 degrees",
+  "rotated by 180 degrees",
   "mirrored upside down",
-  "mirrored and turned",
-  "turned by 90 degrees",
-  "mirrored and turned",
-  "turned by 270 degrees",
+  "mirrored and rotated",
+  "rotated by 90 degrees",
+  "mirrored and rotated",
+  "rotated by 270 degrees",
 ];
 
 /** The note and the warning about a picture that was turned: most intrinsics are those of the sensor's frame. */
 export function turnedWords(orientation: number, why: string): { note: string; turned: ReaderWarning } {
   const note = `${TURNS[orientation]} as ${why}`;
-  const message = `The picture was ${note}; the intrinsics must be those of the turned picture.`;
+  const message = `The picture was ${note}; the intrinsics must be those of the rotated picture.`;
   return { note, turned: warning("image-turned", message, { orientation }) };
 }
 

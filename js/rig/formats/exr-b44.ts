@@ -52,7 +52,7 @@ function channelOf(
 ): [Float32Array, number] {
   if (type !== HALF) {
     const end = from + width * rows * (SIZES[type] ?? 0);
-    if (end > body.length) throw badFile("this EXR by B44 is cut off or damaged");
+    if (end > body.length) throw badFile("this EXR (B44) is cut off or damaged");
     return [samplesOf(body.subarray(from, end), type), end];
   }
   const out = new Float32Array(width * rows);
@@ -60,7 +60,7 @@ function channelOf(
   let at = from;
   for (let top = 0; top < rows; top += SIDE) {
     for (let left = 0; left < width; left += SIDE) {
-      if (at + FLAT > body.length) throw badFile("this EXR by B44 is cut off or damaged");
+      if (at + FLAT > body.length) throw badFile("this EXR (B44) is cut off or damaged");
       at += unpack(body, at, block);
       for (let row = 0; row < SIDE && top + row < rows; row++)
         for (let column = 0; column < SIDE && left + column < width; column++)

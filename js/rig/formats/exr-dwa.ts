@@ -25,7 +25,7 @@ function rulesOf(body: Uint8Array, until: number): Rule[] {
   const found: Rule[] = [];
   for (let at = NUMBERS + 2; at < until; ) {
     const end = body.indexOf(0, at);
-    if (end < 0 || end + 2 >= until) throw badFile("this EXR is damaged in the rules of a block");
+    if (end < 0 || end + 2 >= until) throw badFile("this EXR is damaged: a block has invalid channel rules");
     const flags = body[end + 1] ?? 0;
     const suffix = String.fromCharCode(...body.subarray(at, end));
     found.push({ suffix, scheme: (flags >> 2) & 3, anyCase: (flags & 1) === 1, type: body[end + 2] ?? 0 });
@@ -59,7 +59,7 @@ function plane(body: Uint8Array, header: Header, used: number, rows: number): Ui
   const all = channels.filter(isUnknown).reduce((sum, each) => sum + size(each), 0);
   if (!isUnknown(own) || length !== all || start + packed > body.length)
     throw badFile(
-      "this EXR by DWA (DWAA or DWAB) stores its depths in a way that is not read here, or it is damaged; save it by ZIP",
+      "this EXR (DWAA or DWAB) is damaged or stores its depths in an unsupported way; save it with ZIP compression",
     );
   return inflateExactly(body.subarray(start, start + packed), length, "this EXR").subarray(before, before + size(own));
 }

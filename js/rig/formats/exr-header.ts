@@ -43,7 +43,7 @@ function channelList(view: DataView, bytes: Uint8Array, from: number, until: num
     const type = view.getInt32(next, true);
     if (SIZES[type] === undefined) throw badFile(`this EXR has a channel of the unknown type ${type}`);
     if (view.getInt32(next + 8, true) !== 1 || view.getInt32(next + 12, true) !== 1)
-      throw badFile("this EXR has channels of fewer pixels than the picture");
+      throw badFile("this EXR has channels with fewer pixels than the picture, which is not supported");
     found.push({ name, type });
     if (found.length > MOST_CHANNELS) throw badFile(`this EXR has more than ${MOST_CHANNELS} channels`);
     at = next + 16;
@@ -54,10 +54,10 @@ function channelList(view: DataView, bytes: Uint8Array, from: number, until: num
 export function readHeader(bytes: Uint8Array): Header {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   const flags = view.getUint32(4, true);
-  if ((flags & 0xff) > VERSION) throw badFile(`this EXR is of the unknown version ${flags & 0xff}`);
+  if ((flags & 0xff) > VERSION) throw badFile(`this EXR has the unknown version ${flags & 0xff}`);
   if (flags & 0x1a00)
     throw badFile(
-      `this EXR is ${flags & 0x200 ? "tiled" : flags & 0x800 ? "deep" : "of several parts"}, which is not read here; save it as plain scan lines`,
+      `this EXR is ${flags & 0x200 ? "tiled" : flags & 0x800 ? "deep" : "in several parts"}, which is not supported; save it as plain scan lines`,
     );
   const found: Header = { width: 0, height: 0, top: 0, compression: -1, lines: 0, channels: [], end: 0 };
   let at = 8;
@@ -84,7 +84,7 @@ export function readHeader(bytes: Uint8Array): Header {
   const lines = LINES[found.compression];
   if (lines === undefined)
     throw badFile(
-      `this EXR is compressed by ${COMPRESSIONS[found.compression] ?? "an unknown method"}, which is not read here; save it by ZIP`,
+      `this EXR is compressed with ${COMPRESSIONS[found.compression] ?? "an unknown method"}, which is not supported; save it with ZIP compression`,
     );
   found.lines = lines;
   return found;

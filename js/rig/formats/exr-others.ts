@@ -46,7 +46,7 @@ function names({ channels, compression }: Header, used: number[]): string[] {
   const isDwa = compression === DWAA || compression === DWAB;
   if (isDwa && channels.some(({ name }, index) => used.includes(index) && name !== given[index]))
     throw badFile(
-      "this EXR is compressed by DWA (DWAA or DWAB), of which R, G and B, Y alone, and channels of other names are read; save it by ZIP",
+      "this EXR is compressed with DWA (DWAA or DWAB), which is supported for R, G and B, for Y alone and for channels with other names; save it with ZIP compression",
     );
   return isDwa ? channels.map(({ name }) => name) : given;
 }
@@ -60,10 +60,12 @@ function checkDwa(body: Uint8Array, length: number): void {
     ...[number, number, number, number],
   ];
   if (unknown > 0 || (ac > 0 && method !== 0))
-    throw badFile("this EXR is compressed by a kind of DWA (DWAA or DWAB) that is not read here; save it by ZIP");
+    throw badFile(
+      "this EXR is compressed with an unsupported kind of DWA (DWAA or DWAB); save it with ZIP compression",
+    );
   const start = 88 + view.getUint16(88, true);
   if (Math.max(2 * acCount, 2 * dcCount, rleRaw) > 2 * length || start + ac + dc + rle > body.length)
-    throw badFile("this EXR is damaged: a block of it declares more than the picture holds");
+    throw badFile("this EXR is damaged: one of its blocks declares more than the picture has");
   if (dc > 0) inflateUpTo(body.subarray(start + ac, start + ac + dc), 2 * dcCount, "this EXR");
   if (rle > 0) inflateUpTo(body.subarray(start + ac + dc, start + ac + dc + rle), 2 * length, "this EXR");
 }
@@ -71,7 +73,8 @@ function checkDwa(body: Uint8Array, length: number): void {
 function checkBlock(body: Uint8Array, length: number, { compression }: Header): void {
   // A block that compression would not shorten is stored as it is.
   if (body.length >= length) {
-    if (body.length > length) throw badFile("this EXR is damaged: a block of it is longer compressed than not");
+    if (body.length > length)
+      throw badFile("this EXR is damaged: one of its compressed blocks is longer than the raw one");
   } else if (compression === PXR24) inflateUpTo(body, length, "this EXR");
   else if (compression === DWAA || compression === DWAB) checkDwa(body, length);
 }
@@ -90,7 +93,7 @@ function plainFile(bytes: Uint8Array, header: Header, given: string[]): ArrayBuf
   ]);
   const found = blocks(bytes, header).sort((a, b) => a.row - b.row);
   found.forEach(({ row, body, length }, index) => {
-    if (row !== index * header.lines) throw badFile("this EXR is damaged: a block of it is missing");
+    if (row !== index * header.lines) throw badFile("this EXR is damaged: one of its blocks is missing");
     checkBlock(body, length, header);
   });
   const body = found.flatMap(({ row, body }) => [words(top + row, body.length), body]);
@@ -106,7 +109,7 @@ function parsed(file: ArrayBuffer, compression: number) {
     const isOwn = error instanceof TypeError && (compression === DWAA || compression === DWAB);
     if (!isOwn) throw error;
     throw badFile(
-      "this EXR is compressed by DWA (DWAA or DWAB) in a way that is not read here, or damaged; save it by ZIP",
+      "this EXR (DWAA or DWAB) is damaged or compressed in an unsupported way; save it with ZIP compression",
       error,
     );
   }
@@ -118,10 +121,10 @@ export function readOthers(bytes: Uint8Array, header: Header, used: number[]): F
     (compression === PXR24 ? channels.filter((_, at) => used.includes(at)) : channels).map(({ type }) => type),
   );
   if (channels.length > MOST_CHANNELS)
-    throw badFile(`this EXR has ${channels.length} channels; up to ${MOST_CHANNELS} are read`);
+    throw badFile(`this EXR has ${channels.length} channels; up to ${MOST_CHANNELS} are supported`);
   if (types.size > 1 || channels.some(({ type }) => type === WHOLE))
     throw badFile(
-      `this EXR is compressed by ${COMPRESSIONS[compression] ?? "PIZ"} with channels of different types or of integers, which are read only by ZIP; save it by ZIP`,
+      `this EXR is compressed with ${COMPRESSIONS[compression] ?? "PIZ"}, which is not supported for integers or mixed types; save it with ZIP compression`,
     );
   const { data } = parsed(plainFile(bytes, header, names(header, used)), compression);
   const step = used.length === 1 ? 1 : 4;

@@ -55,7 +55,7 @@ function chosen(channels: Channel[], isDepth: boolean): number[] {
       `this EXR has the channels ${channels
         .map(({ name }) => name)
         .slice(0, 8)
-        .join(", ")}; R, G, B, or Z, or one alone, are read`,
+        .join(", ")}; R, G and B, or Z, or a single channel are supported`,
     );
   return [single];
 }
@@ -81,7 +81,7 @@ function readKnown(bytes: Uint8Array, header: Header, used: number[]): Float32Ar
 
 const LOSSY = warning(
   "eight-bits",
-  "The depth map is compressed with loss (halves by B44, or colours by DWA): beside holes and edges, depths may be off by a tenth. Save it by ZIP.",
+  "The depth map has lossy compression (half floats by B44, or colours by DWA): next to holes and edges, depths may be off by a tenth. Save it with ZIP compression.",
 );
 
 export function readExr(bytes: Uint8Array, isDepth: boolean): Picture | Promise<Picture> {
@@ -89,7 +89,7 @@ export function readExr(bytes: Uint8Array, isDepth: boolean): Picture | Promise<
   const { width, height, channels, compression } = found;
   const used = chosen(channels, isDepth);
   if (strideOf(found) * height > MOST_PIXELS)
-    throw badFile(`this EXR has ${width}x${height} pixels of ${channels.length} channels, which is too much`);
+    throw badFile(`this EXR has ${width}x${height} pixels of ${channels.length} channels, which is too large`);
   const bits = channels[used[0] ?? 0]?.type === HALF ? 16 : 32;
   const picture = (data: Float32Array): Picture => ({
     ...{ width, height, channels: used.length, data },

@@ -29,8 +29,8 @@ export const SIZES = [
 export const MOST_POINTS = 2 ** 22;
 
 export function checkPoints(count: number): void {
-  if (!Number.isInteger(count) || count < 1) throw badFile(`it says that it has ${count} points`);
-  if (count > MOST_POINTS) throw badFile(`it says that it has ${count} points; up to ${MOST_POINTS} are read`);
+  if (!Number.isInteger(count) || count < 1) throw badFile(`it declares ${count} points`);
+  if (count > MOST_POINTS) throw badFile(`it declares ${count} points; up to ${MOST_POINTS} are supported`);
 }
 
 /** Whether so many points are a whole image of a depth camera. */
@@ -56,6 +56,5 @@ export function sizeOfCount(count: number, warnings: ReaderWarning[]): { width: 
 
 export function checkGrid(width: number, height: number, count: number): void {
   checkSize(width, height);
-  if (width * height !== count)
-    throw badFile(`it says that it has ${count} points in ${width}x${height} rows and columns`);
+  if (width * height !== count) throw badFile(`it declares ${count} points in ${width}x${height} rows and columns`);
 }

@@ -2,7 +2,7 @@
  * JPEG and WebP. Browsers decode them, turn them as EXIF says and bring their colours to sRGB; Node has jpeg-js for JPEG.
  *
  * jpeg-js (0.4, 8 kB gzipped, loaded on demand) and not sharp, which is a binary of megabytes for each system, or mozjpeg as wasm, 100 kB.
- * It takes what a file declares: so sizes, channels and the number of scans are looked at first.
+ * It trusts what a file declares, so sizes, channels and the number of scans are checked first.
  */
 import { BimodalError, badFile } from "../../errors.js";
 import { exifOrientation, turnedBy, turnedWords } from "./exif.js";
@@ -35,13 +35,13 @@ function frame(body: Uint8Array, kind: number, length: number): { width: number;
   const [width, height] = [(w1 << 8) | w0, (h1 << 8) | h0];
   if (![0xc0, 0xc1, 0xc2].includes(kind))
     throw badFile(
-      "this JPEG is lossless, hierarchical or arithmetic, which is not read here; save it as an ordinary one",
+      "this JPEG is lossless, hierarchical or arithmetic, which is not supported; save it as an ordinary JPEG",
     );
   checkSize(width, height);
-  if (bits !== 8) throw badFile(`this JPEG has ${bits} bits, which is not read here; 8 are`);
+  if (bits !== 8) throw badFile(`this JPEG has ${bits} bits per sample; only 8 are supported`);
   if (channels !== 1 && channels !== 3)
     throw badFile(
-      `this JPEG has ${channels} channels${channels === 4 ? " (CMYK, for print)" : ""}; grey and RGB are read`,
+      `this JPEG has ${channels} channels${channels === 4 ? " (CMYK, for print)" : ""}; only grey and RGB are supported`,
     );
   const factors = Array.from({ length: channels }, (_, index) => body[7 + 3 * index] ?? 0);
   if (factors.some((factor) => factor >> 4 < 1 || factor >> 4 > 4 || (factor & 15) < 1 || (factor & 15) > 4))
@@ -53,7 +53,7 @@ function frame(body: Uint8Array, kind: number, length: number): { width: number;
   return { width, height };
 }
 
-/** What stands between the pixels. */
+/** The segments before the pixels. */
 function marked(bytes: Uint8Array): Marked {
   let [at, scans, segments, orientation] = [2, 0, 0, 1];
   let size: { width: number; height: number } | undefined;
@@ -74,7 +74,7 @@ function marked(bytes: Uint8Array): Marked {
       at += kind === 0xff ? 1 : 2;
       continue;
     }
-    if (++segments > MOST_SEGMENTS) throw badFile(`this JPEG is damaged: it has more than ${MOST_SEGMENTS} parts`);
+    if (++segments > MOST_SEGMENTS) throw badFile(`this JPEG is damaged: it has more than ${MOST_SEGMENTS} segments`);
     const length = ((bytes[at + 2] ?? 0) << 8) | (bytes[at + 3] ?? 0);
     const body = bytes.subarray(at + 4, at + 2 + length);
     if (kind >= 0xc0 && kind <= 0xcf && ![0xc4, 0xc8, 0xcc].includes(kind)) {
@@ -96,9 +96,9 @@ function marked(bytes: Uint8Array): Marked {
   return { ...size, orientation, profile: joined };
 }
 
-/** The decoder's own words, but for those in which it stumbles over what it does not find. */
+/** The decoder's message; its type errors, which say nothing about the file, get another one. */
 function reasonOf(error: unknown): string {
-  if (error instanceof TypeError || error instanceof RangeError) return "its parts do not fit together";
+  if (error instanceof TypeError || error instanceof RangeError) return "its segments contradict each other";
   return error instanceof Error ? error.message : String(error);
 }
 
@@ -114,7 +114,7 @@ export async function byBrowser(bytes: Uint8Array, format: string, check = check
     const { width, height } = bitmap;
     check(width, height);
     const context = new OffscreenCanvas(width, height).getContext("2d", { willReadFrequently: true });
-    if (!context) throw badFile(`this browser gives no canvas of ${width}x${height} to decode it on`);
+    if (!context) throw badFile(`this browser cannot create a canvas of ${width}x${height} to decode it`);
     context.drawImage(bitmap, 0, 0);
     const data = new Uint8Array(context.getImageData(0, 0, width, height).data);
     return { width, height, channels: 4, data, format, bits: 8, transfer: "srgb", notes: [], warnings: [] };
@@ -158,7 +158,8 @@ export async function readJpeg(bytes: Uint8Array): Promise<Picture> {
   } catch (error) {
     throw badFile(`this JPEG is damaged or cut off (${reasonOf(error)})`, error);
   }
-  if (data.length !== 3 * width * height) throw badFile("this JPEG is damaged: it has not as many pixels as it says");
+  if (data.length !== 3 * width * height)
+    throw badFile("this JPEG is damaged: it does not have the number of pixels that it declares");
   const picture: Picture = { width, height, channels: 3, data, format: "JPEG", bits: 8, notes: [], warnings: [] };
   return turnedBy(profile ? inSrgb(picture, profile) : picture, orientation, "EXIF says");
 }
@@ -172,7 +173,7 @@ function webpSize(bytes: Uint8Array): void {
   if (kind === "VP8X") checkSize(1 + (view.getUint32(24, true) & 0xffffff), 1 + (view.getUint32(26, true) >>> 8));
   else if (kind === "VP8L") checkSize(1 + (packed & 0x3fff), 1 + ((packed >>> 14) & 0x3fff));
   else if (kind === "VP8 ") checkSize(view.getUint16(26, true) & 0x3fff, view.getUint16(28, true) & 0x3fff);
-  else throw badFile("this WebP is damaged: its first part is of no known kind");
+  else throw badFile("this WebP is damaged: its first chunk is unknown");
   if (view.getUint32(4, true) + 8 > bytes.length)
     throw badFile(`this WebP is cut off: ${bytes.length} of ${view.getUint32(4, true) + 8} bytes`);
 }

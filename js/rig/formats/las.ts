@@ -59,7 +59,7 @@ function headerOf(view: DataView): Header {
   const [least, time] = FORMATS[format] ?? [];
   const size = view.getUint16(105, true);
   if (least === undefined || size < least)
-    throw badFile(`this LAS has points of the format ${format} and ${size} bytes each`);
+    throw badFile(`this LAS has points of the unsupported format ${format}, ${size} bytes each`);
   const isLong = view.getUint8(25) >= 4 && view.getUint16(94, true) >= HEADER_14;
   if (isLong) checkBytes(HEADER_14, view.byteLength, "this LAS");
   const count = Number((isLong && view.getBigUint64(247, true)) || view.getUint32(107, true));
@@ -81,7 +81,7 @@ function eachPlain(view: DataView, { from, count, size }: Header, take: Take): v
 async function eachPacked(bytes: Uint8Array, header: Header, take: Take): Promise<void> {
   if (WAVES.includes(header.format))
     throw badFile(
-      `it is LAZ whose points have wave packets (point format ${header.format}), which are not unpacked here; unpack it (pdal translate in.laz out.las)`,
+      `its points have wave packets (point format ${header.format}), which are not supported in LAZ; unpack it (pdal translate in.laz out.las)`,
     );
   const { count, from } = header;
   if (bytes.length - from < FEWEST_BYTES * count)
@@ -103,7 +103,7 @@ function checkBox(points: Float32Array, { box, scale, count }: Header): void {
     if (isOutside) outside++;
   }
   if (outside > OUTSIDE * count)
-    throw badFile(`this LAZ is damaged: ${outside} of its ${count} points lie outside the box of its header`);
+    throw badFile(`this LAZ is damaged: ${outside} of its ${count} points lie outside the bounding box in its header`);
 }
 
 export async function readLas(bytes: Uint8Array): Promise<Points> {

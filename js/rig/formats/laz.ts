@@ -60,7 +60,7 @@ export async function eachRecord(
     }
   } catch (error) {
     throw badFile(
-      "this LAZ is damaged or cut off, or compressed in a way that is not read here; unpack it (pdal translate in.laz out.las, or CloudCompare)",
+      "this LAZ is damaged or cut off, or compressed in an unsupported way; unpack it (pdal translate in.laz out.las, or CloudCompare)",
       error,
     );
   }

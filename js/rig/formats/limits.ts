@@ -14,9 +14,9 @@ export const MOST_TEXT = 4 * 2 ** 20;
 
 export function checkSize(width: number, height: number): void {
   const isSide = (side: number) => Number.isInteger(side) && side > 0;
-  if (!isSide(width) || !isSide(height)) throw badFile(`it declares a size of ${width}x${height} pixels`);
+  if (!isSide(width) || !isSide(height)) throw badFile(`it declares the invalid size ${width}x${height}`);
   if (width > MOST_SIDE || height > MOST_SIDE)
-    throw badFile(`it is ${width}x${height} pixels large; up to ${MOST_SIDE} on a side are read`, undefined, {
+    throw badFile(`it has ${width}x${height} pixels; up to ${MOST_SIDE} on a side are supported`, undefined, {
       problem: "too-large",
       width,
       height,

@@ -61,7 +61,7 @@ export function npzPicture(bytes: Uint8Array): Picture {
         )?.[0];
   if (chosen === undefined)
     throw badFile(
-      `it is an .npz archive of ${arrays.length} arrays (${arrays.slice(0, 6).map(called).join(", ")}), and not exactly one of them is called depth; save the depth map as .npy`,
+      `it is an .npz archive of ${arrays.length} arrays (${arrays.slice(0, 6).map(called).join(", ")}), of which exactly one must be called depth; save the depth map as .npy`,
     );
   const array = unpacked(bytes, chosen);
   if (!isNpy(array)) throw badFile(`the array ${called(chosen)} of this .npz is damaged`);

@@ -52,7 +52,7 @@ export function readNuscenes(root: unknown): Findings {
     });
     if (pose && !isEgo) (k ? cameras : others).push(pose);
   }
-  // One camera and one other sensor are the pair.
+  // A file with one camera and one other sensor has the pose between them.
   if (cameras.length === 1 && others.length === 1) found.relate(others[0], cameras[0]);
   return found;
 }

@@ -43,16 +43,16 @@ function header(bytes: Uint8Array): Header {
   }
   const one = (key: string): number => {
     const text = entries.get(key)?.[0] ?? "";
-    if (!/^\d{1,9}$/.test(text)) throw badFile(`this PCD has the ${key} ${JSON.stringify(text.slice(0, 20))}`);
+    if (!/^\d{1,9}$/.test(text)) throw badFile(`this PCD has the invalid ${key} ${JSON.stringify(text.slice(0, 20))}`);
     return Number(text);
   };
   const fields = fieldsOf(entries);
   const stride = fields.reduce((sum, { size, count }) => sum + size * count, 0);
-  if (stride > MOST_STRIDE) throw badFile(`this PCD has points of ${stride} bytes`);
+  if (stride > MOST_STRIDE) throw badFile(`this PCD has points of ${stride} bytes; up to ${MOST_STRIDE} are supported`);
   const [width, height] = [one("WIDTH"), one("HEIGHT")];
   const points = entries.has("POINTS") ? one("POINTS") : width * height;
   if (points !== width * height)
-    throw badFile(`this PCD says that it has ${points} points in ${width}x${height} rows and columns`);
+    throw badFile(`this PCD declares ${points} points in ${width}x${height} rows and columns`);
   return { fields, stride, width, height, points, data: entries.get("DATA")?.[0] ?? "", end: words.at };
 }
 
@@ -60,14 +60,17 @@ function fieldsOf(entries: Map<string, string[]>): Field[] {
   const names = entries.get("FIELDS") ?? entries.get("COLUMNS") ?? [];
   const [sizes = [], types = []] = [entries.get("SIZE"), entries.get("TYPE")];
   const counts = entries.get("COUNT") ?? names.map(() => "1");
-  if (names.length === 0 || names.length > MOST_FIELDS) throw badFile(`this PCD has ${names.length} fields`);
+  if (names.length === 0 || names.length > MOST_FIELDS)
+    throw badFile(`this PCD has ${names.length} fields; 1 to ${MOST_FIELDS} are supported`);
   if (sizes.length !== names.length || types.length !== names.length || counts.length !== names.length)
-    throw badFile("this PCD has not a size, a type and a count for each field");
+    throw badFile("this PCD does not give size, type and count of every field");
   let offset = 0;
   return names.map((name, index) => {
     const [size, count, type] = [Number(sizes[index]), Number(counts[index]), types[index] ?? ""];
     if (![1, 2, 4, 8].includes(size) || !Number.isInteger(count) || count < 0 || count > MOST_STRIDE)
-      throw badFile(`this PCD has the field ${name.slice(0, 20)} of ${sizes[index]} bytes, ${counts[index]} times`);
+      throw badFile(
+        `this PCD has the field ${name.slice(0, 20)} with the invalid size ${sizes[index]} or count ${counts[index]}`,
+      );
     const field = { name, size, type, count, offset };
     offset += size * count;
     return field;
@@ -77,7 +80,8 @@ function fieldsOf(entries: Map<string, string[]>): Field[] {
 function axesOf({ fields }: Header): Field[] {
   return ["x", "y", "z"].map((axis) => {
     const field = fields.find(({ name }) => name === axis);
-    if (field?.type !== "F" || field.count !== 1 || field.size < 4) throw badFile(`this PCD has no ${axis} of floats`);
+    if (field?.type !== "F" || field.count !== 1 || field.size < 4)
+      throw badFile(`this PCD has no floating-point field ${axis}`);
     return field;
   });
 }
@@ -153,7 +157,8 @@ function ofBinary(body: Uint8Array, head: Header, isApart: boolean): Scan {
   for (const { field, into, first, step } of targets) {
     const { type, size, offset, name } = field;
     const read = READS[`${type}${size}`];
-    if (read === undefined) throw badFile(`this PCD has ${name.slice(0, 20)} of the type ${type.slice(0, 5)}${size}`);
+    if (read === undefined)
+      throw badFile(`this PCD has ${name.slice(0, 20)} of the unsupported type ${type.slice(0, 5)}${size}`);
     const [from, by] = isApart ? [offset * points, size] : [offset, stride];
     for (let point = 0; point < points; point++) into[step * point + first] = read(view, from + point * by);
   }
@@ -187,15 +192,13 @@ function scanOf(body: Uint8Array, head: Header): Scan {
   if (head.data === "binary") return ofBinary(body, head, false);
   if (head.data !== "binary_compressed")
     throw badFile(
-      `this PCD has DATA ${JSON.stringify(head.data.slice(0, 20))}; ascii, binary and binary_compressed are read`,
+      `this PCD has DATA ${JSON.stringify(head.data.slice(0, 20))}; ascii, binary and binary_compressed are supported`,
     );
   checkBytes(8, body.length, "this PCD");
   const view = new DataView(body.buffer, body.byteOffset, body.byteLength);
   const [packed, length] = [view.getUint32(0, true), view.getUint32(4, true)];
   if (length !== head.points * head.stride)
-    throw badFile(
-      `this PCD says that its points are ${length} bytes long, and ${head.points * head.stride} are needed`,
-    );
+    throw badFile(`this PCD declares ${length} bytes of points, but ${head.points * head.stride} are needed`);
   checkBytes(8 + packed, body.length, "this PCD");
   return ofBinary(lzf(body.subarray(8, 8 + packed), length), head, true);
 }
@@ -207,7 +210,7 @@ export function readPcd(bytes: Uint8Array): Cloud | Points {
   const head = header(bytes);
   checkPoints(head.points);
   if (head.points * head.stride > MOST_BYTES)
-    throw badFile(`this PCD says that its points are ${head.points * head.stride} bytes long, which is too much`);
+    throw badFile(`this PCD declares ${head.points * head.stride} bytes of points, which is too large`);
   const warnings: ReaderWarning[] = [];
   const isLidar = head.fields.some(({ name }) => channelOf(name) === "ring");
   const isFlat = head.height === 1 || head.width === 1;

@@ -32,7 +32,7 @@ function rowsOf(text: string): Numbers[] | undefined {
     }
     count += numbers.length;
     if (count > MOST_NUMBERS)
-      throw badFile(`it has more than ${MOST_NUMBERS} numbers, too many for cameras and motions`);
+      throw badFile(`it has more than ${MOST_NUMBERS} numbers, too many for cameras and transforms`);
     rows.push(numbers);
   }
   return rows;
@@ -48,7 +48,7 @@ const camera = (k: Numbers, size: Numbers, distortion: Numbers = []): Found => {
 function nine(values: Numbers, size: Numbers): Found {
   if (near(values[3], 0) && near(values[6], 0) && near(values[7], 0) && near(values[8], 1)) return camera(values, size);
   if (near(values[1], 0) && near(values[2], 0) && near(values[5], 0) && near(values[8], 1)) {
-    throw badFile("its matrix of intrinsics is transposed: fx 0 cx / 0 fy cy / 0 0 1 are needed");
+    throw badFile("its matrix of intrinsics is transposed; it must be fx 0 cx / 0 fy cy / 0 0 1");
   }
   throw badFile(
     "its nine numbers are not a matrix of intrinsics (fx 0 cx / 0 fy cy / 0 0 1), and a rotation needs its translation",
@@ -132,12 +132,12 @@ export function readNumbers(text: string): Found | undefined {
   }
   if (values.length === 12 || values.length === 16) {
     const warnings: ReaderWarning[] = [];
-    return { cameras: [], poses: [motionOfMatrix(values, {}, warnings)], warnings, format: "a matrix of a motion" };
+    return { cameras: [], poses: [motionOfMatrix(values, {}, warnings)], warnings, format: "a matrix of a transform" };
   }
   const [fx = 0, fy = 0, cx = 0, cy = 0, ...lens] = values;
   if (rows.length === 1 && [4, 9, 12].includes(values.length) && fx > 10 && fy > 10)
     return camera([fx, 0, cx, 0, fy, cy, 0, 0, 1], [], lens);
   throw badFile(
-    `it has ${values.length} numbers in ${rows.length} rows; 3x3 of intrinsics, 3x4 or 4x4 of a motion, or rows of a trajectory are needed`,
+    `it has ${values.length} numbers in ${rows.length} rows; 3x3 of intrinsics, 3x4 or 4x4 of a transform, or rows of a trajectory are needed`,
   );
 }

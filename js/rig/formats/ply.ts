@@ -24,8 +24,7 @@ for (const [names, size, read] of [
 }
 const typeOf = (name = "") => {
   const type = Object.hasOwn(TYPES, name) ? TYPES[name] : undefined;
-  if (type === undefined)
-    throw badFile(`this PLY has a property of the type "${name.slice(0, 20)}", which there is not`);
+  if (type === undefined) throw badFile(`this PLY has a property of the unknown type "${name.slice(0, 20)}"`);
   return type;
 };
 
@@ -77,12 +76,12 @@ function header(bytes: Uint8Array): Header {
 
 function countOf(text = ""): number {
   if (!/^\d{1,9}$/.test(text))
-    throw badFile(`this PLY says that it has ${JSON.stringify(text.slice(0, 20))} of something`);
+    throw badFile(`this PLY has an element with the invalid count ${JSON.stringify(text.slice(0, 20))}`);
   return Number(text);
 }
 
 function property(element: Element | undefined, [type, ...rest]: string[]): void {
-  if (element === undefined) throw badFile("this PLY has a property of nothing");
+  if (element === undefined) throw badFile("this PLY has a property before its first element");
   if (type === "list") element.properties.push({ name: rest[2] ?? "", ...typeOf(rest[1]), count: typeOf(rest[0]) });
   else element.properties.push({ name: rest[0] ?? "", ...typeOf(type) });
   if (element.properties.length > 100) throw badFile("this PLY has more than 100 properties");
@@ -100,7 +99,7 @@ class TextSource implements Source {
   }
   next(): number {
     const word = this.#words.next();
-    if (word === "") throw badFile("this PLY is cut off: it has fewer numbers than it says");
+    if (word === "") throw badFile("this PLY is cut off: it has fewer numbers than it declares");
     const value = /^[-+]?(?:nan|inf)/i.test(word) ? NaN : Number(word);
     if (Number.isNaN(value) && !/nan|inf/i.test(word))
       throw badFile(`this PLY has ${JSON.stringify(word.slice(0, 20))} where a number is needed`);
@@ -129,7 +128,7 @@ const MOST_LIST = 1000;
 
 function listOf(source: Source, property: Property): number[] {
   const count = property.count ? source.next(property.count) : 1;
-  if (!(count >= 0 && count <= MOST_LIST)) throw badFile(`this PLY has a list of ${count} numbers`);
+  if (!(count >= 0 && count <= MOST_LIST)) throw badFile(`this PLY has a list of the invalid length ${count}`);
   return Array.from({ length: count }, () => source.next(property));
 }
 
@@ -138,7 +137,8 @@ function scanOf(source: Source, { count, properties }: Element): Scan {
     properties.findIndex(({ name, count: list }) => name === axis && list === undefined),
   );
   if (axes.includes(-1)) throw badFile("this PLY has no x, y and z");
-  if (properties.some((each) => each.count)) throw badFile("this PLY has lists at its points");
+  if (properties.some((each) => each.count))
+    throw badFile("this PLY has lists in its vertices, which is not supported");
   const channels = properties.map(({ name }) => channelOf(name));
   const scan: Scan = { points: new Float32Array(3 * count), ...roomFor(count, channels) };
   const places = properties.map((_, index) => axes.indexOf(index));
@@ -163,7 +163,7 @@ function inCells(source: Source, grid: Element, cloud: Float32Array): Float32Arr
       const [point] = listOf(source, each);
       if (each.name !== "vertex_indices" || point === undefined) continue;
       if (!(Number.isInteger(point) && point >= 0 && 3 * point < cloud.length))
-        throw badFile(`this PLY's grid names the point ${point} of ${cloud.length / 3}`);
+        throw badFile(`this PLY's grid refers to point ${point} of ${cloud.length / 3}`);
       out.set(cloud.subarray(3 * point, 3 * point + 3), 3 * cell);
     }
   }
@@ -173,9 +173,9 @@ function inCells(source: Source, grid: Element, cloud: Float32Array): Float32Arr
 export function readPly(bytes: Uint8Array): Cloud | Points {
   const { format, elements, columns, rows, end } = header(bytes);
   if (!["ascii", "binary_little_endian", "binary_big_endian"].includes(format))
-    throw badFile(`this PLY is of the format "${format.slice(0, 30)}", which there is not`);
+    throw badFile(`this PLY has the unknown format "${format.slice(0, 30)}"`);
   const [vertices, ...others] = elements;
-  if (vertices?.name !== "vertex") throw badFile("this PLY does not begin with points");
+  if (vertices?.name !== "vertex") throw badFile("this PLY does not begin with its vertices");
   checkPoints(vertices.count);
   const warnings: ReaderWarning[] = [];
   const grid = others[0]?.name === "range_grid" ? others[0] : undefined;

@@ -1,4 +1,4 @@
-/** PNG upright and in sRGB, as far as it says what it is. */
+/** PNG upright and in sRGB, as far as its metadata say. */
 import { readPng } from "../../png.js";
 import { exifOrientation, turnedBy } from "./exif.js";
 import { damagedProfile, inSrgb, pngProfile } from "./icc.js";
@@ -44,7 +44,7 @@ function inColour(picture: Picture, chunks: Map<string, Uint8Array>): Picture {
 export function pngPicture(bytes: Uint8Array, check = checkSize): Picture {
   const { chunks, ...raster } = readPng(bytes, check);
   const picture: Picture = { ...raster, format: "PNG", notes: [], warnings: [] };
-  // What it says of its colours is nothing to depths.
+  // Its colour metadata do not matter for depths.
   const coloured = picture.channels >= 3 ? inColour(picture, chunks) : picture;
   const exif = chunks.get("eXIf");
   return exif ? turnedBy(coloured, exifOrientation(exif), "EXIF says") : coloured;

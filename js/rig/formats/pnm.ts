@@ -23,17 +23,17 @@ const FORMATS: Record<string, { format: string; channels: 1 | 3; isText: boolean
   P6: { format: "PPM", channels: 3, isText: false },
 };
 
-/** Levels as they stand in the file: a depth map's may not be rescaled. Colours of an odd maximum are brought to the full range. */
+/** Levels as stored, because depths must not be rescaled. Colours with an unusual maximum are scaled to the full range. */
 export function readPnm(bytes: Uint8Array): Picture {
   const words = new Words(bytes, true);
   const name = words.next();
   const kind = Object.hasOwn(FORMATS, name) ? FORMATS[name] : undefined;
-  if (kind === undefined) throw badFile(`it is of netpbm's kind ${name}, which is not read here; P1 to P6 and PFM are`);
+  if (kind === undefined) throw badFile(`it is netpbm's ${name}, which is not supported; P1 to P6 and PFM are`);
   const { format, channels, isText, isBits } = kind;
   const [width, height] = [whole(words, "a width"), whole(words, "a height")];
   checkSize(width, height);
   const most = isBits ? 1 : whole(words, "a maximum");
-  if (most < 1 || most > MOST_LEVEL) throw badFile(`its levels go up to ${most}; 1 to ${MOST_LEVEL} are possible`);
+  if (most < 1 || most > MOST_LEVEL) throw badFile(`its maximum level is ${most}; it must be 1 to ${MOST_LEVEL}`);
   const count = width * height * channels;
   const data = most > 255 ? new Uint16Array(count) : new Uint8Array(count);
   if (isText && isBits) bitText(words, data);
@@ -90,7 +90,7 @@ function unpackBytes(body: Uint8Array, data: Uint8Array | Uint16Array, most: num
   }
 }
 
-/** Rows from the bottom up; the sign of the scale tells the order of bytes. */
+/** Rows from the bottom up; the sign of the scale gives the byte order. */
 export function readPfm(bytes: Uint8Array): Picture {
   const words = new Words(bytes, true);
   const channels = words.next() === "PF" ? 3 : 1;
@@ -98,7 +98,7 @@ export function readPfm(bytes: Uint8Array): Picture {
   checkSize(width, height);
   const scale = Number(words.next() || NaN);
   if (!Number.isFinite(scale) || scale === 0)
-    throw badFile("this PFM has no scale, whose sign tells the order of its bytes");
+    throw badFile("this PFM has no scale, whose sign gives the order of its bytes");
   const body = bytes.subarray(words.at + 1);
   const stride = width * channels;
   checkBytes(4 * stride * height, body.length, "this PFM");

@@ -239,7 +239,7 @@ export function motionOfMatrix(
   isRig = true,
 ): NamedPose {
   if (values.length !== 12 && values.length !== 16)
-    throw badFile(`a motion has 3x4 or 4x4 numbers, not ${values.length}`);
+    throw badFile(`a transform has 3x4 or 4x4 numbers, not ${values.length}`);
   if (values.length === 16 && !isLastRow(values.slice(12))) {
     const last = [3, 7, 11, 15].map((index) => at(values, index));
     if (isLastRow(last)) throw badFile("its matrix is transposed: the translation is in the last row");

@@ -68,7 +68,7 @@ export function arePoints(bytes: Uint8Array): boolean {
   return isCloudOf(view, 4) || isCloudOf(view, 5);
 }
 
-/** The error about such points where they are no scan. */
+/** The error about such points where they are not a scan. */
 export const pointsRefused = () =>
   badFile(
     "it looks like the points of a LiDAR (a velodyne .bin of KITTI or nuScenes) in no rows and columns (unorganised), and they are too few or too scattered for a range image; save them as an organised cloud or as a depth map",

@@ -29,19 +29,18 @@ const withColons = (text: string): string =>
 
 /** The documents of a YAML text. js-yaml is loaded with the first such text. */
 async function readYaml(text: string): Promise<unknown> {
-  if (text.length > MOST_SETTINGS)
-    throw badFile(`it is a text of ${text.length} characters in none of the formats that are read`);
+  if (text.length > MOST_SETTINGS) throw badFile(`it is text of ${text.length} characters in an unknown format`);
   const { CORE_SCHEMA, loadAll, mergeTag } = await import("js-yaml");
   try {
     return loadAll(withColons(plainYaml(text)), { ...YAML_LIMITS, schema: CORE_SCHEMA.withTags(mergeTag) });
   } catch (error) {
     const reason = error instanceof Error ? (error.message.split("\n")[0] ?? "") : String(error);
-    throw badFile(`it is a text in none of the formats that are read, or damaged (as YAML: ${reason})`, error);
+    throw badFile(`it is text in an unknown format, or damaged (as YAML: ${reason})`, error);
   }
 }
 
 const NEITHER =
-  "neither a camera (camera_matrix, K, fx fy cx cy, intrinsics) nor a motion (R and T, T_.., rotation and translation, a 4x4 matrix)";
+  "neither a camera (camera_matrix, K, fx fy cx cy, intrinsics) nor a transform (R and T, T_.., rotation and translation, a 4x4 matrix)";
 
 type Read = Calibration & { format: string };
 
@@ -58,8 +57,7 @@ async function search(value: unknown, format: string, text: string): Promise<Rea
 
 function nothingIn(value: unknown, format: string): BimodalError {
   const isText = (each: unknown) => typeof each !== "object" || each === null;
-  if (isText(value) || (Array.isArray(value) && value.every(isText)))
-    return badFile("it is a text in none of the formats that are read");
+  if (isText(value) || (Array.isArray(value) && value.every(isText))) return badFile("it is text in an unknown format");
   return badFile(`it is ${format}, but holds ${NEITHER} by a known name`);
 }
 

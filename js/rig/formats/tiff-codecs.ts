@@ -1,7 +1,7 @@
 /**
  * Strips and tiles of TIFF by ZSTD and LERC: fzstd and lerc. Loaded when such a file comes.
  *
- * Neither makes more than it is asked for: fzstd is given its room, and what a blob of LERC declares is checked before.
+ * Neither writes more than requested: fzstd gets a buffer of fixed size, and what a LERC blob declares is checked first.
  */
 import { decompress } from "fzstd";
 import Lerc from "lerc";
@@ -33,8 +33,9 @@ export function unpackLerc(packed: Uint8Array, length: number, again: number): U
   const [block, declared, type] = (version >= 4 ? [4, 5, 6] : [3, 4, 5]).map(word) as [number, number, number];
   const isSound = isKnown && block >= 1 && declared <= bytes.length;
   if (!isSound || width * height * depths * (SIZES[type] ?? 0) !== length)
-    throw badFile("this TIFF is damaged, or compressed by a kind of LERC that is not read here");
+    throw badFile("this TIFF is damaged, or compressed with an unsupported kind of LERC");
   const [values] = Lerc.decode(bytes.slice(0, declared).buffer, { returnPixelInterleavedDims: true }).pixels;
-  if (values?.byteLength !== length) throw badFile("this TIFF is damaged: a part of its pixels by LERC is incomplete");
+  if (values?.byteLength !== length)
+    throw badFile("this TIFF is damaged: one of its strips or tiles (LERC) is incomplete");
   return new Uint8Array(values.buffer, values.byteOffset, length);
 }

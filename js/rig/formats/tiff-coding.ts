@@ -1,4 +1,4 @@
-/** TIFF's ways to make bytes fewer, undone; none makes more bytes than it is asked for. */
+/** Decompresses TIFF's codings; none writes more bytes than requested. */
 import { badFile } from "../../errors.js";
 
 const CLEAR = 256;
@@ -6,7 +6,7 @@ const END = 257;
 const LONGEST_CODE = 12;
 
 const short = (made: number, length: number) =>
-  badFile(`this TIFF is damaged or cut off: a part of its pixels expands to ${made} of ${length} bytes`);
+  badFile(`this TIFF is damaged or cut off: one of its strips or tiles expands to ${made} of ${length} bytes`);
 
 /** LZW, codes from the high bit down and a code wider one early. Of an entry its predecessor and last byte are kept. */
 export function lzw(bytes: Uint8Array, length: number): Uint8Array {
@@ -32,7 +32,7 @@ export function lzw(bytes: Uint8Array, length: number): Uint8Array {
     if (code < CLEAR) out[made++] = code;
     else if (code < next) made = copied(out, places[code] ?? 0, lengths[code] ?? 0, made);
     else if (code === next && last >= 0) made = copied(out, lastAt, from - lastAt, made, out[lastAt]);
-    else throw badFile("this TIFF is damaged: its LZW names an entry that there is not");
+    else throw badFile("this TIFF is damaged: its LZW data refer to a missing entry");
     // The entry before and the first byte of this one lie side by side in `out`.
     if (last >= 0 && next < 1 << LONGEST_CODE) {
       places[next] = lastAt;

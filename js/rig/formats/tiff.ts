@@ -54,7 +54,7 @@ type Tags = Map<number, number[]>;
 function directory(view: DataView): { tags: Tags; little: boolean; hasMore: boolean } {
   const little = view.getUint16(0) === 0x4949;
   const kind = view.getUint16(2, little);
-  if (kind !== 42 && kind !== 43) throw badFile("this TIFF is of a kind that there is not");
+  if (kind !== 42 && kind !== 43) throw badFile("this TIFF has an unknown version");
   const isBig = kind === 43;
   const whole = (at: number) => (isBig ? Number(view.getBigUint64(at, little)) : view.getUint32(at, little));
   const number = (at: number, size: number) =>
@@ -67,7 +67,7 @@ function directory(view: DataView): { tags: Tags; little: boolean; hasMore: bool
           : Number(view.getBigUint64(at, little));
   const at = whole(isBig ? 8 : 4);
   const count = isBig ? whole(at) : view.getUint16(at, little);
-  if (count === 0 || count > MOST_TAGS) throw badFile(`this TIFF has ${count} tags`);
+  if (count === 0 || count > MOST_TAGS) throw badFile(`this TIFF has ${count} tags; 1 to ${MOST_TAGS} are supported`);
   const [first, step, room] = isBig ? [at + 8, 20, 8] : [at + 2, 12, 4];
   const tags: Tags = new Map();
   for (let index = 0; index < count; index++) {
@@ -121,18 +121,18 @@ function layout(tags: Tags): Layout {
   const known = isFloat ? [16, 32, 64] : [8, 16, 32];
   if (!known.includes(bits) || format > 3)
     throw badFile(
-      `this TIFF has ${bits}-bit samples of format ${format}; 8, 16 and 32 bits, or floats of 16, 32 and 64, are read`,
+      `this TIFF has ${bits}-bit samples of format ${format}; 8, 16 and 32 bits, or floats of 16, 32 and 64, are supported`,
     );
-  if (samples < 1 || samples > 4) throw badFile(`this TIFF has ${samples} channels; 1 to 4 are read`);
-  if (one(Tag.Photometric, 1) === 3) throw badFile("this TIFF has a palette, which is not read here; save it as PNG");
+  if (samples < 1 || samples > 4) throw badFile(`this TIFF has ${samples} channels; 1 to 4 are supported`);
+  if (one(Tag.Photometric, 1) === 3) throw badFile("this TIFF has a palette, which is not supported; save it as PNG");
   if ((width * height * samples * bits) / 8 > MOST_PIXELS)
-    throw badFile(`this TIFF has ${width}x${height} pixels of ${samples} times ${bits} bits, which is too much`);
+    throw badFile(`this TIFF has ${width}x${height} pixels of ${samples} times ${bits} bits, which is too large`);
   const isTiled = tags.has(Tag.TileWidth);
   const [tileWidth, tileHeight] = isTiled
     ? [one(Tag.TileWidth, 0), one(Tag.TileHeight, 0)]
     : [width, Math.min(height, one(Tag.Rows, height))];
   if (isTiled) checkSize(tileWidth, tileHeight);
-  if (tileHeight < 1) throw badFile("this TIFF has strips of no rows");
+  if (tileHeight < 1) throw badFile("this TIFF has strips without rows");
   const isApart = one(Tag.Planes, 1) !== 1 && samples > 1;
   const each = Math.ceil(width / tileWidth) * Math.ceil(height / tileHeight);
   const needed = isApart ? each * samples : each;
@@ -141,7 +141,7 @@ function layout(tags: Tags): Layout {
     tags.get(isTiled ? Tag.TileCounts : Tag.Counts),
   ];
   if (offsets.length < needed || counts.length < needed)
-    throw badFile(`this TIFF lists ${offsets.length} parts of its pixels; ${needed} are needed`);
+    throw badFile(`this TIFF lists ${offsets.length} strips or tiles; ${needed} are needed`);
   const rest = {
     isFloat,
     isSigned: format === 2,
@@ -173,18 +173,18 @@ type Codecs = typeof import("./tiff-codecs.js");
 function expanded(bytes: Uint8Array, { compression, again }: Layout, length: number, codecs?: Codecs): Uint8Array {
   if (compression === 1) {
     if (bytes.length < length)
-      throw badFile(`this TIFF is cut off: a part of its pixels has ${bytes.length} of ${length} bytes`);
+      throw badFile(`this TIFF is cut off: one of its strips or tiles has ${bytes.length} of ${length} bytes`);
     return bytes.slice(0, length);
   }
   if (bytes.length > 2 * length + OVERHEAD)
-    throw badFile("this TIFF is damaged: a part of its pixels is longer compressed than not");
+    throw badFile("this TIFF is damaged: one of its compressed strips or tiles is longer than the raw one");
   if (compression === 5) return lzw(bytes, length);
   if (compression === 8 || compression === 32946) return inflateExactly(bytes, length, "this TIFF");
   if (compression === 32773) return packBits(bytes, length);
   if (compression === ZSTD && codecs) return codecs.unpackZstd(bytes, length);
   if (compression === LERC && codecs) return codecs.unpackLerc(bytes, length, again);
   throw badFile(
-    `this TIFF is compressed by ${COMPRESSIONS[compression] ?? `method ${compression}`}, which is not read here; save it plain, or by LZW or deflate`,
+    `this TIFF is compressed with ${COMPRESSIONS[compression] ?? `method ${compression}`}, which is not supported; save it uncompressed, or with LZW or deflate`,
   );
 }
 

@@ -188,7 +188,7 @@ class Search {
       return { distortion: listed, model, ...size };
     }
     if (written !== undefined && !isNode(written) && !isEmpty(written) && typeof written !== "string")
-      throw badFile("its distortion is not made of numbers");
+      throw badFile("its distortion contains something other than numbers");
     const isNone = written !== undefined && isEmpty(written);
     return { distortion: coefficientsOf(node, model) ?? (isNone ? [] : undefined), model, ...size };
   }

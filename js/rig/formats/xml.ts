@@ -12,7 +12,7 @@ export interface Element {
   text: string;
 }
 
-/** Deeper nesting than this is no calibration. */
+/** Calibrations are not nested deeper than this. */
 const MOST_DEPTH = 32;
 const MOST_ELEMENTS = 100_000;
 /** Characters of a tag with its attributes. */
@@ -61,7 +61,9 @@ export function readXml(text: string): Element {
     if (text.startsWith("<?", tag)) at = after(text, "?>", tag);
     else if (text.startsWith("<!--", tag)) at = after(text, "-->", tag);
     else if (text.startsWith("<!", tag))
-      throw badFile("this XML declares a document type or raw data, which no calibration needs: not read");
+      throw badFile(
+        "this XML declares a document type or raw data, which is not supported, because no calibration needs it",
+      );
     else {
       const end = tagEnd(text, tag);
       const inner = text.slice(tag + 1, end - 1);

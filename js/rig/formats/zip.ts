@@ -28,7 +28,7 @@ const [STORED, DEFLATED] = [0, 8];
 /** Bit of an entry's flags. */
 const ENCRYPTED = 1;
 
-const damaged = () => badFile("this ZIP archive is damaged or cut off; unpack it and hand over its files");
+const damaged = () => badFile("this ZIP archive is damaged or cut off; unpack it and use its files");
 
 export function entriesOf(bytes: Uint8Array): Entry[] {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
@@ -62,7 +62,7 @@ export function entriesOf(bytes: Uint8Array): Entry[] {
 function content(body: Uint8Array, { method, length }: Entry): Uint8Array {
   if (method === STORED) return body;
   if (method === DEFLATED) return inflateRaw(body, length, "this ZIP archive");
-  throw badFile(`this ZIP archive is compressed by method ${method}, which is not read here; unpack it first`);
+  throw badFile(`this ZIP archive is compressed with method ${method}, which is not supported; unpack it first`);
 }
 
 /** The content of an entry. */
@@ -74,7 +74,7 @@ export function unpacked(bytes: Uint8Array, entry: Entry): Uint8Array {
   const from = at + 30 + view.getUint16(at + 26, true) + view.getUint16(at + 28, true);
   if (from + packed > bytes.length) throw damaged();
   if (length > MOST_BYTES)
-    throw badFile(`this ZIP archive holds a file of ${length} bytes; up to ${MOST_BYTES} are read`);
+    throw badFile(`this ZIP archive contains a file of ${length} bytes; up to ${MOST_BYTES} are supported`);
   const found = content(bytes.subarray(from, from + packed), entry);
   if (crc32(found) !== checksum) throw badFile("this ZIP archive is damaged: the checksum of a file in it is wrong");
   return found;

@@ -150,10 +150,10 @@ function addressOf(written: string): string {
   try {
     url = new URL(whole);
   } catch {
-    // Reported below, as any other address that is no WebSocket's.
+    // Reported below, like any other address that is not a WebSocket's.
   }
   if (!url || !/^wss?:$/.test(url.protocol) || url.hostname === "")
-    throw noConnection(text.slice(0, 100), "it is no address of a bridge; write it like ws://localhost:8765");
+    throw noConnection(text.slice(0, 100), "it is not the address of a bridge; write it like ws://localhost:8765");
   return url.href;
 }
 

@@ -92,6 +92,6 @@ export async function compressed(bytes: Uint8Array, format: string): Promise<Pic
   if (kind === "png") return pngPicture(bytes);
   if (kind === "webp") return readWebp(bytes);
   throw badFile(
-    `its images are compressed as "${format.slice(0, 40)}", which is not read here; JPEG, PNG and WebP are`,
+    `its images are compressed as "${format.slice(0, 40)}", which is not supported; only JPEG, PNG and WebP are`,
   );
 }

@@ -41,7 +41,8 @@ export class Elements {
   }
 
   async content({ from, until }: Element): Promise<Uint8Array> {
-    if (until - from > MOST_CONTENT) throw badFile(`one of its elements declares ${until - from} bytes`);
+    if (until - from > MOST_CONTENT)
+      throw badFile(`one of its elements declares ${until - from} bytes, which is too large`);
     return this.bytes.read(from, until - from);
   }
 

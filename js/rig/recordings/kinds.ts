@@ -1,4 +1,4 @@
-/** Tells containers of recordings by their first bytes. */
+/** Recognises containers of recordings by their first bytes. */
 import { wrong } from "../../check.js";
 
 export type Container = "mcap" | "bag" | "matroska";
@@ -8,7 +8,7 @@ const FIRST: [Container, RegExp][] = [
   ["bag", /^#ROSBAG V2/],
   ["matroska", /^\x1a\x45\xdf\xa3/],
 ];
-/** Bytes that are enough to tell a container. */
+/** Number of bytes that identify a container. */
 export const HEAD = 16;
 
 export const containerOf = (head: Uint8Array): Container | undefined =>

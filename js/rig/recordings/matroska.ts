@@ -260,7 +260,7 @@ class MatroskaSource implements Source {
 }
 
 const unread = ({ codec }: Video): string =>
-  `its pictures are stored as "${codec.slice(0, 40)}", which is not read here; MJPG, NV12, YUY2 and b16g of an Azure Kinect are`;
+  `its pictures are stored as "${codec.slice(0, 40)}", which is not supported; MJPG, NV12, YUY2 and b16g of an Azure Kinect are`;
 
 /** The attached calibration. One that cannot be read is left out with a warning. */
 async function calibrationOf(attached: string): Promise<Calibration> {

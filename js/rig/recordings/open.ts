@@ -72,7 +72,7 @@ async function sourceOf(bytes: Bytes): Promise<Source> {
   if (container === "mcap") return (await import("./mcap.js")).openMcap(bytes);
   if (container === "bag") return (await import("./bag.js")).openBag(bytes);
   if (container === "matroska") return (await import("./matroska.js")).openMatroska(bytes);
-  throw badFile("it is no recording that is read here; MCAP files, ROS 1 bags and the .mkv of an Azure Kinect are");
+  throw badFile("it is not a supported recording; MCAP files, ROS 1 bags and the .mkv of an Azure Kinect are");
 }
 
 /** The first image or cloud of each topic, or why it cannot be read. */
@@ -134,9 +134,7 @@ class OpenRecording implements Recording {
     const name = wanted ?? this.chosen[role];
     const what = role === "colour" ? "colour images" : "depth maps or organised clouds";
     if (name === undefined)
-      throw badFile(
-        `none of its ${this.topics.length} topics holds ${what} that are read here${unreadOf(this.topics)}`,
-      );
+      throw badFile(`none of its ${this.topics.length} topics has supported ${what}${unreadOf(this.topics)}`);
     const topic = this.topics.find((each) => each.name === name);
     if (topic === undefined) throw badFile(`it has no topic ${name}`);
     if (topic.unread !== undefined) throw badFile(`${name}: ${topic.unread}`);

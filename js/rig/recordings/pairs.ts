@@ -194,7 +194,7 @@ export function judged(found: readonly Moment[], seen = found.length, wanted = f
     warnings.push(
       warning(
         "times-apart",
-        `Colour images and depth maps are up to ${(1000 * apart).toFixed(0)} ms apart: if the rig or the scene moved, they show different scenes. Record while both rest.`,
+        `Colour images and depth maps are up to ${(1000 * apart).toFixed(0)} ms apart: if the rig or the scene moved, they show different scenes. Record while both stand still.`,
         { seconds: apart },
       ),
     );
@@ -210,7 +210,7 @@ export function judged(found: readonly Moment[], seen = found.length, wanted = f
     warnings.push(
       warning(
         "frames-alike",
-        `Only ${found.length} of ${seen} moments differ: the view hardly changes, and several images of one view tell no more than one. Move the rig or the scene.`,
+        `Only ${found.length} of ${seen} moments differ: the view hardly changes, and several images of one view carry no more information than one. Move the rig or the scene.`,
         { frames: found.length, seen },
       ),
     );

@@ -189,5 +189,5 @@ export function pixels(stored: Stored): Picture {
   if (bayer) return ofBayer(stored, bayer);
   if (packed) return ofPacked(stored, packed);
   if (planar) return ofPlanar(stored, planar);
-  throw badFile(`its images are stored as "${stored.encoding.slice(0, 40)}", which is not read here`);
+  throw badFile(`its images are stored as "${stored.encoding.slice(0, 40)}", which is not supported`);
 }

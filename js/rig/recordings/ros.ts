@@ -108,4 +108,4 @@ export const unreadFirst = (error: unknown): string => `its first message cannot
 export const unreadEncoding = (encoding: string): string | undefined =>
   isKnown(encoding) || /^(?:jpe?g|png|webp|compressedDepth|points|scan)$/i.test(encoding)
     ? undefined
-    : `its images are stored as "${encoding.slice(0, 40)}", which is not read here`;
+    : `its images are stored as "${encoding.slice(0, 40)}", which is not supported`;

@@ -1,4 +1,4 @@
-/** A coarse description of a moment, enough to tell whether the rig or the scene has moved between two moments. */
+/** A coarse description of a moment, enough to detect whether the rig or the scene has moved between two moments. */
 import type { CheckFrame } from "../types.js";
 
 /** Cells of the grid on which images are averaged. */
@@ -80,7 +80,7 @@ export const ALIKE = 0.02;
 
 /**
  * Indices of at most so many signatures that differ most from each other, beginning with the fullest depth map. Signatures that are alike are
- * taken once, since two images of one view tell as much as one.
+ * taken once, since two images of one view carry no more information than one.
  */
 export function different(all: readonly Signature[], most: number): number[] {
   const [first] = all.map((_, index) => index).sort((a, b) => (all[b]?.valid ?? 0) - (all[a]?.valid ?? 0));

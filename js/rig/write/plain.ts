@@ -34,7 +34,7 @@ const FRAME = /^[A-Za-z0-9_][A-Za-z0-9_/.-]*$/;
 
 function frame(name: string, field: string): string {
   if (typeof name === "string" && FRAME.test(name)) return name;
-  throw fault("range", field, 'is no name of a ROS frame: letters, digits, "_", "/", "." and "-"');
+  throw fault("range", field, 'is not a name of a ROS frame, which has letters, digits, "_", "/", "." and "-"');
 }
 
 /** tf2 holds the pose of the child in the parent: P_parent = R P_child + t, so that the colour camera is the parent. */
@@ -47,7 +47,7 @@ export function ros2Line(rig: Rig, { frames }: RigContext): string {
   const values = Object.entries({ x, y, z, qx, qy, qz, qw }).map(([name, value]) => `--${name} ${real(value)}`);
   return [
     `# The transform of the child frame (depth camera) in the parent frame (colour camera): P_parent = R P_child + t, metres.`,
-    `# A frame has one parent: where a driver publishes this one already, change that and do not add to it.`,
+    `# A frame has one parent: if a driver already publishes this transform, change it there instead of adding another.`,
     `ros2 run tf2_ros static_transform_publisher ${values.join(" ")} --frame-id ${parent} --child-frame-id ${child}`,
     "",
   ].join("\n");

@@ -78,7 +78,7 @@ function checkRotation(r: readonly number[]): void {
   const shear = Math.max(...each.flatMap((i) => each.map((j) => Math.abs(dot(i, j) - (i === j ? 1 : 0)))));
   if (shear <= MOST_SHEAR && isRightHanded) return;
   const what = isRightHanded ? `R Rᵀ differs from the identity by ${shear.toPrecision(2)}` : "it mirrors";
-  throw fault("range", "pose.rotation", `is no rotation, ${what}`);
+  throw fault("range", "pose.rotation", `is not a rotation: ${what}`);
 }
 
 function size(value: Size | undefined, field: string): Size | undefined {

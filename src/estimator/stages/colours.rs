@@ -317,7 +317,7 @@ impl ColourRegistration {
 
 /// The object moved very far away or close, where a few pixels explain anything.
 fn collapsed() -> Error {
-    Error::new(ErrorKind::Degenerate, "start", "the colours pull the object along the line of sight")
+    Error::new(ErrorKind::Degenerate, "start", "the image moves the object too far along the line of sight")
 }
 
 fn options(pair: &ViewPair) -> PhotometricOptions {

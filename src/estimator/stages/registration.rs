@@ -93,7 +93,7 @@ impl RegistrationStage {
         &mut self.colours
     }
 
-    /// The registration that this pair needs now: with noisy depth, colours find the pose and surfaces settle it.
+    /// The registration that this pair needs now: with noisy depth, photometric registration finds the pose and ICP settles it.
     pub fn kind(&self, pair: &ViewPair) -> Registration {
         let settled_by_surface = |colours: &ColourRegistration| colours.is_coarse() && colours.found().is_some();
         match pair.options.registration {

@@ -36,7 +36,7 @@ const SETTLED_ROUND: [f64; LEVELS] = [0.02, 0.3];
 
 /// Damping of an instrumental step, as a share of the diagonal.
 const INSTRUMENT_DAMPING: f64 = 1e-3;
-/// The instrumental rounds are undone if they raise E by more than this share. They are no descent, and from a pose
+/// The instrumental rounds are undone if they raise E by more than this share. They are not a descent, and from a pose
 /// that does not fit they lead anywhere.
 const LARGEST_RISE: f64 = 0.1;
 

@@ -76,7 +76,7 @@ impl PhotometricProblem<'_> {
             return Err(Error::new(
                 ErrorKind::Size,
                 "image",
-                "both views must have the sizes that memory was made for",
+                "both views must have the sizes for which memory was allocated",
             ));
         }
         let length = self.depth_size.len();

@@ -68,7 +68,7 @@ export function scalarOf(
   return panel(words, grid, paintScalar(raster(grid, 1, values), range, map), marks);
 }
 
-/** The brightest value but for the last hundredth. */
+/** The brightest value without the highest hundredth. */
 export function brightest(colours: Float32Array): number {
   const finite = colours.filter(Number.isFinite).sort();
   return Math.max(1e-6, finite[Math.floor(0.99 * (finite.length - 1))] ?? 1);

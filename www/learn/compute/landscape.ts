@@ -37,7 +37,7 @@ export function landscapeOf(
   const reach = NOISE * Math.sqrt(3);
   const minima = minimaOf(found);
   const best = minima[0]?.objective ?? NaN;
-  // A minimum that explains the pixel between the places of the picture fills one of them, so that none at all means none.
+  // A minimum that explains the pixel between two samples of the picture fills one of them, so that zero means that no normal does.
   const places = Math.max(inside.filter((value) => value < reach).length, Math.sqrt(best) < reach ? 1 : 0);
   const explained = (100 * places) / inside.length;
   const end = found.path.subarray(-3);
@@ -45,7 +45,7 @@ export function landscapeOf(
     {
       key: words.key ?? "landscape",
       title: words.title ?? "Cost of every normal at that pixel",
-      alt: `The hemisphere of all visible normals seen from the front; dark is cheap. It has ${minima.length} minima.`,
+      alt: `The hemisphere of all visible normals seen from the front; dark means a low cost. It has ${minima.length} minima.`,
       legend: "dark: explains the pixel; dots: minima; cross: truth; line: solver",
     },
     { width: SIDE, height: SIDE },

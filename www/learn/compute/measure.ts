@@ -29,7 +29,7 @@ export const aboutY = aboutVertical as (degrees: number) => number[];
 export const turned = turn as (rotation: readonly number[], vector: readonly number[]) => number[];
 export const product = times as (a: readonly number[], b: readonly number[]) => number[];
 
-/** Root mean square of what differs where both are known. */
+/** Root mean square of the difference where both are known. */
 export function rms(found: ArrayLike<number>, truth: ArrayLike<number>): number {
   let [sum, count] = [0, 0];
   for (let index = 0; index < found.length; index++) {
@@ -67,7 +67,7 @@ export function slopeOf(found: ArrayLike<number>, truth: ArrayLike<number>): num
   return up / down;
 }
 
-/** How alike two rasters are, -1 .. 1. */
+/** The correlation of two rasters, -1 .. 1. */
 export function correlation(a: ArrayLike<number>, b: ArrayLike<number>): number {
   const product = slopeOf(a, b) * slopeOf(b, a);
   return Math.sign(slopeOf(a, b)) * Math.sqrt(Math.max(0, product));

@@ -19,7 +19,7 @@ const BAND = [0.42, 0.58] as const;
 
 interface Painted {
   pair: Pick<Sample, "image" | "depth">;
-  /** What was painted, log, mean taken off as the module does. */
+  /** The true log albedo, less its mean, as the module has it. */
   paint: Float32Array;
   shadow: Uint8Array;
 }
@@ -64,7 +64,7 @@ export function* paint(values: Values): Generator<Drawing> {
         pictureOf(
           {
             key: "albedo",
-            title: "Albedo: the estimated paint",
+            title: "Albedo, as estimated",
             alt: "The albedo that the program separates from the lighting.",
           },
           grid,
@@ -84,7 +84,7 @@ export function* paint(values: Values): Generator<Drawing> {
         scalarOf(
           {
             key: "residual",
-            title: "Left over",
+            title: "Remainder",
             alt: "The part that neither albedo nor shading explains.",
             legend: "dark: explained; bright: off by 1 and more",
           },

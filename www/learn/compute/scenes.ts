@@ -3,7 +3,7 @@
 import { Estimator, sample, type Options, type Sample, type SampleRequest } from "../../../pkg/index.js";
 import type { Values } from "../protocol";
 
-/** The last few scenes: dragging a control that is no part of the scene must not render it anew. */
+/** The last few scenes: dragging a control that is not part of the scene must not render it again. */
 const MOST_KEPT = 8;
 const kept = new Map<string, Sample>();
 
@@ -88,7 +88,7 @@ export const vectorAt = (field: ArrayLike<number>, index: number): [number, numb
 export const logAt = ({ image }: Sample, index: number): [number, number, number] =>
   vectorAt(image.data, index).map((value) => Math.log(value)) as [number, number, number];
 
-/** Runs a loop to its end, or so many steps, and frees it whatever happens. */
+/** Runs a loop to its end or for a number of steps, and frees it in any case. */
 export function* running(
   made: Pick<Sample, "image" | "depth">,
   options: Options,

@@ -7,7 +7,7 @@ import { block, frac, log, mi, mn, mo, row, sub, sup, symbol } from "../maths";
 export const paint: Lesson = {
   id: "paint",
   title: "Shadows and paint",
-  gist: "The image model ignores shadows and assumes a single albedo. Chromaticity separates paint from shading; shadows are treated as outliers.",
+  gist: "The image model ignores shadows and assumes a single albedo. Chromaticity separates albedo from shading; shadows are treated as outliers.",
   formula: () =>
     block(
       log(symbol("S")),
@@ -22,7 +22,7 @@ export const paint: Lesson = {
     ),
   formulaWords: "Log intensity is log albedo plus shading plus a remainder.",
   text: [
-    "Print is not shape. A model with a single albedo would interpret every painted edge as a fold. So once the pose has converged, the program tests whether a few paints explain the picture better: each pixel has the shading of its measured normal plus one of a few offsets {a}. The number of paints is chosen by the evidence in the picture.",
+    "Print is not shape. A model with a single albedo would interpret every painted edge as a fold. So once the pose has converged, the program tests whether a few different albedos explain the picture better: each pixel has the shading of its measured normal plus one of a few offsets {a}. The evidence in the picture decides how many albedos there are.",
     "Chromaticity decides: coloured paint changes red, green and blue by different amounts, while shading under whitish light changes them almost equally. Grey paint is much harder to separate, and so is any paint under light of many colours.",
     "A cast shadow violates the model, because the light there is different. Robust weights reduce the influence of such pixels on light and pose. A hard shadow edge can still be mistaken for paint, and the inside of the shadow stays in the remainder {e}.",
   ],

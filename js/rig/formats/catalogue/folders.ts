@@ -7,7 +7,7 @@ const UNIT = "The unit, if no file of the folder gives it.";
 export const FOLDERS: readonly Row[] = [
   {
     product: "Any program",
-    file: "pairs by like names, by time stamps as names, or by order",
+    file: "pairs by similar names, by time stamps as names, or by order",
     modules: [],
     reader: "folder",
     sample: "pairs",

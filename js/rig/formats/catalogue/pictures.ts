@@ -2,7 +2,7 @@
 import { NOTHING, type Row, SEE_PRODUCT } from "./row.js";
 
 const UNIT =
-  "The unit, from the values, unless a text beside the maps, a tag of the file or the option `unit` gives it.";
+  "The unit, from the values, unless a text file beside the maps, a tag of the file or the option `unit` gives it.";
 const METRES = "Floats are metres.";
 
 export const DEPTHS: readonly Row[] = [
@@ -146,7 +146,7 @@ export const DEPTHS: readonly Row[] = [
     sample: "depth-raw",
     reads: "depth",
     warnings: ["unit-guessed"],
-    taken: "Pixels of the `size` that is given, or found in a text beside the map.",
+    taken: "Pixels of the `size` that is given, or found in a text file beside the map.",
     guessed: "The unit; from the values, whether 32-bit numbers are integers or floats.",
     exported: SEE_PRODUCT,
   },
@@ -215,7 +215,7 @@ export const COLOURS: readonly Row[] = [
   },
   {
     product: "Phones",
-    file: "JPEG turned by EXIF",
+    file: "JPEG rotated by EXIF",
     modules: ["jpeg"],
     reader: "jpeg",
     sample: "colour-turned",

@@ -124,7 +124,7 @@ export const SCANS: readonly Row[] = [
     warnings: [],
     taken: "Nothing.",
     guessed: NOTHING,
-    exported: "Save a scan as PCD with the maker's viewer or driver",
+    exported: "Save a scan as PCD with the manufacturer's viewer or driver",
   },
   {
     product: "Ouster",

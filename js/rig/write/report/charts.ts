@@ -15,7 +15,7 @@ const AXES: readonly { axis: Axis; title: string; unit: string }[] = [
   { axis: "tz", title: "Shift along z", unit: "mm" },
 ];
 
-/** Sigmas that a panel shows: what is further off is ruled out, whatever its height. */
+/** Sigmas that a panel shows: offsets further away are ruled out, whatever their height. */
 export const MOST_SIGMAS = 8;
 
 /** Line styles that the style sheet distinguishes. */

@@ -1,5 +1,5 @@
 /**
- * What a sensitivity curve says: where it is best, and how far one may go from there before the likelihood tells. Heights are
+ * What a sensitivity curve says: where it is best, and how far one may move from there before the likelihood excludes it. Heights are
  * sigmas, the square root of twice the fall of the log likelihood: straight flanks where noise is Gaussian, and the same
  * scale for all cues and axes.
  */

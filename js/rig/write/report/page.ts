@@ -8,7 +8,7 @@ const POLICY = `default-src 'none'; img-src data:; style-src 'sha256-${STYLE_SHA
 /** A date as a report prints it. */
 export function dateOf(made: Date | undefined, field: string): string | undefined {
   if (made !== undefined && !(made instanceof Date && made.getTime() <= Infinity))
-    throw fault("type", field, "must be a Date that holds a time");
+    throw fault("type", field, "must be a valid Date");
   return made && `${made.toISOString().slice(0, 16).replace("T", " ")} UTC`;
 }
 

@@ -19,7 +19,7 @@ export const section = (title: string, ...parts: Part[]): Markup => html`<sectio
 export const fact = (name: string, value: string, more?: string): Markup =>
   html`<div><dt>${name}</dt><dd>${value}${more === undefined ? undefined : html` <span class="soft">${more}</span>`}</dd></div>`;
 
-/** A cell that tells its column by itself, on narrow screens where the table's head is hidden. */
+/** A cell that states its column itself, for narrow screens where the table's head is hidden. */
 export const cell = (column: string, value: Part): Markup => html`<td data-column="${column}">${value}</td>`;
 
 export const table = (kind: string, columns: readonly string[], rows: Part): Markup =>

@@ -86,5 +86,5 @@ section:has(.apart){break-before:page}details:not([open]),footer{display:none}
 }
 `;
 
-/** Of STYLE, base64; a test holds it, and says the right one. */
+/** Hash of STYLE, base64; a test checks it and prints the right one. */
 export const STYLE_SHA256 = "SUqUAdltWLq4XFhI4Pv7wSjHk4HoMZV/nDM7GaZr13g=";
