@@ -50,6 +50,8 @@ const CHECK_WASM = /bimodal_stereo_check_bg/;
 const RIG_FILES = /T_cn_cnm1/;
 /** The rendered example, which loads on demand. */
 const EXAMPLE = /\/(?:rigs-|bimodal_stereo_rigs_bg)/;
+/** The writer of the report, which loads when somebody saves one. */
+const REPORT = /^assets\/reportfile-/;
 /**
  * Readers that load only for files of their kind: JPEG without a browser, texts, YAML, TOML, JSON with comments, calibrations of products,
  * point clouds, EXR, TIFF, recordings, messages about unsupported files; and the code that makes the Lab's pair from
@@ -69,7 +71,11 @@ function checkFiles() {
   const first = scripts.filter((path) => knows(path, CHECK_WASM) || knows(path, RIG_FILES));
   const all = reached(first, [AT_ONCE, ON_DEMAND], (path) => OTHERS.test(path));
   const example = all.filter((path) => EXAMPLE.test(path));
-  return { check: all.filter((path) => !example.includes(path)), example };
+  const writers = scripts.filter((path) => REPORT.test(path));
+  if (writers.length === 0) throw new Failure(`No script of the page matches ${REPORT.source}.`);
+  const loaded = new Set([...all, ...firstScripts()]);
+  const report = reached(writers, [AT_ONCE]).filter((path) => !loaded.has(path));
+  return { check: all.filter((path) => !example.includes(path)), example, report };
 }
 
 /** Builds the page that is measured. */
@@ -80,7 +86,7 @@ export function sizes() {
   for (const path of [WASM, SCALAR, `${PAGE}/index.html`])
     if (!existsSync(inRoot(path))) throw new Failure(`${path} has not been built.`);
   const scripts = firstScripts();
-  const { check, example } = checkFiles();
+  const { check, example, report } = checkFiles();
   const total = (paths) => paths.reduce((sum, path) => sum + zipped(inRoot(PAGE, path)), 0);
   return {
     wasmBytes: readFileSync(inRoot(WASM)).length,
@@ -91,12 +97,20 @@ export function sizes() {
     scripts,
     checkGzipBytes: total(check),
     exampleGzipBytes: total(example),
+    reportGzipBytes: total(report),
     check,
   };
 }
 
 /** The sizes beside their budgets, one line each, and whether all stay within them. */
-export function judgeSizes({ wasmGzipBytes, scalarGzipBytes, jsGzipBytes, checkGzipBytes, exampleGzipBytes }) {
+export function judgeSizes({
+  wasmGzipBytes,
+  scalarGzipBytes,
+  jsGzipBytes,
+  checkGzipBytes,
+  exampleGzipBytes,
+  reportGzipBytes,
+}) {
   const line = (name, bytes, kept, budget) =>
     `${name}: ${(bytes / 1000).toFixed(1)} kB gzipped, ${kept ? "within" : "OVER"} the budget of ${budget / 1000} kB`;
   const kept = [
@@ -111,6 +125,7 @@ export function judgeSizes({ wasmGzipBytes, scalarGzipBytes, jsGzipBytes, checkG
     line("size of the page's first scripts", jsGzipBytes, kept[2], FIRST_PAINT_BUDGET),
     line("size of the check with its readers and writers", checkGzipBytes, kept[3], CHECK_BUDGET),
     `size of the rendered example, on demand: ${(exampleGzipBytes / 1000).toFixed(1)} kB gzipped`,
+    `size of a check's report, when it is saved: ${(reportGzipBytes / 1000).toFixed(1)} kB gzipped`,
   ];
   return { lines, kept: kept.every(Boolean) };
 }
