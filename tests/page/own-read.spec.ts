@@ -121,7 +121,7 @@ test("intrinsics of another picture size are scaled and named; of another aspect
   await expect(fx("colour")).toHaveValue("30.5");
   await expect(fx("depth")).toHaveValue("");
   await expect(remarks(lab)).toContainText(
-    "The intrinsics of the colour images are for 96x96 pixels, but these pictures have 48x48: the intrinsics were scaled to that",
+    "The intrinsics of the colour images are for 96x96 pixels, but these pictures have 48x48: the intrinsics were scaled",
   );
   await page.getByRole("button", { name: "Undo" }).click();
   await expect(fx("colour")).toHaveValue("");

@@ -113,7 +113,8 @@ test("the recording of an Azure Kinect ends in a verdict of the calibration atta
   await expect(card.getByRole("status")).toHaveText("1 frame taken");
   await shot(page, "mkv-files");
   await run(page);
-  await expect(page.locator(".rig-word")).toHaveText(/Consistent|Looks right, see warnings/);
+  // One frame of this room leaves open whether the cameras are elsewhere: another pose fits as well.
+  await expect(page.locator(".rig-word")).toHaveText(/Consistent|Looks right, see warnings|Undecided/);
   await shot(page, "mkv-verdict");
   expect(lab.complaints).toEqual([]);
 });
