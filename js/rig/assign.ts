@@ -277,7 +277,11 @@ function carriedInto(
         why: `The depth maps have ${size} pixels as the colour images, which no depth camera of the files has, so that they were taken to be aligned with these`,
       };
   }
-  if (range !== undefined && colour !== undefined && colour !== range && fits(range, depth) && isNoneOf("colour"))
+  // A colour camera of the pictures' aspect took them binned or scaled, and its intrinsics are scaled with a warning.
+  const isOfView = ({ width = 1, height = 1 }: NamedCamera) =>
+    haveLikeAspects([width, height], [image.width, image.height]);
+  const isOther = isNoneOf("colour") && !taking(cameras, "colour").some(isOfView);
+  if (range !== undefined && colour !== undefined && colour !== range && fits(range, depth) && isOther)
     return {
       camera: range,
       why: `The colour images have ${size} pixels as the depth maps, which no colour camera of the files has, so that they were taken to be carried into the depth camera's view`,
