@@ -247,7 +247,7 @@ export function withoutInertial(poses: NamedPose[], warnings: ReaderWarning[]): 
 }
 
 /** The poses of a file that are not of the world; a camera without a name is called as its file there, too. */
-function ofRig(text: Extract<RigReading, { poses: NamedPose[] }>, file: string): NamedPose[] {
+export function ofRig(text: Extract<RigReading, { poses: NamedPose[] }>, file: string): NamedPose[] {
   const isUnnamed = text.kind === "cameras" && text.cameras.length === 1 && text.cameras[0]?.name === undefined;
   const called = (end: string | undefined) => (isUnnamed && end === "camera" ? file : end);
   return text.poses

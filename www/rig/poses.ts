@@ -112,8 +112,26 @@ const SIDES = [
   ["in front of", "behind"],
 ] as const;
 
+/** Whether a pose is for points in a LiDAR's axes: two cameras that see the same thing look nearly along one axis z. */
+export const isOfScan = ({ rotation }: Pose): boolean => at(rotation, 8) < Math.SQRT1_2;
+
+/** Cameras that look along an axis of a LiDAR whose z points up. */
+const AHEAD: readonly [axis: string, rotation: readonly number[]][] = [
+  ["x", [0, -1, 0, 0, 0, -1, 1, 0, 0]],
+  ["y", [1, 0, 0, 0, 0, -1, 0, 1, 0]],
+  ["−x", [0, 1, 0, 0, 0, -1, -1, 0, 0]],
+  ["−y", [-1, 0, 0, 0, 0, -1, 0, -1, 0]],
+];
+
+/** Which way the colour camera looks from a LiDAR. */
+function heading({ rotation }: Pose): string {
+  const turns = AHEAD.map(([axis, ahead]) => ({ axis, degrees: angleOf(times(rotation, transposed(ahead))) / DEGREE }));
+  const { axis, degrees } = turns.reduce((a, b) => (a.degrees <= b.degrees ? a : b));
+  return `which is turned by ${decimals(degrees, 2)}° from looking along the LiDAR's ${axis} axis, z up`;
+}
+
 /** Where the depth camera sits relative to the colour camera, so that the visitor can compare it with the rig. */
-export function inWords(pose: Pose): string {
+export function inWords(pose: Pose, isLidar = false): string {
   const parts = pose.translation
     .map((metres, axis) => ({ mm: 1000 * metres, words: SIDES[axis]?.[metres < 0 ? 1 : 0] ?? "" }))
     .filter(({ mm }) => Math.abs(mm) >= 0.05)
@@ -126,6 +144,7 @@ export function inWords(pose: Pose): string {
         ? parts[0]
         : `${parts.slice(0, -1).join(", ")} and ${parts.at(-1)}`;
   const degrees = degreesOf(pose);
+  if (isLidar && isOfScan(pose)) return `The LiDAR sits ${place} the colour camera, ${heading(pose)}.`;
   return degrees < 0.005 && parts.length === 0
     ? "The two cameras coincide: no offset, no rotation."
     : `The depth camera sits ${place} the colour camera, rotated by ${decimals(degrees, 2)}°.`;
