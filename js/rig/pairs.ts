@@ -24,8 +24,22 @@ const CLOUDS = new Set(["ply", "pcd", "points"]);
 const MAPS = new Set(["colmap", "table"]);
 const isCloud = ({ bytes }: NamedFile): boolean => CLOUDS.has(rasterKind(bytes) ?? "");
 
-function roleIn(file: NamedFile): Role | "unknown" {
-  const role = roleOf(file.name);
+/** The folders that all pictures share, which tell none from another: "lidar_nuscenes/CAM_FRONT.jpg" is no scan. */
+function rootOf(pictures: NamedFile[]): string {
+  const [first = "", ...others] = pictures.map(({ name }) => folderOf(name));
+  if (others.length === 0) return "";
+  const parts = first.split("/").slice(0, -1);
+  const same = parts.findIndex(
+    (_, at) => !others.every((path) => path.startsWith(`${parts.slice(0, at + 1).join("/")}/`)),
+  );
+  return parts
+    .slice(0, same < 0 ? parts.length : same)
+    .map((part) => `${part}/`)
+    .join("");
+}
+
+function roleIn(file: NamedFile, root: string): Role | "unknown" {
+  const role = roleOf(file.name.slice(root.length));
   if (role !== undefined && role !== "colour") return role;
   if (isCloud(file)) return "cloud";
   return MAPS.has(rasterKind(file.bytes) ?? "") ? "depth" : (role ?? "unknown");
@@ -34,8 +48,9 @@ function roleIn(file: NamedFile): Role | "unknown" {
 /** Pictures by what they hold, with a warning for those that no frame needs. */
 function sorted(pictures: NamedFile[], warnings: ReaderWarning[]): Sorted {
   const roles = new Map<Role | "unknown", NamedFile[]>();
+  const root = rootOf(pictures);
   for (const file of pictures) {
-    const role = roleIn(file);
+    const role = roleIn(file, root);
     roles.set(role, [...(roles.get(role) ?? []), file]);
   }
   const of = (role: Role | "unknown") => roles.get(role) ?? [];

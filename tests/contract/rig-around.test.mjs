@@ -52,9 +52,12 @@ function isOf({ frames, poses }, name, focal, rotation) {
 }
 
 describe("several cameras around a LiDAR (nuScenes)", () => {
-  for (const path of [(camera) => `${camera}.png`, (camera) => `samples/${camera}/0.png`]) {
-    const at = path("CAM_FRONT").includes("/") ? "samples/LIDAR_TOP/0.bin" : "LIDAR_TOP.bin";
-
+  // A folder's own name, which a browser puts before all files, tells no picture from a scan.
+  for (const [path, at] of [
+    [(camera) => `${camera}.png`, "LIDAR_TOP.bin"],
+    [(camera) => `lidar_nuscenes/${camera}.png`, "lidar_nuscenes/LIDAR_TOP.bin"],
+    [(camera) => `samples/${camera}/0.png`, "samples/LIDAR_TOP/0.bin"],
+  ]) {
     test(`${path("CAM_FRONT")}: the picture's name chooses its camera and the pose that leads to it`, async () => {
       const one = (camera) => folder({ [path(camera)]: colour(), [at]: scan, "calibration.json": AROUND });
       isOf(await one("CAM_FRONT"), "CAM_FRONT", 5, AHEAD);
