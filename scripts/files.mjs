@@ -1,10 +1,12 @@
-// node scripts/files.mjs: writes docs/guide/files.md, the list of supported files, from the table beside the readers
-// (js/rig/formats/catalogue). tests/contract/files-page.test.mjs checks that both agree and that the readers do what the table says.
+// node scripts/files.mjs: writes docs/guide/files.md, the list of supported files, and its short form on the page from the table beside the
+// readers (js/rig/formats/catalogue). tests/contract/files-page.test.mjs checks that both agree and that the readers do what the table says.
 import { mkdirSync, realpathSync, writeFileSync } from "node:fs";
 import { dirname } from "node:path";
 import { inRoot, say } from "./shell.mjs";
 
 export const DOCUMENT = "docs/guide/files.md";
+/** The list on the page, which loads it when somebody opens it. */
+export const LIST = "www/rig/supported.ts";
 
 /** The exports of some sources that Node cannot load as they are. */
 export async function loaded(source) {
@@ -47,8 +49,35 @@ export function documentOf(groups) {
   return ["# Files that are read", "", INTRODUCTION, "", ...sections].join("\n");
 }
 
+/** The source of the page's list: for each group what is read, of pictures and scans the formats and of the others the products. */
+export function listOf(groups) {
+  const areFormats = (title) => /maps|images|Masks|scans/.test(title);
+  const brief = (file) =>
+    file
+      .replaceAll("`", "")
+      .replace(/(?:[:;(]| in three| without| with or| of every| below).*$/, "")
+      .trim();
+  const entry = ({ title, rows }) => {
+    const read = rows.filter(({ file }) => !/not read/.test(file));
+    const products = read.flatMap(({ product }) => product.split(/[,;] (?![^(]*\))/));
+    const formats = areFormats(title) ? read.map(({ file }) => brief(file)) : [];
+    return `  [${JSON.stringify(title)}, ${JSON.stringify([...new Set([...formats, ...products])].join(", "))}],`;
+  };
+  return [
+    "/** Products and formats that are read, made by `node scripts/files.mjs` from the readers' table. */",
+    "",
+    "// biome-ignore format: one group on each line",
+    "export const SUPPORTED: readonly [group: string, products: string][] = [",
+    ...groups.map(entry),
+    "];",
+    "",
+  ].join("\n");
+}
+
 if (import.meta.filename === realpathSync(process.argv[1])) {
   mkdirSync(dirname(inRoot(DOCUMENT)), { recursive: true });
-  writeFileSync(inRoot(DOCUMENT), documentOf(await catalogue()));
-  say(`wrote ${DOCUMENT}`);
+  const groups = await catalogue();
+  writeFileSync(inRoot(DOCUMENT), documentOf(groups));
+  writeFileSync(inRoot(LIST), listOf(groups));
+  say(`wrote ${DOCUMENT} and ${LIST}`);
 }

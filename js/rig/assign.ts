@@ -277,7 +277,11 @@ function carriedInto(
         why: `The depth maps have the size of the colour images (${size}), which no depth camera in the files has, so they were treated as aligned with the colour images`,
       };
   }
-  if (range !== undefined && colour !== undefined && colour !== range && fits(range, depth) && isNoneOf("colour"))
+  // A colour camera of the pictures' aspect took them binned or scaled, and its intrinsics are scaled with a warning.
+  const isOfView = ({ width = 1, height = 1 }: NamedCamera) =>
+    haveLikeAspects([width, height], [image.width, image.height]);
+  const isOther = isNoneOf("colour") && !taking(cameras, "colour").some(isOfView);
+  if (range !== undefined && colour !== undefined && colour !== range && fits(range, depth) && isOther)
     return {
       camera: range,
       why: `The colour images have the size of the depth maps (${size}), which no colour camera in the files has, so they were treated as transformed into the depth camera's view`,

@@ -8,11 +8,13 @@ import { breathe } from "../breathe.js";
 import { type Check, object, signal, wrong } from "../check.js";
 import { BimodalError, badFile, refused } from "../errors.js";
 import { addCameras, inOrder, ofPictures } from "./assign.js";
+import { ofNamedPictures } from "./around.js";
 import { isRawName } from "./formats/raw.js";
 import { areFives, isVaried, nameOf, sampled } from "./guess.js";
 import { type Pair, type Pairs, tum } from "./lists.js";
 import { key, stem } from "./names.js";
-import { pairsOf } from "./pairs.js";
+import { pairsOf, sayUnpaired } from "./pairs.js";
+import { type TextOfFrame, assignOwn, split } from "./perframe.js";
 import { checkNamed, isRasterFile, isTextFile, metresPerUnit, pixelSize, readRigFile } from "./read.js";
 import { isAligned, isOther, roleOf } from "./roles.js";
 import { posesForClouds } from "./turned.js";
@@ -236,7 +238,7 @@ function sortedFiles(files: NamedFile[]): Sorted {
 const INERTIAL = /(?:^|[^a-z])(?:imu|gps|oxts|gyro\w*|accel\w*)(?:[^a-z]|$)/i;
 
 /** Leaves out the poses of inertial sensors, which relate no colour camera to a depth camera. */
-function withoutInertial(poses: NamedPose[], { warnings }: FolderReader): NamedPose[] {
+export function withoutInertial(poses: NamedPose[], warnings: ReaderWarning[]): NamedPose[] {
   const isInertial = ({ from = "", to = "" }: NamedPose) => INERTIAL.test(from) || INERTIAL.test(to);
   const left = new Set(poses.filter(isInertial).map(({ from, to }) => `${from} to ${to}`));
   if (left.size > 0)
@@ -245,7 +247,7 @@ function withoutInertial(poses: NamedPose[], { warnings }: FolderReader): NamedP
 }
 
 /** The poses of a file that are not of the world; a camera without a name is called as its file there, too. */
-function ofRig(text: Extract<RigReading, { poses: NamedPose[] }>, file: string): NamedPose[] {
+export function ofRig(text: Extract<RigReading, { poses: NamedPose[] }>, file: string): NamedPose[] {
   const isUnnamed = text.kind === "cameras" && text.cameras.length === 1 && text.cameras[0]?.name === undefined;
   const called = (end: string | undefined) => (isUnnamed && end === "camera" ? file : end);
   return text.poses
@@ -256,23 +258,29 @@ function ofRig(text: Extract<RigReading, { poses: NamedPose[] }>, file: string):
     });
 }
 
-/** What the texts of a folder hold: cameras, what relates them, and the unit of the depth maps. */
+/** What the texts of a folder hold: cameras, what relates them, and the unit of the depth maps; `own` has the texts of single frames. */
 async function calibrationOf({ texts, others }: Sorted, frames: ReadonlySet<string>, reader: FolderReader) {
-  const cameras: NamedCamera[] = [];
-  const poses: NamedPose[] = [];
+  const found: TextOfFrame[] = [];
   let depthUnit: number | undefined;
   for (const file of [...texts, ...others]) {
     if (LISTS.test(file.name)) continue;
     // A pose that is called as a frame is where the camera stood then, and relates no two cameras.
     if (/pose/i.test(file.name) && frames.has(key(file.name.replace(/pose/gi, "")))) continue;
     const text = await reader.read(file, {});
-    if (text?.kind === "cameras") {
-      cameras.push(...text.cameras.map((each) => ({ ...each, name: each.name ?? stem(file.name) })));
-      depthUnit ??= text.depthUnit;
-    }
-    if (text?.kind === "cameras" || text?.kind === "poses") poses.push(...ofRig(text, stem(file.name)));
+    if (text?.kind !== "cameras" && text?.kind !== "poses") continue;
+    const called = (each: NamedCamera) => ({ ...each, name: each.name ?? stem(file.name) });
+    const cameras = text.kind === "cameras" ? text.cameras.map(called) : [];
+    if (text.kind === "cameras") depthUnit ??= text.depthUnit;
+    found.push({ file: file.name, cameras, poses: ofRig(text, stem(file.name)) });
   }
-  return { cameras, poses: withoutInertial(poses, reader), depthUnit };
+  const isLeft = withoutInertial(
+    found.flatMap(({ poses }) => poses),
+    reader.warnings,
+  );
+  for (const text of found) text.poses = text.poses.filter((pose) => isLeft.includes(pose));
+  const [own, common] = split(found, frames);
+  const all = { cameras: common.flatMap(({ cameras }) => cameras), poses: common.flatMap(({ poses }) => poses) };
+  return { ...all, depthUnit, own };
 }
 
 /** How many reasons an error gives. */
@@ -327,7 +335,7 @@ export async function readRigFolder(files: NamedFile[], options: FolderOptions =
       reader,
     );
   const names = new Set(found.pairs.map(({ name }) => name));
-  const { depthUnit, ...calibration } = await calibrationOf(kept, names, reader);
+  const { depthUnit, own, ...calibration } = await calibrationOf(kept, names, reader);
   const inText = unit === undefined && depthUnit === undefined ? unitBeside(texts, reader.warnings) : undefined;
   for (const file of texts) if (inText?.files.has(file.name)) reader.onlyUnit(file, inText.unit);
   const known: Known = {
@@ -337,14 +345,15 @@ export async function readRigFolder(files: NamedFile[], options: FolderOptions =
   };
   const read = await framesOf(found, most, known, reader);
   const frames = read.map(([frame]) => frame);
-  const folder = folderOf(frames, calibration, pictures, reader);
-  const own = folder.cameras.filter(({ takes }) => takes === undefined || takes === "both");
-  addCameras(folder, {
-    isAligned: read.length > 0 && read.every(([, { depths }]) => isAligned(depths[0].name)),
-    cameraOf: ({ name = "" }) =>
-      own.find((each) => each.name !== undefined && key(each.name) === key(name) && key(name) !== ""),
-  });
+  const readings = inOrderOf(pictures, reader.readings);
+  const folder: RigFolder = { frames, ...calibration, readings, warnings: reader.warnings };
+  const paths = frames.length > 0 ? read.flatMap(([, { colour, depths }]) => [colour, ...depths]) : pictures;
+  const allAligned = read.length > 0 && read.every(([, { depths }]) => isAligned(depths[0].name));
+  const assign = (each: RigFolder) => assigned(each, { paths: paths.map(({ name }) => name), isAligned: allAligned });
+  if (own.length > 0 && frames.length > 0) assignOwn(folder, own, assign);
+  else Object.assign(folder, assign(withTexts(folder, own)));
   folder.poses = posesForClouds(folder.poses, frames, folder.warnings);
+  if (frames.length === 0) sayUnpaired(pictures, folder.warnings);
   checkUnits(frames, folder.warnings);
   if (frames.length + folder.cameras.length + folder.poses.length === 0)
     throw nothingFound(files.length, folder.warnings, pictures);
@@ -353,15 +362,29 @@ export async function readRigFolder(files: NamedFile[], options: FolderOptions =
 }
 
 /** What was read of each file stands in the folder's order: pictures first, as they lead to what the rest is for. */
-function folderOf(
-  frames: CheckFrame[],
-  calibration: Pick<RigFolder, "cameras" | "poses">,
-  pictures: NamedFile[],
-  { readings: all, warnings }: FolderReader,
-): RigFolder {
-  const paths = pictures.map(({ name }) => name);
-  const isPicture = new Set(paths);
-  const readings = [true, false].flatMap((first) => all.filter(({ name }) => isPicture.has(name) === first));
-  const { cameras, poses } = ofPictures(calibration, paths);
-  return { frames, cameras, poses: inOrder(poses), readings, warnings };
+function inOrderOf(pictures: NamedFile[], all: readonly Reading[]): Reading[] {
+  const isPicture = new Set(pictures.map(({ name }) => name));
+  return [true, false].flatMap((first) => all.filter(({ name }) => isPicture.has(name) === first));
+}
+
+/** The folder with the cameras and poses of these texts, too. */
+const withTexts = ({ cameras, poses, ...folder }: RigFolder, texts: TextOfFrame[]): RigFolder => ({
+  ...folder,
+  cameras: [...cameras, ...texts.flatMap((text) => text.cameras)],
+  poses: [...poses, ...texts.flatMap((text) => text.poses)],
+});
+
+/** Gives the frames of a folder their cameras, of those that took the pictures of these paths, and puts its poses in order. */
+export function assigned(folder: RigFolder, { paths, isAligned }: { paths: string[]; isAligned: boolean }): RigFolder {
+  const ofPaths = ofPictures(folder, paths);
+  const areClouds = folder.frames.length > 0 && folder.frames.every(({ depth }) => depth.points !== undefined);
+  const found = areClouds ? ofNamedPictures(ofPaths, paths) : ofPaths;
+  found.poses = inOrder(found.poses);
+  const own = found.cameras.filter(({ takes }) => takes === undefined || takes === "both");
+  addCameras(found, {
+    isAligned,
+    cameraOf: ({ name = "" }) =>
+      own.find((each) => each.name !== undefined && key(each.name) === key(name) && key(name) !== ""),
+  });
+  return found;
 }

@@ -47,7 +47,9 @@ export function timeOf(name: string): number | undefined {
   const numbers = key(name)
     .split(" ")
     .filter((word) => /\d/.test(word));
-  const [only = "", ...others] = numbers;
+  // nuScenes' names have the log, the sensor and the time.
+  const last = name.includes("__") && /^\d{13,19}$/.test(numbers.at(-1) ?? "") ? numbers.slice(-1) : numbers;
+  const [only = "", ...others] = last;
   if (others.length > 0 || !/^\d+(?:\.\d+)?$/.test(only)) return undefined;
   const ticks = TICKS.find((each) => Number(only) >= FROM * each && Number(only) < UNTIL * each);
   if (ticks !== undefined) return Number(only) / ticks;

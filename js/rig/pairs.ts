@@ -6,6 +6,7 @@
  */
 import { badFile } from "../errors.js";
 import { rasterKind } from "./formats/headerless.js";
+import { byCamera } from "./around.js";
 import { APART, type Pair, type Pairs, byTime } from "./lists.js";
 import { commonPath, folderOf, key, looseKey, stem, timeOf } from "./names.js";
 import { CONTENTS, type Other, type Role, roleOf } from "./roles.js";
@@ -23,8 +24,22 @@ const CLOUDS = new Set(["ply", "pcd", "points"]);
 const MAPS = new Set(["colmap", "table"]);
 const isCloud = ({ bytes }: NamedFile): boolean => CLOUDS.has(rasterKind(bytes) ?? "");
 
-function roleIn(file: NamedFile): Role | "unknown" {
-  const role = roleOf(file.name);
+/** The folders that all pictures share, which tell none from another: "lidar_nuscenes/CAM_FRONT.jpg" is no scan. */
+function rootOf(pictures: NamedFile[]): string {
+  const [first = "", ...others] = pictures.map(({ name }) => folderOf(name));
+  if (others.length === 0) return "";
+  const parts = first.split("/").slice(0, -1);
+  const same = parts.findIndex(
+    (_, at) => !others.every((path) => path.startsWith(`${parts.slice(0, at + 1).join("/")}/`)),
+  );
+  return parts
+    .slice(0, same < 0 ? parts.length : same)
+    .map((part) => `${part}/`)
+    .join("");
+}
+
+function roleIn(file: NamedFile, root: string): Role | "unknown" {
+  const role = roleOf(file.name.slice(root.length));
   if (role !== undefined && role !== "colour") return role;
   if (isCloud(file)) return "cloud";
   return MAPS.has(rasterKind(file.bytes) ?? "") ? "depth" : (role ?? "unknown");
@@ -33,8 +48,9 @@ function roleIn(file: NamedFile): Role | "unknown" {
 /** Pictures by their content, with a warning for those that no frame needs. */
 function sorted(pictures: NamedFile[], warnings: ReaderWarning[]): Sorted {
   const roles = new Map<Role | "unknown", NamedFile[]>();
+  const root = rootOf(pictures);
   for (const file of pictures) {
-    const role = roleIn(file);
+    const role = roleIn(file, root);
     roles.set(role, [...(roles.get(role) ?? []), file]);
   }
   const of = (role: Role | "unknown") => roles.get(role) ?? [];
@@ -257,8 +273,7 @@ function byOrder({ colours, depths }: Sorted, warnings: ReaderWarning[]): Pairs 
   return { pairs, says: `${depths.length} pairs in their order` };
 }
 
-export function pairsOf(pictures: NamedFile[], warnings: ReaderWarning[]): Pairs {
-  const found = sorted(pictures, warnings);
+function attempt(found: Sorted, warnings: ReaderWarning[]): Pairs {
   const same = new Set(found.colours.map(({ name }) => key(name)));
   const isSame = found.depths.length > 0 && found.depths.every(({ name }) => same.has(key(name)));
   const stamped = isSame ? undefined : byStamps(found, warnings);
@@ -269,4 +284,45 @@ export function pairsOf(pictures: NamedFile[], warnings: ReaderWarning[]): Pairs
   const pairs = strict.length > 0 || own.length > 0 ? strict : byNames(found, own, looseKey);
   warnings.push(...own);
   return pairs.length > 0 ? { pairs, says: `${pairs.length} pairs by their names` } : byOrder(found, warnings);
+}
+
+/** The pairs of one of several cameras around a LiDAR; one pose cannot be checked with the pictures of others. */
+function ofOneCamera(found: Sorted, warnings: ReaderWarning[]): Pairs | undefined {
+  if (found.depths.length === 0 || !found.depths.every(isCloud)) return undefined;
+  const cameras = byCamera(found.colours.map(({ name }) => name));
+  const [ours] = cameras;
+  if (cameras.length < 2 || ours === undefined) return undefined;
+  const names = new Set(ours.pictures);
+  const own: ReaderWarning[] = [];
+  const pairs = attempt({ ...found, colours: found.colours.filter(({ name }) => names.has(name)) }, own);
+  if (pairs.pairs.length === 0) return undefined;
+  const message = `it is a picture of another camera than ${ours.camera}, which was chosen: one camera at a time can be checked against the LiDAR (left out). To check this one, give its pictures and the scans without those of ${ours.camera}.`;
+  const others = found.colours.filter(({ name }) => !names.has(name));
+  warnings.push(...own, ...others.map(({ name }) => ofFile(name, warning("file-left-out", message))));
+  return pairs;
+}
+
+/** Says of each picture of a folder without pairs why it has none, where nothing is said of it yet. */
+export function sayUnpaired(pictures: NamedFile[], warnings: ReaderWarning[]): void {
+  const { colours, depths } = sorted(pictures, []);
+  if (colours.length + depths.length < 2) return;
+  const said = new Set(warnings.map(({ file }) => file));
+  const count = (files: NamedFile[], one: string, more: string) => `${files.length} ${files.length === 1 ? one : more}`;
+  const message = `it was not paired, because ${count(colours, "colour image", "colour images")} and ${count(depths, "depth map or scan", "depth maps or scans")} have no names or time stamps in common (left out). Give both files of a frame the same name.`;
+  for (const { name } of [...colours, ...depths])
+    if (!said.has(name)) warnings.push(ofFile(name, warning("file-alone", message)));
+}
+
+export function pairsOf(pictures: NamedFile[], warnings: ReaderWarning[]): Pairs {
+  const found = sorted(pictures, warnings);
+  // By their times alone, pictures of different cameras would take turns.
+  const areStamped = [...found.colours, ...found.depths].every(({ name }) => timeOf(name) !== undefined);
+  const single = areStamped ? ofOneCamera(found, warnings) : undefined;
+  if (single !== undefined) return single;
+  const own: ReaderWarning[] = [];
+  const pairs = attempt(found, own);
+  const later = pairs.pairs.length === 0 ? ofOneCamera(found, warnings) : undefined;
+  if (later !== undefined) return later;
+  warnings.push(...own);
+  return pairs;
 }

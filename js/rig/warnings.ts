@@ -37,6 +37,7 @@ export type ReaderCode =
   | "skew-ignored"
   | "lens-approximated"
   | "intrinsics-vary"
+  | "calibrations-differ"
   | "distortion-unused"
   | "distortion-guessed"
   | "size-unused"

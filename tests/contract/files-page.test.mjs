@@ -5,7 +5,7 @@ import { describe, test } from "node:test";
 import { WebSocket } from "ws";
 import { readRigFile, readRigFolder } from "../../pkg/rig.js";
 import { connectRobot, openRecording } from "../../pkg/rig-recordings.js";
-import { DOCUMENT, catalogue, documentOf, loaded } from "../../scripts/files.mjs";
+import { DOCUMENT, LIST, catalogue, documentOf, listOf, loaded } from "../../scripts/files.mjs";
 import { inRoot } from "../../scripts/shell.mjs";
 import { bridge } from "./bridge.mjs";
 import { CALIBRATION_SAMPLES } from "./product-calibrations.mjs";
@@ -26,6 +26,24 @@ globalThis.WebSocket = WebSocket;
 
 test("the page is made of the table", () => {
   assert.equal(readFileSync(inRoot(DOCUMENT), "utf8"), documentOf(GROUPS), "node scripts/files.mjs writes it anew");
+  assert.equal(readFileSync(inRoot(LIST), "utf8"), listOf(GROUPS), "node scripts/files.mjs writes it anew");
+});
+
+test("the page's list names what people look for", () => {
+  for (const name of [
+    "KITTI",
+    "nuScenes",
+    "LiDAR",
+    "EXR",
+    "LAS",
+    "PCD",
+    "Azure Kinect",
+    "ZED",
+    "Polycam",
+    "Record3D",
+    "Kalibr",
+  ])
+    assert.ok(listOf(GROUPS).includes(name), name);
 });
 
 /** The distinct codes of warnings. */

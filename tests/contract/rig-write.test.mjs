@@ -3,6 +3,7 @@ import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
 import { describe, test } from "node:test";
 import { BimodalError as WriteError, poseFormats, writeClouds, writePose } from "../../pkg/rig-write.js";
+import { readRigFile } from "../../pkg/rig.js";
 import { CLOUDS, FOLDER, RIGS, files, formatsOf } from "../../scripts/reference/rig-written.mjs";
 import { inRoot } from "../../scripts/shell.mjs";
 import { BimodalError, refused } from "./support.mjs";
@@ -111,6 +112,29 @@ describe("what others read is what was written", () => {
     const frames = ({ parent, child }) => [parent, child];
     assert.deepEqual(frames(found("usual", "ros2")), ["camera_color_optical_frame", "camera_depth_optical_frame"]);
     assert.deepEqual(frames(found("turned", "ros2")), ["rig/colour", "tof_optical_frame"]);
+  });
+
+  test("a pose from axes with x forward belongs to a LiDAR's frame, unless a name is given", () => {
+    const ahead = { ...NO_POSE, rotation: [0, -1, 0, 0, 0, -1, 1, 0, 0] };
+    assert.match(writePose(ahead, "ros2").text, /--child-frame-id lidar\n/);
+    assert.match(writePose(ahead, "ros2", { frames: { depth: "velodyne" } }).text, /--child-frame-id velodyne\n/);
+    assert.match(writePose(NO_POSE, "ros2").text, /--child-frame-id camera_depth_optical_frame\n/);
+  });
+
+  test("an estimate is called so in name and content, and reads back", async () => {
+    const pose = { ...NO_POSE, translation: [0.125, 0, 0.5] };
+    const camera = { fx: 5, fy: 5, cx: 3, cy: 2 };
+    const context = { colour: camera, depth: camera, sizes: { colour: [8, 4], depth: [8, 4] } };
+    for (const format of poseFormats) {
+      const plain = writePose(pose, format, context);
+      const { name, text } = writePose(pose, format, { ...context, isEstimate: true });
+      assert.equal(name.replace(".estimate", ""), plain.name);
+      assert.notEqual(name, plain.name);
+      assert.ok(/no check has confirmed/.test(text) && !/no check has confirmed/.test(plain.text), format);
+      if (format === "ros2") continue;
+      const again = await readRigFile({ name, bytes: new TextEncoder().encode(text) });
+      assert.deepEqual([...again.poses[0].pose.translation], pose.translation, format);
+    }
   });
 
   test("clouds, without what is missing", () => {

@@ -64,6 +64,11 @@ export function advice(): HTMLElement {
       make(
         "li",
         {},
+        "With a LiDAR: a street or a hall with edges near and far; drive on or turn the vehicle between frames.",
+      ),
+      make(
+        "li",
+        {},
         "Three frames with the object turned by about 30° are better than one. Record both cameras at the same moment.",
       ),
     ),

@@ -18,6 +18,8 @@ const TURNS: Record<By, readonly string[]> = {
 
 /** Above this distance of two cameras, metres, a wrong unit or a pose in the world is likelier than a rig. */
 const FAR = 0.5;
+/** .. of a LiDAR and a camera on one vehicle. */
+const FAR_ON_VEHICLE = 3;
 
 export class CalibrationStep {
   readonly element = make("div", { class: "rig-step" });
@@ -31,6 +33,8 @@ export class CalibrationStep {
     "The check only estimates one; add yours to have it checked. Depth maps that are already registered to the images, as phones and many drivers save them, have the identity. ",
     press("Add the identity", () => this.#rig.addPose({ name: "identity", pose: identity }, "the identity")),
   );
+  /** Said once for all candidates. */
+  readonly #hint = make("p", { class: "soft rig-hint" });
   readonly #alert = make("p", { class: "rig-error", role: "alert", hidden: true });
   readonly #next: HTMLButtonElement;
 
@@ -53,6 +57,7 @@ export class CalibrationStep {
           " + t, in metres. The first one is checked; the others are compared with it.",
         ),
         this.#none,
+        this.#hint,
         this.#list,
         this.#alert,
       ),
@@ -64,7 +69,8 @@ export class CalibrationStep {
   show(): void {
     this.#rows.show(this.#rig.candidates);
     this.#none.hidden = this.#rig.candidates.length > 0;
-    this.#list.hidden = this.#rig.candidates.length === 0;
+    this.#list.hidden = this.#hint.hidden = this.#rig.candidates.length === 0;
+    this.#hint.textContent = `Does this match your rig? ${this.#rig.hasScans ? "If above and below, or in front and behind, are swapped" : "If left and right are swapped"}, invert it; the wrong direction is the most common mistake.`;
     this.#next.textContent = this.#rig.candidates.length === 0 ? "Estimate a calibration" : "Run the check";
     this.#next.disabled = this.#rig.missing.length > 0;
   }
@@ -118,20 +124,15 @@ export class CalibrationStep {
       origin,
       make("details", {}, make("summary", {}, "Matrix"), matrix),
       make("div", { class: "rig-row" }, invert, first, remove),
-      make(
-        "p",
-        { class: "soft rig-hint" },
-        "Does this match your rig? If left and right are swapped, invert it; the wrong direction is the most common mistake.",
-      ),
     );
     return {
       element,
       show: () => {
         if (document.activeElement !== name) name.value = candidate.name;
-        words.textContent = inWords(candidate.pose);
+        words.textContent = inWords(candidate.pose, rig.hasScans);
         const apart = Math.hypot(...candidate.pose.translation);
         far.replaceChildren(
-          ...(apart > FAR
+          ...(apart > (rig.hasScans ? FAR_ON_VEHICLE : FAR)
             ? [
                 make(
                   "li",

@@ -21,7 +21,7 @@ export function cameraDoubt(rig: RigState, side: Side): string {
 }
 
 /**
- * The warnings of the readers, once for all files that have the same, and those about the cameras' parameters. A guessed unit is not among
+ * The warnings of the readers that question what was read, once for all files that have the same, and those about the cameras' parameters. A guessed unit is not among
  * them, because the visitor can confirm it.
  */
 export function doubtsOf(rig: RigState): Doubt[] {
@@ -29,8 +29,8 @@ export function doubtsOf(rig: RigState): Doubt[] {
   const alike = new Map<string, { first: string; count: number }>();
   for (const { id, name, summary } of rig.items) {
     if (!used.has(id)) continue;
-    for (const { code, message } of summary?.warnings ?? []) {
-      if (code === "unit-guessed") continue;
+    for (const { code, message, isDoubt } of summary?.warnings ?? []) {
+      if (code === "unit-guessed" || !isDoubt) continue;
       const known = alike.get(code);
       if (known) known.count++;
       else alike.set(code, { first: `${name}: ${message}`, count: 1 });
@@ -44,7 +44,8 @@ export function doubtsOf(rig: RigState): Doubt[] {
     (["colour", "depth"] as const).flatMap((side) => {
       const [own, usual] = [rig.item(frame[side])?.summary, rig.sizeOf(side)];
       const isUsual = !own || !usual || (own.width === usual.width && own.height === usual.height);
-      return isUsual || !rig.cameraOf(side) || own.organised
+      const isOwn = own?.hasOwnCamera === true && !rig.cameras[side].chosen;
+      return isUsual || isOwn || !rig.cameraOf(side) || own.organised
         ? []
         : [
             ofSize(

@@ -47,7 +47,7 @@ export class FilesStep {
     const drop = dropTarget(
       {
         title: "Drop files or a folder here",
-        hint: "Colour images, depth maps, masks, camera parameters, a calibration, or a recording. File types are detected from the contents. Nothing leaves your device.",
+        hint: "Colour images, depth maps or LiDAR scans, camera parameters, a calibration; a folder of a phone, KITTI or nuScenes; or a recording. File types are detected from the contents. Nothing leaves your device.",
         files: "Choose files",
         folder: "Choose a folder",
       },
@@ -198,23 +198,15 @@ export class FilesStep {
   }
 }
 
-const known: readonly [string, string][] = [
-  ["Depth", "16-bit PNG (mm, TUM, SUN, any unit), PFM, PGM, TIFF, .npy, organised PLY and PCD"],
-  ["Colour", "PNG, JPEG, WebP, PPM; 8 and 16 bit"],
-  ["Cameras", "ROS camera_info, OpenCV YAML or XML, Open3D, Kalibr, RealSense, COLMAP, K.txt; or enter them by hand"],
-  ["Calibration", "4x4 text, Kalibr, ROS tf, Open3D, OpenCV R and T, RealSense; or enter it by hand"],
-  ["Folders", "TUM RGB-D, Redwood, or pairs with matching names"],
-  ["Recordings", "MCAP, ROS 1 and RealSense bags, Azure Kinect .mkv: images, depth, clouds, camera_info, tf"],
-];
-
-const formats = (): HTMLElement =>
-  make(
-    "details",
-    { class: "rig-card" },
-    make("summary", {}, "Supported files"),
-    make(
-      "dl",
-      { class: "rig-formats" },
-      ...known.flatMap(([what, list]) => [make("dt", {}, what), make("dd", {}, list)]),
-    ),
-  );
+/** The readers' own list, loaded when it is opened. */
+function formats(): HTMLElement {
+  const list = make("dl", { class: "rig-formats" });
+  const box = make("details", { class: "rig-card" }, make("summary", {}, "Supported files"), list);
+  box.addEventListener("toggle", () => {
+    if (!box.open || list.childElementCount > 0) return;
+    void import("./supported").then(({ SUPPORTED }) =>
+      list.replaceChildren(...SUPPORTED.flatMap(([what, names]) => [make("dt", {}, what), make("dd", {}, names)])),
+    );
+  });
+  return box;
+}

@@ -8,6 +8,7 @@ import type { Calls, PartFile, PartName } from "./protocol";
 
 const readPart = pair.readPart as typeof Pairs.readPart;
 const pairOf = pair.pairOf as typeof Pairs.pairOf;
+export const arranged = pair.arranged as typeof Pairs.arranged;
 export const camerasFor = pair.camerasFor as typeof Pairs.camerasFor;
 
 /** What a part is read as, and the library's name for its place. */

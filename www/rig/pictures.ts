@@ -13,12 +13,17 @@ interface Grid {
   from(pixel: number): number;
 }
 
+/** A picture that is so many times as wide as high is a range image of a LiDAR. */
+const PANORAMA = 4;
+
 /** A preview is picked from twice as many pixels as it is wide: the whole of a photograph would take long to paint. */
 function gridOf({ width, height }: { width: number; height: number }, wanted: number | undefined): Grid {
   const stride = wanted === undefined ? 1 : Math.max(1, Math.floor(width / (2 * wanted)));
+  // Of a range image, which is many times as wide as high, every row is kept.
+  const down = width > PANORAMA * height ? 1 : stride;
   const columns = Math.ceil(width / stride);
-  const from = (pixel: number) => stride * (Math.floor(pixel / columns) * width + (pixel % columns));
-  return { width: columns, height: Math.ceil(height / stride), from };
+  const from = (pixel: number) => down * Math.floor(pixel / columns) * width + stride * (pixel % columns);
+  return { width: columns, height: Math.ceil(height / down), from };
 }
 
 function colour({ data, transfer }: CheckFrame["image"], { width, height, from }: Grid): ImageData {
@@ -45,13 +50,24 @@ function colour({ data, transfer }: CheckFrame["image"], { width, height, from }
   return out;
 }
 
+/** Depths; of a scan in a LiDAR's axes, half of whose z is below the LiDAR, distances. */
+function distancesOf(map: CheckFrame["depth"]): Float32Array {
+  const { points } = map;
+  if (!points) return metresOf(map);
+  const isBehind = points.some((value, i) => i % 3 === 2 && value < 0);
+  if (!isBehind) return metresOf(map);
+  return Float32Array.from({ length: points.length / 3 }, (_, i) =>
+    Math.hypot(points[3 * i] ?? NaN, points[3 * i + 1] ?? NaN, points[3 * i + 2] ?? NaN),
+  );
+}
+
 /** Depths outside the range are grey: they are not used. Holes stay clear, so that the hatching behind shows. */
 function depth(
   map: CheckFrame["depth"],
   range: readonly [number, number] | undefined,
   { width, height, from }: Grid,
 ): ImageData {
-  const metres = metresOf(map);
+  const metres = distancesOf(map);
   const data = Float32Array.from({ length: width * height }, (_, i) => {
     const z = metres[from(i)] ?? NaN;
     return z > 0 && z < 1e12 ? z : NaN;
@@ -79,10 +95,16 @@ function mask(data: Uint8Array, { width, height, from }: Grid): ImageData {
 
 export function picture(reading: RigReading, range?: readonly [number, number], width?: number): Promise<ImageBitmap> {
   const made = pixels(reading, range, width);
-  return createImageBitmap(
-    made,
-    width !== undefined && width < made.width ? { resizeWidth: width, resizeQuality: "medium" } : {},
-  );
+  const isWide = made.width > PANORAMA * made.height;
+  const small =
+    width === undefined || width >= made.width
+      ? {}
+      : {
+          resizeWidth: width,
+          resizeQuality: "medium" as const,
+          ...(isWide && { resizeHeight: Math.round(width / PANORAMA) }),
+        };
+  return createImageBitmap(made, small);
 }
 
 function pixels(

@@ -36,6 +36,8 @@ export interface Summary extends Omit<Reading, "name"> {
   organised?: boolean;
   cameras: NamedCamera[];
   poses: NamedPose[];
+  /** Whether a picture came with a camera that other frames do not share. */
+  hasOwnCamera?: boolean;
 }
 
 /** One pair to check: files by their numbers, and their restrictions. */
@@ -116,6 +118,15 @@ export interface Calls {
     ask: { cameras: GivenCamera[]; colour: PictureSize; depth: PictureSize };
     answer: { colour?: GivenCamera; depth?: GivenCamera; warnings: ReaderWarning[] };
   };
+  /** The calibrations of single files as those of a folder: the places of its frames' cameras, and the poses that matter. */
+  arrange: {
+    ask: { frames: { colour: number; depth: number }[]; texts: number[] };
+    answer: {
+      cameras: { colour?: string; depth?: string };
+      poses: (NamedPose & { file?: number })[];
+      warnings: ReaderWarning[];
+    };
+  };
   /** Metres per stored unit of a depth map that came with others. */
   unit: { ask: { file: number; unit: number }; answer: Summary };
   folder: { ask: { first: number; files: { name: string; blob: Blob }[] }; answer: Assembly };
@@ -141,7 +152,10 @@ export interface Calls {
   frames: { ask: { frames: FramePlan[] }; answer: null };
   check: { ask: { candidates: Record<string, Pose>; cues: CheckCue[] }; answer: CheckReport };
   overlay: { ask: { frame: number; pose: Pose }; answer: Projection };
-  pose: { ask: { pose: Pose; format: PoseFormat }; answer: { name: string; text: string; notes: string[] } };
+  pose: {
+    ask: { pose: Pose; format: PoseFormat; isEstimate: boolean };
+    answer: { name: string; text: string; notes: string[] };
+  };
   /** One cloud of the frame for each pose, in the colour camera's frame. */
   clouds: { ask: { frame: number; poses: { name: string; pose: Pose }[] }; answer: Uint8Array };
   /** The files that were read, with sizes and hashes, those of a folder in place of what was made of them; and the hash of the numerics. */

@@ -1,6 +1,7 @@
 /** The visitor's files and choices: files, frames, cameras, candidates, and the result of the check. */
 
 import type { CheckCue, Pinhole } from "../../pkg/index.js";
+import { arrange } from "./arrange";
 import { Live } from "./live";
 import { pairUp } from "./pairing";
 import { doubtsOf } from "./doubts";
@@ -16,26 +17,16 @@ import {
   type RigState,
   type Run,
   type Side,
-  type TypedCamera,
   messageOf,
 } from "./state";
 import { Takings } from "./takings";
+import { choice, emptyCamera, fromTyped } from "./typed";
 import { Undo } from "./undo";
+import { isOfScan } from "./words";
 
 export { messageOf } from "./state";
+export { typedFrom } from "./typed";
 export type { CameraChoice, Candidate, Frame, Item, Run, Side, TypedCamera } from "./state";
-
-const emptyCamera = (): TypedCamera => ({
-  by: "focal",
-  model: "brown",
-  fx: NaN,
-  fy: NaN,
-  cx: NaN,
-  cy: NaN,
-  view: NaN,
-  distortion: [],
-});
-const choice = (): CameraChoice => ({ source: "", chosen: false, typed: emptyCamera() });
 
 export class Rig implements RigState {
   readonly session = new Session();
@@ -49,6 +40,8 @@ export class Rig implements RigState {
   cues: CheckCue[] = [];
   /** The warnings of the readers of folders. */
   notes: ReaderWarning[] = [];
+  /** The cameras that the readers of folders would choose. */
+  arranged: Partial<Record<Side, string>> = {};
   /** A description of what is being read as a whole. */
   busy = "";
   run: Run | undefined;
@@ -98,6 +91,8 @@ export class Rig implements RigState {
     this.changed();
     await Promise.all(items.map((item) => this.#read(item)));
     this.frames = pairUp(this);
+    await arrange(this).catch(() => {});
+    this.#chooseCameras();
     this.changed();
   }
 
@@ -256,6 +251,7 @@ export class Rig implements RigState {
       Object.assign(this.cameras[side].typed, emptyCamera());
     }
     this.notes = [];
+    this.arranged = {};
     this.run = undefined;
     this.history = [];
     this.changed();
@@ -335,6 +331,11 @@ export class Rig implements RigState {
       const mine = this.cameras[side];
       const isThere = ["", "typed", "same"].includes(mine.source) || given.some(({ source }) => source === mine.source);
       if (mine.chosen && isThere) continue;
+      const arranged = all.find(({ source }) => source === this.arranged[side]);
+      if (arranged) {
+        Object.assign(mine, { source: arranged.source, chosen: false });
+        continue;
+      }
       const [own, other] = side === "colour" ? [COLOUR, DEPTH] : [DEPTH, COLOUR];
       const named =
         given.find(({ label }) => own.test(label) && !other.test(label)) ??
@@ -372,6 +373,11 @@ export class Rig implements RigState {
     return this.complete.length === 0 || this.complete.some(isMap);
   }
 
+  /** Whether any depth map is a cloud, which a LiDAR's scan is as well. */
+  get hasScans(): boolean {
+    return this.complete.some(({ depth }) => this.item(depth)?.summary?.organised === true);
+  }
+
   /** What is missing for a check, in words; empty if it can run. */
   get missing(): string[] {
     const missing: string[] = [];
@@ -396,6 +402,11 @@ export class Rig implements RigState {
     return units.length > 2 ? [`the unit of ${units.length} depth maps`] : units.map((name) => `the unit of ${name}`);
   }
 
+  /** Whether a picture of a folder came with a camera of its frame alone, and the visitor has chosen no other. */
+  #hasOwn(side: Side, file: number): boolean {
+    return this.item(file)?.summary?.hasOwnCamera === true && !this.cameras[side].chosen;
+  }
+
   plans(): FramePlan[] {
     const colourCamera = this.cameraOf("colour");
     const depthCamera = this.cameraOf("depth");
@@ -409,8 +420,8 @@ export class Rig implements RigState {
         ...(mask === undefined ? {} : { mask }),
         ...(paint ? { paint } : {}),
         ...(range ? { range } : {}),
-        ...(colourCamera ? { colourCamera } : {}),
-        ...(depthCamera && !organised ? { depthCamera } : {}),
+        ...(colourCamera && !this.#hasOwn("colour", colour) ? { colourCamera } : {}),
+        ...(depthCamera && !organised && !this.#hasOwn("depth", depth) ? { depthCamera } : {}),
       };
     });
   }
@@ -425,7 +436,10 @@ export class Rig implements RigState {
       : Object.fromEntries(this.candidates.map(({ name, pose }) => [name, pose]));
     await this.session.call("frames", { frames: plans });
     const report = await this.session.call("check", { candidates, cues }, onProgress);
-    this.run = { report, plans, candidates, cues, estimateOnly, guessed, doubts };
+    const { width = Infinity, height = Infinity } = this.sizeOf("colour") ?? {};
+    const isLidar = this.hasScans && isOfScan(report.estimate);
+    const diagonal = Math.hypot(width, height);
+    this.run = { report, plans, candidates, cues, estimateOnly, guessed, doubts, isLidar, diagonal };
     this.history.push({ frames: plans.length, ...report.health });
     this.changed();
   }
@@ -433,18 +447,3 @@ export class Rig implements RigState {
 
 export const COLOUR = /colou?r|rgb|image|left|cam0/i;
 export const DEPTH = /depth|\bir\b|infra|tof|disp|cloud/i;
-
-function fromTyped(
-  { by, model, fx, fy, cx, cy, view, distortion }: TypedCamera,
-  size: { width: number; height: number } | undefined,
-): Pinhole | undefined {
-  const lens = distortion.length > 0 ? { model, distortion } : {};
-  if (by === "focal") return [fx, fy, cx, cy].every(Number.isFinite) ? { fx, fy, cx, cy, ...lens } : undefined;
-  if (!size || !(view > 0 && view < 180)) return undefined;
-  const focal = size.width / 2 / Math.tan((view * Math.PI) / 360);
-  return { fx: focal, fy: focal, cx: (size.width - 1) / 2, cy: (size.height - 1) / 2, ...lens };
-}
-
-export function typedFrom({ fx, fy, cx, cy, model, distortion }: Pinhole): TypedCamera {
-  return { ...emptyCamera(), fx, fy, cx, cy, model: model ?? "brown", distortion: Array.from(distortion ?? []) };
-}

@@ -19,6 +19,8 @@ export interface Item {
   unit?: number;
   /** Its frame was taken away: it makes no new one by itself. */
   aside?: true;
+  /** Its calibration has been arranged for the frames. */
+  arranged?: true;
   /** The recording that it came out of, with which it goes. */
   recording?: number;
   /** Of a recording: what its frames are taken of, and how that goes. */
@@ -96,6 +98,10 @@ export interface Run {
   guessed: string[];
   /** Further warnings about files and cameras. */
   doubts: Doubt[];
+  /** Whether the depths are those of a LiDAR, in its axes. */
+  isLidar: boolean;
+  /** Of the colour image, pixels; errors beyond it are outside the picture. */
+  diagonal: number;
 }
 
 export const messageOf = (error: unknown): string => (error instanceof Error ? error.message : String(error));
@@ -108,6 +114,8 @@ export interface RigState {
   candidates: Candidate[];
   /** The warnings of the readers of folders. */
   notes: ReaderWarning[];
+  /** The cameras that the readers of folders would choose. */
+  arranged: Partial<Record<Side, string>>;
   run: Run | undefined;
   /** The precision of each run, with its number of frames. */
   history: { frames: number; pixels: number; interval: [number, number] }[];
@@ -119,6 +127,7 @@ export interface RigState {
   freshId(): number;
   /** Notifies the views. */
   changed(): void;
+  addPose(pose: Summary["poses"][number], origin: string, file?: number): void;
   item(id: number | undefined): Item | undefined;
   of(kind: Kind): Item[];
   sizeOf(side: Side): { width: number; height: number } | undefined;

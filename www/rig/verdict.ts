@@ -45,19 +45,26 @@ const WORDS: Record<CheckReport["verdict"], { word: string; tone: Tone }> = {
   undecided: { word: "Undecided", tone: "open" },
 };
 
-const px = (value: number): string => `${decimals(value, 2)} px`;
-const interval = ([low, high]: [number, number]): string => `${decimals(low, 2)} to ${decimals(high, 2)} px`;
+const px = (value: number, most = Infinity): string =>
+  value > most ? "outside the picture" : `${decimals(value, 2)} px`;
+const interval = ([low, high]: [number, number], most = Infinity): string =>
+  low > most
+    ? "outside the picture"
+    : high > most
+      ? `${px(low)} to outside the picture`
+      : `${decimals(low, 2)} to ${decimals(high, 2)} px`;
 
 /** Anything guessed prevents a better verdict than the files justify. */
 function headline(run: Run): { word: string; tone: Tone; sentence: string } {
   const report = whole(run);
+  const { diagonal } = run;
   const { pixels, interval: range } = report.health;
   const word = verdictWords(report, run.estimateOnly);
   if (run.estimateOnly)
     return {
       word,
       tone: "open",
-      sentence: `A calibration was found; expected reprojection error ${px(pixels)} (95 %: ${interval(range)}) at the scene's depth.`,
+      sentence: `A calibration was found; expected reprojection error ${px(pixels, diagonal)} (95 %: ${interval(range, diagonal)}) at the scene's depth.`,
     };
   return { word, tone: WORDS[report.verdict].tone, sentence: verdictReason(report) };
 }
@@ -75,6 +82,11 @@ const FOR_TURN = [
   "show objects near the top and bottom of the image",
   "show objects near the left and right of the image",
   "show silhouettes far from the centre of the image",
+];
+const FOR_LIDAR = [
+  "take frames with poles, trees or corners of houses at the sides",
+  "take frames with kerbs, signs and parked cars, whose upper and lower edges the scan crosses",
+  "take frames with things near the rig as well as far away",
 ];
 /** A share below this adds little, of the frames' mean share. */
 const LITTLE = 0.3;
@@ -114,13 +126,17 @@ export function advise(run: Run): string[] {
       "Check that image and depth map show the same scene: the best fit leaves most of the depth map outside the image.",
     );
   else if (estimateOnly) list.push("Save the calibration found here, or add your own in step 2 to have it checked.");
-  if (plans.length < 3)
+  if (plans.length < 3 && run.isLidar)
+    list.push(
+      `Add ${plans.length === 1 ? "two more frames" : "another frame"}: drive on or turn the vehicle, so that other things are near.`,
+    );
+  else if (plans.length < 3)
     list.push(
       plans.length === 1
         ? "Add two more frames, with the object turned by about 30° each time."
         : "Add another frame, with the object turned by about 30°.",
     );
-  list.push(weakest(report), ...(isOpen ? confirm : []));
+  list.push(weakest(run), ...(isOpen ? confirm : []));
   const mean = 1 / Math.max(1, report.frames.length);
   for (const { name, share, note } of report.frames)
     if (report.frames.length > 1 && share < LITTLE * mean)
@@ -133,16 +149,17 @@ export function advise(run: Run): string[] {
 }
 
 /** The least certain rotation or shift, one sigma, and what would determine it better. */
-function weakest({ covariance }: CheckReport): string {
+function weakest({ report: { covariance }, isLidar }: Run): string {
   const sigma = (i: number) => Math.sqrt(Math.max(0, covariance[7 * i] ?? 0));
   const turns = [0, 1, 2].map((i) => (180 / Math.PI) * sigma(i));
   const shifts = [3, 4, 5].map((i) => 1000 * sigma(i));
   const most = (values: number[]) => values.indexOf(Math.max(...values));
   const [turn, shift] = [most(turns), most(shifts)];
   const isTurn = (turns[turn] ?? 0) * 15 > (shifts[shift] ?? 0);
+  const [forTurn, forShift] = isLidar ? [FOR_LIDAR, FOR_LIDAR] : [FOR_TURN, FOR_SHIFT];
   return isTurn
-    ? `The rotation about ${"xyz"[turn]} is the least certain (± ${decimals(turns[turn], 2)}°, one sigma): ${FOR_TURN[turn]}.`
-    : `The shift ${AXES[shift]} is the least certain (± ${decimals(shifts[shift], 1)} mm, one sigma): ${FOR_SHIFT[shift]}.`;
+    ? `The rotation about ${"xyz"[turn]} is the least certain (± ${decimals(turns[turn], 2)}°, one sigma): ${forTurn[turn]}.`
+    : `The shift ${AXES[shift]} is the least certain (± ${decimals(shifts[shift], 1)} mm, one sigma): ${forShift[shift]}.`;
 }
 
 export function card(run: Run): HTMLElement {
@@ -170,11 +187,14 @@ export function card(run: Run): HTMLElement {
 }
 
 /** The main numbers of the calibration being checked. */
-function figures({ report, estimateOnly }: Run): HTMLElement {
+function figures({ report, estimateOnly, diagonal }: Run): HTMLElement {
   const { health } = report;
   const [first] = Object.values(report.candidates);
   const figure = (value: string, words: string) => make("div", {}, make("dt", {}, words), make("dd", {}, value));
-  const found = figure(px(health.pixels), `expected error of the best fit (95 %: ${interval(health.interval)})`);
+  const found = figure(
+    px(health.pixels, diagonal),
+    `expected error of the best fit (95 %: ${interval(health.interval, diagonal)})`,
+  );
   if (estimateOnly || !first) return make("dl", { class: "rig-figures-row" }, found);
   return make(
     "dl",
@@ -183,7 +203,10 @@ function figures({ report, estimateOnly }: Run): HTMLElement {
       `${decimals(first.offDegrees, 2)}° and ${decimals(first.offMillimetres, 1)} mm`,
       "from the best fit; shift at the centre of the scene",
     ),
-    figure(px(first.pixels), `expected error of your calibration (95 %: ${interval(first.interval)})`),
+    figure(
+      px(first.pixels, diagonal),
+      `expected error of your calibration (95 %: ${interval(first.interval, diagonal)})`,
+    ),
     found,
   );
 }
@@ -199,7 +222,7 @@ function whisker(value: number, [low, high]: [number, number], most: number): HT
   );
 }
 
-export function candidatesTable({ report, estimateOnly }: Run): HTMLElement {
+export function candidatesTable({ report, estimateOnly, diagonal }: Run): HTMLElement {
   const { health } = report;
   const list = Object.entries(report.candidates);
   const most = 1.05 * Math.max(health.interval[1], ...list.map(([, { interval }]) => interval[1]), 1e-6);
@@ -222,8 +245,8 @@ export function candidatesTable({ report, estimateOnly }: Run): HTMLElement {
       make(
         "td",
         { class: "rig-pixels" },
-        px(pixels),
-        make("span", { class: "soft" }, interval(range)),
+        px(pixels, diagonal),
+        make("span", { class: "soft" }, interval(range, diagonal)),
         whisker(pixels, range, most),
       ),
     ),
@@ -234,7 +257,11 @@ export function candidatesTable({ report, estimateOnly }: Run): HTMLElement {
     CandidateReport,
   ]) => {
     const { word, tone } = WORDS[verdict];
-    const chance = `If it were right, a result this far off would occur in ${probability < 0.001 ? "fewer than 0.1" : decimals(100 * probability, 1)} % of checks.`;
+    // Where nothing is known of the pose, any result is as far off as expected.
+    const isKnown = probability < 0.99 && pixels <= diagonal;
+    const chance = !isKnown
+      ? ""
+      : `If it were right, a result this far off would occur in ${probability < 0.001 ? "fewer than 0.1" : decimals(100 * probability, 1)} % of checks.`;
     return row(
       name,
       [icon(tone) as unknown as HTMLElement, word],
@@ -242,7 +269,7 @@ export function candidatesTable({ report, estimateOnly }: Run): HTMLElement {
       `${decimals(offMillimetres, 1)} mm`,
       pixels,
       range,
-      `${reason} ${chance}`,
+      `${reason} ${chance}`.trim(),
     );
   };
   const head = ["Calibration", "Verdict", "Rotation", "Shift", "Reprojection error, 95 %"].map((words) =>

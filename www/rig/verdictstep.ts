@@ -195,8 +195,9 @@ export class VerdictStep {
       ...(isUsable(run) ? [{ value: "", label: "found" }] : []),
       ...(run.estimateOnly ? [] : Object.keys(run.candidates)).map((name) => ({ value: name, label: name })),
     ];
-    // A consistent calibration is the default choice.
-    const isKept = !run.estimateOnly && Object.values(run.report.candidates)[0]?.verdict === "consistent";
+    // The visitor's calibration is the default choice, unless it is off.
+    const isKept = !run.estimateOnly && run.report.verdict !== "off";
+    const isConfirmed = !run.estimateOnly && run.report.verdict === "consistent";
     const wish = this.#wish;
     const wished = poses.find(({ value }) => value === wish.pose)?.value;
     const which = choose(
@@ -216,7 +217,9 @@ export class VerdictStep {
     const save = press(
       "Save calibration",
       attempt(async () => {
-        const { name, text, notes } = await session.call("pose", { pose: pose(), format: format.value as PoseFormat });
+        const isEstimate = which.value === "" && !isConfirmed;
+        const ask = { pose: pose(), format: format.value as PoseFormat, isEstimate };
+        const { name, text, notes } = await session.call("pose", ask);
         saveFile(name, text, "text/plain");
         remark.textContent = notes.length > 0 ? `Note: ${notes.join("; ")}.` : `Saved as ${name}.`;
       }),

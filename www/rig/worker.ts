@@ -85,9 +85,14 @@ function assemble(
 ): Assembly {
   const items: Assembly["items"] = [];
   const guessed: "unit"[] = warnings.some(({ code }) => code === "unit-guessed") ? ["unit"] : [];
+  /** Frames of phones and of KITTI have separate cameras. */
+  const isShared = (side: "image" | "depth") =>
+    new Set(pairs.map((each) => JSON.stringify(each[side].camera))).size < 2;
+  const hasOwn = { colour: !isShared("image"), depth: !isShared("depth") };
   const keep = (reading: RigReading): number => {
     const file = first + items.length;
-    const summary = summaryOf(reading);
+    const isOwn = (reading.kind === "colour" || reading.kind === "depth") && hasOwn[reading.kind];
+    const summary = { ...summaryOf(reading), ...(isOwn && { hasOwnCamera: true }) };
     readings.set(file, reading);
     items.push({ file, name: reading.name, summary: items.length < 2 ? summary : { ...summary, cameras: [] } });
     return file;
@@ -157,6 +162,18 @@ const handlers: Handlers = {
     );
     readings.set(file, reading);
     return summaryOf(reading);
+  },
+  async arrange({ frames, texts }) {
+    const { arranged } = await pairs();
+    const readTexts = texts.flatMap((file) => {
+      const reading = readings.get(file);
+      return reading?.kind === "cameras" || reading?.kind === "poses" ? [{ file, reading }] : [];
+    });
+    const pictures = frames.map((each) => ({
+      colour: readingOf(each.colour, "colour"),
+      depth: readingOf(each.depth, "depth"),
+    }));
+    return arranged(pictures, readTexts);
   },
   async unit({ file, unit }) {
     const reading = readingOf(file, "depth");
@@ -237,7 +254,7 @@ const handlers: Handlers = {
     const { points, edges } = await projectFrame(frameAt(frame), pose);
     return { points, edges };
   },
-  async pose({ pose, format }) {
+  async pose({ pose, format, isEstimate }) {
     const { writePose } = await import("./write");
     const [frame] = frames;
     const { image, depth } = frame ?? {};
@@ -248,6 +265,7 @@ const handlers: Handlers = {
     const size = (of: { width: number; height: number }): [number, number] => [of.width, of.height];
     return writePose(pose, format, {
       ...cameras,
+      isEstimate,
       ...(image && depth ? { sizes: { colour: size(image), depth: size(depth) } } : {}),
     });
   },

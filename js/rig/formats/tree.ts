@@ -16,6 +16,7 @@ import { isIntrinsics, labelled, lensNames, member, wordsOf } from "./names.js";
 import { type Matrix, type Node, type Numbers, isNode, matrixOf, numberOf, textOf, transposed } from "./numbers.js";
 import { orbbecContext } from "./orbbec.js";
 import { chained, inverseOf } from "./poses.js";
+import { byTopics, ofOwnCameras } from "./sensors.js";
 
 export interface Calibration {
   cameras: NamedCamera[];
@@ -68,7 +69,9 @@ class Search {
   readonly #found: FoundCamera[] = [];
   readonly #leftovers = new Leftovers();
   /** Poses that are the only one in the object of a single camera. */
-  readonly #own: NamedPose[] = [];
+  readonly #own = new Map<NamedPose, string | undefined>();
+  /** Topics of cameras by their names, where a file has both. */
+  readonly #topics = new Map<string, string>();
   /** Models of cameras that the file names. */
   readonly models = new Set<string>();
   #nodes = 0;
@@ -131,7 +134,9 @@ class Search {
     this.motions.read(node, name, inner, this.#found.length > before);
     const isOne = this.#found.length === before + 1 && this.motions.poses.length === poses + 1;
     const own = this.motions.poses[poses];
-    if (isOne && own !== undefined) this.#own.push(own);
+    if (isOne && own !== undefined) this.#own.set(own, first);
+    const topic = textOf(member(node, "rostopic"));
+    if (topic !== undefined && first !== undefined && this.#found.length === before + 1) this.#topics.set(first, topic);
     return inner;
   }
 
@@ -197,8 +202,10 @@ class Search {
   finish(): void {
     this.#leftovers.assign(this.#found, this.warnings);
     for (const { raw } of this.#found) this.cameras.push(cameraOf(raw, this.warnings));
-    this.motions.finish(this.cameras, this.#own);
+    this.motions.finish(this.cameras, [...this.#own.keys()]);
     chain(this.motions.poses);
+    ofOwnCameras(this.#own);
+    byTopics(this.#topics, this.cameras, this.motions.poses);
   }
 }
 

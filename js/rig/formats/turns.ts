@@ -28,17 +28,29 @@ export interface Turn {
 const isRig = (r: Numbers): boolean => degreesOf(r) <= PARALLEL;
 const between = (a: Numbers, b: Numbers): number => Math.hypot(...a.map((value, at) => value - (b[at] ?? 0))) * RADIAN;
 
+/** Cosine of 45 degrees: nearer to an axis than to any other. */
+const NEAR = Math.SQRT1_2;
+
+/** Whether a camera is upright on a LiDAR or a vehicle (x forward, z up) and looks forward, by its rotation from there or the inverse. */
+const looksForward = (r: Numbers): boolean =>
+  ((r[5] ?? 0) < -NEAR && (r[6] ?? 0) > NEAR) || ((r[7] ?? 0) < -NEAR && (r[2] ?? 0) > NEAR);
+
 /** A quaternion as a list of four. */
 export function ofFour(values: Numbers, { order }: Attributes, name: string, warnings: ReaderWarning[]): Numbers {
   if (order === "wxyz") return ofScalarFirst(values, warnings);
   const last = ofQuaternion(values, warnings);
   if (order === "xyzw" || isRig(last)) return last;
   const first = ofScalarFirst(values, []);
-  if (isRig(first)) {
+  const isOfLidar = looksForward(first) && !looksForward(last);
+  if (isRig(first) || isOfLidar) {
+    const why = isOfLidar
+      ? "has the camera look forward from a LiDAR (x forward, z up)"
+      : `turns by ${degreesOf(first).toFixed(1)} degrees`;
+    const other = isOfLidar ? "it would not" : `it would turn by ${degreesOf(last).toFixed(1)}`;
     warnings.push(
       warning(
         "quaternion-order",
-        `The quaternion "${name}" was read as w x y z, which turns by ${degreesOf(first).toFixed(1)} degrees; as x y z w it would turn by ${degreesOf(last).toFixed(1)}. Name it quaternion_wxyz or quaternion_xyzw to say its order.`,
+        `The quaternion "${name}" was read as w x y z, which ${why}; as x y z w ${other}. Name it quaternion_wxyz or quaternion_xyzw to say its order.`,
         { order: "wxyz" },
       ),
     );

@@ -40,13 +40,15 @@ function frame(name: string, field: string): string {
 /** tf2 holds the pose of the child in the parent: P_parent = R P_child + t, so that the colour camera is the parent. */
 export function ros2Line(rig: Rig, { frames }: RigContext): string {
   const parent = frame(frames?.colour ?? "camera_color_optical_frame", "context.frames.colour");
-  const child = frame(frames?.depth ?? "camera_depth_optical_frame", "context.frames.depth");
+  // Cameras of a rig look nearly the same way; a frame whose z does not is a LiDAR's (x forward, z up).
+  const isLidar = frames?.depth === undefined && (rig.rotation[8] ?? 0) < Math.SQRT1_2;
+  const child = frame(frames?.depth ?? (isLidar ? "lidar" : "camera_depth_optical_frame"), "context.frames.depth");
   if (parent === child) throw fault("range", "context.frames", "both cameras have the same frame");
   const [x = 0, y = 0, z = 0] = rig.translation;
   const [qx, qy, qz, qw] = quaternion(rig.rotation);
   const values = Object.entries({ x, y, z, qx, qy, qz, qw }).map(([name, value]) => `--${name} ${real(value)}`);
   return [
-    `# The transform of the child frame (depth camera) in the parent frame (colour camera): P_parent = R P_child + t, metres.`,
+    `# The transform of the child frame (${isLidar ? "LiDAR, with the axes of its points" : "depth camera"}) in the parent frame (colour camera): P_parent = R P_child + t, metres.`,
     `# A frame has one parent: if a driver already publishes this transform, change it there instead of adding another.`,
     `ros2 run tf2_ros static_transform_publisher ${values.join(" ")} --frame-id ${parent} --child-frame-id ${child}`,
     "",

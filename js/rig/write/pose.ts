@@ -41,11 +41,21 @@ const FORMATS: Readonly<Record<PoseFormat, Format>> = {
 /** All formats that `writePose` knows. */
 export const poseFormats: readonly PoseFormat[] = Object.freeze(Object.keys(FORMATS) as PoseFormat[]);
 
+const ESTIMATE = "An estimate that no check has confirmed: check it with other frames before use.";
+
+/** The text with a comment, where the format may have one. */
+function commented(text: string, format: PoseFormat): string {
+  if (format === "open3d" || format === "realsense") return text.replace("{\n", `{\n  "comment": "${ESTIMATE}",\n`);
+  if (format === "opencv") return text.replace("---\n", `---\n# ${ESTIMATE}\n`);
+  return `# ${ESTIMATE}\n${text}`;
+}
+
 /** One pose of a rig as a file; `context` fills in what the format can hold beside it. */
 export function writePose(pose: PoseInput, format: PoseFormat, context: RigContext = {}): WrittenPose {
   oneOf(poseFormats, format, "format");
   const { name, write } = FORMATS[format];
   const notes: string[] = [];
   const text = write(rigOf(pose, context), notes, context);
-  return { name, text, notes };
+  if (context.isEstimate !== true) return { name, text, notes };
+  return { name: name.replace(".", ".estimate."), text: commented(text, format), notes };
 }

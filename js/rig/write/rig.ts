@@ -23,12 +23,14 @@ export interface RigContext {
         depth?: Size | undefined;
       }
     | undefined;
+  /** Whether the pose is an estimate that no check has confirmed, which name and content then say. Default false. */
+  isEstimate?: boolean | undefined;
   /** ROS names of both cameras' optical frames; by default those of the RealSense driver. */
   frames?:
     | {
         /** Of the colour camera. Default "camera_color_optical_frame". */
         colour?: string | undefined;
-        /** Of the depth camera. Default "camera_depth_optical_frame". */
+        /** Of the depth camera. Default "camera_depth_optical_frame", or "lidar" where the pose is for axes with x forward. */
         depth?: string | undefined;
       }
     | undefined;

@@ -36,16 +36,40 @@ const SIDES = [
 /** Millimetres and degrees that are shown as zero. */
 const [LEAST_SHIFT, LEAST_TURN] = [0.05, 0.005];
 
-/** Where the depth camera sits relative to the colour camera, so that one can compare it with the rig. */
-export function inWords({ rotation, translation }: Pick<CheckReport["estimate"], "rotation" | "translation">): string {
+type Motion = Pick<CheckReport["estimate"], "rotation" | "translation">;
+
+/** Whether a pose is for points in a LiDAR's axes: two cameras that see the same thing look nearly along one axis z. */
+export const isOfScan = ({ rotation }: Motion): boolean => (rotation[8] ?? 1) < Math.SQRT1_2;
+
+/** Rotations of cameras that look along an axis of a LiDAR whose z points up. */
+const AHEAD: readonly [axis: string, rotation: readonly number[]][] = [
+  ["x", [0, -1, 0, 0, 0, -1, 1, 0, 0]],
+  ["y", [1, 0, 0, 0, 0, -1, 0, 1, 0]],
+  ["−x", [0, 1, 0, 0, 0, -1, -1, 0, 0]],
+  ["−y", [-1, 0, 0, 0, 0, -1, 0, -1, 0]],
+];
+
+/** The axis along which the colour camera looks from a LiDAR, and the angle between them. */
+function heading({ rotation }: Motion): string {
+  const trace = (ahead: readonly number[]) => rotation.reduce((sum, value, k) => sum + value * (ahead[k] ?? 0), 0);
+  const traces = AHEAD.map(([axis, ahead]) => [axis, trace(ahead)] as const);
+  const [axis, most] = traces.reduce((a, b) => (a[1] >= b[1] ? a : b));
+  const degrees = (180 / Math.PI) * Math.acos(Math.min(1, Math.max(-1, (most - 1) / 2)));
+  return `which is turned by ${degrees.toFixed(2)}° from looking along the LiDAR's ${axis} axis, z up`;
+}
+
+/** Where the depth camera or LiDAR sits relative to the colour camera, so that one can compare it with the rig. */
+export function inWords({ rotation, translation }: Motion, isLidar = false): string {
   const parts = translation
     .map((metres, axis) => ({ mm: 1000 * metres, words: SIDES[axis]?.[metres < 0 ? 1 : 0] ?? "" }))
     .filter(({ mm }) => Math.abs(mm) >= LEAST_SHIFT)
     .sort((a, b) => Math.abs(b.mm) - Math.abs(a.mm))
     .map(({ mm, words }) => `${Math.abs(mm).toFixed(1)} mm ${words}`);
   const degrees = degreesOf(rotation);
-  if (degrees < LEAST_TURN && parts.length === 0) return "The two cameras coincide: no offset, no rotation.";
+  const isScan = isLidar && isOfScan({ rotation, translation });
+  if (!isScan && degrees < LEAST_TURN && parts.length === 0) return "The two cameras coincide: no offset, no rotation.";
   const last = parts.pop();
   const place = last === undefined ? "in the same position as" : [parts.join(", "), last].filter(Boolean).join(" and ");
+  if (isScan) return `The LiDAR sits ${place} the colour camera, ${heading({ rotation, translation })}.`;
   return `The depth camera sits ${place} the colour camera, rotated by ${degrees.toFixed(2)}°.`;
 }

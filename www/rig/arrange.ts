@@ -1,0 +1,26 @@
+/** Files that came one by one, arranged as the readers of folders arrange theirs: which camera took which pictures, and which poses matter. */
+
+import type { RigState } from "./state";
+
+/** Candidates of files that were arranged before stay as the visitor has left them. */
+export async function arrange(rig: RigState): Promise<void> {
+  const frames = rig.complete.flatMap(({ colour, depth }) =>
+    colour === undefined || depth === undefined ? [] : [{ colour, depth }],
+  );
+  const texts = rig.items.filter(
+    ({ blob, summary }) => blob && (summary?.kind === "cameras" || summary?.kind === "poses"),
+  );
+  if (frames.length === 0 || texts.length === 0) return;
+  const asked = { frames, texts: texts.map(({ id }) => id) };
+  const { cameras, poses, warnings } = await rig.session.call("arrange", asked);
+  rig.arranged = cameras;
+  const fresh = new Map(texts.filter(({ arranged }) => !arranged).map((item) => [item.id, item]));
+  rig.candidates = rig.candidates.filter(({ file }) => file === undefined || !fresh.has(file));
+  for (const { file, ...pose } of poses) {
+    const item = fresh.get(file ?? -1) ?? (file === undefined ? [...fresh.values()][0] : undefined);
+    if (item) rig.addPose(pose, item.name, item.id);
+  }
+  for (const item of fresh.values()) item.arranged = true;
+  const known = new Set(rig.notes.map(({ message }) => message));
+  rig.notes.push(...warnings.filter(({ message }) => !known.has(message)));
+}

@@ -1,0 +1,12 @@
+/** Products and formats that are read, made by `node scripts/files.mjs` from the readers' table. */
+
+// biome-ignore format: one group on each line
+export const SUPPORTED: readonly [group: string, products: string][] = [
+  ["Calibrations and cameras", "RealSense, RealSense (pyrealsense2), RealSense Viewer, Azure Kinect, Azure Kinect SDK, Kinect v2, Kinect v2 (iai_kinect2), OAK (depthai), ZED, Zivid, Orbbec, Project Aria, Record3D, Polycam, Stray Scanner, Apps that write ARKit's frames, Kalibr, EuRoC, camodocal, VINS-Fusion, Basalt, mrcal, OpenCV, Open3D, multical, OpenCalib (SensorsCalibration), direct_visual_lidar_calibration, FAST-LIVO, vikit, SVO, MATLAB, Bouguet's toolbox, easy_handeye, easy_handeye2, ROS, ROS camera_calibration, ROS static transforms, ROS tf, URDF, xacro, Autoware, Any program, COLMAP, nerfstudio, instant-ngp, Blender, TUM RGB-D, Redwood, KITTI, nuScenes, Lyft, Waymo, Argoverse, Argoverse 2, ScanNet, BOP, ARKitScenes, Middlebury"],
+  ["Depth maps", "PNG of 16 bits, PNG of 8 bits, depths coded in colours, PGM, PFM, TIFF and BigTIFF of 8, 16 or 32 bits, floats of 16, 32 or 64, in either byte order, OpenEXR in scan lines, OpenEXR by PIZ, PXR24, B44, DWAA, DWAB, .npy, .npz, a table of numbers, row by row, .raw, .bin, stereo/depth_maps/*.bin, PCD in rows and columns, PLY with one point for each pixel, Most cameras and datasets, KITTI depth completion, CARLA, AirSim, OpenCV, netpbm, Middlebury, ETH3D, Pillow, tifffile, Blender, renderers, NumPy, MATLAB, spreadsheets, RealSense Viewer, cameras' own programs, COLMAP, PCL, ROS, MeshLab, CloudCompare, scanners"],
+  ["Colour images", "PNG, JPEG, baseline and progressive, JPEG turned by EXIF, PPM, PGM, PAM, TIFF of 8 and 16 bits and floats, OpenEXR, WebP, in browsers alone, Any camera, Phones, OpenCV, netpbm, Developers of raw photographs, Pillow, Blender, renderers, Browsers"],
+  ["Masks", "a grey picture of two levels, Annotation tools, BOP"],
+  ["LiDAR scans", "PCD, PLY, LAS 1.0 to 1.4, point formats 0 to 10, LAZ, point formats 0 to 3 and 6 to 8, velodyne/*.bin, *.pcd.bin, lists of points as text, a list of points, Drivers of Velodyne, Hesai, Ouster, RoboSense, PCL, CloudCompare, mapping tools, PDAL, scanners, LAStools, KITTI, nuScenes, NumPy"],
+  ["Folders and datasets", "Any program, TUM RGB-D, Redwood, Open3D, KITTI, ScanNet, BOP, Stray Scanner, Polycam, Record3D, RealSense Viewer, COLMAP, Middlebury"],
+  ["Recordings and live robots", "ROS 2, Foxglove, ROS 1, RealSense Viewer, librealsense, Azure Kinect, Robots with foxglove_bridge"],
+];
