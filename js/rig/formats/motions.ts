@@ -2,7 +2,7 @@
 import { badFile } from "../../errors.js";
 import type { NamedCamera, NamedPose } from "../types.js";
 import { type ReaderWarning, warning } from "../warnings.js";
-import { type Frames, type PoseNames, isOfWorld, named, worldFrames } from "./ends.js";
+import { type Frames, type PoseNames, isFirstEstimate, isOfWorld, mentionsTwo, named, worldFrames } from "./ends.js";
 import {
   type Attributes,
   type MotionName,
@@ -45,6 +45,7 @@ export interface Signs {
   hasImu: boolean;
   hasLidar: boolean;
   isARKit: boolean;
+  isR3Live: boolean;
 }
 export function signsOf(text: string): Signs {
   const first = /\bw[ ,]+x[ ,]+y[ ,]+z\b|wxyz/i.test(text);
@@ -53,6 +54,7 @@ export function signsOf(text: string): Signs {
     isRealSense: /realsense|\bppx\b|brown[ _]conrady|"coeffs"/i.test(text),
     order: first === last ? undefined : first ? "wxyz" : "xyzw",
     hasImu: /imu/i.test(text),
+    isR3Live: /r3live/i.test(text),
     isARKit: /trackingState|\bAR(?:Kit|Frame|Camera)|cameraPoseARFrame|worldMappingStatus|"columns"\s*:\s*\[/i.test(
       text,
     ),
@@ -99,6 +101,8 @@ export class Motions {
   /** Poses with rotations whose order of rows and columns was assumed. */
   readonly #open = new Map<NamedPose, "rows" | "columns">();
   readonly #unused: string[] = [];
+  /** The names of the objects around poses. */
+  readonly #parents = new Map<NamedPose, string>();
   /** Poses that lead into the world by the definition of a format. */
   readonly #defined = new Set<NamedPose>();
   readonly #signs: Signs;
@@ -112,6 +116,7 @@ export class Motions {
   /** Adds the motions of an object; with `isCamera` it has a camera, whose rotation and projection are those of rectification. */
   read(node: Node, parent: string, context: Context, isCamera: boolean): void {
     const used = new Set<string>();
+    const before = this.poses.length;
     for (const key of Object.keys(node)) {
       const name = rotationName(key);
       if (name !== undefined && this.#pair(node, key, name, parent, context)) {
@@ -122,6 +127,7 @@ export class Motions {
       if (this.#matrix(node, key, parent, context)) used.add(key);
     }
     this.#members(node, parent, context);
+    for (const pose of this.poses.slice(before)) this.#parents.set(pose, parent);
     const rectifies = isCamera || Object.keys(node).some((key) => isNoMotion(key) !== undefined);
     for (const key of Object.keys(node))
       if (!used.has(key) && isPoseLike(key, node[key], rectifies)) this.#unused.push(key);
@@ -180,7 +186,7 @@ export class Motions {
     if (/^[qp]$/i.test(key) && r.values.length !== 4) return false;
     if (/^p/i.test(other.key) && t.values.length !== 3) return false;
     if (t.values.length !== 3) throw badFile(`its ${other.key} has ${t.values.length} numbers, not three`);
-    const own = named(name.label.replace(/ /g, "_"), {});
+    const own = { ...named(name.label.replace(/ /g, "_"), {}), ...productFrames(key, other.key, this.#signs) };
     const around = context.from === undefined ? { ...context, ...worldFrames(other.key) } : context;
     const names = own.from === undefined ? named(name.label === "" ? parent : name.label, around) : own;
     const isNamedAsRealSense = key === "rotation" && other.key === "translation";
@@ -295,7 +301,10 @@ export class Motions {
         if (pose.from === undefined && pose.to === undefined) Object.assign(pose, { from: "world", to: "camera" });
     for (const pose of this.#open.keys()) this.#checkOrder(pose);
     for (const [pose, order] of this.#open) this.#warnings.push(orderWarning(pose.name ?? "", order));
-    for (const pose of this.poses) this.#nameExtrinsic(pose);
+    for (const pose of this.poses) {
+      this.#nameExtrinsic(pose);
+      this.#checkDirection(pose);
+    }
     // ARKit's transforms are poses of the camera in the world.
     if (this.#signs.isARKit) this.placeInWorld(0);
     // All poses of the world lead into it, so that they are not mistaken for extrinsics.
@@ -312,8 +321,31 @@ export class Motions {
           { poses: ofWorld.length },
         ),
       );
+    this.#rankEstimates();
     for (const key of [...new Set(this.#unused)].slice(0, FEW))
       this.#warnings.push(warning("pose-left-out", `"${key}" looks like a pose and was not used.`, { name: key }));
+  }
+
+  /** Of several poses between the same frames first estimates come last; each is called by the object around it, too. */
+  #rankEstimates(): void {
+    const calledOf = (pose: NamedPose) => `${this.#parents.get(pose) ?? ""} ${pose.name ?? ""}`.trim();
+    const hasOther = (pose: NamedPose) =>
+      this.poses.some((other) => other !== pose && other.from === pose.from && other.to === pose.to);
+    const several = this.poses.filter((pose) => pose.from !== undefined && !isOfWorld(pose) && hasOther(pose));
+    const names = new Map(several.map((pose) => [pose, calledOf(pose)]));
+    const alike = several.filter((pose) => several.some((other) => other !== pose && other.name === pose.name));
+    for (const pose of alike) pose.name = names.get(pose) ?? "";
+    const isFirst = (pose: NamedPose) => isFirstEstimate(names.get(pose) ?? "");
+    const [some, all] = [several.some(isFirst), several.every(isFirst)];
+    if (!some || all) return;
+    this.poses.sort((a, b) => Number(isFirst(a)) - Number(isFirst(b)));
+    const left = several.filter(isFirst).map(({ name = "" }) => `"${name}"`);
+    this.#warnings.push(
+      warning(
+        "pose-assumed",
+        `The file has several poses between the same frames; ${left.slice(0, FEW).join(", ")} ${left.length > 1 ? "are first estimates by their names and come" : "is a first estimate by its name and comes"} after the others.`,
+      ),
+    );
   }
 
   /** Makes poses of the camera in the world of those without frames, from this index on. */
@@ -334,6 +366,18 @@ export class Motions {
     const kept = this.poses.filter((pose) => !isReference(pose));
     for (const { name = "" } of this.poses.filter(isReference)) this.#unused.push(name);
     this.poses.splice(0, this.poses.length, ...kept);
+  }
+
+  /** Warns where a name mentions two frames and it is not understood which way the pose leads. */
+  #checkDirection({ name = "", from, to }: NamedPose): void {
+    if (from !== undefined || to !== undefined || !mentionsTwo(name)) return;
+    this.#warnings.push(
+      warning(
+        "pose-assumed",
+        `"${name}" names two frames, but not in a known way which one it leads to. It was taken to lead to the colour camera; name it depth_to_color, lidar_to_camera or the like.`,
+        { name },
+      ),
+    );
   }
 
   /** Determines rows or columns where the file has the inverse motion, too. */
@@ -358,6 +402,16 @@ export class Motions {
 
 const agrees = ({ rotation, translation }: NamedPose["pose"]): boolean =>
   degreesOf(rotation) < AGREES.degrees && Math.hypot(...translation) < AGREES.metres;
+
+/**
+ * The frames of rotations and translations whose names are a product's own: FAST-LIO has the LiDAR in the inertial unit, VINS and R3LIVE the
+ * camera.
+ */
+function productFrames(turn: string, shift: string, { isR3Live }: Signs): Frames {
+  if (turn === "extrinsic_R" && shift === "extrinsic_T") return { from: "lidar", to: "imu" };
+  if (turn === "extrinsicRotation" && shift === "extrinsicTranslation") return { from: "camera", to: "imu" };
+  return isR3Live && turn === "camera_ext_R" ? { from: "camera", to: "imu" } : {};
+}
 
 /** The frames of Kalibr's names, in which cn is the camera of the matrix and cnm1 the one before. */
 function kalibr(key: string, parent: string): PoseNames | undefined {

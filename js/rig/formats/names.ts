@@ -196,9 +196,14 @@ const LETTERS: Record<string, string> = {
   ...{ c: "camera", l: "lidar", i: "imu", b: "body", w: "world", v: "vehicle", d: "depth", e: "ego", r: "radar" },
 };
 
+/** The cameras of a stereo pair: ORB-SLAM's "Tlr" carries points of the right camera into the left one. */
+const SIDES: Record<string, string> = { l: "left", r: "right" };
+
 /** The frames of "Rcl", "T_ic" and the like. */
 export function letteredFrames(name: string): { from: string; to: string } | undefined {
   const [, , to = "", from = "", above = "", below = ""] = LETTERED.exec(name) ?? [];
+  const pair = [SIDES[to || above.toLowerCase()], SIDES[from || below.toLowerCase()]];
+  if (pair[0] !== undefined && pair[1] !== undefined && pair[0] !== pair[1]) return { from: pair[1], to: pair[0] };
   const [target, source] = [LETTERS[to] ?? CAPITALS[above], LETTERS[from] ?? CAPITALS[below]];
   return target !== undefined && source !== undefined && target !== source ? { from: source, to: target } : undefined;
 }
