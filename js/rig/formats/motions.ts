@@ -9,13 +9,13 @@ import {
   angleOf,
   isLens,
   isNoMotion,
-  isTranslation,
   lengthOf,
   member,
   rotationName,
   translationOf,
-  wordsOf,
 } from "./names.js";
+import { checkLength } from "./lengths.js";
+import { TRANSFORM, isPoseLike } from "./pose-like.js";
 import { type Matrix, type Node, type Numbers, isNode, matrixOf, numberOf, transposed } from "./numbers.js";
 import {
   chained,
@@ -68,12 +68,6 @@ const FEW = 4;
 const AGREES = { degrees: 0.02, metres: 1e-3 };
 /** How far the length of a quaternion in a list of seven numbers may be from 1. */
 const QUATERNION_TOLERANCE = 1e-2;
-/** Names of transforms. A matrix by another name has to be a motion by its numbers. */
-const TRANSFORM = /^T_|(?:_to_|_from_|2)[a-z]|transform|extrinsic|pose/i;
-/** Names of lists of poses, such as those of a calibration board. */
-const SERIES =
-  /^(?:rvecs|tvecs|rotations|translations|poses|extrinsics|transforms|rotation vectors|translation vectors)$/;
-
 const at = (values: Numbers, index: number): number => values[index] ?? NaN;
 
 /** The numbers of a list, a matrix, or an object with these members. */
@@ -101,6 +95,8 @@ export class Motions {
   /** Poses with rotations whose order of rows and columns was assumed. */
   readonly #open = new Map<NamedPose, "rows" | "columns">();
   readonly #unused: string[] = [];
+  /** Poses of a rig whose unit the file does not state. */
+  readonly #unitless: NamedPose[] = [];
   /** The names of the objects around poses. */
   readonly #parents = new Map<NamedPose, string>();
   /** Poses that lead into the world by the definition of a format. */
@@ -172,7 +168,10 @@ export class Motions {
 
   #motion(rotation: Numbers, translation: Numbers, names: PoseNames, unit: number | undefined): NamedPose {
     const metres = unit === undefined ? translation : translation.map((value) => value * unit);
-    return motion(rotation, metres, names, this.#warnings, unit === undefined && !isOfWorld(names));
+    const isOpen = unit === undefined && !isOfWorld(names);
+    const found = motion(rotation, metres, names, this.#warnings, isOpen);
+    if (isOpen) this.#unitless.push(found);
+    return found;
   }
 
   /** Adds the motion of a rotation and its translation; false where they are not one. */
@@ -260,9 +259,9 @@ export class Motions {
       context.unit === undefined
         ? values
         : values.map((value, index) => (index % 4 === 3 && index < 12 ? value * (context.unit ?? 1) : value));
-    const found = this.#add(
-      motionOfMatrix(metres, names, this.#warnings, context.unit === undefined && !isOfWorld(names)),
-    );
+    const isUnitless = context.unit === undefined && !isOfWorld(names);
+    const found = this.#add(motionOfMatrix(metres, names, this.#warnings, isUnitless));
+    if (isUnitless) this.#unitless.push(found);
     if (isOpen3D) this.#defined.add(found);
     return true;
   }
@@ -321,6 +320,7 @@ export class Motions {
           { poses: ofWorld.length },
         ),
       );
+    for (const pose of this.#unitless) if (!isOfWorld(pose)) checkLength(pose, this.#warnings);
     this.#rankEstimates();
     for (const key of [...new Set(this.#unused)].slice(0, FEW))
       this.#warnings.push(warning("pose-left-out", `"${key}" looks like a pose and was not used.`, { name: key }));
@@ -421,24 +421,4 @@ function kalibr(key: string, parent: string): PoseNames | undefined {
   if (key === "T_cn_cnm1") return { name: `${parent} from ${before}`, from: before, to: parent };
   if (key === "T_cam_imu") return { name: `${parent} from imu`, from: "imu", to: parent };
   return undefined;
-}
-
-/** Whether a member that was not read looks like a pose. */
-function isPoseLike(key: string, value: unknown, rectifies: boolean): boolean {
-  const words = wordsOf(key).join(" ");
-  const isMatrix = (each: unknown) => [12, 16].includes(matrixOf(each)?.values.length ?? 0);
-  if (SERIES.test(words))
-    return Array.isArray(value) && value.length > 0 && !value.every(isMatrix) && !value.some(isNode);
-  if (/rect|essential|fundamental|homography/.test(words) || isNoMotion(key) !== undefined) return false;
-  const values = matrixOf(value)?.values;
-  if (values === undefined) return false;
-  if (values.length === 16 || values.length === 12) return isRotation(parted(values)[0]);
-  if ((values.length === 6 || values.length === 7) && TRANSFORM.test(key)) return true;
-  // An identity in a camera is that of rectification, whatever its name.
-  const isIdentity = values.length === 9 && values.every((each, index) => each === (index % 4 === 0 ? 1 : 0));
-  if (rectifies && isIdentity) return false;
-  if (rotationName(key) !== undefined && !/^[qr]\d*$/i.test(key))
-    return values.length === 9 ? isRotation(values) : values.length === 4 || values.length === 3;
-  if (rotationName(key) !== undefined) return !rectifies && values.length === 9 && isRotation(values);
-  return values.length === 3 && isTranslation(key) && !/^[pt]\d*$/i.test(key);
 }

@@ -149,6 +149,7 @@ export interface Attributes {
 const LENGTHS: Record<string, number> = {
   ...{ mm: 1e-3, millimeter: 1e-3, millimeters: 1e-3, millimetre: 1e-3, millimetres: 1e-3 },
   ...{ cm: 1e-2, centimeter: 1e-2, centimeters: 1e-2, centimetre: 1e-2, centimetres: 1e-2 },
+  ...{ dm: 0.1, decimeter: 0.1, decimeters: 0.1, decimetre: 0.1, decimetres: 0.1 },
   ...{ meter: 1, meters: 1, metre: 1, metres: 1, inch: 0.0254, inches: 0.0254 },
 };
 const ATTRIBUTES: Record<string, Attributes> = {

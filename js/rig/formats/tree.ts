@@ -11,6 +11,7 @@ import { type RawCamera, cameraOf, ofMatrix } from "./cameras.js";
 import { grouped, withLists } from "./groups.js";
 import { type FoundCamera, Leftovers, type Place, coefficientsOf } from "./leftovers.js";
 import { modelIn, sharedModelIn } from "./lenses.js";
+import { unitInComments } from "./lengths.js";
 import { MOST_FOUND } from "./limits.js";
 import { type Context, Motions, contextOf, signsOf } from "./motions.js";
 import { isIntrinsics, labelled, lensNames, member, wordsOf } from "./names.js";
@@ -387,7 +388,8 @@ function sizeOf(node: Node, label: string): { width?: number; height?: number } 
 /** `text` is that of the file; its comments and product names are used as well. */
 export function searchTree(value: unknown, text = ""): Calibration {
   const search = new Search(text);
-  search.walk(value, "", "", {}, undefined);
+  const unit = unitInComments(text);
+  search.walk(value, "", "", unit === undefined ? {} : { unit }, undefined);
   search.finish();
   const { cameras, warnings, models, motions } = search;
   const [model] = models;
