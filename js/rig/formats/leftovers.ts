@@ -13,6 +13,8 @@ export interface Place {
   node: Node;
   parent: Place | undefined;
   depth: number;
+  /** It is a list. */
+  isList?: boolean;
 }
 
 /** A camera before it is checked, with its object. */

@@ -14,6 +14,7 @@ import {
   rotationName,
   translationOf,
 } from "./names.js";
+import { PROJECTION, forColumns, isProjection } from "./blocks.js";
 import { checkLength } from "./lengths.js";
 import { TRANSFORM, isPoseLike } from "./pose-like.js";
 import { type Matrix, type Node, type Numbers, isNode, matrixOf, numberOf, transposed } from "./numbers.js";
@@ -55,9 +56,10 @@ export function signsOf(text: string): Signs {
     order: first === last ? undefined : first ? "wxyz" : "xyzw",
     hasImu: /imu/i.test(text),
     isR3Live: /r3live/i.test(text),
-    isARKit: /trackingState|\bAR(?:Kit|Frame|Camera)|cameraPoseARFrame|worldMappingStatus|"columns"\s*:\s*\[/i.test(
-      text,
-    ),
+    isARKit:
+      /trackingState|\bAR(?:Kit|Frame|Camera)|cameraPoseARFrame|worldMappingStatus|"imageResolution"|"columns"\s*:\s*\[/i.test(
+        text,
+      ),
     hasLidar: /lid(?:ar)?_|lidar|livox|velodyne/i.test(text),
   };
 }
@@ -95,6 +97,8 @@ export class Motions {
   /** Poses with rotations whose order of rows and columns was assumed. */
   readonly #open = new Map<NamedPose, "rows" | "columns">();
   readonly #unused: string[] = [];
+  /** Poses whose matrices were for row vectors. */
+  readonly #turned = new Set<NamedPose>();
   /** Poses of a rig whose unit the file does not state. */
   readonly #unitless: NamedPose[] = [];
   /** The names of the objects around poses. */
@@ -123,10 +127,24 @@ export class Motions {
       if (this.#matrix(node, key, parent, context)) used.add(key);
     }
     this.#members(node, parent, context);
+    this.#dropRowVectors(before);
     for (const pose of this.poses.slice(before)) this.#parents.set(pose, parent);
     const rectifies = isCamera || Object.keys(node).some((key) => isNoMotion(key) !== undefined);
     for (const key of Object.keys(node))
       if (!used.has(key) && isPoseLike(key, node[key], rectifies)) this.#unused.push(key);
+  }
+
+  /** Drops the rotations for row vectors beside a matrix for them, as in MATLAB's rigid3d, which has both. */
+  #dropRowVectors(first: number): void {
+    const all = this.poses.splice(first);
+    const isTwin = ({ pose }: NamedPose) =>
+      all.some((other) => {
+        const back = transposed(other.pose.rotation, 3);
+        return (
+          this.#turned.has(other) && back.every((value, index) => Math.abs(value - at(pose.rotation, index)) < 1e-6)
+        );
+      });
+    this.poses.push(...all.filter((pose) => this.#turned.has(pose) || !isTwin(pose)));
   }
 
   #add(found: NamedPose): NamedPose {
@@ -253,7 +271,13 @@ export class Motions {
       isFlat &&
       (isOpen3D ||
         (!isLastRow(matrix.values.slice(12)) && isLastRow([3, 7, 11, 15].map((index) => at(matrix.values, index)))));
-    const values = byColumns ? transposed(matrix.values, 4) : matrix.values;
+    if (isProjection(matrix.values)) {
+      this.#warnings.push(warning("pose-left-out", `"${key}" ${PROJECTION}.`, { name: key, isProjection: true }));
+      return true;
+    }
+    const values = byColumns
+      ? transposed(matrix.values, 4)
+      : forColumns(matrix.values, key, isOfWorld(names) ? [] : this.#warnings);
     if (!TRANSFORM.test(key) && kalibr(key, parent) === undefined && !isRotation(parted(values)[0])) return false;
     const metres =
       context.unit === undefined
@@ -262,6 +286,7 @@ export class Motions {
     const isUnitless = context.unit === undefined && !isOfWorld(names);
     const found = this.#add(motionOfMatrix(metres, names, this.#warnings, isUnitless));
     if (isUnitless) this.#unitless.push(found);
+    if (!byColumns && values !== matrix.values) this.#turned.add(found);
     if (isOpen3D) this.#defined.add(found);
     return true;
   }

@@ -2,6 +2,7 @@
 import { badFile } from "../../errors.js";
 import type { NamedPose } from "../types.js";
 import { cameraOf, ofMatrix } from "./cameras.js";
+import { PROJECTION, forColumns, isProjection } from "./blocks.js";
 import { checkLength, unitInComments } from "./lengths.js";
 import { type Numbers, numberOf } from "./numbers.js";
 import { motion, motionOfMatrix, parted } from "./poses.js";
@@ -50,7 +51,7 @@ const camera = (k: Numbers, size: Numbers, distortion: Numbers = []): Found => {
 function nine(values: Numbers, size: Numbers): Found {
   if (near(values[3], 0) && near(values[6], 0) && near(values[7], 0) && near(values[8], 1)) return camera(values, size);
   if (near(values[1], 0) && near(values[2], 0) && near(values[5], 0) && near(values[8], 1)) {
-    throw badFile("its matrix of intrinsics is transposed: fx 0 cx / 0 fy cy / 0 0 1 are needed");
+    throw badFile("its matrix of intrinsics is transposed: transpose it, because fx 0 cx / 0 fy cy / 0 0 1 are needed");
   }
   throw badFile(
     "its nine numbers are not a matrix of intrinsics (fx 0 cx / 0 fy cy / 0 0 1), and a rotation needs its translation",
@@ -113,8 +114,10 @@ function matrices(rows: Numbers[]): Found {
 }
 
 /** The motion of a file without names, in the unit of its comments. */
-function aloneOf(values: Numbers, text: string, warnings: ReaderWarning[]): NamedPose {
+function aloneOf(read: Numbers, text: string, warnings: ReaderWarning[]): NamedPose {
   const unit = unitInComments(text);
+  if (isProjection(read)) throw badFile(`its matrix ${PROJECTION}`);
+  const values = forColumns(read, "", warnings);
   const metres = values.map((value, at) => (at % 4 === 3 && at < 12 ? value * (unit ?? 1) : value));
   const pose = motionOfMatrix(metres, {}, warnings, unit === undefined);
   if (unit === undefined) checkLength(pose, warnings);

@@ -69,7 +69,7 @@ const TREES: Product<Node>[] = [
   ["a result of easy_handeye", isHandEye, readHandEye],
   ["a transforms.json of nerfstudio", isNerf, readNerf],
   ["the metadata of Record3D", isRecord3d, readRecord3d],
-  ["a camera of the BOP benchmark", isBop, readBop],
+  ["a camera with a depth_scale, as of BOP", isBop, readBop],
   ["a sensor kit's calibration of Autoware", isAutoware, readAutoware],
 ];
 

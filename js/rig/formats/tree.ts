@@ -18,6 +18,7 @@ import { isIntrinsics, labelled, lensNames, member, wordsOf } from "./names.js";
 import { type Matrix, type Node, type Numbers, isNode, matrixOf, numberOf, textOf, transposed } from "./numbers.js";
 import { orbbecContext } from "./orbbec.js";
 import { chained, inverseOf } from "./poses.js";
+import { ofRegion } from "./region.js";
 
 export interface Calibration {
   cameras: NamedCamera[];
@@ -91,7 +92,7 @@ class Search {
     if (depth > MOST_DEPTH) throw badFile(`it is nested deeper than ${MOST_DEPTH}`);
     if (this.#found.length + this.motions.poses.length > MOST_FOUND)
       throw badFile(`it holds more than ${MOST_FOUND} cameras and poses`);
-    if (Array.isArray(value)) return this.#list(value, key, name, context, { node: {}, parent, depth });
+    if (Array.isArray(value)) return this.#list(value, key, name, context, { node: {}, parent, depth, isList: true });
     const called = nameIn(value as Node) ?? name;
     const keys = Object.keys(value);
     this.#members += keys.length;
@@ -205,9 +206,18 @@ class Search {
   /** Adds the cameras; one that cannot be read is left out with a warning where the file holds something else. */
   #check(): void {
     let reason: BimodalError | undefined;
-    for (const { raw } of this.#found)
+    // Cameras in a list without names of their own are numbered.
+    const isListed = ({ place, raw }: FoundCamera) => raw.name !== undefined && place.parent?.isList === true;
+    const listed = this.#found.filter(isListed);
+    const alike = listed.filter(({ raw }) => listed.some((other) => other.raw !== raw && other.raw.name === raw.name));
+    const called = alike.map(({ raw, place }) => ({
+      raw,
+      own: nameIn(place.node) ?? member(place.node, "name", "cameraname"),
+    }));
+    for (const [index, { raw, own }] of called.entries()) if (own === undefined) raw.name = `${raw.name} ${index}`;
+    for (const { raw, place } of this.#found)
       try {
-        this.cameras.push(cameraOf(raw, this.warnings));
+        this.cameras.push(cameraOf(ofRegion(raw, place.node), this.warnings));
       } catch (error) {
         if (!(error instanceof BimodalError)) throw error;
         reason ??= error;
@@ -397,5 +407,8 @@ export function searchTree(value: unknown, text = ""): Calibration {
     throw badFile(
       `its camera has the model "${model.slice(0, 40)}" and no intrinsics that can be read; pinhole cameras with Brown's or Kannala-Brandt's lenses are supported`,
     );
+  const projection = warnings.find(({ isProjection }) => isProjection === true);
+  if (cameras.length + motions.poses.length === 0 && projection !== undefined)
+    throw badFile(`its ${projection.message.replace(/\.$/, "")}`);
   return { cameras, poses: motions.poses, warnings };
 }
