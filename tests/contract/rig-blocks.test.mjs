@@ -87,9 +87,9 @@ describe("URDF", () => {
 test("a scan of six floats has rings, intensities and times", async () => {
   const values = [];
   for (let ring = 0; ring < 16; ring++)
-    for (let column = 0; column < 200; column++) {
-      const [azimuth, elevation] = [(2 * Math.PI * column) / 200, (ring - 8) / 30];
-      const range = 5 + Math.sin(3 * azimuth);
+    for (let column = 0; column < 900; column++) {
+      const [azimuth, elevation] = [(2 * Math.PI * column) / 900, (ring - 8) / 30];
+      const range = 5 + 0.2 * Math.sin(azimuth);
       const level = range * Math.cos(elevation);
       values.push(
         level * Math.cos(azimuth),
@@ -103,7 +103,7 @@ test("a scan of six floats has rings, intensities and times", async () => {
   const found = await read("scan.bin", new Uint8Array(Float32Array.from(values).buffer));
   assert.deepEqual(
     [found.scan.ring?.length, found.scan.intensity?.length, found.scan.times?.length],
-    [3200, 3200, 3200],
+    [14_400, 14_400, 14_400],
   );
   assert.ok(codes(found).includes("point-times"));
 });

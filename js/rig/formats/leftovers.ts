@@ -4,7 +4,7 @@
  */
 import { type ReaderWarning, warning } from "../warnings.js";
 import { BROWN_NAMES, type RawCamera } from "./cameras.js";
-import { modelIn } from "./lenses.js";
+import { modelIn } from "./stated.js";
 import { isLens, member, wordsOf } from "./names.js";
 import { type Node, type Numbers, isNode, matrixOf, numberOf } from "./numbers.js";
 

@@ -1,5 +1,5 @@
 /**
- * Units of translations: those that a file's comments state, and a doubt where a translation is longer than the cameras of a rig are apart.
+ * Units of translations: those that a file's comments state, and a warning where a translation is longer than the cameras of a rig are apart.
  *
  * Limit: rigs whose cameras are farther apart have to state the unit.
  */
@@ -40,7 +40,7 @@ export function unitInComments(text: string): number | undefined {
 
 const says = (length: number, unit: number): string => `${Number((1000 * length * unit).toPrecision(3))} mm`;
 
-/** Adds a doubt where a translation without a unit is longer than the sensors of a rig are apart. */
+/** Adds a warning where a translation without a unit is longer than the sensors of a rig are apart. */
 export function checkLength({ name, from = "", to = "", pose }: NamedPose, warnings: ReaderWarning[]): void {
   const frames = `${from} ${to} ${name ?? ""}`;
   if (FAR.test(frames)) return;

@@ -10,7 +10,7 @@ import { type ReaderWarning, warning } from "../warnings.js";
 import { type RawCamera, cameraOf, ofMatrix } from "./cameras.js";
 import { grouped, withLists } from "./groups.js";
 import { type FoundCamera, Leftovers, type Place, coefficientsOf } from "./leftovers.js";
-import { modelIn, sharedModelIn } from "./lenses.js";
+import { modelIn, sharedModelIn } from "./stated.js";
 import { unitInComments } from "./lengths.js";
 import { MOST_FOUND } from "./limits.js";
 import { type Context, Motions, contextOf, signsOf } from "./motions.js";
@@ -206,7 +206,7 @@ class Search {
   /** Adds the cameras; one that cannot be read is left out with a warning where the file holds something else. */
   #check(): void {
     let reason: BimodalError | undefined;
-    // Cameras in a list without names of their own are numbered.
+    // Cameras without names in a list are numbered.
     const isListed = ({ place, raw }: FoundCamera) => raw.name !== undefined && place.parent?.isList === true;
     const listed = this.#found.filter(isListed);
     const alike = listed.filter(({ raw }) => listed.some((other) => other.raw !== raw && other.raw.name === raw.name));
