@@ -162,6 +162,15 @@ const DEVICES = {
 /** Calibration tools. */
 const TOOLS = {
   kalibr: made("camchain.yaml"),
+  "kalibr-results": words(
+    "results-cam.txt",
+    lines([
+      ...["Calibration results", "====================", "Camera-system parameters:", "\tcam0 (/color/image):"],
+      "\t type: <class 'aslam_cv.libaslam_cv_python.DistortedPinholeCameraGeometry'>",
+      `\t distortion: [${[k1, k2, p1, p2].join(" ")}] +- [0.1 0.1 0.1 0.1]`,
+      `\t projection: [${[fx, fy, cx, cy].join(" ")}] +- [0.1 0.1 0.1 0.1]`,
+    ]),
+  ),
   euroc: words(
     "sensor.yaml",
     `sensor_type: camera\nT_BS:\n  cols: 4\n  rows: 4\n  data: [${matrix.flat().join(", ")}]\nresolution: [640, 480]\ncamera_model: pinhole\nintrinsics: [${fx}, ${fy}, ${cx}, ${cy}]\ndistortion_model: radial-tangential\ndistortion_coefficients: [${k1}, ${k2}, ${p1}, ${p2}]\n`,

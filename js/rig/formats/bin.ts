@@ -14,7 +14,7 @@ const LAYOUTS: [floats: number, others: string[], of: string][] = [
   [4, ["reflectance"], "KITTI"],
   [5, ["intensity", "ring"], "nuScenes"],
   [3, [], "x y z"],
-  [6, [], "x y z and three more"],
+  [6, ["intensity", "ring", "time"], "x y z intensity ring time"],
 ];
 /** Coordinates of a LiDAR's points, metres, at most. */
 const FARTHEST = 500;
@@ -68,11 +68,13 @@ export function readBin(bytes: Uint8Array): Points | undefined {
     const at = others.findIndex((other) => channelOf(other) === wanted);
     return at < 0 ? undefined : columnOf(values, floats, 3 + at);
   };
-  const [intensity, ring] = [channel("intensity"), channel("ring")];
+  const [intensity, ring, times] = [channel("intensity"), channel("ring"), channel("times")];
   const scan = {
     points: pointsOf(values, floats),
     ...(intensity && { intensity }),
     ...(ring && isRing(ring) && { ring }),
+    // Whatever the last number is, a scanner that turns has measured the points one after the other.
+    ...(times && { times: Float64Array.from(times) }),
   };
   const notes = [`${floats} floats to a point (guessed: ${of})`];
   return { format: "points without a header", scan, isMetric: true, notes, warnings: [] };

@@ -1,6 +1,7 @@
 /** Cameras as files write them: checked, with their distortion by OpenCV's names. */
 import { badFile } from "../../errors.js";
 import type { NamedCamera } from "../types.js";
+import { lensNamed } from "./lenses.js";
 import { MOST_SIDE } from "./limits.js";
 import type { Numbers } from "./numbers.js";
 import { type ReaderWarning, warning } from "../warnings.js";
@@ -13,6 +14,12 @@ export interface RawCamera {
   skew?: number | undefined;
   model?: string | undefined;
   distortion?: Numbers | undefined;
+  /** The model's name cannot be that of a product. */
+  isLens?: boolean | undefined;
+  /** The coefficients are by Brown's names in OpenCV's order, whatever the model. */
+  isByName?: boolean | undefined;
+  /** The file has k1 to k4 by name, and neither tangential coefficients nor more radial ones. */
+  isFourRadial?: boolean | undefined;
   width?: number | undefined;
   height?: number | undefined;
 }
@@ -27,26 +34,6 @@ export const ofMatrix = (k: Numbers, columns = 3): Required<Pick<RawCamera, "foc
   centre: [k[2] ?? NaN, k[columns + 2] ?? NaN],
   skew: k[1],
 });
-
-/** Files call the same model by many names. */
-const BROWN =
-  /^(|none|pinhole(camera)?|plumb[_ ]?bob|radtan\d?|radial-?tangential\d?|brown|brown[_ ]?conrady|opencv|rational([_ ]?polynomial)?|full_opencv|perspective|standard|thin_prism|tilted)$/;
-const FISHEYE = /^(fisheye|equidistant(camera)?|equid?4?|kannala[_ ]?brandt[48]?|opencv_fisheye)$/;
-/** librealsense's variants; it projects both as Brown's (its older versions followed the second the other way), but for products of terms. */
-const REALSENSE = /^(modified|inverse)[_ ]?brown[_ ]?conrady$/;
-/** Short names of lens models that are not supported, with what they stand for. */
-const OTHERS: Record<string, string> = {
-  ds: "double sphere",
-  eucm: "extended unified",
-  ucm: "unified",
-  omni: "omnidirectional",
-  mei: "omnidirectional",
-  fov: "field of view",
-  atan: "field of view",
-  ftheta: "F-theta",
-  scaramuzza: "Scaramuzza's polynomial",
-  fisheyeradtanthinprism: "Aria's Fisheye624: make linear pictures by projectaria_tools",
-};
 
 /** Longest focal length of a camera, pixels. */
 const LONGEST = 1e6;
@@ -135,32 +122,52 @@ export function cameraOf(raw: RawCamera, warnings: ReaderWarning[]): NamedCamera
 
 type Lens = { model?: "fisheye"; distortion?: Numbers };
 
-function lensOf(
-  { model: written = "", distortion: values = [] }: RawCamera,
-  label: string,
-  warnings: ReaderWarning[],
-): Lens {
+/** Coefficients by Brown's names that are those of a fisheye: k1 to k4. */
+const FISHEYE_OF_BROWN = [0, 1, 4, 5];
+
+function fisheye({ distortion: values = [], isByName = false }: RawCamera): Lens {
+  const four = isByName ? FISHEYE_OF_BROWN.map((index) => values[index] ?? 0) : values;
+  if (four.length !== 0 && four.length !== 4 && four.slice(4).some((value) => value !== 0))
+    throw badFile(`its fisheye lens has ${four.length} coefficients; k1 k2 k3 k4 are needed`);
+  return { model: "fisheye", distortion: [0, 1, 2, 3].map((index) => four[index] ?? 0) };
+}
+
+/** The lens by its name; one that is not known is neither Brown's nor none without a word. */
+function lensOf(raw: RawCamera, label: string, warnings: ReaderWarning[]): Lens {
+  const { distortion: values = [] } = raw;
+  const written = (raw.model ?? "").trim();
   if (!values.every((value) => Number.isFinite(value) && Math.abs(value) < 1e6))
     throw badFile("its distortion contains something other than numbers");
-  const model = written.trim().toLowerCase();
+  const { family, meaning } = lensNamed(written);
   const bent = values.some((value) => value !== 0);
-  if (FISHEYE.test(model)) {
-    if (values.length !== 0 && values.length !== 4 && values.slice(4).some((value) => value !== 0))
-      throw badFile(`its fisheye lens has ${values.length} coefficients; k1 k2 k3 k4 are needed`);
-    return { model: "fisheye", distortion: [0, 1, 2, 3].map((index) => values[index] ?? 0) };
-  }
+  if (family === "fisheye") return fisheye(raw);
+  if (family === "other" || (family === undefined && bent))
+    throw badFile(
+      `its lens model "${written.slice(0, 40)}"${meaning === undefined ? "" : ` (${meaning})`} is not supported; Brown's and Kannala-Brandt's are`,
+    );
+  if (family === undefined && raw.isLens === true)
+    warnings.push(
+      warning(
+        "distortion-guessed",
+        `${label} has the lens model "${written.slice(0, 40)}", which is not known, and was read without distortion.`,
+        { model: written.slice(0, 40) },
+      ),
+    );
   if (!bent) return {};
-  if (REALSENSE.test(model))
+  if (family === "realsense")
     warnings.push(
       warning(
         "lens-approximated",
-        `${label} has RealSense's "${written.trim()}" lens, which is read as Brown's, as librealsense projects it; the two differ by products of coefficients.`,
-        { model: written.trim() },
+        `${label} has RealSense's "${written}" lens, which is read as Brown's, as librealsense projects it; the two differ by products of coefficients.`,
+        { model: written },
       ),
     );
-  else if (!BROWN.test(model))
-    throw badFile(
-      `its lens model "${written.slice(0, 40)}"${Object.hasOwn(OTHERS, model) ? ` (${OTHERS[model]})` : ""} is not supported; Brown's and Kannala-Brandt's are`,
+  if (raw.isFourRadial === true && written === "")
+    warnings.push(
+      warning(
+        "distortion-guessed",
+        `${label} has the coefficients k1 k2 k3 k4 without p1 p2 and without a lens model. They were read as Brown's, but may be those of a fisheye (Kannala-Brandt). Write the model into the camera, as "distortion_model": "equidistant" or "plumb_bob".`,
+      ),
     );
   return withBrown(brown(values.length === 3 ? radial(values, label, warnings) : values));
 }

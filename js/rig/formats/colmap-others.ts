@@ -1,7 +1,7 @@
 /** COLMAP's other files: cameras.bin, the binary form of cameras.txt, and images.txt with the poses of the images. */
 import { badFile } from "../../errors.js";
 import { type ReaderWarning, distinct, warning } from "../warnings.js";
-import { linesOf } from "./colmap.js";
+import { linesOf } from "./colmap-lines.js";
 import { numberOf } from "./numbers.js";
 import { inverseOf, motion, ofScalarFirst } from "./poses.js";
 import type { Calibration } from "./tree.js";

@@ -1,6 +1,7 @@
 /** COLMAP's cameras.txt: a line for each camera, "ID MODEL WIDTH HEIGHT PARAMS[]". */
 import { BimodalError, badFile } from "../../errors.js";
 import { type RawCamera, cameraOf } from "./cameras.js";
+import { linesOf } from "./colmap-lines.js";
 import { type Numbers, numberOf } from "./numbers.js";
 import type { Calibration } from "./tree.js";
 import { warning } from "../warnings.js";
@@ -26,10 +27,6 @@ const MODELS: Record<string, Model> = {
   SIMPLE_RADIAL_FISHEYE: { focals: 1, lens: [0], fisheye: true },
   RADIAL_FISHEYE: { focals: 1, lens: [0, 1], fisheye: true },
 };
-
-/** The lines that are neither empty nor comments. */
-export const linesOf = (text: string): string[] =>
-  text.split(/\r?\n/).filter((line) => line.trim() !== "" && !line.trim().startsWith("#"));
 
 export const isColmap = (text: string): boolean => LINE.test(linesOf(text.slice(0, 4096))[0] ?? "");
 

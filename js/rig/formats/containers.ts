@@ -87,6 +87,14 @@ const NAMED: Row[] = [
 /** Texts that are not calibrations, by their beginning. */
 const TEXTS: Row[] = [
   [
+    /^#\s*Rig calib list|^(?:#[^\n]*\n)*#\s*RIG_ID/,
+    "the rigs of COLMAP (rigs.txt), whose sensors have numbers alone; write the pose of the second camera as a 4x4 matrix, and take the cameras from cameras.txt",
+  ],
+  [
+    /^\s*(?:(?:Pinhole|RadTan|EquiDistant|KannalaBrandt|FOV|ATAN)\s+)?(?:[-\d.eE+]+\s+){4,8}[-\d.eE+]+\s*\n\s*\d+\s+\d+\s*\n\s*(?:crop|full|none|[-\d.eE+\s]{9,})\s*\n\s*\d+\s+\d+\s*$/i,
+    "a camera of DSO (camera.txt), whose numbers may be shares of the picture's size; write it as JSON with fx, fy, cx, cy in pixels, width, height, and distortion_model (equidistant or plumb_bob)",
+  ],
+  [
     /^(?:\s*#[^\n]*\n)*\s*(?:mtllib|usemtl|o\s|g\s|s\s|v\s|vn\s|vt\s)[^\n]*\n[\s\S]{0,4000}?^(?:v|vn|f)\s+[-\d.]/m,
     "a mesh in Wavefront's OBJ; render a depth map from it, or save an organised cloud",
   ],

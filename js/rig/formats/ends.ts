@@ -17,29 +17,71 @@ const TO_CAMERA = /\b(?:(?:world|w) ?(?:to|2) ?(?:camera|cam|c|view)|view matrix
 /** The frames of names such as "camera_to_world", "cameraPose" and "matrix_world". */
 export function worldFrames(name: string): Frames | undefined {
   const words = wordsOf(name).join(" ");
+  // "depth_pose_in_color" names both frames.
+  if (placedIn(plainName(name)) !== undefined) return undefined;
   if (TO_CAMERA.test(words)) return { from: "world", to: "camera" };
   if (OF_WORLD.test(words)) return { from: "camera", to: "world" };
   return undefined;
+}
+
+/** Words of names that say what an estimate is worth and where it comes from, not which frames it relates. */
+const NO_FRAME = [
+  "init|initial|guess|prior|coarse|rough|nominal|cad|default|factory|manual|auto|est|estimated?|estimation|opt",
+  "optimi[sz]ed|optimi[sz]ation|refined?|refinement|final|best|result|results|solution|solved|corrected|adjusted",
+  "updated|calib|calibrated|calibration|new|old|true|gt|groundtruth|fixed|mat|matrix|4x4|extrinsics?|transform",
+  "transformation|tf",
+].join("|");
+const AROUND = new RegExp(`^(?:(?:${NO_FRAME})[ _-]+)+|(?:[ _-]+(?:${NO_FRAME}))+$`, "gi");
+/** Names of frames. */
+const FRAME =
+  /^(?:cam|camera|colou?r|rgb|depth|ir|infra|infrared|tof|lidar|velo|velodyne|laser|livox|ouster|hesai|scanner|radar|imu|ins|gps|gnss|body|base|vehicle|ego|car|robot|hand|gripper|flange|ee|tool|world|map|odom|left|right|board|target|sensor)$/;
+const isFrame = (word: string): boolean => FRAME.test(word.toLowerCase().replace(/\d+$/, ""));
+
+/** A name without the words around its frames. */
+function plainName(name: string): string {
+  const bare = name.replace(AROUND, "");
+  return (bare === "" ? name : bare).replace(/[ -]/g, "_");
+}
+
+/** Whether a name is that of a first estimate, which another one of the same frames supersedes. */
+export const isFirstEstimate = (name: string): boolean =>
+  /(?<![a-z])(?:init|initial|guess|prior|coarse|rough|nominal|cad|default|factory|old)(?![a-z])/i.test(name);
+
+/** "camera_in_lidar", "camera_pose_wrt_lidar": where the first frame is in the second, which carries its points there. */
+function placedIn(bare: string): Frames | undefined {
+  const [, of = "", within = ""] =
+    /^(?:T_)?([a-z0-9]+)_(?:(?:pose|position|place|orientation|rotation|frame)_)?(?:in|wrt|relative_to|with_respect_to)_(?:the_)?([a-z0-9]+)(?:_frame)?$/i.exec(
+      bare,
+    ) ?? [];
+  return isFrame(of) && isFrame(within) ? { from: of, to: within } : undefined;
+}
+
+/** Whether a name mentions two frames, so that it states a direction that may not be the usual one. */
+export function mentionsTwo(name: string): boolean {
+  const frames = new Set(wordsOf(name.replace(/2(?=[a-z])/gi, " ")).filter(isFrame));
+  return frames.size > 1;
 }
 
 /** Frames from a name: "depth_to_color", "color_from_depth", "T_color_depth", "body_T_cam0". */
 export function named(name: string, frames: Frames): PoseNames {
   if (frames.from !== undefined || frames.to !== undefined) return { ...(name !== "" && { name }), ...frames };
   if (name === "") return {};
-  const bare = name.replace(/^(?:extrinsics?|transform)[ _]+/i, "").replace(/ /g, "_");
+  const bare = plainName(name);
+  const placed = placedIn(bare);
+  if (placed !== undefined) return { name, ...placed };
   const towards = /^(?:T_)?([a-z0-9]+)_?(?:_to_|2(?=[a-z]))_?([a-z0-9]+)$/i.exec(bare);
   const world = worldFrames(name);
   if (world !== undefined) return { name, ...world };
   if (towards) return { name, from: towards[1] ?? "", to: towards[2] ?? "" };
+  const letters = letteredFrames(bare);
+  if (letters !== undefined) return { name, ...letters };
   const backwards =
-    /^(?:T_)?([a-z0-9]+)_from_([a-z0-9]+)$/i.exec(name) ??
-    /^T_([a-z0-9]+)_([a-z0-9]+)$/i.exec(name) ??
-    /^([a-z][a-z0-9]*)_(?:T|SE3)_([a-z][a-z0-9]*)_?$/.exec(name);
+    /^(?:T_)?([a-z0-9]+)_from_([a-z0-9]+)$/i.exec(bare) ??
+    /^T_([a-z0-9]+)_([a-z0-9]+)$/i.exec(bare) ??
+    /^([a-z][a-z0-9]*)_(?:T|SE3)_([a-z][a-z0-9]*)_?$/.exec(bare);
   // Autoware's calibration toolkit writes the pose of the camera in the LiDAR's frame.
   if (name === "CameraExtrinsicMat") return { name, from: "camera", to: "lidar" };
-  if (backwards) return { name, from: backwards[2] ?? "", to: backwards[1] ?? "" };
-  const letters = letteredFrames(name);
-  return letters === undefined ? { name } : { name, ...letters };
+  return backwards ? { name, from: backwards[2] ?? "", to: backwards[1] ?? "" } : { name };
 }
 
 /** Whether a motion leads into the world or out of it, so that it does not relate two cameras. */

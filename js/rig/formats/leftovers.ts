@@ -4,14 +4,17 @@
  */
 import { type ReaderWarning, warning } from "../warnings.js";
 import { BROWN_NAMES, type RawCamera } from "./cameras.js";
+import { modelIn } from "./stated.js";
 import { isLens, member, wordsOf } from "./names.js";
-import { type Node, type Numbers, isNode, matrixOf, numberOf, textOf } from "./numbers.js";
+import { type Node, type Numbers, isNode, matrixOf, numberOf } from "./numbers.js";
 
 /** An object with those around it. */
 export interface Place {
   node: Node;
   parent: Place | undefined;
   depth: number;
+  /** It is a list. */
+  isList?: boolean;
 }
 
 /** A camera before it is checked, with its object. */
@@ -20,12 +23,11 @@ export interface FoundCamera {
   label: string;
   place: Place;
 }
-interface Lens {
+type Coefficient = Pick<RawCamera, "model" | "isLens" | "isByName" | "isFourRadial"> & { distortion: Numbers };
+interface Lens extends Coefficient {
   key: string;
   label: string;
   place: Place;
-  distortion: Numbers;
-  model: string | undefined;
 }
 interface Size {
   key: string;
@@ -41,13 +43,15 @@ const SHORTEST_SIDE = 32;
 const LISTS = ["coefficients", "coeffs", "coefs", "params", "parameters", "values", "data", "d", "k"];
 const NOT_OF_IMAGES = /\b(?:board|pattern|square|window|marker|grid|chessboard|tag|sensor|block|crop|roi)\b/;
 
-/** Coefficients that are members, by OpenCV's names and in its order; a fisheye has only k1 to k4. */
-export function coefficientsOf(node: Node, model: string | undefined): Numbers | undefined {
+/** Coefficients that are members, by OpenCV's names and in its order. */
+export function coefficientsOf(node: Node): Coefficient | undefined {
   const singles = BROWN_NAMES.map((key) => numberOf(member(node, key)));
   if (singles.every((value) => value === undefined)) return undefined;
-  const isFisheye = /fisheye|kannala|equi/i.test(model ?? "");
-  const used = isFisheye ? [0, 1, 4, 5].map((index) => singles[index]) : singles;
-  return used.map((value) => value ?? 0);
+  const isThere = singles
+    .map((value) => value !== undefined)
+    .map(Number)
+    .join("");
+  return { distortion: singles.map((value) => value ?? 0), isByName: true, isFourRadial: isThere === "11001100" };
 }
 
 /** Coefficients in two lists, radial and tangential. */
@@ -60,13 +64,15 @@ function radialOf(node: Node): Numbers | undefined {
 }
 
 /** The coefficients and the model of a lens; undefined where the value is not a lens. */
-function lensOf(value: unknown): Pick<Lens, "distortion" | "model"> | undefined {
-  const listed = matrixOf(value)?.values;
-  if (listed !== undefined) return listed.length > 1 ? { distortion: listed, model: undefined } : undefined;
+function lensOf(value: unknown): Coefficient | undefined {
+  const { values: listed, rows = 1 } = matrixOf(value) ?? {};
+  // Rows of several numbers are a matrix, such as "T_c_d".
+  if (listed !== undefined && rows > 1 && listed.length > rows) return undefined;
+  if (listed !== undefined) return listed.length > 1 ? { distortion: listed } : undefined;
   if (!isNode(value)) return undefined;
-  const model = textOf(member(value, "model", "type", "distortionmodel", "name"));
-  const distortion = coefficientsOf(value, model) ?? radialOf(value) ?? matrixOf(member(value, ...LISTS))?.values;
-  return distortion && { distortion, model };
+  const coefficients = coefficientsOf(value);
+  const distortion = coefficients?.distortion ?? radialOf(value) ?? matrixOf(member(value, ...LISTS))?.values;
+  return distortion && { ...coefficients, distortion, ...modelIn(value) };
 }
 
 /** Two numbers of a list or of a text, "640x480". */
@@ -185,8 +191,9 @@ export class Leftovers {
     const among = [alike, lens.label === "" ? below : [], this.#lenses.length === 1 ? cameras : []];
     const camera = among.find((some) => some.length === 1)?.[0];
     if (camera === undefined || camera.raw.distortion !== undefined) return false;
-    camera.raw.distortion = lens.distortion;
-    camera.raw.model = lens.model ?? camera.raw.model;
+    const { distortion, isByName, isFourRadial, isLens } = lens;
+    Object.assign(camera.raw, { distortion, isByName, isFourRadial });
+    if (lens.model !== undefined) Object.assign(camera.raw, { model: lens.model, isLens });
     return true;
   }
 

@@ -2,20 +2,21 @@
 import { badFile } from "../../errors.js";
 import type { NamedCamera, NamedPose } from "../types.js";
 import { type ReaderWarning, warning } from "../warnings.js";
-import { type Frames, type PoseNames, isOfWorld, named, worldFrames } from "./ends.js";
+import { type Frames, type PoseNames, isFirstEstimate, isOfWorld, mentionsTwo, named, worldFrames } from "./ends.js";
 import {
   type Attributes,
   type MotionName,
   angleOf,
   isLens,
   isNoMotion,
-  isTranslation,
   lengthOf,
   member,
   rotationName,
   translationOf,
-  wordsOf,
 } from "./names.js";
+import { PROJECTION, forColumns, isProjection } from "./blocks.js";
+import { checkLength } from "./lengths.js";
+import { TRANSFORM, isPoseLike } from "./pose-like.js";
 import { type Matrix, type Node, type Numbers, isNode, matrixOf, numberOf, transposed } from "./numbers.js";
 import {
   chained,
@@ -45,6 +46,7 @@ export interface Signs {
   hasImu: boolean;
   hasLidar: boolean;
   isARKit: boolean;
+  isR3Live: boolean;
 }
 export function signsOf(text: string): Signs {
   const first = /\bw[ ,]+x[ ,]+y[ ,]+z\b|wxyz/i.test(text);
@@ -53,9 +55,11 @@ export function signsOf(text: string): Signs {
     isRealSense: /realsense|\bppx\b|brown[ _]conrady|"coeffs"/i.test(text),
     order: first === last ? undefined : first ? "wxyz" : "xyzw",
     hasImu: /imu/i.test(text),
-    isARKit: /trackingState|\bAR(?:Kit|Frame|Camera)|cameraPoseARFrame|worldMappingStatus|"columns"\s*:\s*\[/i.test(
-      text,
-    ),
+    isR3Live: /r3live/i.test(text),
+    isARKit:
+      /trackingState|\bAR(?:Kit|Frame|Camera)|cameraPoseARFrame|worldMappingStatus|"imageResolution"|"columns"\s*:\s*\[/i.test(
+        text,
+      ),
     hasLidar: /lid(?:ar)?_|lidar|livox|velodyne/i.test(text),
   };
 }
@@ -66,12 +70,6 @@ const FEW = 4;
 const AGREES = { degrees: 0.02, metres: 1e-3 };
 /** How far the length of a quaternion in a list of seven numbers may be from 1. */
 const QUATERNION_TOLERANCE = 1e-2;
-/** Names of transforms. A matrix by another name has to be a motion by its numbers. */
-const TRANSFORM = /^T_|(?:_to_|_from_|2)[a-z]|transform|extrinsic|pose/i;
-/** Names of lists of poses, such as those of a calibration board. */
-const SERIES =
-  /^(?:rvecs|tvecs|rotations|translations|poses|extrinsics|transforms|rotation vectors|translation vectors)$/;
-
 const at = (values: Numbers, index: number): number => values[index] ?? NaN;
 
 /** The numbers of a list, a matrix, or an object with these members. */
@@ -99,6 +97,12 @@ export class Motions {
   /** Poses with rotations whose order of rows and columns was assumed. */
   readonly #open = new Map<NamedPose, "rows" | "columns">();
   readonly #unused: string[] = [];
+  /** Poses whose matrices were for row vectors. */
+  readonly #turned = new Set<NamedPose>();
+  /** Poses of a rig whose unit the file does not state. */
+  readonly #unitless: NamedPose[] = [];
+  /** The names of the objects around poses. */
+  readonly #parents = new Map<NamedPose, string>();
   /** Poses that lead into the world by the definition of a format. */
   readonly #defined = new Set<NamedPose>();
   readonly #signs: Signs;
@@ -112,6 +116,7 @@ export class Motions {
   /** Adds the motions of an object; with `isCamera` it has a camera, whose rotation and projection are those of rectification. */
   read(node: Node, parent: string, context: Context, isCamera: boolean): void {
     const used = new Set<string>();
+    const before = this.poses.length;
     for (const key of Object.keys(node)) {
       const name = rotationName(key);
       if (name !== undefined && this.#pair(node, key, name, parent, context)) {
@@ -122,9 +127,24 @@ export class Motions {
       if (this.#matrix(node, key, parent, context)) used.add(key);
     }
     this.#members(node, parent, context);
+    this.#dropRowVectors(before);
+    for (const pose of this.poses.slice(before)) this.#parents.set(pose, parent);
     const rectifies = isCamera || Object.keys(node).some((key) => isNoMotion(key) !== undefined);
     for (const key of Object.keys(node))
       if (!used.has(key) && isPoseLike(key, node[key], rectifies)) this.#unused.push(key);
+  }
+
+  /** Drops the rotations for row vectors beside a matrix for them, as in MATLAB's rigid3d, which has both. */
+  #dropRowVectors(first: number): void {
+    const all = this.poses.splice(first);
+    const isTwin = ({ pose }: NamedPose) =>
+      all.some((other) => {
+        const back = transposed(other.pose.rotation, 3);
+        return (
+          this.#turned.has(other) && back.every((value, index) => Math.abs(value - at(pose.rotation, index)) < 1e-6)
+        );
+      });
+    this.poses.push(...all.filter((pose) => this.#turned.has(pose) || !isTwin(pose)));
   }
 
   #add(found: NamedPose): NamedPose {
@@ -166,7 +186,10 @@ export class Motions {
 
   #motion(rotation: Numbers, translation: Numbers, names: PoseNames, unit: number | undefined): NamedPose {
     const metres = unit === undefined ? translation : translation.map((value) => value * unit);
-    return motion(rotation, metres, names, this.#warnings, unit === undefined && !isOfWorld(names));
+    const isOpen = unit === undefined && !isOfWorld(names);
+    const found = motion(rotation, metres, names, this.#warnings, isOpen);
+    if (isOpen) this.#unitless.push(found);
+    return found;
   }
 
   /** Adds the motion of a rotation and its translation; false where they are not one. */
@@ -180,7 +203,7 @@ export class Motions {
     if (/^[qp]$/i.test(key) && r.values.length !== 4) return false;
     if (/^p/i.test(other.key) && t.values.length !== 3) return false;
     if (t.values.length !== 3) throw badFile(`its ${other.key} has ${t.values.length} numbers, not three`);
-    const own = named(name.label.replace(/ /g, "_"), {});
+    const own = { ...named(name.label.replace(/ /g, "_"), {}), ...productFrames(key, other.key, this.#signs) };
     const around = context.from === undefined ? { ...context, ...worldFrames(other.key) } : context;
     const names = own.from === undefined ? named(name.label === "" ? parent : name.label, around) : own;
     const isNamedAsRealSense = key === "rotation" && other.key === "translation";
@@ -248,15 +271,22 @@ export class Motions {
       isFlat &&
       (isOpen3D ||
         (!isLastRow(matrix.values.slice(12)) && isLastRow([3, 7, 11, 15].map((index) => at(matrix.values, index)))));
-    const values = byColumns ? transposed(matrix.values, 4) : matrix.values;
+    if (isProjection(matrix.values)) {
+      this.#warnings.push(warning("pose-left-out", `"${key}" ${PROJECTION}.`, { name: key, isProjection: true }));
+      return true;
+    }
+    const values = byColumns
+      ? transposed(matrix.values, 4)
+      : forColumns(matrix.values, key, isOfWorld(names) ? [] : this.#warnings);
     if (!TRANSFORM.test(key) && kalibr(key, parent) === undefined && !isRotation(parted(values)[0])) return false;
     const metres =
       context.unit === undefined
         ? values
         : values.map((value, index) => (index % 4 === 3 && index < 12 ? value * (context.unit ?? 1) : value));
-    const found = this.#add(
-      motionOfMatrix(metres, names, this.#warnings, context.unit === undefined && !isOfWorld(names)),
-    );
+    const isUnitless = context.unit === undefined && !isOfWorld(names);
+    const found = this.#add(motionOfMatrix(metres, names, this.#warnings, isUnitless));
+    if (isUnitless) this.#unitless.push(found);
+    if (!byColumns && values !== matrix.values) this.#turned.add(found);
     if (isOpen3D) this.#defined.add(found);
     return true;
   }
@@ -295,7 +325,10 @@ export class Motions {
         if (pose.from === undefined && pose.to === undefined) Object.assign(pose, { from: "world", to: "camera" });
     for (const pose of this.#open.keys()) this.#checkOrder(pose);
     for (const [pose, order] of this.#open) this.#warnings.push(orderWarning(pose.name ?? "", order));
-    for (const pose of this.poses) this.#nameExtrinsic(pose);
+    for (const pose of this.poses) {
+      this.#nameExtrinsic(pose);
+      this.#checkDirection(pose);
+    }
     // ARKit's transforms are poses of the camera in the world.
     if (this.#signs.isARKit) this.placeInWorld(0);
     // All poses of the world lead into it, so that they are not mistaken for extrinsics.
@@ -312,8 +345,32 @@ export class Motions {
           { poses: ofWorld.length },
         ),
       );
+    for (const pose of this.#unitless) if (!isOfWorld(pose)) checkLength(pose, this.#warnings);
+    this.#rankEstimates();
     for (const key of [...new Set(this.#unused)].slice(0, FEW))
       this.#warnings.push(warning("pose-left-out", `"${key}" looks like a pose and was not used.`, { name: key }));
+  }
+
+  /** Of several poses between the same frames first estimates come last; each is called by the object around it, too. */
+  #rankEstimates(): void {
+    const calledOf = (pose: NamedPose) => `${this.#parents.get(pose) ?? ""} ${pose.name ?? ""}`.trim();
+    const hasOther = (pose: NamedPose) =>
+      this.poses.some((other) => other !== pose && other.from === pose.from && other.to === pose.to);
+    const several = this.poses.filter((pose) => pose.from !== undefined && !isOfWorld(pose) && hasOther(pose));
+    const names = new Map(several.map((pose) => [pose, calledOf(pose)]));
+    const alike = several.filter((pose) => several.some((other) => other !== pose && other.name === pose.name));
+    for (const pose of alike) pose.name = names.get(pose) ?? "";
+    const isFirst = (pose: NamedPose) => isFirstEstimate(names.get(pose) ?? "");
+    const [some, all] = [several.some(isFirst), several.every(isFirst)];
+    if (!some || all) return;
+    this.poses.sort((a, b) => Number(isFirst(a)) - Number(isFirst(b)));
+    const left = several.filter(isFirst).map(({ name = "" }) => `"${name}"`);
+    this.#warnings.push(
+      warning(
+        "pose-assumed",
+        `The file has several poses between the same frames; ${left.slice(0, FEW).join(", ")} ${left.length > 1 ? "are first estimates by their names and come" : "is a first estimate by its name and comes"} after the others.`,
+      ),
+    );
   }
 
   /** Makes poses of the camera in the world of those without frames, from this index on. */
@@ -334,6 +391,18 @@ export class Motions {
     const kept = this.poses.filter((pose) => !isReference(pose));
     for (const { name = "" } of this.poses.filter(isReference)) this.#unused.push(name);
     this.poses.splice(0, this.poses.length, ...kept);
+  }
+
+  /** Warns where a name mentions two frames and it is not understood which way the pose leads. */
+  #checkDirection({ name = "", from, to }: NamedPose): void {
+    if (from !== undefined || to !== undefined || !mentionsTwo(name)) return;
+    this.#warnings.push(
+      warning(
+        "pose-assumed",
+        `"${name}" names two frames, but not in a known way which one it leads to. It was taken to lead to the colour camera; name it depth_to_color, lidar_to_camera or the like.`,
+        { name },
+      ),
+    );
   }
 
   /** Determines rows or columns where the file has the inverse motion, too. */
@@ -359,6 +428,16 @@ export class Motions {
 const agrees = ({ rotation, translation }: NamedPose["pose"]): boolean =>
   degreesOf(rotation) < AGREES.degrees && Math.hypot(...translation) < AGREES.metres;
 
+/**
+ * The frames of rotations and translations whose names are a product's own: FAST-LIO has the LiDAR in the inertial unit, VINS and R3LIVE the
+ * camera.
+ */
+function productFrames(turn: string, shift: string, { isR3Live }: Signs): Frames {
+  if (turn === "extrinsic_R" && shift === "extrinsic_T") return { from: "lidar", to: "imu" };
+  if (turn === "extrinsicRotation" && shift === "extrinsicTranslation") return { from: "camera", to: "imu" };
+  return isR3Live && turn === "camera_ext_R" ? { from: "camera", to: "imu" } : {};
+}
+
 /** The frames of Kalibr's names, in which cn is the camera of the matrix and cnm1 the one before. */
 function kalibr(key: string, parent: string): PoseNames | undefined {
   const number = /^cam(\d+)$/.exec(parent)?.[1];
@@ -367,24 +446,4 @@ function kalibr(key: string, parent: string): PoseNames | undefined {
   if (key === "T_cn_cnm1") return { name: `${parent} from ${before}`, from: before, to: parent };
   if (key === "T_cam_imu") return { name: `${parent} from imu`, from: "imu", to: parent };
   return undefined;
-}
-
-/** Whether a member that was not read looks like a pose. */
-function isPoseLike(key: string, value: unknown, rectifies: boolean): boolean {
-  const words = wordsOf(key).join(" ");
-  const isMatrix = (each: unknown) => [12, 16].includes(matrixOf(each)?.values.length ?? 0);
-  if (SERIES.test(words))
-    return Array.isArray(value) && value.length > 0 && !value.every(isMatrix) && !value.some(isNode);
-  if (/rect|essential|fundamental|homography/.test(words) || isNoMotion(key) !== undefined) return false;
-  const values = matrixOf(value)?.values;
-  if (values === undefined) return false;
-  if (values.length === 16 || values.length === 12) return isRotation(parted(values)[0]);
-  if ((values.length === 6 || values.length === 7) && TRANSFORM.test(key)) return true;
-  // An identity in a camera is that of rectification, whatever its name.
-  const isIdentity = values.length === 9 && values.every((each, index) => each === (index % 4 === 0 ? 1 : 0));
-  if (rectifies && isIdentity) return false;
-  if (rotationName(key) !== undefined && !/^[qr]\d*$/i.test(key))
-    return values.length === 9 ? isRotation(values) : values.length === 4 || values.length === 3;
-  if (rotationName(key) !== undefined) return !rectifies && values.length === 9 && isRotation(values);
-  return values.length === 3 && isTranslation(key) && !/^[pt]\d*$/i.test(key);
 }

@@ -26,8 +26,8 @@ export function readMrcal(root: Node): Findings {
     ...{ focal: values.slice(0, 2), centre: values.slice(2, 4), distortion: values.slice(4) },
     ...{ width: size?.[0], height: size?.[1] },
   });
-  // A rotation vector and a translation in metres that carry points of the reference frame into the camera.
-  const six = flat(root.extrinsics, 6);
+  // A rotation vector and a translation in metres that carry points of the reference frame into the camera; "extrinsics" until mrcal 2.5.
+  const six = flat(root.rt_cam_ref ?? root.extrinsics, 6);
   if (six)
     found.pose(ofVector(six.slice(0, 3)), six.slice(3), {
       name: "camera from reference",

@@ -149,6 +149,7 @@ export interface Attributes {
 const LENGTHS: Record<string, number> = {
   ...{ mm: 1e-3, millimeter: 1e-3, millimeters: 1e-3, millimetre: 1e-3, millimetres: 1e-3 },
   ...{ cm: 1e-2, centimeter: 1e-2, centimeters: 1e-2, centimetre: 1e-2, centimetres: 1e-2 },
+  ...{ dm: 0.1, decimeter: 0.1, decimeters: 0.1, decimetre: 0.1, decimetres: 0.1 },
   ...{ meter: 1, meters: 1, metre: 1, metres: 1, inch: 0.0254, inches: 0.0254 },
 };
 const ATTRIBUTES: Record<string, Attributes> = {
@@ -196,9 +197,14 @@ const LETTERS: Record<string, string> = {
   ...{ c: "camera", l: "lidar", i: "imu", b: "body", w: "world", v: "vehicle", d: "depth", e: "ego", r: "radar" },
 };
 
+/** The cameras of a stereo pair: ORB-SLAM's "Tlr" carries points of the right camera into the left one. */
+const SIDES: Record<string, string> = { l: "left", r: "right" };
+
 /** The frames of "Rcl", "T_ic" and the like. */
 export function letteredFrames(name: string): { from: string; to: string } | undefined {
   const [, , to = "", from = "", above = "", below = ""] = LETTERED.exec(name) ?? [];
+  const pair = [SIDES[to || above.toLowerCase()], SIDES[from || below.toLowerCase()]];
+  if (pair[0] !== undefined && pair[1] !== undefined && pair[0] !== pair[1]) return { from: pair[1], to: pair[0] };
   const [target, source] = [LETTERS[to] ?? CAPITALS[above], LETTERS[from] ?? CAPITALS[below]];
   return target !== undefined && source !== undefined && target !== source ? { from: source, to: target } : undefined;
 }

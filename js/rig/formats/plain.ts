@@ -1,6 +1,9 @@
 /** Files of only numbers: K.txt, matrices of motions, and trajectories as those of TUM and Redwood. */
 import { badFile } from "../../errors.js";
+import type { NamedPose } from "../types.js";
 import { cameraOf, ofMatrix } from "./cameras.js";
+import { PROJECTION, forColumns, isProjection } from "./blocks.js";
+import { checkLength, unitInComments } from "./lengths.js";
 import { type Numbers, numberOf } from "./numbers.js";
 import { motion, motionOfMatrix, parted } from "./poses.js";
 import type { Calibration } from "./tree.js";
@@ -48,7 +51,7 @@ const camera = (k: Numbers, size: Numbers, distortion: Numbers = []): Found => {
 function nine(values: Numbers, size: Numbers): Found {
   if (near(values[3], 0) && near(values[6], 0) && near(values[7], 0) && near(values[8], 1)) return camera(values, size);
   if (near(values[1], 0) && near(values[2], 0) && near(values[5], 0) && near(values[8], 1)) {
-    throw badFile("its matrix of intrinsics is transposed; it must be fx 0 cx / 0 fy cy / 0 0 1");
+    throw badFile("its matrix of intrinsics is transposed: transpose it, because fx 0 cx / 0 fy cy / 0 0 1 are needed");
   }
   throw badFile(
     "its nine numbers are not a matrix of intrinsics (fx 0 cx / 0 fy cy / 0 0 1), and a rotation needs its translation",
@@ -110,6 +113,17 @@ function matrices(rows: Numbers[]): Found {
   return { cameras: [], poses, warnings: distinct(warnings, 4), format: "a trajectory" };
 }
 
+/** The motion of a file without names, in the unit of its comments. */
+function aloneOf(read: Numbers, text: string, warnings: ReaderWarning[]): NamedPose {
+  const unit = unitInComments(text);
+  if (isProjection(read)) throw badFile(`its matrix ${PROJECTION}`);
+  const values = forColumns(read, "", warnings);
+  const metres = values.map((value, at) => (at % 4 === 3 && at < 12 ? value * (unit ?? 1) : value));
+  const pose = motionOfMatrix(metres, {}, warnings, unit === undefined);
+  if (unit === undefined) checkLength(pose, warnings);
+  return pose;
+}
+
 /** The camera or the poses of a text of numbers; undefined where it has words. */
 export function readNumbers(text: string): Found | undefined {
   const rows = rowsOf(text);
@@ -132,7 +146,7 @@ export function readNumbers(text: string): Found | undefined {
   }
   if (values.length === 12 || values.length === 16) {
     const warnings: ReaderWarning[] = [];
-    return { cameras: [], poses: [motionOfMatrix(values, {}, warnings)], warnings, format: "a matrix of a transform" };
+    return { cameras: [], poses: [aloneOf(values, text, warnings)], warnings, format: "a matrix of a transform" };
   }
   const [fx = 0, fy = 0, cx = 0, cy = 0, ...lens] = values;
   if (rows.length === 1 && [4, 9, 12].includes(values.length) && fx > 10 && fy > 10)

@@ -18,6 +18,7 @@ import { isBop, readBop } from "./bop.js";
 import { isDepthai, readDepthai } from "./depthai.js";
 import { isHandEye, readHandEye } from "./easy-handeye.js";
 import type { Findings } from "./findings.js";
+import { isKalibrResults, readKalibrResults } from "./kalibr-results.js";
 import { isKinect2, readKinect2 } from "./kinect-v2.js";
 import { isKitti, readKitti } from "./kitti.js";
 import { isBouguet, isMatlab, readBouguet, readMatlab } from "./matlab.js";
@@ -48,6 +49,7 @@ const TEXTS: Product<string>[] = [
   ["a result of Bouguet's toolbox", isBouguet, readBouguet],
   ["a calibration of Waymo's dataset", isWaymoText, readWaymoText],
   ["a table of Argoverse 2", isArgoverse2Table, readArgoverse2Table],
+  ["Kalibr's results", isKalibrResults, readKalibrResults],
   ["a calibration of KITTI", isKitti, readKitti],
   ["Middlebury's calibration of a stereo pair", isMiddlebury, readMiddlebury],
 ];
@@ -67,7 +69,7 @@ const TREES: Product<Node>[] = [
   ["a result of easy_handeye", isHandEye, readHandEye],
   ["a transforms.json of nerfstudio", isNerf, readNerf],
   ["the metadata of Record3D", isRecord3d, readRecord3d],
-  ["a camera of the BOP benchmark", isBop, readBop],
+  ["a camera with a depth_scale, as of BOP", isBop, readBop],
   ["a sensor kit's calibration of Autoware", isAutoware, readAutoware],
 ];
 

@@ -4,12 +4,14 @@
  * A walk over all objects recognises them by the names and shapes of their members (names.ts). Its depth and its number of objects are
  * bounded, which also bounds the aliases of YAML. A warning names each lens, size or pose that was not used.
  */
-import { badFile } from "../../errors.js";
+import { BimodalError, badFile } from "../../errors.js";
 import type { NamedCamera, NamedPose } from "../types.js";
 import { type ReaderWarning, warning } from "../warnings.js";
 import { type RawCamera, cameraOf, ofMatrix } from "./cameras.js";
 import { grouped, withLists } from "./groups.js";
 import { type FoundCamera, Leftovers, type Place, coefficientsOf } from "./leftovers.js";
+import { modelIn, sharedModelIn } from "./stated.js";
+import { unitInComments } from "./lengths.js";
 import { MOST_FOUND } from "./limits.js";
 import { type Context, Motions, contextOf, signsOf } from "./motions.js";
 import { isIntrinsics, labelled, lensNames, member, wordsOf } from "./names.js";
@@ -17,6 +19,7 @@ import { type Matrix, type Node, type Numbers, isNode, matrixOf, numberOf, textO
 import { orbbecContext } from "./orbbec.js";
 import { chained, inverseOf } from "./poses.js";
 import { byTopics, ofOwnCameras } from "./sensors.js";
+import { ofRegion } from "./region.js";
 
 export interface Calibration {
   cameras: NamedCamera[];
@@ -45,9 +48,6 @@ function intrinsics(matrix: Matrix | undefined): Numbers | undefined {
   return isTriangle(turned) ? turned : undefined;
 }
 
-/** Names of lens models in a member "lens", which otherwise holds the product's name. */
-const MODEL =
-  /brown|rad|fish|equi|kannala|pinhole|opencv|plumb|division|fov|omni|thin|tilt|standard|ftheta|perspective/i;
 /** A list of at least so many poses is a trajectory. */
 const SERIES = 3;
 /** Names of focal lengths and of principal points in the files of different programs. */
@@ -62,12 +62,18 @@ const SHORTEST = 10;
 /** Labels of cameras that are derived from another one, for rectified or undistorted images. */
 const DERIVED = /^(?:new|optimal|rectified|undistorted|original)$/;
 
+/** Frames that carry several cameras, and the cameras that are numbered there. */
+const BODY = /^(?:imu\d*|body|base|rig)$/i;
+const CAMERA = /^cam(\d+)$/;
+
 class Search {
   readonly cameras: NamedCamera[] = [];
   readonly warnings: ReaderWarning[] = [];
   readonly motions: Motions;
   readonly #found: FoundCamera[] = [];
   readonly #leftovers = new Leftovers();
+  /** Lens models that objects without cameras state. */
+  readonly #lenses: { place: Place; model: string }[] = [];
   /** Poses that are the only one in the object of a single camera. */
   readonly #own = new Map<NamedPose, string | undefined>();
   /** Topics of cameras by their names, where a file has both. */
@@ -89,7 +95,7 @@ class Search {
     if (depth > MOST_DEPTH) throw badFile(`it is nested deeper than ${MOST_DEPTH}`);
     if (this.#found.length + this.motions.poses.length > MOST_FOUND)
       throw badFile(`it holds more than ${MOST_FOUND} cameras and poses`);
-    if (Array.isArray(value)) return this.#list(value, key, name, context, { node: {}, parent, depth });
+    if (Array.isArray(value)) return this.#list(value, key, name, context, { node: {}, parent, depth, isList: true });
     const called = nameIn(value as Node) ?? name;
     const keys = Object.keys(value);
     this.#members += keys.length;
@@ -125,6 +131,8 @@ class Search {
     const { node } = place;
     const before = this.#found.length;
     const used = this.#cameraOf(place, key, name);
+    const shared = this.#found.length > before ? undefined : sharedModelIn(node);
+    if (shared !== undefined) this.#lenses.push({ place, model: shared });
     this.#leftovers.collect(place, used);
     const [first, second, ...more] = this.#found.slice(before).map(({ raw }) => raw.name);
     // OpenCV's stereo calibration: R and T carry points of camera 1 into camera 2. Other names have no such order.
@@ -176,32 +184,59 @@ class Search {
   }
 
   /** Distortion, model and size of the camera with this label. */
-  #rest(node: Node, label: string, used: Set<string>): Pick<RawCamera, "distortion" | "model" | "width" | "height"> {
+  #rest(node: Node, label: string, used: Set<string>): Omit<RawCamera, "name" | "focal" | "centre" | "skew"> {
     const lens = labelled(node, lensNames, label);
     const written = lens?.value ?? member(node, "distk1k2p1p2k3");
-    const isFisheye = numberOf(member(node, "fisheyemodel")) === 1 || member(node, "fisheye") === true;
-    const lensName = textOf(member(node, "lens"));
-    const own =
-      textOf(member(node, "distortionmodel", "distortiontype", "lensmodel")) ??
-      (MODEL.test(lensName ?? "") ? lensName : undefined) ??
-      textOf(member(node, "model"));
-    const model = isFisheye ? "fisheye" : (own ?? textOf(member(node, "cameramodel", "cammodel")));
+    const model = modelIn(node);
     const listed = isNode(written) && written.data === undefined ? undefined : matrixOf(written)?.values;
     const size = sizeOf(node, label);
     if (listed !== undefined) {
       for (const key of Object.keys(node)) if (node[key] === written) used.add(key);
-      return { distortion: listed, model, ...size };
+      return { distortion: listed, ...model, ...size };
     }
     if (written !== undefined && !isNode(written) && !isEmpty(written) && typeof written !== "string")
       throw badFile("its distortion contains something other than numbers");
     const isNone = written !== undefined && isEmpty(written);
-    return { distortion: coefficientsOf(node, model) ?? (isNone ? [] : undefined), model, ...size };
+    return { distortion: isNone ? [] : undefined, ...coefficientsOf(node), ...model, ...size };
+  }
+
+  /** The lens model that the objects around a camera state, or else the only one that the file does. */
+  #sharedModel(place: Place): string | undefined {
+    for (let each: Place | undefined = place; each !== undefined; each = each.parent)
+      for (const { place: at, model } of this.#lenses) if (at.node === each.node) return model;
+    const [only, ...more] = new Set(this.#lenses.map(({ model }) => model));
+    return more.length === 0 ? only : undefined;
+  }
+
+  /** Adds the cameras; one that cannot be read is left out with a warning where the file holds something else. */
+  #check(): void {
+    let reason: BimodalError | undefined;
+    // Cameras without names in a list are numbered.
+    const isListed = ({ place, raw }: FoundCamera) => raw.name !== undefined && place.parent?.isList === true;
+    const listed = this.#found.filter(isListed);
+    const alike = listed.filter(({ raw }) => listed.some((other) => other.raw !== raw && other.raw.name === raw.name));
+    const called = alike.map(({ raw, place }) => ({
+      raw,
+      own: nameIn(place.node) ?? member(place.node, "name", "cameraname"),
+    }));
+    for (const [index, { raw, own }] of called.entries()) if (own === undefined) raw.name = `${raw.name} ${index}`;
+    for (const { raw, place } of this.#found)
+      try {
+        this.cameras.push(cameraOf(ofRegion(raw, place.node), this.warnings));
+      } catch (error) {
+        if (!(error instanceof BimodalError)) throw error;
+        reason ??= error;
+        const of = raw.name === undefined ? "A camera" : `The camera "${raw.name}"`;
+        this.warnings.push(warning("camera-left-out", `${of} was left out: ${error.message}.`));
+      }
+    if (reason !== undefined && this.cameras.length + this.motions.poses.length === 0) throw reason;
   }
 
   /** Checks cameras and poses once the whole file has been read. */
   finish(): void {
     this.#leftovers.assign(this.#found, this.warnings);
-    for (const { raw } of this.#found) this.cameras.push(cameraOf(raw, this.warnings));
+    for (const { raw, place } of this.#found) raw.model ??= this.#sharedModel(place);
+    this.#check();
     this.motions.finish(this.cameras, [...this.#own.keys()]);
     chain(this.motions.poses);
     ofOwnCameras(this.#own);
@@ -209,18 +244,19 @@ class Search {
   }
 }
 
-/** Adds the pose from each camera to the next one, where both are related to the same inertial unit. */
+/** Adds the pose from each camera to the next one, where both are related to the same inertial unit or body, in whichever direction. */
 function chain(poses: NamedPose[]): void {
-  for (const { from, to, pose } of [...poses]) {
-    const next = /^cam(\d+)$/.exec(to ?? "")?.[1];
-    if (from !== "imu" || next === undefined) continue;
-    const before = poses.find((other) => other.from === "imu" && other.to === `cam${Number(next) - 1}`);
-    if (before?.to === undefined || to === undefined) continue;
-    if (poses.some((other) => other.from === before.to && other.to === to)) continue;
-    poses.unshift({
-      ...{ name: `${to} from ${before.to}`, from: before.to, to },
-      pose: chained(pose, inverseOf(before.pose)),
-    });
+  /** The poses of cameras in the frame of the body, by the camera's name. */
+  const places = new Map<string, { body: string; pose: NamedPose["pose"] }>();
+  for (const { from = "", to = "", pose } of poses) {
+    if (BODY.test(from) && CAMERA.test(to)) places.set(to, { body: from, pose: inverseOf(pose) });
+    if (BODY.test(to) && CAMERA.test(from)) places.set(from, { body: to, pose });
+  }
+  for (const [to, place] of places) {
+    const from = `cam${Number(CAMERA.exec(to)?.[1]) - 1}`;
+    const before = places.get(from);
+    if (before?.body !== place.body || poses.some((other) => other.from === from && other.to === to)) continue;
+    poses.unshift({ ...{ name: `${to} from ${from}`, from, to }, pose: chained(inverseOf(place.pose), before.pose) });
   }
 }
 
@@ -252,7 +288,10 @@ function framesOf(node: Node): Context | undefined {
   return undefined;
 }
 
-type Intrinsics = Pick<RawCamera, "focal" | "centre" | "model" | "distortion" | "skew">;
+type Intrinsics = Pick<RawCamera, "focal" | "centre" | "model" | "distortion" | "isByName" | "skew">;
+
+const cameraNamed = (name: string | undefined): string =>
+  name === undefined || name === "" ? "its camera" : `its camera "${name}"`;
 
 /** The members fx, fy, cx and cy, by any of their names. */
 function membersOf(node: Node, name: string | undefined): Pick<RawCamera, "focal" | "centre"> | undefined {
@@ -264,8 +303,7 @@ function membersOf(node: Node, name: string | undefined): Pick<RawCamera, "focal
   }
   if (fx === undefined || cx === undefined) return undefined;
   const [fy, cy] = [numberOf(member(node, ...FY)), numberOf(member(node, ...CY))];
-  if (fy === undefined || cy === undefined)
-    throw badFile(`its camera${name === undefined ? "" : ` "${name}"`} has fx and cx, but not fy and cy`);
+  if (fy === undefined || cy === undefined) throw badFile(`${cameraNamed(name)} has fx and cx, but not fy and cy`);
   return { focal: [fx, fy], centre: [cx, cy] };
 }
 
@@ -275,7 +313,7 @@ function kannala(node: Node): Intrinsics | undefined {
   const [mu = NaN, mv = NaN, u0 = NaN, v0 = NaN] = numbers(["mu", "mv", "u0", "v0"]);
   const lens = numbers(["k2", "k3", "k4", "k5"]);
   if ([mu, mv, u0, v0, ...lens].some(Number.isNaN)) return undefined;
-  return { focal: [mu, mv], centre: [u0, v0], model: "fisheye", distortion: lens };
+  return { focal: [mu, mv], centre: [u0, v0], model: "fisheye", distortion: lens, isByName: false };
 }
 
 /** The members focal_length and principal_point of two numbers each, as in OKVIS. */
@@ -311,11 +349,8 @@ function fourOf(node: Node, name: string | undefined): Intrinsics | undefined {
   if (four === undefined) return undefined;
   if (kalibr !== undefined && four.length !== 9) {
     if (kalibr !== "pinhole")
-      throw badFile(
-        `its camera "${name ?? ""}" has Kalibr's model "${kalibr.slice(0, 40)}"; only pinhole is supported`,
-      );
-    if (four.length !== 4)
-      throw badFile(`its camera "${name ?? ""}" has ${four.length} intrinsics; fu fv pu pv are needed`);
+      throw badFile(`${cameraNamed(name)} has Kalibr's model "${kalibr.slice(0, 40)}"; only pinhole is supported`);
+    if (four.length !== 4) throw badFile(`${cameraNamed(name)} has ${four.length} intrinsics; fu fv pu pv are needed`);
   } else {
     const [fx = 0, fy = 0] = four;
     const isSquare = fx > SHORTEST && fy > SHORTEST && Math.abs(fx / fy - 1) < SQUARE;
@@ -370,7 +405,8 @@ function sizeOf(node: Node, label: string): { width?: number; height?: number } 
 /** `text` is that of the file; its comments and product names are used as well. */
 export function searchTree(value: unknown, text = ""): Calibration {
   const search = new Search(text);
-  search.walk(value, "", "", {}, undefined);
+  const unit = unitInComments(text);
+  search.walk(value, "", "", unit === undefined ? {} : { unit }, undefined);
   search.finish();
   const { cameras, warnings, models, motions } = search;
   const [model] = models;
@@ -378,5 +414,8 @@ export function searchTree(value: unknown, text = ""): Calibration {
     throw badFile(
       `its camera has the model "${model.slice(0, 40)}" and no intrinsics that can be read; pinhole cameras with Brown's or Kannala-Brandt's lenses are supported`,
     );
+  const projection = warnings.find(({ isProjection }) => isProjection === true);
+  if (cameras.length + motions.poses.length === 0 && projection !== undefined)
+    throw badFile(`its ${projection.message.replace(/\.$/, "")}`);
   return { cameras, poses: motions.poses, warnings };
 }

@@ -4,6 +4,7 @@
  * are left out with a warning.
  */
 import { badFile } from "../../errors.js";
+import type { NamedPose } from "../types.js";
 import { evaluate } from "./expression.js";
 import { Findings } from "./findings.js";
 import { wayBetween } from "./frames.js";
@@ -13,6 +14,7 @@ import type { Element } from "./xml.js";
 
 const MOST_JOINTS = 5000;
 const MOST_NESTED = 10;
+const MOVING = /^(?:revolute|continuous|prismatic|planar|floating)$/;
 
 function* all(element: Element): Generator<Element> {
   for (const child of element.children) {
@@ -56,6 +58,8 @@ export function readUrdf(root: Element): Findings {
   const found = new Findings();
   const valueOf = properties(root);
   const missing: string[] = [];
+  /** Joints that move, by their child links. */
+  const moving = new Map<string, string>();
   let count = 0;
   for (const joint of all(root)) {
     if (joint.tag !== "joint" || !joint.children.some(({ tag }) => tag === "parent")) continue;
@@ -67,6 +71,7 @@ export function readUrdf(root: Element): Findings {
     const hidden = joint.children.some(({ tag }) => tag.includes("insert_block")) && origin === undefined;
     const [xyz, rpy] = [triple(origin?.attributes.xyz, valueOf), triple(origin?.attributes.rpy, valueOf)];
     const name = joint.attributes.name ?? `${from} in ${to}`;
+    if (MOVING.test(joint.attributes.type ?? "")) moving.set(from, name);
     if (hidden || xyz === undefined || rpy === undefined) missing.push(name);
     else found.pose(ofYawPitchRoll(rpy.slice().reverse()), xyz, { name, from, to });
   }
@@ -81,8 +86,32 @@ export function readUrdf(root: Element): Findings {
         ? "it is a robot description (URDF), and the origins of its joints depend on a macro's parameters; expand it by xacro first"
         : "it is a robot description (URDF) without a joint",
     );
+  const links = found.poses.slice();
   toCameras(found);
+  const joints = betweenOf(links, found.poses[0]).flatMap((link) => moving.get(link) ?? []);
+  if (joints.length > 0)
+    found.warn(
+      "pose-assumed",
+      `The joint ${joints
+        .slice(0, 4)
+        .map((name) => `"${name.slice(0, 60)}"`)
+        .join(
+          ", ",
+        )} between the sensors moves, and was taken at its zero, because the file does not give its position. Give the pose at the position of the pictures.`,
+    );
   return found;
+}
+
+/** The child links of the joints between the two frames of a pose. */
+function betweenOf(links: readonly NamedPose[], pose: NamedPose | undefined): string[] {
+  const parents = new Map(links.map(({ from = "", to = "" }) => [from, to]));
+  const upwards = (link = "") => {
+    const way: string[] = [];
+    for (let at = link; parents.has(at) && !way.includes(at); at = parents.get(at) ?? "") way.push(at);
+    return way;
+  };
+  const [one, other] = [upwards(pose?.from), upwards(pose?.to)];
+  return [...one.filter((link) => !other.includes(link)), ...other.filter((link) => !one.includes(link))];
 }
 
 /** Puts the pose between the cameras first. */

@@ -197,7 +197,7 @@ const INDOOR: readonly Row[] = [
     product: "BOP",
     file: "`camera.json`, `scene_camera.json`",
     modules: ["bop"],
-    reader: "a camera of the BOP benchmark",
+    reader: "a camera with a depth_scale, as of BOP",
     sample: "bop",
     reads: "cameras",
     warnings: [],

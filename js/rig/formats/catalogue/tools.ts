@@ -16,6 +16,20 @@ const CALIBRATORS: readonly Row[] = [
     exported: "`kalibr_calibrate_cameras` writes it beside the bag",
   },
   {
+    product: "Kalibr",
+    file: "`*-results-cam.txt`",
+    modules: ["kalibr-results"],
+    reader: "Kalibr's results",
+    sample: "kalibr-results",
+    reads: "cameras",
+    warnings: [],
+    taken:
+      "Pinhole cameras with their lenses, and the baselines, whose quaternions are in Kalibr's own (JPL) convention.",
+    guessed:
+      "The camera of the depth maps, from the topics. Cameras of other models are left out, and a message names them.",
+    exported: "`kalibr_calibrate_cameras` writes it beside the bag",
+  },
+  {
     product: "EuRoC",
     file: "`sensor.yaml`",
     modules: [],
