@@ -46,8 +46,6 @@ function firstScripts() {
 }
 
 const CHECK_WASM = /bimodal_stereo_check_bg/;
-/** Kalibr's name of its extrinsics, which only occurs in scripts that read or write a rig's files. */
-const RIG_FILES = /T_cn_cnm1/;
 /** The rendered example, which loads on demand. */
 const EXAMPLE = /\/(?:rigs-|bimodal_stereo_rigs_bg)/;
 /** The writer of the report, which loads when somebody saves one. */
@@ -65,10 +63,13 @@ function checkFiles() {
   const scripts = readdirSync(inRoot(PAGE, "assets"))
     .filter((name) => name.endsWith(".js"))
     .map((name) => `assets/${name}`);
-  const knows = (path, word) => word.test(readFileSync(inRoot(PAGE, path), "utf8"));
-  for (const word of [CHECK_WASM, RIG_FILES])
-    if (!scripts.some((path) => knows(path, word))) throw new Failure(`No script of the page names ${word.source}.`);
-  const first = scripts.filter((path) => knows(path, CHECK_WASM) || knows(path, RIG_FILES));
+  const textOf = (path) => readFileSync(inRoot(PAGE, path), "utf8");
+  const runners = scripts.filter((path) => CHECK_WASM.test(textOf(path)));
+  // The worker that reads the files loads the check on demand.
+  const loads = (path) => [...textOf(path).matchAll(ON_DEMAND)].some(([, name]) => runners.includes(`assets/${name}`));
+  const workers = scripts.filter(loads);
+  if (workers.length === 0) throw new Failure(`No script of the page loads one that names ${CHECK_WASM.source}.`);
+  const first = [...runners, ...workers];
   const all = reached(first, [AT_ONCE, ON_DEMAND], (path) => OTHERS.test(path));
   const example = all.filter((path) => EXAMPLE.test(path));
   const writers = scripts.filter((path) => REPORT.test(path));
