@@ -188,9 +188,9 @@ def put(*path):
         (lambda _: [1], "header"),
         (lambda _: 5, "header"),
         # A run with other results, and ends that are never reached.
-        (lambda header: put("found", header["found"] ^ 1)(header), "other numbers"),
-        (put("reached", "iteration", 10**9), "other numbers"),
-        (put("reached", "slices", 10**9), "other numbers"),
+        (lambda header: put("found", header["found"] ^ 1)(header), "different digits"),
+        (put("reached", "iteration", 10**9), "different digits"),
+        (put("reached", "slices", 10**9), "different digits"),
     ],
 )
 def test_a_header_that_says_something_else_is_refused_though_its_checksum_is_right(state, change, words):
@@ -220,5 +220,5 @@ def test_neither_package_takes_what_the_other_has_saved(state, tmp_path):
         writeFileSync("javascript", new Estimator(image, depth).save());
         try { Estimator.restore(new Uint8Array(readFileSync("python"))); } catch ({ code, message }) { console.log(code, message); }
     """
-    assert "state state: is of format 129; this version reads format 1" in by_node(script, tmp_path)
+    assert "state state: has format 129; this version reads format 1" in by_node(script, tmp_path)
     bad((tmp_path / "javascript").read_bytes(), "saved by the JavaScript package .format 1.*run the pair again")
