@@ -38,7 +38,7 @@ fn a_folder_is_one_line_each_and_a_broken_pair_costs_itself() {
     fs::remove_file(at("depth/0004.npy")).unwrap();
     let told = run_folder(folder.path().to_str().unwrap(), &made, &["--out", out.to_str().unwrap()]);
     let lone: Vec<_> =
-        ["0003", "0004"].map(|name| told.err.contains(&format!("{name}.png: no other file's name"))).into();
+        ["0003", "0004"].map(|name| told.err.contains(&format!("{name}.png: its name matches no other file"))).into();
     let [warnings, notes] =
         ["warning: ", "note: "].map(|kind| told.err.lines().filter(|line| line.starts_with(kind)).count());
     assert_eq!((told.code, lone, warnings, notes), (0, vec![true; 2], 2, 2), "{}", told.err);
