@@ -147,6 +147,7 @@ function checkedReport(report: RunReport): Checked {
   like([{}], pictures, "report.pictures");
   pictures.forEach(({ title }, index) => text(title, `report.pictures[${index}].title`));
   like([{}], inputs, "report.inputs");
+  inputs.forEach(({ says = "" }, index) => text(says, `report.inputs[${index}].says`));
   return { ...report, pose: found, truth: known };
 }
 

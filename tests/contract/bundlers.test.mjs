@@ -203,7 +203,7 @@ describe("a .wasm that was left behind is an error that names the cure", () => {
     return join(project, `left-${format}`);
   };
   const CURE =
-    /^BimodalError init wasm init: the \.wasm could not be loaded \((.+?)\. Bundlers .* Copy the files beside the bundle.* or pass their address to init\(url\)/;
+    /^BimodalError init wasm init: the \.wasm could not be loaded \((.+?)\. Bundlers .* Copy them next to the bundle.* or pass their address to init\(url\)/;
   const said = async (address) =>
     CURE.exec((await visit(address)).lines.find((text) => text.startsWith("BimodalError")))?.[1];
 

@@ -79,7 +79,7 @@ describe("a camera of many sizes", () => {
     assert.deepEqual(codes(found), ["camera-size"]);
     assert.match(
       found.warnings.find(({ code }) => code === "camera-size").message,
-      /192x144 .* 32x24: they were scaled/,
+      /192x144 .* 32x24: the intrinsics were scaled/,
     );
   });
 
@@ -139,7 +139,7 @@ describe("a camera of many sizes", () => {
       "depth.json": camera(50, 64, 48),
     });
     assert.deepEqual(codes(found), ["cameras-by-order"]);
-    assert.match(found.warnings.at(-1).message, /colour images; of a_rgb \(fx 60\.0\) and b_rgb \(fx 70\.0\)/);
+    assert.match(found.warnings.at(-1).message, /colour images; the first of a_rgb \(fx 60\.0\) and b_rgb \(fx 70\.0\)/);
   });
 });
 

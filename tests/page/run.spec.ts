@@ -217,7 +217,7 @@ test("a run that misses the pose does not look like a success", async ({ lab, pa
   await lab.reaches("max-iterations");
   await expect(page.locator("#status")).toHaveText(/^stopped, \d+\.\d+° off$/);
   await expect(page.locator("#status")).not.toHaveAttribute("data-tone", "good");
-  await expect(page.locator("#verdict")).toContainText("The cap of 2 iterations was reached.");
+  await expect(page.locator("#verdict")).toContainText("The limit of 2 iterations was reached.");
   await expect(page.locator("#next")).not.toBeEmpty();
 });
 

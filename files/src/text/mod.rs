@@ -18,6 +18,7 @@ mod plain;
 pub mod poses;
 mod realsense;
 mod ros;
+mod topics;
 mod tree;
 pub mod words;
 

@@ -14,6 +14,7 @@ use super::names::{
 };
 use super::numbers::{Matrix, matrix_of, number_of, transposed};
 use super::poses::{chained, is_last_row, last_column, motion, motion_of_matrix, of_quaternion, of_vector, turned};
+use super::topics::by_topics;
 
 type Node = Map<String, Value>;
 type Done = Result<(), Reason>;
@@ -38,6 +39,8 @@ struct Frames {
 #[derive(Default)]
 struct Search {
     found: Calibration,
+    /// Names of cameras, each with the topic of its images.
+    topics: Vec<(String, String)>,
     nodes: usize,
     members: usize,
 }
@@ -46,6 +49,7 @@ pub fn search(value: &Value) -> Result<Calibration, Reason> {
     let mut search = Search::default();
     search.walk(value, "", &Frames::default(), 0)?;
     search.chain();
+    by_topics(&search.topics, &mut search.found);
     Ok(search.found)
 }
 
@@ -133,6 +137,11 @@ impl Search {
         };
         let inner = frames_of(node).unwrap_or(stereo);
         self.motions(node, name, &inner)?;
+        if let ([camera], Some(topic)) = (&self.found.cameras[before..], text_of(member(node, &["rostopic"])))
+            && let Some(name) = &camera.name
+        {
+            self.topics.push((name.clone(), topic));
+        }
         Ok(inner)
     }
 
