@@ -302,7 +302,7 @@ function ofOneCamera(found: Sorted, warnings: ReaderWarning[]): Pairs | undefine
   return pairs;
 }
 
-/** Says of each picture of a folder without pairs why it has none, where nothing is said of it yet. */
+/** Adds the reason to each picture without a warning, if no picture of the folder has a partner. */
 export function sayUnpaired(pictures: NamedFile[], warnings: ReaderWarning[]): void {
   const { colours, depths } = sorted(pictures, []);
   if (colours.length + depths.length < 2) return;

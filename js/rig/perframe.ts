@@ -32,9 +32,9 @@ export function split(texts: TextOfFrame[], frames: ReadonlySet<string>): [own: 
 
 /** Angle in degrees and distance in metres between two poses. */
 function apart(a: NamedPose, b: NamedPose): { degrees: number; metres: number } {
-  const { rotation, translation } = chained(b.pose, inverseOf(a.pose));
+  const { rotation } = chained(b.pose, inverseOf(a.pose));
   const metres = Math.hypot(...a.pose.translation.map((value, at) => value - (b.pose.translation[at] ?? 0)));
-  return { degrees: translation.length === 3 ? degreesOf(rotation) : 0, metres };
+  return { degrees: degreesOf(rotation), metres };
 }
 const isSame = (a: NamedPose, b: NamedPose): boolean => {
   const { degrees, metres } = apart(a, b);

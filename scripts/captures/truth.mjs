@@ -1,4 +1,4 @@
-// What the check says of the makers' own calibrations of registered captures, and of calibrations that are off by a known error.
+// Verdicts on the makers' calibrations of registered captures, and on calibrations with a known error.
 import { chance, mahalanobis, offset, sizes, wrong } from "../rigs/draws.mjs";
 import { restarts } from "../rigs/restarts.mjs";
 import { hidden, seedOf } from "./draws.mjs";

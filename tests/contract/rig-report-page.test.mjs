@@ -94,8 +94,8 @@ describe("the unknowns", () => {
     const [name] = Object.keys(given.candidates);
     const candidate = moved(lidar, middle, 5, 0.05);
     const rows = unknowns(reportHtml(given, [], { calibrations: { [name]: candidate } }));
-    rows.forEach(({ values: [told, found, difference], unit, isBold }, k) => {
-      assert.ok(Math.abs(told - found - difference) < 0.011, `${k}: ${told} - ${found} = ${difference}`);
+    rows.forEach(({ values: [candidate, found, difference], unit, isBold }, k) => {
+      assert.ok(Math.abs(candidate - found - difference) < 0.011, `${k}: ${candidate} - ${found} = ${difference}`);
       assert.equal(isBold, k === 5, "the shift along z alone was changed");
       assert.equal(unit, k < 3 ? "°" : "mm");
     });
