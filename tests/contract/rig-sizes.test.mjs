@@ -139,7 +139,10 @@ describe("a camera of many sizes", () => {
       "depth.json": camera(50, 64, 48),
     });
     assert.deepEqual(codes(found), ["cameras-by-order"]);
-    assert.match(found.warnings.at(-1).message, /colour images; the first of a_rgb \(fx 60\.0\) and b_rgb \(fx 70\.0\)/);
+    assert.match(
+      found.warnings.at(-1).message,
+      /colour images; the first of a_rgb \(fx 60\.0\) and b_rgb \(fx 70\.0\)/,
+    );
   });
 });
 
