@@ -1,5 +1,6 @@
 /** The extrinsics to check, from the readings of their files. */
 import { basename } from "node:path";
+import { isOfCarrier } from "../rig/formats/ends.js";
 import { inverseOf } from "../rig/formats/poses.js";
 import type { NamedPose, RigReading } from "../rig/types.js";
 import type { Pose } from "../types/index.js";
@@ -13,13 +14,24 @@ const DEPTH = /depth|infra|\bir\b|tof/i;
 const isBackwards = ({ from = "", to = "" }: NamedPose): boolean =>
   COLOUR.test(from) && !DEPTH.test(from) && DEPTH.test(to) && !COLOUR.test(to);
 
+/** The refusal of a file of the places of sensors in a body, which are no extrinsics between two sensors. */
+function ofBody(file: string, poses: NamedPose[]): Mistake {
+  const { name, from, to } = poses[0] as NamedPose;
+  return new Mistake(
+    `${file}: ${name === undefined ? "it" : `its "${name}"`} relates ${from} to ${to}, which carries it (an inertial unit, a body, a vehicle or a robot); extrinsics relate the depth camera or the LiDAR to the colour camera. Give that pose as a 4x4 matrix, in a file named depth_to_color.txt or lidar_to_camera.txt`,
+    "file",
+  );
+}
+
 /** The poses of all calibrations by name; the one to check comes first. */
 export function candidatesOf(readings: RigReading[], isInverted: boolean, warnings: Judged[]): Record<string, Pose> {
   const candidates: Record<string, Pose> = {};
   for (const reading of readings) {
     const { name } = reading;
     const all = "poses" in reading ? (reading.poses ?? []) : [];
-    const poses = all.filter(({ to }) => to !== "world");
+    const ofSensors = all.filter(({ to }) => to !== "world");
+    const poses = ofSensors.filter((pose) => !isOfCarrier(pose));
+    if (ofSensors.length > 0 && poses.length === 0) throw ofBody(name, ofSensors);
     if (poses.length < all.length && poses.length === 0)
       throw new Mistake(
         `${name}: it gives the pose of a camera in the world (camera to world), not extrinsics`,

@@ -11,9 +11,12 @@ import { type RawCamera, cameraOf, ofMatrix } from "./cameras.js";
 import { grouped, withLists } from "./groups.js";
 import { type FoundCamera, Leftovers, type Place, coefficientsOf } from "./leftovers.js";
 import { modelIn, sharedModelIn } from "./stated.js";
+import { lensNamed } from "./lenses.js";
 import { unitInComments } from "./lengths.js";
 import { MOST_FOUND } from "./limits.js";
-import { type Context, Motions, contextOf, signsOf } from "./motions.js";
+import { type Context, contextOf } from "./context.js";
+import { Motions } from "./motions.js";
+import { signsOf } from "./signs.js";
 import { isIntrinsics, labelled, lensNames, member, wordsOf } from "./names.js";
 import { type Matrix, type Node, type Numbers, isNode, matrixOf, numberOf, textOf, transposed } from "./numbers.js";
 import { orbbecContext } from "./orbbec.js";
@@ -78,6 +81,8 @@ class Search {
   readonly #own = new Map<NamedPose, string | undefined>();
   /** Topics of cameras by their names, where a file has both. */
   readonly #topics = new Map<string, string>();
+  /** What warnings say of cameras with lenses that are not supported. */
+  readonly #unsupported: string[] = [];
   /** Models of cameras that the file names. */
   readonly models = new Set<string>();
   #nodes = 0;
@@ -180,7 +185,20 @@ class Search {
       const called = own === "" || own === "cam" || own === "camera" ? name : own;
       if (found !== undefined) add({ name: called, ...found, ...this.#rest(node, own, used) }, own);
     }
+    if (!this.#found.some(({ place: own }) => own.node === node)) this.#nameUnsupported(node, name);
     return used;
+  }
+
+  /** Warns of a camera whose intrinsics are those of a lens that is not supported, beside what else the file holds. */
+  #nameUnsupported(node: Node, name: string | undefined): void {
+    const stated = modelIn(node);
+    const isCamera = member(node, "intrinsics", "intrinsic", "projectionparameters", "mirrorparameters") !== undefined;
+    if (!isCamera || stated === undefined || lensNamed(stated.model).family !== "other") return;
+    const of = name === undefined ? "A camera" : `The camera "${name}"`;
+    const { meaning } = lensNamed(stated.model);
+    this.#unsupported.push(
+      `${of} was left out: its lens model "${stated.model}"${meaning === undefined ? "" : ` (${meaning})`} is not supported; Brown's and Kannala-Brandt's are.`,
+    );
   }
 
   /** Distortion, model and size of the camera with this label. */
@@ -229,6 +247,8 @@ class Search {
         const of = raw.name === undefined ? "A camera" : `The camera "${raw.name}"`;
         this.warnings.push(warning("camera-left-out", `${of} was left out: ${error.message}.`));
       }
+    if (this.cameras.length + this.motions.poses.length > 0)
+      for (const message of this.#unsupported) this.warnings.push(warning("camera-left-out", message));
     if (reason !== undefined && this.cameras.length + this.motions.poses.length === 0) throw reason;
   }
 
@@ -267,8 +287,17 @@ const ENDS = [
   ["source", "target"],
   ["sourceframe", "targetframe"],
   ["child", "parent"],
+  ["childlink", "parentlink"],
+  ["sensor", "reference"],
+  ["sensorframe", "referenceframe"],
+  ["frame", "base"],
   ["sensorname", "targetsensorname"],
 ] as const;
+
+/** Whether an object has a rotation or a matrix of a motion. */
+const isTransform = (node: Node): boolean =>
+  member(node, "rotation", "orientation", "quaternion") !== undefined ||
+  Object.values(node).some((value) => [12, 16].includes(matrixOf(value)?.values.length ?? 0));
 
 /** The frames of a motion. ROS's transform carries points of the child frame into the parent, OpenCalib's from a sensor to its target. */
 function framesOf(node: Node): Context | undefined {
@@ -278,7 +307,7 @@ function framesOf(node: Node): Context | undefined {
   if (child !== undefined) return { from: child, ...(parent !== undefined && { to: parent }) };
   for (const [from, to] of ENDS) {
     // Objects other than transforms have parents, too.
-    if (from === "child" && member(node, "rotation", "orientation", "quaternion") === undefined) continue;
+    if (from === "child" && !isTransform(node)) continue;
     const ends = [textOf(member(node, from)), textOf(member(node, to))];
     if (ends[0] !== undefined && ends[1] !== undefined && ends[0] !== ends[1]) return { from: ends[0], to: ends[1] };
   }
@@ -345,9 +374,10 @@ function bySensor(node: Node, warnings: ReaderWarning[]): Intrinsics | undefined
 /** Four intrinsics in a list, of Kalibr or of a file without a camera model. */
 function fourOf(node: Node, name: string | undefined): Intrinsics | undefined {
   const kalibr = textOf(member(node, "cameramodel"));
-  const four = matrixOf(member(node, "intrinsics"))?.values;
+  // DSEC has fu fv pu pv as "camera_matrix".
+  const four = matrixOf(member(node, "intrinsics", "cameramatrix"))?.values;
   if (four === undefined) return undefined;
-  if (kalibr !== undefined && four.length !== 9) {
+  if (kalibr !== undefined && four.length !== 9 && four.length !== 12) {
     if (kalibr !== "pinhole")
       throw badFile(`${cameraNamed(name)} has Kalibr's model "${kalibr.slice(0, 40)}"; only pinhole is supported`);
     if (four.length !== 4) throw badFile(`${cameraNamed(name)} has ${four.length} intrinsics; fu fv pu pv are needed`);
