@@ -1,6 +1,7 @@
 /** The extrinsics to check, from the readings of their files. */
 import { basename } from "node:path";
 import { isOfCarrier } from "../rig/formats/ends.js";
+import { isLidar, linked } from "../rig/formats/frames.js";
 import { inverseOf } from "../rig/formats/poses.js";
 import type { NamedPose, RigReading } from "../rig/types.js";
 import type { Pose } from "../types/index.js";
@@ -13,6 +14,20 @@ const DEPTH = /depth|infra|\bir\b|tof/i;
 /** Whether names state that a pose maps colour to depth. */
 const isBackwards = ({ from = "", to = "" }: NamedPose): boolean =>
   COLOUR.test(from) && !DEPTH.test(from) && DEPTH.test(to) && !COLOUR.test(to);
+
+const isCamera = (name: string): boolean => COLOUR.test(name) || (/cam/i.test(name) && !DEPTH.test(name));
+
+/** The poses that do not lead to what carries a sensor; if there are none, the one between two sensors on the same carrier. */
+function betweenSensors(all: NamedPose[]): NamedPose[] {
+  const direct = all.filter((pose) => !isOfCarrier(pose));
+  if (direct.length > 0) return direct;
+  const ends = [...new Set(all.flatMap(({ from = "", to = "" }) => [from, to]))];
+  const from = ends.find((name) => DEPTH.test(name) && !COLOUR.test(name)) ?? ends.find(isLidar);
+  const to =
+    ends.find((name) => COLOUR.test(name) && name !== from) ?? ends.find((name) => isCamera(name) && name !== from);
+  const way = from === undefined || to === undefined ? undefined : linked(all, from, to);
+  return way === undefined ? [] : [way];
+}
 
 /** The refusal of a file of the places of sensors in a body, which are no extrinsics between two sensors. */
 function ofBody(file: string, poses: NamedPose[]): Mistake {
@@ -30,7 +45,7 @@ export function candidatesOf(readings: RigReading[], isInverted: boolean, warnin
     const { name } = reading;
     const all = "poses" in reading ? (reading.poses ?? []) : [];
     const ofSensors = all.filter(({ to }) => to !== "world");
-    const poses = ofSensors.filter((pose) => !isOfCarrier(pose));
+    const poses = betweenSensors(ofSensors);
     if (ofSensors.length > 0 && poses.length === 0) throw ofBody(name, ofSensors);
     if (poses.length < all.length && poses.length === 0)
       throw new Mistake(

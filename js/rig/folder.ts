@@ -258,6 +258,13 @@ export function ofRig(text: Extract<RigReading, { poses: NamedPose[] }>, file: s
     });
 }
 
+/** The warning of a pose without frames that is called as a frame. */
+const placeOfFrame = (): ReaderWarning =>
+  warning(
+    "pose-assumed",
+    "It is called as a frame and does not name the frames of its pose, so that it may be the place of the camera in the world. It was taken to lead from the depth camera to the colour camera; name it depth_to_color.txt if it does, and pose/0.txt or the like if it does not.",
+  );
+
 /** What the texts of a folder hold: cameras, what relates them, and the unit of the depth maps; `own` has the texts of single frames. */
 async function calibrationOf({ texts, others }: Sorted, frames: ReadonlySet<string>, reader: FolderReader) {
   const found: TextOfFrame[] = [];
@@ -271,7 +278,10 @@ async function calibrationOf({ texts, others }: Sorted, frames: ReadonlySet<stri
     const called = (each: NamedCamera) => ({ ...each, name: each.name ?? stem(file.name) });
     const cameras = text.kind === "cameras" ? text.cameras.map(called) : [];
     if (text.kind === "cameras") depthUnit ??= text.depthUnit;
-    found.push({ file: file.name, cameras, poses: ofRig(text, stem(file.name)) });
+    const poses = ofRig(text, stem(file.name));
+    found.push({ file: file.name, cameras, poses });
+    if (frames.has(key(file.name)) && poses.some(({ from, to }) => from === undefined && to === undefined))
+      reader.warnings.push(ofFile(file.name, placeOfFrame()));
   }
   const isLeft = withoutInertial(
     found.flatMap(({ poses }) => poses),

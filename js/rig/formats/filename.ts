@@ -38,10 +38,11 @@ function ofWorldName(path: string): Frames | undefined {
   const name = stem.replace(/\.(?:txt|npy|csv|dat|mat|tfm)$/i, "").slice(0, LONGEST);
   if (PLACE.test(name) || (/^\d+$/.test(name) && /^poses?$/i.test(folder))) return { from: "camera", to: "world" };
   for (const each of /^\D*\d*$/.test(name) ? [name, folder] : [name]) {
-    const { from, to } = named(each.slice(0, LONGEST), {});
-    const world =
-      worldFrames(each.replace(/poses?/gi, " ")) ??
-      (isOfWorld({ ...(from && { from }), ...(to && { to }) }) ? { from: from ?? "", to: to ?? "" } : undefined);
+    // "stereo_pose" is no place of a camera.
+    const bare = each.slice(0, LONGEST).replace(/[ _-]?poses?[ _-]?/gi, "");
+    const { from, to } = named(bare, {});
+    const ends = { ...(from !== undefined && { from }), ...(to !== undefined && { to }) };
+    const world = isOfWorld(ends) ? ends : worldFrames(bare);
     if (world !== undefined) return world;
   }
   return undefined;

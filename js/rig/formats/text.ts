@@ -31,7 +31,7 @@ const LONGEST_LIST = 20_000;
 function strictYaml(text: string): string {
   const lines: string[] = [];
   let depth = 0;
-  for (const line of text.replace(/^([ \t-]*[\w.]{1,80}):(?=[[{"'])/gm, "$1: ").split(/\r?\n/)) {
+  for (const line of text.replace(/^([ \t-]*[A-Za-z_][\w.]{0,80}):(?=[[{"'\d+-])/gm, "$1: ").split(/\r?\n/)) {
     const bare = line.replace(/(?:^|[ \t])#.*$/, "");
     const isInside = depth > 0 && (lines.at(-1)?.length ?? 0) < LONGEST_LIST;
     if (isInside) lines.push(`${lines.pop() ?? ""} ${bare.trim()}`);
