@@ -17,7 +17,7 @@ const isBackwards = ({ from = "", to = "" }: NamedPose): boolean =>
 
 const isCamera = (name: string): boolean => COLOUR.test(name) || (/cam/i.test(name) && !DEPTH.test(name));
 
-/** The poses that do not lead to what carries a sensor; if there are none, the one between two sensors on the same carrier. */
+/** The poses that do not lead to what carries a sensor, or else the one between two sensors on the same carrier. */
 function betweenSensors(all: NamedPose[]): NamedPose[] {
   const direct = all.filter((pose) => !isOfCarrier(pose));
   if (direct.length > 0) return direct;

@@ -265,7 +265,7 @@ describe("lenses", () => {
     };
     const a2d2 = await json({ cameras: { side_left: side }, lidars: {} });
     assert.deepEqual([lens(only(a2d2.cameras)), a2d2.cameras[0].camera.fx], [["fisheye", ...four], K.fx]);
-    assert.deepEqual(doubts(a2d2), ["pose-assumed"]);
+    assert.deepEqual(doubts(a2d2), ["distortion-guessed"]);
   });
 
   test("a list that may be a lens is not dropped without a word", async () => {
@@ -273,7 +273,7 @@ describe("lenses", () => {
       const found = await json({ K: intrinsicRows, [name]: [0.1, -0.2, 0.001, 0.0004, 0] });
       assert.deepEqual(doubts(found), ["distortion-unused"], name);
     }
-    // A region, a quaternion, zeros and the numbers of a camera that has a lens are none.
+    // A region, a quaternion and zeros are no lens.
     for (const other of [{ roi: [0, 0, 640, 480] }, { attitude: [0.5, 0.5, 0.5, 0.5] }, { kd: [0, 0, 0, 0, 0] }])
       assert.deepEqual(doubts(await json({ K: intrinsicRows, ...other })), []);
   });
@@ -284,6 +284,24 @@ describe("lenses", () => {
     assert.equal(found.poses.length, 1);
     assert.match(found.warnings.find(({ code }) => code === "camera-left-out")?.message ?? "", /MEI/);
   });
+});
+
+test("rotations and translations as matrices, and SUSTechPOINTS' extrinsic by rows", async () => {
+  const asMatrix = (values, count, cols) => `  rows: ${count}\n  cols: ${cols}\n  data: [${values.join(", ")}]\n`;
+  const pose = `rotation_matrix:\n${asMatrix(rotation, 3, 3)}translation_matrix:\n${asMatrix(translation, 3, 1)}`;
+  samePose(only((await read("pose.yaml", pose)).poses));
+  samePose(only((await json({ extrinsic: matrix.flat(), intrinsic: intrinsicRows.flat() })).poses));
+});
+
+test("an array of two maps is not read as its first one", async () => {
+  const header = "{'descr': '<u2', 'fortran_order': False, 'shape': (2, 48, 64), }".padEnd(117) + "\n";
+  const bytes = Buffer.concat([
+    Buffer.from("\x93NUMPY\x01\x00", "latin1"),
+    Buffer.from([118, 0]),
+    Buffer.from(header, "latin1"),
+    Buffer.alloc(2 * 2 * 48 * 64, 1),
+  ]);
+  await refusedFile(read("depth.npy", new Uint8Array(bytes), { unit: 0.001 }), "depth.npy", /two maps/);
 });
 
 describe("YAML that other programs accept", () => {
@@ -298,7 +316,7 @@ describe("YAML that other programs accept", () => {
 
   test("damaged YAML that was read line by line is a doubt", async () => {
     const found = await read("cam.yaml", "%YAML:1.0\n---\nfx: 500\nfy: 500\ncx: 320\ncy: 240\n  ]: [\n");
-    assert.deepEqual([found.cameras.length, doubts(found)], [1, ["pose-assumed"]]);
+    assert.deepEqual([found.cameras.length, doubts(found)], [1, ["read-by-lines"]]);
   });
 });
 

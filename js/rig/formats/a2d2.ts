@@ -26,8 +26,12 @@ export function readA2d2(root: Node): Findings {
     });
   }
   found.warn(
-    "pose-assumed",
-    "The cameras are those of A2D2's pictures before they are undistorted (CamMatrixOriginal and Distortion); for undistorted ones give CamMatrix without distortion. Its views were not read as poses, because their axes are not those of cameras.",
+    "distortion-guessed",
+    "The cameras are those of A2D2's pictures before they are undistorted (CamMatrixOriginal and Distortion). For undistorted pictures give CamMatrix without distortion.",
+  );
+  found.warn(
+    "pose-left-out",
+    "The views of the sensors were not read as poses, because their axes are not those of cameras.",
   );
   return found;
 }

@@ -223,15 +223,15 @@ export class Motions {
     if (matrix === undefined || (length !== 16 && length !== 12) || isLens(key) === "") return false;
     if (length === 12 && matrix.rows !== 3)
       return matrix.rows === undefined && this.#twelve(matrix.values, key, context);
-    const isOpen3D = (key === "extrinsic" || key === "pose") && matrix.rows === undefined;
+    const isLast = [matrix.values.slice(12), [3, 7, 11, 15].map((index) => at(matrix.values, index))].map(isLastRow);
+    // SUSTechPOINTS has the same name, row by row.
+    const isByRows = isLast[0] === true && isLast[1] === false;
+    const isOpen3D = (key === "extrinsic" || key === "pose") && matrix.rows === undefined && !isByRows;
     const names = isOpen3D
       ? named(parent, key === "extrinsic" ? { from: "world", to: "camera" } : { from: "camera", to: "world" })
       : (kalibr(key, parent) ?? named(key, worldFrames(key) ?? context));
     const isFlat = matrix.rows === undefined && length === 16;
-    const byColumns =
-      isFlat &&
-      (isOpen3D ||
-        (!isLastRow(matrix.values.slice(12)) && isLastRow([3, 7, 11, 15].map((index) => at(matrix.values, index)))));
+    const byColumns = isFlat && (isOpen3D || (isLast[0] === false && isLast[1] === true));
     if (isProjection(matrix.values)) {
       this.#warnings.push(warning("pose-left-out", `"${key}" ${PROJECTION}.`, { name: key, isProjection: true }));
       return true;

@@ -47,6 +47,10 @@ const count = (text: string, pattern: RegExp): number => text.match(pattern)?.le
 const withColons = (text: string): string =>
   /^[ \t]*[\w.]{1,80}[ \t]*:/m.test(text) ? text : text.replace(/^([ \t]*[\w.]{1,80})[ \t]*=[ \t]*/gm, "$1: ");
 
+/** The first line of what a parser says. */
+const reasonOf = (error: unknown): string =>
+  error instanceof Error ? (error.message.split("\n")[0] ?? "") : String(error);
+
 /** The documents of a YAML text. js-yaml is loaded with the first such text. */
 async function readYaml(text: string): Promise<unknown> {
   if (text.length > MOST_SETTINGS) throw badFile(`it is text of ${text.length} characters in an unknown format`);
@@ -61,8 +65,7 @@ async function readYaml(text: string): Promise<unknown> {
     } catch {
       // The reason of the file as it is says more.
     }
-    const reason = error instanceof Error ? (error.message.split("\n")[0] ?? "") : String(error);
-    throw badFile(`it is text in an unknown format, or damaged (as YAML: ${reason})`, error);
+    throw badFile(`it is text in an unknown format, or damaged (as YAML: ${reasonOf(error)})`, error);
   }
 }
 
@@ -112,9 +115,6 @@ function ofNotes(text: string): Read | undefined {
 
 /** What only YAML has: its directive, and the matrices of OpenCV. */
 const IS_YAML = /^%YAML|!!opencv-matrix/m;
-const reasonOf = (error: unknown): string =>
-  /\(as YAML: (.*)\)$/.exec(error instanceof Error ? error.message : "")?.[1] ?? "it cannot be parsed";
-
 /** YAML, or else numbers with labels. */
 async function ofYaml(text: string): Promise<Read> {
   let value: unknown;
@@ -126,8 +126,8 @@ async function ofYaml(text: string): Promise<Read> {
     if (IS_YAML.test(text))
       found.warnings.push(
         warning(
-          "pose-assumed",
-          `It is damaged YAML (${reasonOf(error)}) and was read line by line, which may miss lenses, cameras and poses. Repair that line.`,
+          "read-by-lines",
+          `It is damaged YAML (${reasonOf(error instanceof BimodalError ? error.cause : error)}) and was read line by line, which may miss lenses, cameras and poses. Repair that line.`,
         ),
       );
     return found;
