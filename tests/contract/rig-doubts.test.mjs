@@ -5,6 +5,7 @@ import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, describe, test } from "node:test";
+import { readRigFolder } from "../../pkg/rig.js";
 import { inRoot } from "../../scripts/shell.mjs";
 import {
   K,
@@ -24,6 +25,7 @@ import {
   samePose,
   translation,
 } from "./rig-support.mjs";
+import { png } from "./support.mjs";
 
 const doubts = ({ warnings }) => warnings.filter(({ isDoubt }) => isDoubt).map(({ code }) => code);
 const numbersOf = (m) => m.map((row) => row.join(" ")).join("\n");
@@ -163,6 +165,41 @@ describe("places of a camera in a body or in the world", () => {
   });
 });
 
+describe("poses in a folder", () => {
+  const colour = png({ width: 2, height: 1, depth: 8, colourType: 2, rows: [[90, 2, 3, 90, 2, 3]] });
+  const depth = png({ width: 2, height: 1, depth: 16, colourType: 0, rows: [[4, 176, 4, 177]] });
+  const folder = (more) =>
+    readRigFolder(
+      Object.entries({ "0_color.png": colour, "0_depth.png": depth, ...more }).map(([name, bytes]) => ({
+        name,
+        bytes: typeof bytes === "string" ? new TextEncoder().encode(bytes) : bytes,
+      })),
+      { unit: 0.001 },
+    );
+
+  test("a pose that is called as the frame is a doubt", async () => {
+    const found = await folder({ "0.txt": numbersOf(matrix) });
+    assert.ok(doubts(found).includes("pose-assumed"), JSON.stringify(found.warnings));
+    assert.ok(!codes(await folder({ "depth_to_color.txt": numbersOf(matrix) })).includes("pose-assumed"));
+  });
+
+  test("the place of a camera in a body is left out", async () => {
+    const found = await folder({
+      "vins.yaml": JSON.stringify({ body_T_cam0: matrix }),
+      "extrinsics.txt": numbersOf(matrix),
+    });
+    assert.equal(only(found.poses).name, undefined);
+    assert.ok(codes(found).includes("pose-left-out"));
+  });
+
+  test("the scale of Replica's camera is the unit of its depth maps", async () => {
+    const camera = JSON.stringify({ camera: { w: 2, h: 1, fx: 5, fy: 5, cx: 1, cy: 0.5, scale: 6553.5 } });
+    const files = { "0_color.png": colour, "0_depth.png": depth, "cam_params.json": new TextEncoder().encode(camera) };
+    const found = await readRigFolder(Object.entries(files).map(([name, bytes]) => ({ name, bytes })));
+    close([found.frames[0].depth.unit], [1 / 6553.5], 1e-12);
+  });
+});
+
 describe("frames of a matrix", () => {
   test("by pairs of names", async () => {
     for (const [to, from] of [
@@ -269,7 +306,7 @@ describe("lenses", () => {
   });
 
   test("a list that may be a lens is not dropped without a word", async () => {
-    for (const name of ["kappa", "rdist", "kd", "lens", "coefficients", "distor"]) {
+    for (const name of ["kappa", "rdist", "kd", "k", "lens", "coefficients", "distor"]) {
       const found = await json({ K: intrinsicRows, [name]: [0.1, -0.2, 0.001, 0.0004, 0] });
       assert.deepEqual(doubts(found), ["distortion-unused"], name);
     }
@@ -301,7 +338,7 @@ test("an array of two maps is not read as its first one", async () => {
     Buffer.from(header, "latin1"),
     Buffer.alloc(2 * 2 * 48 * 64, 1),
   ]);
-  await refusedFile(read("depth.npy", new Uint8Array(bytes), { unit: 0.001 }), "depth.npy", /two maps/);
+  await refusedFile(read("depth.npy", new Uint8Array(bytes), { unit: 0.001 }), "depth.npy", /stack of 2 pictures/);
 });
 
 describe("YAML that other programs accept", () => {

@@ -132,7 +132,9 @@ function isLensLike(key: string, value: unknown): boolean {
   const isList = COUNTS.includes(values.length) && (rows === 1 || rows === values.length);
   if (!isList || values.every(Number.isInteger) || values.some((each) => Math.abs(each) > LARGEST)) return false;
   const isUnit = values.length === 4 && Math.abs(Math.hypot(...values) - 1) < 1e-2;
-  return !isUnit && isIntrinsics(key) !== "" && rotationName(key) === undefined && !isTranslation(key);
+  // Four intrinsics are a camera's, and a vector "k" of five beside a matrix "K" is none.
+  const isCamera = [4, 12].includes(values.length) && isIntrinsics(key) === "";
+  return !isUnit && !isCamera && rotationName(key) === undefined && !isTranslation(key);
 }
 
 const isBelow = (place: Place | undefined, top: Place): boolean => {

@@ -38,10 +38,6 @@ export function npyPicture(bytes: Uint8Array, check = checkSize): Picture {
   const { width, height, channels } = raster;
   const isList = channels === 1 && width >= FEWEST_COLUMNS && width <= MOST_COLUMNS && height >= TALL * width;
   if (isList) return ofList(raster.data, height, width);
-  if (channels === 2 && /^[iu]\d|^f/.test(type) && type !== "u1")
-    throw badFile(
-      'its array has two channels or holds two maps, of which a depth map is one: save it alone, as numpy.save("depth.npy", array[0])',
-    );
   check(width, height);
   const data = /^[iu]/.test(type) && channels === 1 ? asLevels(raster.data) : raster.data;
   const bits = 8 * (type === "f2" ? 2 : data.BYTES_PER_ELEMENT);
