@@ -132,7 +132,7 @@ function isLensLike(key: string, value: unknown): boolean {
   const isList = COUNTS.includes(values.length) && (rows === 1 || rows === values.length);
   if (!isList || values.every(Number.isInteger) || values.some((each) => Math.abs(each) > LARGEST)) return false;
   const isUnit = values.length === 4 && Math.abs(Math.hypot(...values) - 1) < 1e-2;
-  // Four intrinsics are a camera's, and a vector "k" of five beside a matrix "K" is none.
+  // Four numbers may be the intrinsics of a camera, but five are not.
   const isCamera = [4, 12].includes(values.length) && isIntrinsics(key) === "";
   return !isUnit && !isCamera && rotationName(key) === undefined && !isTranslation(key);
 }
