@@ -8,6 +8,7 @@ import { BimodalError, badFile, badNamed, refused } from "../errors.js";
 import { inOrder } from "./assign.js";
 import { pictureColour, pictureMask } from "./colour.js";
 import { cloudDepth, pictureDepth } from "./depth.js";
+import { asFisheye } from "./formats/cameras.js";
 import { colmapText } from "./formats/colmap-others.js";
 import { withEnds } from "./formats/filename.js";
 import { type RasterKind, rasterKind } from "./formats/headerless.js";
@@ -24,7 +25,7 @@ import { textOf } from "./formats/decode.js";
 import { kindOfPicture, nameWarnings, unitOfName } from "./recognise.js";
 import { once } from "./once.js";
 import type { NamedFile, ReadOptions, RigReading, Unnamed } from "./types.js";
-import { distinct } from "./warnings.js";
+import { distinct, warning } from "./warnings.js";
 import { inWords } from "./words.js";
 
 type Content = Unnamed<RigReading>;
@@ -84,13 +85,28 @@ async function ofCloud(cloud: Cloud | Points, options: ReadOptions): Promise<Con
   return "scan" in cloud ? (await clouds()).pointsDepth(cloud, options) : cloudDepth(cloud, options);
 }
 
+/** Formats of nothing but numbers (plain.ts). */
+const isBareFormat = (format: string): boolean =>
+  format === "a matrix of a transform" || format === "a translation and a quaternion";
+
 async function ofText(file: string, text: string, { as }: ReadOptions): Promise<Content> {
   if (as === "colour" || as === "depth" || as === "mask")
     throw badFile(`it is a text where a ${as === "depth" ? "depth map" : `${as} image`} was expected`);
   const { readText } = await texts();
   const { cameras, poses: found, warnings, format, depthUnit } = await readText(text);
-  const poses = inOrder(withEnds(found, file));
-  const reading = { says: `${format}: ${inWords(cameras, poses)}`, warnings: distinct(warnings) };
+  asFisheye(cameras, warnings, `${file.replace(/^.*[/\\]/, "")}\n${text}`);
+  const { poses: placed, isPlace } = withEnds(found, file, isBareFormat(format));
+  const poses = inOrder(placed);
+  const said = isPlace
+    ? [
+        warning(
+          "camera-to-world",
+          "Its name says that it is the pose of a camera in the world (camera to world), which was not used as extrinsics between two cameras. If it is, name the file depth_to_color.txt or the like.",
+          { poses: 1 },
+        ),
+      ]
+    : [];
+  const reading = { says: `${format}: ${inWords(cameras, poses)}`, warnings: distinct([...warnings, ...said]) };
   if (as === "cameras" && cameras.length === 0) throw badFile(`it holds ${inWords(cameras, poses)}, but no camera`);
   if (as === "poses" && poses.length === 0) throw badFile(`it holds ${inWords(cameras, poses)}, but no transform`);
   return cameras.length > 0 && as !== "poses"

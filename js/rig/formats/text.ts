@@ -11,6 +11,7 @@ import { readNumbers } from "./plain.js";
 import { isEcho, isPublisher, readEcho, readPublishers } from "./ros.js";
 import { MOST_SETTINGS, isSectioned, plainPython, readJson, readSections } from "./settings.js";
 import { type Calibration, searchTree } from "./tree.js";
+import { warning } from "../warnings.js";
 import { type Element, plainXml, readXml } from "./xml.js";
 
 /** So that a small file cannot become a large value. */
@@ -23,19 +24,48 @@ const plainYaml = (text: string): string =>
     .replace(/!!(?:opencv-[\w-]+|python\/[\w:./]+)/g, "")
     .replace(/^\t+/gm, (tabs) => "  ".repeat(tabs.length));
 
+/** Most characters of a list that is put into one line. */
+const LONGEST_LIST = 20_000;
+
+/** YAML as OpenCV and PyYAML accept it, for js-yaml: "data:[" without a blank, and lists that go on at the column of their name. */
+function strictYaml(text: string): string {
+  const lines: string[] = [];
+  let depth = 0;
+  for (const line of text.replace(/^([ \t-]*[A-Za-z_][\w.]{0,80}):(?=[[{"'\d+-])/gm, "$1: ").split(/\r?\n/)) {
+    const bare = line.replace(/(?:^|[ \t])#.*$/, "");
+    const isInside = depth > 0 && (lines.at(-1)?.length ?? 0) < LONGEST_LIST;
+    if (isInside) lines.push(`${lines.pop() ?? ""} ${bare.trim()}`);
+    else lines.push(line);
+    const opens = bare.replace(/"[^"]*"|'[^']*'/g, "");
+    depth = Math.max(0, (isInside ? depth : 0) + count(opens, /[[{]/g) - count(opens, /[\]}]/g));
+  }
+  return lines.join("\n");
+}
+const count = (text: string, pattern: RegExp): number => text.match(pattern)?.length ?? 0;
+
 /** Settings such as "fx = 500" on each line, with the colons of YAML. */
 const withColons = (text: string): string =>
   /^[ \t]*[\w.]{1,80}[ \t]*:/m.test(text) ? text : text.replace(/^([ \t]*[\w.]{1,80})[ \t]*=[ \t]*/gm, "$1: ");
+
+/** The first line of what a parser says. */
+const reasonOf = (error: unknown): string =>
+  error instanceof Error ? (error.message.split("\n")[0] ?? "") : String(error);
 
 /** The documents of a YAML text. js-yaml is loaded with the first such text. */
 async function readYaml(text: string): Promise<unknown> {
   if (text.length > MOST_SETTINGS) throw badFile(`it is text of ${text.length} characters in an unknown format`);
   const { CORE_SCHEMA, loadAll, mergeTag } = await import("js-yaml");
+  const parsed = (yaml: string) => loadAll(yaml, { ...YAML_LIMITS, schema: CORE_SCHEMA.withTags(mergeTag) });
+  const plain = withColons(plainYaml(text));
   try {
-    return loadAll(withColons(plainYaml(text)), { ...YAML_LIMITS, schema: CORE_SCHEMA.withTags(mergeTag) });
+    return parsed(plain);
   } catch (error) {
-    const reason = error instanceof Error ? (error.message.split("\n")[0] ?? "") : String(error);
-    throw badFile(`it is text in an unknown format, or damaged (as YAML: ${reason})`, error);
+    try {
+      return parsed(strictYaml(plain));
+    } catch {
+      // The reason of the file as it is says more.
+    }
+    throw badFile(`it is text in an unknown format, or damaged (as YAML: ${reasonOf(error)})`, error);
   }
 }
 
@@ -83,6 +113,8 @@ function ofNotes(text: string): Read | undefined {
   return { ...found, format: "numbers with labels" };
 }
 
+/** What only YAML has: its directive, and the matrices of OpenCV. */
+const IS_YAML = /^%YAML|!!opencv-matrix/m;
 /** YAML, or else numbers with labels. */
 async function ofYaml(text: string): Promise<Read> {
   let value: unknown;
@@ -91,6 +123,13 @@ async function ofYaml(text: string): Promise<Read> {
   } catch (error) {
     const found = error instanceof BimodalError ? ofNotes(text) : undefined;
     if (found === undefined) throw error;
+    if (IS_YAML.test(text))
+      found.warnings.push(
+        warning(
+          "read-by-lines",
+          `It is damaged YAML (${reasonOf(error instanceof BimodalError ? error.cause : error)}) and was read line by line, which may miss lenses, cameras and poses. Repair that line.`,
+        ),
+      );
     return found;
   }
   const found = (await search(value, "YAML", text)) ?? ofNotes(text);
