@@ -85,17 +85,13 @@ async function ofCloud(cloud: Cloud | Points, options: ReadOptions): Promise<Con
   return "scan" in cloud ? (await clouds()).pointsDepth(cloud, options) : cloudDepth(cloud, options);
 }
 
-/** Formats of nothing but numbers (plain.ts). */
-const isBareFormat = (format: string): boolean =>
-  format === "a matrix of a transform" || format === "a translation and a quaternion";
-
 async function ofText(file: string, text: string, { as }: ReadOptions): Promise<Content> {
   if (as === "colour" || as === "depth" || as === "mask")
     throw badFile(`it is a text where a ${as === "depth" ? "depth map" : `${as} image`} was expected`);
   const { readText } = await texts();
-  const { cameras, poses: found, warnings, format, depthUnit } = await readText(text);
+  const { cameras, poses: found, warnings, format, isBare = false, depthUnit } = await readText(text);
   asFisheye(cameras, warnings, `${file.replace(/^.*[/\\]/, "")}\n${text}`);
-  const { poses: placed, isPlace } = withEnds(found, file, isBareFormat(format));
+  const { poses: placed, isPlace } = withEnds(found, file, isBare);
   const poses = inOrder(placed);
   const said = isPlace
     ? [

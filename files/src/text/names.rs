@@ -60,7 +60,7 @@ pub const NO_MOTION: Phrases = &[
 ];
 
 /// The words of a name.
-fn words(name: &str) -> Vec<String> {
+pub fn words(name: &str) -> Vec<String> {
     if name.len() > LONGEST {
         return Vec::new();
     }

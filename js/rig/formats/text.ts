@@ -72,7 +72,8 @@ async function readYaml(text: string): Promise<unknown> {
 const NEITHER =
   "neither a camera (camera_matrix, K, fx fy cx cy, intrinsics) nor a transform (R and T, T_.., rotation and translation, a 4x4 matrix)";
 
-type Read = Calibration & { format: string };
+/** With `isBare` it has nothing but its numbers. */
+type Read = Calibration & { format: string; isBare?: boolean };
 
 /** The readers of products, which are loaded with the first text. */
 const products = once(() => import("./products.js"));
@@ -174,7 +175,7 @@ export async function readText(text: string): Promise<Read> {
 /** Plain numbers, tables, and the languages of settings. */
 async function ofWords(text: string): Promise<Read> {
   const numbers = readNumbers(text) ?? (text.length < MOST_SETTINGS ? readNumbers(plainPython(text)) : undefined);
-  if (numbers !== undefined) return numbers;
+  if (numbers !== undefined) return { ...numbers, isBare: true };
   const table = readColumns(text);
   if (table !== undefined) return ofTable(table, text);
   if (isSectioned(text)) {
