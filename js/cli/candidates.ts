@@ -1,7 +1,6 @@
 /** The extrinsics to check, from the readings of their files. */
 import { basename } from "node:path";
-import { isOfCarrier } from "../rig/formats/ends.js";
-import { isLidar, linked } from "../rig/formats/frames.js";
+import { isLidar, isOfCarrier, linked } from "../rig/formats/frames.js";
 import { inverseOf } from "../rig/formats/poses.js";
 import type { NamedPose, RigReading } from "../rig/types.js";
 import type { Pose } from "../types/index.js";

@@ -9,7 +9,7 @@ import { type Check, object, signal, wrong } from "../check.js";
 import { BimodalError, badFile, refused } from "../errors.js";
 import { addCameras, inOrder, ofPictures } from "./assign.js";
 import { ofNamedPictures } from "./around.js";
-import { isOfCarrier } from "./formats/ends.js";
+import { isOfCarrier } from "./formats/frames.js";
 import { isRawName } from "./formats/raw.js";
 import { areFives, isVaried, nameOf, sampled } from "./guess.js";
 import { type Pair, type Pairs, tum } from "./lists.js";

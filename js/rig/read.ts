@@ -8,9 +8,7 @@ import { BimodalError, badFile, badNamed, refused } from "../errors.js";
 import { inOrder } from "./assign.js";
 import { pictureColour, pictureMask } from "./colour.js";
 import { cloudDepth, pictureDepth } from "./depth.js";
-import { asFisheye } from "./formats/cameras.js";
 import { colmapText } from "./formats/colmap-others.js";
-import { withEnds } from "./formats/filename.js";
 import { type RasterKind, rasterKind } from "./formats/headerless.js";
 import { readJpeg, readWebp } from "./formats/jpeg.js";
 import { MOST_BYTES } from "./formats/limits.js";
@@ -25,7 +23,7 @@ import { textOf } from "./formats/decode.js";
 import { kindOfPicture, nameWarnings, unitOfName } from "./recognise.js";
 import { once } from "./once.js";
 import type { NamedFile, ReadOptions, RigReading, Unnamed } from "./types.js";
-import { distinct, warning } from "./warnings.js";
+import { distinct } from "./warnings.js";
 import { inWords } from "./words.js";
 
 type Content = Unnamed<RigReading>;
@@ -89,20 +87,9 @@ async function ofText(file: string, text: string, { as }: ReadOptions): Promise<
   if (as === "colour" || as === "depth" || as === "mask")
     throw badFile(`it is a text where a ${as === "depth" ? "depth map" : `${as} image`} was expected`);
   const { readText } = await texts();
-  const { cameras, poses: found, warnings, format, isBare = false, depthUnit } = await readText(text);
-  asFisheye(cameras, warnings, `${file.replace(/^.*[/\\]/, "")}\n${text}`);
-  const { poses: placed, isPlace } = withEnds(found, file, isBare);
-  const poses = inOrder(placed);
-  const said = isPlace
-    ? [
-        warning(
-          "camera-to-world",
-          "Its name says that it is the pose of a camera in the world (camera to world), which was not used as extrinsics between two cameras. If it is, name the file depth_to_color.txt or the like.",
-          { poses: 1 },
-        ),
-      ]
-    : [];
-  const reading = { says: `${format}: ${inWords(cameras, poses)}`, warnings: distinct([...warnings, ...said]) };
+  const { cameras, poses: found, warnings, format, depthUnit } = await readText(text, file);
+  const poses = inOrder(found);
+  const reading = { says: `${format}: ${inWords(cameras, poses)}`, warnings: distinct(warnings) };
   if (as === "cameras" && cameras.length === 0) throw badFile(`it holds ${inWords(cameras, poses)}, but no camera`);
   if (as === "poses" && poses.length === 0) throw badFile(`it holds ${inWords(cameras, poses)}, but no transform`);
   return cameras.length > 0 && as !== "poses"

@@ -98,12 +98,5 @@ export function named(written: string, frames: Frames): PoseNames {
   return backwards ? { name, from: backwards[2] ?? "", to: backwards[1] ?? "" } : { name };
 }
 
-/** Frames that carry sensors: the inertial unit, the body, a vehicle, a robot and its hand. */
-const CARRIER =
-  /^(?:b|body|i|imu\w*|base(?:[_ ]?(?:link|footprint))?|rig|vehicle|ego(?:[_ ]?vehicle)?|car|robot\w*|hand|gripper|flange|tool\d*|gps|ins|oxts)$/i;
-
-/** Whether a motion relates a sensor to what carries it, so that it does not relate two sensors. */
-export const isOfCarrier = ({ from = "", to = "" }: Frames): boolean => CARRIER.test(from) !== CARRIER.test(to);
-
 /** Whether a motion leads into the world or out of it, so that it does not relate two cameras. */
 export const isOfWorld = ({ from, to }: Frames): boolean => from === "world" || to === "world";

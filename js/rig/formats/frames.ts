@@ -107,3 +107,11 @@ export function linked(poses: readonly NamedPose[], from: string, to: string): N
 
 /** Whether a frame is a LiDAR's, by its name. */
 export const isLidar = (name: string): boolean => LIDAR.test(name) && !CAMERA.test(name);
+
+/** Frames that carry sensors: the inertial unit, the body, a vehicle, a robot and its hand. */
+const CARRIER =
+  /^(?:b|body|i|imu\w*|base(?:[_ ]?(?:link|footprint))?|rig|vehicle|ego(?:[_ ]?vehicle)?|car|robot\w*|hand|gripper|flange|tool\d*|gps|ins|oxts)$/i;
+
+/** Whether a motion relates a sensor to what carries it, so that it does not relate two sensors. */
+export const isOfCarrier = ({ from = "", to = "" }: Pick<NamedPose, "from" | "to">): boolean =>
+  CARRIER.test(from) !== CARRIER.test(to);

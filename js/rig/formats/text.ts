@@ -1,17 +1,19 @@
 /** Text files: the format is recognised from the text, and the result is cameras and poses. */
 import { BimodalError, badFile } from "../../errors.js";
 import { once } from "../once.js";
+import { asFisheye } from "./cameras.js";
 import { readColmap, isColmap } from "./colmap.js";
 import { isColmapImages, readColmapImages } from "./colmap-others.js";
 import { readColumns } from "./columns.js";
 import { withPoints } from "./commas.js";
+import { withEnds } from "./filename.js";
 import { readNotes } from "./notes.js";
 import type { Node } from "./numbers.js";
 import { readNumbers } from "./plain.js";
 import { isEcho, isPublisher, readEcho, readPublishers } from "./ros.js";
 import { MOST_SETTINGS, isSectioned, plainPython, readJson, readSections } from "./settings.js";
 import { type Calibration, searchTree } from "./tree.js";
-import { warning } from "../warnings.js";
+import { type ReaderWarning, warning } from "../warnings.js";
 import { type Element, plainXml, readXml } from "./xml.js";
 
 /** So that a small file cannot become a large value. */
@@ -151,8 +153,22 @@ async function ofXml(text: string): Promise<Read> {
   return (await products()).productOfXml(root) ?? searched(plainXml(root), "XML", text);
 }
 
-/** The cameras and poses of a text, with the name of its format. */
-export async function readText(text: string): Promise<Read> {
+/** The cameras and poses of a text, with the name of its format; the file's name says what the text leaves open. */
+export async function readText(text: string, file: string): Promise<Read> {
+  const { isBare = false, ...found } = await ofContent(text);
+  asFisheye(found.cameras, found.warnings, `${file.replace(/^.*[/\\]/, "")}\n${text}`);
+  const { poses, isPlace } = withEnds(found.poses, file, isBare);
+  return { ...found, poses, warnings: isPlace ? [...found.warnings, placeOfName()] : found.warnings };
+}
+
+const placeOfName = (): ReaderWarning =>
+  warning(
+    "camera-to-world",
+    "Its name says that it is the pose of a camera in the world (camera to world), which was not used as extrinsics between two cameras. If it is, name the file depth_to_color.txt or the like.",
+    { poses: 1 },
+  );
+
+async function ofContent(text: string): Promise<Read> {
   const trimmed = text.replace(/^\ufeff/, "").trim();
   if (trimmed === "") throw badFile("it is empty or has only spaces");
   if (isPublisher(trimmed)) return { ...readPublishers(trimmed), format: "a static transform of ROS" };
