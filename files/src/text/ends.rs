@@ -3,9 +3,8 @@
 use serde_json::{Map, Value};
 
 use super::calibration::Names;
-use super::names::{LONGEST, Pattern, member, pattern, words};
+use super::names::{LONGEST, Pattern, member, pattern, text_of, words};
 use super::numbers::matrix_of;
-use super::tree::text_of;
 
 type Node = Map<String, Value>;
 

@@ -11,7 +11,7 @@ use super::calibration::{Calibration, NamedPose, Names, Reason};
 use super::cameras::{RawCamera, camera_of};
 use super::ends::{Frames, camera_before, camera_number, frames_of, kalibr, named};
 use super::names::{
-    self, INTRINSICS, LENS, NO_MOTION, Pattern, ROTATION, TRANSLATION, labelled, leftover, member, pattern,
+    self, INTRINSICS, LENS, NO_MOTION, Pattern, ROTATION, TRANSLATION, labelled, leftover, member, pattern, text_of,
 };
 use super::numbers::{Matrix, matrix_of, number_of, transposed};
 use super::poses::{chained, is_last_row, last_column, motion, motion_of_matrix, of_quaternion, of_vector, turned};
@@ -27,9 +27,6 @@ const MOST_OWN: usize = 300;
 const MOST_DEPTH: usize = 24;
 /// Most cameras and poses of a file.
 const MOST_FOUND: usize = 5000;
-/// Most characters of a text that names something.
-const LONGEST_TEXT: usize = 200;
-
 #[derive(Default)]
 struct Search {
     found: Calibration,
@@ -45,10 +42,6 @@ pub fn search(value: &Value) -> Result<Calibration, Reason> {
     search.chain();
     by_topics(&search.topics, &mut search.found);
     Ok(search.found)
-}
-
-pub fn text_of(value: Option<&Value>) -> Option<String> {
-    value?.as_str().filter(|text| !text.is_empty()).map(|text| text.chars().take(LONGEST_TEXT).collect())
 }
 
 fn is_like(value: Option<&f64>, to: f64) -> bool {
