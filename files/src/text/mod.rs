@@ -61,7 +61,7 @@ fn placed(mut found: Calibration, path: &str) -> Calibration {
     let [NamedPose { names: Names { from: None, to: None, .. }, pose }] = &found.poses[..] else { return found };
     let Some(frames) = ends::world_frames_of_file(path) else { return found };
     let is_place = frames.to.as_deref() == Some("world");
-    let pose = if is_place { pose.clone() } else { pose.inverse() };
+    let pose = if is_place { *pose } else { pose.inverse() };
     let from = if is_place { frames.from } else { frames.to };
     found.poses = vec![NamedPose { names: Names { name: None, from, to: Some("world".into()) }, pose }];
     const SAID: &str = "Its name says that it is the pose of a camera in the world (camera to world), which was not used as extrinsics between two cameras. If it is, name the file depth_to_color.txt or the like.";
