@@ -1,31 +1,28 @@
 /** The extrinsics to check, from the readings of their files. */
 import { basename } from "node:path";
-import { isLidar, isOfCarrier, linked } from "../rig/formats/frames.js";
+import { isBackwards, isOfCarrier, isOfRig, wayBetween } from "../rig/formats/frames.js";
 import { inverseOf } from "../rig/formats/poses.js";
 import type { NamedPose, RigReading } from "../rig/types.js";
 import type { Pose } from "../types/index.js";
 import { Mistake } from "./arguments.js";
 import type { Judged } from "./report.js";
 
-const COLOUR = /colou?r|rgb/i;
-const DEPTH = /depth|infra|\bir\b|tof/i;
-
-/** Whether names state that a pose maps colour to depth. */
-const isBackwards = ({ from = "", to = "" }: NamedPose): boolean =>
-  COLOUR.test(from) && !DEPTH.test(from) && DEPTH.test(to) && !COLOUR.test(to);
-
-const isCamera = (name: string): boolean => COLOUR.test(name) || (/cam/i.test(name) && !DEPTH.test(name));
-
-/** The poses that do not lead to what carries a sensor, or else the one between two sensors on the same carrier. */
-function betweenSensors(all: NamedPose[]): NamedPose[] {
-  const direct = all.filter((pose) => !isOfCarrier(pose));
+/**
+ * The poses between the depth camera or the LiDAR and the colour camera, or the one that a chain of the file's frames gives, or else those that
+ * do not lead to what carries a sensor.
+ */
+function betweenSensors(all: NamedPose[], field: string, warnings: Judged[]): NamedPose[] {
+  const direct = all.filter((pose) => isOfRig(pose) || (pose.from === undefined && pose.to === undefined));
   if (direct.length > 0) return direct;
-  const ends = [...new Set(all.flatMap(({ from = "", to = "" }) => [from, to]))];
-  const from = ends.find((name) => DEPTH.test(name) && !COLOUR.test(name)) ?? ends.find(isLidar);
-  const to =
-    ends.find((name) => COLOUR.test(name) && name !== from) ?? ends.find((name) => isCamera(name) && name !== from);
-  const way = from === undefined || to === undefined ? undefined : linked(all, from, to);
-  return way === undefined ? [] : [way];
+  const way = wayBetween(all);
+  if (way === undefined) return all.filter((pose) => !isOfCarrier(pose));
+  for (const frame of way.turned)
+    warnings.push({
+      code: "pose-assumed",
+      message: `${field}: the frame ${frame} was taken to have ROS's body axes (x forward, y left, z up), because its name does not say "optical".`,
+      field,
+    });
+  return [way.pose];
 }
 
 /** The refusal of a file of the places of sensors in a body, which are no extrinsics between two sensors. */
@@ -44,7 +41,7 @@ export function candidatesOf(readings: RigReading[], isInverted: boolean, warnin
     const { name } = reading;
     const all = "poses" in reading ? (reading.poses ?? []) : [];
     const ofSensors = all.filter(({ to }) => to !== "world");
-    const poses = betweenSensors(ofSensors);
+    const poses = betweenSensors(ofSensors, name, warnings);
     if (ofSensors.length > 0 && poses.length === 0) throw ofBody(name, ofSensors);
     if (poses.length < all.length && poses.length === 0)
       throw new Mistake(

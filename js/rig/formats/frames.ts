@@ -110,8 +110,20 @@ export const isLidar = (name: string): boolean => LIDAR.test(name) && !CAMERA.te
 
 /** Frames that carry sensors: the inertial unit, the body, a vehicle, a robot and its hand. */
 const CARRIER =
-  /^(?:b|body|i|imu\w*|base(?:[_ ]?(?:link|footprint))?|rig|vehicle|ego(?:[_ ]?vehicle)?|car|robot\w*|hand|gripper|flange|tool\d*|gps|ins|oxts)$/i;
+  /^(?:b|body|i|imu\w*|base(?:[_ ]?(?:link|footprint))?|rig|vehicle|ego(?:[_ ]?vehicle)?|car|robot\w*|hand|gripper|flange|tool\d*|\w+_(?:hand|gripper|flange|tool\d*)|gps|ins|oxts)$/i;
 
 /** Whether a motion relates a sensor to what carries it, so that it does not relate two sensors. */
-export const isOfCarrier = ({ from = "", to = "" }: Pick<NamedPose, "from" | "to">): boolean =>
-  CARRIER.test(from) !== CARRIER.test(to);
+export const isOfCarrier = ({ from = "", to = "" }: Ends): boolean => CARRIER.test(from) !== CARRIER.test(to);
+
+type Ends = Pick<NamedPose, "from" | "to">;
+const isColour = (name: string): boolean => COLOUR.test(name) && !DEPTH.test(name);
+const isDepth = (name: string): boolean => DEPTH.test(name) && !COLOUR.test(name);
+const isCamera = (name: string): boolean => isColour(name) || (CAMERA.test(name) && !DEPTH.test(name));
+
+/** Whether a pose leads from the colour camera to the depth camera, or from any frame to a LiDAR, by the names of its frames. */
+export const isBackwards = ({ from = "", to = "" }: Ends): boolean =>
+  (isColour(from) && isDepth(to)) || (isLidar(to) && from !== "" && !isLidar(from) && !isDepth(from));
+
+/** Whether a pose relates the depth camera or a LiDAR to the colour camera or another camera, by the names of its frames. */
+export const isOfRig = ({ from = "", to = "" }: Ends): boolean =>
+  [from, to].some((name) => isDepth(name) || isLidar(name)) && [from, to].some(isCamera);
