@@ -261,14 +261,14 @@ test("sample.mjs writes a pair and a rig that the commands read", async () => {
   run(process.execPath, [inRoot("examples/sample.mjs"), samples], inRoot());
   const { poses, cameras } = await readRigFile({
     name: "calibration.yaml",
-    bytes: readFileSync(join(samples, "calibration.yaml")),
+    bytes: readFileSync(join(samples, "rig/calibration.yaml")),
   });
   const { pose } = await sampleRig({ kind: "boxes", seed: 2 });
   assert.deepEqual([poses.length, cameras.length], [1, 2]);
   const [read, written] = [poses[0].pose, pose].map(({ matrix }) => matrix.flat());
   assert.ok(read.every((value, k) => Math.abs(value - written[k]) < 1e-12));
-  assert.equal(readdirSync(join(samples, "frames")).length, 6);
-  const { data: depths } = decodeDepth(readFileSync(join(samples, "depth.npy")));
+  assert.equal(readdirSync(join(samples, "rig/frames")).length, 6);
+  const { data: depths } = decodeDepth(readFileSync(join(samples, "pair/depth.npy")));
   assert.ok(depths.some(Number.isFinite));
   assert.throws(() => run(process.execPath, [inRoot("examples/sample.mjs")], inRoot()), /Usage/);
 });
