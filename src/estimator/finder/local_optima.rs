@@ -31,7 +31,7 @@ const SAME_OPTIMUM: f64 = 3.0;
 const ENOUGH_SUPPORT: u32 = 2;
 /// Candidates within this angle of such an optimum would only reach it again, degrees.
 const CATCHMENT: f64 = 15.0;
-/// Noise of a rival, at most, as a multiple of the winner's.
+/// Largest noise of a rival, as a multiple of the winner's.
 const RIVAL_NOISE: f64 = 1.25;
 /// Visible points of a rival, at least, as a share of the winner's.
 const RIVAL_VISIBLE: f64 = 0.5;
