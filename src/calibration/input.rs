@@ -15,7 +15,7 @@ const WIDEST: usize = 1000;
 /// Range of depth cameras, metres.
 const NEAREST: f32 = 0.1;
 const FARTHEST: f32 = 20.0;
-/// Largest usual median depth of organised clouds, metres, which LiDARs produce as well.
+/// Largest usual median depth of organised clouds, metres; LiDARs produce such clouds as well.
 const FARTHEST_OF_CLOUDS: f32 = 200.0;
 /// Depths from this value on are missing, as in all depth maps, metres: the square of larger ones overflows f32.
 const BEYOND: f32 = crate::view::FARTHEST as f32;
