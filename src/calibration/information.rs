@@ -5,8 +5,12 @@
 //! neighbours. The log likelihood is that of colours given patches over that of colours alone, the sum over points and
 //! channels of log p(c | patch) / p(c), with both densities measured in the image under the same pose.
 //!
+//! Where a scanner's intensities are known, their levels group the samples once more, with lightness as the channel: what
+//! reflects alike looks alike, whatever the curve between the two (Koide, Oishi, Yokozuka and Banno 2023).
+//!
 //! Method: histograms with linear weights, so that finite differences are smooth.
 
+use super::intensity::LEVELS;
 use super::patches::{PATCHES, Patches, Sight};
 use super::unknowns::State;
 
@@ -26,27 +30,31 @@ impl Information<'_> {
             self.0.colours(sight, state).map(|colour| colour.map_or([f32::NAN; 3], features)).collect();
         let mut joint = vec![[FLOOR; BINS]; PATCHES];
         for channel in 0..3 {
-            joint.iter_mut().for_each(|bins| bins.fill(FLOOR));
-            for (level, &patch) in features.iter().zip(&self.0.patches) {
-                if let Some((bin, share)) = split(level[channel]) {
-                    joint[patch as usize][bin] += 1.0 - share;
-                    joint[patch as usize][bin + 1] += share;
-                }
+            self.add(&features, channel, &self.0.patches, &mut joint, out);
+        }
+        if sight.frame.intensity.is_some() {
+            self.add(&features, 0, &self.0.levels, &mut joint[..LEVELS], out);
+        }
+    }
+
+    /// Adds the sum over samples of log p(c | group) / p(c) for one channel; `joint` has a row for each group.
+    fn add(&self, features: &[[f32; 3]], channel: usize, groups: &[u8], joint: &mut [[f64; BINS]], out: &mut [f64]) {
+        joint.iter_mut().for_each(|bins| bins.fill(FLOOR));
+        for (level, &group) in features.iter().zip(groups) {
+            if let (Some((bin, share)), Some(bins)) = (split(level[channel]), joint.get_mut(group as usize)) {
+                bins[bin] += 1.0 - share;
+                bins[bin + 1] += share;
             }
-            let marginal: [f64; BINS] = std::array::from_fn(|bin| joint.iter().map(|bins| bins[bin]).sum());
-            let total: f64 = marginal.iter().sum();
-            let logs: Vec<[f64; BINS]> = joint
-                .iter()
-                .map(|bins| {
-                    let own: f64 = bins.iter().sum();
-                    std::array::from_fn(|bin| (bins[bin] / own / (marginal[bin] / total)).ln())
-                })
-                .collect();
-            for ((level, &patch), &tile) in features.iter().zip(&self.0.patches).zip(&self.0.tiles) {
-                if let Some((bin, share)) = split(level[channel]) {
-                    let logs = &logs[patch as usize];
-                    out[tile as usize] += (1.0 - share) * logs[bin] + share * logs[bin + 1];
-                }
+        }
+        let marginal: [f64; BINS] = std::array::from_fn(|bin| joint.iter().map(|bins| bins[bin]).sum());
+        let total: f64 = marginal.iter().sum();
+        for bins in joint.iter_mut() {
+            let own: f64 = bins.iter().sum();
+            *bins = std::array::from_fn(|bin| (bins[bin] / own / (marginal[bin] / total)).ln());
+        }
+        for ((level, &group), &tile) in features.iter().zip(groups).zip(&self.0.tiles) {
+            if let (Some((bin, share)), Some(logs)) = (split(level[channel]), joint.get(group as usize)) {
+                out[tile as usize] += (1.0 - share) * logs[bin] + share * logs[bin + 1];
             }
         }
     }
