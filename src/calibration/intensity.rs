@@ -1,6 +1,6 @@
 //! Intensities of a scanner's returns as levels of equal count (histogram equalisation).
 //!
-//! Scanners store the strength of a return in units of their own, often as a curved function of reflectivity. Mutual
+//! Every scanner stores the strength of a return in another unit, often as a curved function of reflectivity. Mutual
 //! information with the image needs no unit: only the order of the intensities counts (Koide, Oishi, Yokozuka and Banno
 //! 2023).
 
