@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use crate::numeric::eigen::symmetric_eigen;
 
 use super::frame::Frame;
-use super::intensity::{UNKNOWN, equalise};
+use super::intensity::{UNKNOWN, levels};
 
 /// Neighbours to each side in the fit of a plane: enough to average the steps of a quantised map.
 const REACH: usize = 3;
@@ -33,7 +33,9 @@ pub(super) fn samples(frame: &Frame, most: usize) -> Vec<Sample> {
     let places = rows.flat_map(|row| (stride / 2..grid.width).step_by(stride).map(move |column| (column, row)));
     let mut samples: Vec<Sample> = places.filter_map(|(column, row)| sample(frame, column, row)).collect();
     if let Some(intensity) = &frame.intensity {
-        equalise(&mut samples, intensity);
+        let of = |sample: &Sample| intensity.get(sample.index).copied().unwrap_or(f32::NAN);
+        let own: Vec<f32> = samples.iter().map(of).collect();
+        samples.iter_mut().zip(levels(&own)).for_each(|(sample, level)| sample.level = level);
     }
     samples
 }
