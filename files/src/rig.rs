@@ -192,6 +192,7 @@ impl Reader {
             depth_size,
             unit: (!matches!(depth.samples, DepthSamples::Cloud(_))).then_some(depth.unit),
             depth: depth.samples,
+            intensity: None,
             depth_mask: None,
             depth_camera: None,
         };
