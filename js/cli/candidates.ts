@@ -25,11 +25,11 @@ function betweenSensors(all: NamedPose[], field: string, warnings: Judged[]): Na
   return [way.pose];
 }
 
-/** The refusal of a file of the places of sensors in a body, which are no extrinsics between two sensors. */
+/** The refusal of a file of poses between a sensor and what carries it or what it looks at, which are no extrinsics between two sensors. */
 function ofBody(file: string, poses: NamedPose[]): Mistake {
   const { name, from, to } = poses[0] as NamedPose;
   return new Mistake(
-    `${file}: ${name === undefined ? "it" : `its "${name}"`} relates ${from} to ${to}, which carries it (an inertial unit, a body, a vehicle or a robot); extrinsics relate the depth camera or the LiDAR to the colour camera. Give that pose as a 4x4 matrix, in a file named depth_to_color.txt or lidar_to_camera.txt`,
+    `${file}: ${name === undefined ? "it" : `its "${name}"`} relates ${from} to ${to}, one of which is no sensor of the pictures (but an inertial unit, a body, a vehicle, a robot or a calibration target); extrinsics relate the depth camera or the LiDAR to the colour camera. Give that pose as a 4x4 matrix, in a file named depth_to_color.txt or lidar_to_camera.txt`,
     "file",
   );
 }

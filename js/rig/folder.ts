@@ -249,7 +249,7 @@ export function withoutInertial(poses: NamedPose[], warnings: ReaderWarning[]): 
   return poses.filter((pose) => !isInertial(pose));
 }
 
-/** Leaves out the places of sensors in a body, a vehicle or a robot, which relate no two sensors; poses between these are known by then. */
+/** Leaves out poses between a sensor and a body, a vehicle, a robot or a target, which relate no two sensors; poses between these are known by then. */
 function withoutCarriers(poses: NamedPose[], warnings: ReaderWarning[]): NamedPose[] {
   const left = new Set(poses.filter(isOfCarrier).map(({ from, to }) => `${from} to ${to}`));
   if (left.size === 0) return poses;
@@ -258,10 +258,28 @@ function withoutCarriers(poses: NamedPose[], warnings: ReaderWarning[]): NamedPo
   warnings.push(
     warning(
       "pose-left-out",
-      `The places of sensors in what carries them were not used as extrinsics: ${names}${more}.`,
+      `Poses between a sensor and what carries it, or what it looks at, were not used as extrinsics: ${names}${more}.`,
     ),
   );
   return poses.filter((pose) => !isOfCarrier(pose));
+}
+
+/** Names of files of a lens's coefficients alone: "color_dist.npy", "D_color.txt", "distortion.txt". */
+const LENS_FILE = /(?:^|[_.-])(?:d|(?:camera)?dist(?:ortion)?(?:[_-]?coeff?\w*)?|coeffs?)(?=[_.-])/i;
+
+/** The lens of a file that was left out is missing from its camera. */
+function doubtLenses(warnings: ReaderWarning[]): void {
+  for (const { code, file } of [...warnings])
+    if (code === "file-left-out" && typeof file === "string" && LENS_FILE.test(file.replace(/^.*[/\\]/, "")))
+      warnings.push(
+        ofFile(
+          file,
+          warning(
+            "distortion-unused",
+            "By its name it holds the distortion of a lens, which was not used. Write the camera's intrinsics and distortion into one file.",
+          ),
+        ),
+      );
 }
 
 /** The poses of a file that are not of the world; a camera without a name is called as its file there, too. */
@@ -380,6 +398,7 @@ export async function readRigFolder(files: NamedFile[], options: FolderOptions =
   const assign = (each: RigFolder) => assigned(each, { paths: paths.map(({ name }) => name), isAligned: allAligned });
   if (own.length > 0 && frames.length > 0) assignOwn(folder, own, assign);
   else Object.assign(folder, assign(withTexts(folder, own)));
+  doubtLenses(folder.warnings);
   if (frames.length > 0) folder.poses = withoutCarriers(folder.poses, folder.warnings);
   folder.poses = posesForClouds(folder.poses, frames, folder.warnings);
   if (frames.length === 0) sayUnpaired(pictures, folder.warnings);

@@ -115,7 +115,7 @@ describe("places of a camera in a body or in the world", () => {
     ]) {
       const { status, stderr } = check(name, content);
       assert.equal(status, 3, stderr);
-      assert.match(stderr, /which carries it .*depth_to_color\.txt/s);
+      assert.match(stderr, /is no sensor of the pictures .*depth_to_color\.txt/s);
     }
     const { status, stderr } = check("c2w.txt", numbersOf(matrix));
     assert.equal(status, 3);

@@ -8,7 +8,7 @@ import { type Frames, isOfWorld, named, worldFrames } from "./ends.js";
 import { inverseOf } from "./poses.js";
 
 const SENSOR =
-  /cam|rgb|colou?r|depth|dpt|infra|(?:^|[_-])ir(?:[_-]|$)|tof|lidar|velo|laser|ouster|livox|radar|imu|base|hand|gripper|left|right/i;
+  /cam|rgb|colou?r|depth|dpt|infra|(?:^|[_-])ir(?:[_-]|$)|tof|lidar|velo|laser|ouster|livox|radar|imu|base|hand|gripper|left|right|tag|marker|board|target|pattern|object|table/i;
 /** Words before and after the frames. */
 const AROUND =
   /^(?:calib(?:ration)?|extrinsics?|transform|tf|pose|rt)[_-]+|[_-]+(?:calib(?:ration)?|extrinsics?|transform|tf|pose|rt)$/gi;
@@ -28,9 +28,9 @@ export function endsOf(path: string): { from: string; to: string } | undefined {
   return from === to ? undefined : { from, to };
 }
 
-/** Names of files that are those of poses of the camera in the world: "pose.txt", "frame-000000.pose.txt", "camera_pose.npy". */
+/** Names of files that are those of poses of the camera in the world: "pose.txt", "frame-000000.pose.txt", "camera_pose.npy", "tag_pose.txt". */
 const PLACE =
-  /^(?:(?:frame|image|img|rgb|colou?r|depth|camera|cam|gt|abs(?:olute)?)?[_.-]*\d*[_.-]*){0,3}poses?[_.-]*\d*$/i;
+  /^(?:(?:frame|image|img|rgb|colou?r|depth|camera|cam|gt|abs(?:olute)?|obj(?:ect)?|tag|marker|board|target)?[_.-]*\d*[_.-]*){0,3}poses?[_.-]*\d*$/i;
 
 /** The frames of a file called as a pose of the camera in the world, or whose folder is: "c2w/0.txt", "T_world_camera.txt". */
 function ofWorldName(path: string): Frames | undefined {

@@ -108,11 +108,11 @@ export function linked(poses: readonly NamedPose[], from: string, to: string): N
 /** Whether a frame is a LiDAR's, by its name. */
 export const isLidar = (name: string): boolean => LIDAR.test(name) && !CAMERA.test(name);
 
-/** Frames that carry sensors: the inertial unit, the body, a vehicle, a robot and its hand. */
+/** Frames of no camera and no LiDAR: the inertial unit, the body, a vehicle, a robot and its hand, and what a calibration looks at. */
 const CARRIER =
-  /^(?:b|body|i|imu\w*|base(?:[_ ]?(?:link|footprint))?|rig|vehicle|ego(?:[_ ]?vehicle)?|car|robot\w*|hand|gripper|flange|tool\d*|\w+_(?:hand|gripper|flange|tool\d*)|gps|ins|oxts)$/i;
+  /^(?:b|body|i|imu\w*|base(?:[_ ]?(?:link|footprint))?|rig|vehicle|ego(?:[_ ]?vehicle)?|car|robot\w*|hand|gripper|flange|tool\d*|\w+_(?:hand|gripper|flange|tool\d*)|gps|ins|oxts|(?:april|aru|charu)\w*|tag\w*|marker\w*|(?:chess|checker|calib\w*)?_?board|target|pattern|object|table)$/i;
 
-/** Whether a motion relates a sensor to what carries it, so that it does not relate two sensors. */
+/** Whether a motion relates a sensor to what carries it or what it looks at, so that it does not relate two sensors. */
 export const isOfCarrier = ({ from = "", to = "" }: Ends): boolean => CARRIER.test(from) !== CARRIER.test(to);
 
 type Ends = Pick<NamedPose, "from" | "to">;

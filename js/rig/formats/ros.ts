@@ -143,7 +143,10 @@ const QUATERNION = /Quaternion\s*(?:\(xyzw\)\s*)?\[([^\]\n]{1,200})\]/;
 export const isEcho = (text: string): boolean =>
   TRIPLE.test(text.slice(0, REACH)) && QUATERNION.test(text.slice(0, REACH));
 
-/** The first transform of tf_echo's print, which does not name the frames. */
+/** tf2_echo waits for the pose of its second frame in its first one, and says so. */
+const WAITS = /Waiting for transform (\S{1,80}) -> +(\S{1,80}?):? /;
+
+/** The first transform of tf_echo's print, which names the frames only while it waits. */
 export function readEcho(text: string): Calibration {
   const warnings: ReaderWarning[] = [];
   const numbers = (pattern: RegExp, count: number): Numbers => {
@@ -152,9 +155,11 @@ export function readEcho(text: string): Calibration {
       throw badFile(`its transform does not have ${count} numbers where they are needed`);
     return found;
   };
+  const [, to, from] = WAITS.exec(text.slice(0, REACH)) ?? [];
+  const names = from !== undefined && to !== undefined ? { from, to } : {};
   return {
     cameras: [],
-    poses: [motion(ofQuaternion(numbers(QUATERNION, 4), warnings), numbers(TRIPLE, 3), {}, warnings)],
+    poses: [motion(ofQuaternion(numbers(QUATERNION, 4), warnings), numbers(TRIPLE, 3), names, warnings)],
     warnings,
   };
 }

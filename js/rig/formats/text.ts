@@ -108,10 +108,16 @@ async function ofTable({ rows, isSeries }: { rows: Node[]; isSeries: boolean }, 
   return { ...found, warnings: [...new Map([...found.warnings].reverse().map((each) => [each.code, each])).values()] };
 }
 
+/** MVSNet's "extrinsic" beside "intrinsic" is the pose of the world in that camera. */
+function ofViews({ extrinsic, ...notes }: Node): Node {
+  if (extrinsic === undefined) return notes;
+  return notes.intrinsic === undefined ? { ...notes, extrinsic } : { ...notes, world_to_camera: extrinsic };
+}
+
 /** Numbers with labels; undefined where there is neither a camera nor a pose among them. */
 function ofNotes(text: string): Read | undefined {
   const notes = text.length > MOST_SETTINGS ? undefined : readNotes(text);
-  const found = notes === undefined ? undefined : searchTree(notes, text);
+  const found = notes === undefined ? undefined : searchTree(ofViews(notes), text);
   if (found === undefined || found.cameras.length + found.poses.length === 0) return undefined;
   return { ...found, format: "numbers with labels" };
 }
