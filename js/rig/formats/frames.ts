@@ -115,7 +115,7 @@ const CARRIER =
 /** Whether a motion relates a sensor to what carries it or what it looks at, so that it does not relate two sensors. */
 export const isOfCarrier = ({ from = "", to = "" }: Ends): boolean => CARRIER.test(from) !== CARRIER.test(to);
 
-type Ends = Pick<NamedPose, "from" | "to">;
+type Ends = { from?: string | undefined; to?: string | undefined };
 const isColour = (name: string): boolean => COLOUR.test(name) && !DEPTH.test(name);
 const isDepth = (name: string): boolean => DEPTH.test(name) && !COLOUR.test(name);
 const isCamera = (name: string): boolean => isColour(name) || (CAMERA.test(name) && !DEPTH.test(name));
