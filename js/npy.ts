@@ -93,8 +93,7 @@ interface Shape {
   isChannelFirst: boolean;
 }
 
-/** Rows, columns and channels of a shape; axes of length 1 around an image count for nothing. */
-function shapeOf(listed: string): Shape {
+function axesOf(listed: string): number[] {
   const parts = listed
     .split(",")
     .map((part) => part.trim())
@@ -102,7 +101,12 @@ function shapeOf(listed: string): Shape {
   // Nothing but digits: Number() would also take "2.5", "-2" and "0x2".
   if (!parts.every((axis) => /^[0-9]+$/.test(axis) && Number(axis) > 0))
     throw bad(`this .npy file has the shape (${listed.trim()}); whole numbers above zero are needed`);
-  const axes = parts.map(Number);
+  return parts.map(Number);
+}
+
+/** Rows, columns and channels of some axes; those of length 1 around an image count for nothing. */
+function shapeOf(all: readonly number[]): Shape {
+  const axes = all.slice();
   // Batch and channel of a tensor.
   if (axes.length === 4 && axes[0] === 1 && axes[1] === 1) axes.splice(0, 2);
   while (axes.length > 3 && axes[0] === 1) axes.shift();
@@ -128,7 +132,7 @@ interface Header {
   kind: Kind;
   isBigEndian: boolean;
   byColumns: boolean;
-  shape: Shape;
+  axes: number[];
   /** Where the data begin. */
   end: number;
 }
@@ -148,8 +152,29 @@ function headerOf(bytes: Uint8Array): Header {
   if (kind === undefined) throw bad(refusal(written));
   const columns = /'fortran_order': (True|False)/.exec(header)?.[1];
   if (!columns) throw bad("this .npy file has no fortran_order");
-  const shape = shapeOf(/'shape': \(([^)]*)\)/.exec(header)?.[1] ?? "");
-  return { type, kind, isBigEndian: order === ">", byColumns: columns === "True", shape, end };
+  const axes = axesOf(/'shape': \(([^)]*)\)/.exec(header)?.[1] ?? "");
+  return { type, kind, isBigEndian: order === ">", byColumns: columns === "True", axes, end };
+}
+
+/** So many elements in the order in which they are stored. */
+function elementsOf(bytes: Uint8Array, { kind, isBigEndian, end }: Header, count: number): Pixels {
+  // A copy, because typed arrays need aligned memory; the slice of a Node Buffer would be only a view.
+  const body = new Uint8Array(bytes.subarray(end));
+  if (body.byteLength < count * kind.size)
+    throw bad(`this .npy file is cut off: ${body.byteLength} of ${count * kind.size} bytes`);
+  if (isBigEndian && kind.size > 1) swap(body, kind.size);
+  return kind.read(body.buffer, count);
+}
+
+/** An array of at most two axes and so many numbers, as those of a calibration, row by row; undefined for others, of which `axes` tells. */
+export function readSmall(bytes: Uint8Array, most: number): { axes: number[]; values?: number[] } {
+  const header = headerOf(bytes);
+  const axes = header.axes.filter((length, at, all) => length > 1 || all.length <= 2 || at < 1);
+  const count = axes.reduce((product, length) => product * length, 1);
+  if (axes.length > 2 || count > most) return { axes };
+  const [height = 1, width = 1] = axes;
+  const read = elementsOf(bytes, header, count);
+  return { axes, values: Array.from(header.byColumns ? inRows(read, height, width, 1) : read, Number) };
 }
 
 /** Two or three planes without a value below zero are not a cloud; with values above 1 they are not colours either. */
@@ -161,15 +186,10 @@ const isStack = (data: Pixels): boolean =>
  * than 16 bits become 32-bit floats.
  */
 export function readNpy(bytes: Uint8Array): Raster<Pixels> & { type: string } {
-  const { type, kind, isBigEndian, byColumns, shape, end } = headerOf(bytes);
-  const { height, width, channels, isChannelFirst } = shape;
-  const count = height * width * channels;
-  // A copy, because typed arrays need aligned memory; the slice of a Node Buffer would be only a view.
-  const body = new Uint8Array(bytes.subarray(end));
-  if (body.byteLength < count * kind.size)
-    throw bad(`this .npy file is cut off: ${body.byteLength} of ${count * kind.size} bytes`);
-  if (isBigEndian && kind.size > 1) swap(body, kind.size);
-  const read = kind.read(body.buffer, count);
+  const header = headerOf(bytes);
+  const { type, kind, byColumns } = header;
+  const { height, width, channels, isChannelFirst } = shapeOf(header.axes);
+  const read = elementsOf(bytes, header, height * width * channels);
   if (!isChannelFirst)
     return { width, height, channels, type, data: byColumns ? inRows(read, height, width, channels) : read };
   if ((channels === 2 || channels === 3) && kind.size > 1 && isStack(read))

@@ -12,7 +12,7 @@ import { colmapText } from "./formats/colmap-others.js";
 import { type RasterKind, rasterKind } from "./formats/headerless.js";
 import { readJpeg, readWebp } from "./formats/jpeg.js";
 import { MOST_BYTES } from "./formats/limits.js";
-import { matrixText } from "./formats/npy-matrix.js";
+import { archiveText, matrixText } from "./formats/npy-matrix.js";
 import { npyPicture, npzPicture } from "./formats/npy.js";
 import type { Cloud, Picture, Points } from "./formats/picture.js";
 import { pngPicture } from "./formats/png.js";
@@ -63,7 +63,8 @@ export const isRasterFile = (bytes: Uint8Array): boolean => rasterKind(bytes) !=
 /** Whether a file is a text, or a binary calibration that is read as one. */
 export const isTextFile = (bytes: Uint8Array): boolean => (textOf(bytes) ?? writtenOf(bytes)) !== undefined;
 /** A binary calibration as the text with the same content. */
-const writtenOf = (bytes: Uint8Array): string | undefined => colmapText(bytes) ?? matrixText(bytes);
+const writtenOf = (bytes: Uint8Array): string | undefined =>
+  colmapText(bytes) ?? matrixText(bytes) ?? archiveText(bytes);
 
 /** A picture as what it holds, or as what is asked for. */
 export function ofPicture(name: string, picture: Picture, options: ReadOptions): Content {
@@ -100,10 +101,10 @@ async function ofText(file: string, text: string, { as }: ReadOptions): Promise<
 /** A file without known first bytes: raw pixels of a given size, headerless points, or a text. */
 async function ofOthers({ name, bytes }: NamedFile, isPoints: boolean, options: ReadOptions): Promise<Content> {
   const { knownContainer, knownText } = await refusals();
-  const container = knownContainer(name, bytes);
+  const written = writtenOf(bytes);
+  const container = written === undefined ? knownContainer(name, bytes) : undefined;
   if (container !== undefined) throw container;
   if (options.size !== undefined && isRawName(name)) return ofPicture(name, readRaw(bytes, options.size), options);
-  const written = writtenOf(bytes);
   if (written !== undefined) return ofText(name, written, options);
   const text = textOf(bytes);
   const scan = isPoints || (text === undefined && /\.bin$/i.test(name)) ? (await clouds()).readBin(bytes) : undefined;

@@ -18,8 +18,8 @@ const TO_THE_METRE =
 /** nerfstudio, instant-ngp, librealsense, Kimera: metres to the stored unit. */
 const METRES =
   "depth_unit_scale_factor|integer_depth_scale|depth_?units?(?:_m|_in_met(?:re|er)s)?|depth_to_met(?:re|er)s?(?:_factor)?|met(?:re|er)s_per_unit";
-/** RealSense: metres; Open3D and others: to the metre; BOP: millimetres. */
-const EITHER = "depth_?scale(?:_factor)?";
+/** RealSense, also as "Depth Scale is: 0.001": metres; Open3D and others: to the metre; BOP: millimetres. */
+const EITHER = "depth[_ ]?scale(?:_factor| is)?";
 
 /** Replica's cameras as NICE-SLAM has them: stored units to the metre as the "scale" of the camera; smaller ones scale pictures. */
 const [OF_CAMERA, LEAST_SCALE] = [/(?<![a-z_.])scale["']?\s*[:=]\s*(\d+(?:\.\d*)?)(?![\w.])/gi, 1000];
