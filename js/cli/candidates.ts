@@ -8,8 +8,8 @@ import { Mistake } from "./arguments.js";
 import type { Judged } from "./report.js";
 
 /**
- * The poses between the depth camera or the LiDAR and the colour camera, or the one that a chain of the file's frames gives, or else those that
- * do not lead to what carries a sensor.
+ * The poses between the depth camera or the LiDAR and the colour camera. Where the file has none, the one that follows from a chain of its
+ * frames; without such a chain, all poses but those of bodies and targets.
  */
 function betweenSensors(all: NamedPose[], field: string, warnings: Judged[]): NamedPose[] {
   const direct = all.filter((pose) => isOfRig(pose) || (pose.from === undefined && pose.to === undefined));

@@ -8,17 +8,17 @@ import { block, frac, log, mi, mn, mo, row, shading, sub, sup, symbol } from "..
 export const paint: Lesson = {
   id: "paint",
   title: "Shadows and paint",
-  gist: "The image model ignores shadows and assumes a single albedo. Chromaticity separates albedo from shading, but a shadow looks like dark paint.",
+  gist: "The image model ignores shadows and assumes one albedo. Chromaticity separates paint from shading, but not from shadow.",
   formula: () => block(log(symbol("S")), mo("="), symbol("aj"), mo("+"), shading(), mo("+"), symbol("ej")),
   formulaWords: "The log intensity of colour j is its log albedo plus its shading plus a remainder.",
   text: [
     "Print is not shape. A model with a single albedo would interpret every painted edge as a fold. So once the pose has converged, the program tests whether a few different albedos explain the picture better: each pixel has the shading of its measured normal plus one of a few offsets {aj}, one number for each colour. The evidence in the picture decides how many albedos there are.",
     "Chromaticity decides: coloured paint changes red, green and blue by different amounts, while shading under whitish light changes them almost equally. Grey paint is harder to separate, and any paint is harder to separate under light of many colours.",
-    "A cast shadow violates the model, because the light there is different. But a shadow that darkens red, green and blue by the same factor has the same effect on a pixel as dark paint, so the program takes nearly all of it for albedo. The remainder {ej} is largest at the rim of the shadow, where robust weights reduce the influence of the pixels. The estimated albedo then follows the shadow as well as the paint, and the status does not warn of it.",
+    "A cast shadow violates the model, because the light there is different. But a shadow that darkens red, green and blue by the same factor has the same effect on a pixel as dark paint, so the program takes nearly all of it for albedo. The remainder {ej} is largest at the edge of the shadow, where robust weights reduce the influence of the pixels. The estimated albedo then follows the shadow as well as the paint, and the status does not warn of it.",
   ],
   tasks: [
     "Raise the strength of the paint. It appears in the albedo and disappears from the shading.",
-    "Remove the paint and deepen the shadow. Nearly all of it appears in the albedo, and its rim in the remainder.",
+    "Remove the paint and deepen the shadow. Nearly all of it appears in the albedo, and its edge in the remainder.",
     "Deepen the shadow with the paint at 0.8. The correlation of albedo and paint falls, but the status is still converged.",
     "Choose the coloured lamps: chromaticity is now less informative, and the normals get worse.",
   ],
