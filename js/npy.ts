@@ -26,28 +26,38 @@ const MOST_CHANNELS = 4;
 
 export const isNpy = (bytes: Uint8Array): boolean => [...MAGIC].every((letter, i) => bytes[i] === letter.charCodeAt(0));
 
+type Whole = Int8Array | Int16Array | Int32Array | Uint32Array | BigInt64Array | BigUint64Array;
+/** The elements as they are stored. */
+type Stored = Pixels | Float64Array | Whole;
+
 interface Kind {
   /** Bytes of an element. */
   size: number;
   /** `count` elements of aligned memory in this machine's order. */
-  read: (memory: ArrayBuffer, count: number) => Pixels;
+  read: (memory: ArrayBuffer, count: number) => Stored;
 }
 
-const floats = (values: ArrayLike<number>): Float32Array => new Float32Array(values);
 const KINDS: Record<string, Kind> = {
   f2: { size: 2, read: (memory, count) => Float32Array.from(new Uint16Array(memory, 0, count), half) },
   f4: { size: 4, read: (memory, count) => new Float32Array(memory, 0, count) },
-  f8: { size: 8, read: (memory, count) => floats(new Float64Array(memory, 0, count)) },
-  i1: { size: 1, read: (memory, count) => floats(new Int8Array(memory, 0, count)) },
-  i2: { size: 2, read: (memory, count) => floats(new Int16Array(memory, 0, count)) },
-  i4: { size: 4, read: (memory, count) => floats(new Int32Array(memory, 0, count)) },
-  i8: { size: 8, read: (memory, count) => Float32Array.from(new BigInt64Array(memory, 0, count), Number) },
+  f8: { size: 8, read: (memory, count) => new Float64Array(memory, 0, count) },
+  i1: { size: 1, read: (memory, count) => new Int8Array(memory, 0, count) },
+  i2: { size: 2, read: (memory, count) => new Int16Array(memory, 0, count) },
+  i4: { size: 4, read: (memory, count) => new Int32Array(memory, 0, count) },
+  i8: { size: 8, read: (memory, count) => new BigInt64Array(memory, 0, count) },
   u1: { size: 1, read: (memory, count) => new Uint8Array(memory, 0, count) },
   u2: { size: 2, read: (memory, count) => new Uint16Array(memory, 0, count) },
-  u4: { size: 4, read: (memory, count) => floats(new Uint32Array(memory, 0, count)) },
-  u8: { size: 8, read: (memory, count) => Float32Array.from(new BigUint64Array(memory, 0, count), Number) },
+  u4: { size: 4, read: (memory, count) => new Uint32Array(memory, 0, count) },
+  u8: { size: 8, read: (memory, count) => new BigUint64Array(memory, 0, count) },
   b1: { size: 1, read: (memory, count) => new Uint8Array(memory, 0, count) },
 };
+
+/** Types that a raster does not have become 32-bit floats. */
+function pixelsOf(stored: Stored): Pixels {
+  if (stored instanceof Uint8Array || stored instanceof Uint16Array || stored instanceof Float32Array) return stored;
+  if (stored instanceof BigInt64Array || stored instanceof BigUint64Array) return Float32Array.from(stored, Number);
+  return new Float32Array(stored);
+}
 
 /** What to do about types that are not read. */
 function refusal(type: string): string {
@@ -65,7 +75,7 @@ function swap(body: Uint8Array, size: number): void {
 }
 
 /** Converts data from column order (the first index runs fastest) to row order. */
-function inRows<T extends Pixels>(data: T, height: number, width: number, channels: number): T {
+function inRows<T extends Pixels | number[]>(data: T, height: number, width: number, channels: number): T {
   const rows = data.slice() as T;
   for (let row = 0; row < height; row++) {
     for (let column = 0; column < width; column++) {
@@ -157,7 +167,7 @@ function headerOf(bytes: Uint8Array): Header {
 }
 
 /** So many elements in the order in which they are stored. */
-function elementsOf(bytes: Uint8Array, { kind, isBigEndian, end }: Header, count: number): Pixels {
+function elementsOf(bytes: Uint8Array, { kind, isBigEndian, end }: Header, count: number): Stored {
   // A copy, because typed arrays need aligned memory; the slice of a Node Buffer would be only a view.
   const body = new Uint8Array(bytes.subarray(end));
   if (body.byteLength < count * kind.size)
@@ -173,8 +183,8 @@ export function readSmall(bytes: Uint8Array, most: number): { axes: number[]; va
   const count = axes.reduce((product, length) => product * length, 1);
   if (axes.length > 2 || count > most) return { axes };
   const [height = 1, width = 1] = axes;
-  const read = elementsOf(bytes, header, count);
-  return { axes, values: Array.from(header.byColumns ? inRows(read, height, width, 1) : read, Number) };
+  const values = Array.from<number | bigint, number>(elementsOf(bytes, header, count), Number);
+  return { axes, values: header.byColumns ? inRows(values, height, width, 1) : values };
 }
 
 /** Two or three planes without a value below zero are not a cloud; with values above 1 they are not colours either. */
@@ -189,7 +199,7 @@ export function readNpy(bytes: Uint8Array): Raster<Pixels> & { type: string } {
   const header = headerOf(bytes);
   const { type, kind, byColumns } = header;
   const { height, width, channels, isChannelFirst } = shapeOf(header.axes);
-  const read = elementsOf(bytes, header, height * width * channels);
+  const read = pixelsOf(elementsOf(bytes, header, height * width * channels));
   if (!isChannelFirst)
     return { width, height, channels, type, data: byColumns ? inRows(read, height, width, channels) : read };
   if ((channels === 2 || channels === 3) && kind.size > 1 && isStack(read))

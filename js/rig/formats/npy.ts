@@ -5,6 +5,7 @@ import type { Pixels } from "../../raster.js";
 import { FEWEST_POINTS, columnOf, pointsOf } from "./channels.js";
 import { isImage, sizeOfCount } from "./grid.js";
 import { checkSize } from "./limits.js";
+import { DEPTH } from "./npy-matrix.js";
 import type { Picture } from "./picture.js";
 import type { ReaderWarning } from "../warnings.js";
 import { entriesOf, unpacked } from "./zip.js";
@@ -45,7 +46,7 @@ export function npyPicture(bytes: Uint8Array, check = checkSize): Picture {
 }
 
 /** Names of arrays that hold depths, the clearest first. */
-const DEPTHS = [/^(?:depth|depths|depth_?map|depth_?image)$/i, /depth|dpt/i, /^(?:z|range|xyz|points?|cloud)$/i];
+const DEPTHS = [DEPTH, /depth|dpt/i, /^(?:z|range|xyz|points?|cloud)$/i];
 
 /** The array of an archive that holds the depth map, by its name; the only array of an archive may have any name. */
 export function npzPicture(bytes: Uint8Array): Picture {
