@@ -12,10 +12,11 @@ import { ofNamedPictures } from "./around.js";
 import { isOfCarrier } from "./formats/frames.js";
 import { isRawName } from "./formats/raw.js";
 import { areFives, isVaried, nameOf, sampled } from "./guess.js";
+import { type LensFile, doubtLenses, giveLenses, lensOf } from "./lens-files.js";
 import { type Pair, type Pairs, tum } from "./lists.js";
 import { key, stem } from "./names.js";
 import { pairsOf, sayUnpaired } from "./pairs.js";
-import { type TextOfFrame, assignOwn, split } from "./perframe.js";
+import { type TextOfFrame, assignOwn, frameOf, split } from "./perframe.js";
 import { checkNamed, isRasterFile, isTextFile, metresPerUnit, pixelSize, readRigFile } from "./read.js";
 import { isAligned, isOther, roleOf } from "./roles.js";
 import { posesForClouds } from "./turned.js";
@@ -215,7 +216,9 @@ const checkOptions = object({ unit: metresPerUnit, size: pixelSize, frames: fram
 interface Sorted {
   pictures: NamedFile[];
   texts: NamedFile[];
-  /** What is neither. */
+  /** The coefficients of lenses alone. */
+  lenses: LensFile[];
+  /** What is none of these. */
   others: NamedFile[];
 }
 
@@ -224,8 +227,13 @@ function sortedFiles(files: NamedFile[]): Sorted {
   const kept = files
     .map(({ name, bytes }) => ({ name: name.replace(/\\/g, "/").replace(/^\.\//, ""), bytes }))
     .filter(({ name }) => ELSEWHERE.test(name) || !IGNORED.test(name));
-  const found: Sorted = { pictures: [], texts: [], others: [] };
+  const found: Sorted = { pictures: [], texts: [], lenses: [], others: [] };
   for (const file of kept) {
+    const lens = lensOf(file);
+    if (lens !== undefined) {
+      found.lenses.push(lens);
+      continue;
+    }
     const isText = !isRasterFile(file.bytes) && isTextFile(file.bytes);
     const isRaw = !isText && isRawName(file.name) && roleOf(file.name) === "depth";
     if (isRasterFile(file.bytes) || isRaw) found.pictures.push(file);
@@ -264,24 +272,6 @@ function withoutCarriers(poses: NamedPose[], warnings: ReaderWarning[]): NamedPo
   return poses.filter((pose) => !isOfCarrier(pose));
 }
 
-/** Names of files of a lens's coefficients alone: "color_dist.npy", "D_color.txt", "distortion.txt". */
-const LENS_FILE = /(?:^|[_.-])(?:d|(?:camera)?dist(?:ortion)?(?:[_-]?coeff?\w*)?|coeffs?)(?=[_.-])/i;
-
-/** The lens of a file that was left out is missing from its camera. */
-function doubtLenses(warnings: ReaderWarning[]): void {
-  for (const { code, file } of [...warnings])
-    if (code === "file-left-out" && typeof file === "string" && LENS_FILE.test(file.replace(/^.*[/\\]/, "")))
-      warnings.push(
-        ofFile(
-          file,
-          warning(
-            "distortion-unused",
-            "By its name it holds the distortion of a lens, which was not used. Write the camera's intrinsics and distortion into one file.",
-          ),
-        ),
-      );
-}
-
 /** The poses of a file that are not of the world; a camera without a name is called as its file there, too. */
 export function ofRig(text: Extract<RigReading, { poses: NamedPose[] }>, file: string): NamedPose[] {
   const isUnnamed = text.kind === "cameras" && text.cameras.length === 1 && text.cameras[0]?.name === undefined;
@@ -302,7 +292,7 @@ const placeOfFrame = (): ReaderWarning =>
   );
 
 /** What the texts of a folder hold: cameras, what relates them, and the unit of the depth maps; `own` has the texts of single frames. */
-async function calibrationOf({ texts, others }: Sorted, frames: ReadonlySet<string>, reader: FolderReader) {
+async function calibrationOf({ texts, others, lenses }: Sorted, frames: ReadonlySet<string>, reader: FolderReader) {
   const found: TextOfFrame[] = [];
   let depthUnit: number | undefined;
   for (const file of [...texts, ...others]) {
@@ -319,6 +309,7 @@ async function calibrationOf({ texts, others }: Sorted, frames: ReadonlySet<stri
     if (frames.has(key(file.name)) && poses.some(({ from, to }) => from === undefined && to === undefined))
       reader.warnings.push(ofFile(file.name, placeOfFrame()));
   }
+  reader.readings.push(...giveLenses(lenses, found, reader.warnings));
   const isLeft = withoutInertial(
     found.flatMap(({ poses }) => poses),
     reader.warnings,
@@ -432,7 +423,7 @@ export function assigned(folder: RigFolder, { paths, isAligned }: { paths: strin
   addCameras(found, {
     isAligned,
     cameraOf: ({ name = "" }) =>
-      own.find((each) => each.name !== undefined && key(each.name) === key(name) && key(name) !== ""),
+      own.find((each) => each.name !== undefined && frameOf(each.name) === frameOf(name) && frameOf(name) !== ""),
   });
   return found;
 }

@@ -273,6 +273,28 @@ function byOrder({ colours, depths }: Sorted, warnings: ReaderWarning[]): Pairs 
   return { pairs, says: `${depths.length} pairs in their order` };
 }
 
+/** The first and last of files numbered one by one; undefined for other names. */
+function numbered(files: readonly NamedFile[]): { first: number; last: number } | undefined {
+  const numbers = [...new Set(files.map(({ name }) => key(name)))];
+  if (!numbers.every((each) => /^\d{1,9}$/.test(each))) return undefined;
+  const [first, last] = [Math.min(...numbers.map(Number)), Math.max(...numbers.map(Number))];
+  return last - first === files.length - 1 ? { first, last } : undefined;
+}
+
+/** As many images as depth maps, numbered from different starts, may belong together in their order. */
+function doubtNumbers({ colours, depths }: Sorted, warnings: ReaderWarning[]): void {
+  const [ours, theirs] = [numbered(colours), numbered(depths)];
+  if (colours.length !== depths.length || ours === undefined || theirs === undefined) return;
+  if (ours.first !== theirs.first)
+    warnings.push(
+      warning(
+        "pairs-shifted",
+        `The colour images are numbered from ${ours.first} to ${ours.last} and as many depth maps from ${theirs.first} to ${theirs.last}. Those of one number were paired, but they may belong together in their order; number both from the same start.`,
+        { colour: ours.first, depth: theirs.first },
+      ),
+    );
+}
+
 function attempt(found: Sorted, warnings: ReaderWarning[]): Pairs {
   const same = new Set(found.colours.map(({ name }) => key(name)));
   const isSame = found.depths.length > 0 && found.depths.every(({ name }) => same.has(key(name)));
@@ -283,6 +305,7 @@ function attempt(found: Sorted, warnings: ReaderWarning[]): Pairs {
   // Names that are ambiguous in full are no less ambiguous without some of their words.
   const pairs = strict.length > 0 || own.length > 0 ? strict : byNames(found, own, looseKey);
   warnings.push(...own);
+  if (pairs.length > 0) doubtNumbers(found, warnings);
   return pairs.length > 0 ? { pairs, says: `${pairs.length} pairs by their names` } : byOrder(found, warnings);
 }
 

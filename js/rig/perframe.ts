@@ -18,9 +18,13 @@ export interface TextOfFrame {
 /** Poses that differ by less are one: the digits of a file differ by less, and no rig is calibrated better. */
 const SAME = { degrees: 0.01, metres: 1e-4 };
 
+/** The frame that a file is called as: the 3D Scanner App has "frame_00000.json" beside "depth_00000.png". */
+export const frameOf = (name: string): string => key(name.replace(/frames?(?=[ _-]?\d)/gi, " "));
+
 /** Texts that belong to single frames, and the others; a single text may be called as the only frame by chance. */
 export function split(texts: TextOfFrame[], frames: ReadonlySet<string>): [own: TextOfFrame[], common: TextOfFrame[]] {
-  const isOwn = ({ file }: TextOfFrame) => key(file) !== "" && frames.has(key(file));
+  const called = new Set([...frames].map(frameOf).filter((name) => name !== ""));
+  const isOwn = ({ file }: TextOfFrame) => called.has(frameOf(file));
   const own = texts.filter(isOwn);
   // A camera without a name is called as its file, and is its frame's by that name (assign.ts).
   const isByName = own.every(
@@ -79,7 +83,7 @@ function checkPoses(heads: [frame: string, pose: NamedPose][], warnings: ReaderW
 export function assignOwn(folder: RigFolder, own: TextOfFrame[], assign: (one: RigFolder) => RigFolder): void {
   const said: ReaderWarning[] = [];
   const each = folder.frames.map((frame: CheckFrame): [string, RigFolder] => {
-    const mine = own.filter(({ file }) => key(file) === key(frame.name ?? ""));
+    const mine = own.filter(({ file }) => frameOf(file) === frameOf(frame.name ?? ""));
     const cameras = [...mine.flatMap((text) => text.cameras), ...folder.cameras];
     const poses = [...mine.flatMap((text) => text.poses), ...folder.poses];
     const one = assign({ frames: [frame], cameras, poses, readings: [], warnings: said });

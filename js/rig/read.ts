@@ -22,6 +22,7 @@ import { pointList, readTable } from "./formats/table.js";
 import { textOf } from "./formats/decode.js";
 import { kindOfPicture, nameWarnings, unitOfName } from "./recognise.js";
 import { once } from "./once.js";
+import { CONTENTS, roleOf } from "./roles.js";
 import type { NamedFile, ReadOptions, RigReading, Unnamed } from "./types.js";
 import { distinct } from "./warnings.js";
 import { inWords } from "./words.js";
@@ -108,6 +109,7 @@ async function ofOthers({ name, bytes }: NamedFile, isPoints: boolean, options: 
   if (written !== undefined) return ofText(name, written, options);
   const text = textOf(bytes);
   const scan = isPoints || (text === undefined && /\.bin$/i.test(name)) ? (await clouds()).readBin(bytes) : undefined;
+  if (scan !== undefined && roleOf(name) === "radar") throw badFile(`its name says that it holds ${CONTENTS.radar}`);
   if (scan !== undefined) return ofCloud(scan, options);
   if (isPoints) throw pointsRefused();
   const listRefused = pointList(bytes);

@@ -15,6 +15,7 @@ export type Role =
   | "confidence"
   | "normals"
   | "labels"
+  | "radar"
   | "rendering";
 
 /** Whole words only: "displayed" is not a disparity, "undistorted" not a distance. */
@@ -32,6 +33,7 @@ const SPECIAL: [Role, RegExp][] = [
       "vis|viz|visuals?|visuali[sz]ations?|colou?red|colou?ri[sz]ed|colou?r ?maps?|overlays?|previews?|thumbs?|thumbnails?|debug|heat ?maps?",
     ),
   ],
+  ["radar", whole("radars?")],
   ["disparity", whole("disps?|disparity|disparities|disparity ?maps?|inv(?:erse)? ?depths?|idepths?")],
   [
     "infrared",
@@ -99,6 +101,7 @@ export const CONTENTS: Record<Other, string> = {
   normals: "normals",
   rendering: "a rendering for people",
   disparity: "disparities (or inverse depths)",
+  radar: "a radar's points, which are too few and too coarse",
   infrared: "infrared or intensities",
 };
 

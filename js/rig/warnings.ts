@@ -61,6 +61,7 @@ export type ReaderCode =
   | "names-ambiguous"
   | "pairs-missing"
   | "pairs-by-order"
+  | "pairs-shifted"
   | "pairs-by-content"
   | "pairs-sampled"
   // Recordings

@@ -35,7 +35,7 @@ const NO_FRAME = [
 const AROUND = new RegExp(`^(?:(?:${NO_FRAME})[ _-]+)+|(?:[ _-]+(?:${NO_FRAME}))+$`, "gi");
 /** Names of frames. */
 const FRAME =
-  /^(?:cam|camera|colou?r|rgb|depth|ir|infra|infrared|tof|lidar|velo|velodyne|laser|livox|ouster|hesai|scanner|radar|imu|ins|gps|gnss|body|base|vehicle|ego|car|robot|hand|gripper|flange|ee|tool|world|map|odom|left|right|board|target|sensor)$/;
+  /^(?:cam|camera|colou?r|rgb|depth|ir|infra|infrared|tof|lidar|velo|velodyne|laser|livox|ouster|hesai|scanner|radar|imu|ins|gps|gnss|body|base|vehicle|ego|car|robot|hand|gripper|flange|ee|tool|world|map|odom|left|right|board|target|tag|marker|object|table|sensor)$/;
 const isFrame = (word: string): boolean => FRAME.test(word.toLowerCase().replace(/\d+$/, ""));
 
 /** A name without the words around its frames. */
@@ -63,9 +63,10 @@ export function mentionsTwo(name: string): boolean {
   return frames.size > 1;
 }
 
-/** Frames of names that one program uses: Autoware's calibration toolkit; RTAB-Map, which has the camera in the robot's base; DSEC. */
+/** Frames of names that one program uses: Autoware's calibration toolkit; RTAB-Map, which has the camera in the robot's base; DSEC; RealityCapture. */
 function ofProduct(name: string): Frames | undefined {
   if (name === "CameraExtrinsicMat") return { from: "camera", to: "lidar" };
+  if (name === "xcr") return { from: "camera", to: "world" };
   // DSEC's T_10 carries points of camera 0 to camera 1.
   const [, to, from] = /^T_(\d)(\d)$/.exec(name) ?? [];
   if (to !== from) return { from: `cam${from}`, to: `cam${to}` };

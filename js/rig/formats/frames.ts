@@ -113,7 +113,7 @@ const CARRIER =
   /^(?:b|body|i|imu\w*|base(?:[_ ]?(?:link|footprint))?|rig|vehicle|ego(?:[_ ]?vehicle)?|car|robot\w*|hand|gripper|flange|tool\d*|\w+_(?:hand|gripper|flange|tool\d*)|gps|ins|oxts|(?:april|aru|charu)\w*|tag\w*|marker\w*|(?:chess|checker|calib\w*)?_?board|target|pattern|object|table)$/i;
 
 /** Whether a motion relates a sensor to what carries it or what it looks at, so that it does not relate two sensors. */
-export const isOfCarrier = ({ from = "", to = "" }: Ends): boolean => CARRIER.test(from) !== CARRIER.test(to);
+export const isOfCarrier = ({ from = "", to = "" }: Ends): boolean => CARRIER.test(from) || CARRIER.test(to);
 
 type Ends = { from?: string | undefined; to?: string | undefined };
 const isColour = (name: string): boolean => COLOUR.test(name) && !DEPTH.test(name);

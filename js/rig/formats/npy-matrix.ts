@@ -34,6 +34,18 @@ export function matrixText(bytes: Uint8Array): string | undefined {
   }
 }
 
+/** The numbers of an array of one row or column, as those of a lens; undefined for other files. */
+export function lensArray(bytes: Uint8Array): number[] | undefined {
+  if (bytes.length > MOST_BYTES || !isNpy(bytes)) return undefined;
+  try {
+    const { axes, values } = readSmall(bytes, MOST_NUMBERS);
+    return axes.length < 2 || axes.includes(1) ? values : undefined;
+  } catch (error) {
+    if (error instanceof BimodalError) return undefined;
+    throw error;
+  }
+}
+
 /** Most numbers of an array of a calibration: matrices of 16 and lenses of 14, and motions of the views that it was made from. */
 const MOST_NUMBERS = 400;
 /** Most bytes of such an archive; a picture beside the matrices takes more. */

@@ -33,6 +33,16 @@ function ofList(data: Pixels, count: number, columns: number): Picture {
   return { ...list, width: count, height: 1, scan };
 }
 
+/** White and full opacity, for numbers from 0 to 1 and of 8 and 16 bits. */
+const WHITES = [1, 0xff, MOST_LEVEL];
+
+/** Whether the fourth of four channels is no alpha, which is opaque somewhere, but, for instance, the depths of an RGB-D image. */
+function hasDepths(data: Pixels): boolean {
+  let most = 0;
+  for (let at = 3; at < data.length; at += 4) most = Math.max(most, data[at] ?? 0);
+  return most > 0 && !WHITES.includes(most);
+}
+
 /** `check` refuses a size. */
 export function npyPicture(bytes: Uint8Array, check = checkSize): Picture {
   const { type, ...raster } = readNpy(bytes);
@@ -40,6 +50,10 @@ export function npyPicture(bytes: Uint8Array, check = checkSize): Picture {
   const isList = channels === 1 && width >= FEWEST_COLUMNS && width <= MOST_COLUMNS && height >= TALL * width;
   if (isList) return ofList(raster.data, height, width);
   check(width, height);
+  if (channels === 4 && !(raster.data instanceof Uint8Array) && hasDepths(raster.data))
+    throw badFile(
+      "its pixels have four channels, the last of which is nowhere opaque, so that it is no alpha but, for instance, depth; save colours and depths as two files",
+    );
   const data = /^[iu]/.test(type) && channels === 1 ? asLevels(raster.data) : raster.data;
   const bits = 8 * (type === "f2" ? 2 : data.BYTES_PER_ELEMENT);
   return { ...raster, data, format: "npy", bits, notes: [], warnings: [] };

@@ -25,6 +25,7 @@ import { isKitti, readKitti } from "./kitti.js";
 import { isBouguet, isMatlab, readBouguet, readMatlab } from "./matlab.js";
 import { isMiddlebury, readMiddlebury } from "./middlebury.js";
 import { isMrcal, looksLikeMrcal, readMrcal } from "./mrcal.js";
+import { isMultical, readMultical } from "./multical.js";
 import { isNerf, readNerf } from "./nerf.js";
 import { isNode, type Node } from "./numbers.js";
 import { isNuscenes, readNuscenes } from "./nuscenes.js";
@@ -71,6 +72,7 @@ const TREES: Product<Node>[] = [
   ["a result of easy_handeye", isHandEye, readHandEye],
   ["a transforms.json of nerfstudio", isNerf, readNerf],
   ["the metadata of Record3D", isRecord3d, readRecord3d],
+  ["a calibration of multical", isMultical, readMultical],
   ["a camera with a depth_scale, as of BOP", isBop, readBop],
   ["a sensor kit's calibration of Autoware", isAutoware, readAutoware],
 ];

@@ -122,8 +122,8 @@ function ofNotes(text: string): Read | undefined {
   return { ...found, format: "numbers with labels" };
 }
 
-/** What only YAML has: its directive, and the matrices of OpenCV. */
-const IS_YAML = /^%YAML|!!opencv-matrix/m;
+/** What only YAML has: its directive, the matrices of OpenCV, and lists of members. */
+const IS_YAML = /^%YAML|!!opencv-matrix|^\s*- \w+:\s*$/m;
 /** YAML, or else numbers with labels. */
 async function ofYaml(text: string): Promise<Read> {
   let value: unknown;
@@ -163,9 +163,16 @@ async function ofXml(text: string): Promise<Read> {
 export async function readText(text: string, file: string): Promise<Read> {
   const { isBare = false, ...found } = await ofContent(text);
   asFisheye(found.cameras, found.warnings, `${file.replace(/^.*[/\\]/, "")}\n${text}`);
-  const { poses, isPlace } = withEnds(found.poses, file, isBare);
-  return { ...found, poses, warnings: isPlace ? [...found.warnings, placeOfName()] : found.warnings };
+  const { poses, isPlace = false, isOneEnd = false } = withEnds(found.poses, file, isBare);
+  const said = [...(isPlace ? [placeOfName()] : []), ...(isOneEnd ? [oneEndNamed()] : [])];
+  return { ...found, poses, warnings: [...found.warnings, ...said] };
 }
+
+const oneEndNamed = (): ReaderWarning =>
+  warning(
+    "pose-assumed",
+    "Its name says which camera the pose belongs to, but not which way it leads and from or to what. It was taken to lead from the depth camera to the colour camera; if it does, name the file depth_to_color.txt.",
+  );
 
 const placeOfName = (): ReaderWarning =>
   warning(

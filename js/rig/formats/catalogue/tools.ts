@@ -116,13 +116,14 @@ const CALIBRATORS: readonly Row[] = [
   {
     product: "multical",
     file: "`calibration.json`",
-    modules: [],
-    reader: "JSON",
+    modules: ["multical"],
+    reader: "a calibration of multical",
     sample: "multical",
     reads: "cameras",
-    warnings: ["pose-left-out"],
+    warnings: ["pose-left-out", "pose-assumed"],
     taken: "Cameras; poses relative to the first camera, which has the identity and is left out.",
-    guessed: NOTHING,
+    guessed:
+      "That a pose leads the way its name says, with a warning, because multical's exporter writes the opposite direction.",
     exported: "`multical calibrate` writes it",
   },
   {
