@@ -102,6 +102,19 @@ const CALIBRATORS: readonly Row[] = [
     exported: "`cv::FileStorage`, or OpenCV's calibration sample",
   },
   {
+    product: "OpenCV in Python",
+    file: "`.npz` of `mtx`, `dist` and other matrices by their names",
+    modules: ["npy-matrix", "zip"],
+    reader: "JSON",
+    sample: "opencv-npz",
+    reads: "cameras",
+    warnings: [],
+    taken:
+      "Cameras and poses by the names of their arrays. A lens may also be in a separate file, as `D_color.txt` beside `K_color.txt`.",
+    guessed: NOTHING,
+    exported: '`numpy.savez("calibration.npz", mtx=mtx, dist=dist)`',
+  },
+  {
     product: "Open3D",
     file: "`camera_intrinsic.json`, camera parameters, trajectories (`.json`)",
     modules: [],
