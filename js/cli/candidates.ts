@@ -16,12 +16,7 @@ function betweenSensors(all: NamedPose[], field: string, warnings: Judged[]): Na
   if (direct.length > 0) return direct;
   const way = wayBetween(all);
   if (way === undefined) return all.filter((pose) => !isOfCarrier(pose));
-  for (const frame of way.turned)
-    warnings.push({
-      code: "pose-assumed",
-      message: `${field}: the frame ${frame} was taken to have ROS's body axes (x forward, y left, z up), because its name does not say "optical".`,
-      field,
-    });
+  for (const { code, message } of way.warnings) warnings.push({ code, message: `${field}: ${message}`, field });
   return [way.pose];
 }
 

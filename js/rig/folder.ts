@@ -258,7 +258,7 @@ export function withoutInertial(poses: NamedPose[], warnings: ReaderWarning[]): 
 }
 
 /** Leaves out poses between a sensor and a body, a vehicle, a robot or a target, which relate no two sensors; poses between these are known by then. */
-function withoutCarriers(poses: NamedPose[], warnings: ReaderWarning[]): NamedPose[] {
+export function withoutCarriers<T extends NamedPose>(poses: T[], warnings: ReaderWarning[]): T[] {
   const left = new Set(poses.filter(isOfCarrier).map(({ from, to }) => `${from} to ${to}`));
   if (left.size === 0) return poses;
   const names = [...left].slice(0, MOST_NAMED).join(", ");

@@ -165,10 +165,9 @@ export class Rig implements RigState {
     this.#chooseCameras();
   }
 
-  /** A pose that is stated to lead from colour to depth, or to a LiDAR, is inverted. */
+  /** A pose that leads away from the colour camera, or to the depth camera or a LiDAR, by the names of its frames is inverted. */
   addPose({ name, pose, from, to }: Summary["poses"][number], origin: string, file?: number): void {
-    const isStated = (from !== undefined && COLOUR.test(from)) || (to !== undefined && DEPTH.test(to));
-    const isBackward = isStated || isBackwards({ from, to });
+    const isBackward = isBackwards({ from, to });
     const direction = isBackward
       ? `, given from ${from ?? "colour"} to ${to ?? "depth"} and inverted`
       : from && to

@@ -6,6 +6,7 @@
 mod arguments;
 mod candidates;
 mod checked;
+mod frames;
 mod json;
 mod page;
 mod progress;

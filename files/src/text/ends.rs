@@ -72,13 +72,14 @@ pub fn world_frames(name: &str) -> Option<Frames> {
     });
     static PLACED: Pattern = Pattern::new(|| pattern(r"\b(?:in|wrt|relative to|with respect to)\b"));
     let words = words(name).join(" ");
-    match () {
-        // "depth_pose_in_color" names both frames.
-        () if PLACED.is_match(&words) => None,
-        () if TO_CAMERA.is_match(&words) => Some(Frames::between("world", "camera")),
-        () if OF_WORLD.is_match(&words) => Some(Frames::between("camera", "world")),
-        () => None,
+    // "depth_pose_in_color" names both frames.
+    if PLACED.is_match(&words) {
+        return None;
     }
+    if TO_CAMERA.is_match(&words) {
+        return Some(Frames::between("world", "camera"));
+    }
+    OF_WORLD.is_match(&words).then(|| Frames::between("camera", "world"))
 }
 
 /// The frames of a file called as a pose of the camera in the world, or whose folder is: "pose.txt", "c2w/0.txt".

@@ -1,5 +1,6 @@
 /** Poses between frames, as in robot descriptions, and the pose between two frames that a chain of them relates. */
 import type { NamedPose, Pose } from "../types.js";
+import { type ReaderWarning, warning } from "../warnings.js";
 import { chained, identity, inverseOf, poseOf } from "./poses.js";
 
 const COLOUR = /colou?r|rgb/i;
@@ -48,6 +49,12 @@ function places(poses: readonly NamedPose[]): Map<string, Placed> {
   return placed;
 }
 
+const bodyAxes = (frames: readonly string[]): ReaderWarning =>
+  warning(
+    "pose-assumed",
+    `The frame ${frames.join(" and ")} is not an optical frame by its name and was read as looking along x with z up, as in ROS.`,
+  );
+
 /** The first optical frame that fits, or else the first one. */
 function best(names: string[], is: (name: string) => boolean): string | undefined {
   const fitting = names.filter(is);
@@ -56,9 +63,10 @@ function best(names: string[], is: (name: string) => boolean): string | undefine
 
 /**
  * The pose from the depth camera (or else the LiDAR) to the colour camera (or else the first camera), where both are in one tree and no pose
- * of the file relates them directly. A camera frame without "optical" in its name has body axes by ROS's convention and is turned.
+ * of the file relates them directly. A camera frame without "optical" in its name has body axes by ROS's convention and is turned, with
+ * a warning.
  */
-export function wayBetween(poses: readonly NamedPose[]): { pose: NamedPose; turned: string[] } | undefined {
+export function wayBetween(poses: readonly NamedPose[]): { pose: NamedPose; warnings: ReaderWarning[] } | undefined {
   const placed = places(poses);
   const names = [...placed.keys()];
   const depth = best(names, (name) => DEPTH.test(name) && !COLOUR.test(name));
@@ -78,7 +86,8 @@ export function wayBetween(poses: readonly NamedPose[]): { pose: NamedPose; turn
     return asOptical(pose);
   };
   const pose = chained(inverseOf(optical(colour, b)), optical(from, a));
-  return { pose: { name: `${colour} from ${from}`, from, to: colour, pose }, turned };
+  const warnings = turned.length > 0 ? [bodyAxes(turned)] : [];
+  return { pose: { name: `${colour} from ${from}`, from, to: colour, pose }, warnings };
 }
 
 /** Longest chain of poses between two frames. */
@@ -120,9 +129,12 @@ const isColour = (name: string): boolean => COLOUR.test(name) && !DEPTH.test(nam
 const isDepth = (name: string): boolean => DEPTH.test(name) && !COLOUR.test(name);
 const isCamera = (name: string): boolean => isColour(name) || (CAMERA.test(name) && !DEPTH.test(name));
 
-/** Whether a pose leads from the colour camera to the depth camera, or from any frame to a LiDAR, by the names of its frames. */
-export const isBackwards = ({ from = "", to = "" }: Ends): boolean =>
-  (isColour(from) && isDepth(to)) || (isLidar(to) && from !== "" && !isLidar(from) && !isDepth(from));
+/** Whether a pose leads away from the colour camera, or into the depth camera or a LiDAR, by the names of its frames. */
+export function isBackwards({ from = "", to = "" }: Ends): boolean {
+  if (isColour(from)) return !isColour(to);
+  if (isDepth(to)) return !isDepth(from) && !isLidar(from);
+  return isLidar(to) && from !== "" && !isLidar(from) && !isDepth(from);
+}
 
 /** Whether a pose relates the depth camera or a LiDAR to the colour camera or another camera, by the names of its frames. */
 export const isOfRig = ({ from = "", to = "" }: Ends): boolean =>

@@ -119,9 +119,5 @@ export function toCameras(found: Findings): void {
   const way = wayBetween(found.poses);
   if (way === undefined) return;
   found.poses.unshift(way.pose);
-  if (way.turned.length > 0)
-    found.warn(
-      "pose-assumed",
-      `The frame ${way.turned.join(" and ")} is not an optical frame by its name and was read as looking along x with z up, as in ROS.`,
-    );
+  found.warnings.push(...way.warnings);
 }
