@@ -5,7 +5,7 @@ import { decimals } from "../draw/numbers";
 import { dropTarget } from "./drop";
 import { choose, Keyed, labelled, numberField, press } from "./parts";
 import { fromEuler, fromQuaternion, identity, inverse, isOfWorld, matrixText, poseOf, type EulerOrder } from "./poses";
-import { placeInWords } from "./words";
+import { isOfCarrier, placeInWords } from "./words";
 import { messageOf, type Candidate, type Rig } from "./rig";
 
 type By = "quaternion" | EulerOrder;
@@ -194,8 +194,12 @@ export class CalibrationStep {
         throw new Error(
           "This is the pose of a camera in the world (camera to world). A calibration transforms points from the depth camera to the colour camera.",
         );
-      for (const pose of poses.filter((each) => !isOfWorld(each)))
-        this.#rig.addPose({ ...pose, name: pose.name ?? "pasted" }, name);
+      const ofSensors = poses.filter((each) => !isOfWorld(each) && !isOfCarrier(each));
+      if (ofSensors.length === 0)
+        throw new Error(
+          "This pose relates a sensor to a body, a vehicle, a robot or a calibration target. A calibration transforms points from the depth camera or the LiDAR to the colour camera.",
+        );
+      for (const pose of ofSensors) this.#rig.addPose({ ...pose, name: pose.name ?? "pasted" }, name);
     } catch (error) {
       this.#complain(messageOf(error));
     } finally {

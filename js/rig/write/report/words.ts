@@ -3,9 +3,9 @@ import type { CheckReport, CheckVerdict } from "../../../types/index.js";
 import { degreesOf, isOfScan } from "../../formats/poses.js";
 import type { Checked } from "./contents.js";
 
-import { isBackwards } from "../../formats/frames.js";
+import { isBackwards, isOfCarrier } from "../../formats/frames.js";
 
-export { isBackwards, isOfScan };
+export { isBackwards, isOfCarrier, isOfScan };
 
 const WORDS: Readonly<Record<CheckVerdict, string>> = { consistent: "Consistent", off: "Off", undecided: "Undecided" };
 
