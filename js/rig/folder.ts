@@ -12,9 +12,10 @@ import { ofNamedPictures } from "./around.js";
 import { isOfCarrier } from "./formats/frames.js";
 import { isRawName } from "./formats/raw.js";
 import { areFives, isVaried, nameOf, sampled } from "./guess.js";
-import { type LensFile, doubtLenses, giveLenses, lensOf } from "./lens-files.js";
+import { type LensFile, doubtLenses, lensOf } from "./lens-files.js";
 import { type Pair, type Pairs, tum } from "./lists.js";
 import { key, stem } from "./names.js";
+import { once } from "./once.js";
 import { pairsOf, sayUnpaired } from "./pairs.js";
 import { type TextOfFrame, assignOwn, frameOf, split } from "./perframe.js";
 import { checkNamed, isRasterFile, isTextFile, metresPerUnit, pixelSize, readRigFile } from "./read.js";
@@ -47,6 +48,8 @@ export interface FolderOptions {
 }
 
 const FRAMES = 20;
+
+const owners = once(() => import("./lens-owners.js"));
 
 /** Files that are neither pictures nor calibrations and can be ignored. */
 const IGNORED =
@@ -309,7 +312,7 @@ async function calibrationOf({ texts, others, lenses }: Sorted, frames: Readonly
     if (frames.has(key(file.name)) && poses.some(({ from, to }) => from === undefined && to === undefined))
       reader.warnings.push(ofFile(file.name, placeOfFrame()));
   }
-  reader.readings.push(...giveLenses(lenses, found, reader.warnings));
+  if (lenses.length > 0) reader.readings.push(...(await owners()).giveLenses(lenses, found, reader.warnings));
   const isLeft = withoutInertial(
     found.flatMap(({ poses }) => poses),
     reader.warnings,

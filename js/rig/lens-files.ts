@@ -1,11 +1,7 @@
 /** Lenses in separate files: "D_color.txt" beside "K_color.txt", "dist.npy" beside "mtx.npy", as users of OpenCV save them. */
-import { cameraOf } from "./formats/cameras.js";
 import { type Numbers, numberOf } from "./formats/numbers.js";
-import { isIntrinsics, isLens, wordsOf } from "./formats/names.js";
 import { lensArray } from "./formats/npy-matrix.js";
-import { folderOf, stem } from "./names.js";
-import type { TextOfFrame } from "./perframe.js";
-import type { NamedCamera, NamedFile } from "./types.js";
+import type { NamedFile } from "./types.js";
 import { type ReaderWarning, ofFile, warning } from "./warnings.js";
 
 export interface LensFile {
@@ -38,17 +34,7 @@ export function lensOf({ name, bytes }: NamedFile): LensFile | undefined {
   return values !== undefined && COUNTS.includes(values.length) ? { file: name, values } : undefined;
 }
 
-/** Words that say no more than that a file is a camera's. */
-const PLAIN = new Set(["camera", "cam", "calib", "calibration", "params", "parameters", "matrix"]);
-
-/** The folder of a file and which camera its name says that it is of, without the words for intrinsics and lenses. */
-function owner(path: string): string {
-  const name = stem(path);
-  const words = wordsOf(isLens(name) ?? isIntrinsics(name) ?? name).filter((word) => !PLAIN.has(word));
-  return `${folderOf(path)}${words.join(" ")}`;
-}
-
-const unused = (file: string): ReaderWarning =>
+export const unused = (file: string): ReaderWarning =>
   ofFile(
     file,
     warning(
@@ -61,32 +47,4 @@ const unused = (file: string): ReaderWarning =>
 export function doubtLenses(warnings: ReaderWarning[]): void {
   for (const { code, file } of [...warnings])
     if (code === "file-left-out" && file !== undefined && isLensFile(file)) warnings.push(unused(file));
-}
-
-/** Gives each lens to the one camera without distortion whose file is called like it; what was done is said of each file. */
-export function giveLenses(
-  lenses: readonly LensFile[],
-  texts: readonly TextOfFrame[],
-  warnings: ReaderWarning[],
-): { name: string; says: string; warnings: ReaderWarning[] }[] {
-  return lenses.flatMap((lens) => {
-    const own = texts.filter(({ file, cameras }) => cameras.length > 0 && owner(file) === owner(lens.file));
-    const [camera, ...others] = own.flatMap(({ cameras }) => cameras);
-    if (camera === undefined || others.length > 0 || camera.camera.distortion !== undefined) {
-      warnings.push(unused(lens.file));
-      return [];
-    }
-    const said = bend(camera, lens);
-    warnings.push(...said.map((each) => ofFile(lens.file, each)));
-    return [{ name: lens.file, says: `the distortion of the camera "${camera.name ?? ""}"`, warnings: said }];
-  });
-}
-
-/** Puts the lens into the camera; returns the warnings about it. */
-function bend(camera: NamedCamera, { values }: LensFile): ReaderWarning[] {
-  const said: ReaderWarning[] = [];
-  const { fx, fy, cx, cy } = camera.camera;
-  camera.camera = cameraOf({ name: camera.name, focal: [fx, fy], centre: [cx, cy], distortion: values }, said).camera;
-  // Of the intrinsics the camera's file has warned.
-  return said.filter(({ code }) => code === "distortion-guessed");
 }
