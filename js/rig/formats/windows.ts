@@ -130,7 +130,7 @@ export function readCommandWindow(text: string): Findings {
   for (const { name } of others)
     found.warn(
       "pose-left-out",
-      `The matrix "${name}" of MATLAB's command window was left out: write poses as rows of 4x4 in a file of their own.`,
+      `The matrix "${name}" of MATLAB's command window was left out: write poses as rows of 4x4 into separate files.`,
     );
   if (found.cameras.length === 0)
     throw badFile(
