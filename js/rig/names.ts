@@ -24,9 +24,12 @@ export function key(name: string): string {
   return words.filter((word) => word !== "" && word !== "mm").join(" ");
 }
 
-/** Words that say what a file holds rather than which frame it is, where names are alike but for them. */
+/**
+ * Words that say what a file holds rather than which frame it is, where names are alike but for them. Depths of a stereo camera are the left
+ * camera's, so that "left" is the colour image's and "right" is not.
+ */
 const LOOSE = new Set(
-  "raw frame frames photo picture pic map maps groundtruth gt velodyne lidar cloud points scan sparse dense filtered z16 png distance to plane linear z cam camera ir infra infrared tof undistorted rectified rect vis".split(
+  "raw frame frames photo picture pic map maps groundtruth gt velodyne lidar cloud points scan sparse dense filtered z16 png distance to plane linear z cam camera ir infra infrared tof undistorted rectified rect vis left".split(
     " ",
   ),
 );

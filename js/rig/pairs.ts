@@ -10,6 +10,7 @@ import { byCamera } from "./around.js";
 import { APART, type Pair, type Pairs, byTime } from "./lists.js";
 import { commonPath, folderOf, key, looseKey, stem, timeOf } from "./names.js";
 import { CONTENTS, type Other, type Role, roleOf } from "./roles.js";
+import { type Times, halfFrame, timesOf } from "./stamps.js";
 import type { NamedFile } from "./types.js";
 import { type ReaderWarning, ofFile, warning } from "./warnings.js";
 
@@ -209,28 +210,36 @@ function byNames({ colours, depths, masks }: Sorted, warnings: ReaderWarning[], 
 /** A pair is accepted if its frames are this many times nearer in time to each other than to other frames. */
 const CLEARLY = 4;
 
-/** By time stamps as names, which are seldom the same for two cameras; nothing for names without a time. */
-function byStamps({ colours, depths }: Sorted, warnings: ReaderWarning[]): Pairs | undefined {
-  const stamped = (files: NamedFile[]) =>
-    files.flatMap(({ name }) => {
-      const time = timeOf(name);
-      return time === undefined ? [] : [{ time, path: name }];
-    });
-  const [ours, theirs] = [stamped(colours), stamped(depths)];
-  const isAll = ours.length === colours.length && theirs.length === depths.length;
-  // A single image and a single depth map belong together, whatever their names.
-  if (!isAll || Math.min(ours.length, theirs.length) === 0 || ours.length + theirs.length === 2) return undefined;
-  const gaps = [...theirs]
-    .sort((a, b) => a.time - b.time)
-    .map(({ time }, at, all) => time - (all[at - 1]?.time ?? NaN));
+/** How far apart in time two frames of a pair may be. */
+function apartOf({ colours, depths }: Times): number {
+  const order = [...depths].sort((a, b) => a - b);
+  const gaps = order.slice(1).map((time, at) => time - (order[at] ?? NaN));
   const apart = Math.max(APART, Math.min(...gaps.filter((gap) => gap > 0)) / CLEARLY);
-  const found = byTime(ours, theirs, Number.isFinite(apart) ? apart : APART);
+  return Math.min(Number.isFinite(apart) ? apart : APART, halfFrame(colours, depths));
+}
+
+/** By time stamps in names, which are seldom the same for two cameras; nothing for names without a time. */
+function byStamps({ colours, depths }: Sorted, warnings: ReaderWarning[]): Pairs | undefined {
+  const fewer = Math.min(colours.length, depths.length);
+  // A single image and a single depth map belong together, whatever their names.
+  if (fewer === 0 || colours.length + depths.length === 2) return undefined;
+  const namesOf = (files: NamedFile[]) => files.map(({ name }) => name);
+  const times = timesOf(namesOf(colours), namesOf(depths));
+  if (times === undefined) return undefined;
+  const stamps = (files: NamedFile[], of: number[]) =>
+    files.map(({ name }, at) => ({ time: of[at] ?? NaN, path: name }));
+  const [ours, theirs] = [stamps(colours, times.colours), stamps(depths, times.depths)];
+  const apart = apartOf(times);
+  const found = byTime(ours, theirs, apart);
+  // Beside a counter, stamps count only where they agree.
+  if (!times.isAlone && 2 * found.length <= fewer) return undefined;
   if (found.length === 0)
     throw badFile(
-      `no pair of a colour image and a depth map was found: the time stamps of their names are more than ${1000 * APART} ms apart`,
+      `no pair of a colour image and a depth map was found: the time stamps of their names are more than ${(1000 * apart).toFixed(0)} ms apart`,
     );
   const file = new Map([...colours, ...depths].map((each) => [each.name, each]));
-  const most = Math.max(...found.map(([, depth, time]) => Math.abs((timeOf(depth) ?? time) - time)));
+  const timeAt = new Map(theirs.map(({ path, time }) => [path, time]));
+  const most = Math.max(...found.map(([, depth, time]) => Math.abs((timeAt.get(depth) ?? time) - time)));
   if (most > APART)
     warnings.push(
       warning(

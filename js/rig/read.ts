@@ -18,7 +18,7 @@ import type { Cloud, Picture, Points } from "./formats/picture.js";
 import { pngPicture } from "./formats/png.js";
 import { readPfm, readPnm } from "./formats/pnm.js";
 import { isRawName, pointsRefused, rawRefused, readColmapMap, readRaw } from "./formats/raw.js";
-import { pointList, readTable } from "./formats/table.js";
+import { readTable } from "./formats/table.js";
 import { textOf } from "./formats/decode.js";
 import { kindOfPicture, nameWarnings, unitOfName } from "./recognise.js";
 import { once } from "./once.js";
@@ -101,7 +101,7 @@ async function ofText(file: string, text: string, { as }: ReadOptions): Promise<
 
 /** A file without known first bytes: raw pixels of a given size, headerless points, or a text. */
 async function ofOthers({ name, bytes }: NamedFile, isPoints: boolean, options: ReadOptions): Promise<Content> {
-  const { knownContainer, knownText } = await refusals();
+  const { knownContainer, knownText, pointList } = await refusals();
   const written = writtenOf(bytes);
   const container = written === undefined ? knownContainer(name, bytes) : undefined;
   if (container !== undefined) throw container;

@@ -1,6 +1,8 @@
 /** Files that are not read: their formats, by first bytes or names, and what to do with them. */
 import { type BimodalError, badFile } from "../../errors.js";
 
+export { pointList } from "./point-list.js";
+
 /** `isPicture`: a browser may be able to read it. */
 type Row = [pattern: RegExp, advice: string, isPicture?: true];
 

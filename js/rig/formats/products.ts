@@ -29,12 +29,14 @@ import { isMultical, readMultical } from "./multical.js";
 import { isNerf, readNerf } from "./nerf.js";
 import { isNode, type Node } from "./numbers.js";
 import { isNuscenes, readNuscenes } from "./nuscenes.js";
+import { isInfoTable, isSimd, isStamped, readInfoTable, readSimd, readStamped } from "./prints.js";
 import { isEnumeration, isPrinted, isSnapshot, readEnumeration, readPrinted, readSnapshot } from "./realsense.js";
 import { isRecord3d, readRecord3d } from "./record3d.js";
 import { isScannet, readScannet } from "./scannet.js";
 import { isUrdf, readUrdf } from "./urdf.js";
 import { isVlcal, readVlcal } from "./vlcal.js";
 import { isWaymo, isWaymoText, readWaymo, readWaymoText } from "./waymo.js";
+import { isCommandWindow, isOrbbecPrint, readCommandWindow, readOrbbecPrint } from "./windows.js";
 import type { Element } from "./xml.js";
 import { isZed, readZed } from "./zed.js";
 import { isZivid, readZivid } from "./zivid.js";
@@ -45,6 +47,11 @@ const TEXTS: Product<string>[] = [
   ["RealSense's list of streams", isEnumeration, readEnumeration],
   ["a print of pyrealsense2", isPrinted, readPrinted],
   ["a snapshot of RealSense's viewer", isSnapshot, readSnapshot],
+  ["a print of Orbbec's SDK", isOrbbecPrint, readOrbbecPrint],
+  ["a print of MATLAB's command window", isCommandWindow, readCommandWindow],
+  ["a print of simd", isSimd, readSimd],
+  ["a print of ROS's transform", isStamped, readStamped],
+  ["a table of ROS's camera_info", isInfoTable, readInfoTable],
   ["an Azure Kinect's printed calibration", isAzurePrint, readAzurePrint],
   ["a ZED's calibration", isZed, readZed],
   ["ScanNet's description of a scene", isScannet, readScannet],

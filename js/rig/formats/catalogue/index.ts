@@ -8,6 +8,7 @@ import { DATASETS } from "./datasets.js";
 import { DEVICES } from "./devices.js";
 import { FOLDERS, RECORDINGS } from "./folders.js";
 import { COLOURS, DEPTHS, MASKS } from "./pictures.js";
+import { PRINTS } from "./prints.js";
 import type { Group } from "./row.js";
 import { SCANS } from "./scans.js";
 import { TOOLS } from "./tools.js";
@@ -15,7 +16,7 @@ import { TOOLS } from "./tools.js";
 export type { Group, Reads, Row } from "./row.js";
 
 export const CATALOGUE: readonly Group[] = [
-  { title: "Calibrations and cameras", rows: [...DEVICES, ...TOOLS, ...DATASETS] },
+  { title: "Calibrations and cameras", rows: [...DEVICES, ...TOOLS, ...PRINTS, ...DATASETS] },
   { title: "Depth maps", rows: DEPTHS },
   { title: "Colour images", rows: COLOURS },
   { title: "Masks", rows: MASKS },
