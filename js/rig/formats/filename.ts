@@ -42,11 +42,15 @@ export function endsOf(path: string): { from: string; to: string } | undefined {
 const PLACE =
   /^(?:(?:frame|image|img|rgb|colou?r|depth|camera|cam|gt|abs(?:olute)?|obj(?:ect)?|tag|marker|board|target)?[_.-]*\d*[_.-]*){0,3}poses?[_.-]*\d*$/i;
 
+/** Names of what turns a scene upright or rectifies images, as ScanNet's "axis_alignment.txt". */
+const ALIGNMENT = /(?:^|[_-])(?:axis[_-]?align\w*|gravity\w*|rectif\w*)/i;
+
 /** The frames of a file called as a pose of the camera in the world, or whose folder is: "c2w/0.txt", "T_world_camera.txt". */
 function ofWorldName(path: string): Frames | undefined {
   const [stem = "", folder = ""] = path.split(/[/\\]/).reverse();
   const name = stem.replace(/\.(?:txt|npy|csv|dat|mat|tfm)$/i, "").slice(0, LONGEST);
-  if (PLACE.test(name) || (/^\d+$/.test(name) && /^poses?$/i.test(folder))) return { from: "camera", to: "world" };
+  if (PLACE.test(name) || ALIGNMENT.test(name) || (/^\d+$/.test(name) && /^poses?$/i.test(folder)))
+    return { from: "camera", to: "world" };
   for (const each of /^\D*\d*$/.test(name) ? [name, folder] : [name]) {
     // "stereo_pose" is no place of a camera.
     const bare = each.slice(0, LONGEST).replace(/[ _-]?poses?[ _-]?/gi, "");
