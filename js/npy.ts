@@ -93,13 +93,13 @@ interface Shape {
   isChannelFirst: boolean;
 }
 
-/** Rows, columns and channels of a shape; axes of length 1 around an image count for nothing. */
+/** Rows, columns and channels of a shape; axes of length 1 around an image are ignored. */
 function shapeOf(listed: string): Shape {
   const parts = listed
     .split(",")
     .map((part) => part.trim())
     .filter((part) => part !== "");
-  // Nothing but digits: Number() would also take "2.5", "-2" and "0x2".
+  // Digits only: Number() would also accept "2.5", "-2" and "0x2".
   if (!parts.every((axis) => /^[0-9]+$/.test(axis) && Number(axis) > 0))
     throw bad(`this .npy file has the shape (${listed.trim()}); whole numbers above zero are needed`);
   const axes = parts.map(Number);
@@ -152,7 +152,7 @@ function headerOf(bytes: Uint8Array): Header {
   return { type, kind, isBigEndian: order === ">", byColumns: columns === "True", shape, end };
 }
 
-/** Two or three planes without a value below zero are not a cloud; with values above 1 they are not colours either. */
+/** Two or three planes without negative values are not a cloud; with values above 1 they are not colours either. */
 const isStack = (data: Pixels): boolean =>
   !data.some((value) => value < 0) && data.some((value) => value > 1 && value < Infinity);
 

@@ -15,10 +15,13 @@ const HOW: Record<RangeImage["how"], string> = {
   sphere: "by a z-buffer over the sphere",
 };
 
-/** The median distance, units of the file, beyond which points have the coordinates of a map if their distances spread by less than this share. */
+/**
+ * Largest spread of distances, as a share of their median, at which points count as coordinates of a map, if this median, in units of the
+ * file, is exceeded.
+ */
 const [FAR_OFF, NARROWLY] = [10_000, 0.05];
 
-/** Throws for eastings and northings, or a mesh far from the origin: no sensor at the origin has measured such a cloud. */
+/** Throws for eastings and northings, or a mesh far from the origin, because no sensor at the origin can have measured such a cloud. */
 function checkSensor(sorted: Float64Array): void {
   const at = (share: number) => quantile(sorted, share);
   if (at(0.5) > FAR_OFF && at(0.99) - at(0.01) < NARROWLY * at(0.5))

@@ -39,7 +39,7 @@ export type Layer = "normals" | "depth" | "residual" | "refined" | "refinedNorma
 
 /** How `Estimator.draw` maps numbers to colours. Normals have a fixed mapping. */
 export interface DrawOptions {
-  /** The numbers at the ends of the map. Default: the range of the layer without the lowest and the highest hundredth. */
+  /** The numbers at the ends of the map. Default: the range of the layer without the lowest and the highest one per cent. */
   range?: readonly [number, number];
   /** Default "viridis". */
   map?: "viridis" | "magma";

@@ -12,7 +12,7 @@ const WORDS: Readonly<Record<CheckVerdict, string>> = { consistent: "Consistent"
 export const verdictOf = (verdict: CheckVerdict): CheckVerdict =>
   Object.hasOwn(WORDS, verdict) ? verdict : "undecided";
 
-/** Of one candidate, whatever the warnings. */
+/** The verdict of one candidate, regardless of warnings. */
 export const wordOf = (verdict: CheckVerdict): string => WORDS[verdictOf(verdict)];
 
 const firstOf = ({ candidates }: Pick<Checked, "candidates">) => Object.values(candidates)[0];
@@ -28,7 +28,9 @@ export function verdictWords(report: Checked, isEstimate = false): string {
   return wordOf(report.verdict) + (report.verdict === "off" && report.warnings.length > 0 ? ", see warnings" : "");
 }
 
-/** Why, in a sentence. A verdict that is capped by warnings has the candidate's own: the warnings stand beside it. */
+/**
+ * The reason in a sentence. If warnings cap the verdict, the candidate's own reason is given, because the warnings are listed beside it.
+ */
 export const verdictReason = (report: Checked): string =>
   (isCapped(report) ? firstOf(report)?.reason : undefined) ?? report.reason;
 
@@ -37,12 +39,12 @@ const SIDES = [
   ["below", "above"],
   ["in front of", "behind"],
 ] as const;
-/** Millimetres and degrees that are shown as zero. */
+/** Millimetres and degrees below which zero is shown. */
 const [LEAST_SHIFT, LEAST_TURN] = [0.05, 0.005];
 
 type Motion = Pick<CheckReport["estimate"], "rotation" | "translation">;
 
-/** Rotations of cameras that look along an axis of a LiDAR whose z points up. */
+/** Rotations of cameras that look along an axis of a LiDAR with z up. */
 const AHEAD: readonly [axis: string, rotation: readonly number[]][] = [
   ["x", [0, -1, 0, 0, 0, -1, 1, 0, 0]],
   ["y", [1, 0, 0, 0, 0, -1, 0, 1, 0]],
