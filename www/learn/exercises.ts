@@ -1,4 +1,4 @@
-/** Exercises for a course: each begins with a link that opens the state it refers to, and ends with its answer, folded. */
+/** Exercises for a course: each begins with a link that opens the state to which it refers, and ends with its answer, which is folded. */
 
 import { OPTIONS } from "../../pkg/options.js";
 import { make } from "../dom";
