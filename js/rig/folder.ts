@@ -302,7 +302,7 @@ export function ofRig(text: Extract<RigReading, { poses: NamedPose[] }>, file: s
 const placeOfFrame = (): ReaderWarning =>
   warning(
     "pose-assumed",
-    "It is called as a frame and does not name the frames of its pose, so that it may be the place of the camera in the world. It was taken to lead from the depth camera to the colour camera; name it depth_to_color.txt if it does, and pose/0.txt or the like if it does not.",
+    "Its name is that of a picture frame, and it does not name the frames of its pose, so that it may be the pose of the camera in the world. It was taken to lead from the depth camera to the colour camera; name it depth_to_color.txt if it does, and pose/0.txt or the like if it does not.",
   );
 
 /**

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from ._types import Floats, Singles
 
-# A logarithm of a colour, or a coordinate of a normal: the squares of what is farther from zero say nothing.
+# The largest logarithm of a colour or coordinate of a normal; the squares of larger numbers carry no information.
 FARTHEST = 1e6
 LARGEST_SIDE = 512
 

@@ -47,10 +47,10 @@ def write_depth(path: FilePath, depth: ArrayLike, unit: str = "m") -> str:
     made = _inputs.singles(_inputs.shaped(array(depth, "depth", "depths"), "depth", (None, None)))
     if unit not in ("m", "px"):
         raise BimodalError("option", 'unit: must be "m" or "px"', "unit")
-    # Larger ones are holes, as 32 bits have it.
+    # Larger numbers are holes in 32-bit floats.
     lost = (np.rint(made) > LARGEST) & (made < np.float32(1e12))
     if unit == "px":
-        # Depths in pixels may be counted from anywhere, but here these would be holes.
+        # Depths in pixels may have any origin, but values below zero would be holes here.
         lost |= made < 0
     if lost.any():
         value = made[lost][0]

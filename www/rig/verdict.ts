@@ -36,7 +36,7 @@ const ENDS: Record<string, string> = {
   "Looks right, see warnings": "your calibration is consistent, but see the warnings below",
   Off: "your calibration is off",
   "Off, see warnings": "your calibration is off, but see the warnings below",
-  Undecided: "this scene does not decide it",
+  Undecided: "this scene leaves the verdict open",
 };
 
 const WORDS: Record<CheckReport["verdict"], { word: string; tone: Tone }> = {

@@ -56,7 +56,7 @@ pub fn text_of(bytes: &[u8]) -> Option<String> {
     (!text.contains(is_binary)).then_some(text)
 }
 
-/// Poses of a file of nothing but numbers, whose name may say that its only pose is a camera's place in the world.
+/// Poses of a file that holds only numbers, whose name may say that its only pose is a camera's pose in the world.
 fn placed(mut found: Calibration, path: &str) -> Calibration {
     let [NamedPose { names: Names { from: None, to: None, .. }, pose }] = &found.poses[..] else { return found };
     let Some(frames) = ends::world_frames_of_file(path) else { return found };

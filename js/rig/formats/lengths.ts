@@ -51,7 +51,7 @@ export function checkLength({ name, from = "", to = "", pose }: NamedPose, warni
   warnings.push(
     warning(
       "translation-unit-guessed",
-      `The translation${name === undefined || name === "" ? "" : ` of "${name}"`} was read in metres, as the file does not state its unit; its length of ${length.toPrecision(4)} m is much for a rig. It would be ${says(length, 0.001)} if the numbers are millimetres, and ${says(length, 0.01)} if they are centimetres. Write the unit into the file, as "unit": "cm".`,
+      `The translation${name === undefined || name === "" ? "" : ` of "${name}"`} was read in metres, as the file does not state its unit; its length of ${length.toPrecision(4)} m is long for a rig. It would be ${says(length, 0.001)} if the numbers are millimetres, and ${says(length, 0.01)} if they are centimetres. Write the unit into the file, as "unit": "cm".`,
       { length },
     ),
   );

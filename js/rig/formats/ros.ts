@@ -132,9 +132,9 @@ function doubtsOf(poses: NamedPose[], text: string): ReaderWarning[] {
   );
   if (twice === undefined && !isConditional) return [];
   const which = isConditional
-    ? "It starts its transforms by conditions (if, unless), which were not evaluated: all transforms were read"
+    ? "It publishes its transforms under conditions (if, unless), which were not evaluated: all transforms were read"
     : `It has several transforms from ${twice?.from} to ${twice?.to}: all were read, the first one first`;
-  return [warning("pose-assumed", `${which}. Remove those that do not hold.`)];
+  return [warning("pose-assumed", `${which}. Remove those that do not apply.`)];
 }
 
 const TRIPLE = /Translation:\s*\[([^\]\n]{1,200})\]/;

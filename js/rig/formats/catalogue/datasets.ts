@@ -36,7 +36,7 @@ const RECONSTRUCTIONS: readonly Row[] = [
     sample: "colmap-images",
     reads: "poses",
     warnings: ["camera-to-world"],
-    taken: "The place of each image in a world of unknown scale; not used as extrinsics.",
+    taken: "The pose of each image in a world of unknown scale; not used as extrinsics.",
     guessed: NOTHING,
     exported: "As above.",
   },
@@ -213,9 +213,9 @@ const INDOOR: readonly Row[] = [
     sample: "bop",
     reads: "cameras",
     warnings: [],
-    taken: "The camera of both pictures, of each image if it changes; `depth_scale` in millimetres.",
+    taken: "The camera of both pictures, or of each image if it changes; `depth_scale` in millimetres.",
     guessed:
-      "A `depth_scale` that cannot be in millimetres is read as metres per unit or as units to the metre, because other programs write those.",
+      "A `depth_scale` that cannot be in millimetres is read as metres per unit or as units per metre, which other programs write.",
     exported: DOWNLOAD,
   },
   {
