@@ -55,7 +55,7 @@ export const ranged =
     throw new BimodalError(code, `${field}: must be ${range(row)} (got ${value})`, field, refused(value));
   };
 
-/** A list of this many numbers, typed arrays included. Its length is checked first, so that a longer list is not copied. */
+/** A list of this many numbers, or a typed array. Its length is checked first, so that a longer list is not copied. */
 export const numbers =
   (count: number): Check =>
   (value, field) => {

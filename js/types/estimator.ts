@@ -10,7 +10,7 @@ export type WasmSource = string | URL | Request | Response | BufferSource | WebA
 
 /** Options of `Estimator.run`. */
 export interface RunOptions {
-  /** The largest number of steps in this call, slices of the search included; `Options.maxIterations` counts iterations. */
+  /** The largest number of steps in this call, counting slices of the search; `Options.maxIterations` counts iterations. */
   maxIterations?: number;
   /** Ends the run between two steps; the promise is rejected with its reason. */
   signal?: AbortSignal;

@@ -23,7 +23,7 @@ export interface FloatRaster extends Extent {
   data: Float32Array;
 }
 
-/** The 4x4 matrix that transforms the depth map's points into the colour view, scale included; `numpy.loadtxt` reads it. */
+/** The 4x4 matrix with the scale that transforms the depth map's points into the colour view; `numpy.loadtxt` reads it. */
 export function matrixText(given: PoseInput): string {
   const pose = checkedPose(given, "pose");
   const { scale } = pose;

@@ -51,7 +51,7 @@ class Estimator:
     def run(
         self, max_iterations: Optional[int] = None, on_step: Optional[Callable[[StepReport], Any]] = None
     ) -> StepReport:
-        """Steps until the loop ends, at most ``max_iterations`` times, slices of the search included.
+        """Steps until the loop ends, at most ``max_iterations`` times, counting slices of the search.
 
         ``on_step`` is called with the report of each step. An interrupt, or whatever ``on_step`` raises, ends it between two steps; the
         estimator stays as the last step left it.

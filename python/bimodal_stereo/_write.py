@@ -35,7 +35,7 @@ def write_results(estimator: Estimator, folder: FilePath) -> list[str]:
 
 
 def write_pose(path: FilePath, pose: PoseInput) -> None:
-    """Writes the 4x4 matrix of a pose, scale included, as four lines of text; ``numpy.loadtxt`` and ``read_calibration`` read it."""
+    """Writes the 4x4 matrix of a pose with its scale as four lines of text; ``numpy.loadtxt`` and ``read_calibration`` read it."""
     _put(path, _native.matrix_text(members_of(pose, "pose")).encode())
 
 

@@ -151,7 +151,7 @@ export class Plot {
   #plot: uPlot | undefined;
   #begin: (() => void) | undefined;
   #data: uPlot.AlignedData;
-  /** The newest value of each curve, zero included, which no logarithm shows. */
+  /** The newest value of each curve, also if it is zero, which no logarithm shows. */
   #newest: (number | null)[] = [];
 
   constructor(box: HTMLElement, options: PlotOptions) {

@@ -137,7 +137,13 @@ export async function lookIn(slot: Slot, file: File): Promise<Look> {
   if (own.fault === undefined) return own;
   const asked = await glance(file, { as: KINDS[slot] }).catch(() => undefined);
   return asked
-    ? { ...asked, warnings: [...asked.warnings, `Without this slot it would have been refused: ${own.says}`] }
+    ? {
+        ...asked,
+        warnings: [
+          ...asked.warnings,
+          `Read as this slot requires; without the slot it would have been refused: ${own.says}`,
+        ],
+      }
     : own;
 }
 

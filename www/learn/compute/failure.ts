@@ -84,7 +84,7 @@ export function* failure(values: Values): Generator<Drawing> {
             key: "depth",
             title: "The depth map",
             alt: "The depth map from the other viewpoint.",
-            legend: "dark near, bright far; hatched: none",
+            legend: "dark near, bright far; hatched: no depth",
           },
           made.depth,
           depth,

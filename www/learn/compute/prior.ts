@@ -68,7 +68,7 @@ export function* prior(values: Values): Generator<Drawing> {
           key: "given",
           title: "Normals from the depth map",
           alt: `The prior: ${share} percent of the pixels are given a normal.`,
-          legend: "hatched: none given",
+          legend: "hatched: no normal given",
         },
         grid,
         given,

@@ -88,7 +88,7 @@ const VEHICLES: readonly Row[] = [
     reads: "cameras",
     warnings: [],
     taken:
-      "The camera that the folder's name selects (`image_2`); the pose of the LiDAR in the frame of that camera, rectification and baseline included.",
+      "The camera that the folder's name selects (`image_2`); the pose of the LiDAR in the frame of that camera, with rectification and baseline.",
     guessed: NOTHING,
     exported: DOWNLOAD,
   },
