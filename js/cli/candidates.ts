@@ -19,7 +19,7 @@ function betweenSensors(all: NamedPose[], field: string, warnings: Judged[]): Na
   for (const frame of way.turned)
     warnings.push({
       code: "pose-assumed",
-      message: `${field}: the frame ${frame} was taken to have ROS's body axes (x forward, y left, z up), because its name does not say "optical".`,
+      message: `${field}: the frame ${frame} was read as having ROS's body axes (x forward, y left, z up), because its name does not say "optical".`,
       field,
     });
   return [way.pose];
@@ -32,7 +32,7 @@ function betweenSensors(all: NamedPose[], field: string, warnings: Judged[]): Na
 function ofBody(file: string, poses: NamedPose[]): Mistake {
   const { name, from, to } = poses[0] as NamedPose;
   return new Mistake(
-    `${file}: ${name === undefined ? "it" : `its "${name}"`} relates ${from} to ${to}, one of which is no sensor of the pictures (but an inertial unit, a body, a vehicle, a robot or a calibration target); extrinsics relate the depth camera or the LiDAR to the colour camera. Give that pose as a 4x4 matrix, in a file named depth_to_color.txt or lidar_to_camera.txt`,
+    `${file}: ${name === undefined ? "it" : `its "${name}"`} relates ${from} to ${to}, one of which is not a sensor of the pictures (it may be an inertial unit, a body, a vehicle, a robot or a calibration target); extrinsics relate the depth camera or the LiDAR to the colour camera. Give that pose as a 4x4 matrix, in a file named depth_to_color.txt or lidar_to_camera.txt`,
     "file",
   );
 }

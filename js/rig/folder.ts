@@ -262,7 +262,7 @@ function withoutCarriers(poses: NamedPose[], warnings: ReaderWarning[]): NamedPo
   warnings.push(
     warning(
       "pose-left-out",
-      `Poses between a sensor and what carries it, or what it looks at, were not used as extrinsics: ${names}${more}.`,
+      `Poses of a sensor relative to its carrier (such as a vehicle) or to a target were not used as extrinsics: ${names}${more}.`,
     ),
   );
   return poses.filter((pose) => !isOfCarrier(pose));
@@ -280,7 +280,7 @@ function doubtLenses(warnings: ReaderWarning[]): void {
           file,
           warning(
             "distortion-unused",
-            "By its name it holds the distortion of a lens, which was not used. Write the camera's intrinsics and distortion into one file.",
+            "Its name says that it holds the distortion of a lens, which was not used. Write the camera's intrinsics and distortion into one file.",
           ),
         ),
       );
@@ -302,7 +302,7 @@ export function ofRig(text: Extract<RigReading, { poses: NamedPose[] }>, file: s
 const placeOfFrame = (): ReaderWarning =>
   warning(
     "pose-assumed",
-    "Its name is that of a picture frame, and it does not name the frames of its pose, so that it may be the pose of the camera in the world. It was taken to lead from the depth camera to the colour camera; name it depth_to_color.txt if it does, and pose/0.txt or the like if it does not.",
+    "It is named like a picture and does not name the frames of its pose, so it may be the pose of the camera in the world. It was read as the pose from the depth camera to the colour camera. If that is right, name it depth_to_color.txt, otherwise pose/0.txt or the like.",
   );
 
 /**

@@ -93,7 +93,7 @@ export function unitOfIntegers(values: Float64Array, isScattered = false): Unit 
   if (isVaried(values) && areFives(values) && middle > 1000 * NEAREST * 5)
     return guessed(FIFTHS, ": all values are multiples of 5", false);
   // The values do not distinguish KITTI's 256 units per metre from millimetres.
-  if (isScattered && middle <= 1000 * USUAL_OUTDOORS) return guessed(0.001, ": scattered, as a LiDAR's", true);
+  if (isScattered && middle <= 1000 * USUAL_OUTDOORS) return guessed(0.001, ": scattered like a LiDAR's", true);
   if (middle > 1000 * USUAL) return guessed(FIFTHS, ": too far for millimetres", true);
   return guessed(0.001, "", false);
 }

@@ -296,7 +296,7 @@ function ofOneCamera(found: Sorted, warnings: ReaderWarning[]): Pairs | undefine
   const own: ReaderWarning[] = [];
   const pairs = attempt({ ...found, colours: found.colours.filter(({ name }) => names.has(name)) }, own);
   if (pairs.pairs.length === 0) return undefined;
-  const message = `it is a picture of another camera than ${ours.camera}, which was chosen: one camera at a time can be checked against the LiDAR (left out). To check this one, give its pictures and the scans without those of ${ours.camera}.`;
+  const message = `it shows another camera's view and was left out: only one camera can be checked against the LiDAR at a time, and ${ours.camera} was chosen. To check this one, give its pictures and the scans, without the pictures of ${ours.camera}.`;
   const others = found.colours.filter(({ name }) => !names.has(name));
   warnings.push(...own, ...others.map(({ name }) => ofFile(name, warning("file-left-out", message))));
   return pairs;
@@ -308,7 +308,7 @@ export function sayUnpaired(pictures: NamedFile[], warnings: ReaderWarning[]): v
   if (colours.length + depths.length < 2) return;
   const said = new Set(warnings.map(({ file }) => file));
   const count = (files: NamedFile[], one: string, more: string) => `${files.length} ${files.length === 1 ? one : more}`;
-  const message = `it was not paired, because ${count(colours, "colour image", "colour images")} and ${count(depths, "depth map or scan", "depth maps or scans")} have no names or time stamps in common (left out). Give both files of a frame the same name.`;
+  const message = `it was left out, because ${count(colours, "colour image", "colour images")} and ${count(depths, "depth map or scan", "depth maps or scans")} have no names or time stamps in common. Give both files of a frame the same name.`;
   for (const { name } of [...colours, ...depths])
     if (!said.has(name)) warnings.push(ofFile(name, warning("file-alone", message)));
 }

@@ -26,7 +26,7 @@ function checkSensor(sorted: Float64Array): void {
   const at = (share: number) => quantile(sorted, share);
   if (at(0.5) > FAR_OFF && at(0.99) - at(0.01) < NARROWLY * at(0.5))
     throw badFile(
-      `its points lie ${at(0.5).toPrecision(3)} from the origin and close together, as in the coordinates of a map rather than of a sensor; move them into the frame of the sensor that the extrinsics are for`,
+      `its points lie ${at(0.5).toPrecision(3)} from the origin and close together, so they seem to be in the coordinates of a map instead of a sensor; move them into the frame of the sensor that the extrinsics are for`,
     );
 }
 

@@ -53,7 +53,7 @@ export class SearchWorkers {
     handle.onFailure(() => this.#drop(worker));
   }
 
-  /** Hands out tasks until there are none or every queue is full; a search around an initial pose starts here. */
+  /** Hands out tasks until no task is left or every queue is full; a search around an initial pose starts here. */
   feed(options: PlainOptions): void {
     if (!this.#isBegun) this.begin(options);
     this.#give();

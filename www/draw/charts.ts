@@ -105,7 +105,7 @@ export class Chart {
 const optional = <T>(given: T | undefined, value: (given: T) => number): number | null =>
   given === undefined ? null : value(given);
 
-/** The number of iterations in which a value is zero, in words; empty if there are none. */
+/** The number of iterations in which a value is zero, in words; empty if it never is. */
 function zerosIn(values: readonly (number | null)[]): string {
   const [known, zeros] = [values.filter((value) => value !== null), values.filter((value) => value === 0)];
   return zeros.length > 0 ? `zero in ${zeros.length} of ${known.length} iterations` : "";

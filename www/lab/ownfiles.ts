@@ -167,7 +167,7 @@ export class OwnFiles {
     if (Object.keys(this.intake.files).length === 0) return;
     const words = isEmpty
       ? "The stored files were removed in another tab of this page. A reload removes them here, too."
-      : "Another tab of this page has stored its own files. A reload brings those, not these.";
+      : "Another tab of this page has stored its own files. A reload shows those files instead of these.";
     this.intake.keeping(words, true);
   }
 

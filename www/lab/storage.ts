@@ -95,5 +95,5 @@ export async function kept(): Promise<Map<string, File>> {
 /** Why files could not be stored, in words. */
 export function reasonOf(error: unknown): string {
   const name = error instanceof DOMException ? error.name : "";
-  return name === "QuotaExceededError" ? "its storage is full" : "its storage is closed to this page";
+  return name === "QuotaExceededError" ? "its storage is full" : "it does not let this page store files";
 }

@@ -254,7 +254,7 @@ function intro(): HTMLElement {
         {},
         "The same protocols run on the command line, ",
         make("code", {}, "npm run tables"),
-        ". These need recordings that are not ours to ship:",
+        ". These need recordings that the project may not redistribute:",
       ),
       make("ul", {}, ...elsewhere.map((title) => make("li", {}, title))),
     ),

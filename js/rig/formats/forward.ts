@@ -24,7 +24,7 @@ export function lookForward(found: NamedPose, called: string, warnings: ReaderWa
   warnings.push(
     warning(
       "pose-assumed",
-      `"${found.name ?? "its pose"}" does not state which way it leads between the LiDAR and the camera. It was inverted, because only then the camera stands upright on a LiDAR whose z points up; name it lidar_to_camera or camera_to_lidar.`,
+      `"${found.name ?? "its pose"}" does not state its direction between the LiDAR and the camera. It was inverted, because only then does the camera stand upright on a LiDAR whose z points up; name it lidar_to_camera or camera_to_lidar.`,
     ),
   );
 }

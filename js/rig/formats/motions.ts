@@ -322,7 +322,7 @@ export class Motions {
     this.#warnings.push(
       warning(
         "pose-assumed",
-        `The file has ${unnamed.length} poses without the names of their frames (${names.join(", ")}). Each was taken to lead from the depth camera or the LiDAR to the colour camera; keep the one that does, and name it depth_to_color or lidar_to_camera.`,
+        `The file has ${unnamed.length} poses without the names of their frames (${names.join(", ")}). Each was read as leading from the depth camera or the LiDAR to the colour camera; keep the one that does, and name it depth_to_color or lidar_to_camera.`,
         { poses: unnamed.length },
       ),
     );
@@ -345,7 +345,7 @@ export class Motions {
     this.#warnings.push(
       warning(
         "pose-assumed",
-        `The file has several poses between the same frames; ${left.slice(0, FEW).join(", ")} ${left.length > 1 ? "are first estimates by their names and come" : "is a first estimate by its name and comes"} after the others.`,
+        `The file has several poses between the same frames; ${left.slice(0, FEW).join(", ")} ${left.length > 1 ? "have the names of first estimates and come" : "has the name of a first estimate and comes"} after the others.`,
       ),
     );
   }
@@ -376,7 +376,7 @@ export class Motions {
     this.#warnings.push(
       warning(
         "pose-assumed",
-        `"${name}" names two frames, but not in a known way which one it leads to. It was taken to lead to the colour camera; name it depth_to_color, lidar_to_camera or the like.`,
+        `"${name}" names two frames, but its direction is not clear. It was read as leading to the colour camera; name it depth_to_color, lidar_to_camera or the like.`,
         { name },
       ),
     );

@@ -118,7 +118,7 @@ function remembered<T>(of: (name: string) => T): (name: string) => T {
   };
 }
 
-/** The words without the first phrase with which they begin or end; undefined if there is none. */
+/** The words without the first phrase with which they begin or end; undefined without one. */
 function without(words: string[], phrases: string[][]): string | undefined {
   for (const phrase of phrases) {
     const is = (some: string[]) => some.length === phrase.length && some.every((word, at) => word === phrase[at]);

@@ -114,7 +114,7 @@ export function readPublishers(whole: string): Calibration {
   const warnings: ReaderWarning[] = [];
   const text = withoutComments(whole);
   if (!isPublisher(text))
-    throw badFile(`it names ${NAME} in comments alone: remove the comment signs if it is the right one`);
+    throw badFile(`it names ${NAME} only in comments: remove the comment signs if that line is the right one`);
   const found = mentions(text)
     .filter((args) => COMPUTED.test(args) || words(args).some((word) => numberOf(word) !== undefined))
     .map(written);
@@ -133,7 +133,7 @@ function doubtsOf(poses: NamedPose[], text: string): ReaderWarning[] {
   if (twice === undefined && !isConditional) return [];
   const which = isConditional
     ? "It publishes its transforms under conditions (if, unless), which were not evaluated: all transforms were read"
-    : `It has several transforms from ${twice?.from} to ${twice?.to}: all were read, the first one first`;
+    : `It has several transforms from ${twice?.from} to ${twice?.to}: all were read, in their order`;
   return [warning("pose-assumed", `${which}. Remove those that do not apply.`)];
 }
 

@@ -146,7 +146,7 @@ export function extrinsicsSection(report: Checked, options: ReportOptions): Mark
   const given = inQuestion(report, options);
   return section(
     "Extrinsics",
-    html`<div class="extrinsics"><div>${unknownTable(report, given)}<p class="soft">Rotation: R = Rx Ry Rz. Interval: of what was found. Bold: the candidate lies outside it.</p></div>
+    html`<div class="extrinsics"><div>${unknownTable(report, given)}<p class="soft">Rotation: R = Rx Ry Rz. Interval: that of the value found. Bold: the candidate lies outside it.</p></div>
 <div>${given && html`<h3>Candidate</h3>${matrix(given)}`}<h3>Found</h3>${matrix(report.estimate)}<p class="soft">P_colour = R P_depth + t, metres; x right, y down, z forward.</p></div></div>`,
   );
 }

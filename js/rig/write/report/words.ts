@@ -58,7 +58,7 @@ function heading({ rotation }: Motion): string {
   const traces = AHEAD.map(([axis, ahead]) => [axis, trace(ahead)] as const);
   const [axis, most] = traces.reduce((a, b) => (a[1] >= b[1] ? a : b));
   const degrees = (180 / Math.PI) * Math.acos(Math.min(1, Math.max(-1, (most - 1) / 2)));
-  return `which is turned by ${degrees.toFixed(2)}° from looking along the LiDAR's ${axis} axis, z up`;
+  return `which looks along the LiDAR's ${axis} axis with z up, except for a rotation by ${degrees.toFixed(2)}°`;
 }
 
 /** Where the depth camera or LiDAR sits relative to the colour camera, so that one can compare it with the rig. */
