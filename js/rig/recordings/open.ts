@@ -20,8 +20,7 @@ export interface RecordingFile {
   content: Blob | Uint8Array;
 }
 
-/** Options for taking frames from a recording. */
-/** The topics to use; `chosen` has the defaults. */
+/** Options for taking frames from a recording. Topics that are not given are those of `chosen`. */
 export interface RecordingOptions extends Choice {
   /** The largest number of frames; default 10. */
   frames?: number;
