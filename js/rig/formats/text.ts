@@ -170,7 +170,7 @@ export async function readText(text: string, file: string): Promise<Read> {
 const placeOfName = (): ReaderWarning =>
   warning(
     "camera-to-world",
-    "Its name says that it is the pose of a camera in the world (camera to world), which was not used as extrinsics between two cameras. If it is, name the file depth_to_color.txt or the like.",
+    "Its name says that it is the pose of a camera in the world (camera to world), which was not used as extrinsics between two cameras. If it does relate two cameras, name the file depth_to_color.txt or the like.",
     { poses: 1 },
   );
 
