@@ -58,7 +58,7 @@ export function pointsDepth(cloud: Points, { unit: given }: ReadOptions): Unname
     warning("points-sorted", words, { points: count, rows: image.height }),
     ...timed(scan),
   ];
-  const notes = [...(image.hidden > 0 ? [`${image.hidden} hidden by others left out`] : []), ...cloud.notes];
+  const notes = [...(image.hidden > 0 ? [`${image.hidden} left out because others hide them`] : []), ...cloud.notes];
   const says = `${count} points (${format}), sorted into ${size} ${HOW[image.how]}`;
   return { ...reading(image, image.points, { format: "points", says, unit, notes, warnings }), scan };
 }

@@ -33,7 +33,7 @@ export function opencvYaml(rig: Rig): string {
   return [
     "%YAML:1.0",
     "---",
-    `# ${SAYS} To cv::stereoCalibrate the depth camera is the first, the colour camera the second.`,
+    `# ${SAYS} For cv::stereoCalibrate, the depth camera is the first camera and the colour camera the second.`,
     ...matrix("R", 3, 3, rig.rotation),
     ...matrix("T", 3, 1, rig.translation),
     ...opencvCamera(rig.depth, "depth"),
