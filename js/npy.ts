@@ -108,13 +108,13 @@ function axesOf(listed: string): number[] {
     .split(",")
     .map((part) => part.trim())
     .filter((part) => part !== "");
-  // Nothing but digits: Number() would also take "2.5", "-2" and "0x2".
+  // Digits only: Number() would also accept "2.5", "-2" and "0x2".
   if (!parts.every((axis) => /^[0-9]+$/.test(axis) && Number(axis) > 0))
     throw bad(`this .npy file has the shape (${listed.trim()}); whole numbers above zero are needed`);
   return parts.map(Number);
 }
 
-/** Rows, columns and channels of some axes; those of length 1 around an image count for nothing. */
+/** Rows, columns and channels of some axes; those of length 1 around an image are ignored. */
 function shapeOf(all: readonly number[]): Shape {
   const axes = all.slice();
   // Batch and channel of a tensor.
@@ -187,7 +187,7 @@ export function readSmall(bytes: Uint8Array, most: number): { axes: number[]; va
   return { axes, values: header.byColumns ? inRows(values, height, width, 1) : values };
 }
 
-/** Two or three planes without a value below zero are not a cloud; with values above 1 they are not colours either. */
+/** Two or three planes without negative values are not a cloud; with values above 1 they are not colours either. */
 const isStack = (data: Pixels): boolean =>
   !data.some((value) => value < 0) && data.some((value) => value > 1 && value < Infinity);
 

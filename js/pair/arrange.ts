@@ -1,4 +1,6 @@
-/** Single files as a folder of a rig, by the code that reads folders: which camera took which pictures, and which poses matter. */
+/**
+ * Arranges single files like a folder of a rig, with the code that reads folders: which camera took which pictures, and which poses matter.
+ */
 import { assigned, ofRig, withoutCarriers, withoutInertial } from "../rig/folder.js";
 import { stem } from "../rig/names.js";
 import { posesForClouds } from "../rig/turned.js";
@@ -23,10 +25,10 @@ export interface Arranged {
   warnings: ReaderWarning[];
 }
 
-/** Codes of warnings that the forms of the page give themselves. */
+/** Codes of warnings that the page's forms show by themselves. */
 const GIVEN = new Set(["colour-camera-missing", "depth-camera-missing", "camera-size", "principal-point"]);
 
-/** What the frames and texts make together. */
+/** What the frames and texts describe together. */
 export function arranged(read: ReadFrame[], texts: ReadText[]): Arranged {
   const warnings: ReaderWarning[] = [];
   const frames = read.map(

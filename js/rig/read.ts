@@ -1,5 +1,5 @@
 /**
- * Reads any file of a rig, recognised by its content, into what the check takes.
+ * Reads any file of a rig, which it recognises by content, into the inputs of the check.
  *
  * Every failure is a BimodalError of the code "file" that names the file and the reason.
  */
@@ -29,7 +29,7 @@ import { inWords } from "./words.js";
 
 type Content = Unnamed<RigReading>;
 
-/** Formats that are not read, which are loaded with the first file of no known picture format. */
+/** The module about formats that are not supported, loaded with the first file of no known picture format. */
 const refusals = once(() => import("./formats/containers.js"));
 const texts = once(() => import("./formats/text.js"));
 const clouds = () => import("./formats/pointclouds.js");
@@ -67,7 +67,7 @@ export const isTextFile = (bytes: Uint8Array): boolean => (textOf(bytes) ?? writ
 const writtenOf = (bytes: Uint8Array): string | undefined =>
   colmapText(bytes) ?? matrixText(bytes) ?? archiveText(bytes);
 
-/** A picture as what it holds, or as what is asked for. */
+/** Reads a picture as the kind that its content shows, or as the requested kind. */
 export function ofPicture(name: string, picture: Picture, options: ReadOptions): Content {
   const kind = options.as ?? (options.inverse ? "depth" : kindOfPicture(name, picture));
   const warnings = [...picture.warnings, ...nameWarnings(name, picture, kind, options)];
@@ -124,7 +124,7 @@ async function ofOthers({ name, bytes }: NamedFile, isPoints: boolean, options: 
 async function content({ name, bytes }: NamedFile, options: ReadOptions): Promise<Content> {
   if (bytes.length === 0) throw badFile("it is empty");
   const kind = rasterKind(bytes);
-  // Recordings are refused by name, whatever their size; a camera's raw photograph begins as a TIFF.
+  // Recordings are refused by name, whatever their size; a camera's raw photograph has the first bytes of a TIFF.
   const isDoubtful = bytes.length > MOST_BYTES || kind === "tiff";
   const container = isDoubtful ? (await refusals()).knownContainer(name, bytes) : undefined;
   if (container !== undefined) throw container;
@@ -139,7 +139,7 @@ async function content({ name, bytes }: NamedFile, options: ReadOptions): Promis
   const picture = await PICTURES[kind](bytes, options);
   const { scan, format, notes, warnings } = picture;
   if (scan) return ofCloud({ format, scan, isMetric: false, notes, warnings }, options);
-  // An array from an archive goes by its own name.
+  // The name of an array from an archive is the array's own.
   return ofPicture(picture.name ?? name, picture, options);
 }
 
@@ -186,7 +186,7 @@ const checkOptions = object({
   signal,
 });
 
-/** Reads one file. `warnings` has what was guessed or looks wrong. */
+/** Reads one file. `warnings` lists what was guessed or looks wrong. */
 export async function readRigFile(file: NamedFile, options: ReadOptions = {}): Promise<RigReading> {
   checkNamed(file, "file");
   checkOptions(options, "options");

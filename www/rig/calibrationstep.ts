@@ -16,9 +16,9 @@ const TURNS: Record<By, readonly string[]> = {
   xyz: ["about x", "about y", "about z"],
 };
 
-/** Above this distance of two cameras, metres, a wrong unit or a pose in the world is likelier than a rig. */
+/** Distance of two cameras, metres, above which a wrong unit or a pose in the world is likelier than a rig. */
 const FAR = 0.5;
-/** .. of a LiDAR and a camera on one vehicle. */
+/** The same distance for a LiDAR and a camera on one vehicle. */
 const FAR_ON_VEHICLE = 3;
 
 export class CalibrationStep {
@@ -33,7 +33,7 @@ export class CalibrationStep {
     "The check only estimates one; add yours to have it checked. Depth maps that are already registered to the images, as phones and many drivers save them, have the identity. ",
     press("Add the identity", () => this.#rig.addPose({ name: "identity", pose: identity }, "the identity")),
   );
-  /** Said once for all candidates. */
+  /** Shown once for all candidates. */
   readonly #hint = make("p", { class: "soft rig-hint" });
   readonly #alert = make("p", { class: "rig-error", role: "alert", hidden: true });
   readonly #next: HTMLButtonElement;

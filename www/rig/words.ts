@@ -1,4 +1,4 @@
-/** The verdict and a camera's place in the words of the report, under the types that the package declares for them. */
+/** The verdict and a camera's place in the words of the report, with the package's declared types. */
 
 import * as words from "../../pkg/rig-words.js";
 import type * as Words from "../../pkg/rig/write/report/words.js";

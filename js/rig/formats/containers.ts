@@ -111,14 +111,14 @@ const TEXTS: Row[] = [
 const refused = ([, advice, isPicture]: Row): BimodalError =>
   badFile(`it is ${advice}`, undefined, isPicture && { problem: "picture" });
 
-/** The error about a file of a known format that is not read; undefined for other files. */
+/** The error about a file in a known format that is not supported; undefined for other files. */
 export function knownContainer(name: string, bytes: Uint8Array): BimodalError | undefined {
   const head = String.fromCharCode(...bytes.subarray(0, 16));
   const row = FIRST.find(([pattern]) => pattern.test(head)) ?? NAMED.find(([pattern]) => pattern.test(name));
   return row && refused(row);
 }
 
-/** .. and about such a text. */
+/** The error about a text in a known format that is not supported. */
 export function knownText(text: string): BimodalError | undefined {
   const head = text.slice(0, 8192);
   const row = TEXTS.find(([pattern]) => pattern.test(head));

@@ -25,7 +25,7 @@ export function worldFrames(name: string): Frames | undefined {
   return undefined;
 }
 
-/** Words of names that say what an estimate is worth and where it comes from, not which frames it relates. */
+/** Words in names that say how good an estimate is and where it comes from, not which frames it relates. */
 const NO_FRAME = [
   "init|initial|guess|prior|coarse|rough|nominal|cad|default|factory|manual|auto|est|estimated?|estimation|opt",
   "optimi[sz]ed|optimi[sz]ation|refined?|refinement|final|best|result|results|solution|solved|corrected|adjusted",
@@ -44,11 +44,13 @@ function plainName(name: string): string {
   return (bare === "" ? name : bare).replace(/[ -]/g, "_");
 }
 
-/** Whether a name is that of a first estimate, which another one of the same frames supersedes. */
+/** Whether a name is that of a first estimate, which another pose between the same frames supersedes. */
 export const isFirstEstimate = (name: string): boolean =>
   /(?<![a-z])(?:init|initial|guess|prior|coarse|rough|nominal|cad|default|factory|old)(?![a-z])/i.test(name);
 
-/** "camera_in_lidar", "camera_pose_wrt_lidar": where the first frame is in the second, which carries its points there. */
+/**
+ * "camera_in_lidar", "camera_pose_wrt_lidar": the pose of the first frame in the second, which carries points of the first into the second.
+ */
 function placedIn(bare: string): Frames | undefined {
   const [, of = "", within = ""] =
     /^(?:T_)?([a-z0-9]+)_(?:(?:pose|position|place|orientation|rotation|frame)_)?(?:in|wrt|relative_to|with_respect_to)_(?:the_)?([a-z0-9]+)(?:_frame)?$/i.exec(
@@ -79,7 +81,7 @@ export function named(written: string, frames: Frames): PoseNames {
   const name = written.replace(/^\w{1,40}\.(?=\w+$)/, "");
   if (frames.from !== undefined || frames.to !== undefined) return { ...(name !== "" && { name }), ...frames };
   if (name === "") return {};
-  // Matterport's "scan a_d0_0.png a_i0_0.jpg": a pose called as a picture is the place where that was taken.
+  // Matterport's "scan a_d0_0.png a_i0_0.jpg": a pose named after a picture is the pose from which the picture was taken.
   if (/\.(?:png|jpe?g|tiff?|exr)\b/i.test(name)) return { name, from: "camera", to: "world" };
   const own = ofProduct(name);
   if (own !== undefined) return { name, ...own };

@@ -1,5 +1,5 @@
 /**
- * The frames of a file's only pose from the file's name: "depth_to_color.txt", "calib_cam_to_velo.txt", "T_cam_lidar.json".
+ * The frames of the only pose in a file, from the file's name: "depth_to_color.txt", "calib_cam_to_velo.txt", "T_cam_lidar.json".
  *
  * Limit: only names of sensors are recognised as frames.
  */
@@ -38,7 +38,7 @@ export function endsOf(path: string): { from: string; to: string } | undefined {
   return from === to ? undefined : { from, to };
 }
 
-/** Names of files that are those of poses of the camera in the world: "pose.txt", "frame-000000.pose.txt", "camera_pose.npy", "tag_pose.txt". */
+/** File names of poses of the camera in the world: "pose.txt", "frame-000000.pose.txt", "camera_pose.npy", "tag_pose.txt". */
 const PLACE =
   /^(?:(?:frame|image|img|rgb|colou?r|depth|camera|cam|gt|abs(?:olute)?|obj(?:ect)?|tag|marker|board|target)?[_.-]*\d*[_.-]*){0,3}poses?[_.-]*\d*$/i;
 
@@ -52,7 +52,7 @@ function ofWorldName(path: string): Frames | undefined {
   if (PLACE.test(name) || ALIGNMENT.test(name) || (/^\d+$/.test(name) && /^poses?$/i.test(folder)))
     return { from: "camera", to: "world" };
   for (const each of /^\D*\d*$/.test(name) ? [name, folder] : [name]) {
-    // "stereo_pose" is no place of a camera.
+    // "stereo_pose" is not the pose of a camera in the world.
     const bare = each.slice(0, LONGEST).replace(/[ _-]?poses?[ _-]?/gi, "");
     const { from, to } = named(bare, {});
     const ends = { ...(from !== undefined && { from }), ...(to !== undefined && { to }) };
@@ -70,13 +70,13 @@ const namesOneEnd = (path: string, { pose: { rotation: r, translation: t } }: Na
   ONE_END.test(path.replace(/^.*[/\\]/, "").replace(/\.[a-z]{1,5}$/i, "")) &&
   Math.hypot(...t, (r[0] ?? 0) - 1, (r[4] ?? 0) - 1, (r[8] ?? 0) - 1) > STILL;
 
-/** Whether a pose leads from the depth camera to the colour camera, as one without named frames is taken to. */
+/** Whether a pose leads from the depth camera to the colour camera, which is also assumed for a pose without named frames. */
 const isUsual = ({ from, to }: { from: string; to: string }): boolean =>
   /depth|dpt|infra|tof/i.test(from) && /colou?r|rgb/i.test(to) && !/colou?r|rgb/i.test(from);
 
 /**
- * The poses of a file. A single pose without frames takes those of the file's name, except the default from depth to colour. With `isBare`
- * the file has nothing but its numbers, so that its name may say that it is a camera's place in the world, or name one end alone.
+ * The poses of a file. A single pose without frames takes the frames in the file's name, except the default from depth to colour. With
+ * `isBare` the file holds only numbers, so its name may say that it is a camera's pose in the world, or name one end alone.
  */
 export function withEnds(
   poses: readonly NamedPose[],

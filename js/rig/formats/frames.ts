@@ -29,7 +29,7 @@ interface Placed {
   pose: Pose;
 }
 
-/** The pose of each frame in the root of its tree. */
+/** The pose of each frame relative to the root of its tree. */
 function places(poses: readonly NamedPose[]): Map<string, Placed> {
   const parents = new Map<string, { to: string; pose: Pose }>();
   for (const { from, to, pose } of poses)
@@ -62,9 +62,9 @@ function best(names: string[], is: (name: string) => boolean): string | undefine
 }
 
 /**
- * The pose from the depth camera (or else the LiDAR) to the colour camera (or else the first camera), where both are in one tree and no pose
- * of the file relates them directly. A camera frame without "optical" in its name has body axes by ROS's convention and is turned, with
- * a warning.
+ * The pose from the depth camera (or else the LiDAR) to the colour camera (or else the first camera), if both are in one tree and no pose
+ * of the file relates them directly. A camera frame without "optical" in its name has body axes by ROS's convention and is converted,
+ * with a warning.
  */
 export function wayBetween(poses: readonly NamedPose[]): { pose: NamedPose; warnings: ReaderWarning[] } | undefined {
   const placed = places(poses);
@@ -117,11 +117,14 @@ export function linked(poses: readonly NamedPose[], from: string, to: string): N
 /** Whether a frame is a LiDAR's, by its name. */
 export const isLidar = (name: string): boolean => LIDAR.test(name) && !CAMERA.test(name);
 
-/** Frames of no camera and no LiDAR: the inertial unit, the body, a vehicle, a robot and its hand, and what a calibration looks at. */
+/**
+ * Frames that are neither a camera's nor a LiDAR's: the inertial unit, the body, a vehicle, a robot and its hand, and the calibration
+ * target.
+ */
 const CARRIER =
   /^(?:b|body|i|imu\w*|base(?:[_ ]?(?:link|footprint))?|rig|vehicle|ego(?:[_ ]?vehicle)?|car|robot\w*|hand|gripper|flange|tool\d*|\w+_(?:hand|gripper|flange|tool\d*)|gps|ins|oxts|(?:april|aru|charu)\w*|tag\w*|marker\w*|(?:chess|checker|calib\w*)?_?board|target|pattern|object|table)$/i;
 
-/** Whether a motion relates a sensor to what carries it or what it looks at, so that it does not relate two sensors. */
+/** Whether a motion relates a sensor to what carries it or to what it looks at, instead of relating two sensors. */
 export const isOfCarrier = ({ from = "", to = "" }: Ends): boolean => CARRIER.test(from) || CARRIER.test(to);
 
 type Ends = { from?: string | undefined; to?: string | undefined };

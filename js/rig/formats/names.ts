@@ -118,7 +118,7 @@ function remembered<T>(of: (name: string) => T): (name: string) => T {
   };
 }
 
-/** The words without the first phrase that they begin or end with; undefined where there is no such phrase. */
+/** The words without the first phrase with which they begin or end; undefined without one. */
 function without(words: string[], phrases: string[][]): string | undefined {
   for (const phrase of phrases) {
     const is = (some: string[]) => some.length === phrase.length && some.every((word, at) => word === phrase[at]);
@@ -238,7 +238,7 @@ function motionName(name: string, phrases: string[][], letters: string): MotionN
   }
   const label = without(rest, phrases);
   if (label !== undefined) return { label, ...said };
-  // "euler_deg" and "rpy" name a rotation without any other word.
+  // "euler_deg" and "rpy" name a rotation even without another word.
   return phrases === ROTATION && said.kind === "euler" ? { label: rest.join(" "), ...said } : undefined;
 }
 

@@ -12,17 +12,20 @@ import { entriesOf, unpacked } from "./zip.js";
 
 /** Columns of a list of points: x, y, z and, for instance, intensity or colours; images are wider. */
 const [FEWEST_COLUMNS, MOST_COLUMNS] = [3, 8];
-/** Rows over columns of a list of points, at least; images are not so tall. */
+/** Smallest ratio of rows to columns of a list of points; images are not so tall. */
 const TALL = 10;
 const MOST_LEVEL = 0xffff;
 
-/** Integers of any type as 16 bits, which depth cameras write, where all fit; negative ones are holes. */
+/** Integers of any type as 16 bits, which depth cameras write, if all of them fit; negative ones are holes. */
 function asLevels(data: Pixels): Pixels {
   if (!(data instanceof Float32Array) || data.some((value) => value > MOST_LEVEL)) return data;
   return Uint16Array.from(data, (value) => Math.max(0, value));
 }
 
-/** A list of points as a scan, with intensities where it has the columns of KITTI or nuScenes; as an organised cloud where it has a depth camera's number of pixels. */
+/**
+ * A list of points as a scan, with intensities if it has the columns of KITTI or nuScenes; as an organised cloud if it has as many points
+ * as a depth camera has pixels.
+ */
 function ofList(data: Pixels, count: number, columns: number): Picture {
   const points = pointsOf(data, columns);
   const warnings: ReaderWarning[] = [];
@@ -59,7 +62,7 @@ export function npyPicture(bytes: Uint8Array, check = checkSize): Picture {
   return { ...raster, data, format: "npy", bits, notes: [], warnings: [] };
 }
 
-/** Names of arrays that hold depths, the clearest first. */
+/** Names of arrays that hold depths, the most specific first. */
 const DEPTHS = [DEPTH, /depth|dpt/i, /^(?:z|range|xyz|points?|cloud)$/i];
 
 /** The array of an archive that holds the depth map, by its name; the only array of an archive may have any name. */

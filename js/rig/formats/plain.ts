@@ -1,4 +1,4 @@
-/** Files of only numbers: K.txt, matrices of motions, and trajectories as those of TUM and Redwood. */
+/** Files that contain only numbers: K.txt, matrices of motions, and trajectories in the formats of TUM and Redwood. */
 import { badFile } from "../../errors.js";
 import type { NamedPose } from "../types.js";
 import { cameraOf, ofMatrix } from "./cameras.js";
@@ -17,7 +17,7 @@ const MOST_NUMBERS = 200_000;
 const HEAD = 1000;
 const near = (value: number | undefined, to: number): boolean => value !== undefined && Math.abs(value - to) < 1e-9;
 
-/** Rows of numbers, without comments and brackets; undefined where the text has anything else. */
+/** Rows of numbers, without comments and brackets; undefined if the text contains anything else. */
 function rowsOf(text: string): Numbers[] | undefined {
   const rows: Numbers[] = [];
   let count = 0;
@@ -150,7 +150,7 @@ function matrices(rows: Numbers[]): Found {
   return { cameras: [], poses, warnings: distinct(warnings, 4), format: "a trajectory" };
 }
 
-/** The motion of a file without names, in the unit of its comments. */
+/** The motion of a file without names, in the unit that its comments state. */
 function aloneOf(read: Numbers, text: string, warnings: ReaderWarning[]): NamedPose {
   const unit = unitInComments(text);
   if (isProjection(read)) throw badFile(`its matrix ${PROJECTION}`);

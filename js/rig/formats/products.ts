@@ -1,6 +1,6 @@
 /**
- * Files of products whose units, quaternion order, frames or modes are not in the file but in the product's documentation. Each product has a
- * reader, and these come before the search by names of members (tree.ts).
+ * Files of products whose documentation, not the file, gives the units, quaternion order, frames or modes. Each product has a reader; these
+ * run before the search by names of members (tree.ts).
  */
 import { isA2d2, readA2d2 } from "./a2d2.js";
 import { isAria, readAria } from "./aria.js";
@@ -86,7 +86,7 @@ const TREES: Product<Node>[] = [
 
 type Found = Findings & { format: string };
 
-/** The findings of a reader, which must not be empty, with the name of the format. */
+/** The findings of a reader, with the name of the format; they must not be empty. */
 const named = (found: Findings, format: string): Found => Object.assign(found.done(format), { format });
 
 /** The cameras and poses of a product's text; undefined where no product is recognised. */
@@ -101,7 +101,7 @@ const MOST_MEMBERS = 20_000;
 /** The cameras and poses of a product's object, which may be the only document of a YAML file. */
 export function productOfTree(value: unknown): Found | undefined {
   const whole: unknown = Array.isArray(value) && value.length === 1 ? value[0] : value;
-  // Each reader looks through all members to recognise its product.
+  // To recognise its product, each reader looks through all members.
   if (isNode(whole) && Object.keys(whole).length > MOST_MEMBERS) return undefined;
   const [format, , read] = (isNode(whole) ? TREES.find(([, is]) => is(whole)) : undefined) ?? [];
   if (format !== undefined && read && isNode(whole)) return named(read(whole), format);

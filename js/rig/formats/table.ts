@@ -10,9 +10,9 @@ import type { Picture } from "./picture.js";
 
 /** The smallest depth map; matrices and trajectories have fewer columns or rows. */
 const [FEWEST_COLUMNS, FEWEST_ROWS] = [24, 18];
-/** Share of the first rows that must have as many numbers as the first one. */
+/** Smallest share of the first rows that must have as many numbers as the first one. */
 const MOSTLY = 0.9;
-/** Lines by which a text is recognised. */
+/** Most lines that are examined to recognise a text. */
 const HEAD = 40;
 /** Most characters of these lines. */
 const HEAD_CHARACTERS = 2 ** 19;
@@ -20,7 +20,7 @@ const HEAD_CHARACTERS = 2 ** 19;
 const isComment = (line: string): boolean => /^\s*(?:[#%]|\/\/|$)/.test(line);
 const isHole = (word: string): boolean => /^[-+]?(?:nan|inf|infinity|none|null|na)?$/i.test(word);
 
-/** The separator of the words of a line; between semicolons a comma is a decimal one. */
+/** The separator of the words of a line; if semicolons separate them, a comma is decimal. */
 const separatorOf = (line: string): string => [";", ",", "\t"].find((each) => line.includes(each)) ?? " ";
 
 export function wordsOf(line: string, separator: string): string[] {
@@ -57,7 +57,7 @@ export function headOf(bytes: Uint8Array): Head {
   return { rows: rows.map(ofRow), separator, isTrailing };
 }
 
-/** Whether the first lines of a text are rows of equally many numbers, in the size of a depth map. */
+/** Whether the first lines of a text are rows with equally many numbers, at the size of a depth map. */
 export function isTable(bytes: Uint8Array): boolean {
   const { rows } = headOf(bytes);
   // The first row may name the columns.
@@ -74,8 +74,8 @@ const [TAB, NEWLINE, RETURN, SPACE, QUOTE, ZERO, NINE] = [9, 10, 13, 32, 34, 48,
 const [PLUS, COMMA, MINUS, POINT, LOWER_E, UPPER_E] = [43, 44, 45, 46, 101, 69];
 
 /**
- * A decimal number straight from its bytes, because making texts takes most of the time; undefined where the bytes are anything else. It is
- * more precise than the floats that are made of it.
+ * Parses a decimal number directly from its bytes, because creating strings takes most of the time; undefined if the bytes are anything
+ * else. It is more precise than the floats that are made from it.
  */
 function decimal(bytes: Uint8Array, from: number, to: number, point: number): number | undefined {
   let at = from;
@@ -101,7 +101,7 @@ function decimal(bytes: Uint8Array, from: number, to: number, point: number): nu
   return at === to && Number.isFinite(size) ? first * size : undefined;
 }
 
-/** The number in these bytes; NaN where it is a hole. */
+/** The number in these bytes; NaN if it is a hole. */
 function cell(bytes: Uint8Array, from: number, to: number, hasCommas: boolean): number {
   const isPadding = (byte: number | undefined) => byte === SPACE || byte === TAB || byte === RETURN || byte === QUOTE;
   while (from < to && isPadding(bytes[from])) from++;
@@ -212,7 +212,7 @@ export function readTable(bytes: Uint8Array): Picture {
   return { width, height, channels: 1, ...levels(values), format: "table", notes: ["a table as text"], warnings: [] };
 }
 
-/** The values in 16 bits where all are integers of this range, as depth cameras write them, or else as floats. */
+/** The values in 16 bits, as depth cameras write them, if all are integers of this range, or else as floats. */
 function levels(values: Float64Array): Pick<Picture, "data" | "bits"> {
   const isLevel = (value: number) => Number.isNaN(value) || (Number.isInteger(value) && value <= 0xffff);
   if (values.every(isLevel)) return { data: Uint16Array.from(values, (value) => Math.max(0, value || 0)), bits: 16 };

@@ -1,8 +1,8 @@
 /**
- * The table of files that are read: what each product writes, what the readers take of it, what they guess, and how it is exported.
+ * The table of files that are read: what each product writes, what the readers take from it, what they guess, and how to export it.
  *
- * `node scripts/files.mjs` makes docs/guide/files.md of it; tests/contract/files-page.test.mjs reads the sample of every row. Nothing that is
- * shipped imports it.
+ * `node scripts/files.mjs` makes docs/guide/files.md from it; tests/contract/files-page.test.mjs reads the sample of every row. No shipped
+ * file imports it.
  */
 import { DATASETS } from "./datasets.js";
 import { DEVICES } from "./devices.js";

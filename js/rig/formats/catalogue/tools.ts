@@ -314,7 +314,7 @@ const ANY: readonly Row[] = [
     taken:
       "Cameras and poses by the names of their members (`camera_matrix`, `K`, `fx`, `intrinsics`, `R` and `T`, `T_a_b`, `depth_to_color`).",
     guessed:
-      "If a rotation can be read in two ways, the way that makes a rig, with a warning. Unused lenses, sizes and poses have a warning as well.",
+      "If a rotation can be read in two ways, the way in which both cameras look in the same direction, with a warning. Unused lenses, sizes and poses have a warning as well.",
     exported: "-",
   },
   {
