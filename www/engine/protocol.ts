@@ -142,7 +142,7 @@ export interface Drawings {
 export interface Frame extends Drawings {
   /** One for each step since the last frame, the newest last. */
   reports: StepReport[];
-  /** While the search goes on: alpha, beta, gamma and score of each rotation so far. */
+  /** Alpha, beta, gamma and score of each rotation that the search has tried. */
   scores: Float32Array;
   /** A ball under the light that was found, and by what factors it differs from the true one. */
   light: { found: ImageBitmap; difference: ImageBitmap | null };

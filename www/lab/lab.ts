@@ -34,6 +34,7 @@ export class Lab {
     advance: (request) => this.#advance(request),
     restart: () => this.#start(this.#wanted),
     isFinished: () => this.#record.isFinished,
+    isSearching: (by) => this.#record.isSearching(by),
     onChange: () => this.#showState(),
     onError: (error, playing) => void this.#breakOff(error, playing),
   });

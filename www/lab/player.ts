@@ -21,6 +21,8 @@ export interface PlayerHooks {
   /** Starts the loop over; resolves when its first frame is on the screen, or it has been refused. */
   restart(): Promise<void>;
   isFinished(): boolean;
+  /** Whether a step of this kind is still within the search. */
+  isSearching(by: Advance["by"]): boolean;
   onChange(): void;
   /** What went wrong, and whether it was while the run played. */
   onError(error: unknown, playing: boolean): void;
@@ -53,14 +55,24 @@ export class Player {
     this.#hooks.onChange();
   }
 
-  /** One key press waits for the frame under way; further ones, as from a key held down, are ignored. */
+  /**
+   * An iteration or a stage. The search is one stage and belongs to the first iteration, however many frames it takes.
+   * One key press waits for the frame under way; further ones, as from a key held down, are ignored.
+   */
   async step(by: Advance["by"]): Promise<void> {
     this.pause();
     if (this.#waiting) return;
     this.#waiting = true;
     await this.#underWay;
     this.#waiting = false;
-    await this.#once({ by, milliseconds: 0 });
+    const turn = ++this.#turn;
+    const isOn = () => this.#playing && turn === this.#turn;
+    let more = await this.#once({ by, milliseconds: 0 });
+    if (!more || !this.#hooks.isSearching(by)) return;
+    this.#playing = true;
+    this.#hooks.onChange();
+    while (more && isOn() && this.#hooks.isSearching(by)) more = await this.#once({ by, milliseconds: 0 });
+    if (turn === this.#turn) this.pause();
   }
 
   async #play(): Promise<void> {

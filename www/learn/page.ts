@@ -100,7 +100,8 @@ export class LearnPage {
 
   /** The numbers of the figure, with the values of its controls. */
   download(): void {
-    if (!this.#shown) return;
+    // With the exercises on the page there is no figure to export.
+    if (!this.#shown?.article.isConnected) return;
     const { lesson, controls, drawing } = this.#shown;
     saveJson(`bimodal-stereo-lesson-${lesson.id}.json`, {
       format: "bimodal-stereo lesson",
