@@ -2,6 +2,7 @@
 
 import { byId, make, nextFrame, nextTask } from "./dom";
 import { isFirstVisit } from "./first-visit";
+import { keepPlaying } from "./kiosk";
 import { areKeysOn, listenToKeys, rememberKeys } from "./keys";
 import { Form } from "./lab/form";
 import { Gallery } from "./lab/gallery";
@@ -337,5 +338,12 @@ addEventListener("hashchange", ({ newURL }) => {
   told = "";
 });
 await nextTask();
+keepPlaying({
+  isPlaying: () => player.playing,
+  play: (hash) => {
+    // Different from the present address, from which "play" is taken out as soon as it plays.
+    location.hash = placeOf(hash) === "lab" && !asksToPlay(hash) ? [hash || "#", "play"].join("&") : hash;
+  },
+});
 void arrive();
 void keepForOffline(byId("offline", HTMLElement));

@@ -3,7 +3,7 @@
 export const saveJson = (name: string, value: unknown): void =>
   saveBlob(name, new Blob([JSON.stringify(value, null, 2)], { type: "application/json" }));
 
-/** Told of each file that was handed over. */
+/** Has an event "saved" for each file that was handed over. */
 export const saves = new EventTarget();
 
 export function saveBlob(name: string, blob: Blob): void {

@@ -1,4 +1,4 @@
-// Statements of the lessons and exercises that their figures have to bear out.
+// Statements of the lessons and exercises that their figures have to confirm.
 //
 // In the words of a claim, [rises|falls] lists the words that the text might use, and [#] stands for a number. `holds` computes from the
 // figure which word or number is right.
@@ -243,7 +243,7 @@ const paint = [
   claim("paint", "takes [nearly all|a small part] of it for albedo", () =>
     numberOf("paint&shadow=0.9", "taken") > 90 ? "nearly all" : "a small part",
   ),
-  claim("paint", "The remainder {ej} is [largest|smallest] at the rim of the shadow", () => {
+  claim("paint", "The remainder {ej} is [largest|smallest] at the edge of the shadow", () => {
     const { rim, inside, lit } = figure("paint&paint=0&shadow=0.9");
     return rim > inside && rim > lit ? "largest" : "smallest";
   }),

@@ -102,3 +102,30 @@ test("the address has what is shown, and nothing that was not followed", async (
   await lab.visit("size=100000&a=b&beta=30");
   await expect(page).toHaveURL(/#beta=30$/);
 });
+
+test("a stand plays by itself again after some silence, wherever the last visitor has gone", async ({ lab, page }) => {
+  await page.goto("./?kiosk=2#size=32&light=window");
+  await lab.reaches("ready");
+  await page.getByRole("link", { name: "Tables", exact: true }).click();
+  await expect(page.locator("#tables")).toBeVisible();
+  await expect(page.locator("#lab")).toBeVisible();
+  await expect(page.locator("#status")).toHaveAttribute("data-state", /^(playing|converged|ambiguous|lost)$/);
+  await expect(page).toHaveURL(/\?kiosk=2#/);
+  expect(lab.complaints).toEqual([]);
+});
+
+test("the card of a pixel covers neither the status nor the buttons at the top", async ({ lab, page }) => {
+  await lab.open("size=32");
+  const canvas = await page.locator('canvas[aria-label^="Colour:"]').boundingBox();
+  if (!canvas) throw new Error("There is no picture.");
+  await page.mouse.move(canvas.x + canvas.width / 2, canvas.y + canvas.height / 2);
+  const card = await page.locator("#probe").boundingBox();
+  const top = await page.locator("header.top").boundingBox();
+  expect(card?.y).toBeGreaterThan((top?.y ?? 0) + (top?.height ?? 0));
+});
+
+test("the pose has an explanation beside its title", async ({ lab, page }) => {
+  await lab.open("size=32");
+  await page.getByRole("button", { name: 'What is "Pose"?' }).click();
+  await expect(page.locator("#explanation")).toContainText("does not determine the translation along z");
+});

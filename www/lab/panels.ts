@@ -26,6 +26,7 @@ export class Panels {
     this.#pose = new PoseTable(byId("pose", HTMLTableElement), explanations);
     this.#rivals = new Rivals(hooks.rivals);
     this.light = new LightPanel(hooks.light);
+    byId("pose-title", HTMLElement).append(explanations.button("pose", "Pose"));
     byId("objective-title", HTMLElement).append(explanations.button("objective", "Objective"));
   }
 

@@ -93,7 +93,7 @@ export function verdict(
         ? HARDER
         : isNear
           ? FINER
-          : off <= FOUND && status === "lost"
+          : off <= FOUND && (status === "lost" || status === "ambiguous")
             ? `The pose is nevertheless right. ${help}`
             : help;
     return {

@@ -14,11 +14,11 @@ export const paint: Lesson = {
   text: [
     "Print is not shape. A model with a single albedo would interpret every painted edge as a fold. So once the pose has converged, the program tests whether a few different albedos explain the picture better: each pixel has the shading of its measured normal plus one of a few offsets {aj}, one number for each colour. The evidence in the picture decides how many albedos there are.",
     "Chromaticity decides: coloured paint changes red, green and blue by different amounts, while shading under whitish light changes them almost equally. Grey paint is harder to separate, and any paint is harder to separate under light of many colours.",
-    "A cast shadow violates the model, because the light there is different. But a shadow that darkens red, green and blue by the same factor has the same effect on a pixel as dark paint, so the program takes nearly all of it for albedo. The remainder {ej} is largest at the rim of the shadow, where robust weights reduce the influence of the pixels. The estimated albedo then follows the shadow as well as the paint, and the status does not warn of it.",
+    "A cast shadow violates the model, because the light there is different. But a shadow that darkens red, green and blue by the same factor has the same effect on a pixel as dark paint, so the program takes nearly all of it for albedo. The remainder {ej} is largest at the edge of the shadow, where robust weights reduce the influence of the pixels. The estimated albedo then follows the shadow as well as the paint, and the status does not warn of it.",
   ],
   tasks: [
     "Raise the strength of the paint. It appears in the albedo and disappears from the shading.",
-    "Remove the paint and deepen the shadow. Nearly all of it appears in the albedo, and its rim in the remainder.",
+    "Remove the paint and deepen the shadow. Nearly all of it appears in the albedo, and its edge in the remainder.",
     "Deepen the shadow with the paint at 0.8. The correlation of albedo and paint falls, but the status is still converged.",
     "Choose the coloured lamps: chromaticity is now less informative, and the normals get worse.",
   ],
