@@ -2,8 +2,8 @@
 
 import { make } from "../dom";
 
-/** Pixels of the frame; a figure that is higher scrolls in it. */
-const [WIDTH, HEIGHT] = [800, 720];
+/** Pixels of the frame, in which every lesson fits: tests/page/learn-layout.spec.ts. */
+const [WIDTH, HEIGHT] = [800, 1000];
 
 export class Embed {
   readonly button = make("button", { type: "button", class: "learn-embed-button", "aria-expanded": "false" }, "Embed");
