@@ -1,4 +1,4 @@
-// Statements of the lessons and exercises that their figures have to confirm.
+// Statements of the lessons and exercises that their figures must confirm.
 //
 // In the words of a claim, [rises|falls] lists the words that the text might use, and [#] stands for a number. `holds` computes from the
 // figure which word or number is right.

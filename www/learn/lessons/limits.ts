@@ -8,7 +8,7 @@ import { block, frac, log, mi, mn, mo, row, shading, sub, sup, symbol } from "..
 export const paint: Lesson = {
   id: "paint",
   title: "Shadows and paint",
-  gist: "The image model ignores shadows and assumes a single albedo. Chromaticity separates albedo from shading, but a shadow looks like dark paint.",
+  gist: "The image model ignores shadows and assumes one albedo. Chromaticity separates paint from shading, but not from shadow.",
   formula: () => block(log(symbol("S")), mo("="), symbol("aj"), mo("+"), shading(), mo("+"), symbol("ej")),
   formulaWords: "The log intensity of colour j is its log albedo plus its shading plus a remainder.",
   text: [
