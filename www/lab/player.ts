@@ -24,9 +24,12 @@ export interface PlayerHooks {
   /** Whether a step of this kind is still within the search. */
   isSearching(by: Advance["by"]): boolean;
   onChange(): void;
-  /** What went wrong, and whether it was while the run played. */
-  onError(error: unknown, playing: boolean): void;
+  /** What went wrong, and how to do again what it has interrupted, unless that has been paused. */
+  onError(error: unknown, again: Again | undefined): void;
 }
+
+/** `isThere` tells whether a run that began anew has repeated the iterations that had been completed. */
+export type Again = (isThere: () => boolean) => void;
 
 export class Player {
   pace = 1;
@@ -34,6 +37,8 @@ export class Player {
   #turn = 0;
   #waiting = false;
   #underWay: Promise<boolean> = Promise.resolve(true);
+  /** What has been asked for, until it is paused. */
+  #asked: Again | undefined;
   readonly #hooks: PlayerHooks;
 
   constructor(hooks: PlayerHooks) {
@@ -50,6 +55,7 @@ export class Player {
   }
 
   pause(): void {
+    this.#asked = undefined;
     if (!this.#playing) return;
     this.#playing = false;
     this.#hooks.onChange();
@@ -57,22 +63,32 @@ export class Player {
 
   /**
    * An iteration or a stage. The search is one stage and belongs to the first iteration, however many frames it takes.
-   * One key press waits for the frame under way; further ones, as from a key held down, are ignored.
+   * One key press waits for the frame under way; further ones, as from a key held down, are ignored. Iterations before `isThere` come first.
    */
-  async step(by: Advance["by"]): Promise<void> {
+  async step(by: Advance["by"], isThere = () => true): Promise<void> {
     this.pause();
     if (this.#waiting) return;
     this.#waiting = true;
     await this.#underWay;
     this.#waiting = false;
     const turn = ++this.#turn;
-    const isOn = () => this.#playing && turn === this.#turn;
-    let more = await this.#once({ by, milliseconds: 0 });
-    if (!more || !this.#hooks.isSearching(by)) return;
+    if (!(await this.#while(() => !isThere(), "step", turn))) return;
+    this.#asked = (isThere) => void this.step(by, isThere);
+    if (!(await this.#once({ by, milliseconds: 0 }))) return;
+    await this.#while(() => this.#hooks.isSearching(by), by, turn);
+  }
+
+  /** Frames that can be paused, while they are wanted. True if the run can go on after them. */
+  async #while(isWanted: () => boolean, by: Advance["by"], turn: number): Promise<boolean> {
+    if (turn !== this.#turn || !isWanted()) return turn === this.#turn;
     this.#playing = true;
     this.#hooks.onChange();
-    while (more && isOn() && this.#hooks.isSearching(by)) more = await this.#once({ by, milliseconds: 0 });
+    const isOn = () => this.#playing && turn === this.#turn;
+    let more = true;
+    while (more && isOn() && isWanted()) more = await this.#once({ by, milliseconds: 0 });
+    const goesOn = more && isOn();
     if (turn === this.#turn) this.pause();
+    return goesOn;
   }
 
   async #play(): Promise<void> {
@@ -80,6 +96,7 @@ export class Player {
     const turn = ++this.#turn;
     const isOn = () => this.#playing && turn === this.#turn;
     this.#playing = true;
+    this.#asked = () => void this.#play();
     this.#hooks.onChange();
     await this.#underWay;
     if (isOn() && this.#hooks.isFinished()) await this.#hooks.restart();
@@ -107,9 +124,10 @@ export class Player {
     try {
       return await this.#hooks.advance(request);
     } catch (error) {
-      const playing = this.#playing;
+      const again = this.#asked;
+      this.#asked = undefined;
       this.#playing = false;
-      this.#hooks.onError(error, playing);
+      this.#hooks.onError(error, again);
       return false;
     } finally {
       this.#hooks.onChange();

@@ -21,9 +21,13 @@ export class RunRecord {
     return this.report !== undefined && this.report.status !== "running";
   }
 
+  get iteration(): number {
+    return this.report?.iteration ?? 0;
+  }
+
   /** Whether anything has been computed since the start. */
   get hasBegun(): boolean {
-    return this.#frames > 1 || (this.report?.iteration ?? 0) > 0;
+    return this.#frames > 1 || this.iteration > 0;
   }
 
   isSearching(by: "step" | "stage"): boolean {

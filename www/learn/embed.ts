@@ -3,7 +3,7 @@
 import { make } from "../dom";
 
 /** Pixels of the frame, in which every lesson fits: tests/page/learn-layout.spec.ts. */
-const [WIDTH, HEIGHT] = [800, 1000];
+const [WIDTH, HEIGHT] = [800, 1060];
 
 export class Embed {
   readonly button = make("button", { type: "button", class: "learn-embed-button", "aria-expanded": "false" }, "Embed");
