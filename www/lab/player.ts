@@ -37,6 +37,8 @@ export class Player {
   #turn = 0;
   #waiting = false;
   #underWay: Promise<boolean> = Promise.resolve(true);
+  /** The step under way. */
+  #stepping: Advance["by"] | undefined;
   /** What has been asked for, until it is paused. */
   #asked: Again | undefined;
   readonly #hooks: PlayerHooks;
@@ -45,20 +47,22 @@ export class Player {
     this.#hooks = hooks;
   }
 
+  /** A step that takes several frames, as one of the search does, plays until it is done. */
   get playing(): boolean {
-    return this.#playing;
+    return this.#playing || (this.#stepping !== undefined && this.#hooks.isSearching(this.#stepping));
   }
 
   toggle(): void {
-    if (this.#playing) this.pause();
+    if (this.playing) this.pause();
     else void this.#play();
   }
 
   pause(): void {
+    const { playing } = this;
     this.#asked = undefined;
-    if (!this.#playing) return;
+    this.#stepping = undefined;
     this.#playing = false;
-    this.#hooks.onChange();
+    if (playing) this.#hooks.onChange();
   }
 
   /**
@@ -72,20 +76,23 @@ export class Player {
     await this.#underWay;
     this.#waiting = false;
     const turn = ++this.#turn;
-    if (!(await this.#while(() => !isThere(), "step", turn))) return;
+    if (!(await this.#catchUp(isThere, turn))) return;
     this.#asked = (isThere) => void this.step(by, isThere);
-    if (!(await this.#once({ by, milliseconds: 0 }))) return;
-    await this.#while(() => this.#hooks.isSearching(by), by, turn);
+    this.#stepping = by;
+    let more = true;
+    do more = await this.#once({ by, milliseconds: 0 });
+    while (more && turn === this.#turn && this.#stepping && this.#hooks.isSearching(by));
+    if (turn === this.#turn) this.pause();
   }
 
-  /** Frames that can be paused, while they are wanted. True if the run can go on after them. */
-  async #while(isWanted: () => boolean, by: Advance["by"], turn: number): Promise<boolean> {
-    if (turn !== this.#turn || !isWanted()) return turn === this.#turn;
+  /** Plays until `isThere`. False if it was paused before, or nothing is left to do. */
+  async #catchUp(isThere: () => boolean, turn: number): Promise<boolean> {
+    if (turn !== this.#turn || isThere()) return turn === this.#turn;
     this.#playing = true;
     this.#hooks.onChange();
     const isOn = () => this.#playing && turn === this.#turn;
     let more = true;
-    while (more && isOn() && isWanted()) more = await this.#once({ by, milliseconds: 0 });
+    while (more && isOn() && !isThere()) more = await this.#once({ by: "step", milliseconds: 0 });
     const goesOn = more && isOn();
     if (turn === this.#turn) this.pause();
     return goesOn;
@@ -96,6 +103,7 @@ export class Player {
     const turn = ++this.#turn;
     const isOn = () => this.#playing && turn === this.#turn;
     this.#playing = true;
+    this.#stepping = undefined;
     this.#asked = () => void this.#play();
     this.#hooks.onChange();
     await this.#underWay;
@@ -126,6 +134,7 @@ export class Player {
     } catch (error) {
       const again = this.#asked;
       this.#asked = undefined;
+      this.#stepping = undefined;
       this.#playing = false;
       this.#hooks.onError(error, again);
       return false;

@@ -242,6 +242,7 @@ export class LearnPage {
     shown.alert.hidden = true;
     shown.figure.show(drawing);
     shown.readouts.show(drawing);
+    shown.embed.fit(drawing.panels.some(({ kind }) => kind === "plot"));
     shown.box.setAttribute("aria-busy", String(!done));
   }
 
