@@ -41,6 +41,15 @@ test("the controls stay in view while the last picture is looked at", async ({ p
   }
 });
 
+test("all of a figure is seen at once on a wide screen", LONG, async ({ page }) => {
+  await page.setViewportSize({ width: 1920, height: 1080 });
+  for (const id of LESSONS) {
+    await open(page, `at=${id}`);
+    const box = await figure(page).boundingBox();
+    expect((box?.y ?? Infinity) + (box?.height ?? 0), id).toBeLessThanOrEqual(1080);
+  }
+});
+
 test("an embedded figure fits the frame that its line of HTML gives", LONG, async ({ page }) => {
   for (const id of LESSONS) {
     await page.setViewportSize({ width: 1280, height: 800 });
