@@ -67,7 +67,8 @@ export class Player {
 
   /**
    * An iteration or a stage. The search is one stage and belongs to the first iteration, however many frames it takes.
-   * One key press waits for the frame under way; further ones, as from a key held down, are ignored. Iterations before `isThere` come first.
+   * One key press waits for the frame under way; further ones, as from a key held down, are ignored. What is missing until `isThere` is
+   * played first.
    */
   async step(by: Advance["by"], isThere = () => true): Promise<void> {
     this.pause();
