@@ -16,7 +16,7 @@ export class Embed {
   readonly #frame: HTMLIFrameElement;
 
   constructor(title: string) {
-    this.#frame = make("iframe", { title, width: WIDTH, height: HEIGHT.withPlot, loading: "lazy" });
+    this.#frame = make("iframe", { src: "", title, width: WIDTH, height: HEIGHT.withPlot, loading: "lazy" });
     const copy = make("button", { type: "button" }, "Copy");
     copy.addEventListener("click", () => void this.#copy(copy));
     this.#link.append(`${title}: text and exercises`);
