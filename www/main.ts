@@ -2,6 +2,7 @@
 
 import { byId, make, nextFrame, nextTask } from "./dom";
 import { isFirstVisit } from "./first-visit";
+import { keepPlaying } from "./kiosk";
 import { areKeysOn, listenToKeys, rememberKeys } from "./keys";
 import { Form } from "./lab/form";
 import { Gallery } from "./lab/gallery";
@@ -12,6 +13,7 @@ import { kinds } from "./lab/kinds";
 import { defaults, fromLink, type Origin, type Settings } from "./lab/settings";
 import { linkTo, onLook, showLooks, writeAddress } from "./lab/share";
 import { wasOwn } from "./lab/source";
+import { saves } from "./save";
 import { Store } from "./lab/store";
 import { asksToPlay, isEmbedded, placeOf, type Place } from "./place";
 
@@ -87,8 +89,18 @@ button("redo", redo);
 button("defaults", () => store.resetToDefaults());
 button("export", () => {
   const place = placeOf(location.hash);
+  let isSaved = false;
+  const note = () => {
+    isSaved = true;
+    say("export", "Saved");
+  };
+  saves.addEventListener("saved", note, { once: true });
   if (place === "lab") lab.download();
   else others[place]?.download();
+  // A check says itself what it lacks, and first reads its files.
+  if (isSaved || place === "rig") return;
+  saves.removeEventListener("saved", note);
+  say("export", "Nothing to export");
 });
 button("help-button", openHelp);
 button("link", () => void copyLink());
@@ -103,6 +115,14 @@ const pace = byId("pace", HTMLSelectElement);
 pace.append(...paces.map(({ label }, i) => make("option", { value: i }, label)));
 pace.value = String(player.pace);
 pace.addEventListener("change", () => (player.pace = Number(pace.value)));
+
+/** Shows on a button for a moment what came of it. */
+function say(id: string, words: string): void {
+  const target = byId(id, HTMLButtonElement);
+  target.dataset.words ??= target.textContent;
+  target.textContent = words;
+  setTimeout(() => (target.textContent = target.dataset.words ?? ""), 2000);
+}
 
 function choose(origin: Origin): void {
   for (const each of ["sample", "files"] as const) {
@@ -141,14 +161,12 @@ button("origin-files", () => choose("files"));
 
 /** If the page may not use the clipboard, the address bar holds the same link. */
 async function copyLink(): Promise<void> {
-  const target = byId("link", HTMLButtonElement);
   try {
     await navigator.clipboard.writeText(location.href);
-    target.textContent = placeOf(location.hash) === "lab" && !isSample() ? "Copied without files" : "Copied";
+    say("link", placeOf(location.hash) === "lab" && !isSample() ? "Copied without files" : "Copied");
   } catch {
-    target.textContent = "Copy the address bar";
+    say("link", "Copy the address bar");
   }
-  setTimeout(() => (target.textContent = "Link"), 2000);
 }
 
 const places: Record<Place, { main: HTMLElement; link: HTMLAnchorElement; title: string }> = {
@@ -210,6 +228,8 @@ async function arrive(): Promise<void> {
   if (!asksToPlay(hash)) {
     const entered = opensFirst ? start(settings) : lab.enter(settings);
     showLooks(hash);
+    // What the address has beside settings, or a setting that there is not, was not followed.
+    if (hash !== "") writeAddress(store.settings);
     return entered;
   }
   if (!isSample()) choose("sample");
@@ -318,5 +338,12 @@ addEventListener("hashchange", ({ newURL }) => {
   told = "";
 });
 await nextTask();
+keepPlaying({
+  isPlaying: () => player.playing,
+  play: (hash) => {
+    // Different from the present address, from which "play" is taken out as soon as it plays.
+    location.hash = placeOf(hash) === "lab" && !asksToPlay(hash) ? [hash || "#", "play"].join("&") : hash;
+  },
+});
 void arrive();
 void keepForOffline(byId("offline", HTMLElement));

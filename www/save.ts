@@ -3,12 +3,16 @@
 export const saveJson = (name: string, value: unknown): void =>
   saveBlob(name, new Blob([JSON.stringify(value, null, 2)], { type: "application/json" }));
 
+/** Has an event "saved" for each file that was handed over. */
+export const saves = new EventTarget();
+
 export function saveBlob(name: string, blob: Blob): void {
   const url = URL.createObjectURL(blob);
   const link = document.createElement("a");
   link.href = url;
   link.download = name;
   link.click();
+  saves.dispatchEvent(new Event("saved"));
   // Some browsers read the blob only after the click has returned.
   setTimeout(() => URL.revokeObjectURL(url), 10_000);
 }

@@ -218,6 +218,14 @@ const sensor = [
   claim("sensor", "The measured normals become rough; the refined ones stay [smooth|rough]", () =>
     numberOf("sensor&noise=1", "normalsAfter") < 1.2 * numberOf("sensor", "normalsAfter") ? "smooth" : "rough",
   ),
+  claim("sensor", "Once the pose is known, the picture [can|cannot] refine the depth map", () =>
+    ["sensor", "sensor&noise=1"].every((state) => numberOf(state, "after") < 0.5 * numberOf(state, "before"))
+      ? "can"
+      : "cannot",
+  ),
+  claim("sensor", "Holes are [filled|left] where the colour camera sees the surface", () =>
+    numberOf("sensor&holes=40", "filled") > 90 ? "filled" : "left",
+  ),
   claim("sensor", "it is less informative, and the refined depth gets [worse|better]", () =>
     change(numberOf("sensor", "after"), numberOf("sensor&picture=0.2", "after"), ["worse", "better"]),
   ),
@@ -325,6 +333,10 @@ const hidden = [
       ? "small"
       : "large",
   ),
+  claim(HIDDEN, "The reported sigma and the alternative poses that fit as well [do|do not].", () => {
+    const [good, round] = [figure("failure&case=symmetry"), figure("failure&case=symmetry&amount=100")];
+    return round.sigma > 20 * good.sigma && good.rivals === 0 && round.rivals > 0 ? "do" : "do not";
+  }),
   claim(HIDDEN, "the sigma grows [before|after] the error does", () => {
     const runs = overlaps.map((overlap) => labRun({ overlap }));
     const firstOf = (key) => runs.findIndex((run) => run[key] > 1.5);

@@ -6,6 +6,7 @@ import binaryen from "binaryen";
 import { breakable, endAll, endAt, ended, endSoon } from "./broken";
 import { LONG, expect, test, type Lab } from "./lab";
 import { answerChecks, giveFiles, pair } from "./rig";
+import { drop } from "./uploads";
 
 const FAST = "size=48";
 const alert = (page: Page) => page.locator("#alert");
@@ -62,6 +63,59 @@ test.describe("in the Lab", () => {
       await lab.reaches("converged");
     },
   );
+
+  test("one that is ended in a single step: the iterations before it are repeated, and the step", async ({
+    lab,
+    page,
+  }) => {
+    const steps = async () => {
+      for (const iteration of ["1", "2", "3"]) {
+        await page.keyboard.press("s");
+        await expect(lab.iteration).toHaveText(iteration);
+      }
+      await lab.reaches("paused");
+      return page.locator("#pose").innerText();
+    };
+    await lab.open(FAST);
+    const undisturbed = await steps();
+    await page.keyboard.press("r");
+    await lab.reaches("ready");
+    await endAt(page, { kind: "advance" }, 3);
+    expect(await steps()).toBe(undisturbed);
+    await expect(alert(page)).toContainText("The input is kept");
+    expect(await ended(page)).toBe(1);
+  });
+
+  test("one that is ended in a single stage: the iterations before it are repeated, and the stage", async ({
+    lab,
+    page,
+  }) => {
+    await lab.open(FAST);
+    await page.keyboard.press("s");
+    await expect(lab.iteration).toHaveText("1");
+    await endAt(page, { kind: "advance", by: "stage" });
+    await page.keyboard.press("t");
+    await expect(alert(page)).toContainText("The input is kept");
+    await expect(lab.iteration).toHaveText("1");
+    await expect(page.locator(".stage[data-lit]")).toHaveText(/^light/);
+    await lab.reaches("paused");
+  });
+
+  test("one that is ended in a step of a saved run: the step is repeated on the same run", async ({ lab, page }) => {
+    await lab.open(FAST);
+    await page.keyboard.press("s");
+    await expect(lab.iteration).toHaveText("1");
+    const waiting = page.waitForEvent("download");
+    await page.getByRole("button", { name: "Save run to resume later" }).click();
+    const buffer = readFileSync(await (await waiting).path());
+    await drop(page, "body", [{ name: "run.bimodal", mimeType: "application/octet-stream", buffer }]);
+    await expect(page.locator(".remarks")).toContainText("a saved run");
+    await lab.reaches("paused");
+    await endAt(page, { kind: "advance" });
+    await page.keyboard.press("s");
+    await expect(lab.iteration).toHaveText("2");
+    await expect(alert(page)).toContainText("The input is kept");
+  });
 
   test("one that is ended while its input is opened again leaves a Play that opens it", async ({ lab, page }) => {
     await endSoon(page, /\/worker-[^/]*\.js$/, 2);

@@ -26,6 +26,8 @@ const lines: readonly Line[] = [
 ];
 
 const DIGITS = 3;
+/** Pixels of a window below which the card is wider than half of it. */
+const NARROW = 720;
 
 export class Card {
   readonly #element = byId("probe", HTMLElement);
@@ -62,7 +64,8 @@ export class Card {
 
   #moveAway(x: number, y: number): void {
     this.#element.dataset.x = x < innerWidth / 2 ? "right" : "left";
-    this.#element.dataset.y = y < innerHeight / 2 ? "bottom" : "top";
+    // Buttons and status are at the top; only where there is no room beside the pointer the card goes there.
+    this.#element.dataset.y = innerWidth < NARROW && y >= innerHeight / 2 ? "top" : "bottom";
   }
 
   #show(): void {

@@ -145,7 +145,7 @@ export interface Drawings {
 export interface Frame extends Drawings {
   /** One for each step since the last frame, the newest last. */
   reports: StepReport[];
-  /** During a search: alpha, beta, gamma and score of each rotation so far. */
+  /** Alpha, beta, gamma and score of each rotation that the search has tried. */
   scores: Float32Array;
   /** A ball under the light that was found, and the factors by which it differs from the true light. */
   light: { found: ImageBitmap; difference: ImageBitmap | null };

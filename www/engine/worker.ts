@@ -39,6 +39,8 @@ interface Input extends Pick<Run, "image" | "depth"> {
 }
 
 interface OpenInput extends Input, Run {
+  /** What the search tried, which the library forgets once it has chosen a pose. */
+  scores: Float32Array;
   /** The initial pose, and the position to which it maps the first point of the depth map. */
   start: { pose: Pose; first: readonly number[] };
 }
@@ -100,7 +102,7 @@ function frame(run: OpenInput, look: Look, reports: StepReport[], anew = false):
   return {
     ...drawings(run, look, anew),
     reports,
-    scores: run.estimator.searchScores(),
+    scores: run.scores.slice(),
     light: { found: lit(found), difference: run.light ? ratio(found, run.light) : null },
   };
 }
@@ -116,6 +118,7 @@ async function open({ source, options, look }: Calls["open"]["request"]): Promis
     ...opened,
     estimator,
     numbers,
+    scores: new Float32Array(),
     start: startOf(estimator, numbers),
     painter: new ViewPainter(opened, opened.shapes),
   };
@@ -185,6 +188,7 @@ function reset({ options, look }: Calls["reset"]["request"]): Frame {
   const current = opened();
   current.estimator.reset(resolve(options, current));
   current.numbers.forget();
+  current.scores = new Float32Array();
   current.start = startOf(current.estimator, current.numbers);
   return frame(current, look, [current.estimator.report]);
 }
@@ -207,6 +211,8 @@ async function advance({ by, milliseconds, look }: Calls["advance"]["request"]):
       if (isSearch()) reports.pop();
       // Unlike `step` this lets the messages of the other threads through.
       reports.push(by === "stage" ? estimator.stepStage() : await estimator.run({ maxIterations: 1 }));
+      const scores = estimator.searchScores();
+      if (scores.length > 0) current.scores = scores;
     } while (
       performance.now() - began < (isSearch() ? searching : milliseconds) &&
       estimator.report.status === "running"

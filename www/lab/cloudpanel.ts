@@ -5,12 +5,19 @@ import type { Clouds } from "../draw/clouds";
 import type { Painter } from "../draw/painter";
 import type { Probe } from "../draw/probe";
 import { byId, make } from "../dom";
-import type { Drawings } from "../engine/protocol";
+import type { Drawings, Texture } from "../engine/protocol";
 
 const NONE = "This browser has no WebGL, so the surfaces cannot be rotated here.";
 const LOST = "The browser has suspended WebGL. The surfaces stand still until it returns; everything else continues.";
 const GONE =
   "The browser ended the drawing thread twice. Reload the page to see the surfaces again; everything else continues.";
+
+/** What the colours mean where they are not those of the two views. */
+const COLOURS: Partial<Record<Texture, string>> = {
+  picture: "colours of the picture; grey: depth map",
+  normals: "right red, up green, near blue",
+  residual: "colour residual, image only:",
+};
 
 export class CloudPanel {
   readonly #box = byId("clouds-box", HTMLElement);
@@ -81,6 +88,18 @@ export class CloudPanel {
 
   recolour(): void {
     this.#clouds?.recolour();
+  }
+
+  /** The legend of these colours; `range` is that of the residual. */
+  colourBy(texture: Texture, range: HTMLElement): void {
+    const words = COLOURS[texture];
+    const legend = byId("clouds-legend", HTMLElement);
+    for (const key of legend.querySelectorAll<HTMLElement>(".key")) key.hidden = words !== undefined;
+    const own = byId("clouds-words", HTMLElement);
+    own.hidden = words === undefined;
+    own.textContent = words ?? "";
+    if (texture === "residual") legend.append(range);
+    else range.remove();
   }
 
   /** The legend names what is drawn: before the first iteration there is no shape from the image. */

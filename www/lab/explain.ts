@@ -12,7 +12,7 @@ export interface Method {
 }
 
 /** Numbers of the page that have an explanation. */
-export type Term = "overlap" | "inliers" | "residual" | "change" | "sigma" | "weakest" | "objective";
+export type Term = "pose" | "overlap" | "inliers" | "residual" | "change" | "sigma" | "weakest" | "objective";
 
 interface Text {
   title: string;
@@ -205,6 +205,29 @@ const REFINEMENT: Text = {
 };
 
 const terms: Readonly<Record<Term, (method: Method) => Text>> = {
+  pose: () => ({
+    title: "The pose",
+    formula: math(
+      sub(bold("P"), i("colour")),
+      o("="),
+      i("s"),
+      R,
+      sub(bold("P"), i("depth")),
+      o("+"),
+      bold("t"),
+      o(","),
+      space,
+      R,
+      o("="),
+      ...[
+        ["x", "α"],
+        ["y", "β"],
+        ["z", "γ"],
+      ].flatMap(([axis = "", angle = ""]) => [sub(i("R"), i(axis)), o("("), i(angle), o(")")]),
+    ),
+    words:
+      "It maps points of the depth camera into the colour view. The rotation is about the origin: the camera, or without intrinsics the middle of the picture at depth zero. The object lies in front of the origin, so even a depth map that is only rotated about the object has a translation. An image without intrinsics does not determine the translation along z, which is free.",
+  }),
   overlap: () => ({
     title: "Overlap",
     words:

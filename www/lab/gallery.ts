@@ -154,8 +154,10 @@ export class Gallery {
     };
     this.#clouds = new CloudPanel(this.#painter, this.#probe);
     const texture = byId("clouds-texture", HTMLSelectElement);
+    const range = this.#scales.residual.legend("the surfaces' residual").element;
     texture.addEventListener("change", () => {
       this.#texture = TEXTURES.find((each) => each === texture.value) ?? "view";
+      this.#clouds.colourBy(this.#texture, range);
       void this.#look();
     });
   }

@@ -9,7 +9,7 @@ import type { Form } from "./form";
 import type { Gallery } from "./gallery";
 import { OwnFiles } from "./ownfiles";
 import { Compare } from "./compare";
-import { Player, type Advance } from "./player";
+import { Player, type Advance, type Again } from "./player";
 import { offerPictures } from "./pictures";
 import { Panels } from "./panels";
 import { RunRecord } from "./record";
@@ -34,8 +34,9 @@ export class Lab {
     advance: (request) => this.#advance(request),
     restart: () => this.#start(this.#wanted),
     isFinished: () => this.#record.isFinished,
+    isSearching: (by) => this.#record.isSearching(by),
     onChange: () => this.#showState(),
-    onError: (error, playing) => void this.#breakOff(error, playing),
+    onError: (error, again) => void this.#breakOff(error, again),
   });
   readonly #engine = new Engine({
     onLoad: (bytes) => {
@@ -411,10 +412,7 @@ export class Lab {
     if (this.#good && this.#held !== this.#good.source) await this.#recover(this.#good);
   }
 
-  /**
-   * The worker's input is lost. The caller that waited for its answer reports that. If there was none, for example while the page was idle,
-   * it is reported here, after all rejections have been handled.
-   */
+  /** The worker's input is lost. If no caller waits for an answer and reports it, this does, after all rejections have been handled. */
   #lose(error: EngineError): void {
     this.#held = undefined;
     const turn = this.#turn;
@@ -422,15 +420,16 @@ export class Lab {
       setTimeout(() => turn === this.#turn && this.#good && !this.#held && void this.#enter(this.#fail(error)));
   }
 
-  /** Repeats a run whose worker was ended, with the same numbers; only once, because the run itself may be the cause. */
-  async #breakOff(error: unknown, playing: boolean): Promise<void> {
+  /** Repeats a run or a step whose worker was ended, with the same numbers; only once, because the run itself may be the cause. */
+  async #breakOff(error: unknown, again: Again | undefined): Promise<void> {
+    const reached = this.#record.iteration;
     const failed = this.#enter(this.#fail(error));
     const turn = this.#turn;
     await failed;
     const isLost = error instanceof EngineError && error.code === LOST;
-    if (!playing || !isLost || this.#resumed || turn !== this.#turn || !this.#good || this.player.playing) return;
+    if (!again || !isLost || this.#resumed || turn !== this.#turn || !this.#good || this.player.playing) return;
     this.#resumed = true;
-    this.player.toggle();
+    again(() => this.#record.iteration >= reached);
   }
 
   /** The worker has lost its input, for example after a panic, so the same input is opened again from its beginning. */

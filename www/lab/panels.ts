@@ -11,7 +11,7 @@ import { ScoreMap } from "./scoremap";
 import type { Origin } from "./settings";
 import { Status, type Notice } from "./status";
 import { Strip } from "./strip";
-import { isSearching, standing, type Verdict } from "./verdict";
+import { standing, type Verdict } from "./verdict";
 
 export class Panels {
   readonly light: LightPanel;
@@ -26,6 +26,7 @@ export class Panels {
     this.#pose = new PoseTable(byId("pose", HTMLTableElement), explanations);
     this.#rivals = new Rivals(hooks.rivals);
     this.light = new LightPanel(hooks.light);
+    byId("pose-title", HTMLElement).append(explanations.button("pose", "Pose"));
     byId("objective-title", HTMLElement).append(explanations.button("objective", "Objective"));
   }
 
@@ -58,13 +59,14 @@ export class Panels {
   }
 
   /** `end` is the verdict of a run that is over. */
-  show({ report, from, truth, length }: RunRecord, playing: boolean, end: Verdict | undefined): void {
+  show(record: RunRecord, playing: boolean, end: Verdict | undefined): void {
+    const { report, from, truth, length } = record;
     if (!report) return;
     this.#rivals.show(report);
     const { looked } = this.#rivals;
     this.#pose.show(report, looked, from, truth, length);
     this.#strip.show(report);
-    const idle = playing ? "playing" : report.iteration > 0 || isSearching(report) ? "paused" : "ready";
+    const idle = playing ? "playing" : record.hasBegun ? "paused" : "ready";
     this.#status.show(report, idle, end, looked !== undefined);
     this.light.beside(looked !== undefined);
   }

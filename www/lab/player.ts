@@ -21,10 +21,15 @@ export interface PlayerHooks {
   /** Restarts the loop; resolves when its first frame is on the screen, or the input has been refused. */
   restart(): Promise<void>;
   isFinished(): boolean;
+  /** Whether a step of this kind is still within the search. */
+  isSearching(by: Advance["by"]): boolean;
   onChange(): void;
-  /** The error, and whether it occurred while the run played. */
-  onError(error: unknown, playing: boolean): void;
+  /** The error, and what repeats the step that it interrupted, unless the run has been paused. */
+  onError(error: unknown, again: Again | undefined): void;
 }
+
+/** `isThere` tells whether a run that began anew has repeated the iterations that had been completed. */
+export type Again = (isThere: () => boolean) => void;
 
 export class Player {
   pace = 1;
@@ -32,35 +37,66 @@ export class Player {
   #turn = 0;
   #waiting = false;
   #underWay: Promise<boolean> = Promise.resolve(true);
+  /** The step under way. */
+  #stepping: Advance["by"] | undefined;
+  /** What has been asked for, until it is paused. */
+  #asked: Again | undefined;
   readonly #hooks: PlayerHooks;
 
   constructor(hooks: PlayerHooks) {
     this.#hooks = hooks;
   }
 
+  /** A step that takes several frames, as one of the search does, plays until it is done. */
   get playing(): boolean {
-    return this.#playing;
+    return this.#playing || (this.#stepping !== undefined && this.#hooks.isSearching(this.#stepping));
   }
 
   toggle(): void {
-    if (this.#playing) this.pause();
+    if (this.playing) this.pause();
     else void this.#play();
   }
 
   pause(): void {
-    if (!this.#playing) return;
+    const { playing } = this;
+    this.#asked = undefined;
+    this.#stepping = undefined;
     this.#playing = false;
-    this.#hooks.onChange();
+    if (playing) this.#hooks.onChange();
   }
 
-  /** One key press waits for the frame under way; further ones, for example from a key held down, are ignored. */
-  async step(by: Advance["by"]): Promise<void> {
+  /**
+   * An iteration or a stage. The search is one stage and belongs to the first iteration, however many frames it takes.
+   * One key press waits for the frame under way; further ones, for example from a key held down, are ignored. The run plays first
+   * until `isThere`.
+   */
+  async step(by: Advance["by"], isThere = () => true): Promise<void> {
     this.pause();
     if (this.#waiting) return;
     this.#waiting = true;
     await this.#underWay;
     this.#waiting = false;
-    await this.#once({ by, milliseconds: 0 });
+    const turn = ++this.#turn;
+    if (!(await this.#catchUp(isThere, turn))) return;
+    this.#asked = (isThere) => void this.step(by, isThere);
+    this.#stepping = by;
+    let more = true;
+    do more = await this.#once({ by, milliseconds: 0 });
+    while (more && turn === this.#turn && this.#stepping && this.#hooks.isSearching(by));
+    if (turn === this.#turn) this.pause();
+  }
+
+  /** Plays until `isThere`. False if it was paused before, or nothing is left to do. */
+  async #catchUp(isThere: () => boolean, turn: number): Promise<boolean> {
+    if (turn !== this.#turn || isThere()) return turn === this.#turn;
+    this.#playing = true;
+    this.#hooks.onChange();
+    const isOn = () => this.#playing && turn === this.#turn;
+    let more = true;
+    while (more && isOn() && !isThere()) more = await this.#once({ by: "step", milliseconds: 0 });
+    const goesOn = more && isOn();
+    if (turn === this.#turn) this.pause();
+    return goesOn;
   }
 
   async #play(): Promise<void> {
@@ -68,6 +104,8 @@ export class Player {
     const turn = ++this.#turn;
     const isOn = () => this.#playing && turn === this.#turn;
     this.#playing = true;
+    this.#stepping = undefined;
+    this.#asked = () => void this.#play();
     this.#hooks.onChange();
     await this.#underWay;
     if (isOn() && this.#hooks.isFinished()) await this.#hooks.restart();
@@ -95,9 +133,11 @@ export class Player {
     try {
       return await this.#hooks.advance(request);
     } catch (error) {
-      const playing = this.#playing;
+      const again = this.#asked;
+      this.#asked = undefined;
+      this.#stepping = undefined;
       this.#playing = false;
-      this.#hooks.onError(error, playing);
+      this.#hooks.onError(error, again);
       return false;
     } finally {
       this.#hooks.onChange();

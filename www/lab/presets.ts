@@ -1,6 +1,6 @@
 /** Examples behind buttons. Each lists all differences from the defaults, so that the result does not depend on earlier settings. */
 
-import { make } from "../dom";
+import { byId, make } from "../dom";
 import { defaults, type Settings, type Value } from "./settings";
 
 interface Preset {
@@ -30,8 +30,8 @@ export const presets: readonly Preset[] = [
   {
     name: "Too hard",
     words:
-      "A third of the object, light of nearly one colour and 30 % noise. No pose can be recovered from that, and the verdict says so.",
-    set: { size: "64", light: "window", beta: 40, noise: 0.3, overlap: 0.3 },
+      "Views 70 degrees apart, a third of the object, light of nearly one colour and 30 % noise. Not even the search's best rotation is near the true one, and the verdict says so.",
+    set: { size: "64", light: "window", beta: 70, noise: 0.3, overlap: 0.3 },
   },
   {
     name: "The paper's loop",
@@ -52,6 +52,8 @@ const settingsOf = ({ set }: Preset): Settings => ({ ...defaults, ...set });
 
 /** Buttons; the one that matches the settings is pressed. */
 export class Presets {
+  /** What the present example shows, also where there are no tooltips. */
+  readonly #words = byId("example", HTMLElement);
   readonly #buttons: readonly { preset: Preset; button: HTMLButtonElement }[];
 
   /** `onChoose` is called for another example, `onAgain` for a click on the current one. */
@@ -71,12 +73,12 @@ export class Presets {
   }
 
   show(settings: Settings, isSample: boolean): void {
-    for (const { preset, button } of this.#buttons) {
+    const isSet = ({ preset }: { preset: Preset }) => {
       const wanted = settingsOf(preset);
-      button.setAttribute(
-        "aria-pressed",
-        String(isSample && Object.keys(wanted).every((key) => wanted[key] === settings[key])),
-      );
-    }
+      return isSample && Object.keys(wanted).every((key) => wanted[key] === settings[key]);
+    };
+    for (const each of this.#buttons) each.button.setAttribute("aria-pressed", String(isSet(each)));
+    const { name, words } = this.#buttons.find(isSet)?.preset ?? {};
+    this.#words.textContent = name === undefined ? "" : `${name}: ${words}`;
   }
 }

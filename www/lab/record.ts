@@ -1,5 +1,6 @@
 /** The record of a run: its reports, its initial pose, and the truth if known. */
 
+import { isWithinSearch } from "./verdict";
 import type { Opened } from "../engine/protocol";
 import type { Pose, StepReport } from "../../pkg/index.js";
 
@@ -13,12 +14,28 @@ export class RunRecord {
   from: Pose | undefined;
   /** One report for each completed iteration. */
   history: StepReport[] = [];
+  /** The first one shows the start. */
+  #frames = 0;
 
   get isFinished(): boolean {
     return this.report !== undefined && this.report.status !== "running";
   }
 
+  get iteration(): number {
+    return this.report?.iteration ?? 0;
+  }
+
+  /** Whether anything has been computed since the start. */
+  get hasBegun(): boolean {
+    return this.#frames > 1 || this.iteration > 0;
+  }
+
+  isSearching(by: "step" | "stage"): boolean {
+    return this.report !== undefined && isWithinSearch(this.report, by);
+  }
+
   add(reports: readonly StepReport[]): void {
+    this.#frames++;
     for (const report of reports) {
       // Whether this is the first report of a run: a search has found its pose before the first iteration.
       this.from ??= report.pose;
@@ -29,6 +46,7 @@ export class RunRecord {
 
   /** Starts a new record for the same input. */
   restart(): void {
+    this.#frames = 0;
     this.history = [];
     this.from = undefined;
   }

@@ -1,6 +1,7 @@
 /** Alternative poses that fit the image equally well, listed over the surfaces: each can be viewed, and a new run can start from it. */
 
 import type { Pose, StepReport } from "../../pkg/index.js";
+import { OPTIONS } from "../../pkg/options.js";
 import { decimals } from "../draw/numbers";
 import { byId, make } from "../dom";
 import { angleBetween } from "./verdict";
@@ -13,6 +14,8 @@ export interface RivalHooks {
 
 /** More rivals could not be distinguished on the screen. */
 const MOST = 4;
+/** Within two sigmas of the least certain pose that still converges, another pose is the same one. */
+const APART = 2 * (OPTIONS.tolerance.default ?? 0);
 
 export class Rivals {
   readonly #box = byId("rivals", HTMLElement);
@@ -30,7 +33,8 @@ export class Rivals {
   }
 
   show({ rivals = [], pose, status }: StepReport): void {
-    const poses = status === "running" ? [] : rivals.slice(0, MOST);
+    const others = rivals.filter(({ rotation }) => angleBetween(rotation, pose.rotation) > APART);
+    const poses = status === "running" ? [] : others.slice(0, MOST);
     const key = JSON.stringify([poses, poses.length > 0 && pose]);
     if (key === this.#shown) return;
     this.#shown = key;

@@ -45,7 +45,11 @@ export class Status {
 
   /** `idle` is the state of the page while the loop is paused. The verdict is that of the best pose, even while an alternative pose is shown. */
   show(report: StepReport, idle: "ready" | "paused" | "playing", end: Verdict | undefined, isRival: boolean): void {
-    this.#say(end ? report.status : idle, end?.tone ?? "open", end ? `${isRival ? "found: " : ""}${end.status}` : idle);
+    this.#say(
+      end ? report.status : idle,
+      end?.tone ?? "open",
+      end ? `${isRival ? "best pose: " : ""}${end.status}` : idle,
+    );
     this.#put(this.#cause, end?.words ?? "");
     this.#put(this.#next, this.#doubt || (end?.next ?? (idle === "ready" ? this.#first : "")));
     this.#put(this.#message, end ? "" : (report.message ?? ""));

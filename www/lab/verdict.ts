@@ -17,6 +17,10 @@ export interface Verdict {
 export const isSearching = ({ status, stage, iteration }: StepReport): boolean =>
   status === "running" && stage === "search" && iteration === 0;
 
+/** Whether a step of this kind has to go on searching: the stage ends with the search, the iteration does not. */
+export const isWithinSearch = (report: StepReport, by: "step" | "stage"): boolean =>
+  isSearching(report) && !(by === "stage" && report.reason?.code === "search-done");
+
 /** The words for pose and light at this moment; before the first step nothing has been found. */
 export const standing = (report: StepReport): string =>
   isSearching(report) ? "candidate" : report.status === "running" && report.iteration === 0 ? "start" : "found";
@@ -89,7 +93,7 @@ export function verdict(
         ? HARDER
         : isNear
           ? FINER
-          : off <= FOUND && status === "lost"
+          : off <= FOUND && (status === "lost" || status === "ambiguous")
             ? `The pose is nevertheless right. ${help}`
             : help;
     return {

@@ -2,8 +2,9 @@
 
 import { make } from "../dom";
 
-/** Pixels of the frame; a figure that is higher scrolls in it. */
-const [WIDTH, HEIGHT] = [800, 720];
+/** Pixels of the frame, in which each lesson fits: tests/page/learn-layout.spec.ts. */
+const WIDTH = 800;
+const HEIGHT = { withPlot: 1060, withoutPlot: 760 };
 
 export class Embed {
   readonly button = make("button", { type: "button", class: "learn-embed-button", "aria-expanded": "false" }, "Embed");
@@ -11,10 +12,11 @@ export class Embed {
   readonly source: HTMLElement;
   readonly #line = make("input", { type: "text", readonly: true });
   readonly #link = make("a", { target: "_blank", rel: "noopener" });
-  readonly #title: string;
+  /** Never a part of the page, which would load it. */
+  readonly #frame: HTMLIFrameElement;
 
   constructor(title: string) {
-    this.#title = title;
+    this.#frame = make("iframe", { src: "", title, width: WIDTH, height: HEIGHT.withPlot, loading: "lazy" });
     const copy = make("button", { type: "button" }, "Copy");
     copy.addEventListener("click", () => void this.#copy(copy));
     this.#link.append(`${title}: text and exercises`);
@@ -37,14 +39,19 @@ export class Embed {
     const url = new URL(location.href);
     url.hash = hash;
     this.#link.href = hash;
-    // Written by the browser, so that no content can end an attribute.
-    this.#line.value = make("iframe", {
-      src: `${url.href}&embed`,
-      title: this.#title,
-      width: WIDTH,
-      height: HEIGHT,
-      loading: "lazy",
-    }).outerHTML;
+    this.#frame.src = `${url.href}&embed`;
+    this.#write();
+  }
+
+  /** A plot is below the pictures. */
+  fit(hasPlot: boolean): void {
+    this.#frame.height = String(hasPlot ? HEIGHT.withPlot : HEIGHT.withoutPlot);
+    this.#write();
+  }
+
+  /** Written by the browser, so that no content can end an attribute. */
+  #write(): void {
+    this.#line.value = this.#frame.outerHTML;
   }
 
   async #copy(button: HTMLButtonElement): Promise<void> {

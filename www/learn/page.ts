@@ -3,6 +3,7 @@
 import "../style/learn.css";
 import "../style/embed.css";
 import "../style/learn-figure.css";
+import "../style/learn-print.css";
 import "../style/learn-slides.css";
 import { make } from "../dom";
 import { saveJson } from "../save";
@@ -100,7 +101,8 @@ export class LearnPage {
 
   /** The numbers of the figure, with the values of its controls. */
   download(): void {
-    if (!this.#shown) return;
+    // With the exercises on the page there is no figure to export.
+    if (!this.#shown?.article.isConnected) return;
     const { lesson, controls, drawing } = this.#shown;
     saveJson(`bimodal-stereo-lesson-${lesson.id}.json`, {
       format: "bimodal-stereo lesson",
@@ -240,6 +242,7 @@ export class LearnPage {
     shown.alert.hidden = true;
     shown.figure.show(drawing);
     shown.readouts.show(drawing);
+    shown.embed.fit(drawing.panels.some(({ kind }) => kind === "plot"));
     shown.box.setAttribute("aria-busy", String(!done));
   }
 

@@ -32,14 +32,19 @@ export class Slides {
     });
     const close = make("button", { type: "button" }, "Close (Esc)");
     close.addEventListener("click", () => this.close());
+    const whole = make("button", { type: "button", hidden: !document.fullscreenEnabled }, "Full screen (F)");
+    whole.addEventListener("click", () => this.#fill());
     this.element = make(
       "dialog",
       { class: "learn-slides" },
       this.#holder,
-      make("div", { class: "learn-slide-bar" }, ...this.#turns.map(({ button }) => button), close),
+      make("div", { class: "learn-slide-bar" }, ...this.#turns.map(({ button }) => button), whole, close),
     );
     this.element.addEventListener("keydown", (event) => this.#key(event));
-    this.element.addEventListener("close", onClose);
+    this.element.addEventListener("close", () => {
+      if (document.fullscreenElement) void document.exitFullscreen();
+      onClose();
+    });
   }
 
   get isOpen(): boolean {
@@ -64,8 +69,15 @@ export class Slides {
     if (this.element.open) this.element.close();
   }
 
+  /** The page as a whole, because no browser gives the screen to a dialog. Where it refuses, the slide stays in the window. */
+  #fill(): void {
+    if (document.fullscreenElement) void document.exitFullscreen();
+    else document.documentElement.requestFullscreen().catch(() => {});
+  }
+
   #key(event: KeyboardEvent): void {
     if (event.altKey || event.ctrlKey || event.metaKey) return;
+    if (event.key === "f" && !event.repeat) return this.#fill();
     const by = { ArrowRight: 1, PageDown: 1, ArrowLeft: -1, PageUp: -1 }[event.key] as 1 | -1 | undefined;
     if (by === undefined) return;
     const isArrow = event.key.startsWith("Arrow");

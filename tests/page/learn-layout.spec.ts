@@ -1,0 +1,79 @@
+/** Where the parts of a lesson's figure are: effect and control in one view, none cut off in a frame. */
+
+import type { Page } from "@playwright/test";
+import { LESSONS, figure, open, settled } from "./figure";
+import { LONG, expect, test } from "./lab";
+
+/** Pictures that are alone in their row although they are not the only ones. */
+const lonely = (page: Page): Promise<string[]> =>
+  figure(page).evaluate((box) => {
+    const pictures = [...box.querySelectorAll<HTMLElement>(".learn-panel:not(.learn-wide)")];
+    const top = (panel: Element) => Math.round(panel.getBoundingClientRect().top);
+    const rows = [...box.querySelectorAll(".learn-panel")].map(top);
+    const alone = pictures.filter((panel) => rows.filter((each) => each === top(panel)).length === 1);
+    return pictures.length > 1 ? alone.map((panel) => panel.dataset.panel ?? "") : [];
+  });
+
+test("no picture is alone in its row on a laptop", LONG, async ({ page }) => {
+  for (const [width, height] of [
+    [1280, 720],
+    [1440, 900],
+  ] as const) {
+    await page.setViewportSize({ width, height });
+    for (const id of LESSONS) {
+      await open(page, `at=${id}`);
+      expect(await lonely(page), `${id} at ${width} px`).toEqual([]);
+    }
+  }
+});
+
+test("the controls stay in view while the last picture is looked at", async ({ page }) => {
+  for (const [width, height] of [
+    [390, 844],
+    [1280, 720],
+    [1440, 900],
+  ] as const) {
+    await page.setViewportSize({ width, height });
+    await open(page, "at=grey");
+    await page.locator(".learn-panel").last().scrollIntoViewIfNeeded();
+    await expect(page.locator(".learn-controls input").first()).toBeInViewport();
+    await page.evaluate(() => scrollTo(0, 0));
+  }
+});
+
+test("all of a figure is seen at once on a wide screen", LONG, async ({ page }) => {
+  await page.setViewportSize({ width: 1920, height: 1080 });
+  for (const id of LESSONS) {
+    await open(page, `at=${id}`);
+    const box = await figure(page).boundingBox();
+    expect((box?.y ?? Infinity) + (box?.height ?? 0), id).toBeLessThanOrEqual(1080);
+  }
+});
+
+test("an embedded figure fits the frame that its line of HTML gives", LONG, async ({ page }) => {
+  for (const id of LESSONS) {
+    await page.setViewportSize({ width: 1280, height: 800 });
+    await open(page, `at=${id}`);
+    const line = await page.locator(".learn-embed input").inputValue();
+    const [width, height] = ["width", "height"].map((name) =>
+      Number(new RegExp(`${name}="(\\d+)"`).exec(line)?.[1]),
+    ) as [number, number];
+    await page.setViewportSize({ width, height });
+    await page.goto("about:blank");
+    await page.goto(`./#learn&at=${id}&embed`);
+    await settled(page);
+    expect(await page.evaluate(() => document.documentElement.scrollHeight), id).toBeLessThanOrEqual(height);
+    await page.goto("about:blank");
+  }
+});
+
+test("a printed lesson takes two pages at most, with its figure and without its buttons", LONG, async ({ page }) => {
+  for (const id of LESSONS) {
+    await open(page, `at=${id}`);
+    const pdf = (await page.pdf({ format: "A4" })).toString("latin1");
+    expect(pdf.match(/\/Type\s*\/Page\b/g)?.length, id).toBeLessThanOrEqual(2);
+  }
+  await page.emulateMedia({ media: "print" });
+  await expect(figure(page)).toBeVisible();
+  await expect(page.getByRole("button", { name: "Slides" })).toBeHidden();
+});

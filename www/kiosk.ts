@@ -1,0 +1,27 @@
+/** The page on a stand: with ?kiosk in its address it plays by itself again once nobody has touched it for a while. */
+
+/** Seconds of silence, unless the address says another number: ?kiosk=30. */
+const SILENCE = 60;
+const TOUCHES = ["pointermove", "pointerdown", "keydown", "wheel"] as const;
+
+export interface Stand {
+  isPlaying(): boolean;
+  /** Plays the run of this address, wherever the last visitor has gone. */
+  play(hash: string): void;
+}
+
+export function keepPlaying({ isPlaying, play }: Stand): void {
+  const asked = new URLSearchParams(location.search).get("kiosk");
+  if (asked === null) return;
+  const { hash } = location;
+  const seconds = Number(asked) > 0 ? Number(asked) : SILENCE;
+  let last = performance.now();
+  const note = () => (last = performance.now());
+  for (const touch of TOUCHES) addEventListener(touch, note, { passive: true });
+  setInterval(() => {
+    if (isPlaying()) note();
+    if (performance.now() - last < 1000 * seconds) return;
+    note();
+    play(hash);
+  }, 500);
+}
