@@ -17,7 +17,7 @@ use super::planes::Planes;
 use super::rims::Rim;
 use super::surface::{self, Sample};
 use super::surfaces::{LogLikelihood, log_likelihood};
-use super::unknowns::{FOCAL, LOSS, Matrix, POSE, State, UNKNOWNS, Units, Vector, solve};
+use super::unknowns::{BIAS, FOCAL, Matrix, POSE, SIDES, State, UNKNOWNS, Units, Vector, solve};
 
 /// Sigma of edges at each level, pixels of an image 640 wide: from the error that the coarse search leaves of a few
 /// degrees to the resolution of an image. It halves every two levels.
@@ -58,8 +58,9 @@ const PRIOR_METRES: f64 = 0.05;
 /// Share of the scene's points on the image below which a pose cannot be judged; fields of view that hardly overlap have
 /// more.
 const LEAST_SEEN: f64 = 0.02;
-/// Sigma of the edge bias, pixels, and of ln f if the focal length is unknown.
-const PRIOR_LOSS: f64 = 1.0;
+/// Sigma of each component of the edge bias, pixels: one width everywhere, and its change from side to side.
+const PRIOR_BIAS: [f64; SIDES] = [1.0, 0.5, 0.5];
+/// Sigma of ln f if the focal length is unknown.
 const PRIOR_FOCAL: f64 = 0.15;
 
 /// All frames, and the quantities that do not depend on the state.
@@ -180,7 +181,7 @@ impl Scene {
             rows[(3 + k, 3 + k)] = 1.0 / PRIOR_METRES;
             (0..3).for_each(|j| rows[(3 + k, j)] = cross[(k, j)] / PRIOR_METRES);
         }
-        rows[(LOSS, LOSS)] = 1.0 / PRIOR_LOSS;
+        PRIOR_BIAS.iter().enumerate().for_each(|(k, sigma)| rows[(BIAS + k, BIAS + k)] = 1.0 / sigma);
         // A known focal length is held with a sigma of a millionth.
         rows[(FOCAL, FOCAL)] = if self.focal_is_free { 1.0 / PRIOR_FOCAL } else { 1e6 };
         let rows = rows * Matrix::from_diagonal(&units.of);
