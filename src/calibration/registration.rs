@@ -92,7 +92,7 @@ pub(super) struct Round {
     pub sigma: f64,
     /// Sums over the rounds so far, by cue: the scatter of few tiles is too uncertain for the weights of a single round.
     pub traces: [Traces; Cue::ALL.len()],
-    /// The state before the last round with all cues, and the step that its findings asked for.
+    /// The state before the last round with all cues, and the step of its findings.
     pub last: Option<(State, Vector)>,
 }
 
@@ -366,8 +366,8 @@ impl Scene {
         let findings = self.findings_of(round, planes, &seen);
         let step = step(&findings.total, &findings.prior, &findings.back);
         let from = *round;
-        let asked = step * (LONGEST / step.norm()).min(1.0);
-        let step = round.damped(&findings.units, &asked);
+        let own = step * (LONGEST / step.norm()).min(1.0);
+        let step = round.damped(&findings.units, &own);
         let posterior = self.posterior(&from, planes, &seen, &findings);
         let here = posterior(&round.state);
         let mut step = step;
@@ -382,7 +382,7 @@ impl Scene {
             state = findings.units.step(&round.state, &step);
             halvings += 1;
         }
-        *round = Round { state, traces: findings.traces, last: Some((from.state, asked)), ..from };
+        *round = Round { state, traces: findings.traces, last: Some((from.state, own)), ..from };
         step.norm()
     }
 }
@@ -427,7 +427,7 @@ mod tests {
         let unit = |k: usize, length: f64| Vector::from_fn(|row, _| if row == k { length } else { 0.0 });
         let last = unit(0, 1.0);
         let round = Round { last: Some((initial, last)), ..Round::from(units.step(&initial, &last), initial) };
-        // A step that asks for more than it should, as f(x) = 1 - (1 + s) x does: it vanishes at 1 / (1 + s).
+        // A step that is too long, as for f(x) = 1 - (1 + s) x, which vanishes at 1 / (1 + s).
         for s in [0.2, 0.5, 1.0] {
             let damped = round.damped(&units, &unit(0, -s));
             assert!((damped - unit(0, 1.0 / (1.0 + s) - 1.0)).norm() < 1e-6, "{s}: {damped}");
