@@ -198,6 +198,7 @@ export const DEPTH = {
   unit: number,
   data: array(Float32Array, Uint16Array),
   points: array(Float32Array),
+  intensity: array(Float32Array),
 };
 
 export const signal: Check = (value, field) => {

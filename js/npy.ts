@@ -152,7 +152,7 @@ function headerOf(bytes: Uint8Array): Header {
   return { type, kind, isBigEndian: order === ">", byColumns: columns === "True", shape, end };
 }
 
-/** Three planes without a value below zero are not a cloud; with values above 1 they are not colours either. */
+/** Two or three planes without a value below zero are not a cloud; with values above 1 they are not colours either. */
 const isStack = (data: Pixels): boolean =>
   !data.some((value) => value < 0) && data.some((value) => value > 1 && value < Infinity);
 
@@ -172,9 +172,9 @@ export function readNpy(bytes: Uint8Array): Raster<Pixels> & { type: string } {
   const read = kind.read(body.buffer, count);
   if (!isChannelFirst)
     return { width, height, channels, type, data: byColumns ? inRows(read, height, width, channels) : read };
-  if (channels === 3 && kind.size > 1 && isStack(read))
+  if ((channels === 2 || channels === 3) && kind.size > 1 && isStack(read))
     throw bad(
-      "this .npy file has 3 planes without a value below zero: a stack of 3 pictures? Save each of them as a file",
+      `this .npy file has ${channels} planes without a value below zero: a stack of ${channels} pictures? Save each of them as a file`,
     );
   const inOrder = byColumns ? inRows(read, channels, height, width) : read;
   return { width, height, channels, type, data: channelsLast(inOrder, channels) };

@@ -8,27 +8,27 @@ export const DOCUMENT = "docs/codes.md";
 const GROUPS = {
   runs: [
     "Ends of a run",
-    '`report.reason.code` in JavaScript, `report.reason["code"]` in Python and in the command line\'s JSON, `Reason::code()` in Rust. A reason holds its numbers beside its code. The first four codes belong to runs that continue.',
+    'The code is `report.reason.code` in JavaScript, `report.reason["code"]` in Python and in the command line\'s JSON, and `Reason::code()` in Rust. A reason holds its numbers beside its code. The first four codes belong to runs that continue.',
   ],
   checks: [
     "Verdicts of a calibration check",
-    "`code` of a check's report and of each of its candidates, `CheckReason::code()` in Rust.",
+    "A check's report and each of its candidates have such a `code`. In Rust it is `CheckReason::code()`.",
   ],
   warnings: [
     "Warnings of a calibration check",
-    '`code` of each entry of `warnings`, beside its `message`, its `field` and its numbers; `WarningKind::code()` in Rust. Any of them keeps a verdict from being "consistent".',
+    'Each entry of `warnings` has such a `code` beside its `message`, its `field` and its numbers. In Rust it is `WarningKind::code()`. Any warning keeps a verdict from being "consistent".',
   ],
   estimators: [
     "Warnings of an estimator",
-    "`code` of each entry of `Estimator.warnings` in JavaScript, which the console shows once, too.",
+    "Each entry of `Estimator.warnings` in JavaScript has such a `code`. The console shows each warning once, too.",
   ],
   readers: [
     "Warnings of the readers of files",
-    '`code` of each entry of `warnings` of `readRigFile` and `readRigFolder`, and of the command `check`. Those with `isDoubt` keep a verdict from being "consistent"; the others name what was left out.',
+    'Each entry of `warnings` has such a `code`, whether it comes from `readRigFile`, from `readRigFolder` or from the command `check`. Those with `isDoubt` keep a verdict from being "consistent"; the others name what was left out.',
   ],
   errors: [
     "Errors",
-    "`code` of a `BimodalError`, with a `message` and, where they help, `field`, `index` and `value`; `ErrorKind::code()` in Rust.",
+    "A `BimodalError` has such a `code`, a `message` and, where they help, `field`, `index` and `value`. In Rust the code is `ErrorKind::code()`.",
   ],
 };
 

@@ -7,10 +7,12 @@
 // a FOLDER, those in ../shared/data are read.
 //
 // --json FILE  one row for each frame
+// --draws N    N checks more of each of three candidates, with the intensities and without them (scripts/lidar/draws.mjs)
 import { existsSync, readFileSync, writeFileSync } from "node:fs";
 import { basename, join } from "node:path";
 import { parseArgs } from "node:util";
 import { build } from "./build.mjs";
+import { drawn, printDrawn } from "./lidar/draws.mjs";
 import { measured } from "./lidar/measures.mjs";
 import { framesBelow } from "./lidar/sources.mjs";
 import { Failure, inRoot, say, script } from "./shell.mjs";
@@ -22,14 +24,15 @@ const file = (path) => ({ name: basename(path), bytes: new Uint8Array(readFileSy
 const percent = (share) => `${(100 * share).toFixed(2)} %`;
 
 /** Takes one frame from its files to a verdict. */
-async function tried(frame, { rangeImage, readRigFile, checkCalibration }) {
+async function tried(frame, { rangeImage, readRigFile, checkCalibration }, draws) {
   const { scan, warnings } = await readRigFile(file(frame.scan), { as: "depth" });
   if (scan === undefined) throw new Failure(`${frame.scan} holds no points in no rows and columns.`);
   const { image } = await readRigFile(file(frame.picture), { as: "colour" });
   const { width, height } = image;
   const view = { rotation: frame.rotation, translation: frame.translation, camera: frame.camera, width, height };
   const range = await rangeImage(scan, view);
-  const depth = { width: range.width, height: range.height, points: range.points };
+  const { width: columns, height: rows, points, intensity } = range;
+  const depth = { width: columns, height: rows, points, ...(intensity && { intensity }) };
   const given = { rotation: frame.rotation, translation: frame.translation };
   const { verdict, candidates } = await checkCalibration([{ image: { ...image, camera: frame.camera }, depth }], {
     given,
@@ -38,10 +41,11 @@ async function tried(frame, { rangeImage, readRigFile, checkCalibration }) {
   return {
     name: frame.name,
     how: range.how,
-    size: [range.width, range.height],
+    size: [columns, rows],
     ...measured(scan, view, range),
     check: { verdict, offDegrees, offMillimetres, pixels, interval },
     warnings: warnings.map(({ code }) => code),
+    draws: await drawn(checkCalibration, { frame, image, range }, draws),
   };
 }
 
@@ -57,7 +61,11 @@ function print({ name, how, size, count, kept, distance, ofSampling, ofColumn, f
 }
 
 await script(async () => {
-  const { values, positionals } = parseArgs({ options: { json: { type: "string" } }, allowPositionals: true });
+  const text = { type: "string" };
+  const options = { json: text, draws: { ...text, default: "0" } };
+  const { values, positionals } = parseArgs({ options, allowPositionals: true });
+  const draws = Number(values.draws);
+  if (!(Number.isInteger(draws) && draws >= 0)) throw new Failure("--draws takes a whole number.");
   const folders = positionals.length > 0 ? positionals : OTHERS.map((name) => inRoot(join(DATA, name)));
   await build();
   const [rig, index] = [await import(inRoot("pkg/rig.js")), await import(inRoot("pkg/index.js"))];
@@ -72,10 +80,11 @@ await script(async () => {
     if (frames.length === 0)
       say(`${folder} holds no scan and picture with a calibration of KITTI, OpenCalib or nuScenes.`);
     for (const frame of frames) {
-      const row = await tried({ ...frame, name: `${basename(folder)}/${frame.name}` }, { ...rig, ...index });
+      const row = await tried({ ...frame, name: `${basename(folder)}/${frame.name}` }, { ...rig, ...index }, draws);
       rows.push(row);
       print(row);
     }
   }
+  printDrawn(rows.flatMap((row) => row.draws));
   if (values.json) writeFileSync(values.json, `${JSON.stringify(rows, null, 1)}\n`);
 });

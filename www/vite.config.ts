@@ -26,7 +26,7 @@ const withoutLanguage: Plugin = {
 };
 
 /** Files of the package that the readers of a rig's files and those of its recordings share; `npm test -- sizes` tells where one is missing. */
-const READERS = /pkg[\\/](?:cameras|check|errors|filename|half|limits|matrices|numbers|png|scale)\d*\.js$/;
+const READERS = /pkg[\\/](?:check|errors|half|limits|matrices|numbers|png|scale)\d*\.js$/;
 
 export default defineConfig({
   plugins: [withoutLanguage],

@@ -303,7 +303,7 @@ fn by_names(folder: &Path, files: &[PathBuf], warnings: &mut Warnings) -> Vec<Pa
     if depths.len() > 1 {
         let count = depths.len();
         warnings.add("pairs-by-order", format!(
-            "No depth map has a name like a colour image's; the {count} of each were paired in the order of their names."
+            "No depth map has a name like a colour image's. The {count} images and depth maps were paired in the order of their names."
         ));
     }
     depths.iter().zip(&colours).map(|((name, depth), (_, colour))| of(key(name), colour, depth)).collect()

@@ -78,7 +78,7 @@ pub fn read_calibration(path: &Path) -> Result<Calibration> {
     let bytes = read::whole(path)?;
     let found = match text::text_of(&bytes) {
         Some(_) if is_raster(&bytes) => Err("it is a picture where cameras or poses were expected".into()),
-        Some(text) => text::read_text(&text),
+        Some(text) => text::read_text(&text, &path.to_string_lossy()),
         None => Err(foreign::describe(&bytes)),
     };
     found.map_err(|reason| Problem::file(path, reason))
@@ -192,6 +192,7 @@ impl Reader {
             depth_size,
             unit: (!matches!(depth.samples, DepthSamples::Cloud(_))).then_some(depth.unit),
             depth: depth.samples,
+            intensity: None,
             depth_mask: None,
             depth_camera: None,
         };
@@ -234,7 +235,7 @@ impl Reader {
         self.read((name, path), || {
             let bytes = read::whole(path).map_err(|problem| problem.reason().to_owned())?;
             let text = text::text_of(&bytes).ok_or_else(|| foreign::describe(&bytes))?;
-            let found = text::read_text(&text)?;
+            let found = text::read_text(&text, name)?;
             let (says, warnings) = (says(&found), found.warnings.clone());
             Ok((found, says, warnings))
         })

@@ -94,6 +94,7 @@ fn view(u: &mut Unstructured<'_>) -> Result<RigView> {
         depth_size: sizes[1],
         depth: depth.samples,
         unit: if rarely(u, 8)? { perhaps(u, plain)? } else { Some(plain) },
+        intensity: None,
         depth_mask: depth.mask,
         depth_camera: if rarely(u, 8)? { None } else { Some(rig_camera(u, sizes[1])?) },
     })

@@ -1,17 +1,38 @@
 /** The extrinsics to check, from the readings of their files. */
 import { basename } from "node:path";
+import { isBackwards, isOfCarrier, isOfRig, wayBetween } from "../rig/formats/frames.js";
 import { inverseOf } from "../rig/formats/poses.js";
 import type { NamedPose, RigReading } from "../rig/types.js";
 import type { Pose } from "../types/index.js";
 import { Mistake } from "./arguments.js";
 import type { Judged } from "./report.js";
 
-const COLOUR = /colou?r|rgb/i;
-const DEPTH = /depth|infra|\bir\b|tof/i;
+/**
+ * The poses between the depth camera or the LiDAR and the colour camera. Where the file has none, the one that follows from a chain of its
+ * frames; without such a chain, all poses but those of bodies and targets.
+ */
+function betweenSensors(all: NamedPose[], field: string, warnings: Judged[]): NamedPose[] {
+  const direct = all.filter((pose) => isOfRig(pose) || (pose.from === undefined && pose.to === undefined));
+  if (direct.length > 0) return direct;
+  const way = wayBetween(all);
+  if (way === undefined) return all.filter((pose) => !isOfCarrier(pose));
+  for (const frame of way.turned)
+    warnings.push({
+      code: "pose-assumed",
+      message: `${field}: the frame ${frame} was taken to have ROS's body axes (x forward, y left, z up), because its name does not say "optical".`,
+      field,
+    });
+  return [way.pose];
+}
 
-/** Whether names state that a pose maps colour to depth. */
-const isBackwards = ({ from = "", to = "" }: NamedPose): boolean =>
-  COLOUR.test(from) && !DEPTH.test(from) && DEPTH.test(to) && !COLOUR.test(to);
+/** The refusal of a file of poses between a sensor and what carries it or what it looks at, which are no extrinsics between two sensors. */
+function ofBody(file: string, poses: NamedPose[]): Mistake {
+  const { name, from, to } = poses[0] as NamedPose;
+  return new Mistake(
+    `${file}: ${name === undefined ? "it" : `its "${name}"`} relates ${from} to ${to}, one of which is no sensor of the pictures (but an inertial unit, a body, a vehicle, a robot or a calibration target); extrinsics relate the depth camera or the LiDAR to the colour camera. Give that pose as a 4x4 matrix, in a file named depth_to_color.txt or lidar_to_camera.txt`,
+    "file",
+  );
+}
 
 /** The poses of all calibrations by name; the one to check comes first. */
 export function candidatesOf(readings: RigReading[], isInverted: boolean, warnings: Judged[]): Record<string, Pose> {
@@ -19,7 +40,9 @@ export function candidatesOf(readings: RigReading[], isInverted: boolean, warnin
   for (const reading of readings) {
     const { name } = reading;
     const all = "poses" in reading ? (reading.poses ?? []) : [];
-    const poses = all.filter(({ to }) => to !== "world");
+    const ofSensors = all.filter(({ to }) => to !== "world");
+    const poses = betweenSensors(ofSensors, name, warnings);
+    if (ofSensors.length > 0 && poses.length === 0) throw ofBody(name, ofSensors);
     if (poses.length < all.length && poses.length === 0)
       throw new Mistake(
         `${name}: it gives the pose of a camera in the world (camera to world), not extrinsics`,

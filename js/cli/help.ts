@@ -5,7 +5,7 @@ export const HELP = `Usage: bimodal-stereo COMMAND
 Commands:
   check  checks the calibration between a colour camera and a depth camera over a folder of frames
 
-  --help     prints this text; of a command, its manual
+  --help     prints this text; after a command, its manual
   --version  prints the version
 `;
 

@@ -149,7 +149,7 @@ export function reducedImage(image: ColorImage, factor: number): ColorImage {
 
 /** A depth map and its mask, reduced to the middle pixel of each block. */
 export function reducedDepth(depth: DepthMap, factor: number): DepthMap {
-  const { data, points, mask, camera, ...rest } = depth;
+  const { data, points, mask, camera, intensity: _, ...rest } = depth;
   const size = smaller(depth, factor);
   const count = size.width * size.height;
   const middle = Math.floor(factor / 2);

@@ -226,7 +226,7 @@ function ofInverse(
 
 /** An organised cloud; its points are converted to metres in place, NaN where missing. */
 export function cloudDepth(cloud: Cloud, { unit: given }: ReadOptions): Depth {
-  const { points, width, height } = cloud;
+  const { points, width, height, intensity } = cloud;
   if (!isOptical(points)) return turnedCloud(cloud, given);
   const extent = extentOf(points, 3, 2);
   let behind = 0;
@@ -241,7 +241,8 @@ export function cloudDepth(cloud: Cloud, { unit: given }: ReadOptions): Depth {
     const there = isThere(points[at + 2] ?? NaN) && Number.isFinite(points[at]) && Number.isFinite(points[at + 1]);
     for (let axis = 0; axis < 3; axis++) points[at + axis] = there ? (points[at + axis] ?? NaN) * unit.metres : NaN;
   }
-  return reading(cloud, { width, height, points }, "an organised cloud", { ...extent, sample }, unit);
+  const depth = { width, height, points, ...(intensity && { intensity }) };
+  return reading(cloud, depth, "an organised cloud", { ...extent, sample }, unit);
 }
 
 /** The first channels of all pixels. */
@@ -259,7 +260,10 @@ export function pictureDepth(picture: Picture, options: ReadOptions): Depth {
     if (isRepeated) return floats(every(data, 3, 1));
     if (channels === 3) return cloudDepth({ ...picture, points: data }, options);
     // The channels are x, y, z and intensity.
-    if (channels === 4) return cloudDepth({ ...picture, points: every(data, 4, 3) }, options);
+    if (channels === 4) {
+      const intensity = data.filter((_, at) => at % 4 === 3);
+      return cloudDepth({ ...picture, points: every(data, 4, 3), intensity }, options);
+    }
     if (channels !== 1) throw badFile(`a depth map has 1 channel and a cloud 3, not ${channels}`);
     return floats(data);
   }

@@ -9,6 +9,7 @@ import { type Check, object, signal, wrong } from "../check.js";
 import { BimodalError, badFile, refused } from "../errors.js";
 import { addCameras, inOrder, ofPictures } from "./assign.js";
 import { ofNamedPictures } from "./around.js";
+import { isOfCarrier } from "./formats/frames.js";
 import { isRawName } from "./formats/raw.js";
 import { areFives, isVaried, nameOf, sampled } from "./guess.js";
 import { type Pair, type Pairs, tum } from "./lists.js";
@@ -234,6 +235,8 @@ function sortedFiles(files: NamedFile[]): Sorted {
   return found;
 }
 
+/** Most poses that a warning names. */
+const MOST_NAMED = 4;
 /** Names of sensors that take no pictures and no points. */
 const INERTIAL = /(?:^|[^a-z])(?:imu|gps|oxts|gyro\w*|accel\w*)(?:[^a-z]|$)/i;
 
@@ -244,6 +247,39 @@ export function withoutInertial(poses: NamedPose[], warnings: ReaderWarning[]): 
   if (left.size > 0)
     warnings.push(warning("pose-left-out", `The poses of inertial sensors were left out: ${[...left].join(", ")}.`));
   return poses.filter((pose) => !isInertial(pose));
+}
+
+/** Leaves out poses between a sensor and a body, a vehicle, a robot or a target, which relate no two sensors; poses between these are known by then. */
+function withoutCarriers(poses: NamedPose[], warnings: ReaderWarning[]): NamedPose[] {
+  const left = new Set(poses.filter(isOfCarrier).map(({ from, to }) => `${from} to ${to}`));
+  if (left.size === 0) return poses;
+  const names = [...left].slice(0, MOST_NAMED).join(", ");
+  const more = left.size > MOST_NAMED ? ` and ${left.size - MOST_NAMED} more` : "";
+  warnings.push(
+    warning(
+      "pose-left-out",
+      `Poses between a sensor and what carries it, or what it looks at, were not used as extrinsics: ${names}${more}.`,
+    ),
+  );
+  return poses.filter((pose) => !isOfCarrier(pose));
+}
+
+/** Names of files of a lens's coefficients alone: "color_dist.npy", "D_color.txt", "distortion.txt". */
+const LENS_FILE = /(?:^|[_.-])(?:d|(?:camera)?dist(?:ortion)?(?:[_-]?coeff?\w*)?|coeffs?)(?=[_.-])/i;
+
+/** The lens of a file that was left out is missing from its camera. */
+function doubtLenses(warnings: ReaderWarning[]): void {
+  for (const { code, file } of [...warnings])
+    if (code === "file-left-out" && typeof file === "string" && LENS_FILE.test(file.replace(/^.*[/\\]/, "")))
+      warnings.push(
+        ofFile(
+          file,
+          warning(
+            "distortion-unused",
+            "By its name it holds the distortion of a lens, which was not used. Write the camera's intrinsics and distortion into one file.",
+          ),
+        ),
+      );
 }
 
 /** The poses of a file that are not of the world; a camera without a name is called as its file there, too. */
@@ -258,6 +294,13 @@ export function ofRig(text: Extract<RigReading, { poses: NamedPose[] }>, file: s
     });
 }
 
+/** The warning of a pose without frames that is called as a frame. */
+const placeOfFrame = (): ReaderWarning =>
+  warning(
+    "pose-assumed",
+    "It is called as a frame and does not name the frames of its pose, so that it may be the place of the camera in the world. It was taken to lead from the depth camera to the colour camera; name it depth_to_color.txt if it does, and pose/0.txt or the like if it does not.",
+  );
+
 /** What the texts of a folder hold: cameras, what relates them, and the unit of the depth maps; `own` has the texts of single frames. */
 async function calibrationOf({ texts, others }: Sorted, frames: ReadonlySet<string>, reader: FolderReader) {
   const found: TextOfFrame[] = [];
@@ -271,7 +314,10 @@ async function calibrationOf({ texts, others }: Sorted, frames: ReadonlySet<stri
     const called = (each: NamedCamera) => ({ ...each, name: each.name ?? stem(file.name) });
     const cameras = text.kind === "cameras" ? text.cameras.map(called) : [];
     if (text.kind === "cameras") depthUnit ??= text.depthUnit;
-    found.push({ file: file.name, cameras, poses: ofRig(text, stem(file.name)) });
+    const poses = ofRig(text, stem(file.name));
+    found.push({ file: file.name, cameras, poses });
+    if (frames.has(key(file.name)) && poses.some(({ from, to }) => from === undefined && to === undefined))
+      reader.warnings.push(ofFile(file.name, placeOfFrame()));
   }
   const isLeft = withoutInertial(
     found.flatMap(({ poses }) => poses),
@@ -352,6 +398,8 @@ export async function readRigFolder(files: NamedFile[], options: FolderOptions =
   const assign = (each: RigFolder) => assigned(each, { paths: paths.map(({ name }) => name), isAligned: allAligned });
   if (own.length > 0 && frames.length > 0) assignOwn(folder, own, assign);
   else Object.assign(folder, assign(withTexts(folder, own)));
+  doubtLenses(folder.warnings);
+  if (frames.length > 0) folder.poses = withoutCarriers(folder.poses, folder.warnings);
   folder.poses = posesForClouds(folder.poses, frames, folder.warnings);
   if (frames.length === 0) sayUnpaired(pictures, folder.warnings);
   checkUnits(frames, folder.warnings);

@@ -4,7 +4,7 @@ import { quantile } from "./statistics.js";
 /** The depths that the camera of a rig is expected to see, metres. */
 export const NEAREST = 0.1;
 export const FARTHEST = 20;
-/** The median depth that an indoor sensor of integer depths measures, metres, at most; beyond it, the unit is not the millimetre. */
+/** Largest median depth that an indoor sensor with integer depths measures, metres; beyond it, the unit is not the millimetre. */
 const USUAL = 8;
 /** .. and a LiDAR outdoors. */
 const USUAL_OUTDOORS = 40;

@@ -262,7 +262,7 @@ function byOrder({ colours, depths }: Sorted, warnings: ReaderWarning[]): Pairs 
     warnings.push(
       warning(
         "pairs-by-order",
-        `No depth map has a name like a colour image's; the ${depths.length} of each were paired in the order of their names.`,
+        `No depth map has a name like a colour image's. The ${depths.length} images and depth maps were paired in the order of their names.`,
         { pairs: depths.length },
       ),
     );

@@ -9,7 +9,6 @@ import { inOrder } from "./assign.js";
 import { pictureColour, pictureMask } from "./colour.js";
 import { cloudDepth, pictureDepth } from "./depth.js";
 import { colmapText } from "./formats/colmap-others.js";
-import { withEnds } from "./formats/filename.js";
 import { type RasterKind, rasterKind } from "./formats/headerless.js";
 import { readJpeg, readWebp } from "./formats/jpeg.js";
 import { MOST_BYTES } from "./formats/limits.js";
@@ -88,8 +87,8 @@ async function ofText(file: string, text: string, { as }: ReadOptions): Promise<
   if (as === "colour" || as === "depth" || as === "mask")
     throw badFile(`it is a text where a ${as === "depth" ? "depth map" : `${as} image`} was expected`);
   const { readText } = await texts();
-  const { cameras, poses: found, warnings, format, depthUnit } = await readText(text);
-  const poses = inOrder(withEnds(found, file));
+  const { cameras, poses: found, warnings, format, depthUnit } = await readText(text, file);
+  const poses = inOrder(found);
   const reading = { says: `${format}: ${inWords(cameras, poses)}`, warnings: distinct(warnings) };
   if (as === "cameras" && cameras.length === 0) throw badFile(`it holds ${inWords(cameras, poses)}, but no camera`);
   if (as === "poses" && poses.length === 0) throw badFile(`it holds ${inWords(cameras, poses)}, but no transform`);

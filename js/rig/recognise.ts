@@ -51,7 +51,7 @@ const refusal = (role: Other) =>
       )
     : ofOtherKind(
         `its name says that it holds ${CONTENTS[role]}: that is neither a colour image nor a depth map nor a mask`,
-        "If it is one, give the kind to read it as",
+        "If it is one of these, state which one when you read it",
       );
 
 /** The kind of a picture, by its content where that is clear, else by its name. */
@@ -71,7 +71,7 @@ export function kindOfPicture(name: string, picture: Picture): Kind {
   if (looksLikeLabels(picture))
     throw ofOtherKind(
       "its few small integers are labels of objects rather than depths",
-      "If it is a depth map, give that as the kind to read it as",
+      "If it is a depth map, state this when you read it",
     );
   return looksLikeDepth(picture) ? "depth" : "colour";
 }

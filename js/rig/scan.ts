@@ -46,6 +46,7 @@ export function unitOf(sorted: Float64Array, isMetric: boolean, given: number | 
 interface Size {
   width: number;
   height: number;
+  intensity?: Float32Array;
 }
 
 interface Seen {
@@ -57,10 +58,14 @@ interface Seen {
 }
 
 /** The reading of a depth map of points in metres. */
-export function reading(size: Size, points: Float32Array, { format, says, unit, notes, warnings }: Seen): Depth {
-  const depth = { width: size.width, height: size.height, points };
+export function reading(
+  { width, height, intensity }: Size,
+  points: Float32Array,
+  { format, says, unit, notes, warnings }: Seen,
+): Depth {
+  const depth = { width, height, points, ...(intensity && { intensity }) };
   const { count, nearest, farthest } = extentOf(ranges(points));
-  const valid = count / (size.width * size.height);
+  const valid = count / (width * height);
   const range: [number, number] = [nearest, farthest];
   return {
     kind: "depth",

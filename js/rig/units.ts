@@ -21,6 +21,9 @@ const METRES =
 /** RealSense: metres; Open3D and others: to the metre; BOP: millimetres. */
 const EITHER = "depth_?scale(?:_factor)?";
 
+/** Replica's cameras as NICE-SLAM has them: stored units to the metre as the "scale" of the camera; smaller ones scale pictures. */
+const [OF_CAMERA, LEAST_SCALE] = [/(?<![a-z_.])scale["']?\s*[:=]\s*(\d+(?:\.\d*)?)(?![\w.])/gi, 1000];
+
 const named = (names: string): RegExp =>
   new RegExp(
     `(?<![a-z])(?:${names})["']?(?:\\s*[:=,>]\\s*|\\s+)["'\\[]*([-+]?(?:\\d+(?:\\.\\d*)?|\\.\\d+)(?:e[-+]?\\d+)?)(?![\\w.])\\s*(mm|m|cm)?`,
@@ -49,6 +52,7 @@ function unitsIn(text: string): number[] {
   // librealsense's settings say micrometres.
   add(named(METRES), (value, word = "") => value * (METRES_OF[word] ?? (value >= 1 ? 1e-6 : 1)));
   add(named(EITHER), ofScale);
+  if (/["']?\bfx["']?\s*[:=]/.test(text)) add(OF_CAMERA, (value) => (value >= LEAST_SCALE ? 1 / value : NaN));
   for (const [, word = ""] of text.matchAll(WORD)) {
     const short = /^(?:mm|milli)/i.test(word) ? "mm" : /^c/i.test(word) ? "cm" : "m";
     found.push(METRES_OF[short] ?? NaN);

@@ -43,6 +43,7 @@ export type ReaderCode =
   | "size-unused"
   | "camera-computed"
   | "camera-left-out"
+  | "read-by-lines"
   // Poses
   | "rotation-adjusted"
   | "quaternion-normalised"

@@ -43,6 +43,11 @@ export interface DepthMap {
   data?: Float32Array | Uint16Array;
   /** An organised cloud, 3*w*h interleaved, NaN where missing; 1e12 or more is missing, too. */
   points?: Float32Array;
+  /**
+   * For the check of a calibration: the strength of the return at each pixel, or any other quantity of the surface's reflectivity, whether it
+   * grows with it or not; NaN where unknown. Only its rank is used.
+   */
+  intensity?: Float32Array;
   /** Unit normals, 3*w*h interleaved; they replace those computed from the depth. */
   normals?: Float32Array;
 }

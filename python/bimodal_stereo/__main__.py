@@ -12,7 +12,7 @@ HELP = """Usage: python -m bimodal_stereo COMMAND
 Commands:
   check  checks the calibration between a colour camera and a depth camera over a folder of frames
 
-  --help     prints this text; of a command, its manual
+  --help     prints this text; after a command, its manual
   --version  prints the version
 """
 BAD = 3

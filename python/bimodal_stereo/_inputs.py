@@ -190,8 +190,9 @@ def depth(given: Union[DepthMap, Pixels], path: str = "depth") -> dict[str, Any]
         data = cloud(own.points, f"{path}.points", (None, None, 3))
         rasters = {**size(data), "points": data}
     normals = None if own.normals is None else cloud(own.normals, f"{path}.normals", (*data.shape[:2], 3))
+    intensity = None if own.intensity is None else map_of(own.intensity, f"{path}.intensity", data.shape[:2])
     inside, own_camera = mask(own.mask, f"{path}.mask", data.shape), camera(own.camera, f"{path}.camera")
-    return {**rasters, "mask": inside, "camera": own_camera, "unit": own.unit, "normals": normals}
+    return {**rasters, "mask": inside, "camera": own_camera, "unit": own.unit, "normals": normals, "intensity": intensity}
 
 
 def of_pixels(given: Pixels, path: str) -> DepthMap:
@@ -203,6 +204,10 @@ def of_pixels(given: Pixels, path: str) -> DepthMap:
 
 def cloud(value: Any, field: str, shape: Sequence[Optional[int]]) -> NDArray[np.float32]:
     return singles(shaped(array(_sources.points(value), field, "float32"), field, shape))
+
+
+def map_of(value: Any, field: str, shape: Sequence[Optional[int]]) -> NDArray[np.float32]:
+    return singles(shaped(array(value, field, "float32"), field, shape))
 
 
 def depths(data: NDArray[Any], field: str) -> NDArray[Any]:

@@ -82,7 +82,8 @@ class DepthMap:
     are holes. ``points``: (h, w, 3), an organised cloud in the depth camera's frame, NaN where missing. ``unit``: metres (or pixels,
     orthographic) of a stored unit; default 1, and 0.001 for integers with a camera; of a file with a camera it is guessed, with a
     ``BimodalWarning``. ``mask`` and ``camera`` as those of ``ColorImage``. ``normals``: (h, w, 3), unit normals that replace those computed
-    from the depth.
+    from the depth. ``intensity``: (h, w), for the check of a calibration alone: the strength of the return at each pixel, or any other
+    quantity of the surface's reflectivity, whether it grows with it or not; NaN where unknown. Only its rank is used.
     """
 
     data: Optional[Pixels] = None
@@ -91,6 +92,7 @@ class DepthMap:
     camera: Optional[CameraInput] = None
     unit: Optional[float] = None
     normals: Optional[ArrayLike] = None
+    intensity: Optional[ArrayLike] = None
 
 
 @dataclass(frozen=True)

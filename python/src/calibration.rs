@@ -83,6 +83,7 @@ fn view(index: usize, frame: &Bound<'_, PyAny>) -> PyResult<RigView> {
         depth_size: depth.size,
         depth: depth.depths()?,
         unit: depth.members.number("unit")?,
+        intensity: depth.members.array("intensity")?,
         depth_camera: pinhole(&depth.members)?,
         depth_mask: depth.mask,
     })

@@ -9,7 +9,7 @@ use crate::error::{failure, refused_at};
 use crate::members::Members;
 
 const IMAGE: [&str; 6] = ["width", "height", "data", "mask", "camera", "transfer"];
-const DEPTH: [&str; 8] = ["width", "height", "data", "points", "mask", "camera", "unit", "normals"];
+const DEPTH: [&str; 9] = ["width", "height", "data", "points", "mask", "camera", "unit", "normals", "intensity"];
 
 /// The common part of images and depth maps, with either kind of camera.
 pub struct Raster<'py> {

@@ -11,7 +11,7 @@ use super::input::RigView;
 use super::optima::{self, Optimum, SAME_START};
 use super::planes::Planes;
 use super::reason::{CheckReason, Warning, WarningKind};
-use super::registration::{Findings, MOST_ROUNDS, Round, SIGMAS, SURVIVORS, Scene, Start, goes_on};
+use super::registration::{ARRIVED, Findings, MOST_SETTLING, Round, SIGMAS, SURVIVORS, Scene, Start};
 use super::report::CheckReport;
 use super::rereading::Rereading;
 use super::search;
@@ -125,7 +125,7 @@ impl CalibrationCheck {
                 (0.1 + 0.6 * share, "aligning depth edges with image edges")
             }
             Stage::Settling { rounds, at, done, .. } => {
-                let share = (*at as f64 + *done as f64 / MOST_ROUNDS as f64) / rounds.len() as f64;
+                let share = (*at as f64 + *done as f64 / MOST_SETTLING as f64) / rounds.len() as f64;
                 (0.7 + 0.15 * share, "refining with all cues")
             }
             Stage::Judging { .. } => (0.85, "judging the candidates"),
@@ -300,13 +300,10 @@ impl CalibrationCheck {
         curves_of(optima, planes)
     }
 
-    /// Refines one of the poses by one round with all cues, until it stays or meets another one. One that is stopped on its way
-    /// is no optimum. After the last pose, the candidates are judged.
+    /// Refines one of the poses by one round with all cues. After the last pose, the candidates are judged.
     fn settle(&mut self, mut rounds: Vec<Round>, at: usize, done: usize, planes: Vec<Planes>) -> Stage {
         let moved = self.scene.settle(&mut rounds[at], &planes);
-        let (now, before) = (rounds[at].state, &rounds[..at]);
-        let has_met = before.iter().any(|other| optima::is_same(&self.scene, &other.state, &now));
-        if goes_on(moved, done + 1) && !has_met {
+        if moved >= ARRIVED && done + 1 < MOST_SETTLING {
             Stage::Settling { rounds, at, done: done + 1, planes }
         } else if at + 1 < rounds.len() {
             Stage::Settling { rounds, at: at + 1, done: 0, planes }

@@ -5,8 +5,12 @@
 //! neighbours. The log likelihood is that of colours given patches over that of colours alone, the sum over points and
 //! channels of log p(c | patch) / p(c), with both densities measured in the image under the same pose.
 //!
+//! Where a scanner's intensities are known, their levels group the samples once more, with lightness as the channel: what
+//! reflects alike looks alike, whatever the curve between the two (Koide, Oishi, Yokozuka and Banno 2023).
+//!
 //! Method: histograms with linear weights, so that finite differences are smooth.
 
+use super::intensity::LEVELS;
 use super::patches::{PATCHES, Patches, Sight};
 use super::unknowns::State;
 
@@ -26,27 +30,31 @@ impl Information<'_> {
             self.0.colours(sight, state).map(|colour| colour.map_or([f32::NAN; 3], features)).collect();
         let mut joint = vec![[FLOOR; BINS]; PATCHES];
         for channel in 0..3 {
-            joint.iter_mut().for_each(|bins| bins.fill(FLOOR));
-            for (level, &patch) in features.iter().zip(&self.0.patches) {
-                if let Some((bin, share)) = split(level[channel]) {
-                    joint[patch as usize][bin] += 1.0 - share;
-                    joint[patch as usize][bin + 1] += share;
-                }
+            self.add(&features, channel, &self.0.patches, &mut joint, out);
+        }
+        if sight.frame.intensity.is_some() {
+            self.add(&features, 0, &self.0.levels, &mut joint[..LEVELS], out);
+        }
+    }
+
+    /// Adds the sum over samples of log p(c | group) / p(c) for one channel; `joint` has a row for each group.
+    fn add(&self, features: &[[f32; 3]], channel: usize, groups: &[u8], joint: &mut [[f64; BINS]], out: &mut [f64]) {
+        joint.iter_mut().for_each(|bins| bins.fill(FLOOR));
+        for (level, &group) in features.iter().zip(groups) {
+            if let (Some((bin, share)), Some(bins)) = (split(level[channel]), joint.get_mut(group as usize)) {
+                bins[bin] += 1.0 - share;
+                bins[bin + 1] += share;
             }
-            let marginal: [f64; BINS] = std::array::from_fn(|bin| joint.iter().map(|bins| bins[bin]).sum());
-            let total: f64 = marginal.iter().sum();
-            let logs: Vec<[f64; BINS]> = joint
-                .iter()
-                .map(|bins| {
-                    let own: f64 = bins.iter().sum();
-                    std::array::from_fn(|bin| (bins[bin] / own / (marginal[bin] / total)).ln())
-                })
-                .collect();
-            for ((level, &patch), &tile) in features.iter().zip(&self.0.patches).zip(&self.0.tiles) {
-                if let Some((bin, share)) = split(level[channel]) {
-                    let logs = &logs[patch as usize];
-                    out[tile as usize] += (1.0 - share) * logs[bin] + share * logs[bin + 1];
-                }
+        }
+        let marginal: [f64; BINS] = std::array::from_fn(|bin| joint.iter().map(|bins| bins[bin]).sum());
+        let total: f64 = marginal.iter().sum();
+        for bins in joint.iter_mut() {
+            let own: f64 = bins.iter().sum();
+            *bins = std::array::from_fn(|bin| (bins[bin] / own / (marginal[bin] / total)).ln());
+        }
+        for ((level, &group), &tile) in features.iter().zip(groups).zip(&self.0.tiles) {
+            if let (Some((bin, share)), Some(logs)) = (split(level[channel]), joint.get(group as usize)) {
+                out[tile as usize] += (1.0 - share) * logs[bin] + share * logs[bin + 1];
             }
         }
     }
@@ -64,4 +72,91 @@ fn split(level: f32) -> Option<(usize, f64)> {
     let place = f64::from(level.clamp(0.0, 1.0)) * (BINS - 1) as f64;
     let bin = (place as usize).min(BINS - 2);
     Some((bin, place - bin as f64))
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::*;
+    use crate::calibration::frame::{Frame, Projection};
+    use crate::calibration::patches::group;
+    use crate::calibration::planes::Planes;
+    use crate::calibration::surface::samples;
+    use crate::calibration::unknowns::State;
+    use crate::pose::Similarity;
+    use crate::view::{Lens, Pinhole, Size};
+
+    const SIZE: Size = Size { width: 64, height: 48 };
+    const FOCAL: f64 = 60.0;
+    const DISTANCE: f64 = 2.0;
+    /// Farthest shift, pixels.
+    const FARTHEST: i32 = 3;
+
+    /// Grey values without a period.
+    fn pattern(index: usize) -> f32 {
+        let (column, row) = SIZE.position(index);
+        let (x, y) = (column as f32, row as f32);
+        0.5 + 0.25 * (0.41 * x + 0.003 * x * y).sin() + 0.2 * (0.53 * y - 0.004 * x * x).cos()
+    }
+
+    /// A painted plane as the camera sees it, with a point for each pixel that stays on the image.
+    fn painted(intensity: Option<&dyn Fn(f32) -> f32>) -> Frame {
+        let camera = Pinhole { fx: FOCAL, fy: FOCAL, cx: 31.5, cy: 23.5, lens: Lens::None };
+        let margin = FARTHEST as usize + 1;
+        let point = |index: usize| {
+            let (column, row) = SIZE.position(index);
+            let inside = |at: usize, side: usize| at >= margin && at + margin < side;
+            if !(inside(column, SIZE.width) && inside(row, SIZE.height)) {
+                return [f32::NAN; 3];
+            }
+            let along = |at: usize, centre: f64| ((at as f64 - centre) / FOCAL * DISTANCE) as f32;
+            [along(column, 31.5), along(row, 23.5), DISTANCE as f32]
+        };
+        let planes = Planes { size: SIZE, pixels: (0..SIZE.len()).map(|index| [pattern(index); 3]).collect() };
+        let points = (0..SIZE.len()).map(point).collect();
+        let mut frame = Frame::new(String::new(), planes, camera, SIZE, points);
+        frame.intensity = intensity.map(|of| (0..SIZE.len()).map(|index| of(pattern(index))).collect());
+        frame
+    }
+
+    /// The log likelihood at every shift by whole pixels, the right pose first.
+    fn values(frame: &Frame) -> Vec<f64> {
+        let mut samples = samples(frame, SIZE.len());
+        group(&mut samples);
+        let right = State::at(Similarity::identity());
+        let patches = Patches::new(&samples, &Projection::new(frame, &right), frame);
+        let sight = Sight { frame, planes: &frame.planes };
+        let of = |[x, y]: [i32; 2]| {
+            let shift = Vector3::new(f64::from(x), f64::from(y), 0.0) * (DISTANCE / FOCAL);
+            let mut out = vec![0.0; 100];
+            let state = State::at(Similarity { translation: shift, ..Similarity::identity() });
+            Information(&patches).evaluate(&sight, &state, &mut out);
+            out.iter().sum::<f64>()
+        };
+        let shifts = (-FARTHEST..=FARTHEST).flat_map(|x| (-FARTHEST..=FARTHEST).map(move |y| [x, y]));
+        [[0, 0]].into_iter().chain(shifts.filter(|shift| *shift != [0, 0])).map(of).collect()
+    }
+
+    #[test]
+    fn paint_is_found_at_the_right_pose_whatever_the_curve_of_the_intensity() {
+        let plain = values(&painted(None));
+        let curves: [&dyn Fn(f32) -> f32; 3] =
+            [&|grey| 200.0 * grey, &|grey| -grey.powi(3), &|grey| (grey - 0.5).abs()];
+        for (index, curve) in curves.into_iter().enumerate() {
+            let found = values(&painted(Some(curve)));
+            // What the intensity adds.
+            let added: Vec<f64> = found.iter().zip(&plain).map(|(found, plain)| found - plain).collect();
+            let next = added[1..].iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            assert!(added[0] > 1.2 * next && next > 0.0, "curve {index}: {} and {next}", added[0]);
+            assert!(found[1..].iter().all(|value| *value < found[0]), "curve {index}");
+        }
+    }
+
+    #[test]
+    fn only_the_order_of_intensities_counts_and_unknown_ones_count_nowhere() {
+        let linear = values(&painted(Some(&|grey| grey)));
+        assert_eq!(values(&painted(Some(&|grey| (9.0 * grey).exp()))), linear);
+        assert_eq!(values(&painted(Some(&|_| f32::NAN))), values(&painted(None)));
+    }
 }

@@ -15,7 +15,7 @@ const WIDEST: usize = 1000;
 /// Range of depth cameras, metres.
 const NEAREST: f32 = 0.1;
 const FARTHEST: f32 = 20.0;
-/// Largest usual median depth of organised clouds, metres, which LiDARs produce as well.
+/// Largest usual median depth of organised clouds, metres; LiDARs produce such clouds as well.
 const FARTHEST_OF_CLOUDS: f32 = 200.0;
 /// Depths from this value on are missing, as in all depth maps, metres: the square of larger ones overflows f32.
 const BEYOND: f32 = crate::view::FARTHEST as f32;
@@ -54,6 +54,9 @@ pub struct RigView {
     pub depth: DepthSamples,
     /// Metres per stored unit; `None` means 0.001 for integers and 1 otherwise.
     pub unit: Option<f64>,
+    /// The strength of the return at each depth, or any other quantity of the surface's reflectivity, not necessarily an
+    /// increasing one; NaN where unknown. Only its rank is used.
+    pub intensity: Option<Vec<f32>>,
     /// Non-zero where depths may be used.
     pub depth_mask: Option<Vec<u8>>,
     /// Intrinsics of the depth camera, required unless the depth map is a cloud.
@@ -81,6 +84,9 @@ impl RigView {
                 must_be(field, mask.len(), size.len())?;
             }
         }
+        if let Some(intensity) = &self.intensity {
+            must_be("depth.intensity", intensity.len(), grid.len())?;
+        }
         let planes = Planes { size, pixels: encoded(&self.image, self.transfer, size)? };
         if planes.pixels.iter().flatten().all(|value| (value - planes.pixels[0][0]).abs() < BLANK) {
             warnings.push(of("image", WarningKind::BlankImage));
@@ -105,6 +111,11 @@ impl RigView {
         let Gathered { grid: cells, cell, points, sources } = gathered(grid, points);
         let mut frame = Frame::new(self.name, planes, camera, cells, points);
         frame.cell = cell;
+        frame.intensity = self.intensity.map(|all| match sources.len() {
+            0 => all,
+            // A cell without a sample has no source.
+            _ => sources.iter().map(|&source| all.get(source).copied().unwrap_or(f32::NAN)).collect(),
+        });
         frame.places = sources.into_iter().map(|index| grid.position(index)).collect();
         let mask = self.image_mask.map(|mask| mask.into_iter().map(|value| value != 0).collect::<Vec<bool>>());
         if let Some(mask) = &mask {
@@ -286,6 +297,7 @@ mod tests {
             depth_size: size,
             depth,
             unit: None,
+            intensity: None,
             depth_mask: None,
             depth_camera: Some(camera(fx)),
         };

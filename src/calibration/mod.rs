@@ -13,6 +13,7 @@
 //! | `sampling` | gathers sparse depth maps into cells |
 //! | `rims`, `edges` | depth edges, and their log likelihood on image edges |
 //! | `surface`, `patches` | samples of the depth map with normals, in groups |
+//! | `intensity` | intensities of a scanner's returns as levels of equal count |
 //! | `information`, `shading`, `silhouette`, `differences` | cues over samples, finite differences |
 //! | `unknowns`, `evidence` | the unknowns in pixels; log likelihoods by tiles, weights, covariance |
 //! | `search`, `registration` | initial poses, rounds of the registration |
@@ -38,6 +39,8 @@ mod guessed;
 mod health;
 mod information;
 mod input;
+mod intensity;
+mod lattice;
 mod optima;
 mod overlay;
 mod patches;

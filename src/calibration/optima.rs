@@ -42,15 +42,13 @@ pub(super) fn ranked(scene: &Scene, rounds: &[Round], planes: &[Planes]) -> Vec<
 
 /// Adds an optimum unless another one is at the same place: of rounds that meet the first stands, and rounding decides nothing.
 pub(super) fn add(optima: &mut Vec<Optimum>, scene: &Scene, optimum: Optimum) {
-    if !optima.iter().any(|other| is_same(scene, &other.round.state, &optimum.round.state)) {
+    let is_same = |other: &Optimum| {
+        let apart = other.findings.units.between(&other.round.state, &optimum.round.state);
+        apart.fixed_rows::<POSE>(0).norm() <= SAME_START * scene.scale
+    };
+    if !optima.iter().any(is_same) {
         optima.push(optimum);
     }
-}
-
-/// Whether two states hardly move the scene against each other.
-pub(super) fn is_same(scene: &Scene, one: &State, other: &State) -> bool {
-    let apart = scene.units(one).between(one, other);
-    apart.fixed_rows::<POSE>(0).norm() <= SAME_START * scene.scale
 }
 
 impl Optimum {

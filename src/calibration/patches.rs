@@ -28,6 +28,8 @@ pub(super) struct Patches {
     pub points: Vec<Vector3<f64>>,
     pub normals: Vec<Vector3<f64>>,
     pub patches: Vec<u8>,
+    /// Levels of their intensities.
+    pub levels: Vec<u8>,
     pub tiles: Vec<u32>,
 }
 
@@ -43,6 +45,7 @@ impl Patches {
             normals: visible.iter().map(|sample| sample.normal).collect(),
             tiles: visible.iter().map(|sample| tiling.of(projection.pixels[sample.index].map(f64::from))).collect(),
             patches: visible.iter().map(|sample| sample.patch).collect(),
+            levels: visible.iter().map(|sample| sample.level).collect(),
         }
     }
 

@@ -17,7 +17,7 @@ use super::planes::Planes;
 use super::rims::Rim;
 use super::surface::{self, Sample};
 use super::surfaces::{LogLikelihood, log_likelihood};
-use super::unknowns::{BIAS, FOCAL, Matrix, POSE, SIDES, State, UNKNOWNS, Units, Vector, solve};
+use super::unknowns::{BIAS, FOCAL, Matrix, SIDES, State, Units, Vector, solve};
 
 /// Sigma of edges at each level, pixels of an image 640 wide: from the error that the coarse search leaves of a few
 /// degrees to the resolution of an image. It halves every two levels.
@@ -29,21 +29,14 @@ const MOST_RIMS_OF_STARTS: usize = 1200;
 /// Rounds at each level.
 pub(super) const ROUNDS: usize = 3;
 /// Maximum number of rounds with all cues. The objective is rough: more rounds would not settle, but wander.
-const MOST_SETTLING: usize = 8;
-/// Maximum number of rounds of a pose that is still under way, with steps of a pixel: it is no optimum where it is.
-pub(super) const MOST_ROUNDS: usize = 24;
-const UNDER_WAY: f64 = 1.0;
-/// Spacing of the states from which the scene is seen, pixels of an image 640 wide.
-const SPACING: f64 = 1.0;
+pub(super) const MOST_SETTLING: usize = 8;
 /// Maximum number of times that a step with all cues is halved.
 const MOST_HALVINGS: usize = 5;
-/// Largest share of the last step in a damped one: two steps that are opposite lead to the middle between them.
-const MOST_OF_LAST: f64 = 0.5;
 /// Decrease of the log posterior that does not make a step too long: the objective is rough on the scale of a pixel, and a
 /// ratio of less than e says nothing.
 const ROUGHNESS: f64 = 1.0;
 /// A step that moves the scene by less than this has converged, pixels.
-const ARRIVED: f64 = 0.02;
+pub(super) const ARRIVED: f64 = 0.02;
 /// Longest step of a round with all cues, pixels: finite differences are valid no farther.
 const LONGEST: f64 = 3.0;
 /// Blur of the image for the cues over surfaces, pixels: about the size of a pixel of the depth map.
@@ -92,31 +85,13 @@ pub(super) struct Round {
     pub sigma: f64,
     /// Sums over the rounds so far, by cue: the scatter of few tiles is too uncertain for the weights of a single round.
     pub traces: [Traces; Cue::ALL.len()],
-    /// The state before the last round with all cues, and the step of its findings.
-    pub last: Option<(State, Vector)>,
 }
 
 impl Round {
     /// The first round from a state.
     pub fn from(state: State, initial: State) -> Self {
-        Self { state, initial, seen_from: initial, sigma: 0.0, traces: Default::default(), last: None }
+        Self { state, initial, seen_from: initial, sigma: 0.0, traces: Default::default() }
     }
-
-    /// A step, mixed with the last one if it leads back: as in regula falsi, both count in inverse proportion to their
-    /// lengths along the last. Where the objective is rough and hardly curved, rounds would else leap to and fro, each
-    /// farther, and rounding would decide where they end.
-    fn damped(&self, units: &Units, step: &Vector) -> Vector {
-        let Some((state, last)) = self.last else { return *step };
-        // How far this step leads back, in lengths of the last one; the sum of both vanishes in proportion.
-        let back = (-step.dot(&last) / last.norm_squared().max(f64::MIN_POSITIVE)).max(0.0);
-        let share = (back / (1.0 + back)).min(MOST_OF_LAST);
-        step * (1.0 - share) + (units.between(&self.state, &state) + last) * share
-    }
-}
-
-/// Whether a pose that moved by so many pixels in the last of some rounds with all cues takes another one.
-pub(super) fn goes_on(moved: f64, done: usize) -> bool {
-    moved >= ARRIVED && done < MOST_SETTLING || moved >= UNDER_WAY && done < MOST_ROUNDS
 }
 
 /// What a state sees of the scene.
@@ -209,22 +184,6 @@ impl Scene {
         rows[(FOCAL, FOCAL)] = if self.focal_is_free { 1.0 / PRIOR_FOCAL } else { 1e6 };
         let rows = rows * Matrix::from_diagonal(&units.of);
         rows.transpose() * rows
-    }
-
-    /// Moves the state from which a round sees the scene if its own state went farther from it than the spacing, and returns
-    /// whether it did. What is hidden depends on the pose by leaps. It changes little within a pixel, so it is taken from
-    /// the nearest state on a lattice about the initial state, which rounding does not move.
-    pub fn look(&self, round: &mut Round) -> bool {
-        let spacing = SPACING * self.scale;
-        let units = self.units(&round.initial);
-        let [from, to] = [round.seen_from, round.state].map(|state| units.between(&round.initial, &state));
-        let moves = |k: &usize| *k < POSE || *k == FOCAL;
-        if (0..UNKNOWNS).filter(moves).all(|k| (to[k] - from[k]).abs() <= spacing) {
-            return false;
-        }
-        let place = |k: usize, _| if moves(&k) { (to[k] / spacing).round() * spacing } else { 0.0 };
-        round.seen_from = units.step(&round.initial, &Vector::from_fn(place));
-        true
     }
 
     fn seen(&self, state: &State) -> Seen {
@@ -333,7 +292,8 @@ impl Scene {
             let back = units.between(&start.round.initial, &state);
             let prior = self.prior(&units);
             start.score = mean - 0.5 * SCORE_PRIOR * back.dot(&(prior * back));
-            start.round.state = units.step(&state, &step(&total, &prior, &back));
+            let next = units.step(&state, &step(&total, &prior, &back));
+            start.round.state = self.on_lattice(&start.round.initial, &next);
         }
     }
 
@@ -358,16 +318,15 @@ impl Scene {
             .collect()
     }
 
-    /// Takes one round with all cues and returns the length of its step, pixels. A step that turns back is damped, and one
-    /// that lowers the posterior is halved.
+    /// Takes one round with all cues and returns the length of its step, pixels. A step that lowers the posterior is
+    /// halved.
     pub fn settle(&self, round: &mut Round, planes: &[Planes]) -> f64 {
         self.look(round);
         let seen = self.seen(&round.seen_from);
         let findings = self.findings_of(round, planes, &seen);
         let step = step(&findings.total, &findings.prior, &findings.back);
+        let step = step * (LONGEST / step.norm()).min(1.0);
         let from = *round;
-        let own = step * (LONGEST / step.norm()).min(1.0);
-        let step = round.damped(&findings.units, &own);
         let posterior = self.posterior(&from, planes, &seen, &findings);
         let here = posterior(&round.state);
         let mut step = step;
@@ -382,7 +341,7 @@ impl Scene {
             state = findings.units.step(&round.state, &step);
             halvings += 1;
         }
-        *round = Round { state, traces: findings.traces, last: Some((from.state, own)), ..from };
+        *round = Round { state, traces: findings.traces, ..*round };
         step.norm()
     }
 }
@@ -410,32 +369,4 @@ fn step(total: &Evidence, prior: &Matrix, back: &Vector) -> Vector {
     // If sums overflow, the state stays.
     let solution = solve(&(total.curvature() + prior), &gradient).filter(|step| step.norm().is_finite());
     solution.unwrap_or_else(Vector::zeros)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::pose::Similarity;
-    use crate::view::{Lens, Pinhole};
-
-    #[test]
-    fn a_step_that_leads_back_ends_where_both_would_vanish() {
-        let camera = Pinhole { fx: 500.0, fy: 500.0, cx: 320.0, cy: 240.0, lens: Lens::None };
-        let cloud = [[-0.3, -0.2, 1.0], [0.3, -0.2, 1.2], [0.0, 0.3, 0.9]].map(Vector3::from);
-        let units = Units::new(&cloud, &camera);
-        let initial = State::at(Similarity::identity());
-        let unit = |k: usize, length: f64| Vector::from_fn(|row, _| if row == k { length } else { 0.0 });
-        let last = unit(0, 1.0);
-        let round = Round { last: Some((initial, last)), ..Round::from(units.step(&initial, &last), initial) };
-        // A step that is too long, as for f(x) = 1 - (1 + s) x, which vanishes at 1 / (1 + s).
-        for s in [0.2, 0.5, 1.0] {
-            let damped = round.damped(&units, &unit(0, -s));
-            assert!((damped - unit(0, 1.0 / (1.0 + s) - 1.0)).norm() < 1e-6, "{s}: {damped}");
-        }
-        // Forward, across, and in the first round, nothing changes.
-        for step in [unit(0, 0.7), unit(1, -2.0)] {
-            assert_eq!(round.damped(&units, &step), step);
-        }
-        assert_eq!(Round { last: None, ..round }.damped(&units, &unit(0, -1.0)), unit(0, -1.0));
-    }
 }

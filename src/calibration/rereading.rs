@@ -6,7 +6,7 @@
 use super::optima::{self, Optimum};
 use super::planes::Planes;
 use super::readings::Reading;
-use super::registration::{Round, SIGMAS, Scene, Start, goes_on};
+use super::registration::{ARRIVED, MOST_SETTLING, Round, SIGMAS, Scene, Start};
 use super::unknowns::State;
 
 /// How many readings proceed after each level, the best by score.
@@ -47,7 +47,7 @@ impl Rereading {
         if self.level == SIGMAS.len() {
             if let Some((_, start)) = self.starts.first_mut() {
                 // Ends early where a step is short.
-                let _ = (1..).any(|done| !goes_on(scene.settle(&mut start.round, finest), done));
+                let _ = (0..MOST_SETTLING).any(|_| scene.settle(&mut start.round, finest) < ARRIVED);
             }
             return true;
         }

@@ -7,7 +7,7 @@
 
 use crate::view::Size;
 
-/// Share of the neighbours along an axis of cells with a sample that have to hold one too.
+/// Of the cells that neighbour a cell with a sample along an axis, at least this share has to hold a sample too.
 const COVERED: f64 = 0.6;
 /// Longest side of a cell, pixels: 16 rings in a map of 480 rows are 30 pixels apart.
 const LARGEST_CELL: usize = 32;

@@ -5,6 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use crate::numeric::eigen::symmetric_eigen;
 
 use super::frame::Frame;
+use super::intensity::{UNKNOWN, levels};
 
 /// Neighbours to each side in the fit of a plane: enough to average the steps of a quantised map.
 const REACH: usize = 3;
@@ -19,6 +20,8 @@ pub(super) struct Sample {
     pub normal: Vector3<f64>,
     /// The patch of the surface that it belongs to; the first until samples are grouped.
     pub patch: u8,
+    /// The level of its intensity.
+    pub level: u8,
 }
 
 /// About `most` samples, evenly spaced on the raster.
@@ -28,7 +31,13 @@ pub(super) fn samples(frame: &Frame, most: usize) -> Vec<Sample> {
     let grid = frame.grid;
     let rows = (stride / 2..grid.height).step_by(stride);
     let places = rows.flat_map(|row| (stride / 2..grid.width).step_by(stride).map(move |column| (column, row)));
-    places.filter_map(|(column, row)| sample(frame, column, row)).collect()
+    let mut samples: Vec<Sample> = places.filter_map(|(column, row)| sample(frame, column, row)).collect();
+    if let Some(intensity) = &frame.intensity {
+        let of = |sample: &Sample| intensity.get(sample.index).copied().unwrap_or(f32::NAN);
+        let own: Vec<f32> = samples.iter().map(of).collect();
+        samples.iter_mut().zip(levels(&own)).for_each(|(sample, level)| sample.level = level);
+    }
+    samples
 }
 
 fn sample(frame: &Frame, column: usize, row: usize) -> Option<Sample> {
@@ -56,5 +65,5 @@ fn sample(frame: &Frame, column: usize, row: usize) -> Option<Sample> {
     let eigen = symmetric_eigen(&(squares / count as f64 - mean * mean.transpose()))?;
     let normal: Vector3<f64> = eigen.eigenvectors.column(eigen.eigenvalues.imin()).into();
     let normal = if normal.dot(&point) > 0.0 { -normal } else { normal };
-    Some(Sample { index, point, normal, patch: 0 })
+    Some(Sample { index, point, normal, patch: 0, level: UNKNOWN })
 }

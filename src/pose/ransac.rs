@@ -247,7 +247,7 @@ fn thickness(covariance: &Matrix3<f64>) -> f64 {
 fn check(depth: &[Vector3<f64>], image: &[Vector3<f64>], options: &RansacOptions) -> Result<()> {
     positive("options.threshold", options.threshold)?;
     if depth.len() != image.len() || u32::try_from(depth.len()).is_err() {
-        return Err(Error::new(ErrorKind::Size, "pairs", "must have as many points on either side"));
+        return Err(Error::new(ErrorKind::Size, "pairs", "must have the same number of points on both sides"));
     }
     let missing = |point: &Vector3<f64>| !point.iter().all(|value| value.is_finite());
     if let Some(index) = depth.iter().zip(image).position(|(p, q)| missing(p) || missing(q)) {

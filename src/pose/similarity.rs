@@ -130,7 +130,11 @@ impl Similarity {
         scale: Option<f64>,
     ) -> Result<Self> {
         if depth.len() != image.len() || weights.is_some_and(|weights| weights.len() != depth.len()) {
-            return Err(Error::new(ErrorKind::Size, "pairs", "must have as many points and weights on either side"));
+            return Err(Error::new(
+                ErrorKind::Size,
+                "pairs",
+                "must have the same number of points and weights on both sides",
+            ));
         }
         let weight = |index: usize| weights.map_or(1.0, |weights| weights[index]);
         let weighted = || depth.iter().zip(image).enumerate().map(|(index, (p, q))| (weight(index), p, q));

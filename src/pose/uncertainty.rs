@@ -20,8 +20,9 @@ use super::similarity::Similarity;
 use crate::numeric::eigen::{Eigen, symmetric_eigen};
 use crate::view::Camera;
 
-/// Eigenvalues of the information over its weight below this count as zero. Dimensionless: the squared cosine between
-/// normals and motion. Faces and busts are above it, smooth surfaces of revolution below (docs/lab/thresholds.md).
+/// Eigenvalues of the information, divided by its weight, count as zero below this. Dimensionless: the squared cosine
+/// between normals and motion. Faces and busts are above it, smooth surfaces of revolution below
+/// (docs/lab/thresholds.md).
 const LEAST_INFORMATION: f64 = 1e-4;
 /// Largest sigma of a rotation, degrees.
 const LARGEST_SIGMA: f64 = 180.0;

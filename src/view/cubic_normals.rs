@@ -26,8 +26,8 @@ const SIGMA: f64 = 0.75;
 /// Median error of the normals above which windows wider than the first two are tried, radians: views without noise
 /// stay below it (data not recorded).
 const NOISY: f32 = 0.06;
-/// Limit of how far a wider window may move the normals of noisy views: their mean square move over the decrease of the
-/// squared claimed errors. Noise alone gives 0.62, the share of noise in the claimed square; the rest is squared bias
+/// Largest mean square by which a wider window may move the normals of noisy views, relative to the decrease of their
+/// squared errors as the fits claim them. Noise alone gives 0.62, the share of noise in the claimed square; the rest is squared bias
 /// of the wider window. Up to 1.24, the sum of bias and noise falls. The limit is a little lower, because a
 /// registration averages noise over its points, but not bias.
 const MOST_MOVED: f64 = 1.1;

@@ -31,9 +31,9 @@ const KEPT_VARIANCE: f64 = 0.438;
 const FEWEST: usize = 1000;
 const MOST: usize = 1 << 16;
 
-/// Smallest share of the noise that fourth differences of neighbours see if it is white. They see less of quantised and
-/// laterally smoothed maps, unless steps are as narrow as pixels, which makes the noise white. Set on ten surfaces
-/// (docs/lab/thresholds.md).
+/// Noise counts as white if fourth differences of neighbours see at least this share of it. They see less of it in
+/// quantised and laterally smoothed maps, unless steps are as narrow as pixels, which makes the noise white. Set on ten
+/// surfaces (docs/lab/thresholds.md).
 const LEAST_WHITE: f64 = 0.75;
 /// Least smoothing of a map whose noise is not white: a window of lambda^(1/4) = 0.8 pixels. Less cannot be
 /// distinguished from relief and smooths nothing. Set on busts of 64x64 (docs/lab/thresholds.md).

@@ -16,9 +16,9 @@ use std::cmp::Reverse;
 use super::ColourView;
 use crate::numeric::quantile;
 
-/// Difference of neighbours' log colours in chromaticity (deviation from the channels' mean), log units, beyond which,
-/// plus four sigmas of the noise, an edge of albedo lies between them: no shading of a smooth surface reaches it. Not
-/// varied.
+/// An edge of albedo lies between neighbours whose log colours differ in chromaticity (deviation from the channels'
+/// mean) by more than this and four sigmas of the noise together, log units: no shading of a smooth surface reaches it.
+/// Not varied.
 const HUE_STEP: f32 = 0.06;
 /// The same for brightness (the channels' mean), log units. Not varied.
 const LOG_STEP: f32 = 0.22;

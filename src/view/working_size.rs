@@ -13,7 +13,7 @@ use super::colour::{self, ColourImage, ColourSamples, ColourView};
 use super::{Camera, DepthMap, DepthSamples, Normals, Pinhole, Size};
 use crate::error::Result;
 
-/// Ratio of resolutions from which they are matched: areas of masks, and of two views of one object, are inexact.
+/// Resolutions are matched if their ratio is at least this: areas of masks, and of two views of one object, are inexact.
 const UNLIKE: f64 = 1.25;
 /// Smallest share of a working pixel that usable image pixels must cover.
 const COVERED: f64 = 0.5;

@@ -114,6 +114,7 @@ fn view(index: usize, js: &JsFrame) -> Result<RigView> {
         depth_size: [depth.width() as usize, depth.height() as usize],
         depth: samples_of_depth(&depth).map_err(below)?,
         unit: depth.unit(),
+        intensity: depth.intensity().map(|intensity| intensity.to_vec()),
         depth_mask: depth.mask().map(|mask| mask.to_vec()),
         depth_camera: camera_of(depth.camera(), "depth.camera")?,
     })

@@ -44,6 +44,8 @@ extern "C" {
     #[wasm_bindgen(method, getter)]
     pub fn points(this: &JsDepth) -> Option<Float32Array>;
     #[wasm_bindgen(method, getter)]
+    pub fn intensity(this: &JsDepth) -> Option<Float32Array>;
+    #[wasm_bindgen(method, getter)]
     pub fn normals(this: &JsDepth) -> Option<Float32Array>;
 
     pub type JsPinhole;

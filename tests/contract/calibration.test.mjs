@@ -37,6 +37,18 @@ describe("a rig before boxes", () => {
     truth = frame.pose;
   });
 
+  test("unknown intensities change no bit, known ones count, and their number is checked", async () => {
+    const report = (intensity) =>
+      checkCalibration([{ ...frame, depth: { ...frame.depth, ...(intensity && { intensity }) } }], { truth });
+    const { width, height, data } = frame.depth;
+    const without = await report();
+    assert.deepEqual(await report(new Float32Array(width * height).fill(NaN)), without);
+    const known = await report(Float32Array.from(data, (_, index) => (index * 7919) % 251));
+    assert.notDeepEqual(known.estimate, without.estimate);
+    await assert.rejects(report(new Float32Array(3)), { code: "size", field: "frames[0].depth.intensity" });
+    await assert.rejects(report([1, 2, 3]), { code: "type", field: "frames[0].depth.intensity" });
+  });
+
   test("the right calibration is consistent, one that is off is off, and both by the same estimate", async () => {
     const messages = [];
     const candidates = { told: wrong(truth, [1, -2, 1], 1.5, [0.01, 0, -0.01]), factory: truth };

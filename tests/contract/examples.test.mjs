@@ -1,12 +1,14 @@
 // Every example works: pages in a browser, programs in a shell.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
-import { appendFileSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { appendFileSync, existsSync, mkdirSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { before, describe, test } from "node:test";
 import { build } from "vite";
 import { inRoot } from "../../scripts/shell.mjs";
 import { decodeDepth } from "../../pkg/files.js";
+import { sampleRig } from "../../pkg/index.js";
+import { readRigFile } from "../../pkg/rig.js";
 import { chrome, folder, pairFiles, run, served } from "./fresh.mjs";
 import { LONG } from "./long.mjs";
 
@@ -252,6 +254,23 @@ describe("batch.mjs", () => {
     assert.equal((await batch([pairs, "--csv", other, "--settings", settings])).code, 1);
     assert.match(readFileSync(other, "utf8"), /^10,max-iterations,/m);
   });
+});
+
+test("sample.mjs writes a pair and a rig that the commands read", async () => {
+  const samples = join(data, "samples");
+  run(process.execPath, [inRoot("examples/sample.mjs"), samples], inRoot());
+  const { poses, cameras } = await readRigFile({
+    name: "calibration.yaml",
+    bytes: readFileSync(join(samples, "rig/calibration.yaml")),
+  });
+  const { pose } = await sampleRig({ kind: "boxes", seed: 2 });
+  assert.deepEqual([poses.length, cameras.length], [1, 2]);
+  const [read, written] = [poses[0].pose, pose].map(({ matrix }) => matrix.flat());
+  assert.ok(read.every((value, k) => Math.abs(value - written[k]) < 1e-12));
+  assert.equal(readdirSync(join(samples, "rig/frames")).length, 6);
+  const { data: depths } = decodeDepth(readFileSync(join(samples, "pair/depth.npy")));
+  assert.ok(depths.some(Number.isFinite));
+  assert.throws(() => run(process.execPath, [inRoot("examples/sample.mjs")], inRoot()), /Usage/);
 });
 
 describe("Rust", () => {

@@ -370,6 +370,27 @@ const DATASETS = {
     "context.txt",
     `name: "1"\ncamera_calibrations {\n  name: FRONT\n${[fx, fy, cx, cy, ...distortion].map((value) => `  intrinsic: ${value}\n`).join("")}  extrinsic {\n${[1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 2, 0, 0, 0, 1].map((value) => `    transform: ${value}\n`).join("")}  }\n  width: 1920\n  height: 1280\n}\n`,
   ),
+  a2d2: json("cams_lidars.json", {
+    cameras: {
+      front_center: {
+        CamMatrix: [
+          [1687.3, 0, 965.4],
+          [0, 1783.2, 684.4],
+          [0, 0, 1],
+        ],
+        CamMatrixOriginal: [
+          [1711, 0, 945],
+          [0, 1711, 604],
+          [0, 0, 1],
+        ],
+        Distortion: [[-0.24, 0.14, 0.0008, 0.0003, -0.04]],
+        Lens: "Telecam",
+        Resolution: [1920, 1208],
+        view: { origin: [1.71, 0, 0.94], "x-axis": [1, 0, 0], "y-axis": [0, 1, 0] },
+      },
+    },
+    lidars: {},
+  }),
   argoverse: json("vehicle_calibration_info.json", {
     camera_data_: [
       {

@@ -22,6 +22,10 @@ const interleaved = ({ points }, ...others) =>
     return column < 3 ? points[3 * point + column] : others[column - 3](point);
   });
 
+/** Points as lines of x y z. */
+const interleavedText = ({ points }) =>
+  Array.from({ length: points.length / 3 }, (_, at) => `${points.subarray(3 * at, 3 * at + 3).join(" ")}\n`).join("");
+
 /** Checks that a reading holds these points, with one row for each laser. */
 async function holds(found, how, rows = 16, count = COUNT) {
   assert.equal(found.kind, "depth");
@@ -103,6 +107,45 @@ describe("points in no rows and columns", () => {
     );
     const found = await read("LIDAR_TOP__1532402927647951.pcd.bin", bytes);
     await holds(found, /by the file's rings.*5 floats to a point.*nuScenes/);
+  });
+
+  test("a point's intensity ends in its pixel, sorted or organised, and an empty pixel has none", async () => {
+    const scan = shuffled(SCAN);
+    const of = (points, point) => Math.fround(128 + 9 * points[3 * point] + 4 * points[3 * point + 1]);
+    const strengths = Float32Array.from({ length: COUNT }, (_, point) => of(scan.points, point));
+    const sorted = interleaved(
+      scan,
+      (point) => strengths[point],
+      (point) => scan.ring[point],
+    );
+    // Organised: 20 columns and 12 rows in front of a camera, the first of them without a point.
+    const [width, height] = [20, 12];
+    const points = Float32Array.from({ length: 3 * width * height }, (_, at) =>
+      at < 3 ? NaN : [((at / 3) % width) / 9, at / 999, 2][at % 3],
+    );
+    const body = interleaved({ points }, (point) => of(points, point));
+    const grid = pcdHead([...XYZ, ["intensity", 4, "F"]], width * height, "binary");
+    const sized = new TextDecoder().decode(grid).replace(/WIDTH .*\nHEIGHT 1/, `WIDTH ${width}\nHEIGHT ${height}`);
+    const head = `ply\nformat binary_little_endian 1.0\ncomment width ${width}\ncomment height ${height}\nelement vertex ${width * height}\n${["x", "y", "z", "intensity"].map((name) => `property float ${name}\n`).join("")}end_header\n`;
+    for (const [name, bytes] of [
+      ["LIDAR_TOP__1.pcd.bin", joined(sorted)],
+      ["a.pcd", joined(text(sized), body)],
+      ["a.ply", joined(text(head), body)],
+    ]) {
+      const { depth } = await read(name, bytes);
+      assert.equal(depth.intensity?.length, depth.width * depth.height, name);
+      let count = 0;
+      for (const [pixel, strength] of depth.intensity.entries()) {
+        if (Number.isNaN(depth.points[3 * pixel])) {
+          assert.ok(Number.isNaN(strength), name);
+          continue;
+        }
+        count++;
+        assert.ok(Math.abs(strength - of(depth.points, pixel)) < 1e-3, `${name}: pixel ${pixel}`);
+      }
+      assert.ok(count > 200, name);
+    }
+    assert.equal((await read("a.xyz", interleavedText(SCAN))).depth.intensity, undefined);
   });
 
   test("LAS, with the time of each pulse; a damaged LAZ is named, and how to unpack it", async () => {

@@ -29,6 +29,7 @@ fn view(frame: &RigFrame, is_known: bool) -> RigView {
         depth_size: [frame.depth_size.width, frame.depth_size.height],
         depth: DepthSamples::Integer(frame.depth.clone()),
         unit: None,
+        intensity: None,
         depth_mask: None,
         depth_camera: Some(frame.depth_camera),
     }

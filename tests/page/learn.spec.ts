@@ -432,7 +432,7 @@ test("slides turn by keys, leave the sliders theirs, and end by escape", async (
   await page.keyboard.press("Escape");
   await expect(slides).toBeHidden();
   await expect(page.getByRole("heading", { name: "1. What a pixel shows" })).toBeVisible();
-  await expect(page.getByText("Assume a matte surface")).toBeVisible();
+  await expect(page.getByText("A matte surface under one distant lamp")).toBeVisible();
   await expect(page).not.toHaveURL(/slides/);
   expect(lab.complaints).toEqual([]);
 });

@@ -1,13 +1,13 @@
 /** The controls of a lesson: native inputs with their values beside them. */
 
 import { freshId, make } from "../dom";
-import { shown, type Control, type Lesson } from "./lesson";
+import { labelOf, shown, type Control, type Lesson } from "./lesson";
 import type { Values } from "./protocol";
 
 interface Field {
   control: Control;
   element: HTMLElement;
-  show(value: number | string): void;
+  show(value: number | string, values: Values): void;
 }
 
 export class Controls {
@@ -41,7 +41,7 @@ export class Controls {
   show(values: Values): void {
     this.#values = values;
     for (const { control, element, show } of this.#fields) {
-      show(values[control.key] ?? control.initial);
+      show(values[control.key] ?? control.initial, values);
       element.hidden = control.when?.(values) === false;
     }
   }
@@ -63,21 +63,16 @@ export class Controls {
     const input = make("input", { id, type: "range", min, max, step, name: control.key });
     const output = make("output", { for: id });
     input.addEventListener("input", () => this.set({ [control.key]: input.valueAsNumber }));
-    const show = (value: number | string) => {
+    const label = make("label", { for: id });
+    const show = (value: number | string, values: Values) => {
+      label.textContent = labelOf(control, values);
       input.value = String(value);
-      output.textContent = shown(control, Number(value));
+      output.textContent = shown(control, Number(value), values);
       input.setAttribute("aria-valuetext", output.textContent);
     };
     return {
       control,
-      element: make(
-        "div",
-        { class: "learn-slider" },
-        make("label", { for: id }, control.label),
-        output,
-        input,
-        ...hint(control, input),
-      ),
+      element: make("div", { class: "learn-slider" }, label, output, input, ...hint(control, input)),
       show,
     };
   }
@@ -95,7 +90,7 @@ export class Controls {
       element: make(
         "div",
         { class: "learn-choice" },
-        make("label", { for: id }, control.label),
+        make("label", { for: id }, labelOf(control, this.#values)),
         select,
         ...hint(control, select),
       ),
@@ -108,7 +103,12 @@ export class Controls {
     box.addEventListener("change", () => this.set({ [control.key]: box.checked ? 1 : 0 }));
     return {
       control,
-      element: make("div", { class: "learn-box" }, make("label", {}, box, control.label), ...hint(control, box)),
+      element: make(
+        "div",
+        { class: "learn-box" },
+        make("label", {}, box, labelOf(control, this.#values)),
+        ...hint(control, box),
+      ),
       show: (value) => (box.checked = value === 1),
     };
   }

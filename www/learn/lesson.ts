@@ -7,7 +7,7 @@ import type { References } from "./references";
 
 interface CommonControl {
   key: string;
-  label: string;
+  label: string | ((values: Values) => string);
   hint?: string;
   /** Shown only while this holds. */
   when?: (values: Values) => boolean;
@@ -21,6 +21,8 @@ export interface SliderControl extends CommonControl {
   unit?: string;
   /** The slider runs over the logarithm: from 10^min to 10^max. */
   logarithmic?: boolean;
+  /** The value as people read it, if it depends on the other controls. */
+  reads?: (value: number, values: Values) => string;
 }
 export interface ChoiceControl extends CommonControl {
   kind: "choice";
@@ -84,8 +86,12 @@ export function computed({ controls }: Lesson, values: Values): Values {
 export const amount = ({ logarithmic, min }: SliderControl, value: number): number =>
   !logarithmic ? value : value <= min ? 0 : 10 ** value;
 
+export const labelOf = ({ label }: Control, values: Values): string =>
+  typeof label === "string" ? label : label(values);
+
 /** The value of a control as people read it. */
-export function shown(control: SliderControl, value: number): string {
+export function shown(control: SliderControl, value: number, values: Values): string {
+  if (control.reads) return control.reads(value, values);
   const number = amount(control, value);
   const digits = control.logarithmic
     ? number === 0

@@ -38,20 +38,28 @@ interface Symbol {
 }
 
 const bold = (letter: string) => math("mi", { mathvariant: "bold", class: "learn-bold" }, letter);
+const tilde = (base: Element) => math("mover", { accent: "true" }, base, mo("~"));
 
 /** Every symbol of the lessons, once. */
 const SYMBOLS = {
   n: { make: () => bold("n"), ink: "normal", name: "unit normal of the surface" },
+  // Not a hat, which would mean a unit vector: its length is the square root of two.
+  N: { make: () => tilde(bold("n")), ink: "normal", name: "unit normal with a fourth component 1" },
   m: { make: () => bold("m"), ink: "prior", name: "normal of the depth map at that point" },
   M: { make: () => sub(bold("M"), mi("j")), ink: "light", name: "light of colour j, a 4 by 4 matrix of 9 numbers" },
   L: { make: () => mi("L"), ink: "light", name: "light, 27 numbers" },
   a: { make: () => mi("a"), ink: "albedo", name: "logarithm of the albedo" },
+  aj: { make: () => sub(mi("a"), mi("j")), ink: "albedo", name: "logarithm of the albedo in colour j" },
   S: { make: () => sub(mi("S"), mi("j")), ink: "colour", name: "intensity of colour j" },
   lambda: { make: () => mi("λ"), ink: "prior", name: "weight of the prior" },
   R: { make: () => bold("R"), ink: "pose", name: "rotation of the pose" },
   z: { make: () => mi("z"), ink: "truth", name: "depth" },
   d: { make: () => mi("d"), ink: "sensor", name: "depth measured by the sensor" },
-  e: { make: () => mi("e"), ink: "error", name: "remainder that the model does not explain" },
+  ej: {
+    make: () => sub(mi("e"), mi("j")),
+    ink: "error",
+    name: "remainder in colour j that the model does not explain",
+  },
 } as const satisfies Record<string, Symbol>;
 
 export type SymbolName = keyof typeof SYMBOLS;
@@ -61,6 +69,13 @@ export function symbol(name: SymbolName): Element {
   const { make: draw, ink, name: words } = SYMBOLS[name];
   return math("mrow", { class: `learn-ink-${ink}`, title: words }, draw());
 }
+
+/** The shading of the model: the extended normal on both sides of the light's matrix. */
+export const shading = (normal: () => Element = () => symbol("N")): Element =>
+  row(sup(normal(), mi("⊤")), symbol("M"), normal());
+/** The cost of a normal by the colours alone. */
+export const colourTerm = (normal?: () => Element): Element =>
+  row(sum(mi("j")), sup(row(mo("("), log(symbol("S")), mo("−"), shading(normal), mo(")")), mn("2")));
 
 export const inline = (...children: Element[]): Element => math("math", {}, row(...children));
 export const block = (...children: Element[]): Element => math("math", { display: "block" }, row(...children));

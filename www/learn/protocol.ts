@@ -8,6 +8,9 @@ export type Values = Readonly<Record<string, number | string>>;
 export const LESSONS = ["pixel", "grey", "colours", "surface", "prior", "pose", "sensor", "paint", "failure"] as const;
 export type LessonId = (typeof LESSONS)[number];
 
+/** Ends of the slider of lesson 9: the narrowest depth map as a share of its width, and the largest turn in degrees. */
+export const [LEAST_OVERLAP, LARGEST_TURN] = [0.08, 90];
+
 /** What is drawn over a picture; the style sheet gives each its colour, the same as that of its symbol in the text. */
 export type Ink =
   | "normal"

@@ -5,7 +5,7 @@ import { decimals } from "../draw/numbers";
 import { dropTarget } from "./drop";
 import { choose, Keyed, labelled, numberField, press } from "./parts";
 import { fromEuler, fromQuaternion, identity, inverse, isOfWorld, matrixText, poseOf, type EulerOrder } from "./poses";
-import { inWords } from "./words";
+import { placeInWords } from "./words";
 import { messageOf, type Candidate, type Rig } from "./rig";
 
 type By = "quaternion" | EulerOrder;
@@ -129,7 +129,7 @@ export class CalibrationStep {
       element,
       show: () => {
         if (document.activeElement !== name) name.value = candidate.name;
-        words.textContent = inWords(candidate.pose, rig.hasScans);
+        words.textContent = placeInWords(candidate.pose, rig.hasScans);
         const apart = Math.hypot(...candidate.pose.translation);
         far.replaceChildren(
           ...(apart > (rig.hasScans ? FAR_ON_VEHICLE : FAR)

@@ -3,11 +3,11 @@
 import { decimals } from "../draw/numbers";
 import { degreesOf, inverse, poseOf, times } from "./poses";
 import type { Run } from "./rig";
-import { inWords } from "./words";
+import { placeInWords } from "./words";
 
 /** Where the best fit puts the depth camera, its overlap, and how far the checked calibration puts the camera from there. */
 export function placement({ report: { estimate, overlap }, candidates, estimateOnly, isLidar }: Run): string {
-  const found = `Best fit: ${inWords(estimate, isLidar)} It puts ${(100 * overlap).toFixed(0)} % of the depth points onto the image.`;
+  const found = `Best fit: ${placeInWords(estimate, isLidar)} It puts ${(100 * overlap).toFixed(0)} % of the depth points onto the image.`;
   const given = Object.values(candidates)[0];
   if (estimateOnly || !given) return found;
   const shift = given.translation.map((metres, axis) => metres - (estimate.translation[axis] ?? 0));

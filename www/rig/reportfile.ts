@@ -50,9 +50,9 @@ function settingsOf(rig: Rig, run: Run): [string, string][] {
 const HASH = 16;
 const ESTIMATE = "The command checks a calibration; none was given here.";
 const LIKE = "Type it in the folder that holds these files and no others.";
-const DIFFERS = " The masks drawn and the depth ranges cannot be given there, so its numbers will differ.";
+const DIFFERS = " It has no option for drawn masks and depth ranges, so its numbers will differ.";
 const NO_FILES =
-  "The frames are no files: they came from the example, a recording or a robot, so that no command can repeat the check.";
+  "The frames are not files: they came from the example, a recording or a robot, so no command can repeat the check.";
 
 /** The report as HTML. */
 export async function reportOf(rig: Rig, run: Run, overlays: Overlay[]): Promise<string> {

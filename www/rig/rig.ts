@@ -22,7 +22,7 @@ import {
 import { Takings } from "./takings";
 import { choice, emptyCamera, fromTyped } from "./typed";
 import { Undo } from "./undo";
-import { isOfScan } from "./words";
+import { isBackwards, isOfScan } from "./words";
 
 export { messageOf } from "./state";
 export { typedFrom } from "./typed";
@@ -165,11 +165,12 @@ export class Rig implements RigState {
     this.#chooseCameras();
   }
 
-  /** A pose that is stated to lead from colour to depth is inverted. */
+  /** A pose that is stated to lead from colour to depth, or to a LiDAR, is inverted. */
   addPose({ name, pose, from, to }: Summary["poses"][number], origin: string, file?: number): void {
-    const isBackward = (from !== undefined && COLOUR.test(from)) || (to !== undefined && DEPTH.test(to));
+    const isStated = (from !== undefined && COLOUR.test(from)) || (to !== undefined && DEPTH.test(to));
+    const isBackward = isStated || isBackwards({ from, to });
     const direction = isBackward
-      ? ", given from colour to depth and inverted"
+      ? `, given from ${from ?? "colour"} to ${to ?? "depth"} and inverted`
       : from && to
         ? `, from ${from} to ${to}`
         : "";

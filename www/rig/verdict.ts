@@ -103,7 +103,7 @@ const ADVICE: readonly [code: string, advice: string][] = [
   ["rough-depth", SWAPPED],
   [
     "camera-size",
-    "Use camera parameters that belong to the size of the files; check frames of another size, or of another rig, by themselves.",
+    "Use camera parameters that belong to the size of the files; check frames of another size, or of another rig, separately.",
   ],
 ];
 

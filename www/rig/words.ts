@@ -5,7 +5,8 @@ import type * as Words from "../../pkg/rig/write/report/words.js";
 import type { WholeReport } from "./protocol";
 import type { Run } from "./state";
 
-export const inWords = words.inWords as typeof Words.inWords;
+export const placeInWords = words.placeInWords as typeof Words.placeInWords;
+export const isBackwards = words.isBackwards as typeof Words.isBackwards;
 export const isOfScan = words.isOfScan as typeof Words.isOfScan;
 export const verdictReason = words.verdictReason as typeof Words.verdictReason;
 export const verdictWords = words.verdictWords as typeof Words.verdictWords;

@@ -5,6 +5,7 @@
 //! | `calibration` | the result |
 //! | `numbers` | numbers and matrices in their many notations |
 //! | `cameras`, `poses` | checked cameras and motions |
+//! | `ends` | the two frames of a motion |
 //! | `names`, `tree` | members of JSON, YAML and XML by their names |
 //! | `plain`, `realsense`, `ros`, `colmap` | matrices and trajectories, and the formats of these programs |
 //! | `words` | descriptions of cameras and poses |
@@ -12,6 +13,7 @@
 mod calibration;
 mod cameras;
 mod colmap;
+mod ends;
 pub(crate) mod names;
 pub mod numbers;
 mod plain;
@@ -54,8 +56,21 @@ pub fn text_of(bytes: &[u8]) -> Option<String> {
     (!text.contains(is_binary)).then_some(text)
 }
 
-/// Content of a text, with its format.
-pub fn read_text(text: &str) -> Result<Calibration, Reason> {
+/// Poses of a file of nothing but numbers, whose name may say that its only pose is a camera's place in the world.
+fn placed(mut found: Calibration, path: &str) -> Calibration {
+    let [NamedPose { names: Names { from: None, to: None, .. }, pose }] = &found.poses[..] else { return found };
+    let Some(frames) = ends::world_frames_of_file(path) else { return found };
+    let is_place = frames.to.as_deref() == Some("world");
+    let pose = if is_place { *pose } else { pose.inverse() };
+    let from = if is_place { frames.from } else { frames.to };
+    found.poses = vec![NamedPose { names: Names { name: None, from, to: Some("world".into()) }, pose }];
+    const SAID: &str = "Its name says that it is the pose of a camera in the world (camera to world), which was not used as extrinsics between two cameras. If it is, name the file depth_to_color.txt or the like.";
+    found.warnings.add("camera-to-world", SAID);
+    found
+}
+
+/// Content of a text, with its format; the file's name may say what its numbers are.
+pub fn read_text(text: &str, path: &str) -> Result<Calibration, Reason> {
     let text = text.trim_start_matches('\u{feff}').trim();
     if text.is_empty() {
         return Err("it is empty or has only spaces".into());
@@ -76,7 +91,7 @@ pub fn read_text(text: &str) -> Result<Calibration, Reason> {
         return colmap::read(text);
     }
     if let Some(found) = plain::read(text)? {
-        return Ok(found);
+        return Ok(placed(found, path));
     }
     if text.starts_with(['{', '[']) {
         return searched(&json(text)?, "JSON");

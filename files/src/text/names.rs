@@ -8,6 +8,9 @@ use serde_json::{Map, Value};
 /// Longest name that is interpreted.
 pub const LONGEST: usize = 80;
 
+/// Most characters of a text that names something.
+const LONGEST_TEXT: usize = 200;
+
 pub type Pattern = LazyLock<Regex>;
 
 pub fn pattern(text: &str) -> Regex {
@@ -60,7 +63,7 @@ pub const NO_MOTION: Phrases = &[
 ];
 
 /// The words of a name.
-fn words(name: &str) -> Vec<String> {
+pub fn words(name: &str) -> Vec<String> {
     if name.len() > LONGEST {
         return Vec::new();
     }
@@ -107,6 +110,11 @@ fn bare(name: &str) -> String {
 /// A member by one of its names, ignoring case and punctuation.
 pub fn member<'a>(node: &'a Map<String, Value>, names: &[&str]) -> Option<&'a Value> {
     node.iter().find(|(key, _)| names.contains(&bare(key).as_str())).map(|(_, value)| value)
+}
+
+/// A text that names something.
+pub fn text_of(value: Option<&Value>) -> Option<String> {
+    value?.as_str().filter(|text| !text.is_empty()).map(|text| text.chars().take(LONGEST_TEXT).collect())
 }
 
 /// The member whose name consists of one of some phrases and this label; earlier phrases take precedence.

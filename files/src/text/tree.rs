@@ -9,8 +9,9 @@ use serde_json::{Map, Value};
 
 use super::calibration::{Calibration, NamedPose, Names, Reason};
 use super::cameras::{RawCamera, camera_of};
+use super::ends::{Frames, camera_before, camera_number, frames_of, kalibr, named};
 use super::names::{
-    self, INTRINSICS, LENS, NO_MOTION, Pattern, ROTATION, TRANSLATION, labelled, leftover, member, pattern,
+    self, INTRINSICS, LENS, NO_MOTION, Pattern, ROTATION, TRANSLATION, labelled, leftover, member, pattern, text_of,
 };
 use super::numbers::{Matrix, matrix_of, number_of, transposed};
 use super::poses::{chained, is_last_row, last_column, motion, motion_of_matrix, of_quaternion, of_vector, turned};
@@ -26,16 +27,6 @@ const MOST_OWN: usize = 300;
 const MOST_DEPTH: usize = 24;
 /// Most cameras and poses of a file.
 const MOST_FOUND: usize = 5000;
-/// Most characters of a text that names something.
-const LONGEST_TEXT: usize = 200;
-
-/// The frames named by an object.
-#[derive(Clone, Debug, Default)]
-struct Frames {
-    from: Option<String>,
-    to: Option<String>,
-}
-
 #[derive(Default)]
 struct Search {
     found: Calibration,
@@ -51,10 +42,6 @@ pub fn search(value: &Value) -> Result<Calibration, Reason> {
     search.chain();
     by_topics(&search.topics, &mut search.found);
     Ok(search.found)
-}
-
-fn text_of(value: Option<&Value>) -> Option<String> {
-    value?.as_str().filter(|text| !text.is_empty()).map(|text| text.chars().take(LONGEST_TEXT).collect())
 }
 
 fn is_like(value: Option<&f64>, to: f64) -> bool {
@@ -289,28 +276,6 @@ impl Search {
     }
 }
 
-fn camera_number(name: &str) -> Option<u64> {
-    let digits = name.strip_prefix("cam")?;
-    digits.bytes().all(|letter| letter.is_ascii_digit()).then(|| digits.parse().ok())?
-}
-
-fn camera_before(number: u64) -> Option<String> {
-    number.checked_sub(1).map(|before| format!("cam{before}"))
-}
-
-/// Kalibr's names, where cn is the camera that holds the matrix and cnm1 the one before.
-fn kalibr(key: &str, parent: &str) -> Option<Names> {
-    let number = camera_number(parent)?;
-    match key {
-        "T_cn_cnm1" => {
-            let before = camera_before(number)?;
-            Some(Names::between(Some(format!("{parent} from {before}")), &before, parent))
-        }
-        "T_cam_imu" => Some(Names::between(Some(format!("{parent} from imu")), "imu", parent)),
-        _ => None,
-    }
-}
-
 /// Distortion, model and size of the camera with this label.
 fn rest(node: &Node, label: &str) -> Result<RawCamera, Reason> {
     let written = labelled(node, LENS, label).map(|(_, value)| value).or_else(|| member(node, &["distk1k2p1p2k3"]));
@@ -359,13 +324,6 @@ fn size_of(node: &Node, label: &str) -> [Option<f64>; 2] {
     })
 }
 
-/// In ROS, the transform maps points of the child frame into the parent.
-fn frames_of(node: &Node) -> Option<Frames> {
-    let child = text_of(member(node, &["childframeid", "childframe"]))?;
-    let header = member(node, &["header"]).and_then(Value::as_object).unwrap_or(node);
-    Some(Frames { from: Some(child), to: text_of(member(header, &["frameid", "parentframe"])) })
-}
-
 /// Members named "Camera.fx", as in ORB-SLAM, grouped by the part before the dot.
 fn dotted(node: &Node) -> Vec<(String, Node)> {
     static DOT: Pattern = Pattern::new(|| pattern(r"^([A-Za-z0-9_]{1,40})\.([A-Za-z0-9_]{1,40})$"));
@@ -411,27 +369,4 @@ fn parts(value: &Value, axes: &[&str]) -> Option<Matrix> {
         }
         _ => matrix_of(Some(value)),
     }
-}
-
-/// Frames from a name: "depth_to_color", "color_from_depth", "T_color_depth".
-fn named(name: &str, frames: &Frames) -> Names {
-    static TOWARDS: [Pattern; 2] = [
-        Pattern::new(|| pattern("(?i)^(?:T_)?([a-z0-9]+)_?_to__?([a-z0-9]+)$")),
-        Pattern::new(|| pattern("(?i)^(?:T_)?([a-z0-9]+)_?2([a-z][a-z0-9]*)$")),
-    ];
-    static BACKWARDS: [Pattern; 2] = [
-        Pattern::new(|| pattern("(?i)^(?:T_)?([a-z0-9]+)_from_([a-z0-9]+)$")),
-        Pattern::new(|| pattern("(?i)^T_([a-z0-9]+)_([a-z0-9]+)$")),
-    ];
-    let own = (!name.is_empty()).then(|| name.to_owned());
-    if frames.from.is_some() || frames.to.is_some() {
-        return Names { name: own, from: frames.from.clone(), to: frames.to.clone() };
-    }
-    if let Some(found) = TOWARDS.iter().find_map(|pattern| pattern.captures(name)) {
-        return Names::between(own, &found[1], &found[2]);
-    }
-    if let Some(found) = BACKWARDS.iter().find_map(|pattern| pattern.captures(name)) {
-        return Names::between(own, &found[2], &found[1]);
-    }
-    Names { name: own, from: None, to: None }
 }

@@ -15,6 +15,8 @@ const LAYOUTS: [floats: number, others: string[], of: string][] = [
   [5, ["intensity", "ring"], "nuScenes"],
   [3, [], "x y z"],
   [6, ["intensity", "ring", "time"], "x y z intensity ring time"],
+  [7, [], "x y z and four others"],
+  [8, [], "x y z and five others"],
 ];
 /** Coordinates of a LiDAR's points, metres, at most. */
 const FARTHEST = 500;
@@ -54,7 +56,7 @@ function isRing(values: Float32Array): boolean {
 
 /** The scan in a file of nothing but floats; undefined where these are not points. */
 export function readBin(bytes: Uint8Array): Points | undefined {
-  if (bytes.length % 4 !== 0 || bytes.length > 24 * MOST_POINTS) return undefined;
+  if (bytes.length % 4 !== 0 || bytes.length > 32 * MOST_POINTS) return undefined;
   const values = new Float32Array(bytes.slice().buffer);
   const fitting = LAYOUTS.flatMap(([floats, others, of]) => {
     const isWhole = values.length % floats === 0 && values.length / floats >= FEWEST_POINTS;

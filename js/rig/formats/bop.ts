@@ -4,7 +4,7 @@
  */
 import { type RawCamera, ofMatrix } from "./cameras.js";
 import { Findings, flat } from "./findings.js";
-import { isNode, type Node, numberOf } from "./numbers.js";
+import { isNode, type Node, matrixOf, numberOf } from "./numbers.js";
 
 const MILLIMETRE = 0.001;
 /** Largest difference between intrinsics of the same camera in two images, pixels. */
@@ -29,7 +29,9 @@ export function readBop(root: Node): Findings {
   const all: [string | undefined, Node][] = images.length > 0 ? images : [[undefined, root]];
   const first = all[0]?.[1] ?? root;
   const scale = numberOf(first.depth_scale);
-  const takes = images.length > 0 || isPerMillimetre(scale ?? 1) ? "both" : undefined;
+  // DAIR-V2X has the lens of its camera as "cam_D"; BOP's pictures have none.
+  const isRegistered = images.length > 0 || isPerMillimetre(scale ?? 1);
+  const takes = isRegistered && first.cam_D === undefined ? "both" : undefined;
   const cameras = all.map(([name, node]) => cameraOf(node, root, name));
   const isOne = cameras.every(({ focal, centre }) =>
     [...focal, ...centre].every((value, at) => {
@@ -61,5 +63,6 @@ function cameraOf(node: Node, root: Node, name: string | undefined): RawCamera {
   const n = (key: string) => numberOf(node[key]) ?? NaN;
   const k = flat(node.cam_K, 9) ?? [n("fx"), 0, n("cx"), 0, n("fy"), n("cy"), 0, 0, 1];
   const side = (key: string) => numberOf(node[key]) ?? numberOf(root[key]);
-  return { name, ...ofMatrix(k), width: side("width"), height: side("height") };
+  const distortion = matrixOf(node.cam_D ?? root.cam_D)?.values;
+  return { name, ...ofMatrix(k), distortion, width: side("width"), height: side("height") };
 }

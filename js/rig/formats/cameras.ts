@@ -35,6 +35,10 @@ export const ofMatrix = (k: Numbers, columns = 3): Required<Pick<RawCamera, "foc
   skew: k[1],
 });
 
+/** Words for a fisheye, in a file or in its name; "not a fisheye" and "fisheye: false" deny it. */
+const FISHEYE_WORD =
+  /(?<!\b(?:no|not|non)[\s_-]{1,3}(?:an?\s)?)(?:fish[\s_-]?eye|equidistant|kannala)(?![\w"']{0,10}\s*[:=]\s*(?:false|0\b|no\b|none))/i;
+
 /** Longest focal length of a camera, pixels. */
 const LONGEST = 1e6;
 
@@ -125,7 +129,15 @@ type Lens = { model?: "fisheye"; distortion?: Numbers };
 /** Coefficients by Brown's names that are those of a fisheye: k1 to k4. */
 const FISHEYE_OF_BROWN = [0, 1, 4, 5];
 
-function fisheye({ distortion: values = [], isByName = false }: RawCamera): Lens {
+function fisheye({ distortion, isByName = false }: RawCamera, label: string, warnings: ReaderWarning[]): Lens {
+  const values = distortion ?? [];
+  if (distortion === undefined)
+    warnings.push(
+      warning(
+        "distortion-guessed",
+        `${label} has a fisheye lens without coefficients, which were read as zeros. Write k1 k2 k3 k4 into the camera.`,
+      ),
+    );
   const four = isByName ? FISHEYE_OF_BROWN.map((index) => values[index] ?? 0) : values;
   if (four.length !== 0 && four.length !== 4 && four.slice(4).some((value) => value !== 0))
     throw badFile(`its fisheye lens has ${four.length} coefficients; k1 k2 k3 k4 are needed`);
@@ -140,7 +152,7 @@ function lensOf(raw: RawCamera, label: string, warnings: ReaderWarning[]): Lens 
     throw badFile("its distortion contains something other than numbers");
   const { family, meaning } = lensNamed(written);
   const bent = values.some((value) => value !== 0);
-  if (family === "fisheye") return fisheye(raw);
+  if (family === "fisheye") return fisheye(raw, label, warnings);
   if (family === "other" || (family === undefined && bent))
     throw badFile(
       `its lens model "${written.slice(0, 40)}"${meaning === undefined ? "" : ` (${meaning})`} is not supported; Brown's and Kannala-Brandt's are`,
@@ -162,14 +174,41 @@ function lensOf(raw: RawCamera, label: string, warnings: ReaderWarning[]): Lens 
         { model: written },
       ),
     );
-  if (raw.isFourRadial === true && written === "")
-    warnings.push(
-      warning(
-        "distortion-guessed",
-        `${label} has the coefficients k1 k2 k3 k4 without p1 p2 and without a lens model. They were read as Brown's, but may be those of a fisheye (Kannala-Brandt). Write the model into the camera, as "distortion_model": "equidistant" or "plumb_bob".`,
-      ),
-    );
+  const isFour = raw.isFourRadial === true || (values.length === 4 && raw.isByName !== true);
+  if (isFour && written === "") warnings.push(ofFour(label, raw));
   return withBrown(brown(values.length === 3 ? radial(values, label, warnings) : values));
+}
+
+/** Four coefficients without a lens model: cv2.fisheye writes four, and so do calibrations of Brown's model without k3. */
+function ofFour(label: string, { name, isFourRadial = false }: RawCamera): ReaderWarning {
+  const [what, as] = isFourRadial
+    ? ["the coefficients k1 k2 k3 k4 without p1 p2 and without a lens model", "Brown's"]
+    : ["four distortion coefficients without a lens model", "k1 k2 p1 p2 of Brown's"];
+  return warning(
+    "distortion-guessed",
+    `${label} has ${what}. They were read as ${as}, but may be those of a fisheye (Kannala-Brandt). Write the model into the camera, as "distortion_model": "equidistant" or "plumb_bob".`,
+    { isFour: true, camera: name },
+  );
+}
+
+const isOfFour = ({ isFour }: ReaderWarning): boolean => isFour === true;
+
+/** Reads the four coefficients of cameras without a lens model as a fisheye's, where `says` of the file mentions one. */
+export function asFisheye(cameras: NamedCamera[], warnings: ReaderWarning[], says: string): void {
+  if (!FISHEYE_WORD.test(says)) return;
+  for (const [index, { camera: name }] of [...warnings].entries()) {
+    const doubt = warnings[index];
+    const found = cameras.find((each) => each.name === name && each.camera.model === undefined);
+    if (doubt === undefined || !isOfFour(doubt) || found === undefined) continue;
+    const values = found.camera.distortion ?? [];
+    const four = values.length === 4 ? values : FISHEYE_OF_BROWN.map((at) => values[at] ?? 0);
+    found.camera = { ...found.camera, model: "fisheye", distortion: Array.from(four) };
+    const of = name === undefined ? "The camera" : `The camera "${String(name)}"`;
+    warnings[index] = warning(
+      "distortion-guessed",
+      `${of} has four distortion coefficients without a lens model. They were read as those of a fisheye (Kannala-Brandt), because the file or its name mentions one. Write the model into the camera, as "distortion_model": "equidistant" or "plumb_bob".`,
+    );
+  }
 }
 
 /** Three coefficients are radial, because tangential ones come in pairs. */

@@ -12,7 +12,8 @@ export type PoseNames = Omit<NamedPose, "pose">;
 const OF_WORLD =
   /\b(?:(?:camera|cam|c|local|object|view) ?(?:to|2) ?(?:world|w)|poses?|matrix world|location|camera transform)\b/;
 /** Names of their inverses. */
-const TO_CAMERA = /\b(?:(?:world|w) ?(?:to|2) ?(?:camera|cam|c|view)|view matrix|world view(?: transform)?)\b/;
+const TO_CAMERA =
+  /\b(?:(?:world|w) ?(?:to|2) ?(?:camera|cam|c|view)|view matrix|(?:world|camera) view(?: transform)?)\b/;
 
 /** The frames of names such as "camera_to_world", "cameraPose" and "matrix_world". */
 export function worldFrames(name: string): Frames | undefined {
@@ -62,10 +63,25 @@ export function mentionsTwo(name: string): boolean {
   return frames.size > 1;
 }
 
+/** Frames of names that one program uses: Autoware's calibration toolkit; RTAB-Map, which has the camera in the robot's base; DSEC. */
+function ofProduct(name: string): Frames | undefined {
+  if (name === "CameraExtrinsicMat") return { from: "camera", to: "lidar" };
+  // DSEC's T_10 carries points of camera 0 to camera 1.
+  const [, to, from] = /^T_(\d)(\d)$/.exec(name) ?? [];
+  if (to !== from) return { from: `cam${from}`, to: `cam${to}` };
+  return name === "local_transform" ? { from: "camera", to: "base" } : undefined;
+}
+
 /** Frames from a name: "depth_to_color", "color_from_depth", "T_color_depth", "body_T_cam0". */
-export function named(name: string, frames: Frames): PoseNames {
+export function named(written: string, frames: Frames): PoseNames {
+  // ORB-SLAM's "IMU.T_b_c1" has the group of its member before its name.
+  const name = written.replace(/^\w{1,40}\.(?=\w+$)/, "");
   if (frames.from !== undefined || frames.to !== undefined) return { ...(name !== "" && { name }), ...frames };
   if (name === "") return {};
+  // Matterport's "scan a_d0_0.png a_i0_0.jpg": a pose called as a picture is the place where that was taken.
+  if (/\.(?:png|jpe?g|tiff?|exr)\b/i.test(name)) return { name, from: "camera", to: "world" };
+  const own = ofProduct(name);
+  if (own !== undefined) return { name, ...own };
   const bare = plainName(name);
   const placed = placedIn(bare);
   if (placed !== undefined) return { name, ...placed };
@@ -79,8 +95,6 @@ export function named(name: string, frames: Frames): PoseNames {
     /^(?:T_)?([a-z0-9]+)_from_([a-z0-9]+)$/i.exec(bare) ??
     /^T_([a-z0-9]+)_([a-z0-9]+)$/i.exec(bare) ??
     /^([a-z][a-z0-9]*)_(?:T|SE3)_([a-z][a-z0-9]*)_?$/.exec(bare);
-  // Autoware's calibration toolkit writes the pose of the camera in the LiDAR's frame.
-  if (name === "CameraExtrinsicMat") return { name, from: "camera", to: "lidar" };
   return backwards ? { name, from: backwards[2] ?? "", to: backwards[1] ?? "" } : { name };
 }
 

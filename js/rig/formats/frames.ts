@@ -107,3 +107,23 @@ export function linked(poses: readonly NamedPose[], from: string, to: string): N
 
 /** Whether a frame is a LiDAR's, by its name. */
 export const isLidar = (name: string): boolean => LIDAR.test(name) && !CAMERA.test(name);
+
+/** Frames of no camera and no LiDAR: the inertial unit, the body, a vehicle, a robot and its hand, and what a calibration looks at. */
+const CARRIER =
+  /^(?:b|body|i|imu\w*|base(?:[_ ]?(?:link|footprint))?|rig|vehicle|ego(?:[_ ]?vehicle)?|car|robot\w*|hand|gripper|flange|tool\d*|\w+_(?:hand|gripper|flange|tool\d*)|gps|ins|oxts|(?:april|aru|charu)\w*|tag\w*|marker\w*|(?:chess|checker|calib\w*)?_?board|target|pattern|object|table)$/i;
+
+/** Whether a motion relates a sensor to what carries it or what it looks at, so that it does not relate two sensors. */
+export const isOfCarrier = ({ from = "", to = "" }: Ends): boolean => CARRIER.test(from) !== CARRIER.test(to);
+
+type Ends = { from?: string | undefined; to?: string | undefined };
+const isColour = (name: string): boolean => COLOUR.test(name) && !DEPTH.test(name);
+const isDepth = (name: string): boolean => DEPTH.test(name) && !COLOUR.test(name);
+const isCamera = (name: string): boolean => isColour(name) || (CAMERA.test(name) && !DEPTH.test(name));
+
+/** Whether a pose leads from the colour camera to the depth camera, or from any frame to a LiDAR, by the names of its frames. */
+export const isBackwards = ({ from = "", to = "" }: Ends): boolean =>
+  (isColour(from) && isDepth(to)) || (isLidar(to) && from !== "" && !isLidar(from) && !isDepth(from));
+
+/** Whether a pose relates the depth camera or a LiDAR to the colour camera or another camera, by the names of its frames. */
+export const isOfRig = ({ from = "", to = "" }: Ends): boolean =>
+  [from, to].some((name) => isDepth(name) || isLidar(name)) && [from, to].some(isCamera);

@@ -19,21 +19,32 @@ function taken(node: Node, keys: string[], part: (key: string) => string | undef
 const behind = (start: string) => (key: string) => (key.startsWith(start) ? key.slice(start.length) : undefined);
 const before = (end: string) => (key: string) => (key.endsWith(end) ? key.slice(0, -end.length) : undefined);
 
+const DOTTED = /^(\w{1,40})\.(\w{1,40})$/;
+const isObject = (value: unknown): boolean => isNode(value) && matrixOf(value) === undefined;
+
+/** Whether a member is read with its group alone: "IMU.T_b_c1" of ORB-SLAM. */
+export const isOfGroup = (node: Node, key: string): boolean => DOTTED.test(key) && !isObject(node[key]);
+
+/** Coefficients by plain names, which belong to the only camera with a prefix: "k1" beside "cam_fx" (vikit, FAST-LIVO2). */
+function plainLens(node: Node, keys: string[]): Node {
+  const cameras = keys.filter((key) => /(?:^|_)fx(?:_|$)/i.test(key));
+  return cameras.length === 1 ? taken(node, keys, (key) => (/^[kp]\d$/i.test(key) ? key : undefined)) : {};
+}
+
 /** The members of each camera by its name, from "Camera.fx" (ORB-SLAM), "cam_fx" (vikit) or "fx_rgb". */
 export function grouped(node: Node, keys: string[]): Map<string, Node> {
   const groups = new Map<string, Node>();
   for (const key of keys) {
     if (groups.size > MOST) break;
-    const [, group, name] = /^(\w{1,40})\.(\w{1,40})$/.exec(key) ?? [];
-    const isObject = isNode(node[key]) && matrixOf(node[key]) === undefined;
-    if (group !== undefined && name !== undefined && !isObject)
+    const [, group, name] = DOTTED.exec(key) ?? [];
+    if (group !== undefined && name !== undefined && isOfGroup(node, key))
       groups.set(group, { ...groups.get(group), [name]: node[key] });
   }
   for (const key of keys) {
     if (groups.size > MOST) break;
     const [, first] = /^(\w{1,30})_fx$/i.exec(key) ?? [];
     const [, last] = /^fx_(\w{1,30})$/i.exec(key) ?? [];
-    if (first !== undefined) groups.set(first, taken(node, keys, behind(`${first}_`)));
+    if (first !== undefined) groups.set(first, { ...plainLens(node, keys), ...taken(node, keys, behind(`${first}_`)) });
     else if (last !== undefined) groups.set(last, taken(node, keys, before(`_${last}`)));
   }
   return groups;

@@ -4,8 +4,9 @@
  */
 import { type ReaderWarning, warning } from "../warnings.js";
 import { BROWN_NAMES, type RawCamera } from "./cameras.js";
+import { isOfGroup } from "./groups.js";
 import { modelIn } from "./stated.js";
-import { isLens, member, wordsOf } from "./names.js";
+import { isIntrinsics, isLens, isTranslation, member, rotationName, wordsOf } from "./names.js";
 import { type Node, type Numbers, isNode, matrixOf, numberOf } from "./numbers.js";
 
 /** An object with those around it. */
@@ -122,6 +123,20 @@ function sizesOf(node: Node, place: Place): Size[] {
 /** Names that suggest a lens. */
 const LENS_LIKE = /distort|dist_?coef|lens_?(?:coef|param)|^kc$|radial|tangential/i;
 
+/** Numbers of coefficients that lenses have, and the largest that one may be. */
+const [COUNTS, LARGEST] = [[4, 5, 8, 12, 14], 100];
+
+/** Whether a list may be the coefficients of a lens, whatever its name: a few fractions that are no pose and no quaternion. */
+function isLensLike(key: string, value: unknown): boolean {
+  const { values = [], rows = 1 } = matrixOf(value) ?? {};
+  const isList = COUNTS.includes(values.length) && (rows === 1 || rows === values.length);
+  if (!isList || values.every(Number.isInteger) || values.some((each) => Math.abs(each) > LARGEST)) return false;
+  const isUnit = values.length === 4 && Math.abs(Math.hypot(...values) - 1) < 1e-2;
+  // Four numbers may be the intrinsics of a camera, but five are not.
+  const isCamera = [4, 12].includes(values.length) && isIntrinsics(key) === "";
+  return !isUnit && !isCamera && rotationName(key) === undefined && !isTranslation(key);
+}
+
 const isBelow = (place: Place | undefined, top: Place): boolean => {
   for (let each = place; each !== undefined; each = each.parent) if (each.node === top.node) return true;
   return false;
@@ -137,6 +152,8 @@ const isSame = (a: string, b: string): boolean => plainLabel(a) === plainLabel(b
 
 export class Leftovers {
   readonly #lenses: Lens[] = [];
+  /** Lists that may be lenses by their numbers, of cameras that have none. */
+  readonly #doubtful: { key: string; place: Place; distortion: Numbers }[] = [];
   /** Values that may be lenses by their names, which no known program uses. */
   readonly #unknown: Pick<Lens, "key" | "distortion">[] = [];
   /** Objects that are lenses. */
@@ -147,8 +164,12 @@ export class Leftovers {
   collect(place: Place, used: ReadonlySet<string>): void {
     const { node } = place;
     for (const key of Object.keys(node)) {
+      // The walk reads its group, too.
+      if (isOfGroup(node, key)) continue;
       const label = used.has(key) ? undefined : isLens(key);
       const lens = label === undefined && !LENS_LIKE.test(key) ? undefined : lensOf(node[key]);
+      if (label === undefined && lens === undefined && !used.has(key) && isLensLike(key, node[key]))
+        this.#doubtful.push({ key, place, distortion: matrixOf(node[key])?.values ?? [] });
       if (label === undefined) {
         if (lens !== undefined && !used.has(key) && !this.#parts.has(node))
           this.#unknown.push({ key, distortion: lens.distortion });
@@ -173,7 +194,9 @@ export class Leftovers {
   /** Gives cameras their lenses and sizes, and warns of those that belong to no camera. */
   assign(cameras: FoundCamera[], warnings: ReaderWarning[]): void {
     const unused = this.#lenses.filter((lens) => !this.#giveLens(lens, cameras));
-    for (const { key, distortion } of [...unused, ...this.#unknown])
+    const isBare = ({ place }: { place: Place }) =>
+      cameras.some(({ raw, place: own }) => own.node === place.node && raw.distortion === undefined);
+    for (const { key, distortion } of [...unused, ...this.#unknown, ...this.#doubtful.filter(isBare)])
       if (distortion.some((value) => value !== 0))
         warnings.push(
           warning(

@@ -31,7 +31,10 @@ const OTHERS: [pattern: string, meaning: string][] = [
   ["thinprismfisheye|radtanthinprismfisheye|(?:simple)?radialfisheye|kb\\d+|kannalabrandt\\d+", "another fisheye"],
   ["division|simpledivision", "division"],
   ["equirectangular|spherical|panorama|panoramic|erp|latlong|cubemap", "a panorama"],
-  ["stereographic|equisolid|equisolidangle|orthographic|splinedstereographic.*|cylindrical", "another projection"],
+  [
+    "orthophoto|stereographic|equisolid|equisolidangle|orthographic|splinedstereographic.*|cylindrical",
+    "another projection",
+  ],
   ["cahvore?|(?:non)?centralgeneric|generic|triangular", "another projection"],
 ];
 const FAMILIES: [Family, string[]][] = [

@@ -2,21 +2,25 @@
 import { badFile } from "../../errors.js";
 import type { NamedCamera, NamedPose } from "../types.js";
 import { type ReaderWarning, warning } from "../warnings.js";
-import { type Frames, type PoseNames, isFirstEstimate, isOfWorld, mentionsTwo, named, worldFrames } from "./ends.js";
+import { type PoseNames, isFirstEstimate, isOfWorld, mentionsTwo, named, worldFrames } from "./ends.js";
 import {
   type Attributes,
   type MotionName,
   angleOf,
   isLens,
   isNoMotion,
-  lengthOf,
   member,
   rotationName,
   translationOf,
 } from "./names.js";
 import { PROJECTION, forColumns, isProjection } from "./blocks.js";
+import type { Context } from "./context.js";
+import { isOfGroup } from "./groups.js";
 import { checkLength } from "./lengths.js";
+import { lookForward } from "./forward.js";
 import { TRANSFORM, isPoseLike } from "./pose-like.js";
+import { kalibr, productFrames } from "./product-frames.js";
+import type { Signs } from "./signs.js";
 import { type Matrix, type Node, type Numbers, isNode, matrixOf, numberOf, transposed } from "./numbers.js";
 import {
   chained,
@@ -32,38 +36,6 @@ import {
 } from "./poses.js";
 import { type Turn, numbersAsRotation, ofFour, ofNine, ofThree, orderWarning } from "./turns.js";
 
-/** The frames and the units that the objects around a motion specify. */
-export interface Context extends Frames {
-  /** Metres per unit. */
-  unit?: number;
-  angle?: "degrees" | "radians";
-}
-
-/** Signs in the whole text of a file. */
-export interface Signs {
-  isRealSense: boolean;
-  order: "wxyz" | "xyzw" | undefined;
-  hasImu: boolean;
-  hasLidar: boolean;
-  isARKit: boolean;
-  isR3Live: boolean;
-}
-export function signsOf(text: string): Signs {
-  const first = /\bw[ ,]+x[ ,]+y[ ,]+z\b|wxyz/i.test(text);
-  const last = /\bx[ ,]+y[ ,]+z[ ,]+w\b|xyzw/i.test(text);
-  return {
-    isRealSense: /realsense|\bppx\b|brown[ _]conrady|"coeffs"/i.test(text),
-    order: first === last ? undefined : first ? "wxyz" : "xyzw",
-    hasImu: /imu/i.test(text),
-    isR3Live: /r3live/i.test(text),
-    isARKit:
-      /trackingState|\bAR(?:Kit|Frame|Camera)|cameraPoseARFrame|worldMappingStatus|"imageResolution"|"columns"\s*:\s*\[/i.test(
-        text,
-      ),
-    hasLidar: /lid(?:ar)?_|lidar|livox|velodyne/i.test(text),
-  };
-}
-
 /** Most unused poses that warnings name. */
 const FEW = 4;
 /** Tolerances within which two motions of a file are inverse, degrees and metres. */
@@ -77,19 +49,6 @@ function parts(value: unknown, names: string[]): Matrix | undefined {
   if (!isNode(value) || value.data !== undefined) return matrixOf(value);
   const values = names.map((name) => numberOf(member(value, name)));
   return values.every((each) => each !== undefined) ? { values } : undefined;
-}
-
-/** The context with the units that members of an object specify for the others. */
-export function contextOf(node: Node, frames: Context): Context {
-  const said = member(node, "unit", "units", "lengthunit", "lengthunits", "translationunit", "translationunits");
-  const turned = member(node, "angleunit", "angleunits", "rotationunit", "rotationunits", "unit", "units");
-  const word = (value: unknown, ...names: string[]) => {
-    const each = isNode(value) ? member(value, ...names) : value;
-    return typeof each === "string" ? each : "";
-  };
-  const unit = lengthOf(word(said, "translation", "length", "position", "t"));
-  const angle = angleOf(word(turned, "rotation", "angle", "angles", "r"));
-  return { ...frames, ...(unit !== undefined && { unit }), ...(angle !== undefined && { angle }) };
 }
 
 export class Motions {
@@ -118,6 +77,8 @@ export class Motions {
     const used = new Set<string>();
     const before = this.poses.length;
     for (const key of Object.keys(node)) {
+      // The walk reads its group, too.
+      if (isOfGroup(node, key)) continue;
       const name = rotationName(key);
       if (name !== undefined && this.#pair(node, key, name, parent, context)) {
         used.add(key);
@@ -131,7 +92,7 @@ export class Motions {
     for (const pose of this.poses.slice(before)) this.#parents.set(pose, parent);
     const rectifies = isCamera || Object.keys(node).some((key) => isNoMotion(key) !== undefined);
     for (const key of Object.keys(node))
-      if (!used.has(key) && isPoseLike(key, node[key], rectifies)) this.#unused.push(key);
+      if (!used.has(key) && !isOfGroup(node, key) && isPoseLike(key, node[key], rectifies)) this.#unused.push(key);
   }
 
   /** Drops the rotations for row vectors beside a matrix for them, as in MATLAB's rigid3d, which has both. */
@@ -262,15 +223,15 @@ export class Motions {
     if (matrix === undefined || (length !== 16 && length !== 12) || isLens(key) === "") return false;
     if (length === 12 && matrix.rows !== 3)
       return matrix.rows === undefined && this.#twelve(matrix.values, key, context);
-    const isOpen3D = (key === "extrinsic" || key === "pose") && matrix.rows === undefined;
+    const isLast = [matrix.values.slice(12), [3, 7, 11, 15].map((index) => at(matrix.values, index))].map(isLastRow);
+    // SUSTechPOINTS has the same name, row by row.
+    const isByRows = isLast[0] === true && isLast[1] === false;
+    const isOpen3D = (key === "extrinsic" || key === "pose") && matrix.rows === undefined && !isByRows;
     const names = isOpen3D
       ? named(parent, key === "extrinsic" ? { from: "world", to: "camera" } : { from: "camera", to: "world" })
       : (kalibr(key, parent) ?? named(key, worldFrames(key) ?? context));
     const isFlat = matrix.rows === undefined && length === 16;
-    const byColumns =
-      isFlat &&
-      (isOpen3D ||
-        (!isLastRow(matrix.values.slice(12)) && isLastRow([3, 7, 11, 15].map((index) => at(matrix.values, index)))));
+    const byColumns = isFlat && (isOpen3D || (isLast[0] === false && isLast[1] === true));
     if (isProjection(matrix.values)) {
       this.#warnings.push(warning("pose-left-out", `"${key}" ${PROJECTION}.`, { name: key, isProjection: true }));
       return true;
@@ -327,6 +288,7 @@ export class Motions {
     for (const [pose, order] of this.#open) this.#warnings.push(orderWarning(pose.name ?? "", order));
     for (const pose of this.poses) {
       this.#nameExtrinsic(pose);
+      lookForward(pose, `${this.#parents.get(pose) ?? ""} ${pose.name ?? ""}`, this.#warnings);
       this.#checkDirection(pose);
     }
     // ARKit's transforms are poses of the camera in the world.
@@ -347,8 +309,23 @@ export class Motions {
       );
     for (const pose of this.#unitless) if (!isOfWorld(pose)) checkLength(pose, this.#warnings);
     this.#rankEstimates();
+    this.#countUnnamed();
     for (const key of [...new Set(this.#unused)].slice(0, FEW))
       this.#warnings.push(warning("pose-left-out", `"${key}" looks like a pose and was not used.`, { name: key }));
+  }
+
+  /** Several poses without frames cannot all be the one between the cameras. */
+  #countUnnamed(): void {
+    const unnamed = this.poses.filter(({ from, to }) => from === undefined && to === undefined);
+    if (unnamed.length < 2) return;
+    const names = unnamed.slice(0, FEW).map(({ name = "" }) => `"${name}"`);
+    this.#warnings.push(
+      warning(
+        "pose-assumed",
+        `The file has ${unnamed.length} poses without the names of their frames (${names.join(", ")}). Each was taken to lead from the depth camera or the LiDAR to the colour camera; keep the one that does, and name it depth_to_color or lidar_to_camera.`,
+        { poses: unnamed.length },
+      ),
+    );
   }
 
   /** Of several poses between the same frames first estimates come last; each is called by the object around it, too. */
@@ -427,23 +404,3 @@ export class Motions {
 
 const agrees = ({ rotation, translation }: NamedPose["pose"]): boolean =>
   degreesOf(rotation) < AGREES.degrees && Math.hypot(...translation) < AGREES.metres;
-
-/**
- * The frames of rotations and translations whose names are a product's own: FAST-LIO has the LiDAR in the inertial unit, VINS and R3LIVE the
- * camera.
- */
-function productFrames(turn: string, shift: string, { isR3Live }: Signs): Frames {
-  if (turn === "extrinsic_R" && shift === "extrinsic_T") return { from: "lidar", to: "imu" };
-  if (turn === "extrinsicRotation" && shift === "extrinsicTranslation") return { from: "camera", to: "imu" };
-  return isR3Live && turn === "camera_ext_R" ? { from: "camera", to: "imu" } : {};
-}
-
-/** The frames of Kalibr's names, in which cn is the camera of the matrix and cnm1 the one before. */
-function kalibr(key: string, parent: string): PoseNames | undefined {
-  const number = /^cam(\d+)$/.exec(parent)?.[1];
-  if (number === undefined) return undefined;
-  const before = `cam${Number(number) - 1}`;
-  if (key === "T_cn_cnm1") return { name: `${parent} from ${before}`, from: before, to: parent };
-  if (key === "T_cam_imu") return { name: `${parent} from imu`, from: "imu", to: parent };
-  return undefined;
-}

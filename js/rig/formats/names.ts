@@ -72,6 +72,7 @@ const ROTATION = [
 ];
 const TRANSLATION = [
   ["translation", "vector"],
+  ["translation", "matrix"],
   ["translation"],
   ["position"],
   ["trans"],

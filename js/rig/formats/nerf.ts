@@ -4,6 +4,7 @@
  */
 import { BROWN_NAMES, FISHEYE_NAMES, type RawCamera } from "./cameras.js";
 import { CORNER } from "./colmap.js";
+import { lensNamed } from "./lenses.js";
 import { Findings, flat, ofOpenGL } from "./findings.js";
 import { type Node, type Numbers, nodesOf, numberOf } from "./numbers.js";
 import { parted } from "./poses.js";
@@ -26,13 +27,13 @@ function cameraOf(node: Node, fallback: Node, name: string): RawCamera | undefin
   const fy = n("fl_y") ?? ofAngle(n("camera_angle_y"), height) ?? fx;
   const [cx, cy] = [n("cx") ?? (width ?? NaN) / 2, n("cy") ?? (height ?? NaN) / 2];
   if (fx === undefined || fy === undefined || !Number.isFinite(cx) || !Number.isFinite(cy)) return undefined;
-  const model = String(node.camera_model ?? fallback.camera_model ?? "OPENCV");
-  const isFisheye = /fisheye/i.test(model) || fallback.is_fisheye === true;
-  const keys = isFisheye ? FISHEYE_NAMES : BROWN_NAMES;
+  const isFisheye = (node.is_fisheye ?? fallback.is_fisheye) === true;
+  const model = isFisheye ? "fisheye" : String(node.camera_model ?? fallback.camera_model ?? "opencv");
+  const keys = lensNamed(model).family === "fisheye" ? FISHEYE_NAMES : BROWN_NAMES;
   return {
     // The files mostly come from COLMAP.
     ...{ name, focal: [fx, fy], centre: [cx - CORNER, cy - CORNER], width, height },
-    ...{ model: isFisheye ? "fisheye" : "opencv", distortion: keys.map((key) => n(key) ?? 0) },
+    ...{ model, isLens: true, distortion: keys.map((key) => n(key) ?? 0) },
   };
 }
 

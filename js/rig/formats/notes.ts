@@ -29,6 +29,7 @@ class Notes {
 
   line(text: string): boolean {
     if (CODE.test(text)) return true;
+    if (text.trim() === "") this.#close();
     const section = /^\s*\[\s*([A-Za-z_][^\]\d,]{0,80})\]\s*$/.exec(text)?.[1];
     if (section !== undefined) {
       this.#close();

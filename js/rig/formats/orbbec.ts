@@ -2,7 +2,7 @@
  * Files of Orbbec's SDK and viewer: the intrinsics of both cameras, and a transform from the depth camera to the colour camera in
  * millimetres, in JSON ("rgbIntrinsic", "transform") or in sections ("ColorIntrinsic", "D2CTransformParam").
  */
-import type { Context } from "./motions.js";
+import type { Context } from "./context.js";
 import { type Node, isNode, matrixOf } from "./numbers.js";
 
 const COLOUR = /^(?:rgb|colou?r)_?intrinsics?$/i;

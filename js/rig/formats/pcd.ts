@@ -220,5 +220,6 @@ export function readPcd(bytes: Uint8Array): Cloud | Points {
   }
   const size = head.height === 1 ? sizeOfCount(head.points, warnings) : { width: head.width, height: head.height };
   checkGrid(size.width, size.height, head.points);
-  return { format: "PCD", ...size, points: scanOf(bytes.subarray(head.end), head).points, notes: [], warnings };
+  const { points, intensity } = scanOf(bytes.subarray(head.end), head);
+  return { format: "PCD", ...size, points, ...(intensity && { intensity }), notes: [], warnings };
 }

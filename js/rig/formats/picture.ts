@@ -28,6 +28,8 @@ export interface Cloud {
   width: number;
   height: number;
   points: Float32Array;
+  /** Strength of each return, where the file has it, in the file's own unit. */
+  intensity?: Float32Array;
   notes: string[];
   warnings: ReaderWarning[];
 }

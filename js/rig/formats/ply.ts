@@ -155,19 +155,25 @@ function scanOf(source: Source, { count, properties }: Element): Scan {
   return scan;
 }
 
-/** A grid's cells, each with the number of its point or with none. */
-function inCells(source: Source, grid: Element, cloud: Float32Array): Float32Array {
-  const out = new Float32Array(3 * grid.count).fill(NaN);
+/** The points of a grid's cells, each of which has the number of its point or none. */
+function inCells(
+  source: Source,
+  grid: Element,
+  { points: cloud, intensity }: Scan,
+): Pick<Cloud, "points" | "intensity"> {
+  const points = new Float32Array(3 * grid.count).fill(NaN);
+  const strength = intensity && new Float32Array(grid.count).fill(NaN);
   for (let cell = 0; cell < grid.count; cell++) {
     for (const each of grid.properties) {
       const [point] = listOf(source, each);
       if (each.name !== "vertex_indices" || point === undefined) continue;
       if (!(Number.isInteger(point) && point >= 0 && 3 * point < cloud.length))
         throw badFile(`this PLY's grid refers to point ${point} of ${cloud.length / 3}`);
-      out.set(cloud.subarray(3 * point, 3 * point + 3), 3 * cell);
+      points.set(cloud.subarray(3 * point, 3 * point + 3), 3 * cell);
+      if (strength) strength[cell] = intensity?.[point] ?? NaN;
     }
   }
-  return out;
+  return { points, ...(strength && { intensity: strength }) };
 }
 
 export function readPly(bytes: Uint8Array): Cloud | Points {
@@ -191,13 +197,13 @@ export function readPly(bytes: Uint8Array): Cloud | Points {
   }
   const source = format === "ascii" ? new TextSource(body) : new BinarySource(body, format === "binary_little_endian");
   const scan = scanOf(source, vertices);
-  const cloud = scan.points;
+  const cloud = { points: scan.points, ...(scan.intensity && { intensity: scan.intensity }) };
   if (grid)
     return {
       format: "PLY",
       width: columns ?? 0,
       height: rows ?? 0,
-      points: inCells(source, grid, cloud),
+      ...inCells(source, grid, scan),
       notes: [],
       warnings,
     };
@@ -205,9 +211,9 @@ export function readPly(bytes: Uint8Array): Cloud | Points {
     warnings.push(warning("mesh-faces-ignored", "The file is a mesh; only its vertices are read."));
   if (columns !== undefined && rows !== undefined && columns * rows === vertices.count) {
     checkGrid(columns, rows, vertices.count);
-    return { format: "PLY", width: columns, height: rows, points: cloud, notes: [], warnings };
+    return { format: "PLY", width: columns, height: rows, ...cloud, notes: [], warnings };
   }
   if (vertices.count >= FEWEST_POINTS && (scan.ring || !isImage(vertices.count)))
     return { format: "PLY", scan, isMetric: scan.ring !== undefined, notes: [], warnings };
-  return { format: "PLY", ...sizeOfCount(vertices.count, warnings), points: cloud, notes: [], warnings };
+  return { format: "PLY", ...sizeOfCount(vertices.count, warnings), ...cloud, notes: [], warnings };
 }

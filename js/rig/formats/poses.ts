@@ -247,3 +247,7 @@ export function motionOfMatrix(
   }
   return motion(...parted(values), names, warnings, isRig);
 }
+
+/** Whether a pose is for points in a LiDAR's axes: two cameras that see the same thing look nearly along one axis z. */
+export const isOfScan = ({ rotation }: { readonly rotation: ArrayLike<number> }): boolean =>
+  (rotation[8] ?? 1) < Math.SQRT1_2;

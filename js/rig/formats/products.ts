@@ -2,6 +2,7 @@
  * Files of products whose units, quaternion order, frames or modes are not in the file but in the product's documentation. Each product has a
  * reader, and these come before the search by names of members (tree.ts).
  */
+import { isA2d2, readA2d2 } from "./a2d2.js";
 import { isAria, readAria } from "./aria.js";
 import {
   isArgoverse,
@@ -59,6 +60,7 @@ const TREES: Product<Node>[] = [
   ["a calibration of depthai", isDepthai, readDepthai],
   ["an Azure Kinect's calibration", isAzureKinect, readAzureKinect],
   ["a Kinect v2's intrinsics", isKinect2, readKinect2],
+  ["a calibration of A2D2", isA2d2, readA2d2],
   ["a calibration of Argoverse", isArgoverse, readArgoverse],
   ["a calibration of Waymo's dataset", isWaymo, readWaymo],
   ["a calibration of Project Aria", isAria, readAria],

@@ -4,7 +4,7 @@ import type { NamedPose } from "../types.js";
 import { type Numbers, numberOf } from "./numbers.js";
 import { motion, ofQuaternion, ofYawPitchRoll } from "./poses.js";
 import type { Calibration } from "./tree.js";
-import type { ReaderWarning } from "../warnings.js";
+import { type ReaderWarning, warning } from "../warnings.js";
 
 const NAME = "static_transform_publisher";
 /** Characters after the name in which its arguments are. */
@@ -13,8 +13,14 @@ const MOST = 1000;
 
 export const isPublisher = (text: string): boolean => text.includes(NAME);
 
-/** The words behind each mention, up to the end of its element or the next mention. */
-function mentions(text: string): string[][] {
+/** A text without the comments of XML, and of shells, Python and YAML. */
+function withoutComments(text: string): string {
+  if (text.trimStart().startsWith("<")) return text.replace(/<!--[^]*?(?:-->|$)/g, "");
+  return text.replace(/^[ \t]*#.*$/gm, "").replace(/[ \t]#[^"'\n]*$/gm, "");
+}
+
+/** The arguments behind each mention, up to the end of its element or the next mention. */
+function mentions(text: string): string[] {
   const pieces = text.split(NAME).slice(1);
   if (pieces.length > MOST) throw badFile(`it holds more than ${MOST} static transforms`);
   return pieces.map((piece) => {
@@ -23,13 +29,38 @@ function mentions(text: string): string[][] {
         .slice(0, REACH)
         .replace(/\\\r?\n/g, " ")
         .split(/\/>|<\/node>|<node|\bNode\s*\(/)[0] ?? "";
-    const args =
+    return (
       /\bargs\s*=\s*"([^"]*)"/.exec(inside)?.[1] ??
       /\barguments\s*=\s*\[([^\]]*)\]/.exec(inside)?.[1] ??
       inside.split(/\r?\n/).find((line) => /\d/.test(line)) ??
-      "";
-    return args.split(/[\s,'"[\]()=]+/).filter((part) => part !== "");
+      ""
+    );
   });
+}
+
+/** Conditions of nodes and groups: of XML, and of launch files in Python. */
+const CONDITION = /<(?:node|group|include)\b[^<>]*?\s(?:if|unless)\s*=|\b(?:IfCondition|UnlessCondition)\s*\(/;
+/** Arguments that ROS computes when it starts the file. */
+const COMPUTED = /\$\([^)]{0,80}\)?|\$\{?\w{1,40}\}?|\b(?:LaunchConfiguration|math\.\w+|str|float)\b/;
+/** Such an argument behind a flag for a number. */
+const COMPUTED_FLAG = new RegExp(`--(?:x|y|z|roll|pitch|yaw|q[xyzw])[\\s'",=]+(${COMPUTED.source})`);
+const words = (text: string): string[] => text.split(/[\s,'"[\]()=]+/).filter((part) => part !== "");
+
+/** The words of an argument list whose numbers are written out; in the names of frames, "$(arg robot)" stands for itself. */
+function written(args: string): string[] {
+  const all = words(args);
+  const isFlags = all.some((word) => word.startsWith("--"));
+  const numbers = all.findIndex((word) => numberOf(word) === undefined);
+  const computed = isFlags
+    ? COMPUTED_FLAG.exec(args)?.[1]
+    : numbers < 6 && numbers >= 0
+      ? COMPUTED.exec(args)?.[0]
+      : undefined;
+  if (computed !== undefined)
+    throw badFile(
+      `its static transform has the argument ${computed}, which ROS computes when it starts the file: write the numbers there, or save the output of "rosrun tf tf_echo PARENT CHILD" (ROS 2: "ros2 run tf2_ros tf2_echo") and give that`,
+    );
+  return words(args.replace(/\$\((?:arg|var)\s+(\w{1,40})\)/g, "$1"));
 }
 
 /** ROS 2: `--x 1 --qw 1 --frame-id a --child-frame-id b`. */
@@ -79,15 +110,31 @@ function ofPlaces(words: string[], warnings: ReaderWarning[]): NamedPose {
 }
 
 /** The transforms, which carry points of the child frame into the parent. */
-export function readPublishers(text: string): Calibration {
+export function readPublishers(whole: string): Calibration {
   const warnings: ReaderWarning[] = [];
-  const found = mentions(text).filter((words) => words.some((word) => numberOf(word) !== undefined));
+  const text = withoutComments(whole);
+  if (!isPublisher(text))
+    throw badFile(`it names ${NAME} in comments alone: remove the comment signs if it is the right one`);
+  const found = mentions(text)
+    .filter((args) => COMPUTED.test(args) || words(args).some((word) => numberOf(word) !== undefined))
+    .map(written);
   if (found.length === 0) throw badFile(`it names ${NAME}, but no numbers follow`);
-  return {
-    cameras: [],
-    poses: found.map((words) => (words.some((word) => word.startsWith("--")) ? ofFlags : ofPlaces)(words, warnings)),
-    warnings,
-  };
+  const poses = found.map((all) => (all.some((word) => word.startsWith("--")) ? ofFlags : ofPlaces)(all, warnings));
+  warnings.push(...doubtsOf(poses, text));
+  return { cameras: [], poses, warnings };
+}
+
+/** Which of several transforms between the same frames ROS publishes is open, and so is whether it publishes one with a condition. */
+function doubtsOf(poses: NamedPose[], text: string): ReaderWarning[] {
+  const isConditional = CONDITION.test(text);
+  const twice = poses.find((pose, index) =>
+    poses.some((other, at) => at < index && other.from === pose.from && other.to === pose.to),
+  );
+  if (twice === undefined && !isConditional) return [];
+  const which = isConditional
+    ? "It starts its transforms by conditions (if, unless), which were not evaluated: all transforms were read"
+    : `It has several transforms from ${twice?.from} to ${twice?.to}: all were read, the first one first`;
+  return [warning("pose-assumed", `${which}. Remove those that do not hold.`)];
 }
 
 const TRIPLE = /Translation:\s*\[([^\]\n]{1,200})\]/;
@@ -96,7 +143,10 @@ const QUATERNION = /Quaternion\s*(?:\(xyzw\)\s*)?\[([^\]\n]{1,200})\]/;
 export const isEcho = (text: string): boolean =>
   TRIPLE.test(text.slice(0, REACH)) && QUATERNION.test(text.slice(0, REACH));
 
-/** The first transform of tf_echo's print, which does not name the frames. */
+/** tf2_echo waits for the pose of its second frame in its first one, and says so. */
+const WAITS = /Waiting for transform (\S{1,80}) -> +(\S{1,80}?):? /;
+
+/** The first transform of tf_echo's print, which names the frames only while it waits. */
 export function readEcho(text: string): Calibration {
   const warnings: ReaderWarning[] = [];
   const numbers = (pattern: RegExp, count: number): Numbers => {
@@ -105,9 +155,11 @@ export function readEcho(text: string): Calibration {
       throw badFile(`its transform does not have ${count} numbers where they are needed`);
     return found;
   };
+  const [, to, from] = WAITS.exec(text.slice(0, REACH)) ?? [];
+  const names = from !== undefined && to !== undefined ? { from, to } : {};
   return {
     cameras: [],
-    poses: [motion(ofQuaternion(numbers(QUATERNION, 4), warnings), numbers(TRIPLE, 3), {}, warnings)],
+    poses: [motion(ofQuaternion(numbers(QUATERNION, 4), warnings), numbers(TRIPLE, 3), names, warnings)],
     warnings,
   };
 }

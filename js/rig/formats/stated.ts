@@ -40,7 +40,8 @@ export interface Stated {
 
 /** The lens model of an object with a camera; an unsupported one decides, as "omni" does beside "radtan". */
 export function modelIn(node: Node): Stated | undefined {
-  const isFisheye = Number(member(node, "fisheyemodel")) === 1 || member(node, "fisheye") === true;
+  const isFisheye =
+    Number(member(node, "fisheyemodel")) === 1 || member(node, "fisheye", "isfisheye", "usefisheye") === true;
   if (isFisheye) return { model: "fisheye", isLens: true };
   const [lenses, models, kinds] = [LENS_KEYS, MODEL_KEYS, KIND_KEYS].map((keys) => textsAt(node, keys));
   const known = [...(kinds ?? [])].filter((name) => lensNamed(name).family !== undefined);

@@ -1,16 +1,19 @@
 /** Text files: the format is recognised from the text, and the result is cameras and poses. */
 import { BimodalError, badFile } from "../../errors.js";
 import { once } from "../once.js";
+import { asFisheye } from "./cameras.js";
 import { readColmap, isColmap } from "./colmap.js";
 import { isColmapImages, readColmapImages } from "./colmap-others.js";
 import { readColumns } from "./columns.js";
 import { withPoints } from "./commas.js";
+import { withEnds } from "./filename.js";
 import { readNotes } from "./notes.js";
 import type { Node } from "./numbers.js";
 import { readNumbers } from "./plain.js";
 import { isEcho, isPublisher, readEcho, readPublishers } from "./ros.js";
 import { MOST_SETTINGS, isSectioned, plainPython, readJson, readSections } from "./settings.js";
 import { type Calibration, searchTree } from "./tree.js";
+import { type ReaderWarning, warning } from "../warnings.js";
 import { type Element, plainXml, readXml } from "./xml.js";
 
 /** So that a small file cannot become a large value. */
@@ -23,26 +26,56 @@ const plainYaml = (text: string): string =>
     .replace(/!!(?:opencv-[\w-]+|python\/[\w:./]+)/g, "")
     .replace(/^\t+/gm, (tabs) => "  ".repeat(tabs.length));
 
+/** Most characters of a list that is put into one line. */
+const LONGEST_LIST = 20_000;
+
+/** YAML as OpenCV and PyYAML accept it, for js-yaml: "data:[" without a blank, and lists that go on at the column of their name. */
+function strictYaml(text: string): string {
+  const lines: string[] = [];
+  let depth = 0;
+  for (const line of text.replace(/^([ \t-]*[A-Za-z_][\w.]{0,80}):(?=[[{"'\d+-])/gm, "$1: ").split(/\r?\n/)) {
+    const bare = line.replace(/(?:^|[ \t])#.*$/, "");
+    const isInside = depth > 0 && (lines.at(-1)?.length ?? 0) < LONGEST_LIST;
+    if (isInside) lines.push(`${lines.pop() ?? ""} ${bare.trim()}`);
+    else lines.push(line);
+    const opens = bare.replace(/"[^"]*"|'[^']*'/g, "");
+    depth = Math.max(0, (isInside ? depth : 0) + count(opens, /[[{]/g) - count(opens, /[\]}]/g));
+  }
+  return lines.join("\n");
+}
+const count = (text: string, pattern: RegExp): number => text.match(pattern)?.length ?? 0;
+
 /** Settings such as "fx = 500" on each line, with the colons of YAML. */
 const withColons = (text: string): string =>
   /^[ \t]*[\w.]{1,80}[ \t]*:/m.test(text) ? text : text.replace(/^([ \t]*[\w.]{1,80})[ \t]*=[ \t]*/gm, "$1: ");
+
+/** The first line of what a parser says. */
+const reasonOf = (error: unknown): string =>
+  error instanceof Error ? (error.message.split("\n")[0] ?? "") : String(error);
 
 /** The documents of a YAML text. js-yaml is loaded with the first such text. */
 async function readYaml(text: string): Promise<unknown> {
   if (text.length > MOST_SETTINGS) throw badFile(`it is text of ${text.length} characters in an unknown format`);
   const { CORE_SCHEMA, loadAll, mergeTag } = await import("js-yaml");
+  const parsed = (yaml: string) => loadAll(yaml, { ...YAML_LIMITS, schema: CORE_SCHEMA.withTags(mergeTag) });
+  const plain = withColons(plainYaml(text));
   try {
-    return loadAll(withColons(plainYaml(text)), { ...YAML_LIMITS, schema: CORE_SCHEMA.withTags(mergeTag) });
+    return parsed(plain);
   } catch (error) {
-    const reason = error instanceof Error ? (error.message.split("\n")[0] ?? "") : String(error);
-    throw badFile(`it is text in an unknown format, or damaged (as YAML: ${reason})`, error);
+    try {
+      return parsed(strictYaml(plain));
+    } catch {
+      // The reason of the file as it is says more.
+    }
+    throw badFile(`it is text in an unknown format, or damaged (as YAML: ${reasonOf(error)})`, error);
   }
 }
 
 const NEITHER =
   "neither a camera (camera_matrix, K, fx fy cx cy, intrinsics) nor a transform (R and T, T_.., rotation and translation, a 4x4 matrix)";
 
-type Read = Calibration & { format: string };
+/** With `isBare` it has nothing but its numbers. */
+type Read = Calibration & { format: string; isBare?: boolean };
 
 /** The readers of products, which are loaded with the first text. */
 const products = once(() => import("./products.js"));
@@ -75,14 +108,22 @@ async function ofTable({ rows, isSeries }: { rows: Node[]; isSeries: boolean }, 
   return { ...found, warnings: [...new Map([...found.warnings].reverse().map((each) => [each.code, each])).values()] };
 }
 
+/** MVSNet's "extrinsic" beside "intrinsic" is the pose of the world in that camera. */
+function ofViews({ extrinsic, ...notes }: Node): Node {
+  if (extrinsic === undefined) return notes;
+  return notes.intrinsic === undefined ? { ...notes, extrinsic } : { ...notes, world_to_camera: extrinsic };
+}
+
 /** Numbers with labels; undefined where there is neither a camera nor a pose among them. */
 function ofNotes(text: string): Read | undefined {
   const notes = text.length > MOST_SETTINGS ? undefined : readNotes(text);
-  const found = notes === undefined ? undefined : searchTree(notes, text);
+  const found = notes === undefined ? undefined : searchTree(ofViews(notes), text);
   if (found === undefined || found.cameras.length + found.poses.length === 0) return undefined;
   return { ...found, format: "numbers with labels" };
 }
 
+/** What only YAML has: its directive, and the matrices of OpenCV. */
+const IS_YAML = /^%YAML|!!opencv-matrix/m;
 /** YAML, or else numbers with labels. */
 async function ofYaml(text: string): Promise<Read> {
   let value: unknown;
@@ -91,6 +132,13 @@ async function ofYaml(text: string): Promise<Read> {
   } catch (error) {
     const found = error instanceof BimodalError ? ofNotes(text) : undefined;
     if (found === undefined) throw error;
+    if (IS_YAML.test(text))
+      found.warnings.push(
+        warning(
+          "read-by-lines",
+          `It is damaged YAML (${reasonOf(error instanceof BimodalError ? error.cause : error)}) and was read line by line, which may miss lenses, cameras and poses. Repair that line.`,
+        ),
+      );
     return found;
   }
   const found = (await search(value, "YAML", text)) ?? ofNotes(text);
@@ -111,8 +159,22 @@ async function ofXml(text: string): Promise<Read> {
   return (await products()).productOfXml(root) ?? searched(plainXml(root), "XML", text);
 }
 
-/** The cameras and poses of a text, with the name of its format. */
-export async function readText(text: string): Promise<Read> {
+/** The cameras and poses of a text, with the name of its format; the file's name says what the text leaves open. */
+export async function readText(text: string, file: string): Promise<Read> {
+  const { isBare = false, ...found } = await ofContent(text);
+  asFisheye(found.cameras, found.warnings, `${file.replace(/^.*[/\\]/, "")}\n${text}`);
+  const { poses, isPlace } = withEnds(found.poses, file, isBare);
+  return { ...found, poses, warnings: isPlace ? [...found.warnings, placeOfName()] : found.warnings };
+}
+
+const placeOfName = (): ReaderWarning =>
+  warning(
+    "camera-to-world",
+    "Its name says that it is the pose of a camera in the world (camera to world), which was not used as extrinsics between two cameras. If it is, name the file depth_to_color.txt or the like.",
+    { poses: 1 },
+  );
+
+async function ofContent(text: string): Promise<Read> {
   const trimmed = text.replace(/^\ufeff/, "").trim();
   if (trimmed === "") throw badFile("it is empty or has only spaces");
   if (isPublisher(trimmed)) return { ...readPublishers(trimmed), format: "a static transform of ROS" };
@@ -135,7 +197,7 @@ export async function readText(text: string): Promise<Read> {
 /** Plain numbers, tables, and the languages of settings. */
 async function ofWords(text: string): Promise<Read> {
   const numbers = readNumbers(text) ?? (text.length < MOST_SETTINGS ? readNumbers(plainPython(text)) : undefined);
-  if (numbers !== undefined) return numbers;
+  if (numbers !== undefined) return { ...numbers, isBare: true };
   const table = readColumns(text);
   if (table !== undefined) return ofTable(table, text);
   if (isSectioned(text)) {

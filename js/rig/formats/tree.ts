@@ -7,15 +7,19 @@
 import { BimodalError, badFile } from "../../errors.js";
 import type { NamedCamera, NamedPose } from "../types.js";
 import { type ReaderWarning, warning } from "../warnings.js";
-import { type RawCamera, cameraOf, ofMatrix } from "./cameras.js";
+import { type RawCamera, cameraOf } from "./cameras.js";
 import { grouped, withLists } from "./groups.js";
 import { type FoundCamera, Leftovers, type Place, coefficientsOf } from "./leftovers.js";
 import { modelIn, sharedModelIn } from "./stated.js";
+import { bySensor, cameraOfMatrix, fourOf, kannala, listsOf, membersOf, sizeOf } from "./intrinsics.js";
+import { lensNamed } from "./lenses.js";
 import { unitInComments } from "./lengths.js";
 import { MOST_FOUND } from "./limits.js";
-import { type Context, Motions, contextOf, signsOf } from "./motions.js";
+import { type Context, contextOf } from "./context.js";
+import { Motions } from "./motions.js";
+import { signsOf } from "./signs.js";
 import { isIntrinsics, labelled, lensNames, member, wordsOf } from "./names.js";
-import { type Matrix, type Node, type Numbers, isNode, matrixOf, numberOf, textOf, transposed } from "./numbers.js";
+import { type Node, isNode, matrixOf, textOf } from "./numbers.js";
 import { orbbecContext } from "./orbbec.js";
 import { chained, inverseOf } from "./poses.js";
 import { byTopics, ofOwnCameras } from "./sensors.js";
@@ -35,30 +39,8 @@ const MOST_MEMBERS = 200_000;
 const MOST_OWN = 300;
 const MOST_DEPTH = 24;
 
-const isLike = (value: number | undefined, to: number): boolean => value !== undefined && Math.abs(value - to) < 1e-6;
-
-/** Nine numbers as a matrix of intrinsics, row by row; they may be stored by rows or by columns. */
-function intrinsics(matrix: Matrix | undefined): Numbers | undefined {
-  const values = matrix?.values;
-  if (values?.length !== 9 || !isLike(values[8], 1)) return undefined;
-  const isTriangle = (m: Numbers) => isLike(m[3], 0) && isLike(m[6], 0) && isLike(m[7], 0) && !isLike(m[0], 0);
-  if (isTriangle(values))
-    return isLike(values[2], 0) && isLike(values[5], 0) && isLike(values[0], 1) ? undefined : values;
-  const turned = transposed(values, 3);
-  return isTriangle(turned) ? turned : undefined;
-}
-
 /** A list of at least so many poses is a trajectory. */
 const SERIES = 3;
-/** Names of focal lengths and of principal points in the files of different programs. */
-const FX = ["fx", "flx", "focalx", "focallengthx"];
-const FY = ["fy", "fly", "focaly", "focallengthy"];
-const CX = ["cx", "ppx", "u0", "centerx", "principalpointx"];
-const CY = ["cy", "ppy", "v0", "centery", "principalpointy"];
-/** Four intrinsics in a list are fx fy cx cy where fx and fy differ by less than this share. */
-const SQUARE = 0.2;
-/** Shortest focal length in pixels; shorter ones are normalised by the image's size, or are not focal lengths. */
-const SHORTEST = 10;
 /** Labels of cameras that are derived from another one, for rectified or undistorted images. */
 const DERIVED = /^(?:new|optimal|rectified|undistorted|original)$/;
 
@@ -78,6 +60,8 @@ class Search {
   readonly #own = new Map<NamedPose, string | undefined>();
   /** Topics of cameras by their names, where a file has both. */
   readonly #topics = new Map<string, string>();
+  /** What warnings say of cameras with lenses that are not supported. */
+  readonly #unsupported: string[] = [];
   /** Models of cameras that the file names. */
   readonly models = new Set<string>();
   #nodes = 0;
@@ -180,7 +164,20 @@ class Search {
       const called = own === "" || own === "cam" || own === "camera" ? name : own;
       if (found !== undefined) add({ name: called, ...found, ...this.#rest(node, own, used) }, own);
     }
+    if (!this.#found.some(({ place: own }) => own.node === node)) this.#nameUnsupported(node, name);
     return used;
+  }
+
+  /** Warns of a camera whose intrinsics are those of a lens that is not supported, beside what else the file holds. */
+  #nameUnsupported(node: Node, name: string | undefined): void {
+    const stated = modelIn(node);
+    const isCamera = member(node, "intrinsics", "intrinsic", "projectionparameters", "mirrorparameters") !== undefined;
+    if (!isCamera || stated === undefined || lensNamed(stated.model).family !== "other") return;
+    const of = name === undefined ? "A camera" : `The camera "${name}"`;
+    const { meaning } = lensNamed(stated.model);
+    this.#unsupported.push(
+      `${of} was left out: its lens model "${stated.model}"${meaning === undefined ? "" : ` (${meaning})`} is not supported; Brown's and Kannala-Brandt's are.`,
+    );
   }
 
   /** Distortion, model and size of the camera with this label. */
@@ -229,6 +226,8 @@ class Search {
         const of = raw.name === undefined ? "A camera" : `The camera "${raw.name}"`;
         this.warnings.push(warning("camera-left-out", `${of} was left out: ${error.message}.`));
       }
+    if (this.cameras.length + this.motions.poses.length > 0)
+      for (const message of this.#unsupported) this.warnings.push(warning("camera-left-out", message));
     if (reason !== undefined && this.cameras.length + this.motions.poses.length === 0) throw reason;
   }
 
@@ -267,8 +266,17 @@ const ENDS = [
   ["source", "target"],
   ["sourceframe", "targetframe"],
   ["child", "parent"],
+  ["childlink", "parentlink"],
+  ["sensor", "reference"],
+  ["sensorframe", "referenceframe"],
+  ["frame", "base"],
   ["sensorname", "targetsensorname"],
 ] as const;
+
+/** Whether an object has a rotation or a matrix of a motion. */
+const isTransform = (node: Node): boolean =>
+  member(node, "rotation", "orientation", "quaternion") !== undefined ||
+  Object.values(node).some((value) => [12, 16].includes(matrixOf(value)?.values.length ?? 0));
 
 /** The frames of a motion. ROS's transform carries points of the child frame into the parent, OpenCalib's from a sensor to its target. */
 function framesOf(node: Node): Context | undefined {
@@ -278,7 +286,7 @@ function framesOf(node: Node): Context | undefined {
   if (child !== undefined) return { from: child, ...(parent !== undefined && { to: parent }) };
   for (const [from, to] of ENDS) {
     // Objects other than transforms have parents, too.
-    if (from === "child" && member(node, "rotation", "orientation", "quaternion") === undefined) continue;
+    if (from === "child" && !isTransform(node)) continue;
     const ends = [textOf(member(node, from)), textOf(member(node, to))];
     if (ends[0] !== undefined && ends[1] !== undefined && ends[0] !== ends[1]) return { from: ends[0], to: ends[1] };
   }
@@ -286,88 +294,6 @@ function framesOf(node: Node): Context | undefined {
   const picture = textOf(member(node, "filepath", "imagepath", "imgpath", "imagefile", "imgname", "imagename"));
   if (picture !== undefined) return { from: "camera", to: "world" };
   return undefined;
-}
-
-type Intrinsics = Pick<RawCamera, "focal" | "centre" | "model" | "distortion" | "isByName" | "skew">;
-
-const cameraNamed = (name: string | undefined): string =>
-  name === undefined || name === "" ? "its camera" : `its camera "${name}"`;
-
-/** The members fx, fy, cx and cy, by any of their names. */
-function membersOf(node: Node, name: string | undefined): Pick<RawCamera, "focal" | "centre"> | undefined {
-  const single = numberOf(member(node, "f", "focal", "focallength", "focallengthpx", "focalpx"));
-  const [fx, cx] = [numberOf(member(node, ...FX)), numberOf(member(node, ...CX))];
-  if (fx === undefined && single !== undefined && single > SHORTEST && cx !== undefined) {
-    const cy = numberOf(member(node, ...CY));
-    return cy === undefined ? undefined : { focal: [single, single], centre: [cx, cy] };
-  }
-  if (fx === undefined || cx === undefined) return undefined;
-  const [fy, cy] = [numberOf(member(node, ...FY)), numberOf(member(node, ...CY))];
-  if (fy === undefined || cy === undefined) throw badFile(`${cameraNamed(name)} has fx and cx, but not fy and cy`);
-  return { focal: [fx, fy], centre: [cx, cy] };
-}
-
-/** camodocal's Kannala-Brandt cameras: mu, mv, u0, v0, and k2 to k5, which are OpenCV's k1 to k4. */
-function kannala(node: Node): Intrinsics | undefined {
-  const numbers = (names: string[]) => names.map((each) => numberOf(member(node, each)) ?? NaN);
-  const [mu = NaN, mv = NaN, u0 = NaN, v0 = NaN] = numbers(["mu", "mv", "u0", "v0"]);
-  const lens = numbers(["k2", "k3", "k4", "k5"]);
-  if ([mu, mv, u0, v0, ...lens].some(Number.isNaN)) return undefined;
-  return { focal: [mu, mv], centre: [u0, v0], model: "fisheye", distortion: lens, isByName: false };
-}
-
-/** The members focal_length and principal_point of two numbers each, as in OKVIS. */
-function listsOf(node: Node): Intrinsics | undefined {
-  const single = numberOf(node.focal_length);
-  const focal = single === undefined ? matrixOf(node.focal_length)?.values : [single, single];
-  const centre = matrixOf(node.principal_point)?.values;
-  const isPixels = focal?.length === 2 && (focal[0] ?? 0) > SHORTEST;
-  return isPixels && centre?.length === 2 ? { focal, centre } : undefined;
-}
-
-/** Focal length and sensor width in millimetres with the size of the images, as in Blender. */
-function bySensor(node: Node, warnings: ReaderWarning[]): Intrinsics | undefined {
-  const focal = numberOf(member(node, "focallengthmm", "focalmm", "focallength", "lens", "f"));
-  const sensor = numberOf(member(node, "sensorwidthmm", "sensorwidth"));
-  const { width, height } = sizeOf(node, "");
-  if (focal === undefined || sensor === undefined || width === undefined || height === undefined) return undefined;
-  const f = (focal / sensor) * Math.max(width, height);
-  warnings.push(
-    warning(
-      "camera-computed",
-      `The focal length was computed from ${focal} mm on a sensor of ${sensor} mm, and the principal point was set to the centre of the image. Give fx, fy, cx and cy in pixels if they are known.`,
-      { focal, sensor },
-    ),
-  );
-  return { focal: [f, f], centre: [(width - 1) / 2, (height - 1) / 2] };
-}
-
-/** Four intrinsics in a list, of Kalibr or of a file without a camera model. */
-function fourOf(node: Node, name: string | undefined): Intrinsics | undefined {
-  const kalibr = textOf(member(node, "cameramodel"));
-  const four = matrixOf(member(node, "intrinsics"))?.values;
-  if (four === undefined) return undefined;
-  if (kalibr !== undefined && four.length !== 9) {
-    if (kalibr !== "pinhole")
-      throw badFile(`${cameraNamed(name)} has Kalibr's model "${kalibr.slice(0, 40)}"; only pinhole is supported`);
-    if (four.length !== 4) throw badFile(`${cameraNamed(name)} has ${four.length} intrinsics; fu fv pu pv are needed`);
-  } else {
-    const [fx = 0, fy = 0] = four;
-    const isSquare = fx > SHORTEST && fy > SHORTEST && Math.abs(fx / fy - 1) < SQUARE;
-    if (four.length !== 4 || !isSquare) return undefined;
-  }
-  return { focal: four.slice(0, 2), centre: four.slice(2) };
-}
-
-function cameraOfMatrix(node: Node, key: string, label: string): Intrinsics | undefined {
-  const matrix = matrixOf(node[key]);
-  const k = intrinsics(matrix);
-  if (k === undefined) {
-    if (matrix?.values.length === 9 && label === "" && !/^(?:m|matrix)$/i.test(key))
-      throw badFile(`its ${key} is not a matrix of intrinsics (fx 0 cx / 0 fy cy / 0 0 1)`);
-    return undefined;
-  }
-  return ofMatrix(k);
 }
 
 const SIDE = /^(?:colou?r|rgb|depth|ir|infra(?:red)?[_ ]?\d?)$/i;
@@ -388,19 +314,6 @@ const nameOf = (key: string, parent: string): string => {
 
 const isEmpty = (value: unknown): boolean =>
   value === null || value === "" || (Array.isArray(value) && value.length === 0);
-
-/** The size among the members of the camera itself; leftovers.ts finds those around it. */
-function sizeOf(node: Node, label: string): { width?: number; height?: number } {
-  const both = matrixOf(member(node, "resolution", "imagesize", "size"))?.values;
-  if (both?.length === 2) return { width: both[0] ?? 0, height: both[1] ?? 0 };
-  const side = (...names: string[]) =>
-    numberOf(member(node, ...names.flatMap((name) => (label === "" ? [name] : [`${name}${label}`, name]))));
-  const width = side("imagewidth", "width", "resolutionx", "imgdistw");
-  const height = side("imageheight", "height", "resolutiony", "imgdisth");
-  const [w, h] = [side("w"), side("h")];
-  if (width === undefined && height === undefined && w !== undefined && h !== undefined) return { width: w, height: h };
-  return { ...(width !== undefined && { width }), ...(height !== undefined && { height }) };
-}
 
 /** `text` is that of the file; its comments and product names are used as well. */
 export function searchTree(value: unknown, text = ""): Calibration {

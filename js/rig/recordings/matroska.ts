@@ -267,7 +267,7 @@ async function calibrationOf(attached: string): Promise<Calibration> {
   const nothing: Calibration = { cameras: [], poses: [], warnings: [] };
   if (attached === "") return nothing;
   try {
-    return await readText(attached);
+    return await readText(attached, "");
   } catch (error) {
     if (!(error instanceof BimodalError)) throw error;
     return {

@@ -67,8 +67,11 @@ function placesOf(columns: ReturnType<typeof columnsOf>, count: number): Float32
 export function cloudOf(message: Message): Cloud {
   const [width, height] = [numberIn(message, "width"), numberIn(message, "height")];
   checkSize(width, height);
-  const points = placesOf(columnsOf(message), width * height);
-  return { format: "PointCloud2", width, height, points, notes: [], warnings: [] };
+  const columns = columnsOf(message);
+  const points = placesOf(columns, width * height);
+  const strength = columns((field) => channelOf(field) === "intensity");
+  const intensity = strength && Float32Array.from({ length: width * height }, (_, point) => strength(point));
+  return { format: "PointCloud2", width, height, points, ...(intensity && { intensity }), notes: [], warnings: [] };
 }
 
 /** The points of a LiDAR, with their rings, intensities and times where the driver gives them. */

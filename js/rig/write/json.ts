@@ -60,7 +60,7 @@ function realsenseCamera(camera: Camera | undefined, key: string, name: string, 
   const distortion = realsenseDistortion(camera);
   if (distortion === undefined) {
     notes.push(
-      `the ${name} camera's intrinsics are left out: librealsense has k1 k2 p1 p2 k3 alone, and its distortion has more`,
+      `the ${name} camera's intrinsics are left out: librealsense has only k1 k2 p1 p2 k3, and this lens has more coefficients`,
     );
     return [];
   }

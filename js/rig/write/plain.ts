@@ -1,4 +1,5 @@
 /** Extrinsics as a 4x4 matrix in text, and as a line for ROS 2. */
+import { isOfScan } from "../formats/poses.js";
 import { fault } from "./built.js";
 import { real } from "./numbers.js";
 import { type Rig, type RigContext, rows } from "./rig.js";
@@ -40,8 +41,7 @@ function frame(name: string, field: string): string {
 /** tf2 holds the pose of the child in the parent: P_parent = R P_child + t, so that the colour camera is the parent. */
 export function ros2Line(rig: Rig, { frames }: RigContext): string {
   const parent = frame(frames?.colour ?? "camera_color_optical_frame", "context.frames.colour");
-  // Cameras of a rig look nearly the same way; a frame whose z does not is a LiDAR's (x forward, z up).
-  const isLidar = frames?.depth === undefined && (rig.rotation[8] ?? 0) < Math.SQRT1_2;
+  const isLidar = frames?.depth === undefined && isOfScan(rig);
   const child = frame(frames?.depth ?? (isLidar ? "lidar" : "camera_depth_optical_frame"), "context.frames.depth");
   if (parent === child) throw fault("range", "context.frames", "both cameras have the same frame");
   const [x = 0, y = 0, z = 0] = rig.translation;

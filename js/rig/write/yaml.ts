@@ -60,7 +60,7 @@ function kalibrCamera(camera: Camera | undefined, name: string, notes: string[])
   const { fx, fy, cx, cy, size } = camera;
   if (distortion === undefined) {
     return leftOut(
-      `the ${name} camera's intrinsics are left out: Kalibr's radtan has k1 k2 p1 p2 alone, and its distortion has more`,
+      `the ${name} camera's intrinsics are left out: Kalibr's radtan has only k1 k2 p1 p2, and this lens has more coefficients`,
     );
   }
   return [

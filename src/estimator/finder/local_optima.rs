@@ -23,7 +23,7 @@ pub enum Origin {
 
 /// Exponent of the number of visible points. `powf` serves, because a separate `cbrt` would add 1 kB to the download.
 const THIRD: f64 = 1.0 / 3.0;
-/// A local optimum is convincing if every other one that sees as much has larger noise by this factor.
+/// A local optimum is convincing if every other one that sees as much has at least this many times its noise.
 const CONVINCING_NOISE: f64 = 2.0;
 /// Registrations that end within this angle have found the same optimum, degrees.
 const SAME_OPTIMUM: f64 = 3.0;
@@ -31,7 +31,7 @@ const SAME_OPTIMUM: f64 = 3.0;
 const ENOUGH_SUPPORT: u32 = 2;
 /// Candidates within this angle of such an optimum would only reach it again, degrees.
 const CATCHMENT: f64 = 15.0;
-/// Noise of a rival, at most, as a multiple of the winner's.
+/// Largest noise of a rival, as a multiple of the winner's.
 const RIVAL_NOISE: f64 = 1.25;
 /// Visible points of a rival, at least, as a share of the winner's.
 const RIVAL_VISIBLE: f64 = 0.5;

@@ -9,8 +9,8 @@ use crate::options::Start;
 use crate::pose::{PhotometricReport, Similarity};
 use crate::view::{ColourView, DepthView};
 
-/// Most object pixels at which a view is searched unhalved: a frame of 128x128. Set on views of 640x480
-/// (docs/lab/thresholds.md).
+/// Largest number of object pixels at which a view is searched at full resolution: a frame of 128x128. Set on views of
+/// 640x480 (docs/lab/thresholds.md).
 const MOST_PIXELS: usize = 128 * 128;
 
 /// A coarser pair, its photometric registration, and the transformation from its frames to those of the views.

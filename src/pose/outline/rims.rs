@@ -15,8 +15,8 @@ use crate::view::Size;
 /// Neighbours in the depth map whose distances differ by more than this share do not belong to one surface: 15 mm at
 /// 0.75 m.
 const JUMP: f64 = 0.02;
-/// Cosines between normal and ray of the depth camera at which a discontinuity begins to count as sharp, and from which
-/// it does fully; normals of real sensors at an occluding contour do not fall below 0.3.
+/// Cosines between normal and ray of the depth camera: a discontinuity begins to count as sharp at the first and counts
+/// fully from the second; normals of real sensors at an occluding contour do not fall below 0.3.
 const SHARP: [f64; 2] = [0.35, 0.7];
 /// Cosine between normal and ray of the colour camera below which a surface turns away.
 const LIMB: f64 = 0.45;

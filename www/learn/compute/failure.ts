@@ -1,7 +1,7 @@
 /** When it fails: symmetry, little overlap, texture, a quarter turn; and what the program reports then. */
 
 import type { Relief, Sample } from "../../../pkg/index.js";
-import type { Drawing, Values } from "../protocol";
+import { LARGEST_TURN, LEAST_OVERLAP, type Drawing, type Values } from "../protocol";
 import { cloudsOf } from "./clouds";
 import { pictureOf, scalarOf } from "./draw";
 import { chosenPixels, degreesBetween, meanOf } from "./measure";
@@ -10,8 +10,7 @@ import { numberOf, scene, watched } from "./scenes";
 const SIZE = 64;
 /** Side of the disc's grid of heights. */
 const DISC = 128;
-/** Shares of the depth map's columns: the least of the slider, and that of the turned one. */
-const LEAST_OVERLAP = 0.08;
+/** Share of the depth map's columns in the turned view. */
 const NARROW = 0.2;
 
 /** A disc of rings, round except for a nose. */
@@ -47,7 +46,7 @@ function sceneOf(what: string, amount: number): { made: Sample; pair: Pick<Sampl
       return { made, pair: textured(made, share) };
     }
     default: {
-      const made = scene({ ...base, angles: { beta: 90 * share }, overlap: NARROW });
+      const made = scene({ ...base, angles: { beta: LARGEST_TURN * share }, overlap: NARROW });
       return { made, pair: made };
     }
   }

@@ -2,7 +2,7 @@
 
 import type { Sample } from "../../../pkg/index.js";
 import type { Drawing, Values } from "../protocol";
-import { pictureOf, scalarOf } from "./draw";
+import { brightest, pictureOf, scalarOf } from "./draw";
 import { correlation, meanOf, normalDegrees } from "./measure";
 import { numberOf, running, scene } from "./scenes";
 
@@ -14,6 +14,8 @@ const PAINTS = [
   [-0.1, -0.1, -0.8],
 ] as const;
 const SQUARE = 16;
+/** The albedo, relative to its mean, that is drawn white if nothing is brighter. */
+const WHITE = 1.6;
 /** The shadow falls on a slanting band. */
 const BAND = [0.42, 0.58] as const;
 
@@ -43,16 +45,25 @@ function painted(made: Sample, strength: number, darkness: number): Painted {
   return { pair: { image: { ...made.image, data: colours }, depth: made.depth }, paint, shadow };
 }
 
+/** How much darker the albedo is where the shadow falls, less the paint's part, as a logarithm. */
+function contrast(albedo: Float32Array, paint: Float32Array, isShadow: (index: number) => boolean): number {
+  const less = albedo.map((value, at) => value - (paint[at] ?? NaN));
+  const side = (wanted: boolean) => meanOf(less, (at) => isShadow(Math.floor(at / 3)) === wanted);
+  return side(true) - side(false);
+}
+
 export function* paint(values: Values): Generator<Drawing> {
   const made = scene({ surface: "bust", light: String(values.light), size: SIZE, angles: { beta: 20 }, noise: 0.005 });
   const [strength, darkness] = [numberOf(values, "paint"), numberOf(values, "shadow")];
   const { pair, paint, shadow } = painted(made, strength, darkness);
   const grid = made.image;
   const exp = (log: Float32Array) => log.map(Math.exp);
+  const isShadow = (index: number) => shadow[index] === 1;
+  // The shadow's outermost pixels along each row, and their neighbours in the light.
+  const isRim = (index: number) => shadow[index] !== shadow[index - 1] || shadow[index] !== shadow[index + 1];
   for (const estimator of running(pair, { start: made.pose, scale: 1, registration: "fixed" }, 12)) {
     const { report } = estimator;
     const [albedo, shading, residual] = [estimator.albedo(), estimator.shading(), estimator.residual()];
-    const isShadow = (index: number) => shadow[index] === 1;
     const hasPaint = albedo.some((value) => Number.isFinite(value) && value !== 0);
     yield {
       panels: [
@@ -66,11 +77,12 @@ export function* paint(values: Values): Generator<Drawing> {
             key: "albedo",
             title: "Albedo, as estimated",
             alt: "The albedo that the program separates from the lighting.",
+            legend: "relative to its mean",
           },
           grid,
           exp(albedo),
           [],
-          1.6,
+          Math.max(WHITE, brightest(exp(albedo))),
         ),
         pictureOf(
           {
@@ -98,6 +110,9 @@ export function* paint(values: Values): Generator<Drawing> {
         likeness: strength > 0 && hasPaint ? correlation(albedo, paint) : NaN,
         lit: meanOf(residual, (index) => !isShadow(index)),
         shaded: darkness > 0 ? meanOf(residual, isShadow) : NaN,
+        rim: darkness > 0 ? meanOf(residual, isRim) : NaN,
+        inside: darkness > 0 ? meanOf(residual, (index) => isShadow(index) && !isRim(index)) : NaN,
+        taken: darkness > 0 ? (100 * contrast(albedo, paint, isShadow)) / Math.log(1 - darkness) : NaN,
         degrees: normalDegrees(estimator.imageNormals(), made.truth.imageNormals),
       },
       words: {

@@ -48,13 +48,14 @@ function solved(values: Values, share: number) {
     normals,
     found,
     degrees: normalDegrees(normals, made.truth.imageNormals),
+    others: normalDegrees(normals, made.truth.imageNormals, (index) => none || !mask[index]),
     depth: depthRmse(found, made.truth.imageDepth),
   };
 }
 
 export function* prior(values: Values): Generator<Drawing> {
   const share = numberOf(values, "share");
-  const { made, mask, none, normals, found, degrees, depth } = solved(values, share);
+  const { made, mask, none, normals, found, degrees, others, depth } = solved(values, share);
   const grid = made.image;
   const given = made.truth.depthNormals.map((value, index) => (!none && mask[Math.floor(index / 3)] ? value : NaN));
   const centred = (map: Float32Array) => map.map((value) => value - meanOf(map));
@@ -109,7 +110,7 @@ export function* prior(values: Values): Generator<Drawing> {
         { at: share, domain: [0, 100], range: [0, 40] },
       ),
     ],
-    numbers: { degrees, depth, pixels: none ? 0 : mask.filter(Boolean).length },
+    numbers: { degrees, others, depth, pixels: none ? 0 : mask.filter(Boolean).length },
   });
   yield drawing();
   for (const each of SHARES) {

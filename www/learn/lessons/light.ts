@@ -2,23 +2,22 @@
 
 import type { Lesson } from "../lesson";
 import { LIGHTS } from "../lesson";
-import { block, comma, log, math, mi, mn, mo, row, sum, sup, symbol } from "../maths";
+import { block, colourTerm, comma, log, mi, mn, mo, shading, symbol } from "../maths";
 
-const hatted = () => math("mover", {}, symbol("n"), mo("^"));
-const predicted = () => row(sup(hatted(), mi("⊤")), symbol("M"), hatted());
 const logS = () => log(symbol("S"));
 
 export const pixel: Lesson = {
   id: "pixel",
   title: "What a pixel shows",
   gist: "A pixel's colour depends on only three things: the surface normal, the albedo and the light.",
-  formula: () => block(logS(), mo("="), symbol("a"), mo("+"), predicted()),
+  formula: () => block(logS(), mo("="), symbol("a"), mo("+"), shading()),
   formulaWords:
     "The logarithm of the intensity of colour j is the log albedo plus a quadratic form of the normal, whose matrix is the light of that colour.",
   text: [
-    "Assume a matte surface and distant light. Then a pixel's intensity {S} in red, green and blue depends on the unit normal {n} of the surface, on its albedo (how much light it reflects; {a} is its logarithm) and on the light {L}. It does not depend on the position of the pixel in the picture.",
-    "The model writes the logarithm of the intensity as a polynomial of degree 2 in the normal. It has nine coefficients for each colour, 27 in all, collected in the matrices {M}. The normal is extended by a fourth component 1, so that one product contains all orders.",
-    "The zeroth-order term is the same for every normal. First-order terms brighten one side. Second-order terms have the same value on opposite sides. The ball shows their sum for every normal that the camera can see, so it shows the whole model.",
+    "A matte surface under one distant lamp follows Lambert's law: its intensity is the albedo times {n}·l, the cosine of the angle between the unit normal {n} and the direction l of the lamp. Light from many directions adds up. So a pixel's intensity {S} in red, green and blue depends on its normal, on the albedo (how much light the surface reflects; {a} is its logarithm) and on the light {L}. It does not depend on the position of the pixel in the picture.",
+    "Nine numbers for each colour describe the intensity of a matte surface under any distant light, with a mean error of about 1 % (Ramamoorthi and Hanrahan). This page follows Barron and Malik and uses nine numbers for the logarithm of the intensity instead. That is a choice, not a theorem: the albedo becomes a term that is added, and no predicted intensity is negative.",
+    "The logarithm is a polynomial of degree 2 in the normal, with nine coefficients for each colour, 27 in all. The matrices {M} collect them, and {N} is the normal with a fourth component 1, so that one product contains all orders. A symmetric 4 by 4 matrix has ten numbers. But the squares of the normal's components add up to 1, so a constant can be moved from the zeroth order to the squares without any effect, and nine numbers remain.",
+    "The zeroth-order term is the same for every normal. First-order terms brighten one side. Second-order terms have the same value on opposite sides. The ball shows their sum for every normal that the camera can see, so it shows the whole model. The model leaves out cast shadows, highlights and light that other parts of the object reflect.",
   ],
   tasks: [
     "Drag on the ball. The patch shows the colour of that normal.",
@@ -59,6 +58,7 @@ export const pixel: Lesson = {
         "10.1145/383259.383317",
         "Ramamoorthi and Hanrahan, An efficient representation for irradiance environment maps, 2001",
       ],
+      ["10.1109/TPAMI.2014.2377712", "Barron and Malik, Shape, illumination, and reflectance from shading, 2015"],
     ],
   },
 };
@@ -67,15 +67,16 @@ export const grey: Lesson = {
   id: "grey",
   title: "One grey light is not enough",
   gist: "Under a single grey light, a whole curve of normals explains each pixel, and a bump can look like a dent.",
-  formula: () => block(logS(), mo("="), predicted(), comma(), mi("j"), mo("="), mn("1")),
+  formula: () => block(logS(), mo("="), shading(), comma(), mi("j"), mo("="), mn("1")),
   formulaWords: "One colour gives one equation. The unit normal has two unknowns.",
   text: [
+    "From here to lesson 7 the whole object has one albedo. Its logarithm is then a constant, which {M} includes.",
     "A normal has two degrees of freedom; grey light gives one equation. The normals that explain one pixel therefore form a curve, the dark line in the cost map. The pixel alone does not determine where on that line the true normal lies.",
     "The picture as a whole is ambiguous, too. Rotate every normal by half a turn about the line of sight, and a bump becomes a dent. Rotate the lamp by the same angle, and every pixel keeps its brightness. This is why craters in photographs sometimes look like hills.",
-    "The reason is that rotating a second-order light gives another second-order light. If the light is unknown, colour does not resolve the ambiguity; only a known light or a depth map does.",
+    "The reason is that rotating a second-order light gives another second-order light. If the light is unknown, colour does not resolve the ambiguity. A known light does, and so does a depth map. Cast shadows, occluding contours and the assumption that light comes from above help as well.",
   ],
   tasks: [
-    "Move the lamp of the dent from 0° to 180°. At 180° the two pictures are the same, and the difference falls to almost zero.",
+    "Move the lamp of the dent from 0° to 180°. At 180° the two pictures are the same, and the difference falls to zero.",
     "Flatten the bump. Then the two pictures cannot differ.",
     "Drag the pixel on the bump and watch how the dark curve moves.",
   ],
@@ -115,8 +116,7 @@ export const colours: Lesson = {
   id: "colours",
   title: "Three colours",
   gist: "Three coloured lights give three equations for two unknowns, and only a few normals remain.",
-  formula: () =>
-    block(sum(mi("j")), sup(row(mo("("), logS(), mo("−"), predicted(), mo(")")), mn("2")), mo("→"), mi("min")),
+  formula: () => block(colourTerm(), mo("→"), mi("min")),
   formulaWords:
     "Minimise the sum over the three colours of the squared difference between the measured and the predicted logarithm.",
   text: [

@@ -2,33 +2,24 @@
 
 import type { Lesson } from "../lesson";
 import { LIGHTS } from "../lesson";
-import { block, frac, log, mi, mn, mo, row, sub, sup, symbol } from "../maths";
+import { LARGEST_TURN, LEAST_OVERLAP } from "../protocol";
+import { block, frac, log, mi, mn, mo, row, shading, sub, sup, symbol } from "../maths";
 
 export const paint: Lesson = {
   id: "paint",
   title: "Shadows and paint",
-  gist: "The image model ignores shadows and assumes a single albedo. Chromaticity separates albedo from shading; shadows are treated as outliers.",
-  formula: () =>
-    block(
-      log(symbol("S")),
-      mo("="),
-      symbol("a"),
-      mo("+"),
-      sup(symbol("n"), mi("⊤")),
-      symbol("M"),
-      symbol("n"),
-      mo("+"),
-      symbol("e"),
-    ),
-  formulaWords: "Log intensity is log albedo plus shading plus a remainder.",
+  gist: "The image model ignores shadows and assumes one albedo. Chromaticity separates paint from shading, but not from shadow.",
+  formula: () => block(log(symbol("S")), mo("="), symbol("aj"), mo("+"), shading(), mo("+"), symbol("ej")),
+  formulaWords: "The log intensity of colour j is its log albedo plus its shading plus a remainder.",
   text: [
-    "Print is not shape. A model with a single albedo would interpret every painted edge as a fold. So once the pose has converged, the program tests whether a few different albedos explain the picture better: each pixel has the shading of its measured normal plus one of a few offsets {a}. The evidence in the picture decides how many albedos there are.",
-    "Chromaticity decides: coloured paint changes red, green and blue by different amounts, while shading under whitish light changes them almost equally. Grey paint is much harder to separate, and so is any paint under light of many colours.",
-    "A cast shadow violates the model, because the light there is different. Robust weights reduce the influence of such pixels on light and pose. A hard shadow edge can still be mistaken for paint, and the inside of the shadow stays in the remainder {e}.",
+    "Print is not shape. A model with a single albedo would interpret every painted edge as a fold. So once the pose has converged, the program tests whether a few different albedos explain the picture better: each pixel has the shading of its measured normal plus one of a few offsets {aj}, one number for each colour. The evidence in the picture decides how many albedos there are.",
+    "Chromaticity decides: coloured paint changes red, green and blue by different amounts, while shading under whitish light changes them almost equally. Grey paint is harder to separate, and any paint is harder to separate under light of many colours.",
+    "A cast shadow violates the model, because the light there is different. But a shadow that darkens red, green and blue by the same factor has the same effect on a pixel as dark paint, so the program takes nearly all of it for albedo. The remainder {ej} is largest at the edge of the shadow, where robust weights reduce the influence of the pixels. The estimated albedo then follows the shadow as well as the paint, and the status does not warn of it.",
   ],
   tasks: [
     "Raise the strength of the paint. It appears in the albedo and disappears from the shading.",
-    "Remove the paint and deepen the shadow. Part of it appears in the albedo, the rest in the remainder.",
+    "Remove the paint and deepen the shadow. Nearly all of it appears in the albedo, and its edge in the remainder.",
+    "Deepen the shadow with the paint at 0.8. The correlation of albedo and paint falls, but the status is still converged.",
     "Choose the coloured lamps: chromaticity is now less informative, and the normals get worse.",
   ],
   controls: [
@@ -39,6 +30,7 @@ export const paint: Lesson = {
   readouts: [
     { key: "likeness", label: "Correlation of estimated albedo and paint", digits: 3, ink: "albedo" },
     { key: "degrees", label: "Mean error of the normals", unit: "°", digits: 1, ink: "normal" },
+    { key: "taken", label: "Share of the shadow in the albedo", unit: "%", digits: 0, ink: "albedo" },
     { key: "lit", label: "Remainder in the light", digits: 3, ink: "error" },
     { key: "shaded", label: "Remainder in the shadow", digits: 3, ink: "error" },
     { key: "status", label: "Status" },
@@ -50,6 +42,15 @@ export const paint: Lesson = {
       ["10.1109/TPAMI.2014.2377712", "Barron and Malik, Shape, illumination, and reflectance from shading, 2015"],
     ],
   },
+};
+
+const percent = (value: number): string => `${Math.round(value)}%`;
+/** The meaning of the slider in each case, as the figure computes with it. */
+const AMOUNTS: Readonly<Record<string, { label: string; reads(value: number): string }>> = {
+  symmetry: { label: "Part of the nose removed", reads: percent },
+  overlap: { label: "Width of the depth map", reads: (value) => percent(100 - (1 - LEAST_OVERLAP) * value) },
+  texture: { label: "Strength of the print", reads: percent },
+  turn: { label: "Rotation between the views", reads: (value) => `${((LARGEST_TURN * value) / 100).toFixed(1)}°` },
 };
 
 export const failure: Lesson = {
@@ -65,16 +66,16 @@ export const failure: Lesson = {
   formulaWords:
     "The variance of the rotation is about the variance of the noise divided by the information that the scene contains about the rotation.",
   text: [
-    "Here nothing is given: light and pose are both unknown, and the search starts from scratch. The report at the end contains more than a pose: a status, a reason, a sigma of the rotation, and alternative poses that fit the image equally well.",
+    "Here nothing is given: light and pose are both unknown, and the search starts from scratch. The report at the end contains more than a pose: a status, a reason, a sigma of the rotation, and alternative poses that fit the image equally well. “Ambiguous” and “lost” do not mean that the pose is wrong. They mean that the data do not show that it is right.",
     "Symmetry: a round object looks the same when it is rotated about its axis. No method can detect that rotation. Little overlap: if the depth map covers only a narrow strip, a few normals have to explain everything. Texture: fine print that changes from pixel to pixel hides the shading. A large turn: the cameras share less and less of the object, and they see the shared part at a grazing angle.",
     "Compare the true error, which is known here because the scene is synthetic, with the reported sigma and status. A good method is allowed to fail. It should not be confident when it does.",
     "The reported sigma is that of the rotation about its least certain axis; the degrees quoted in a status are also one sigma. Above 1.5° the status is ambiguous, because two sigmas then exceed the 3° within which a pose counts as found. Above 5° it is lost: a rotation this uncertain is useless. Above 25° the rotation counts as not observable. A status can have other reasons: it is ambiguous if other poses fit the image equally well, and lost if too much of the colours remains unexplained.",
   ],
   tasks: [
-    "Symmetry: remove the nose of the disc. At 100 % the rotation cannot be seen, and the report names the axis.",
-    "Overlap: find the share at which the status stops being converged.",
+    "Symmetry: remove the nose of the disc. At 100 % the rotation cannot be determined, and the report names the axis.",
+    "Overlap: narrow the depth map and find the width at which the status stops being converged.",
     "Texture: with the print at 100 %, more of the colour stays unexplained than with none, and the rotation is so uncertain that the status is lost. It names the axis.",
-    "A quarter turn: at 90° and with a narrow depth map, little remains to compare.",
+    "A large turn: at 90° and with a narrow depth map, little remains to compare.",
   ],
   controls: [
     {
@@ -89,7 +90,16 @@ export const failure: Lesson = {
       ],
       initial: "overlap",
     },
-    { kind: "slider", key: "amount", label: "Amount", min: 0, max: 100, step: 5, initial: 0, unit: "%" },
+    {
+      kind: "slider",
+      key: "amount",
+      label: ({ case: what }) => AMOUNTS[String(what)]?.label ?? "Amount",
+      reads: (value, { case: what }) => AMOUNTS[String(what)]?.reads(value) ?? `${value}%`,
+      min: 0,
+      max: 100,
+      step: 5,
+      initial: 0,
+    },
   ],
   readouts: [
     { key: "status", label: "Status" },

@@ -2,13 +2,7 @@
 
 import type { Lesson } from "../lesson";
 import { LIGHTS } from "../lesson";
-import { block, lines, log, mi, mn, mo, norm, row, sub, sum, sup, symbol } from "../maths";
-
-const colourTerm = () =>
-  row(
-    sum(mi("j")),
-    sup(row(mo("("), log(symbol("S")), mo("−"), sup(symbol("n"), mi("⊤")), symbol("M"), symbol("n"), mo(")")), mn("2")),
-  );
+import { block, colourTerm, lines, mi, mn, mo, norm, row, sub, sup, symbol } from "../maths";
 
 export const pose: Lesson = {
   id: "pose",
@@ -22,7 +16,7 @@ export const pose: Lesson = {
     "A photograph and a depth map look nothing alike, so there are no features to match. The image model links them: the depth map's normals {m}, rotated by the pose's rotation {R}, must explain the colours. Under a wrong pose they do not, and a residual remains. The curve shows the residual for errors about the vertical axis.",
     "Joint registration minimises this residual; if the light is unknown, light and pose are estimated together. It needs an initial pose within some 20 to 30 degrees. If nothing is known, a search comes first: it scores a coarse grid over all rotations and passes the best ones to the registration.",
     "“Register from there” gives the registration an initial pose. The given pose is trusted within a tolerance: the result has to lie within 30° of it and may move the centre of the object by about the object's width. If no pose within the tolerance explains the colours better, the given pose is kept and the status is ambiguous.",
-    "The last map shows the cost of one pixel over all normals, with the prior that the depth map gives under the present pose. The ring marks the prior, the dots mark the minima, and the line shows the solver's steps from the prior. A small {lambda} leaves several minima. With a larger one they merge into one near the prior. This helps if the pose is right and hurts if it is wrong. The robust prior is a compromise: a prior that is far off is ignored.",
+    "The last map shows the cost of one pixel over all normals, with the prior that the depth map gives under the present pose. The ring marks the prior, the dots mark the minima, and the line shows the solver's steps from the prior. A small {lambda} leaves several minima. With a larger one they merge into one near the prior. If the pose is right, the prior is near the true normal, and so is that minimum. If the pose is wrong, the minimum moves away from the true normal. The robust prior is a compromise: a prior that is far off is ignored.",
   ],
   tasks: [
     "Move the pose away from 0° and watch the residual rise and the two surfaces separate.",
@@ -94,19 +88,7 @@ export const sensor: Lesson = {
         mi("μ"),
         norm(row(symbol("z"), mo("−"), symbol("d"))),
         mo("+"),
-        sum(mi("j")),
-        sup(
-          row(
-            mo("("),
-            log(symbol("S")),
-            mo("−"),
-            sup(sub(symbol("n"), symbol("z")), mi("⊤")),
-            symbol("M"),
-            sub(symbol("n"), symbol("z")),
-            mo(")"),
-          ),
-          mn("2"),
-        ),
+        colourTerm(() => sub(symbol("N"), symbol("z"))),
         mo(","),
       ),
       block(
@@ -119,7 +101,7 @@ export const sensor: Lesson = {
     "A weight mu times the squared distance between the refined and the measured depth, plus the cost of the colours for the normals of the refined depth. Mu is the variance of the shading over that of the sensor.",
   text: [
     "A depth sensor is right on the large scale and noisy on the small one. Shading is the opposite: it gives slopes from pixel to pixel and drifts over long distances. The two complement each other.",
-    "Once the pose is known, the refinement finds a depth {z} that stays near the measured depth {d} and whose normals explain the colours. The weight μ is not tuned by hand: it is the variance of the shading over that of the sensor, both measured from the data. Holes are filled where the colour camera sees the surface. Normals gain most, because differences between neighbouring pixels amplify noise.",
+    "Once the pose is known, the refinement finds a depth {z} that stays near the measured depth {d} and whose normals explain the colours. The weight μ is not tuned by hand: it is the variance of the shading over that of the sensor, both measured from the data. Holes are filled where the colour camera sees the surface. Noise spoils the normals most, because differences between neighbouring pixels amplify it. Without any noise the normals are still about 4° off: the depth map of this figure is only 64 pixels wide, too coarse for the fine shape of the face. With twice as many pixels 1° is left.",
     "Parts that the picture does not show stay as measured: the side facing away from the camera, and parts in shadow.",
   ],
   tasks: [

@@ -2,7 +2,7 @@
 
 import type { Lesson } from "../lesson";
 import { LIGHTS } from "../lesson";
-import { block, comma, frac, log, mi, mn, mo, norm, row, sub, sum, sup, symbol } from "../maths";
+import { block, colourTerm, comma, frac, mi, mo, norm, row, sub, symbol } from "../maths";
 
 const n = (index: string) => sub(symbol("n"), mi(index));
 const change = (axis: string) => frac(row(mi("∂"), symbol("z")), row(mi("∂"), mi(axis)));
@@ -30,8 +30,8 @@ export const surface: Lesson = {
     "Bias: noise tilts normals at random, but the result is not only noisy. A slope is the tangent of a tilt, so a normal tilted too far adds more slope than a normal tilted too little removes. The errors do not cancel: steep flanks come out too steep, and the dome has more than 100 % of its true relief. Normals that would face away from the camera are clipped, which offsets part of the bias.",
   ],
   tasks: [
-    "Raise the step. The estimated height across it falls short of the true one.",
-    "Switch the robust weights off and on at a step of 6 px: the error of the depth falls with them.",
+    "Switch the robust weights off and raise the step. The estimated height falls short of the true one by more than half.",
+    "Switch the robust weights on at a step of 6 px: the error of the depth falls.",
     "Let the step cut the plate in two: robust or not, its height is wrong, because nothing in the slopes determines it.",
     "Set the step to 0 and raise the noise: the dome comes out too high.",
   ],
@@ -63,28 +63,18 @@ export const prior: Lesson = {
   id: "prior",
   title: "A depth map from elsewhere",
   gist: "Where a depth map gives a normal as well, the pixel prefers a normal near it.",
-  formula: () =>
-    block(
-      sum(mi("j")),
-      sup(
-        row(mo("("), log(symbol("S")), mo("−"), sup(symbol("n"), mi("⊤")), symbol("M"), symbol("n"), mo(")")),
-        mn("2"),
-      ),
-      mo("+"),
-      symbol("lambda"),
-      norm(row(symbol("n"), mo("−"), symbol("m"))),
-    ),
+  formula: () => block(colourTerm(), mo("+"), symbol("lambda"), norm(row(symbol("n"), mo("−"), symbol("m")))),
   formulaWords:
     "The cost of the colours plus lambda times the squared distance between the normal and the one that the depth map gives.",
   text: [
     "A second camera measures depth. If its pose is known, each of its points lands on a pixel and brings a normal {m}. That normal enters the cost as a prior with the weight {lambda}: of all normals that explain the colours, choose one near {m}.",
-    "This is the paper's Figure 5. The light is known, the picture has 2 % noise, and a share of the pixels, chosen at random, is given the true normal. All other pixels have only their colours. The surface improves with the share, at first more than proportionally. Pixels without a prior gain, too, because all pixels share the exposure of the picture, and a few given normals determine it.",
+    "This is the paper's Figure 5. The light is known except for the exposure of the picture, the picture has 2 % noise, and a share of the pixels, chosen at random, is given the true normal. All other pixels have only their colours. The surface improves with the share, at first more than proportionally. Pixels without a prior gain, too, because all pixels share the exposure, and a few given normals determine it.",
     "With too small a weight the prior is ignored; with a very large one the result copies the depth map and ignores the picture. Here the prior is perfect, so a large weight does no harm. A real depth map is noisy and lacks fine detail.",
   ],
   tasks: [
     "Move the share from 0 to 100 % and watch the curve being computed.",
     "Choose the coloured lamps: the prior is hardly needed.",
-    "Set λ to its minimum: the given normals hardly count.",
+    "Set λ to its minimum, 0: the error is about as large as without a prior.",
   ],
   controls: [
     { kind: "slider", key: "share", label: "Pixels with a prior", min: 0, max: 100, step: 1, initial: 20, unit: "%" },
@@ -102,6 +92,7 @@ export const prior: Lesson = {
   ],
   readouts: [
     { key: "degrees", label: "Mean error of the normals", unit: "°", digits: 2, ink: "error" },
+    { key: "others", label: "Those without a prior", unit: "°", digits: 2, ink: "error" },
     { key: "depth", label: "Error of the depth (rms)", unit: "px", digits: 2, ink: "error" },
     { key: "pixels", label: "Pixels with a prior", digits: 0, ink: "prior" },
   ],

@@ -143,6 +143,18 @@ const VEHICLES: readonly Row[] = [
     exported: "`print` of the message",
   },
   {
+    product: "A2D2",
+    file: "`cams_lidars.json`",
+    modules: ["a2d2"],
+    reader: "a calibration of A2D2",
+    sample: "a2d2",
+    reads: "cameras",
+    warnings: ["distortion-guessed", "pose-left-out"],
+    taken: "Cameras of the pictures before they are undistorted. Views of the sensors are left out.",
+    guessed: "That the pictures are not undistorted, with a warning.",
+    exported: DOWNLOAD,
+  },
+  {
     product: "Argoverse",
     file: "`vehicle_calibration_info.json`",
     modules: ["argoverse"],

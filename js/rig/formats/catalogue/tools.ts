@@ -245,8 +245,9 @@ const ROBOTS: readonly Row[] = [
     sample: "static-transform",
     reads: "poses",
     warnings: [],
-    taken: "Each transform: the child in its parent, by angles (yaw pitch roll) or a quaternion (x y z w).",
-    guessed: NOTHING,
+    taken:
+      "Each transform: the child in its parent, by angles (yaw pitch roll) or a quaternion (x y z w). Comments are skipped.",
+    guessed: "That conditions (`if`, `unless`) hold, with a warning. Computed numbers (`$(arg x)`) are refused.",
     exported: "The file itself",
   },
   {

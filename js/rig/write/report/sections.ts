@@ -6,7 +6,7 @@ import { fixed, measure, percent, span } from "./numbers.js";
 import { cell, clamped, fact, firstOf, section, sign, table } from "./parts.js";
 import { sigmasOf, valuesOf } from "./unknowns.js";
 import { SIGMAS_95 } from "./curves.js";
-import { inWords, verdictOf, verdictReason, verdictWords, wordOf } from "./words.js";
+import { placeInWords, verdictOf, verdictReason, verdictWords, wordOf } from "./words.js";
 
 /** What the first page has room for. */
 const [MOST_WARNINGS, MOST_OTHERS] = [3, 2];
@@ -44,7 +44,7 @@ const isKnown = ({ rotation, translation }: Placed): boolean =>
 /** Where the poses put the depth camera: the calibration in question, and the best fit. */
 function places({ estimate }: Checked, given: Calibration | undefined): Markup[] {
   const all = [["The calibration in question", given] as const, ["The best fit", estimate] as const];
-  return all.flatMap(([name, pose]) => (pose && isKnown(pose) ? [html`<p>${name}: ${inWords(pose)}</p>`] : []));
+  return all.flatMap(([name, pose]) => (pose && isKnown(pose) ? [html`<p>${name}: ${placeInWords(pose)}</p>`] : []));
 }
 
 type Placed = Pick<Calibration, "rotation" | "translation">;

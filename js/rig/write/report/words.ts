@@ -1,7 +1,11 @@
 /** The verdict and the place of a camera in words, for the report and for the page beside it. */
 import type { CheckReport, CheckVerdict } from "../../../types/index.js";
-import { degreesOf } from "../../formats/poses.js";
+import { degreesOf, isOfScan } from "../../formats/poses.js";
 import type { Checked } from "./contents.js";
+
+import { isBackwards } from "../../formats/frames.js";
+
+export { isBackwards, isOfScan };
 
 const WORDS: Readonly<Record<CheckVerdict, string>> = { consistent: "Consistent", off: "Off", undecided: "Undecided" };
 
@@ -38,9 +42,6 @@ const [LEAST_SHIFT, LEAST_TURN] = [0.05, 0.005];
 
 type Motion = Pick<CheckReport["estimate"], "rotation" | "translation">;
 
-/** Whether a pose is for points in a LiDAR's axes: two cameras that see the same thing look nearly along one axis z. */
-export const isOfScan = ({ rotation }: Motion): boolean => (rotation[8] ?? 1) < Math.SQRT1_2;
-
 /** Rotations of cameras that look along an axis of a LiDAR whose z points up. */
 const AHEAD: readonly [axis: string, rotation: readonly number[]][] = [
   ["x", [0, -1, 0, 0, 0, -1, 1, 0, 0]],
@@ -59,14 +60,14 @@ function heading({ rotation }: Motion): string {
 }
 
 /** Where the depth camera or LiDAR sits relative to the colour camera, so that one can compare it with the rig. */
-export function inWords({ rotation, translation }: Motion, isLidar = false): string {
+export function placeInWords({ rotation, translation }: Motion, isLidar = false): string {
   const parts = translation
     .map((metres, axis) => ({ mm: 1000 * metres, words: SIDES[axis]?.[metres < 0 ? 1 : 0] ?? "" }))
     .filter(({ mm }) => Math.abs(mm) >= LEAST_SHIFT)
     .sort((a, b) => Math.abs(b.mm) - Math.abs(a.mm))
     .map(({ mm, words }) => `${Math.abs(mm).toFixed(1)} mm ${words}`);
   const degrees = degreesOf(rotation);
-  const isScan = isLidar && isOfScan({ rotation, translation });
+  const isScan = isLidar && isOfScan({ rotation });
   if (!isScan && degrees < LEAST_TURN && parts.length === 0) return "The two cameras coincide: no offset, no rotation.";
   const last = parts.pop();
   const place = last === undefined ? "in the same position as" : [parts.join(", "), last].filter(Boolean).join(" and ");

@@ -1,0 +1,348 @@
+// Statements of the lessons and exercises that their figures must confirm.
+//
+// In the words of a claim, [rises|falls] lists the words that the text might use, and [#] stands for a number. `holds` computes from the
+// figure which word or number is right.
+import { normalDegrees } from "../../protocols/measure-shapes.mjs";
+import { figure, labRun } from "./lesson-figures.mjs";
+import { Estimator, init, sample, shadeNormals } from "./support.mjs";
+
+await init();
+
+/** The word for a change from one number to another. */
+const change = (from, to, [more, less]) => (to > from ? more : less);
+const claim = (where, words, holds) => ({ where, words, holds });
+const numberOf = (state, key) => figure(state)[key];
+const statusOf = (state) => figure(state).status;
+
+/** Status words without the reason. */
+const wordOf = (state) => statusOf(state).split(":")[0];
+
+/** First coefficients of the three channels, and the first one of the second order within a channel. */
+const CHANNELS = [0, 9, 18];
+const SECOND = 4;
+const NORMAL = [0.3, -0.4, -Math.sqrt(0.75)];
+
+const pixel = [
+  claim(
+    "pixel",
+    "nine coefficients for each colour, [#] in all",
+    () => sample({ surface: "bust", light: "window", size: 16 }).light.length,
+  ),
+  claim("pixel", "Second-order terms have the [same value|opposite value] on opposite sides", () => {
+    const { light } = sample({ surface: "bust", light: "colourful", size: 16 });
+    const second = light.map((value, at) =>
+      CHANNELS.some((from) => at >= from + SECOND && at < from + 9) ? value : 0,
+    );
+    const [here, there] = [1, -1].map((sign) =>
+      shadeNormals(
+        second,
+        Float32Array.from(NORMAL, (part) => sign * part),
+      ),
+    );
+    return here.every((value, at) => Math.abs(value - there[at]) < 1e-6) ? "same value" : "opposite value";
+  }),
+  claim("pixel", "The same normal now has a [different|brighter red] colour", () =>
+    ["red", "green", "blue"].some((key) => Math.abs(numberOf("pixel&beta=60", key) - numberOf("pixel", key)) > 0.1)
+      ? "different"
+      : "brighter red",
+  ),
+  claim("pixel", "All three curves move [down|up] by the same amount", () => {
+    const moves = ["red", "green", "blue"].map((key) => numberOf("pixel&albedo=0.5", key) - numberOf("pixel", key));
+    const isSame = moves.every((move) => Math.abs(move - Math.log(0.5)) < 1e-5);
+    return isSame ? change(0, moves[0], ["up", "down"]) : "apart";
+  }),
+];
+
+const turns = [0, 45, 90, 135, 180];
+const grey = [
+  claim("grey", "At [#]° the two pictures are the same", () => {
+    const differences = turns.map((turn) => numberOf(`grey&turn=${turn}`, "difference"));
+    return turns[differences.indexOf(Math.min(...differences))];
+  }),
+  claim("grey", "the difference [falls|rises] to zero", () =>
+    numberOf("grey&turn=180", "difference") < 1e-4 && numberOf("grey", "difference") > 0.1 ? "falls" : "rises",
+  ),
+  claim("grey", "Then the two pictures [cannot|always] differ", () =>
+    turns.every((turn) => numberOf(`grey&height=0&turn=${turn}`, "difference") < 1e-6) ? "cannot" : "always",
+  ),
+  claim("grey", "every pixel [keeps|loses] its brightness", () =>
+    numberOf("grey&turn=180", "difference") < 1e-4 ? "keeps" : "loses",
+  ),
+];
+
+const colours = [
+  claim("colours", "The dark curve [shrinks|grows] to a few spots", () =>
+    change(numberOf("colours&colour=0", "explained"), numberOf("colours&colour=1", "explained"), ["grows", "shrinks"]),
+  ),
+  claim("colours", "and the error of the normals [falls|rises]", () =>
+    change(numberOf("colours&colour=0", "degrees"), numberOf("colours&colour=1", "degrees"), ["rises", "falls"]),
+  ),
+  claim("colours", "window light at full colour: the curve stays [long|short]", () =>
+    numberOf("colours&colour=1&light=window", "explained") > 10 * numberOf("colours&colour=1", "explained")
+      ? "long"
+      : "short",
+  ),
+  claim("colours", "compare how much the error [grows|shrinks] under each light", () => {
+    const grows = ["colourful", "window", "overcast"].map((light) =>
+      change(
+        numberOf(`colours&colour=1&light=${light}`, "degrees"),
+        numberOf(`colours&colour=1&light=${light}&noise=0.05`, "degrees"),
+        ["grows", "shrinks"],
+      ),
+    );
+    return new Set(grows).size === 1 ? grows[0] : "differs";
+  }),
+  claim("colours", "a little noise moves the lowest point by [tens|tenths] of degrees", () =>
+    numberOf("colours&colour=1&light=window&noise=0.03", "degrees") > 20 ? "tens" : "tenths",
+  ),
+  claim("colours", "Then [no|some] normal explains it within 2 %", () =>
+    numberOf("colours&light=overcast&colour=0.7&noise=0.05&px=0.82&py=0.8", "explained") === 0 ? "no" : "some",
+  ),
+];
+
+const surface = [
+  claim("surface", "But slopes are [blind|sensitive] to a step", () =>
+    Math.abs(numberOf("surface&step=8&through=1", "jump")) < 0.1 ? "blind" : "sensitive",
+  ),
+  claim("surface", "The normals of both are [unaffected|changed] by it", () =>
+    Math.abs(numberOf("surface&step=8&through=1", "jump") - numberOf("surface&step=4&through=1", "jump")) < 0.1
+      ? "unaffected"
+      : "changed",
+  ),
+  claim("surface", "The estimated height [falls short of|exceeds] the true one by more than half", () => {
+    const shares = [3, 6, 12].map((step) => numberOf(`surface&step=${step}&robust=0`, "jump") / step);
+    return shares.every((share) => share < 0.5) ? "falls short of" : "exceeds";
+  }),
+  claim("surface", "at a step of 6 px: the error of the depth [falls|rises]", () =>
+    change(numberOf("surface&step=6&robust=0", "error"), numberOf("surface&step=6", "error"), ["rises", "falls"]),
+  ),
+  claim("surface", "robust or not, its height is [wrong|right]", () =>
+    [0, 1].every((robust) => numberOf(`surface&through=1&robust=${robust}`, "jump") < 1) ? "wrong" : "right",
+  ),
+  claim("surface", "the dome has [more|less] than 100 % of its true relief", () =>
+    change(100.5, numberOf("surface&step=0&noise=0.1", "kept"), ["more", "less"]),
+  ),
+  claim("surface", "the dome comes out too [high|low]", () =>
+    change(100.5, numberOf("surface&step=0&noise=0.2", "kept"), ["high", "low"]),
+  ),
+];
+
+const prior = [
+  claim("prior", "The surface [improves|gets worse] with the share", () => {
+    const errors = [0, 20, 50, 100].map((share) => numberOf(`prior&share=${share}`, "degrees"));
+    return errors.every((error, at) => at === 0 || error < errors[at - 1]) ? "improves" : "gets worse";
+  }),
+  claim("prior", "at first [more|less] than proportionally", () => {
+    const [none, some, all] = [0, 20, 100].map((share) => numberOf(`prior&share=${share}`, "degrees"));
+    return change(0.2 * (none - all), none - some, ["more", "less"]);
+  }),
+  claim("prior", "Pixels without a prior [gain|lose], too", () =>
+    change(numberOf("prior&share=0", "others"), numberOf("prior&share=20", "others"), ["lose", "gain"]),
+  ),
+  claim("prior", "the prior is [hardly|always] needed", () => {
+    const [none, all] = [0, 100].map((share) => numberOf(`prior&share=${share}&light=colourful`, "degrees"));
+    return none - all < 0.1 * none ? "hardly" : "always";
+  }),
+  claim("prior", "the error is about [as large as|half of that] without a prior", () =>
+    Math.abs(numberOf("prior&weight=-4", "degrees") / numberOf("prior&share=0", "degrees") - 1) < 0.1
+      ? "as large as"
+      : "half of that",
+  ),
+  claim("prior", "with a very large one the result [copies|contradicts] the depth map", () =>
+    numberOf("prior&share=100&weight=1", "degrees") < 0.2 ? "copies" : "contradicts",
+  ),
+];
+
+const pose = [
+  claim("pose", "Move the pose away from 0° and watch the residual [rise|fall]", () => {
+    const away = [-30, -14, 0, 14, 30].map((offset) => numberOf(`pose&offset=${offset}`, "residual"));
+    const isValley = away[0] > away[1] && away[1] > away[2] && away[2] < away[3] && away[3] < away[4];
+    return isValley ? "rise" : "fall";
+  }),
+  claim("pose", "A small {lambda} leaves [several minima|one minimum]", () =>
+    [0, 20].every((offset) => numberOf(`pose&offset=${offset}&weight=-3`, "minima") > 1)
+      ? "several minima"
+      : "one minimum",
+  ),
+  claim("pose", "With a larger one they [merge into one|split]", () =>
+    [0, 20].every((offset) => numberOf(`pose&offset=${offset}&weight=0`, "minima") === 1) ? "merge into one" : "split",
+  ),
+  claim("pose", "until the minima of the pixel have [merged|split]", () =>
+    [0, 20].every((offset) => numberOf(`pose&offset=${offset}&weight=0`, "minima") === 1) ? "merged" : "split",
+  ),
+  claim("pose", "If the pose is right, the prior is [near|far from] the true normal", () =>
+    ["off", "end"].every((key) => numberOf("pose&offset=0&weight=0", key) < 4) ? "near" : "far from",
+  ),
+  claim("pose", "the minimum moves [away from|toward] the true normal", () =>
+    change(numberOf("pose&offset=20&weight=-3", "end"), numberOf("pose&offset=20&weight=0", "end"), [
+      "away from",
+      "toward",
+    ]),
+  ),
+  claim("pose", "a prior that is far off is [ignored|followed]", () =>
+    numberOf("pose&offset=40&weight=-1.3&robust=1", "end") < 0.3 * numberOf("pose&offset=40&weight=-1.3", "end")
+      ? "ignored"
+      : "followed",
+  ),
+  claim("pose", "so the given pose is [kept|left] and the status is ambiguous.", () =>
+    Math.abs(numberOf("pose&offset=40&run=register", "error") - 40) < 0.01 ? "kept" : "left",
+  ),
+  claim("pose", "so the given pose is kept and the status is [ambiguous|converged|lost].", () =>
+    wordOf("pose&offset=40&run=register"),
+  ),
+  claim(
+    "pose",
+    "Let it register from 20° away, then from 40°: the true pose lies [beyond|within] the tolerance",
+    () => {
+      const isNear = [20, -20].every((offset) => numberOf(`pose&offset=${offset}&run=register`, "error") < 1);
+      return isNear && numberOf("pose&offset=40&run=register", "error") > 30 ? "beyond" : "within";
+    },
+  ),
+];
+
+/** Mean error of the normals of a depth map without noise, whose side has this many pixels. */
+function floorOf(size) {
+  const { image, depth, pose, truth } = sample({ surface: "bust", light: "colourful", size, angles: { beta: 15 } });
+  const estimator = new Estimator(image, depth, { start: pose, scale: 1, registration: "fixed" });
+  const error = normalDegrees(estimator.depthNormals(), truth.depthNormals);
+  estimator.free();
+  return error;
+}
+
+const sensor = [
+  claim("sensor", "Without any noise the normals are still about [#]° off", () => floorOf(64)),
+  claim("sensor", "With twice as many pixels [#]° is left", () => floorOf(128)),
+  claim("sensor", "The measured normals become [rough|smooth]; the refined ones stay smooth", () =>
+    numberOf("sensor&noise=1", "normalsBefore") > 1.5 * numberOf("sensor", "normalsBefore") ? "rough" : "smooth",
+  ),
+  claim("sensor", "The measured normals become rough; the refined ones stay [smooth|rough]", () =>
+    numberOf("sensor&noise=1", "normalsAfter") < 1.2 * numberOf("sensor", "normalsAfter") ? "smooth" : "rough",
+  ),
+  claim("sensor", "it is less informative, and the refined depth gets [worse|better]", () =>
+    change(numberOf("sensor", "after"), numberOf("sensor&picture=0.2", "after"), ["worse", "better"]),
+  ),
+];
+
+const paint = [
+  claim("paint", "It [appears in|stays out of] the albedo and", () =>
+    numberOf("paint&paint=1", "likeness") > 0.8 ? "appears in" : "stays out of",
+  ),
+  claim("paint", "[Nearly all|Hardly any] of it appears in the albedo", () =>
+    [0.5, 0.9].every((shadow) => numberOf(`paint&paint=0&shadow=${shadow}`, "taken") > 90)
+      ? "Nearly all"
+      : "Hardly any",
+  ),
+  claim("paint", "takes [nearly all|a small part] of it for albedo", () =>
+    numberOf("paint&shadow=0.9", "taken") > 90 ? "nearly all" : "a small part",
+  ),
+  claim("paint", "The remainder {ej} is [largest|smallest] at the edge of the shadow", () => {
+    const { rim, inside, lit } = figure("paint&paint=0&shadow=0.9");
+    return rim > inside && rim > lit ? "largest" : "smallest";
+  }),
+  claim("paint", "The correlation of albedo and paint [falls|rises]", () =>
+    change(numberOf("paint", "likeness"), numberOf("paint&shadow=0.9", "likeness"), ["rises", "falls"]),
+  ),
+  claim("paint", "but the status is still [converged|ambiguous|lost]", () => wordOf("paint&shadow=0.9")),
+  claim("paint", "chromaticity is now [less|more] informative", () =>
+    change(numberOf("paint", "likeness"), numberOf("paint&light=colourful", "likeness"), ["more", "less"]),
+  ),
+  claim("paint", "and the normals get [worse|better]", () =>
+    change(1.05 * numberOf("paint", "degrees"), numberOf("paint&light=colourful", "degrees"), ["worse", "better"]),
+  ),
+];
+
+const failure = [
+  claim("failure", "At 100 % the rotation [cannot|can] be determined, and the report names the axis", () =>
+    /rotation about z is not observable/.test(statusOf("failure&case=symmetry&amount=100")) ? "cannot" : "can",
+  ),
+  claim("failure", "the width at which the status [stops|starts] being converged", () =>
+    wordOf("failure") === "converged" && wordOf("failure&amount=100") !== "converged" ? "stops" : "starts",
+  ),
+  claim("failure", "with the print at 100 %, [more|less] of the colour stays unexplained than with none", () =>
+    change(numberOf("failure&case=texture", "residual"), numberOf("failure&case=texture&amount=100", "residual"), [
+      "more",
+      "less",
+    ]),
+  ),
+  claim("failure", "the rotation is so uncertain that the status is [lost|ambiguous|converged]", () =>
+    wordOf("failure&case=texture&amount=100"),
+  ),
+  claim("failure", "at 90° and with a narrow depth map, [little|much] remains to compare", () =>
+    numberOf("failure&case=turn&amount=100", "sigma") > 5 * numberOf("failure&case=turn", "sigma") ? "little" : "much",
+  ),
+  // A rotation counts as found within 3 degrees.
+  claim("failure", "“Ambiguous” and “lost” do [not|always] mean that the pose is wrong", () =>
+    wordOf("failure&case=turn&amount=75") !== "converged" && numberOf("failure&case=turn&amount=75", "error") < 3
+      ? "not"
+      : "always",
+  ),
+];
+
+/** Error of the solver in the states of exercise 4. */
+const solver = (offset, weight, robust = 0) =>
+  numberOf(`pose&offset=${offset}&weight=${weight}&robust=${robust}`, "end");
+const MERGE = "When minima merge";
+/** Weights whose logarithm the slider has, from the left. */
+const WEIGHTS = [-3, -2.5, -2, -1.75, -1.5, -1.3, -1, 0, 1];
+
+const merging = [
+  claim(MERGE, "a single minimum is left from about λ = [#]", () => {
+    const isSingle = (weight) =>
+      [0, 20].every((offset) => numberOf(`pose&offset=${offset}&weight=${weight}`, "minima") === 1);
+    return 10 ** WEIGHTS.find((weight, at) => WEIGHTS.slice(at).every(isSingle) && isSingle(weight));
+  }),
+  claim(MERGE, "With the right pose the prior is [#]° off", () => numberOf("pose&offset=0", "off")),
+  claim(MERGE, "With the pose 20° off the prior is [#]° off", () => numberOf("pose&offset=20", "off")),
+  claim(MERGE, "at every λ: [#]° off at 0.001", () => solver(0, -3)),
+  claim(MERGE, "1.9° off at 0.001, [#]° at 0.05", () => solver(0, -1.3)),
+  claim(MERGE, "2.2° at 0.05, [#]° at 10", () => solver(0, 1)),
+  claim(MERGE, "The solver then ends [#]° off at 0.001", () => solver(20, -3)),
+  claim(MERGE, "2.4° off at 0.001, but [#]° at 0.05", () => solver(20, -1.3)),
+  claim(MERGE, "at 10 the pixel simply [repeats|ignores] the prior", () =>
+    Math.abs(solver(20, 1) - numberOf("pose&offset=20", "off")) < 2 ? "repeats" : "ignores",
+  ),
+  claim(MERGE, "So with a wrong pose the [smallest|largest] λ is the best one", () => {
+    const errors = [-3, -2, -1.3, -1, 0, 1].map((weight) => solver(20, weight));
+    return errors.every((error, at) => at === 0 || error > errors[at - 1]) ? "smallest" : "largest";
+  }),
+  claim(MERGE, "so here it helps a little: [#]° off at 0.05", () => solver(20, -1.3, 1)),
+];
+
+const STEP = "The step that cannot be seen";
+const step = [
+  claim(STEP, "the path around: [#] of 8 px instead of", () => numberOf("surface&step=8&robust=1", "jump")),
+  claim(STEP, "of 8 px instead of [#].", () => numberOf("surface&step=8&robust=0", "jump")),
+  claim(STEP, "Slopes alone do [not|well] determine the height", () =>
+    Math.abs(numberOf("surface&step=8&through=1", "jump")) < 1 ? "not" : "well",
+  ),
+];
+
+const HIDDEN = "A rotation that cannot be seen";
+const overlaps = [0.3, 0.25, 0.2, 0.16, 0.125];
+const hidden = [
+  claim(HIDDEN, "The residual is as [small|large] as for a good pose", () =>
+    numberOf("failure&case=symmetry&amount=100", "residual") < 1.2 * numberOf("failure&case=symmetry", "residual")
+      ? "small"
+      : "large",
+  ),
+  claim(HIDDEN, "the sigma grows [before|after] the error does", () => {
+    const runs = overlaps.map((overlap) => labRun({ overlap }));
+    const firstOf = (key) => runs.findIndex((run) => run[key] > 1.5);
+    return firstOf("sigma") < firstOf("error") ? "before" : "after";
+  }),
+  claim(HIDDEN, "converged at an overlap of [#]", () => overlaps.findLast(isGood)),
+  claim(HIDDEN, "ambiguous at [#] and", () => overlaps.find((overlap) => labRun({ overlap }).status === "ambiguous")),
+  claim(HIDDEN, "and lost at [#].", () => overlaps.find((overlap) => labRun({ overlap }).status === "lost")),
+];
+
+function isGood(overlap) {
+  const { status, error } = labRun({ overlap });
+  return status === "converged" && error < 1;
+}
+
+const bump = [claim("Bump or dent", "At [#]°. A dent has", () => grey[0].holds())];
+
+export const claims = [
+  ...[pixel, grey, colours, surface, prior, pose, sensor, paint, failure],
+  ...[bump, step, merging, hidden],
+].flat();

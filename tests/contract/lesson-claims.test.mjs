@@ -1,0 +1,90 @@
+// The texts of the lessons and the answers of the exercises, against what their figures compute.
+import assert from "node:assert/strict";
+import { describe, test } from "node:test";
+import { claims } from "./lesson-claims.mjs";
+import { exercises, lessons } from "./lesson-figures.mjs";
+import { LONG } from "./long.mjs";
+
+/** All sentences of a lesson, or of an exercise, under the name that a claim gives it. */
+const texts = new Map([
+  ...lessons.map(({ id, gist, text, tasks }) => [id, [gist, ...text, ...tasks].join("\n")]),
+  ...exercises.map(({ title, question, answer }) => [title, [question, ...answer].join("\n")]),
+]);
+
+/** The claim's words as a pattern with one group, and the words that the text might use instead. */
+function patternOf({ words }) {
+  const escaped = (part) => part.replace(/[.*+?^${}()|[\]\\]/g, "\\$&");
+  const [before, options, after] = /^(.*)\[(.*)\](.*)$/s.exec(words).slice(1);
+  const choices = options === "#" ? undefined : options.split("|");
+  const group = choices ? choices.map(escaped).join("|") : "\\d+(?:\\.\\d+)?";
+  return { choices, pattern: new RegExp(`${escaped(before)}(${group})${escaped(after)}`) };
+}
+
+/** What the text says in the claim's place. */
+function saidIn(text, claim) {
+  const { pattern } = patternOf(claim);
+  const found = pattern.exec(text);
+  assert.ok(found, `"${claim.words}" is not in the text of ${claim.where}`);
+  return found[1];
+}
+
+/** A number is right up to one unit of its last digit. */
+function bears(said, right) {
+  if (typeof right !== "number") return said === right;
+  const digits = said.split(".")[1]?.length ?? 0;
+  return Math.abs(Number(said) - right) <= 1.001 * 10 ** -digits;
+}
+
+/** The text with this claim turned round. */
+function turned(text, claim) {
+  const { choices, pattern } = patternOf(claim);
+  const said = saidIn(text, claim);
+  const other = choices ? choices.find((word) => word !== said) : String(2 * Number(said) + 3);
+  return text.replace(pattern, (all) => all.replace(said, other));
+}
+
+function check(text, claim) {
+  const [said, right] = [saidIn(text, claim), claim.holds()];
+  assert.ok(bears(said, right), `${claim.where}: "${claim.words}" says ${said}, and the figure ${right}`);
+}
+
+/** Lessons whose figures take over three seconds. */
+const SLOW = new Set(["prior", "pose", "failure", "When minima merge", "A rotation that cannot be seen"]);
+
+describe("what the text says, the figure shows", () => {
+  for (const where of new Set(claims.map((claim) => claim.where)))
+    test(where, SLOW.has(where) ? LONG : {}, () => {
+      for (const claim of claims.filter((each) => each.where === where)) {
+        check(texts.get(where), claim);
+        assert.throws(() => check(turned(texts.get(where), claim), claim), assert.AssertionError, claim.words);
+      }
+    });
+});
+
+/** Tasks that only say what to do. */
+const INSTRUCTIONS = [
+  "Drag on the ball.",
+  "Drag the pixel on the bump and watch",
+  "Move the share from 0",
+  "Cut holes into the depth map",
+  "Let it search from scratch.",
+];
+
+test("each lesson has claims, and each of its tasks has one unless it only says what to do", () => {
+  for (const { id, tasks } of lessons) {
+    const own = claims.filter(({ where }) => where === id);
+    assert.ok(own.length >= 3, id);
+    for (const task of tasks) {
+      const isClaimed = own.some((claim) => patternOf(claim).pattern.test(task));
+      assert.ok(isClaimed || INSTRUCTIONS.some((words) => task.startsWith(words)), `${id}: ${task}`);
+    }
+  }
+});
+
+test("each answer with a measured number has a claim", () => {
+  for (const { title, answer } of exercises) {
+    const numbers = answer.join(" ").match(/\d+\.\d+(?=°| of| px)/g) ?? [];
+    const own = claims.filter(({ where }) => where === title);
+    assert.ok(numbers.length === 0 || own.length >= numbers.length, title);
+  }
+});
