@@ -1,15 +1,15 @@
-/** What every .wasm of the package needs: its code compiled, and the border that every call crosses. */
+/** Code that every .wasm of the package needs: it compiles the module, and every call into wasm goes through it. */
 import { BimodalError, translate } from "./errors.js";
 import { nodeModule } from "./node.js";
 import type { WasmSource } from "./types/index.js";
 
-/** The bytes of a file in Node, whose fetch cannot read files; nothing if the address is not that of a file. */
+/** The bytes of a file in Node, whose fetch cannot read files; undefined if the address is not that of a file. */
 function fromDisk(wasm: string | URL | Request | Response): Promise<BufferSource> | undefined {
   const address = typeof wasm === "string" || wasm instanceof URL ? String(wasm) : "";
   return address.startsWith("file:") ? nodeModule("node:fs/promises")?.readFile(new URL(address)) : undefined;
 }
 
-/** Advice for the case that a bundler has not copied a .wasm. */
+/** Advice for the error that occurs if a bundler has not copied a .wasm. */
 const ADVICE =
   "Bundlers that do not follow new URL(.., import.meta.url) do not copy the package's .wasm files. Copy them next to the bundle, " +
   "which must be an ES module, or pass their address to init(url). The package's README has the line for each bundler";
@@ -37,13 +37,13 @@ export async function compile(where: () => WasmSource): Promise<WebAssembly.Modu
   if (!response.ok) throw leftBehind(`status ${response.status} at ${response.url}`);
   // Servers of single-page applications answer unknown addresses with their page.
   if (type.startsWith("text/html")) throw leftBehind(`an HTML page is at ${response.url}`);
-  // Only what is declared as wasm may be compiled while it arrives.
+  // Only a response declared as wasm can be compiled while it downloads.
   return type.startsWith("application/wasm")
     ? WebAssembly.compileStreaming(response)
     : WebAssembly.compile(await response.arrayBuffer());
 }
 
-/** Runs a call into wasm; its errors come out as `BimodalError`. */
+/** Runs a call into wasm and turns its errors into `BimodalError`. */
 export function across<T>(call: () => T): T {
   try {
     return call();
@@ -52,7 +52,7 @@ export function across<T>(call: () => T): T {
   }
 }
 
-/** Loads a .wasm once, when it is first asked for; a failed one may be repeated. */
+/** Loads a .wasm once, on first use; after a failure it can be loaded again. */
 export function lazily(field: string, start: () => Promise<unknown>): () => Promise<void> {
   let loading: Promise<unknown> | undefined;
   return async () => {

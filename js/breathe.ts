@@ -1,4 +1,4 @@
-/** Lets events, timers and drawing happen. A message instead of a timer: timers wait 4 ms, hidden pages 1 s. */
+/** Lets events, timers and drawing run. It waits for a message, because timers wait 4 ms, or 1 s in hidden pages. */
 export function breathe(): Promise<void> {
   return new Promise((resume) => {
     const { port1, port2 } = new MessageChannel();

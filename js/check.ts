@@ -1,6 +1,6 @@
 /**
- * How names and types are checked before wasm sees them, because a misspelt key or a string for a number would pass in
- * silence or fail without a name. What lies in rasters is checked in Rust.
+ * Checks names and types before wasm reads them. A misspelt key or a string in place of a number would otherwise be ignored or cause an
+ * error without a name. Values in rasters are checked in Rust.
  */
 import { BimodalError, refused } from "./errors.js";
 import type { NumberRow } from "./rows.js";
@@ -17,7 +17,7 @@ function kind(value: unknown): string {
   return typeof value;
 }
 
-/** `index` is that of an entry, where a single one is of another type. */
+/** `index` is that of the wrong entry, if only one entry has another type. */
 export const wrong = (field: string, expected: string, value: unknown, index?: number) =>
   new BimodalError("type", `${field}: must be ${expected}, not ${kind(value)}`, field, refused(value, index));
 
@@ -32,7 +32,7 @@ export const flag: Check = (value, field) => {
 /** The range of a number in words. */
 function range({ kind, min, above, max, below, unit = "" }: NumberRow): string {
   const what = kind === "number" ? "a finite number" : "a whole number";
-  // A unit follows a number, not a zero in words.
+  // A unit follows a number, but not the word "zero".
   const end = unit && (max ?? below ?? above ?? min) ? ` ${unit}` : "";
   // A number between two limits is always finite.
   if (min && max) return `${kind === "number" ? "a number" : what} from ${min} to ${max}${end}`;
@@ -42,7 +42,7 @@ function range({ kind, min, above, max, below, unit = "" }: NumberRow): string {
   return what + from + to + end;
 }
 
-/** A number in its range. JavaScript has one type for all numbers, the numerics have none for halves and infinities. */
+/** A number in its range. JavaScript has one type for all numbers; the numerics do not accept fractions or infinities everywhere. */
 export const ranged =
   (row: NumberRow): Check =>
   (value, field) => {
@@ -55,7 +55,7 @@ export const ranged =
     throw new BimodalError(code, `${field}: must be ${range(row)} (got ${value})`, field, refused(value));
   };
 
-/** A list of this many numbers, typed arrays included. Its length is checked first, so that a longer list is not copied. */
+/** A list of this many numbers, or a typed array. Its length is checked first, so that a longer list is not copied. */
 export const numbers =
   (count: number): Check =>
   (value, field) => {
@@ -83,7 +83,7 @@ export type ArrayType = { readonly name: string; new (length: number): ArrayBuff
 
 const TYPED_ARRAY: object = Object.getPrototypeOf(Uint8Array.prototype);
 
-/** Whether a typed array has the length that it reports: the numerics allocate that length, then copy the data. */
+/** Whether a typed array has the length that it reports: the numerics allocate that length before they copy the data. */
 function hasItsLength(value: object): boolean {
   try {
     return Reflect.get(TYPED_ARRAY, "length", value) === Reflect.get(value, "length");
@@ -92,7 +92,7 @@ function hasItsLength(value: object): boolean {
   }
 }
 
-/** Whether a typed array without entries has lost them: copying from a lost one is an error, from an empty one it is not. */
+/** Whether the memory of an empty typed array was transferred: copying from such an array is an error. */
 function isLost(value: ArrayLike<number>): boolean {
   try {
     new Uint8Array(0).set(value);
@@ -180,10 +180,10 @@ export const object =
     }
   };
 
-/** Beyond it the numerics, which count in 32 bits, would take another number for it; their own limits are far below. */
+/** The numerics count in 32 bits and would read a larger number wrongly; their limits are far lower. */
 export const side = ranged({ kind: "side", min: 0, max: 2 ** 32 - 1 });
 
-/** An image and a depth map but for their cameras. */
+/** An image and a depth map without their cameras. */
 export const IMAGE = {
   width: side,
   height: side,

@@ -8,7 +8,7 @@ let loading: Promise<void> | undefined;
 let module: WebAssembly.Module | undefined;
 let memory: WebAssembly.Memory | undefined;
 
-/** A function of the numerics. The bindings would otherwise keep a failed start for good. */
+/** A function of the numerics. Otherwise the bindings would keep a failed start forever. */
 const OWN = "sample";
 
 async function loadOnce(where: () => WasmSource): Promise<void> {
@@ -25,7 +25,7 @@ async function loadOnce(where: () => WasmSource): Promise<void> {
   }
 }
 
-/** Loads the module once; later calls share the first one, and a failed one may be repeated. */
+/** Loads the module once; later calls share it, and a failed load can be repeated. */
 export function load(where: () => WasmSource): Promise<void> {
   loading ??= loadOnce(where);
   return loading;
@@ -50,7 +50,7 @@ function isFull(): boolean {
   }
 }
 
-/** Turns an error of the numerics into that of the contract: a call that crashed when memory was full lacked memory. */
+/** Turns an error of the numerics into a `BimodalError`. If a call crashed and memory was full, memory was the cause. */
 export function explained(error: unknown): unknown {
   if (!isPanic(error) || !isFull()) return translate(error);
   const message = "image: there is no memory left for this pair; free() estimators that are no longer needed";

@@ -36,7 +36,7 @@ export class BimodalError extends Error {
   constructor(code: ErrorCode, message: string, field?: string, options?: BimodalErrorOptions) {
     super(message, options);
     this.code = code;
-    // Absent rather than undefined, so that `"field" in error` is right.
+    // Absent rather than undefined, so that `"field" in error` works.
     if (field !== undefined) this.field = field;
     if (options?.index !== undefined) this.index = options.index;
     if (options?.value !== undefined) this.value = options.value;
@@ -44,7 +44,7 @@ export class BimodalError extends Error {
   }
 }
 
-/** What else an error can carry. */
+/** Further members of an error. */
 interface BimodalErrorOptions extends ErrorOptions {
   index?: number | undefined;
   value?: number | undefined;
@@ -58,12 +58,12 @@ export interface ErrorDetails {
   /** What is wrong with it, without its name. */
   readonly reason?: string;
   /**
-   * "too-large": it exceeds a limit of the readers; "picture": an image in a format that browsers read and these readers do not;
-   * "disparity": by its name it holds disparities or inverse depths, which the option `inverse` reads; "kind": its name or its numbers
-   * are those of another kind of file, and the option `as` overrides that.
+   * "too-large": it exceeds a limit of the readers; "picture": its format is an image that browsers can read and these readers cannot;
+   * "disparity": its name says that it holds disparities or inverse depths, which the option `inverse` reads; "kind": its name or its
+   * numbers suggest another kind of file, and the option `as` overrides that.
    */
   readonly problem?: "too-large" | "picture" | "disparity" | "kind";
-  /** What its name or its numbers show, without the remedy, if its kind is the problem. */
+  /** What its name or its numbers suggest, without the remedy, if its kind is the problem. */
   readonly finding?: string;
   /** Its columns, if its size is the problem. */
   readonly width?: number;
@@ -91,7 +91,7 @@ export const badFile = (message: string, cause?: unknown, details?: ErrorDetails
 export const badNamed = (name: string, reason: string, cause?: unknown, details?: ErrorDetails): BimodalError =>
   badFile(`${name}: ${reason}`, cause, { ...details, file: name, reason });
 
-/** How errors cross from wasm: plain data. */
+/** An error as it comes from wasm: plain data. */
 interface Crossing {
   code: ErrorCode;
   field: string;

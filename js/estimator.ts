@@ -32,7 +32,7 @@ function isContext(value: unknown): boolean {
   return (Own !== undefined && value instanceof Own) || (Offscreen !== undefined && value instanceof Offscreen);
 }
 
-/** An input made plain; checked before, for keys that are unknown, and after, for members that are inherited. */
+/** An input as a plain object. It is checked before this for unknown keys, and afterwards for inherited members. */
 function checked<T, Plain>(check: (value: unknown) => void, plain: (input: T) => Plain, input: T): Plain {
   check(input);
   const own = plain(input);
@@ -42,11 +42,11 @@ function checked<T, Plain>(check: (value: unknown) => void, plain: (input: T) =>
 
 /** The input of an estimator. */
 export interface Given {
-  /** The colour image, its camera as members. */
+  /** The colour image, with its camera as members. */
   image: ColorImage;
-  /** The depth map, its camera as members. */
+  /** The depth map, with its camera as members. */
   depth: DepthMap;
-  /** The options, an initial pose as members. */
+  /** The options, with an initial pose as members. */
   options: Options;
 }
 
@@ -168,7 +168,7 @@ export class Estimator {
     this.#begin();
   }
 
-  /** What the environment lacks and the estimator does without: "workers-unavailable" if no other thread could be started. */
+  /** Features that are missing in this environment: "workers-unavailable" if no other thread could be started. */
   get warnings(): readonly EstimatorWarning[] {
     return this.#warnings;
   }
@@ -265,8 +265,7 @@ export class Estimator {
   }
 
   /**
-   * Which registration the pose is of. For the project's own tests, and no part of the contract.
-   * @internal
+   * The registration that found the pose. For the project's tests only, not part of the contract. @internal
    */
   get registeredBy(): string {
     return this.#call((raw) => raw.registeredBy());
@@ -320,7 +319,7 @@ export class Estimator {
     const estimator = unusable(() => new Estimator(image, depth, options));
     try {
       yield* estimator.#repeat(reached);
-      // How far a search has come in so many slices depends on how many threads share it.
+      // How many slices a search has completed depends on the number of threads that share it.
       const isWithinSearch = reached.stage === "search" && !reached.ended;
       if (!isWithinSearch && checksumOf(estimator) !== found) throw otherNumbers();
       return estimator;
@@ -336,7 +335,7 @@ export class Estimator {
     this.#raw = undefined;
     this.#searchWorkers?.end();
     this.#refinementWorker?.end();
-    // A crashed one cannot be freed: wasm-bindgen still counts it as borrowed by the call that crashed.
+    // A crashed estimator cannot be freed: wasm-bindgen still counts it as borrowed by the call that crashed.
     if (!this.#broken) raw?.free();
   }
 
@@ -345,7 +344,7 @@ export class Estimator {
     this.free();
   }
 
-  /** Warned once: without other threads an estimator takes longer and finds the same. */
+  /** Warns once: without other threads an estimator takes longer, but finds the same result. */
   #warn(reason: unknown): void {
     if (this.#warnings.length > 0) return;
     const message = `options.workers: no other thread could be started (${reason instanceof Error ? reason.message : String(reason)}); this thread does all the work`;
@@ -362,8 +361,8 @@ export class Estimator {
   }
 
   /**
-   * The refinement worker is started with the first iteration, because it takes its time to get ready. Not with the paper's
-   * registration, which changes the pose in every iteration: a refinement for the pose before would be of no use.
+   * The refinement worker starts with the first iteration, because it needs time to get ready. It does not start with the paper's
+   * registration, which changes the pose in every iteration, so that a refinement for the previous pose would be useless.
    */
   #share(): void {
     if (this.#options.registration !== "icp") this.#refinementWorker?.begin(this.#options);

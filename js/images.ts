@@ -1,8 +1,8 @@
 /**
- * Colour images from whatever a program holds: addresses and files, elements and bitmaps of a page, bytes.
+ * Colour images from any source that a program has: addresses and files, elements and bitmaps of a page, bytes.
  *
- * Files are read by the readers of rigs, which keep 16 bits, follow colour profiles and orientation, and are loaded when the first file
- * comes in. What they do not know is the browser's.
+ * The readers for rigs read files. They keep 16 bits, follow colour profiles and orientation, and are loaded with the first file. The
+ * browser reads all other formats.
  */
 import { brief, object, signal, wrong } from "./check.js";
 import { BimodalError, badNamed } from "./errors.js";
@@ -55,7 +55,7 @@ async function bytesOf(source: ImageSource, signal: AbortSignal | undefined): Pr
   return undefined;
 }
 
-/** What an error calls a source that is a file: its path, its address, or the name that a page's `File` has. */
+/** What an error calls a source that is a file: its path, its address, or the name of a page's `File`. */
 function nameOf(source: ImageSource): string {
   // An address may hold the whole picture.
   if (typeof source === "string" || source instanceof URL)
@@ -67,7 +67,7 @@ const canDraw = (): boolean => typeof createImageBitmap === "function" && typeof
 
 async function decoded(bytes: Uint8Array, name: string, signal: AbortSignal | undefined): Promise<ColorImage> {
   if (bytes.length === 0) throw badNamed(name, "it is empty");
-  // GIF, AVIF and whatever else a browser shows.
+  // GIF, AVIF and all other formats that a browser shows.
   if (kindOf(bytes) === undefined && canDraw()) return shown(bytes, name);
   const { readRigFile } = await import("./rig/read.js");
   const reading = await readRigFile({ name, bytes }, { as: "colour", ...(signal && { signal }) });

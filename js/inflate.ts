@@ -1,15 +1,15 @@
-/** Inflates zlib data, up to the expected length: the file's declaration bounds memory and time. */
+/** Inflates zlib data up to the expected length, so that the length that the file declares bounds memory and time. */
 import { Inflate, Unzlib } from "fflate";
 import { badFile } from "./errors.js";
 
 /** Bytes given to the decoder at a time. */
 const PIECE = 16_384;
-/** Deflate makes so many bytes of one at most. */
+/** Most bytes that deflate makes of one byte. */
 const MOST_OF_ONE = 1032;
 
 class TooLong extends Error {}
 
-/** Up to `most` bytes of what `bytes` inflate to, or the reason why not; `Stream` handles the header around them. */
+/** Inflates `bytes` to at most `most` bytes, or returns the reason for a failure; `Stream` handles the header. */
 export function inflateUpTo(
   bytes: Uint8Array,
   most: number,
@@ -34,7 +34,7 @@ export function inflateUpTo(
   return out.subarray(0, length);
 }
 
-/** .. where it has to be exactly so many. */
+/** Inflates zlib data that must have exactly this length. */
 function exactly(bytes: Uint8Array, length: number, what: string, Stream: typeof Unzlib | typeof Inflate): Uint8Array {
   if (length > MOST_OF_ONE * bytes.length)
     throw badFile(`${what} is cut off: ${bytes.length} bytes cannot inflate to the ${length} that it declares`);
@@ -46,6 +46,6 @@ function exactly(bytes: Uint8Array, length: number, what: string, Stream: typeof
 export const inflateExactly = (bytes: Uint8Array, length: number, what: string): Uint8Array =>
   exactly(bytes, length, what, Unzlib);
 
-/** .. of deflate without zlib's header, as ZIP archives have it. */
+/** Inflates deflate data without zlib's header, as ZIP archives store them. */
 export const inflateRaw = (bytes: Uint8Array, length: number, what: string): Uint8Array =>
   exactly(bytes, length, what, Inflate);

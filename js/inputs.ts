@@ -1,4 +1,4 @@
-/** Checks the loop's inputs: names, types, and what the rows of the options say. */
+/** Checks the loop's inputs: names, types, and the rules in the rows of the options. */
 import { camera } from "./cameras.js";
 import {
   type Check,
@@ -66,7 +66,7 @@ const nameOr =
     if (typeof value !== "string") other(value, field);
   };
 
-/** A check of what a matrix becomes. */
+/** A check of the value that a matrix is converted to. */
 const of =
   (members: (value: unknown, field: string) => unknown, check: Check): Check =>
   (value, field) =>

@@ -5,7 +5,7 @@ import { bindings } from "./engine.js";
 import type { PixelLandscape, PixelLandscapeRequest } from "./types/index.js";
 
 const light = numbers(27);
-/** A logarithm of a colour, or a coordinate of a normal: the squares of what is farther from zero say nothing. */
+/** The largest logarithm of a colour or coordinate of a normal; the squares of larger numbers carry no information. */
 const part = ranged({ kind: "number", min: -1e6, max: 1e6 });
 const three: Check = (value, field) => {
   numbers(3)(value, field);
@@ -27,7 +27,7 @@ const landscape = object(
   ["log", "light"],
 );
 
-/** From x, y, z of each normal to all x, all y, all z, as the numerics have them. */
+/** From x, y, z of each normal to all x, then all y, then all z, which is the order of the numerics. */
 function planes(interleaved: Float32Array): Float32Array {
   normals(interleaved, "normals");
   const count = Math.floor(interleaved.length / 3);

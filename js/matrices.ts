@@ -1,6 +1,6 @@
 /**
- * Poses as 4x4 matrices and cameras as 3x3 ones, as most programs hold them, turned into the members that the numerics read. Whether a
- * rotation is orthonormal and a focal length above zero is judged where all poses and cameras are.
+ * Converts poses as 4x4 matrices and cameras as 3x3 matrices, as most programs store them, into the members that the numerics read. The
+ * code that checks all poses and cameras checks whether a rotation is orthonormal and a focal length is above zero.
  */
 import { isObject, wrong } from "./check.js";
 import { BimodalError, refused } from "./errors.js";
@@ -21,7 +21,7 @@ const at = (values: Numbers, index: number): number => values[index] ?? NaN;
 
 const isMatrix = (value: unknown): value is Matrix3 | Matrix4 => Array.isArray(value) || ArrayBuffer.isView(value);
 
-/** What a factor of one becomes where a matrix was stored in single precision. */
+/** Largest deviation of a factor of one in a matrix that was stored in single precision. */
 const ROUNDING = 1e-6;
 const near = (value: number, expected: number): boolean => Math.abs(value - expected) <= ROUNDING;
 
@@ -62,7 +62,7 @@ export function determinant(r: Numbers): number {
 export function anglesOf(r: Numbers): Pose["angles"] {
   const degrees = 180 / Math.PI;
   const beta = Math.atan2(at(r, 2), Math.hypot(at(r, 0), at(r, 1)));
-  // Looking along an axis only alpha + gamma is seen: all of it is given to alpha.
+  // At the pole only alpha + gamma is determined; all of it is assigned to alpha.
   const locked = Math.hypot(at(r, 0), at(r, 1)) < 1e-9;
   const alpha = locked ? Math.atan2(at(r, 7), at(r, 4)) : Math.atan2(-at(r, 5), at(r, 8));
   return {
@@ -98,13 +98,13 @@ export function poseOf(value: unknown, field: string): unknown {
   if (!isObject(value) || !("matrix" in value)) return value;
   const { matrix, ...members } = value;
   if (matrix === undefined) return members;
-  // A pose of a report has both, and whoever changed its rotation meant that.
+  // A reported pose has both members. If its rotation was changed, the rotation counts.
   if ("rotation" in value && value.rotation !== undefined) return Object.hasOwn(value, "matrix") ? members : value;
   if (!isMatrix(matrix)) throw wrong(`${field}.matrix`, "a 4x4 matrix", matrix);
   return { ...members, ...ofMatrix4(matrix as Matrix4, `${field}.matrix`) };
 }
 
-/** A pose with all members, its angles among them: those of a matrix, or its own. */
+/** A pose with all members including its angles, either from a matrix or from its members. */
 export function wholePoseOf(value: unknown, field: string): Pose {
   const pose = poseOf(value, field);
   const isWhole = !isObject(pose) || "angles" in pose || !("rotation" in pose);

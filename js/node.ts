@@ -1,4 +1,4 @@
-/** What Node has and browsers lack. */
+/** Functions that Node has and browsers lack. */
 
 interface Modules {
   "node:fs/promises": typeof import("node:fs/promises");
@@ -6,8 +6,8 @@ interface Modules {
 }
 
 /**
- * A module of Node's own; undefined in a browser. It is asked for by name at run time and not imported: bundlers for
- * browsers follow every import, even one that no browser reaches, and fail on Node's modules or replace them by empty ones.
+ * A module of Node; undefined in a browser. It is loaded by name at run time instead of imported: bundlers for browsers follow every
+ * import, even one that no browser reaches, and fail on Node's modules or replace them by empty ones.
  */
 export const nodeModule = <K extends keyof Modules>(name: K): Modules[K] | undefined =>
   globalThis.process?.getBuiltinModule?.(name) as Modules[K] | undefined;

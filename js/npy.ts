@@ -26,28 +26,38 @@ const MOST_CHANNELS = 4;
 
 export const isNpy = (bytes: Uint8Array): boolean => [...MAGIC].every((letter, i) => bytes[i] === letter.charCodeAt(0));
 
+type Whole = Int8Array | Int16Array | Int32Array | Uint32Array | BigInt64Array | BigUint64Array;
+/** The elements as they are stored. */
+type Stored = Pixels | Float64Array | Whole;
+
 interface Kind {
   /** Bytes of an element. */
   size: number;
   /** `count` elements of aligned memory in this machine's order. */
-  read: (memory: ArrayBuffer, count: number) => Pixels;
+  read: (memory: ArrayBuffer, count: number) => Stored;
 }
 
-const floats = (values: ArrayLike<number>): Float32Array => new Float32Array(values);
 const KINDS: Record<string, Kind> = {
   f2: { size: 2, read: (memory, count) => Float32Array.from(new Uint16Array(memory, 0, count), half) },
   f4: { size: 4, read: (memory, count) => new Float32Array(memory, 0, count) },
-  f8: { size: 8, read: (memory, count) => floats(new Float64Array(memory, 0, count)) },
-  i1: { size: 1, read: (memory, count) => floats(new Int8Array(memory, 0, count)) },
-  i2: { size: 2, read: (memory, count) => floats(new Int16Array(memory, 0, count)) },
-  i4: { size: 4, read: (memory, count) => floats(new Int32Array(memory, 0, count)) },
-  i8: { size: 8, read: (memory, count) => Float32Array.from(new BigInt64Array(memory, 0, count), Number) },
+  f8: { size: 8, read: (memory, count) => new Float64Array(memory, 0, count) },
+  i1: { size: 1, read: (memory, count) => new Int8Array(memory, 0, count) },
+  i2: { size: 2, read: (memory, count) => new Int16Array(memory, 0, count) },
+  i4: { size: 4, read: (memory, count) => new Int32Array(memory, 0, count) },
+  i8: { size: 8, read: (memory, count) => new BigInt64Array(memory, 0, count) },
   u1: { size: 1, read: (memory, count) => new Uint8Array(memory, 0, count) },
   u2: { size: 2, read: (memory, count) => new Uint16Array(memory, 0, count) },
-  u4: { size: 4, read: (memory, count) => floats(new Uint32Array(memory, 0, count)) },
-  u8: { size: 8, read: (memory, count) => Float32Array.from(new BigUint64Array(memory, 0, count), Number) },
+  u4: { size: 4, read: (memory, count) => new Uint32Array(memory, 0, count) },
+  u8: { size: 8, read: (memory, count) => new BigUint64Array(memory, 0, count) },
   b1: { size: 1, read: (memory, count) => new Uint8Array(memory, 0, count) },
 };
+
+/** Types that a raster does not have become 32-bit floats. */
+function pixelsOf(stored: Stored): Pixels {
+  if (stored instanceof Uint8Array || stored instanceof Uint16Array || stored instanceof Float32Array) return stored;
+  if (stored instanceof BigInt64Array || stored instanceof BigUint64Array) return Float32Array.from(stored, Number);
+  return new Float32Array(stored);
+}
 
 /** What to do about types that are not read. */
 function refusal(type: string): string {
@@ -65,7 +75,7 @@ function swap(body: Uint8Array, size: number): void {
 }
 
 /** Converts data from column order (the first index runs fastest) to row order. */
-function inRows<T extends Pixels>(data: T, height: number, width: number, channels: number): T {
+function inRows<T extends Pixels | number[]>(data: T, height: number, width: number, channels: number): T {
   const rows = data.slice() as T;
   for (let row = 0; row < height; row++) {
     for (let column = 0; column < width; column++) {
@@ -93,16 +103,20 @@ interface Shape {
   isChannelFirst: boolean;
 }
 
-/** Rows, columns and channels of a shape; axes of length 1 around an image count for nothing. */
-function shapeOf(listed: string): Shape {
+function axesOf(listed: string): number[] {
   const parts = listed
     .split(",")
     .map((part) => part.trim())
     .filter((part) => part !== "");
-  // Nothing but digits: Number() would also take "2.5", "-2" and "0x2".
+  // Digits only: Number() would also accept "2.5", "-2" and "0x2".
   if (!parts.every((axis) => /^[0-9]+$/.test(axis) && Number(axis) > 0))
     throw bad(`this .npy file has the shape (${listed.trim()}); whole numbers above zero are needed`);
-  const axes = parts.map(Number);
+  return parts.map(Number);
+}
+
+/** Rows, columns and channels of some axes; those of length 1 around an image are ignored. */
+function shapeOf(all: readonly number[]): Shape {
+  const axes = all.slice();
   // Batch and channel of a tensor.
   if (axes.length === 4 && axes[0] === 1 && axes[1] === 1) axes.splice(0, 2);
   while (axes.length > 3 && axes[0] === 1) axes.shift();
@@ -128,7 +142,7 @@ interface Header {
   kind: Kind;
   isBigEndian: boolean;
   byColumns: boolean;
-  shape: Shape;
+  axes: number[];
   /** Where the data begin. */
   end: number;
 }
@@ -148,11 +162,32 @@ function headerOf(bytes: Uint8Array): Header {
   if (kind === undefined) throw bad(refusal(written));
   const columns = /'fortran_order': (True|False)/.exec(header)?.[1];
   if (!columns) throw bad("this .npy file has no fortran_order");
-  const shape = shapeOf(/'shape': \(([^)]*)\)/.exec(header)?.[1] ?? "");
-  return { type, kind, isBigEndian: order === ">", byColumns: columns === "True", shape, end };
+  const axes = axesOf(/'shape': \(([^)]*)\)/.exec(header)?.[1] ?? "");
+  return { type, kind, isBigEndian: order === ">", byColumns: columns === "True", axes, end };
 }
 
-/** Two or three planes without a value below zero are not a cloud; with values above 1 they are not colours either. */
+/** So many elements in the order in which they are stored. */
+function elementsOf(bytes: Uint8Array, { kind, isBigEndian, end }: Header, count: number): Stored {
+  // A copy, because typed arrays need aligned memory; the slice of a Node Buffer would be only a view.
+  const body = new Uint8Array(bytes.subarray(end));
+  if (body.byteLength < count * kind.size)
+    throw bad(`this .npy file is cut off: ${body.byteLength} of ${count * kind.size} bytes`);
+  if (isBigEndian && kind.size > 1) swap(body, kind.size);
+  return kind.read(body.buffer, count);
+}
+
+/** An array of at most two axes and so many numbers, as those of a calibration, row by row; undefined for others, of which `axes` tells. */
+export function readSmall(bytes: Uint8Array, most: number): { axes: number[]; values?: number[] } {
+  const header = headerOf(bytes);
+  const axes = header.axes.filter((length, at, all) => length > 1 || all.length <= 2 || at < 1);
+  const count = axes.reduce((product, length) => product * length, 1);
+  if (axes.length > 2 || count > most) return { axes };
+  const [height = 1, width = 1] = axes;
+  const values = Array.from<number | bigint, number>(elementsOf(bytes, header, count), Number);
+  return { axes, values: header.byColumns ? inRows(values, height, width, 1) : values };
+}
+
+/** Two or three planes without negative values are not a cloud; with values above 1 they are not colours either. */
 const isStack = (data: Pixels): boolean =>
   !data.some((value) => value < 0) && data.some((value) => value > 1 && value < Infinity);
 
@@ -161,15 +196,10 @@ const isStack = (data: Pixels): boolean =>
  * than 16 bits become 32-bit floats.
  */
 export function readNpy(bytes: Uint8Array): Raster<Pixels> & { type: string } {
-  const { type, kind, isBigEndian, byColumns, shape, end } = headerOf(bytes);
-  const { height, width, channels, isChannelFirst } = shape;
-  const count = height * width * channels;
-  // A copy, because typed arrays need aligned memory; the slice of a Node Buffer would be only a view.
-  const body = new Uint8Array(bytes.subarray(end));
-  if (body.byteLength < count * kind.size)
-    throw bad(`this .npy file is cut off: ${body.byteLength} of ${count * kind.size} bytes`);
-  if (isBigEndian && kind.size > 1) swap(body, kind.size);
-  const read = kind.read(body.buffer, count);
+  const header = headerOf(bytes);
+  const { type, kind, byColumns } = header;
+  const { height, width, channels, isChannelFirst } = shapeOf(header.axes);
+  const read = pixelsOf(elementsOf(bytes, header, height * width * channels));
   if (!isChannelFirst)
     return { width, height, channels, type, data: byColumns ? inRows(read, height, width, channels) : read };
   if ((channels === 2 || channels === 3) && kind.size > 1 && isStack(read))

@@ -1,15 +1,15 @@
 /**
- * The options, one row for each member of `Options` and of `SampleRequest`: type, range, default, unit, and the
- * page's words. The checks of this facade, its plain copies and the page's fields are all made from these rows, in their
- * order. Defaults and ranges are those of `src/options.rs` and `src/scenes/sample.rs`, which judge what native callers
- * give; `tests/contract/options.test.mjs` holds that they agree.
+ * The options, one row for each member of `Options` and of `SampleRequest`: type, range, default, unit, and the page's words. The checks of
+ * this facade, its plain copies and the page's fields are all made from these rows, in their order. Defaults and ranges are those of
+ * `src/options.rs` and `src/scenes/sample.rs`, which check what native callers give; `tests/contract/options.test.mjs` checks that both
+ * agree.
  */
 import type { NumberRow, RowsOf } from "./rows.js";
 import type { Options, Pose, SampleRequest } from "./types/index.js";
 
 export { paths, type PageField, type Row, type Rows, type ShownRow } from "./rows.js";
 
-/** More is a mistake, no turn; far beyond, a sine means nothing. */
+/** A larger angle is a mistake rather than a rotation; at very large angles a sine has no accuracy. */
 const FULL_TURN = 360;
 const angle: NumberRow & { default: number } = {
   kind: "number",
@@ -18,15 +18,15 @@ const angle: NumberRow & { default: number } = {
   unit: "deg",
   default: 0,
 };
-/** A term that weighs a million times the colours leaves no more than rounding of them. */
+/** A term with a million times the weight of the colours would leave only their rounding errors. */
 const weight = { kind: "number", min: 0, max: 1e6 } as const;
-/** What JavaScript's one type for numbers holds without a gap; a random generator takes any of them. */
+/** The largest integer that JavaScript's numbers represent without gaps; a random generator accepts all of them. */
 const seed = { kind: "whole", min: 0, max: Number.MAX_SAFE_INTEGER, default: 1 } as const;
 const side = { kind: "side", min: 16, max: 1024, unit: "px" } as const;
 
-/** A pose without its matrix, which is turned into the other members before anything is checked. */
+/** A pose without its matrix, which is converted to the other members before any check. */
 type PlainPose = Partial<Omit<Pose, "matrix">>;
-/** Options whose pose is of members. */
+/** Options whose pose has been converted to members. */
 export type PlainOptions = Omit<Options, "start"> & { start?: "search" | "identity" | PlainPose };
 
 export const POSE: RowsOf<PlainPose> = {
@@ -192,7 +192,7 @@ export const SAMPLE: RowsOf<Omit<SampleRequest, "surface" | "light">> = {
     kind: "object",
     noun: "angles",
     members: {
-      // A missing angle is zero, but for beta where all of them are missing: that is what the page starts with.
+      // A missing angle is zero. If all angles are missing, beta has the page's default.
       beta: {
         ...angle,
         page: {
@@ -260,5 +260,5 @@ export const SAMPLE: RowsOf<Omit<SampleRequest, "surface" | "light">> = {
   },
 };
 
-/** What the grid protocol has no use for: it would be ignored in silence. */
+/** Members that the grid protocol would silently ignore. */
 export const RENDERED_ALONE: readonly string[] = ["size", "height", "scale", "noise", "depthNoise", "holes", "seed"];

@@ -1,6 +1,6 @@
 /**
- * Inputs as plain objects with only the members of the contract. All threads get the same: a class with getters, a
- * proxy or memory that is shared would look different in another one.
+ * Converts inputs to plain objects with only the members of the contract. A class with getters, a proxy or shared memory would look
+ * different in another thread.
  */
 import { cameraOf, poseOf } from "./matrices.js";
 import { OPTIONS, type PlainOptions } from "./options.js";
@@ -23,7 +23,7 @@ function pick<T extends object, K extends keyof T>(source: T, keys: readonly K[]
   >;
 }
 
-/** Some of them made plain, where they are there. */
+/** The members among these that are present, as plain objects. */
 function plainMember<T extends object, K extends keyof T>(
   source: T,
   key: K,
@@ -60,7 +60,7 @@ function plainMembers(source: object, rows: Rows): object {
   return Object.fromEntries(Object.entries(values).map(([key, value]) => [key, plainValue(value, rows[key])]));
 }
 
-/** Where a value isn't what its row says, it is left to the check. */
+/** A value that does not match its row is left to the check. */
 function plainValue(value: unknown, row: Row | undefined): unknown {
   if (typeof value !== "object" || value === null) return value;
   if (row?.kind === "list") return numbers(value as ArrayLike<number>);
@@ -73,7 +73,7 @@ export function plainOptions(options: Options): PlainOptions {
   return plainMembers({ ...values, start: poseOf(values.start, "options.start") }, OPTIONS);
 }
 
-/** What the contract takes; Node's Buffer is one of them by inheritance, and its slices are views. */
+/** The array types of the contract. Node's Buffer inherits from one of them, and its slices are views. */
 const ARRAYS = [Uint8ClampedArray, Uint8Array, Uint16Array, Float32Array] as const;
 
 /** A copy for another thread, whose arrays may be `transfer`red, so each has a separate buffer. */

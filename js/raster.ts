@@ -49,7 +49,7 @@ export function toColour(raster: Raster<Pixels>): ColorImage {
   return { width, height, data: rgba };
 }
 
-/** The one channel of a depth map, also where a program has saved it as grey RGB. */
+/** The channel of a depth map, even if a program has saved it as grey RGB. */
 export function single({ width, height, channels, data }: Raster<Pixels>): Pixels {
   if (channels === 1) return data;
   const levels = data instanceof Uint16Array ? new Uint16Array(width * height) : new Uint8Array(width * height);

@@ -1,6 +1,6 @@
 /** Describes each member of the contract once: the checks and the page's fields are made from these rows. */
 
-/** How the page shows a member that its visitor may choose. */
+/** How the page shows a member that the visitor can choose. */
 export interface PageField {
   readonly group: "sample" | "method" | "weights" | "loop";
   readonly label: string;
@@ -8,18 +8,18 @@ export interface PageField {
   readonly hint?: string;
   /** Its name in links, where the last part of its path has another meaning there. */
   readonly link?: string;
-  /** What the field starts with, if not with the default. */
+  /** The initial value of the field, if it is not the default. */
   readonly initial?: number;
-  /** What an empty field means, where neither a number nor a word is the default. */
+  /** The meaning of an empty field, if the default is neither a number nor a word. */
   readonly empty?: string;
-  /** The part of the range that a slider spans; powers of ten where it is logarithmic. */
+  /** The part of the range that a slider spans; exponents of ten if it is logarithmic. */
   readonly slider?: { readonly min: number; readonly max: number; readonly step: number; readonly log?: boolean };
 }
 
 interface Common {
-  /** The value if the member is absent; without a default it follows from the data. */
+  /** The value if the member is absent; without a default it is derived from the data. */
   readonly default?: number | string | boolean;
-  /** The words that may stand in its place, each with its name on the page. */
+  /** The words that are accepted instead, each with its name on the page. */
   readonly words?: Readonly<Record<string, string>>;
 }
 
@@ -28,7 +28,7 @@ interface Shown extends Common {
   readonly page?: PageField;
 }
 
-/** A finite number, a whole one, or a side of a raster in pixels, which differs in the code of its errors. */
+/** A finite number, an integer, or a side of a raster in pixels, which has other error codes. */
 export interface NumberRow extends Shown {
   readonly kind: "number" | "whole" | "side";
   readonly min?: number;
@@ -49,7 +49,7 @@ export interface ListRow extends Common {
   readonly kind: "list";
   readonly length: number;
 }
-/** A square matrix: its numbers row after row in one list, or a list for each row. */
+/** A square matrix: its numbers row after row in one list, or one list per row. */
 export interface MatrixRow extends Common {
   readonly kind: "matrix";
   readonly side: number;
@@ -59,7 +59,7 @@ export interface ObjectRow extends Common {
   /** What it is, with its article. */
   readonly noun: string;
   readonly members: Rows;
-  /** Those that must be there. */
+  /** The required members. */
   readonly required?: readonly string[];
 }
 

@@ -28,7 +28,7 @@ export const sampleSurfaces = (): string[] => bindings().sampleSurfaces();
 /** Names of the built-in lights. */
 export const sampleLights = (): string[] => bindings().sampleLights();
 
-/** The 27 coefficients of a light, built in or given, rotated by angles: light that fell on a normal n falls on R n. */
+/** The 27 coefficients of a light, built in or given, rotated by angles: the light that illuminated a normal n illuminates R n. */
 export function turnLight(light: SampleRequest["light"], angles: Partial<Pose["angles"]> = {}): Float64Array {
   checkLight(light);
   checkAngles(angles);

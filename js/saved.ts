@@ -1,7 +1,7 @@
 /**
- * A run as bytes, for `Estimator.save` and `restore`. A run follows from its views, its options and how many stages have been run, to the
- * bit, however the steps were sliced and whatever the number of threads. So the file keeps these, with a checksum of what had been found
- * to tell whether it was found again. Restoring takes the time of the run, but the format does not change with every stage.
+ * A run as bytes, for `Estimator.save` and `restore`. The views, the options and the number of stages that have been run determine a run to
+ * the bit, however the steps were sliced and whatever the number of threads. The file therefore holds these, with a checksum of the results
+ * that tells whether they were reproduced. Restoring takes as long as the run, but the format does not change with every stage.
  *
  * Sixteen bytes of name and format, the header's length (32 bits, little-endian), the header (JSON), the arrays one after the other, CRC-32
  * of all that.
@@ -38,9 +38,9 @@ const FORMAT = 1;
 const MARK = NAME.length + 1;
 /** A 32-bit number: the header's length, the checksum. */
 const WORD = 4;
-/** Bytes of a header: options hold at most 800 numbers, of 25 letters each. */
+/** Most bytes of a header: options hold at most 800 numbers, of 25 characters each. */
 const LONGEST_HEADER = 65_536;
-/** Bytes in all: both views of 4096 pixels on a side with everything they may have are 0.7 GB. */
+/** Most bytes in all: two views of 4096 pixels on a side with all members have 0.7 GB. */
 const MOST_BYTES = 2 ** 30;
 
 const TYPES = { Uint8Array, Uint8ClampedArray, Uint16Array, Float32Array } as const;
@@ -83,7 +83,7 @@ export function unusable<T>(call: () => T): T {
 
 const bytesOf = ({ buffer, byteOffset, byteLength }: ArrayBufferView) => new Uint8Array(buffer, byteOffset, byteLength);
 
-/** An estimator, as far as its outcome goes. */
+/** An estimator, reduced to its results. */
 interface Outcome {
   readonly report: StepReport;
   light(): Float64Array;
@@ -91,7 +91,7 @@ interface Outcome {
   refinedDepth(): Float32Array;
 }
 
-/** All that a run reports and has found, except the times. */
+/** All reports and results of a run, except the times. */
 export function checksumOf(estimator: Outcome): number {
   const { milliseconds: _, ...report } = estimator.report;
   const found = [
@@ -156,7 +156,7 @@ const HEADER = {
   arrays: list,
 };
 
-/** The content of a file that is one of ours and complete; the estimator checks its views and options. */
+/** The content of a file, if it is complete and was written by this package; the estimator checks its views and options. */
 export function opened(state: unknown): Saved {
   array(Uint8Array)(state, "state");
   // A plain Uint8Array, because `slice` of a Node Buffer is a view.

@@ -11,9 +11,9 @@ const PROBE = Uint8Array.of(
 /** Whether this machine has 128-bit SIMD. */
 export const hasSimd = (): boolean => WebAssembly.validate(PROBE);
 
-/** Where the .wasm is that `init()` loads: the one with 128-bit SIMD if this machine has it, else the scalar one. */
+/** The address of the .wasm that `init()` loads: the one with 128-bit SIMD if this machine has it, else the scalar one. */
 export function wasmUrl(): URL {
-  // Each written out in one piece: bundlers look for exactly this to carry the files along.
+  // Each address is written as one expression, because bundlers look for exactly this form to include the files.
   return hasSimd()
     ? new URL("./bimodal_stereo_bg.wasm", import.meta.url)
     : new URL("./bimodal_stereo_scalar_bg.wasm", import.meta.url);

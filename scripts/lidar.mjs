@@ -7,6 +7,7 @@
 // a FOLDER, those in ../shared/data are read.
 //
 // --json FILE  one row for each frame
+// --ranks N    how often N wrong candidates of each size rank worse than the calibration, also by others' costs (scripts/lidar/ranks.mjs)
 // --draws N    N checks more of each of three candidates, with the intensities and without them (scripts/lidar/draws.mjs)
 import { existsSync, readFileSync, writeFileSync } from "node:fs";
 import { basename, join } from "node:path";
@@ -14,6 +15,7 @@ import { parseArgs } from "node:util";
 import { build } from "./build.mjs";
 import { drawn, printDrawn } from "./lidar/draws.mjs";
 import { measured } from "./lidar/measures.mjs";
+import { printRanked, ranked } from "./lidar/ranks.mjs";
 import { framesBelow } from "./lidar/sources.mjs";
 import { Failure, inRoot, say, script } from "./shell.mjs";
 
@@ -24,7 +26,7 @@ const file = (path) => ({ name: basename(path), bytes: new Uint8Array(readFileSy
 const percent = (share) => `${(100 * share).toFixed(2)} %`;
 
 /** Takes one frame from its files to a verdict. */
-async function tried(frame, { rangeImage, readRigFile, checkCalibration }, draws) {
+async function tried(frame, { rangeImage, readRigFile, checkCalibration }, { draws, ranks }) {
   const { scan, warnings } = await readRigFile(file(frame.scan), { as: "depth" });
   if (scan === undefined) throw new Failure(`${frame.scan} holds no points in no rows and columns.`);
   const { image } = await readRigFile(file(frame.picture), { as: "colour" });
@@ -46,6 +48,7 @@ async function tried(frame, { rangeImage, readRigFile, checkCalibration }, draws
     check: { verdict, offDegrees, offMillimetres, pixels, interval },
     warnings: warnings.map(({ code }) => code),
     draws: await drawn(checkCalibration, { frame, image, range }, draws),
+    ranks: await ranked(checkCalibration, { frame, image, range }, ranks),
   };
 }
 
@@ -62,10 +65,12 @@ function print({ name, how, size, count, kept, distance, ofSampling, ofColumn, f
 
 await script(async () => {
   const text = { type: "string" };
-  const options = { json: text, draws: { ...text, default: "0" } };
+  const count = { ...text, default: "0" };
+  const options = { json: text, draws: count, ranks: count };
   const { values, positionals } = parseArgs({ options, allowPositionals: true });
-  const draws = Number(values.draws);
-  if (!(Number.isInteger(draws) && draws >= 0)) throw new Failure("--draws takes a whole number.");
+  const counts = { draws: Number(values.draws), ranks: Number(values.ranks) };
+  for (const [name, value] of Object.entries(counts))
+    if (!(Number.isInteger(value) && value >= 0)) throw new Failure(`--${name} takes a whole number.`);
   const folders = positionals.length > 0 ? positionals : OTHERS.map((name) => inRoot(join(DATA, name)));
   await build();
   const [rig, index] = [await import(inRoot("pkg/rig.js")), await import(inRoot("pkg/index.js"))];
@@ -80,11 +85,12 @@ await script(async () => {
     if (frames.length === 0)
       say(`${folder} holds no scan and picture with a calibration of KITTI, OpenCalib or nuScenes.`);
     for (const frame of frames) {
-      const row = await tried({ ...frame, name: `${basename(folder)}/${frame.name}` }, { ...rig, ...index }, draws);
+      const row = await tried({ ...frame, name: `${basename(folder)}/${frame.name}` }, { ...rig, ...index }, counts);
       rows.push(row);
       print(row);
     }
   }
+  printRanked(rows.flatMap((row) => row.ranks));
   printDrawn(rows.flatMap((row) => row.draws));
   if (values.json) writeFileSync(values.json, `${JSON.stringify(rows, null, 1)}\n`);
 });

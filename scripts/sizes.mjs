@@ -52,11 +52,11 @@ const EXAMPLE = /\/(?:rigs-|bimodal_stereo_rigs_bg)/;
 const REPORT = /^assets\/reportfile-/;
 /**
  * Readers that load only for files of their kind: JPEG without a browser, texts, YAML, TOML, JSON with comments, calibrations of products,
- * point clouds, EXR, TIFF, recordings, messages about unsupported files; and the code that makes the Lab's pair from
+ * lenses in separate files, point clouds, EXR, TIFF, recordings, messages about unsupported files; and the code that makes the Lab's pair from
  * the files of a run.
  */
 const OTHERS =
-  /\/(?:decoder|dist\d*|pointclouds|exr|exr-others|products|text|tiff|tiff-codecs|js-yaml|recorded|containers|pairs)-/;
+  /\/(?:decoder|dist\d*|pointclouds|exr|exr-others|products|text|tiff|tiff-codecs|js-yaml|recorded|containers|lens-owners|pairs)-/;
 
 /** The files that run a check, read its input and write its results, all loaded on demand, and those that only the example needs. */
 function checkFiles() {

@@ -32,7 +32,7 @@ pub enum Reason {
         /// Number of other poses that fit the image equally well.
         rivals: u32,
     },
-    /// The last iteration was taken back.
+    /// The last iteration was rejected.
     TakenBack {
         /// The objective before it.
         before: f64,

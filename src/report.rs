@@ -97,7 +97,7 @@ pub struct Objective {
 }
 
 impl Objective {
-    /// Sum of all terms, by which an iteration is accepted or taken back.
+    /// Sum of all terms, by which an iteration is accepted or rejected.
     #[must_use]
     pub fn total(&self) -> f64 {
         self.shading + self.prior + self.registration + self.refinement

@@ -1,4 +1,4 @@
-/** The few lines that make building a document in plain TypeScript pleasant. */
+/** Helpers that build a document in plain TypeScript. */
 
 type Attributes = Record<string, string | number | boolean | undefined>;
 
@@ -11,7 +11,7 @@ export function make<K extends keyof HTMLElementTagNameMap>(
   const element = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
     if (value === undefined || value === false) continue;
-    // As an attribute the page's own policy would refuse it.
+    // The page's own policy would refuse it as an attribute.
     if (name === "style") element.style.cssText = String(value);
     else element.setAttribute(name, value === true ? "" : String(value));
   }
@@ -19,16 +19,16 @@ export function make<K extends keyof HTMLElementTagNameMap>(
   return element;
 }
 
-/** The element with this id; the document and the script belong together, so its absence is a mistake of ours. */
+/** The element with this id. The document and the script belong together, so a missing element is a defect of the page. */
 export function byId<T extends HTMLElement>(id: string, type: abstract new () => T): T {
   const element = document.getElementById(id);
   if (!(element instanceof type)) throw new Error(`The page has no ${type.name} #${id}.`);
   return element;
 }
 
-/** Cache of colours until the theme changes, because each query may make the browser style the whole page first. */
+/** Colours, cached until the theme changes, because each query may make the browser restyle the whole page. */
 const inks = new Map<string, string>();
-/** In the head, where nothing is laid out. It stays there, because adding and removing it would restyle the page. */
+/** In the head, which has no layout. It stays there, because adding and removing it would restyle the page. */
 const inkwell = document.head.appendChild(make("i"));
 
 /** A colour token as the browser computes it, for canvases that cannot read custom properties. */
@@ -45,11 +45,11 @@ export function ink(token: string): string {
 export const forgetInks = (): void => inks.clear();
 
 let counter = 0;
-/** An id that nothing else on the page has. */
+/** An id that is unique on the page. */
 export const freshId = (stem: string): string => `${stem}-${++counter}`;
 
-/** Lets the browser paint and answer what was pressed before what follows. */
+/** Lets the browser paint and handle input before the next step. */
 export const nextTask = (): Promise<void> => new Promise((go) => setTimeout(go));
 
-/** Lets the browser style, lay out and paint what has changed before what follows. */
+/** Lets the browser style, lay out and paint all changes before the next step. */
 export const nextFrame = (): Promise<void> => new Promise((go) => requestAnimationFrame(() => setTimeout(go)));

@@ -1,4 +1,4 @@
-/** Whether this browser has shown the page before; asking counts as a visit. */
+/** Whether this is the browser's first visit to the page; the query itself counts as a visit. */
 
 const KEY = "bimodal-stereo.visited";
 

@@ -1,4 +1,4 @@
-/** Single keys for what is done often. They rest while the visitor types or a dialog is open. */
+/** Single-key shortcuts for frequent actions. They are off while the visitor types or a dialog is open. */
 
 const typing = "input:not([type=checkbox], [type=range], [type=file]), select, textarea, [contenteditable]";
 
@@ -7,7 +7,7 @@ const pressable = "button, a, summary, label, input";
 
 const KEY = "bimodal-stereo.keys";
 
-/** Whether the visitor wants them: single keys get in the way of speech input. */
+/** Whether the visitor wants them, because single keys interfere with speech input. */
 export function areKeysOn(): boolean {
   try {
     return localStorage.getItem(KEY) !== "off";

@@ -1,4 +1,4 @@
-/** Brings the page to life: its places, the Lab, and the controls around it. */
+/** Starts the page: its parts, the Lab, and the controls around it. */
 
 import { byId, make, nextFrame, nextTask } from "./dom";
 import { isFirstVisit } from "./first-visit";
@@ -22,7 +22,7 @@ const button = (id: string, action: () => void): void => byId(id, HTMLButtonElem
 
 wearTheme();
 // The Lab, the controls around it and the first picture are separate tasks, laid out one after the other, so that no click waits for the
-// whole start. First comes what the layout that loads the fonts has left out.
+// whole start. The first task shows the parts that were hidden in the first layout, which loads the fonts.
 await nextFrame();
 document.body.removeAttribute("data-opening");
 await nextFrame();
@@ -37,7 +37,7 @@ const { player } = lab;
 await nextTask();
 const help = byId("help", HTMLDialogElement);
 
-/** A place beside the Lab. */
+/** A part of the page beside the Lab. */
 interface Elsewhere {
   open(hash: string): void;
   leave(): void;
@@ -46,7 +46,7 @@ interface Elsewhere {
 }
 type OtherPlace = Exclude<Place, "lab">;
 
-/** Loaded when first asked for. */
+/** Loaded on first use. */
 const loaders: Record<OtherPlace, () => Promise<new (main: HTMLElement) => Elsewhere>> = {
   learn: async () => (await import("./learn/page")).LearnPage,
   tables: async () => (await import("./tables/page")).TablesPage,
@@ -54,7 +54,7 @@ const loaders: Record<OtherPlace, () => Promise<new (main: HTMLElement) => Elsew
 };
 const others: Partial<Record<OtherPlace, Elsewhere>> = {};
 
-/** What the place that is open is about. */
+/** The topic of the part that is open. */
 function openHelp(): void {
   const place = placeOf(location.hash);
   byId("help-title", HTMLElement).textContent = place === "lab" ? "The Lab" : places[place].link.textContent;
@@ -68,7 +68,7 @@ const reset = () => void lab.restart();
 const undo = () => store.undo();
 const redo = () => store.redo();
 
-// The address is the settings', so the links themselves lead nowhere.
+// The address holds the settings, so the links themselves do not navigate.
 for (const [id, target] of [
   ["skip", "#play"],
   ["skip-takeaway", "#takeaway button"],
@@ -117,11 +117,11 @@ const examples = new Presets(
   byId("presets", HTMLElement),
   (settings) => {
     if (!isSample()) choose("sample");
-    // Another example begins where all is seen, however the last one was turned.
+    // Another example is first seen from the default viewpoint, however the last one was rotated.
     gallery.lookAnew();
     void start(settings);
   },
-  // The one that is set has the focus after a press, and there a space is what it is elsewhere: play or pause.
+  // After a press the current example has the focus; Space then plays or pauses, as elsewhere.
   () => player.toggle(),
 );
 const showExample = () => examples.show(store.settings, isSample());
@@ -133,13 +133,13 @@ store.listen(() => {
 showExample();
 
 const still = matchMedia("(prefers-reduced-motion: reduce)");
-/** The run of these settings, which plays by itself unless motion is unwelcome. */
+/** The run of these settings, which plays by itself unless the visitor prefers reduced motion. */
 const start = (settings: Settings): Promise<void> => (still.matches ? lab.enter(settings) : lab.watch(settings));
 
 button("origin-sample", () => choose("sample"));
 button("origin-files", () => choose("files"));
 
-/** Where the clipboard is closed to pages, the address bar holds the same link. */
+/** If the page may not use the clipboard, the address bar holds the same link. */
 async function copyLink(): Promise<void> {
   const target = byId("link", HTMLButtonElement);
   try {
@@ -169,7 +169,7 @@ const places: Record<Place, { main: HTMLElement; link: HTMLAnchorElement; title:
     title: "Check a rig, bimodal-stereo",
   },
 };
-/** What belongs to the Lab outside its own part of the page. */
+/** Controls of the Lab outside its own part of the page. */
 const labOnly = [byId("bar", HTMLElement), byId("skip", HTMLElement), byId("skip-takeaway", HTMLElement)];
 
 function show(place: Place): void {
@@ -187,10 +187,10 @@ function show(place: Place): void {
 }
 
 let arrived = false;
-/** The address says which place is asked for, and how it is set. */
+/** The address says which part is shown, and with which settings. */
 async function arrive(): Promise<void> {
   const place = placeOf(location.hash);
-  // Who comes from another place of the page, or by a link to some settings, looks for something else than a show.
+  // A visitor who comes from another part of the page, or by a link with settings, did not come for a demonstration.
   const opensFirst = !arrived && location.hash === "" && isFirstVisit();
   arrived = true;
   document.documentElement.toggleAttribute("data-embed", isEmbedded(location.hash));
@@ -200,7 +200,7 @@ async function arrive(): Promise<void> {
   if (place !== "rig") others.rig?.leave();
   if (place !== "lab") {
     lab.leave();
-    // Never without the #, which would load the page anew.
+    // The address always keeps the #, because without it the page would reload.
     places.lab.link.href = new URL(linkTo(store.settings)).hash || "#";
     await open(place);
     return;
@@ -224,14 +224,14 @@ async function open(place: OtherPlace): Promise<void> {
   const loaded = await loaders[place]().catch((error: unknown) => {
     main.textContent = `${link.textContent} could not be loaded: ${error instanceof Error ? error.message : String(error)}`;
   });
-  // A visitor who has gone on in the meantime is not called back.
+  // A visitor who has moved on in the meantime is not brought back.
   if (!loaded || placeOf(location.hash) !== place) return;
   if (!others[place]) main.replaceChildren();
   others[place] ??= new loaded(main);
   others[place].open(location.hash);
 }
 
-// Where one is already there is nothing to go to, and nothing set there is to be lost.
+// If this part is already open, nothing changes, and its settings are kept.
 for (const [name, { link }] of Object.entries(places)) {
   link.addEventListener("click", (event) => {
     if (placeOf(location.hash) === name) event.preventDefault();
@@ -247,7 +247,7 @@ keys.checked = areKeysOn();
 keys.addEventListener("change", () => rememberKeys(keys.checked));
 const press = (id: string) => () => byId(id, HTMLButtonElement).click();
 listenToKeys(() => keys.checked && placeOf(location.hash) === "lab", {
-  // As the buttons, which are off while there is nothing to run.
+  // Like the buttons, which are off while there is nothing to run.
   " ": press("play"),
   s: press("step"),
   t: press("stage-step"),
@@ -259,7 +259,7 @@ listenToKeys(() => keys.checked && placeOf(location.hash) === "lab", {
   ...Object.fromEntries(views),
 });
 
-// A file must not replace the page; dropped anywhere on the Lab it goes where its content belongs.
+// A dropped file must not replace the page; dropped anywhere on the Lab, it goes into the slot for its content.
 const showDrag = (isOver: boolean) => byId("lab", HTMLElement).toggleAttribute("data-over", isOver);
 document.addEventListener("dragover", (event) => {
   event.preventDefault();
@@ -293,21 +293,21 @@ drawer.addEventListener("keydown", (event) => {
   event.stopPropagation();
   closeDrawer();
 });
-// A reload comes back to the visitor's own files.
+// After a reload the visitor's own files are open again.
 if (placeOf(location.hash) === "lab" && wasOwn() && !asksToPlay(location.hash)) {
   arrived = true;
   choose("files");
 }
 onLook(() => writeAddress(store.settings));
-// On small screens the settings lie over what has opened them.
+// On small screens the settings cover the button that opened them.
 button("close-settings", closeDrawer);
-// On phones they lie over whatever a run shows.
+// On phones the settings cover the results of a run.
 const phone = matchMedia("(max-width: 45rem)");
 button("play", () => {
   if (phone.matches && player.playing) drawer.open = false;
 });
-// A link opened in this very tab changes nothing but the part after #. The browser tells of it twice: at once, and again when it has time,
-// by which it may be elsewhere.
+// A link opened in this tab changes only the part of the address after #. The browser reports it twice: at once, and again later, when the
+// address may have changed again.
 let told = "";
 addEventListener("popstate", () => {
   told = location.href;

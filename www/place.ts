@@ -1,4 +1,4 @@
-/** Which place of the page an address refers to. An address without a place holds settings of the Lab. */
+/** The part of the page to which an address refers. An address without a part holds settings of the Lab. */
 
 export type Place = "lab" | "learn" | "tables" | "rig";
 
@@ -6,9 +6,9 @@ const NAMED = /^#(learn|tables|rig)(?=&|$)/;
 
 export const placeOf = (hash: string): Place => (NAMED.exec(hash)?.[1] as Place | undefined) ?? "lab";
 
-/** Whether one figure of Learn is to be shown alone, as in a frame of another page. */
+/** Whether one figure of Learn is shown alone, for example in a frame of another page. */
 export const isEmbedded = (hash: string): boolean =>
   placeOf(hash) === "learn" && new URLSearchParams(hash.replace(/^#/, "")).has("embed");
 
-/** Beside its settings an address may ask that the run begins; once it has begun the word is taken out. */
+/** Beside its settings an address may request that the run begins; this word is removed once the run has begun. */
 export const asksToPlay = (hash: string): boolean => new URLSearchParams(hash.replace(/^#/, "")).has("play");

@@ -1,11 +1,11 @@
-/** What may help a run that ended, by its code: the table of the documentation, in the page's words where it has its own. */
+/** What may help after a run has ended, by its code: the table of the documentation, with other words where the page needs them. */
 
 import type { ReasonCode } from "../pkg/index.js";
 import { runs } from "../src/codes.json";
 
 const RUNS: Readonly<Record<ReasonCode, { remedy: string; lab?: string }>> = runs;
 
-/** Where a run has no reason to give. */
+/** For runs that ended without a reason. */
 const GENERAL = "Another initial pose may find it: Settings, Start, near.";
 
 export function remedyOf(code: ReasonCode | undefined): string {

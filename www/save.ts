@@ -1,4 +1,4 @@
-/** Hands a file to the visitor. */
+/** Saves a file on the visitor's machine. */
 
 export const saveJson = (name: string, value: unknown): void =>
   saveBlob(name, new Blob([JSON.stringify(value, null, 2)], { type: "application/json" }));

@@ -21,7 +21,7 @@ function remember(theme: string): void {
   }
 }
 
-/** To be called before anything is waited for: a page that was left dark would come back with a flash. */
+/** Must be called before anything asynchronous, because a page that was left dark would otherwise flash when it returns. */
 export function wearTheme(): void {
   const chosen = remembered();
   if (chosen === "dark" || chosen === "light") document.documentElement.dataset.theme = chosen;

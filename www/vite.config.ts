@@ -2,12 +2,13 @@ import { fileURLToPath } from "node:url";
 
 import { defineConfig, type Plugin } from "vite";
 
-/** Absolute, because the build and the development server disagree on what a page is relative to. */
+/** An absolute path, because the build and the development server resolve relative paths differently. */
 const page = (name: string): string => fileURLToPath(new URL(name, import.meta.url));
 
 /**
- * What uPlot asks the browser for as it is evaluated, and what is put in its place: how its language writes numbers, and its time zone. Who asks first waits
- * for 15 to 30 ms in one task, for tables that this page has no use for: its numbers are plain, and none is a time.
+ * Queries that uPlot makes when it is loaded, and their replacements: the number format of the browser's language, and its time zone. The
+ * first such query takes 15 to 30 ms in one task and loads tables that this page does not need, because its numbers are plain and none is a
+ * time.
  */
 const ASKED = {
   "new Intl.NumberFormat(domEnv ? nav.language : 'en-US')": "({ format: String })",
@@ -25,7 +26,7 @@ const withoutLanguage: Plugin = {
   },
 };
 
-/** Files of the package that the readers of a rig's files and those of its recordings share; `npm test -- sizes` tells where one is missing. */
+/** Files of the package that the readers of rig files and those of recordings share; `npm test -- sizes` reports a missing one. */
 const READERS = /pkg[\\/](?:check|errors|half|limits|matrices|numbers|png|scale)\d*\.js$/;
 
 export default defineConfig({
@@ -36,14 +37,15 @@ export default defineConfig({
     format: "es",
     rolldownOptions: {
       output: {
-        // The readers that a worker shares with what it loads later, recordings for example, are one file: in pieces they compress worse.
+        // The readers that a worker shares with modules that it loads later, such as recordings, are one file, because several files
+        // compress worse.
         codeSplitting: { groups: [{ name: "readers", minShareCount: 2, test: READERS }] },
       },
     },
   },
-  // The package lies beside this folder, where the development server would not look.
+  // The package is outside this folder, to which the development server is otherwise restricted.
   server: { fs: { allow: [".."] } },
-  // three.js is one such chunk, and loads only when the clouds come into view.
+  // three.js is such a chunk, and loads only when the clouds become visible.
   build: {
     outDir: "../site",
     emptyOutDir: true,

@@ -1,7 +1,7 @@
 //! Whole folders of a rig: frames with their cameras, and the poses between these, read like js/rig/folder.ts.
 //!
-//! A file that cannot be read costs its frame, not the folder: a warning names it. Limit: names must say which pictures
-//! are depth maps.
+//! If a file cannot be read, its frame is left out, a warning names it, and the rest of the folder is read. Limit:
+//! names must say which pictures are depth maps.
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};

@@ -18,7 +18,7 @@ const USUAL: f64 = 8.0;
 const NEARLY_ALL: f64 = 0.99;
 /// The same share for SUN RGB-D, whose depths beyond 8.19 m wrap into the low bits.
 const MOSTLY: f64 = 0.9;
-/// With fewer distinct depths, the scene is made by hand, and its round numbers say nothing about the unit.
+/// With fewer distinct depths, the map was made by hand, and its round numbers say nothing about the unit.
 const MANY_VALUES: usize = 16;
 /// Values from which on nothing was seen.
 const LARGEST: f64 = 1e12;

@@ -56,7 +56,7 @@ const options = object({
   onProgress: callback,
 });
 
-/** A view with the members of its camera, where that is a matrix. */
+/** A view whose camera, if it is given as a matrix, has been converted to members. */
 function withCamera<T extends object>(view: T & { camera?: PinholeInput }, field: string): T & { camera?: Pinhole } {
   const camera = cameraOf(view.camera, `${field}.camera`) as Pinhole | undefined;
   if (camera === view.camera) return view as T & { camera?: Pinhole };
@@ -64,7 +64,7 @@ function withCamera<T extends object>(view: T & { camera?: PinholeInput }, field
   return Object.create(view, { camera: { value: camera, enumerable: true } });
 }
 
-/** The frames with the members of their cameras. */
+/** The frames with their cameras as members. */
 export function checkedFrames(value: unknown): CheckFrame[] {
   if (!Array.isArray(value)) throw wrong("frames", "a list of frames", value);
   return Array.from(value, (one: CheckFrameInput, index) => {
@@ -82,7 +82,7 @@ export function checkedFrames(value: unknown): CheckFrame[] {
 /** Tolerance of a scale of one after a product of rounded rotations. */
 const SCALE_TOLERANCE = 0.01;
 
-/** The members of a pose that is given in any of its forms. */
+/** The members of a pose given in any form. */
 export function checkedPose(given: unknown, field = "pose"): PoseMembers {
   const value = poseOf(given, field);
   poseMembers(value, field);

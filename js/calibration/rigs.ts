@@ -4,7 +4,7 @@ import { across, compile, lazily } from "../border.js";
 import { object, ranged, word } from "../check.js";
 import type { RigRequest, RigSample } from "../types/index.js";
 
-// In one piece: bundlers look for exactly this to carry the file along.
+// Written as one expression, because bundlers look for exactly this form to include the file.
 const load = lazily("sampleRig", async () =>
   start({ module_or_path: await compile(() => new URL("./bimodal_stereo_rigs_bg.wasm", import.meta.url)) }),
 );

@@ -14,10 +14,10 @@ import type {
   PoseInput,
 } from "../types/index.js";
 
-/** Milliseconds between two pauses for events: the page stays responsive, and a message costs a hundredth of it. */
+/** Milliseconds between two pauses for events. The page stays responsive, and the messages take a hundredth of the time. */
 const SLICE = 30;
 
-// In one piece: bundlers look for exactly this to carry the file along.
+// Written as one expression, because bundlers look for exactly this form to include the file.
 const load = lazily("checkCalibration", async () =>
   start({ module_or_path: await compile(() => new URL("./bimodal_stereo_check_bg.wasm", import.meta.url)) }),
 );
@@ -52,7 +52,7 @@ export async function check(
     }
     const report = run.report();
     if (!report) throw new BimodalError("internal", "checkCalibration: ended without a report", "checkCalibration");
-    // Maps of names come out in alphabetical order; the first candidate is the one being checked.
+    // Maps of names are returned in alphabetical order; the first candidate is the one being checked.
     return {
       ...report,
       candidates: Object.fromEntries(names.map((name) => [name, report.candidates[name]])) as CheckReport["candidates"],

@@ -8,28 +8,26 @@ import { Mistake } from "./arguments.js";
 import type { Judged } from "./report.js";
 
 /**
- * The poses between the depth camera or the LiDAR and the colour camera. Where the file has none, the one that follows from a chain of its
- * frames; without such a chain, all poses but those of bodies and targets.
+ * The poses between the depth camera or the LiDAR and the colour camera. If the file has none, the pose that follows from a chain of its
+ * frames; without such a chain, all poses except those of bodies and targets.
  */
 function betweenSensors(all: NamedPose[], field: string, warnings: Judged[]): NamedPose[] {
   const direct = all.filter((pose) => isOfRig(pose) || (pose.from === undefined && pose.to === undefined));
   if (direct.length > 0) return direct;
   const way = wayBetween(all);
   if (way === undefined) return all.filter((pose) => !isOfCarrier(pose));
-  for (const frame of way.turned)
-    warnings.push({
-      code: "pose-assumed",
-      message: `${field}: the frame ${frame} was taken to have ROS's body axes (x forward, y left, z up), because its name does not say "optical".`,
-      field,
-    });
+  for (const { code, message } of way.warnings) warnings.push({ code, message: `${field}: ${message}`, field });
   return [way.pose];
 }
 
-/** The refusal of a file of poses between a sensor and what carries it or what it looks at, which are no extrinsics between two sensors. */
+/**
+ * The error about a file whose poses relate a sensor to what carries it or to what it looks at. They are not extrinsics between two
+ * sensors.
+ */
 function ofBody(file: string, poses: NamedPose[]): Mistake {
   const { name, from, to } = poses[0] as NamedPose;
   return new Mistake(
-    `${file}: ${name === undefined ? "it" : `its "${name}"`} relates ${from} to ${to}, one of which is no sensor of the pictures (but an inertial unit, a body, a vehicle, a robot or a calibration target); extrinsics relate the depth camera or the LiDAR to the colour camera. Give that pose as a 4x4 matrix, in a file named depth_to_color.txt or lidar_to_camera.txt`,
+    `${file}: ${name === undefined ? "it" : `its "${name}"`} relates ${from} to ${to}, one of which is not a sensor of the pictures (it may be an inertial unit, a body, a vehicle, a robot or a calibration target); extrinsics relate the depth camera or the LiDAR to the colour camera. Give that pose as a 4x4 matrix, in a file named depth_to_color.txt or lidar_to_camera.txt`,
     "file",
   );
 }
@@ -59,7 +57,7 @@ export function candidatesOf(readings: RigReading[], isInverted: boolean, warnin
           message: `${name}: it maps ${pose.from} to ${pose.to}; its inverse was checked.`,
           field: name,
         });
-      // Two files may have one name; a number as a name would come first.
+      // Two files may have the same name, and an object lists names that are numbers first.
       let unique = /^\d+$/.test(title) ? `"${title}"` : title;
       while (Object.hasOwn(candidates, unique)) unique += "'";
       candidates[unique] = turns ? inverseOf(pose.pose) : pose.pose;

@@ -49,12 +49,12 @@ function errorJson(error: unknown): string {
   const { name, code, field } = error as { name?: unknown; code?: unknown; field?: unknown };
   let known: { code: unknown; field?: unknown } = { code: "internal" };
   if (error instanceof Mistake || name === "BimodalError") known = { code, field };
-  // The system refused a file or a folder.
+  // The error if the system does not open a file or a folder.
   else if (error instanceof Error && "syscall" in error) known = { code: "file", field: "file" };
   return `${JSON.stringify({ error: { ...known, message: reasonOf(error) } }, null, 2)}\n`;
 }
 
-/** The exit code. With `--json -` an error leaves as JSON as well. */
+/** The exit code. With `--json -` an error is printed as JSON as well. */
 export async function check(args: Arguments): Promise<number> {
   try {
     return await checkFolder(args);
@@ -111,7 +111,7 @@ async function write(
   const { whole } = outcome;
   const inputs = outcome.inputs.map(({ name, says, sha256 }) => ({ name, says, sha256 }));
   const json = () => `${JSON.stringify({ ...whole, inputs }, null, 2)}\n`;
-  // Opened first, so that a file that cannot be written does not cost a verdict.
+  // Opened first, so that an output file that cannot be written does not waste a check.
   (args.json === "-" ? process.stderr : process.stdout).write(textOf(whole));
   if (args.json !== undefined && args.json !== "-") writeFileSync(args.json, json());
   if (args.report !== undefined)

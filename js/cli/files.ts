@@ -6,7 +6,7 @@ import type { NamedFile, Reading } from "../rig/types.js";
 import { reasonOf } from "../errors.js";
 import { Mistake } from "./arguments.js";
 
-/** Bytes that a folder may hold, since all of it is read: some hundreds of pairs. */
+/** Most bytes in a folder, because all files are read: some hundreds of pairs. */
 const MOST_BYTES = 2 ** 31;
 
 export const file = (path: string, name = path): NamedFile => ({
@@ -27,7 +27,7 @@ const isHidden = (folder: string, path: string): boolean =>
     .split(/[\\/]/)
     .some((part) => part.startsWith("."));
 
-/** The files below a folder by name, hidden ones left out; those of `except` as well. */
+/** The files below a folder by name, without hidden ones and without those of `except`. */
 export function filesOf(folder: string, except: string[]): NamedFile[] {
   const left = new Set(except.map((path) => resolve(path)));
   const paths = readdirSync(folder, { recursive: true, withFileTypes: true })
@@ -51,11 +51,11 @@ export interface Input {
   says: string;
   sha256: string;
   bytes: number;
-  /** The codes of its warnings, guesses among them. */
+  /** The codes of its warnings, including guesses. */
   notes: string[];
 }
 
-/** What was read of each file, with the hash by which it can be recognised later. */
+/** What each file was read as, with a hash that identifies the file later. */
 export function inputsOf(readings: Reading[], files: NamedFile[]): Input[] {
   const bytes = new Map(files.map((each) => [each.name, each.bytes]));
   const seen = new Map<string, Input>();

@@ -1,4 +1,4 @@
-/** The manual of the commands. That of `check` is the text of the command lines in Rust and in Python, line by line. */
+/** The manual of the commands. The text for `check` is the same, line by line, in the Rust and Python command lines. */
 
 export const HELP = `Usage: bimodal-stereo COMMAND
 

@@ -7,7 +7,7 @@ import { versionOf } from "./version.js";
 
 const INTERRUPTED = 130;
 
-/** A mistake, an error of the package, or one of the system: its message is all that the user needs. */
+/** The message of a mistake, of an error of the package or of a system error is all that the user needs. */
 const isForeseen = (error: unknown): error is Error =>
   error instanceof Mistake ||
   (error instanceof Error && (error.name === "BimodalError" || ("syscall" in error && error.syscall !== undefined)));

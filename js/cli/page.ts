@@ -1,4 +1,4 @@
-/** What the report in HTML states besides the numbers: the overlay, the files, the options, the versions, the command itself. */
+/** What the HTML report contains besides the numbers: the overlay, the files, the options, the versions, the command. */
 import { createHash } from "node:crypto";
 import { readFileSync } from "node:fs";
 import { basename } from "node:path";
@@ -22,7 +22,7 @@ function bytesOf({ data }: CheckFrame["image"]): (index: number) => number {
   return (index) => scale * (data[index] ?? 0);
 }
 
-/** The image for a report: every so many pixels, which is enough to see where its edges are. */
+/** The image for a report, subsampled: this is enough to show where its edges are. */
 async function pictureOf(image: CheckFrame["image"]): Promise<string> {
   const step = Math.max(1, Math.ceil(image.width / WIDEST));
   const [width, height] = [Math.ceil(image.width / step), Math.ceil(image.height / step)];
@@ -41,7 +41,7 @@ async function pictureOf(image: CheckFrame["image"]): Promise<string> {
 
 type Project = (frame: CheckFrame, pose: Pose) => Promise<FrameOverlay>;
 
-/** The frames that say most, the first one before all. */
+/** The most informative frames, after the first one. */
 async function overlaysOf(
   report: CheckReport,
   frames: CheckFrame[],
@@ -71,7 +71,7 @@ async function overlaysOf(
   return overlays;
 }
 
-/** The options of the check with their values, those that were not given included. */
+/** The options of the check with their values, including defaults. */
 const settingsOf = ({ checking, reading, isInverted }: Arguments): NonNullable<ReportOptions["settings"]> => [
   ["cues", checking.cues?.join(",") ?? "all"],
   ["frames", `at most ${reading.frames ?? 20}`],

@@ -6,7 +6,7 @@ import type { CheckReport } from "../types/index.js";
 export interface Warning {
   code: string;
   message: string;
-  /** The file or the input that it is about. */
+  /** The file or input that the warning is about. */
   field?: string;
 }
 
@@ -22,7 +22,7 @@ export const ofReader = ({ code, message, isDoubt, file }: ReaderWarning): Judge
 
 export type Whole = Omit<CheckReport, "warnings"> & { warnings: Warning[] };
 
-/** The report with all warnings. Guesses of the readers keep the verdict from "consistent", as the check's own warnings do. */
+/** The report with all warnings. Guesses of the readers prevent the verdict "consistent", as the check's warnings do. */
 export function capped(report: CheckReport, all: Judged[]): Whole {
   const distinct = [...new Map(all.map((each) => [each.message, each])).values()];
   const doubt = distinct.find(({ isDoubt }) => isDoubt !== false);

@@ -1,5 +1,7 @@
-/** Single files as a folder of a rig, by the code that reads folders: which camera took which pictures, and which poses matter. */
-import { assigned, ofRig, withoutInertial } from "../rig/folder.js";
+/**
+ * Arranges single files like a folder of a rig, with the code that reads folders: which camera took which pictures, and which poses matter.
+ */
+import { assigned, ofRig, withoutCarriers, withoutInertial } from "../rig/folder.js";
 import { stem } from "../rig/names.js";
 import { posesForClouds } from "../rig/turned.js";
 import type { CheckFrame, NamedPose, ReaderWarning, RigReading } from "../rig/types.js";
@@ -23,10 +25,10 @@ export interface Arranged {
   warnings: ReaderWarning[];
 }
 
-/** Codes of what the forms of the page say by themselves. */
-const SAID = new Set(["colour-camera-missing", "depth-camera-missing", "camera-size", "principal-point"]);
+/** Codes of warnings that the page's forms show by themselves. */
+const GIVEN = new Set(["colour-camera-missing", "depth-camera-missing", "camera-size", "principal-point"]);
 
-/** What the frames and texts make together. */
+/** What the frames and texts describe together. */
 export function arranged(read: ReadFrame[], texts: ReadText[]): Arranged {
   const warnings: ReaderWarning[] = [];
   const frames = read.map(
@@ -52,7 +54,7 @@ export function arranged(read: ReadFrame[], texts: ReadText[]): Arranged {
   const [colour, depth] = [placeOf(first?.image.camera), placeOf(first?.depth.camera)];
   return {
     cameras: { ...(colour !== undefined && { colour }), ...(depth !== undefined && { depth }) },
-    poses: posesForClouds(folder.poses, frames, warnings),
-    warnings: warnings.filter(({ code }) => !SAID.has(code)),
+    poses: posesForClouds(withoutCarriers(folder.poses, warnings), frames, warnings),
+    warnings: warnings.filter(({ code }) => !GIVEN.has(code)),
   };
 }

@@ -10,7 +10,7 @@ import { reducedDepth, reducedImage } from "./reduce.js";
 /** Longest side that a run takes. */
 const LONGEST = 4096;
 
-/** What was read, and what the visitor entered about the files. */
+/** The files that were read, and what the visitor entered about them. */
 export interface Parts {
   colour: Extract<RigReading, { kind: "colour" }>;
   depth: DepthReading & { name: string; measured?: { range: [number, number] } };

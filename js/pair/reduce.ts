@@ -4,10 +4,10 @@
  */
 import type { ColorImage, DepthMap, Pinhole } from "../types/index.js";
 
-/** Darkest usable levels, as the run has them (src/view/colour.rs); the brightest of all is saturated. */
+/** Darkest usable levels, the same as in a run (src/view/colour.rs); the brightest level is saturated. */
 const DARKEST = { 8: 4, 16: 64 } as const;
 const FULL = 0xffff;
-/** Least share of a block that usable pixels cover. */
+/** Smallest share of a block that usable pixels must cover. */
 const COVERED = 0.5;
 
 const decoded = (value: number): number => (value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4);

@@ -20,7 +20,10 @@ const family = (path: string): string =>
     .replace(/\d+/g, "")
     .replace(/^[\W_]+|[\W_]+$/g, "");
 
-/** The part that names the camera: the innermost in which the pictures' paths differ and that holds a word, or the name itself. */
+/**
+ * The part that names the camera: the innermost part of the paths that differs between pictures and contains a word, or else the file's
+ * name.
+ */
 function cameraIn(path: string): string {
   const parts = partsOf(path);
   const named = parts.filter((part) => /^(?:cam|ring|image)/i.test(part));
@@ -49,8 +52,8 @@ export function byCamera(paths: string[]): CameraPictures[] {
 }
 
 /**
- * Of the cameras around a LiDAR those that are called as a folder or as the name of the pictures. The others took none of these, and poses
- * between them and the same sensor are left out.
+ * The cameras around a LiDAR that are named after the pictures' folder or after the pictures. The others did not take these pictures, and
+ * poses between them and the same sensor are left out.
  */
 export function ofNamedPictures<T extends { cameras: NamedCamera[]; poses: NamedPose[] }>(all: T, paths: string[]): T {
   const parts = new Set(paths.flatMap(partsOf).map((part) => part.toLowerCase()));

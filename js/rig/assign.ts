@@ -1,8 +1,7 @@
 /**
- * Which of the cameras that were read took which pictures: by what their file says, by their names, by the size of their images, and last by
- * their order.
+ * Decides which camera took which pictures: by the file of the camera, by names, by image size, and finally by order.
  *
- * A file may hold a camera many times, once for each size of its pictures: the one of this size is taken. If no camera has this size, one
+ * A file may hold a camera several times, once for each size of its pictures; the one of this size is used. If no camera has this size, one
  * of the same view is scaled, with a warning.
  */
 import { isLidar, linked } from "./formats/frames.js";
@@ -25,7 +24,7 @@ const fits = (camera: NamedCamera, { width, height }: Size): boolean =>
   camera.width === width && camera.height === height;
 const unsized = (camera: NamedCamera): boolean => camera.width === undefined;
 
-/** What a name says of a camera, or of an end of a pose. */
+/** What a name says about a camera, or about an end of a pose. */
 export function sideOf(name = ""): Side | undefined {
   const [colour, depth] = [COLOUR.test(words(name)), DEPTH.test(words(name))];
   return colour === depth ? undefined : colour ? "colour" : "depth";
@@ -37,12 +36,15 @@ const isOpen = (camera: NamedCamera): boolean => camera.takes === undefined && s
 const rank = ({ takes: said, name = "" }: NamedCamera): number =>
   said !== undefined ? 0 : /depth|dpt|colou?r|rgb/i.test(name) ? 1 : 2;
 
-/** The cameras of these pictures: first by their file, then by their names; depth precedes the infrared that it is made of. */
+/**
+ * The cameras of these pictures, found first by their file, then by their names; depth has priority over the infrared images that it is
+ * computed from.
+ */
 function taking(cameras: NamedCamera[], side: Side): NamedCamera[] {
   return cameras.filter((each) => takes(each, side)).sort((a, b) => rank(a) - rank(b));
 }
 
-/** Of cameras of one side: one of this size, one without a size, one of the same view, or else the first. */
+/** Chooses one camera of a side: one of this size, else one without a size, else one of the same view, else the first. */
 const ofSize = (cameras: NamedCamera[], size: Size): NamedCamera | undefined =>
   cameras.find((each) => fits(each, size)) ??
   cameras.find(unsized) ??
@@ -64,7 +66,7 @@ function scaled(camera: NamedCamera, { width, height }: Size): NamedCamera {
   return { ...camera, width, height, camera: scaledCamera(camera.camera, from, [width, height]) };
 }
 
-/** One camera without a name: for both pictures, where they show the same view, or for the one whose size it has. */
+/** A single camera without a name belongs to both pictures if they show the same view, or else to the picture whose size it has. */
 function shared(only: NamedCamera, image: Size, depth: Size, warnings: ReaderWarning[]): (NamedCamera | undefined)[] {
   const areAlike = haveLikeAspects([image.width, image.height], [depth.width, depth.height]);
   const isSame = image.width === depth.width && image.height === depth.height;
@@ -90,7 +92,7 @@ function shared(only: NamedCamera, image: Size, depth: Size, warnings: ReaderWar
 const isCentred = ({ camera: { cx, cy } }: NamedCamera, { width, height }: Size): boolean =>
   Math.abs(cx / width - 0.5) < 0.2 && Math.abs(cy / height - 0.5) < 0.2;
 
-/** Focal lengths of two cameras that differ by less, as a share, are those of one. */
+/** Focal lengths that differ by a smaller share belong to the same camera. */
 const ALIKE = 1e-3;
 
 /** Warns if another camera may have taken these pictures as well. */
@@ -204,7 +206,9 @@ function align(folder: RigFolder, colour: NamedCamera, why: string): void {
   folder.poses.unshift({ name: "aligned (identity)", from: "depth", to: colour.name ?? "color", pose });
 }
 
-/** Where no pose leads from the depth camera or the LiDAR to the colour camera, the way by frames that several poses share goes first. */
+/**
+ * If no pose leads from the depth camera or the LiDAR to the colour camera, the chain through frames that several poses share comes first.
+ */
 function relate({ poses }: RigFolder, colour: string | undefined, depth: string | undefined): void {
   const isDirect = poses.some(({ from, to }) => {
     const [a, b] = [from ?? "", to ?? ""];
@@ -227,12 +231,12 @@ function relate({ poses }: RigFolder, colour: string | undefined, depth: string 
   }
 }
 
-/** Names that differ in their number alone: image_2 and image_3. */
+/** Names that differ only in their number: image_2 and image_3. */
 const family = (name: string): string => name.replace(/\d+/g, "#");
 
 /**
- * Of cameras that are called as folders of pictures, as KITTI's image_2, those whose pictures these are. Others of their family took none of
- * these, and poses that lead to them are left out where the same frame has one that leads to ours.
+ * If cameras are named after folders of pictures, such as KITTI's image_2, those that took these pictures. The other cameras of the series
+ * took none of them, and poses that lead to these are left out if the same frame has a pose that leads to ours.
  */
 export function ofPictures<T extends { cameras: NamedCamera[]; poses: NamedPose[] }>(all: T, paths: string[]): T {
   const segments = new Set(paths.flatMap((path) => path.split("/").slice(0, -1)));
@@ -253,7 +257,7 @@ export function ofPictures<T extends { cameras: NamedCamera[]; poses: NamedPose[
   };
 }
 
-/** The one camera of both pictures, where one of them was transformed into the other's view. */
+/** The common camera of both pictures, if one of them was transformed into the other's view. */
 function carriedInto(
   { frames, cameras, poses }: RigFolder,
   [colour, range]: (NamedCamera | undefined)[],
@@ -262,7 +266,7 @@ function carriedInto(
   const [{ image, depth } = {}] = frames;
   if (image === undefined || depth === undefined || depth.points !== undefined) return undefined;
   if (image.width !== depth.width || image.height !== depth.height) return undefined;
-  /** Whether cameras of this side are known, and none of them has pictures of this size. */
+  /** Whether there are cameras of this side, but none with pictures of this size. */
   const isNoneOf = (side: Side) => {
     const own = taking(cameras, side);
     return own.length > 0 && own.every((each) => !unsized(each) && !fits(each, image));
@@ -277,7 +281,7 @@ function carriedInto(
         why: `The depth maps have the size of the colour images (${size}), which no depth camera in the files has, so they were treated as aligned with the colour images`,
       };
   }
-  // A colour camera of the pictures' aspect took them binned or scaled, and its intrinsics are scaled with a warning.
+  // A colour camera with the aspect ratio of the pictures took them binned or scaled; its intrinsics are scaled, with a warning.
   const isOfView = ({ width = 1, height = 1 }: NamedCamera) =>
     haveLikeAspects([width, height], [image.width, image.height]);
   const isOther = isNoneOf("colour") && !taking(cameras, "colour").some(isOfView);
@@ -298,7 +302,7 @@ function carriedInto(
 export interface Hints {
   /** The depth maps are aligned with the colour images. */
   isAligned?: boolean;
-  /** Cameras that are called as a frame are its own. */
+  /** Cameras named after a frame are the cameras of that frame. */
   cameraOf?: (frame: CheckFrame) => NamedCamera | undefined;
 }
 
@@ -319,7 +323,7 @@ function addOwn(folder: RigFolder, cameraOf: NonNullable<Hints["cameraOf"]>): bo
   return true;
 }
 
-/** Gives the frames of a folder their cameras, with a warning where that was a guess. */
+/** Assigns cameras to the frames of a folder, with a warning if this was a guess. */
 export function addCameras(folder: RigFolder, { isAligned = false, cameraOf }: Hints = {}): void {
   const { frames, cameras, warnings } = folder;
   const [first] = frames;
@@ -329,7 +333,7 @@ export function addCameras(folder: RigFolder, { isAligned = false, cameraOf }: H
   const [some, other] = chosen(cameras, first, warnings);
   const carried = carriedInto(folder, [some, other], isAligned);
   const colour = forSize(carried?.camera ?? some, image, "colour images", warnings);
-  // A cloud needs no camera, and has the size of none where it was sorted from a scan.
+  // A cloud needs no camera. If it was sorted from a scan, its size is that of no camera.
   const own = () => (depth.points ? other : forSize(other, depth, "depth maps", warnings));
   const range = carried && colour ? colour : own();
   if (carried && colour) align(folder, colour, carried.why);

@@ -1,12 +1,12 @@
 /**
  * Whether the axes of an organised cloud are those of a camera: x grows along its rows, y down its columns, z is depth.
  *
- * By the correlation of columns with x / z and of rows with y / z, which is next to 1 for cameras and for LiDARs in optical axes alike,
- * whatever their lens. Limits: clouds of few points are taken as they are.
+ * The test is the correlation of columns with x / z and of rows with y / z, which is next to 1 for cameras and for LiDARs in optical axes,
+ * whatever their lens. Limits: clouds of few points are not tested.
  */
 import { badFile } from "../errors.js";
 
-/** Points on which a correlation rests, at least; and at most so many are looked at. */
+/** Fewest points for a correlation, and most points that are examined. */
 const [FEWEST, MOST] = [200, 20_000];
 /** Rows and columns that a correlation needs. */
 const FEWEST_LINES = 8;
@@ -18,7 +18,7 @@ interface Size {
   height: number;
 }
 
-/** Pearson's correlation of what two functions say of the same points. */
+/** Pearson's correlation of two functions over the same points. */
 function correlation(pairs: [number, number][]): number {
   const mean = (which: 0 | 1) => pairs.reduce((sum, pair) => sum + pair[which], 0) / pairs.length;
   const [first, second] = [mean(0), mean(1)];

@@ -55,7 +55,7 @@ function levelsOf({ data, channels }: Picture, most: number): number[] | undefin
   let last: number | undefined;
   for (let at = 0; at < data.length; at += channels) {
     const level = data[at] ?? 0;
-    // Neighbours mostly have the same, and a set takes long.
+    // Neighbours mostly have the same level, and looking it up in a set is slow.
     if (level === last) continue;
     last = level;
     levels.add(level);
@@ -73,7 +73,10 @@ export function looksLikeMask(picture: Picture): boolean {
   return isMask && (picture.bits <= 8 || levels[1] === 0xffff || levels[1] === 1 || levels[1] === 255);
 }
 
-/** Share of the pixels of a mask with soft edges that are wholly inside or outside, and of either alone, at least. */
+/**
+ * In a mask with soft edges, the smallest share of the pixels that are wholly inside or outside, and the smallest share of each of these
+ * two.
+ */
 const [HARD, EACH] = [0.95, 0.02];
 
 /** Whether nearly all pixels of a grey picture have one of two levels, zero and the largest of its bit depth or, if `ofName`, its own largest. */

@@ -1,6 +1,6 @@
 /**
- * A raster or a cloud as a depth map in metres: its unit, given, in the file or guessed from the values; the valid part of it, and whether the
- * values look like those of a depth camera.
+ * Converts a raster or a cloud to a depth map in metres: its unit (given, in the file, or guessed from the values), its valid part, and
+ * whether the values look like those of a depth camera.
  *
  * Limits: values alone do not always distinguish millimetres from fifths of a millimetre (TUM), so every guess is a warning.
  */
@@ -37,7 +37,7 @@ type Depth = Unnamed<DepthReading>;
 
 /** Share of missing pixels from which on there is a warning. */
 const MANY_HOLES = 0.4;
-/** Share of the depths that may be out of range without a warning: a few stray depths do not put the unit in question. */
+/** Share of the depths that may be out of range without a warning: a few stray depths are no evidence against the unit. */
 const STRAY = 0.01;
 /** Share of SUN RGB-D's values that are multiples of 8; depths beyond 8.19 m wrap into the low bits. */
 const MOSTLY = 0.9;
@@ -130,7 +130,7 @@ function roughness(data: Uint16Array, width: number, swap: boolean): number {
   return count === 0 ? 0 : sum / count;
 }
 
-/** The other order of bytes is taken where it is smoother by this factor. */
+/** Factor by which the other byte order must be smoother to be used. */
 const CLEARLY = 8;
 
 /** The samples in the right order of bytes: the format stores the high byte first, and some programs write it last. */

@@ -1,8 +1,9 @@
 /**
- * Whole folders: frames paired by lists of time stamps (TUM RGB-D), by like names (Redwood's and Open3D's color/ and depth/, 7-Scenes' and
- * other name schemes) or by time stamps as names, with the cameras, poses and units of depth that lie beside them.
+ * Whole folders. Frames are paired by lists of time stamps (TUM RGB-D), by similar names (Redwood's and Open3D's color/ and depth/,
+ * 7-Scenes' and other schemes) or by file names that are time stamps. Cameras, poses and units of depth are read from the files beside
+ * them.
  *
- * A file that cannot be read costs its frame, not the folder: it is named in `warnings`.
+ * If a file cannot be read, its frame is left out, a warning names it, and the rest of the folder is read.
  */
 import { breathe } from "../breathe.js";
 import { type Check, object, signal, wrong } from "../check.js";
@@ -12,10 +13,12 @@ import { ofNamedPictures } from "./around.js";
 import { isOfCarrier } from "./formats/frames.js";
 import { isRawName } from "./formats/raw.js";
 import { areFives, isVaried, nameOf, sampled } from "./guess.js";
+import { type LensFile, doubtLenses, lensOf } from "./lens-files.js";
 import { type Pair, type Pairs, tum } from "./lists.js";
 import { key, stem } from "./names.js";
+import { once } from "./once.js";
 import { pairsOf, sayUnpaired } from "./pairs.js";
-import { type TextOfFrame, assignOwn, split } from "./perframe.js";
+import { type TextOfFrame, assignOwn, frameOf, split } from "./perframe.js";
 import { checkNamed, isRasterFile, isTextFile, metresPerUnit, pixelSize, readRigFile } from "./read.js";
 import { isAligned, isOther, roleOf } from "./roles.js";
 import { posesForClouds } from "./turned.js";
@@ -37,7 +40,7 @@ import { type ReaderWarning, grouped, ofFile, warning } from "./warnings.js";
 export interface FolderOptions {
   /** Metres per stored unit of all depth maps. */
   unit?: number;
-  /** Width and height of raw depth maps, of which no header says them (.raw, .bin). */
+  /** Width and height of raw depth maps, which have no header (.raw, .bin). */
   size?: readonly [width: number, height: number];
   /** The largest number of pairs to read, evenly spread over the folder; default 20. */
   frames?: number;
@@ -47,14 +50,16 @@ export interface FolderOptions {
 
 const FRAMES = 20;
 
+const owners = once(() => import("./lens-owners.js"));
+
 /** Files that are neither pictures nor calibrations and can be ignored. */
 const IGNORED =
   /(^|\/)(\.|__MACOSX|thumbs\.db|readme|licen[cs]e|copying|source\.txt|changelog)|\.(md|html?|py|mjs|js)$/i;
-/** A path outside the folder is that of a file given by an option. */
+/** A path outside the folder belongs to a file given by an option. */
 const ELSEWHERE = /^(?:\/|\.\.\/|[a-z]:\/)/i;
 const LISTS = /(^|\/)(rgb|depth|associat\w*|accelerometer|groundtruth|times?(tamps)?)\.(txt|csv)$/i;
 
-/** Evenly spread, the first and the last among them. */
+/** Evenly spread items, including the first and the last. */
 function spread<T>(all: T[], most: number): T[] {
   if (all.length <= most) return all;
   return Array.from(
@@ -63,11 +68,11 @@ function spread<T>(all: T[], most: number): T[] {
   );
 }
 
-/** What is known of depth maps before they are read. */
+/** What is known about the depth maps before they are read. */
 interface Known {
   /** Metres per stored unit, given or in a file. */
   unit: number | undefined;
-  /** .. of folders of this kind. */
+  /** Metres per stored unit that folders of this kind usually have. */
   supposed: number | undefined;
   sizeOf: (file: NamedFile) => readonly [number, number] | undefined;
 }
@@ -125,7 +130,7 @@ class FolderReader {
     return undefined;
   }
 
-  /** A text of which nothing was read but the unit of depth was not left out. */
+  /** A text counts as used if the unit of depth was read from it. */
   onlyUnit(file: NamedFile, unit: number): void {
     const at = this.warnings.findIndex(({ code, file: name }) => code === "file-left-out" && name === file.name);
     if (at < 0) return;
@@ -167,7 +172,7 @@ class FolderReader {
   }
 }
 
-/** Guessed for each depth map by itself, units have to agree. */
+/** If the unit of each depth map was guessed separately, the units have to agree. */
 function checkUnits(frames: CheckFrame[], warnings: ReaderWarning[]): void {
   const units = new Set(frames.map(({ depth }) => depth.unit));
   if (units.size > 1)
@@ -215,17 +220,24 @@ const checkOptions = object({ unit: metresPerUnit, size: pixelSize, frames: fram
 interface Sorted {
   pictures: NamedFile[];
   texts: NamedFile[];
-  /** What is neither. */
+  /** The coefficients of lenses alone. */
+  lenses: LensFile[];
+  /** What is none of these. */
   others: NamedFile[];
 }
 
-/** The files of a folder that matter, by what they are; browsers hand folders over in any order. */
+/** The relevant files of a folder by kind; browsers list a folder's files in any order. */
 function sortedFiles(files: NamedFile[]): Sorted {
   const kept = files
     .map(({ name, bytes }) => ({ name: name.replace(/\\/g, "/").replace(/^\.\//, ""), bytes }))
     .filter(({ name }) => ELSEWHERE.test(name) || !IGNORED.test(name));
-  const found: Sorted = { pictures: [], texts: [], others: [] };
+  const found: Sorted = { pictures: [], texts: [], lenses: [], others: [] };
   for (const file of kept) {
+    const lens = lensOf(file);
+    if (lens !== undefined) {
+      found.lenses.push(lens);
+      continue;
+    }
     const isText = !isRasterFile(file.bytes) && isTextFile(file.bytes);
     const isRaw = !isText && isRawName(file.name) && roleOf(file.name) === "depth";
     if (isRasterFile(file.bytes) || isRaw) found.pictures.push(file);
@@ -249,8 +261,11 @@ export function withoutInertial(poses: NamedPose[], warnings: ReaderWarning[]): 
   return poses.filter((pose) => !isInertial(pose));
 }
 
-/** Leaves out poses between a sensor and a body, a vehicle, a robot or a target, which relate no two sensors; poses between these are known by then. */
-function withoutCarriers(poses: NamedPose[], warnings: ReaderWarning[]): NamedPose[] {
+/**
+ * Leaves out poses between a sensor and a body, a vehicle, a robot or a target, which do not relate two sensors. The poses between two
+ * sensors have been derived from them before.
+ */
+export function withoutCarriers<T extends NamedPose>(poses: T[], warnings: ReaderWarning[]): T[] {
   const left = new Set(poses.filter(isOfCarrier).map(({ from, to }) => `${from} to ${to}`));
   if (left.size === 0) return poses;
   const names = [...left].slice(0, MOST_NAMED).join(", ");
@@ -258,31 +273,13 @@ function withoutCarriers(poses: NamedPose[], warnings: ReaderWarning[]): NamedPo
   warnings.push(
     warning(
       "pose-left-out",
-      `Poses between a sensor and what carries it, or what it looks at, were not used as extrinsics: ${names}${more}.`,
+      `Poses of a sensor relative to its carrier (such as a vehicle) or to a target were not used as extrinsics: ${names}${more}.`,
     ),
   );
   return poses.filter((pose) => !isOfCarrier(pose));
 }
 
-/** Names of files of a lens's coefficients alone: "color_dist.npy", "D_color.txt", "distortion.txt". */
-const LENS_FILE = /(?:^|[_.-])(?:d|(?:camera)?dist(?:ortion)?(?:[_-]?coeff?\w*)?|coeffs?)(?=[_.-])/i;
-
-/** The lens of a file that was left out is missing from its camera. */
-function doubtLenses(warnings: ReaderWarning[]): void {
-  for (const { code, file } of [...warnings])
-    if (code === "file-left-out" && typeof file === "string" && LENS_FILE.test(file.replace(/^.*[/\\]/, "")))
-      warnings.push(
-        ofFile(
-          file,
-          warning(
-            "distortion-unused",
-            "By its name it holds the distortion of a lens, which was not used. Write the camera's intrinsics and distortion into one file.",
-          ),
-        ),
-      );
-}
-
-/** The poses of a file that are not of the world; a camera without a name is called as its file there, too. */
+/** The poses of a file that are not poses in the world; a camera without a name is named after its file in them, too. */
 export function ofRig(text: Extract<RigReading, { poses: NamedPose[] }>, file: string): NamedPose[] {
   const isUnnamed = text.kind === "cameras" && text.cameras.length === 1 && text.cameras[0]?.name === undefined;
   const called = (end: string | undefined) => (isUnnamed && end === "camera" ? file : end);
@@ -294,20 +291,20 @@ export function ofRig(text: Extract<RigReading, { poses: NamedPose[] }>, file: s
     });
 }
 
-/** The warning of a pose without frames that is called as a frame. */
+/** The warning about a pose without frames whose file is named after a picture frame. */
 const placeOfFrame = (): ReaderWarning =>
   warning(
     "pose-assumed",
-    "It is called as a frame and does not name the frames of its pose, so that it may be the place of the camera in the world. It was taken to lead from the depth camera to the colour camera; name it depth_to_color.txt if it does, and pose/0.txt or the like if it does not.",
+    "It is named like a picture and does not name the frames of its pose, so it may be the pose of the camera in the world. It was read as the pose from the depth camera to the colour camera. If that is right, name it depth_to_color.txt, otherwise pose/0.txt or the like.",
   );
 
 /** What the texts of a folder hold: cameras, what relates them, and the unit of the depth maps; `own` has the texts of single frames. */
-async function calibrationOf({ texts, others }: Sorted, frames: ReadonlySet<string>, reader: FolderReader) {
+async function calibrationOf({ texts, others, lenses }: Sorted, frames: ReadonlySet<string>, reader: FolderReader) {
   const found: TextOfFrame[] = [];
   let depthUnit: number | undefined;
   for (const file of [...texts, ...others]) {
     if (LISTS.test(file.name)) continue;
-    // A pose that is called as a frame is where the camera stood then, and relates no two cameras.
+    // A pose whose file is named after a picture frame is the camera's pose at that moment and does not relate two cameras.
     if (/pose/i.test(file.name) && frames.has(key(file.name.replace(/pose/gi, "")))) continue;
     const text = await reader.read(file, {});
     if (text?.kind !== "cameras" && text?.kind !== "poses") continue;
@@ -319,6 +316,7 @@ async function calibrationOf({ texts, others }: Sorted, frames: ReadonlySet<stri
     if (frames.has(key(file.name)) && poses.some(({ from, to }) => from === undefined && to === undefined))
       reader.warnings.push(ofFile(file.name, placeOfFrame()));
   }
+  if (lenses.length > 0) reader.readings.push(...(await owners()).giveLenses(lenses, found, reader.warnings));
   const isLeft = withoutInertial(
     found.flatMap(({ poses }) => poses),
     reader.warnings,
@@ -329,10 +327,12 @@ async function calibrationOf({ texts, others }: Sorted, frames: ReadonlySet<stri
   return { ...all, depthUnit, own };
 }
 
-/** How many reasons an error gives. */
+/** Most reasons that an error gives. */
 const REASONS = 3;
 
-/** Why a folder holds nothing of use: what could not be read comes before what was not needed, and pictures before texts. */
+/**
+ * Why a folder holds nothing useful. Files that could not be read are named before files that were not needed, and pictures before texts.
+ */
 function nothingFound(count: number, warnings: ReaderWarning[], pictures: NamedFile[]) {
   const isPicture = ({ file }: ReaderWarning) => pictures.some(({ name }) => name === file);
   const rank = (each: ReaderWarning) => (each.reason === undefined ? 1 : isPicture(each) ? 0 : 2);
@@ -409,7 +409,7 @@ export async function readRigFolder(files: NamedFile[], options: FolderOptions =
   return folder;
 }
 
-/** What was read of each file stands in the folder's order: pictures first, as they lead to what the rest is for. */
+/** The descriptions follow the folder's order, with pictures first, because the other files only matter for them. */
 function inOrderOf(pictures: NamedFile[], all: readonly Reading[]): Reading[] {
   const isPicture = new Set(pictures.map(({ name }) => name));
   return [true, false].flatMap((first) => all.filter(({ name }) => isPicture.has(name) === first));
@@ -422,7 +422,7 @@ const withTexts = ({ cameras, poses, ...folder }: RigFolder, texts: TextOfFrame[
   poses: [...poses, ...texts.flatMap((text) => text.poses)],
 });
 
-/** Gives the frames of a folder their cameras, of those that took the pictures of these paths, and puts its poses in order. */
+/** Assigns cameras to the frames of a folder, from those that took the pictures of these paths, and sorts its poses. */
 export function assigned(folder: RigFolder, { paths, isAligned }: { paths: string[]; isAligned: boolean }): RigFolder {
   const ofPaths = ofPictures(folder, paths);
   const areClouds = folder.frames.length > 0 && folder.frames.every(({ depth }) => depth.points !== undefined);
@@ -432,7 +432,7 @@ export function assigned(folder: RigFolder, { paths, isAligned }: { paths: strin
   addCameras(found, {
     isAligned,
     cameraOf: ({ name = "" }) =>
-      own.find((each) => each.name !== undefined && key(each.name) === key(name) && key(name) !== ""),
+      own.find((each) => each.name !== undefined && frameOf(each.name) === frameOf(name) && frameOf(name) !== ""),
   });
   return found;
 }

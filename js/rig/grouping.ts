@@ -1,4 +1,4 @@
-/** Items by a key, in their order. Map.groupBy does the same from Node 21 on. */
+/** Groups items by a key and keeps their order. Node has Map.groupBy only from version 21 on. */
 export function groupedBy<T, K>(items: Iterable<T>, keyOf: (item: T) => K): Map<K, T[]> {
   const groups = new Map<K, T[]>();
   for (const item of items) {

@@ -1,4 +1,4 @@
-/** The unit of a depth map, guessed from its values where neither the file nor the caller gives it, and the statistics of these values. */
+/** The unit of a depth map, guessed from its values if neither the file nor the caller gives it, and the statistics of these values. */
 import { quantile } from "./statistics.js";
 
 /** The depths that the camera of a rig is expected to see, metres. */
@@ -6,7 +6,7 @@ export const NEAREST = 0.1;
 export const FARTHEST = 20;
 /** Largest median depth that an indoor sensor with integer depths measures, metres; beyond it, the unit is not the millimetre. */
 const USUAL = 8;
-/** .. and a LiDAR outdoors. */
+/** Largest median depth that a LiDAR outdoors measures, metres. */
 const USUAL_OUTDOORS = 40;
 /** Share of the values for which a rule about their last digits has to hold. */
 const NEARLY_ALL = 0.99;
@@ -39,7 +39,7 @@ export const isThere = (value: number): boolean => value > 0 && value < 1e12;
 export const metresText = (value: number): string =>
   value < 0.01 || value >= 1000 ? value.toPrecision(3) : value.toFixed(2);
 
-/** Values of a sample, at most: quantiles need no more. */
+/** Most values in a sample; quantiles need no more. */
 const SAMPLE = 65_536;
 /** An evenly spread sample of the valid values among `values[offset + i * step]`, in order. */
 export function sampled(values: ArrayLike<number>, step = 1, offset = 0): Float64Array {
@@ -92,8 +92,8 @@ export function unitOfIntegers(values: Float64Array, isScattered = false): Unit 
   const middle = quantile(values, 0.5);
   if (isVaried(values) && areFives(values) && middle > 1000 * NEAREST * 5)
     return guessed(FIFTHS, ": all values are multiples of 5", false);
-  // Nothing in the values tells KITTI's 256 to the metre from millimetres.
-  if (isScattered && middle <= 1000 * USUAL_OUTDOORS) return guessed(0.001, ": scattered, as a LiDAR's", true);
+  // The values do not distinguish KITTI's 256 units per metre from millimetres.
+  if (isScattered && middle <= 1000 * USUAL_OUTDOORS) return guessed(0.001, ": scattered like a LiDAR's", true);
   if (middle > 1000 * USUAL) return guessed(FIFTHS, ": too far for millimetres", true);
   return guessed(0.001, "", false);
 }
@@ -106,7 +106,7 @@ export function unitOfFloats(values: Float64Array): Unit {
 
 export const knownUnit = (metres: number): Unit => ({ metres, says: nameOf(metres), isGuessed: false });
 
-/** The range of depths in the other common units, where the values also fit these. */
+/** The range of depths in the other common units that the values also fit. */
 export function otherUnits({ metres, isOpen }: Unit, { nearest, farthest }: Extent): string {
   if (!isOpen) return "";
   const others = [0.001, 0.0001, FIFTHS, 1 / 256].filter((unit) => unit !== metres);

@@ -14,7 +14,7 @@ export interface InverseDepth {
    * factor that makes the median depth as many pixels as the longer side of the map, which suits orthographic views only.
    */
   numerator?: number;
-  /** What is added to each stored number, such as the `doffs` of Middlebury's calibrations. Default 0. */
+  /** The number that is added to each stored number, such as the `doffs` of Middlebury's calibrations. Default 0. */
   offset?: number;
 }
 

@@ -1,4 +1,4 @@
-/** Frames that lists name: TUM's rgb.txt and depth.txt, or one list of associations, each by time stamps. */
+/** Frames named by lists: TUM's rgb.txt and depth.txt, or one list of associations, each with time stamps. */
 import { badFile } from "../errors.js";
 import { textOf } from "./formats/decode.js";
 import { base, folderOf } from "./names.js";
@@ -9,14 +9,14 @@ import { type ReaderWarning, warning } from "./warnings.js";
 export interface Pair {
   name: string;
   colour: NamedFile;
-  /** The depth map in one file or more, of which the first that can be read is taken. */
+  /** The depth map, in one or more files; the first one that can be read is used. */
   depths: [NamedFile, ...NamedFile[]];
   mask?: NamedFile;
 }
 
 export interface Pairs {
   pairs: Pair[];
-  /** Metres per unit of such folders, where nothing says another one. */
+  /** Metres per unit of such folders, unless another unit is stated. */
   supposed?: number;
   says: string;
 }
@@ -51,7 +51,7 @@ const listed = (file: NamedFile): Stamp[] =>
     return { time: Number(time), path };
   });
 
-/** Of two lists in order of time, those nearest to each other: both, and the time of the first. */
+/** Pairs items of two lists that are nearest in time: both, and the time of the first. */
 export function byTime(colours: Stamp[], depths: Stamp[], apart = APART): [string, string, number][] {
   const order = [...depths].sort((a, b) => a.time - b.time);
   const found: [string, string, number][] = [];
@@ -70,7 +70,7 @@ export function byTime(colours: Stamp[], depths: Stamp[], apart = APART): [strin
   return found;
 }
 
-/** "time path time path", in either order of the two; nothing where a line is something else. */
+/** "time path time path", with the two in either order; undefined if a line has another form. */
 function associated(file: NamedFile): [string, string, number][] | undefined {
   const found: [string, string, number][] = [];
   for (const line of linesOf(file)) {
@@ -81,7 +81,7 @@ function associated(file: NamedFile): [string, string, number][] | undefined {
   return found.length > 0 ? found : undefined;
 }
 
-/** The frames of a folder with TUM's lists, or nothing. */
+/** The frames of a folder with TUM's lists, or undefined. */
 export function tum(files: NamedFile[], warnings: ReaderWarning[]): Pairs | undefined {
   const list = (pattern: RegExp) => files.find((file) => pattern.test(base(file.name)));
   const [colours, depths] = [list(/^rgb\.txt$/i), list(/^depth\.txt$/i)];
@@ -103,7 +103,7 @@ interface Place {
   names: string;
 }
 
-/** Those of the listed pairs whose files are there. */
+/** The listed pairs whose files exist. */
 function presentOf(
   found: [string, string, number][],
   { root, files, names }: Place,

@@ -7,7 +7,7 @@ export const stem = (name: string): string =>
   DOUBLE.test(name) ? base(name).replace(DOUBLE, "") : base(name).replace(/\.[a-z0-9]{1,5}$/i, "");
 export const folderOf = (name: string): string => name.slice(0, name.length - base(name).length);
 
-/** A name without what says which file of a frame it is. */
+/** A name without the part that says which file of a frame it is. */
 const common = (name: string): string =>
   name
     .normalize("NFC")
@@ -15,7 +15,7 @@ const common = (name: string): string =>
 /** .. with its folders. */
 export const commonPath = (name: string): string => common(folderOf(name) + stem(name));
 
-/** What files of one frame have in common: letters of any script, in either case, and numbers without leading zeros. */
+/** What the names of one frame's files have in common: letters of any script, in either case, and numbers without leading zeros. */
 export function key(name: string): string {
   const words = common(stem(name))
     .toLowerCase()
@@ -24,9 +24,12 @@ export function key(name: string): string {
   return words.filter((word) => word !== "" && word !== "mm").join(" ");
 }
 
-/** Words that say what a file holds rather than which frame it is, where names are alike but for them. */
+/**
+ * Words that say what a file holds rather than to which frame it belongs. Depths of a stereo camera are the left
+ * camera's, so that "left" is the colour image's and "right" is not.
+ */
 const LOOSE = new Set(
-  "raw frame frames photo picture pic map maps groundtruth gt velodyne lidar cloud points scan sparse dense filtered z16 png distance to plane linear z cam camera ir infra infrared tof undistorted rectified rect vis".split(
+  "raw frame frames photo picture pic map maps groundtruth gt velodyne lidar cloud points scan sparse dense filtered z16 png distance to plane linear z cam camera ir infra infrared tof undistorted rectified rect vis left".split(
     " ",
   ),
 );
@@ -38,11 +41,11 @@ export const looseKey = (name: string): string =>
     .filter((word) => !LOOSE.has(word))
     .join(" ");
 
-/** Seconds from 2001 to 2100 since 1970, and how many of a clock's ticks a second has. */
+/** Seconds since 1970 of the years 2001 and 2100, and the ticks per second of common clocks. */
 const [FROM, UNTIL] = [1e9, 4.2e9];
 const TICKS = [1, 1e3, 1e6, 1e9];
 
-/** The time in a file's name, seconds: ticks since 1970 of any common clock, or seconds with three decimals or more; nothing else. */
+/** The time in a file's name, seconds: ticks of any common clock since 1970, or seconds with at least three decimals. */
 export function timeOf(name: string): number | undefined {
   const numbers = key(name)
     .split(" ")

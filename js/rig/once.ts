@@ -1,6 +1,6 @@
 /**
- * One import for all callers: browsers may answer two imports of one module in the other order, and files that are read at the same time would
- * be done in another order than they came in. An import that failed may be repeated.
+ * Shares one import among all callers. Browsers may resolve two imports of one module in the other order, so that files that are read at
+ * the same time would be handled in another order than they arrived in. An import that failed can be repeated.
  */
 export function once<T>(load: () => Promise<T>): () => Promise<T> {
   let loading: Promise<T> | undefined;

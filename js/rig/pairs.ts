@@ -1,8 +1,8 @@
 /**
- * Which pictures of a folder are one frame: by like names, by time stamps as names, or in their order.
+ * Finds the pictures of a folder that belong to one frame: by similar names, by file names that are time stamps, or by their order.
  *
- * The role of a picture follows from its name and those of its folders (roles.ts). Pictures that are neither colours nor depths nor masks
- * (confidences, labels, normals, renderings) are no frame's, and infrared images are where there are no colours.
+ * The role of a picture follows from its name and those of its folders (roles.ts). Pictures that are neither colour images nor depth maps
+ * nor masks (confidences, labels, normals, renderings) belong to no frame. Infrared images are used if there are no colour images.
  */
 import { badFile } from "../errors.js";
 import { rasterKind } from "./formats/headerless.js";
@@ -10,6 +10,7 @@ import { byCamera } from "./around.js";
 import { APART, type Pair, type Pairs, byTime } from "./lists.js";
 import { commonPath, folderOf, key, looseKey, stem, timeOf } from "./names.js";
 import { CONTENTS, type Other, type Role, roleOf } from "./roles.js";
+import { type Times, halfFrame, timesOf } from "./stamps.js";
 import type { NamedFile } from "./types.js";
 import { type ReaderWarning, ofFile, warning } from "./warnings.js";
 
@@ -24,7 +25,7 @@ const CLOUDS = new Set(["ply", "pcd", "points"]);
 const MAPS = new Set(["colmap", "table"]);
 const isCloud = ({ bytes }: NamedFile): boolean => CLOUDS.has(rasterKind(bytes) ?? "");
 
-/** The folders that all pictures share, which tell none from another: "lidar_nuscenes/CAM_FRONT.jpg" is no scan. */
+/** The folders that all pictures share, which distinguish none of them: "lidar_nuscenes/CAM_FRONT.jpg" is not a scan. */
 function rootOf(pictures: NamedFile[]): string {
   const [first = "", ...others] = pictures.map(({ name }) => folderOf(name));
   if (others.length === 0) return "";
@@ -45,7 +46,7 @@ function roleIn(file: NamedFile, root: string): Role | "unknown" {
   return MAPS.has(rasterKind(file.bytes) ?? "") ? "depth" : (role ?? "unknown");
 }
 
-/** Pictures by their content, with a warning for those that no frame needs. */
+/** Classifies pictures by content, with a warning for those that no frame needs. */
 function sorted(pictures: NamedFile[], warnings: ReaderWarning[]): Sorted {
   const roles = new Map<Role | "unknown", NamedFile[]>();
   const root = rootOf(pictures);
@@ -84,14 +85,14 @@ function byKey(files: NamedFile[], keyOf: (name: string) => string): Map<string,
 /** The number at the end of a folder's name: cameras are numbered in their folders. */
 const numberOfFolder = (name: string): string | undefined => /(\d+)\/$/.exec(folderOf(name))?.[1];
 const isSecond = (name: string): boolean => /right|(?:^|[^a-z])r(?:[^a-z]|$)/i.test(name);
-/** Folders that two names share. */
+/** The number of folders that two names share. */
 function shared(one: string, other: string): number {
   const [ours, theirs] = [one.split("/"), other.split("/")];
   const at = ours.findIndex((part, index) => part !== theirs[index]);
   return at < 0 ? ours.length : at;
 }
 
-/** Narrows colour images of one frame in several folders down to the depth map's: by their role, number and side. */
+/** Reduces colour images of one frame in several folders to the depth map's: by role, number and side. */
 function nearest(depth: NamedFile, colours: NamedFile[]): NamedFile[] {
   const lowest = Math.min(...colours.map(({ name }) => Number(numberOfFolder(name) ?? Infinity)));
   const rules = [
@@ -101,7 +102,7 @@ function nearest(depth: NamedFile, colours: NamedFile[]): NamedFile[] {
     (file: NamedFile) => !isSecond(file.name),
     (file: NamedFile) => Number(numberOfFolder(file.name) ?? Infinity) === lowest,
   ];
-  // In one folder, names that differ only in signs are equivalent.
+  // In one folder, names that differ only in punctuation are equivalent.
   const folders = new Set(colours.map(({ name }) => folderOf(name)));
   return rules.slice(0, folders.size > 1 ? rules.length : 1).reduce((left, rule) => {
     const kept = left.filter(rule);
@@ -109,7 +110,7 @@ function nearest(depth: NamedFile, colours: NamedFile[]): NamedFile[] {
   }, colours);
 }
 
-/** Of the colour images that may belong to several depth maps of one name, those of this depth map, by folder. */
+/** Colour images that may belong to several depth maps of the same name, reduced by folder to those of this depth map. */
 function ownOf(depth: NamedFile, others: NamedFile[], colours: NamedFile[]): NamedFile[] {
   if (others.length === 0) return colours;
   const like = colours.filter(({ name }) => commonPath(name) === commonPath(depth.name));
@@ -124,11 +125,11 @@ function ownOf(depth: NamedFile, others: NamedFile[], colours: NamedFile[]): Nam
   return isOwn ? colours.filter(({ name }) => numberOfFolder(name) === own) : [];
 }
 
-/** Words of depth maps that were made of others, or are poorer than others. */
+/** Words in names of depth maps that were computed from others, or are poorer than others. */
 const SECONDARY =
   /(?<![a-z])(?:raw|velodyne|sparse|noisy|aligned|registered|transformed|filtered|filled|inpainted|completed?|pred|predicted|estimated|mono)(?![a-z])/i;
 
-/** Of several depth maps of a frame in sibling folders, the plain one if there is one. */
+/** If a frame has several depth maps in sibling folders, the plain one if there is one. */
 function plainOf(groups: NamedFile[][], warnings: ReaderWarning[]): NamedFile[][] {
   const parents = new Set(groups.map(([file]) => folderOf(folderOf(file?.name ?? "").slice(0, -1))));
   const length = ([file]: NamedFile[]) => file?.name.length ?? 0;
@@ -148,7 +149,7 @@ function plainOf(groups: NamedFile[][], warnings: ReaderWarning[]): NamedFile[][
   return [only];
 }
 
-/** One depth map that was saved in several formats is one; depth maps come before clouds. */
+/** A depth map that was saved in several formats counts once; depth maps come before clouds. */
 function alternatives(depths: NamedFile[]): NamedFile[][] {
   const groups = new Map<string, NamedFile[]>();
   const maps = depths.filter((file) => !isCloud(file));
@@ -206,31 +207,39 @@ function byNames({ colours, depths, masks }: Sorted, warnings: ReaderWarning[], 
   return pairs;
 }
 
-/** A pair is accepted if its frames are this many times nearer in time to each other than to other frames. */
+/** Factor by which the frames of a pair must be nearer in time to each other than to other frames. */
 const CLEARLY = 4;
 
-/** By time stamps as names, which are seldom the same for two cameras; nothing for names without a time. */
-function byStamps({ colours, depths }: Sorted, warnings: ReaderWarning[]): Pairs | undefined {
-  const stamped = (files: NamedFile[]) =>
-    files.flatMap(({ name }) => {
-      const time = timeOf(name);
-      return time === undefined ? [] : [{ time, path: name }];
-    });
-  const [ours, theirs] = [stamped(colours), stamped(depths)];
-  const isAll = ours.length === colours.length && theirs.length === depths.length;
-  // A single image and a single depth map belong together, whatever their names.
-  if (!isAll || Math.min(ours.length, theirs.length) === 0 || ours.length + theirs.length === 2) return undefined;
-  const gaps = [...theirs]
-    .sort((a, b) => a.time - b.time)
-    .map(({ time }, at, all) => time - (all[at - 1]?.time ?? NaN));
+/** How far apart in time two frames of a pair may be. */
+function apartOf({ colours, depths }: Times): number {
+  const order = [...depths].sort((a, b) => a - b);
+  const gaps = order.slice(1).map((time, at) => time - (order[at] ?? NaN));
   const apart = Math.max(APART, Math.min(...gaps.filter((gap) => gap > 0)) / CLEARLY);
-  const found = byTime(ours, theirs, Number.isFinite(apart) ? apart : APART);
+  return Math.min(Number.isFinite(apart) ? apart : APART, halfFrame(colours, depths));
+}
+
+/** Pairs files by time stamps in their names, which are seldom equal for two cameras; returns nothing for names without a time. */
+function byStamps({ colours, depths }: Sorted, warnings: ReaderWarning[]): Pairs | undefined {
+  const fewer = Math.min(colours.length, depths.length);
+  // A single image and a single depth map belong together, whatever their names.
+  if (fewer === 0 || colours.length + depths.length === 2) return undefined;
+  const namesOf = (files: NamedFile[]) => files.map(({ name }) => name);
+  const times = timesOf(namesOf(colours), namesOf(depths));
+  if (times === undefined) return undefined;
+  const stamps = (files: NamedFile[], of: number[]) =>
+    files.map(({ name }, at) => ({ time: of[at] ?? NaN, path: name }));
+  const [ours, theirs] = [stamps(colours, times.colours), stamps(depths, times.depths)];
+  const apart = apartOf(times);
+  const found = byTime(ours, theirs, apart);
+  // Beside a counter, stamps count only where they agree.
+  if (!times.isAlone && 2 * found.length <= fewer) return undefined;
   if (found.length === 0)
     throw badFile(
-      `no pair of a colour image and a depth map was found: the time stamps of their names are more than ${1000 * APART} ms apart`,
+      `no pair of a colour image and a depth map was found: the time stamps of their names are more than ${(1000 * apart).toFixed(0)} ms apart`,
     );
   const file = new Map([...colours, ...depths].map((each) => [each.name, each]));
-  const most = Math.max(...found.map(([, depth, time]) => Math.abs((timeOf(depth) ?? time) - time)));
+  const timeAt = new Map(theirs.map(({ path, time }) => [path, time]));
+  const most = Math.max(...found.map(([, depth, time]) => Math.abs((timeAt.get(depth) ?? time) - time)));
   if (most > APART)
     warnings.push(
       warning(
@@ -255,7 +264,7 @@ function byStamps({ colours, depths }: Sorted, warnings: ReaderWarning[]): Pairs
 const inOrder = (files: NamedFile[]): NamedFile[] =>
   [...files].sort((a, b) => a.name.localeCompare(b.name, "en", { numeric: true }));
 
-/** Where names differ throughout, by their order. */
+/** If all names differ, files are paired by their order. */
 function byOrder({ colours, depths }: Sorted, warnings: ReaderWarning[]): Pairs {
   if (depths.length === 0 || depths.length !== colours.length) return { pairs: [], says: "" };
   if (depths.length > 1)
@@ -273,6 +282,28 @@ function byOrder({ colours, depths }: Sorted, warnings: ReaderWarning[]): Pairs 
   return { pairs, says: `${depths.length} pairs in their order` };
 }
 
+/** The first and last of files numbered one by one; undefined for other names. */
+function numbered(files: readonly NamedFile[]): { first: number; last: number } | undefined {
+  const numbers = [...new Set(files.map(({ name }) => key(name)))];
+  if (!numbers.every((each) => /^\d{1,9}$/.test(each))) return undefined;
+  const [first, last] = [Math.min(...numbers.map(Number)), Math.max(...numbers.map(Number))];
+  return last - first === files.length - 1 ? { first, last } : undefined;
+}
+
+/** As many images as depth maps, numbered from different starts, may belong together in their order. */
+function doubtNumbers({ colours, depths }: Sorted, warnings: ReaderWarning[]): void {
+  const [ours, theirs] = [numbered(colours), numbered(depths)];
+  if (colours.length !== depths.length || ours === undefined || theirs === undefined) return;
+  if (ours.first !== theirs.first)
+    warnings.push(
+      warning(
+        "pairs-shifted",
+        `The colour images are numbered from ${ours.first} to ${ours.last} and as many depth maps from ${theirs.first} to ${theirs.last}. Those of one number were paired, but they may belong together in their order; number both from the same start.`,
+        { colour: ours.first, depth: theirs.first },
+      ),
+    );
+}
+
 function attempt(found: Sorted, warnings: ReaderWarning[]): Pairs {
   const same = new Set(found.colours.map(({ name }) => key(name)));
   const isSame = found.depths.length > 0 && found.depths.every(({ name }) => same.has(key(name)));
@@ -280,13 +311,14 @@ function attempt(found: Sorted, warnings: ReaderWarning[]): Pairs {
   if (stamped !== undefined) return stamped;
   const own: ReaderWarning[] = [];
   const strict = byNames(found, own);
-  // Names that are ambiguous in full are no less ambiguous without some of their words.
+  // If names are ambiguous, they stay so without some of their words.
   const pairs = strict.length > 0 || own.length > 0 ? strict : byNames(found, own, looseKey);
   warnings.push(...own);
+  if (pairs.length > 0) doubtNumbers(found, warnings);
   return pairs.length > 0 ? { pairs, says: `${pairs.length} pairs by their names` } : byOrder(found, warnings);
 }
 
-/** The pairs of one of several cameras around a LiDAR; one pose cannot be checked with the pictures of others. */
+/** The pairs of one of several cameras around a LiDAR, because a pose cannot be checked with the pictures of other cameras. */
 function ofOneCamera(found: Sorted, warnings: ReaderWarning[]): Pairs | undefined {
   if (found.depths.length === 0 || !found.depths.every(isCloud)) return undefined;
   const cameras = byCamera(found.colours.map(({ name }) => name));
@@ -296,7 +328,7 @@ function ofOneCamera(found: Sorted, warnings: ReaderWarning[]): Pairs | undefine
   const own: ReaderWarning[] = [];
   const pairs = attempt({ ...found, colours: found.colours.filter(({ name }) => names.has(name)) }, own);
   if (pairs.pairs.length === 0) return undefined;
-  const message = `it is a picture of another camera than ${ours.camera}, which was chosen: one camera at a time can be checked against the LiDAR (left out). To check this one, give its pictures and the scans without those of ${ours.camera}.`;
+  const message = `it shows another camera's view and was left out: only one camera can be checked against the LiDAR at a time, and ${ours.camera} was chosen. To check this one, give its pictures and the scans, without the pictures of ${ours.camera}.`;
   const others = found.colours.filter(({ name }) => !names.has(name));
   warnings.push(...own, ...others.map(({ name }) => ofFile(name, warning("file-left-out", message))));
   return pairs;
@@ -308,14 +340,14 @@ export function sayUnpaired(pictures: NamedFile[], warnings: ReaderWarning[]): v
   if (colours.length + depths.length < 2) return;
   const said = new Set(warnings.map(({ file }) => file));
   const count = (files: NamedFile[], one: string, more: string) => `${files.length} ${files.length === 1 ? one : more}`;
-  const message = `it was not paired, because ${count(colours, "colour image", "colour images")} and ${count(depths, "depth map or scan", "depth maps or scans")} have no names or time stamps in common (left out). Give both files of a frame the same name.`;
+  const message = `it was left out, because ${count(colours, "colour image", "colour images")} and ${count(depths, "depth map or scan", "depth maps or scans")} have no names or time stamps in common. Give both files of a frame the same name.`;
   for (const { name } of [...colours, ...depths])
     if (!said.has(name)) warnings.push(ofFile(name, warning("file-alone", message)));
 }
 
 export function pairsOf(pictures: NamedFile[], warnings: ReaderWarning[]): Pairs {
   const found = sorted(pictures, warnings);
-  // By their times alone, pictures of different cameras would take turns.
+  // By times alone, pictures of different cameras would alternate.
   const areStamped = [...found.colours, ...found.depths].every(({ name }) => timeOf(name) !== undefined);
   const single = areStamped ? ofOneCamera(found, warnings) : undefined;
   if (single !== undefined) return single;

@@ -1,7 +1,7 @@
 /**
- * Calibrations of single frames: KITTI's calib/000000.txt, calib/000001.txt, .. hold the cameras and poses of the frames of their names.
+ * Calibrations of single frames: KITTI's calib/000000.txt, calib/000001.txt, .. hold the cameras and poses of the frames with these names.
  *
- * Each frame has the cameras of its file. Poses hold for all frames of a check, so that a warning names calibrations that differ.
+ * Each frame has the cameras of its file. Poses apply to all frames of a check, so a warning names calibrations that differ.
  */
 import { chained, degreesOf, inverseOf } from "./formats/poses.js";
 import { key, stem } from "./names.js";
@@ -15,14 +15,18 @@ export interface TextOfFrame {
   poses: NamedPose[];
 }
 
-/** Poses that differ by less are one: the digits of a file differ by less, and no rig is calibrated better. */
+/** Poses with smaller differences count as equal: the digits of a file differ by less, and no rig is calibrated better. */
 const SAME = { degrees: 0.01, metres: 1e-4 };
 
-/** Texts that belong to single frames, and the others; a single text may be called as the only frame by chance. */
+/** The frame after which a file is named: the 3D Scanner App has "frame_00000.json" beside "depth_00000.png". */
+export const frameOf = (name: string): string => key(name.replace(/frames?(?=[ _-]?\d)/gi, " "));
+
+/** Separates texts that belong to single frames from the others; a single text may share a name with the only frame by chance. */
 export function split(texts: TextOfFrame[], frames: ReadonlySet<string>): [own: TextOfFrame[], common: TextOfFrame[]] {
-  const isOwn = ({ file }: TextOfFrame) => key(file) !== "" && frames.has(key(file));
+  const called = new Set([...frames].map(frameOf).filter((name) => name !== ""));
+  const isOwn = ({ file }: TextOfFrame) => called.has(frameOf(file));
   const own = texts.filter(isOwn);
-  // A camera without a name is called as its file, and is its frame's by that name (assign.ts).
+  // A camera without a name is named after its file, and thereby belongs to the frame of that name (assign.ts).
   const isByName = own.every(
     ({ file, cameras, poses: { length } }) => length === 0 && cameras.every(({ name }) => name === stem(file)),
   );
@@ -42,7 +46,7 @@ const isSame = (a: NamedPose, b: NamedPose): boolean => {
 };
 const isSameCamera = (a: NamedCamera, b: NamedCamera): boolean => JSON.stringify(a) === JSON.stringify(b);
 
-/** All of these once, those of later frames called after their frame where an earlier one has their name. */
+/** All poses once; if a later frame has a pose with the name of an earlier one, its pose is named after its frame. */
 function united<T extends { name?: string }>(
   all: [frame: string, items: T[]][],
   isAlike: (a: T, b: T) => boolean,
@@ -57,7 +61,7 @@ function united<T extends { name?: string }>(
   return found;
 }
 
-/** Says how far the poses that lead each frame's list differ. */
+/** Reports how far the first poses of the frames differ. */
 function checkPoses(heads: [frame: string, pose: NamedPose][], warnings: ReaderWarning[]): void {
   const [first, ...others] = heads;
   if (first === undefined) return;
@@ -75,11 +79,11 @@ function checkPoses(heads: [frame: string, pose: NamedPose][], warnings: ReaderW
   );
 }
 
-/** Gives each frame the cameras of its texts beside the common ones; `assign` does so for a folder of one frame. */
+/** Assigns to each frame the cameras of its texts, besides the common ones; `assign` does this for a folder of one frame. */
 export function assignOwn(folder: RigFolder, own: TextOfFrame[], assign: (one: RigFolder) => RigFolder): void {
   const said: ReaderWarning[] = [];
   const each = folder.frames.map((frame: CheckFrame): [string, RigFolder] => {
-    const mine = own.filter(({ file }) => key(file) === key(frame.name ?? ""));
+    const mine = own.filter(({ file }) => frameOf(file) === frameOf(frame.name ?? ""));
     const cameras = [...mine.flatMap((text) => text.cameras), ...folder.cameras];
     const poses = [...mine.flatMap((text) => text.poses), ...folder.poses];
     const one = assign({ frames: [frame], cameras, poses, readings: [], warnings: said });

@@ -15,15 +15,18 @@ const HOW: Record<RangeImage["how"], string> = {
   sphere: "by a z-buffer over the sphere",
 };
 
-/** The median distance, units of the file, beyond which points have the coordinates of a map if their distances spread by less than this share. */
+/**
+ * Largest spread of distances, as a share of their median, at which points count as coordinates of a map, if this median, in units of the
+ * file, is exceeded.
+ */
 const [FAR_OFF, NARROWLY] = [10_000, 0.05];
 
-/** Throws for eastings and northings, or a mesh far from the origin: no sensor at the origin has measured such a cloud. */
+/** Throws for eastings and northings, or a mesh far from the origin, because no sensor at the origin can have measured such a cloud. */
 function checkSensor(sorted: Float64Array): void {
   const at = (share: number) => quantile(sorted, share);
   if (at(0.5) > FAR_OFF && at(0.99) - at(0.01) < NARROWLY * at(0.5))
     throw badFile(
-      `its points lie ${at(0.5).toPrecision(3)} from the origin and close together, as in the coordinates of a map rather than of a sensor; move them into the frame of the sensor that the extrinsics are for`,
+      `its points lie ${at(0.5).toPrecision(3)} from the origin and close together, so they seem to be in the coordinates of a map instead of a sensor; move them into the frame of the sensor that the extrinsics are for`,
     );
 }
 
@@ -55,7 +58,7 @@ export function pointsDepth(cloud: Points, { unit: given }: ReadOptions): Unname
     warning("points-sorted", words, { points: count, rows: image.height }),
     ...timed(scan),
   ];
-  const notes = [...(image.hidden > 0 ? [`${image.hidden} hidden by others left out`] : []), ...cloud.notes];
+  const notes = [...(image.hidden > 0 ? [`${image.hidden} left out because others hide them`] : []), ...cloud.notes];
   const says = `${count} points (${format}), sorted into ${size} ${HOW[image.how]}`;
   return { ...reading(image, image.points, { format: "points", says, unit, notes, warnings }), scan };
 }

@@ -1,4 +1,4 @@
-/** Range images for callers who know what their camera sees: what makes them is loaded when the first one is asked for. */
+/** Range images for callers who know what their camera sees; the code that makes them is loaded with the first one. */
 import { camera } from "../cameras.js";
 import { array, numbers, object, side } from "../check.js";
 import { BimodalError } from "../errors.js";
@@ -17,7 +17,7 @@ const scanShape = object(
 const members = ["rotation", "translation", "camera", "width", "height"];
 const viewShape = object({ rotation: numbers(9), translation: numbers(3), camera, width: side, height: side }, members);
 
-/** Lists of a scan that are not as long as it has points. */
+/** Lists of a scan whose length differs from the number of points. */
 function checkLengths({ points, ...lists }: Scan): void {
   if (points.length % 3 !== 0)
     throw new BimodalError(
@@ -32,8 +32,8 @@ function checkLengths({ points, ...lists }: Scan): void {
 }
 
 /**
- * The points of a scan in rows and columns, in the scan's own frame; of a `view` the part that its camera may see, with a margin of some
- * degrees. Nothing for a scan without measurements.
+ * The points of a scan in rows and columns, in the scan's own frame; with a `view`, only the part that its camera may see, with a margin of
+ * some degrees. Undefined for a scan without measurements.
  */
 export async function rangeImage(scan: Scan, view?: View): Promise<RangeImage | undefined> {
   scanShape(scan, "scan");

@@ -1,5 +1,5 @@
 /**
- * Reads any file of a rig, recognised by its content, into what the check takes.
+ * Reads any file of a rig, which it recognises by content, into the inputs of the check.
  *
  * Every failure is a BimodalError of the code "file" that names the file and the reason.
  */
@@ -12,23 +12,24 @@ import { colmapText } from "./formats/colmap-others.js";
 import { type RasterKind, rasterKind } from "./formats/headerless.js";
 import { readJpeg, readWebp } from "./formats/jpeg.js";
 import { MOST_BYTES } from "./formats/limits.js";
-import { matrixText } from "./formats/npy-matrix.js";
+import { archiveText, matrixText } from "./formats/npy-matrix.js";
 import { npyPicture, npzPicture } from "./formats/npy.js";
 import type { Cloud, Picture, Points } from "./formats/picture.js";
 import { pngPicture } from "./formats/png.js";
 import { readPfm, readPnm } from "./formats/pnm.js";
 import { isRawName, pointsRefused, rawRefused, readColmapMap, readRaw } from "./formats/raw.js";
-import { pointList, readTable } from "./formats/table.js";
+import { readTable } from "./formats/table.js";
 import { textOf } from "./formats/decode.js";
 import { kindOfPicture, nameWarnings, unitOfName } from "./recognise.js";
 import { once } from "./once.js";
+import { CONTENTS, roleOf } from "./roles.js";
 import type { NamedFile, ReadOptions, RigReading, Unnamed } from "./types.js";
 import { distinct } from "./warnings.js";
 import { inWords } from "./words.js";
 
 type Content = Unnamed<RigReading>;
 
-/** Formats that are not read, which are loaded with the first file of no known picture format. */
+/** The module about formats that are not supported, loaded with the first file of no known picture format. */
 const refusals = once(() => import("./formats/containers.js"));
 const texts = once(() => import("./formats/text.js"));
 const clouds = () => import("./formats/pointclouds.js");
@@ -63,9 +64,10 @@ export const isRasterFile = (bytes: Uint8Array): boolean => rasterKind(bytes) !=
 /** Whether a file is a text, or a binary calibration that is read as one. */
 export const isTextFile = (bytes: Uint8Array): boolean => (textOf(bytes) ?? writtenOf(bytes)) !== undefined;
 /** A binary calibration as the text with the same content. */
-const writtenOf = (bytes: Uint8Array): string | undefined => colmapText(bytes) ?? matrixText(bytes);
+const writtenOf = (bytes: Uint8Array): string | undefined =>
+  colmapText(bytes) ?? matrixText(bytes) ?? archiveText(bytes);
 
-/** A picture as what it holds, or as what is asked for. */
+/** Reads a picture as the kind that its content shows, or as the requested kind. */
 export function ofPicture(name: string, picture: Picture, options: ReadOptions): Content {
   const kind = options.as ?? (options.inverse ? "depth" : kindOfPicture(name, picture));
   const warnings = [...picture.warnings, ...nameWarnings(name, picture, kind, options)];
@@ -99,14 +101,15 @@ async function ofText(file: string, text: string, { as }: ReadOptions): Promise<
 
 /** A file without known first bytes: raw pixels of a given size, headerless points, or a text. */
 async function ofOthers({ name, bytes }: NamedFile, isPoints: boolean, options: ReadOptions): Promise<Content> {
-  const { knownContainer, knownText } = await refusals();
-  const container = knownContainer(name, bytes);
+  const { knownContainer, knownText, pointList } = await refusals();
+  const written = writtenOf(bytes);
+  const container = written === undefined ? knownContainer(name, bytes) : undefined;
   if (container !== undefined) throw container;
   if (options.size !== undefined && isRawName(name)) return ofPicture(name, readRaw(bytes, options.size), options);
-  const written = writtenOf(bytes);
   if (written !== undefined) return ofText(name, written, options);
   const text = textOf(bytes);
   const scan = isPoints || (text === undefined && /\.bin$/i.test(name)) ? (await clouds()).readBin(bytes) : undefined;
+  if (scan !== undefined && roleOf(name) === "radar") throw badFile(`its name says that it holds ${CONTENTS.radar}`);
   if (scan !== undefined) return ofCloud(scan, options);
   if (isPoints) throw pointsRefused();
   const listRefused = pointList(bytes);
@@ -121,7 +124,7 @@ async function ofOthers({ name, bytes }: NamedFile, isPoints: boolean, options: 
 async function content({ name, bytes }: NamedFile, options: ReadOptions): Promise<Content> {
   if (bytes.length === 0) throw badFile("it is empty");
   const kind = rasterKind(bytes);
-  // Recordings are refused by name, whatever their size; a camera's raw photograph begins as a TIFF.
+  // Recordings are refused by name, whatever their size; a camera's raw photograph has the first bytes of a TIFF.
   const isDoubtful = bytes.length > MOST_BYTES || kind === "tiff";
   const container = isDoubtful ? (await refusals()).knownContainer(name, bytes) : undefined;
   if (container !== undefined) throw container;
@@ -136,7 +139,7 @@ async function content({ name, bytes }: NamedFile, options: ReadOptions): Promis
   const picture = await PICTURES[kind](bytes, options);
   const { scan, format, notes, warnings } = picture;
   if (scan) return ofCloud({ format, scan, isMetric: false, notes, warnings }, options);
-  // An array from an archive goes by its own name.
+  // The name of an array from an archive is the array's own.
   return ofPicture(picture.name ?? name, picture, options);
 }
 
@@ -183,7 +186,7 @@ const checkOptions = object({
   signal,
 });
 
-/** Reads one file. `warnings` has what was guessed or looks wrong. */
+/** Reads one file. `warnings` lists what was guessed or looks wrong. */
 export async function readRigFile(file: NamedFile, options: ReadOptions = {}): Promise<RigReading> {
   checkNamed(file, "file");
   checkOptions(options, "options");

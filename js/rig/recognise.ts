@@ -1,4 +1,4 @@
-/** Recognises what a picture holds, by its content, and by its name where the content is ambiguous. */
+/** Recognises what a picture holds by its content, or by its name if the content is ambiguous. */
 import { badFile } from "../errors.js";
 import { looksLikeDepth, looksLikeLabels, looksLikeMask, looksLikeSoftMask } from "./colour.js";
 import { isGrey } from "./depth.js";
@@ -13,7 +13,7 @@ type Kind = "colour" | "depth" | "mask";
 const isColourful = (picture: Picture): boolean => picture.channels >= 3 && !isGrey(picture);
 const isDepthRole = (role: Role | undefined): boolean => role === "depth" || role === "cloud";
 
-/** Shares of a cloud's points to the left and above the optical axis, at least, and behind the camera, at most. */
+/** Smallest shares of a cloud's points to the left of and above the optical axis, and largest share behind the camera. */
 const [ASIDE, BEHIND] = [0.1, 0.02];
 
 /** Whether channels of floats are the points of a cloud, with an intensity or without, rather than colours, which are never negative. */
@@ -38,7 +38,7 @@ function kindOfFloats(picture: Picture, role: Role | undefined): Kind {
   return picture.channels === 3 && isGrey(picture) && (isBright || role === "depth") ? "depth" : "colour";
 }
 
-/** A file whose name or numbers are those of another kind. */
+/** Reports a file whose name or numbers suggest another kind. */
 const ofOtherKind = (finding: string, remedy: string) =>
   badFile(`${finding}. ${remedy}`, undefined, { problem: "kind", finding });
 
@@ -54,7 +54,7 @@ const refusal = (role: Other) =>
         "If it is one of these, state which one when you read it",
       );
 
-/** The kind of a picture, by its content where that is clear, else by its name. */
+/** The kind of a picture, by its content if that is clear, else by its name. */
 export function kindOfPicture(name: string, picture: Picture): Kind {
   const role = roleOf(name);
   if (role !== "confidence" && looksLikeMask(picture)) return "mask";

@@ -4,7 +4,7 @@
  * Limits: names are English and those of common tools; if a name says nothing, the content decides.
  */
 
-/** "rendering": a picture of something for people, such as colour-mapped depths. "view": the second of two cameras of a kind. */
+/** "rendering": a picture for people, such as colour-mapped depths. "view": the second of two cameras of the same kind. */
 export type Role =
   | "colour"
   | "depth"
@@ -15,12 +15,13 @@ export type Role =
   | "confidence"
   | "normals"
   | "labels"
+  | "radar"
   | "rendering";
 
 /** Whole words only: "displayed" is not a disparity, "undistorted" not a distance. */
 const whole = (words: string): RegExp => new RegExp(`(?<![a-z])(?:${words})(?![a-z])`);
 
-/** What a picture holds beside colours and depths; these words count before "depth" and "colour" in the same name. */
+/** What a picture holds besides colours and depths; these words have priority over "depth" and "colour" in the same name. */
 const SPECIAL: [Role, RegExp][] = [
   ["mask", /mask|segm/],
   ["confidence", whole("conf|confs|conf ?maps?|confidences?|confidence ?maps?|certainty|uncertainty|uncertainties")],
@@ -32,6 +33,7 @@ const SPECIAL: [Role, RegExp][] = [
       "vis|viz|visuals?|visuali[sz]ations?|colou?red|colou?ri[sz]ed|colou?r ?maps?|overlays?|previews?|thumbs?|thumbnails?|debug|heat ?maps?",
     ),
   ],
+  ["radar", whole("radars?")],
   ["disparity", whole("disps?|disparity|disparities|disparity ?maps?|inv(?:erse)? ?depths?|idepths?")],
   [
     "infrared",
@@ -40,13 +42,13 @@ const SPECIAL: [Role, RegExp][] = [
     ),
   ],
 ];
-/** Colours that were carried into the depth camera's view keep the word "depth" in their name. */
+/** Colour images that were projected into the depth camera's view still have the word "depth" in their name. */
 const COLOUR_IN_DEPTH =
   /(?:colou?r|rgb|image)[^a-z]*(?:aligned|registered|transformed|warped|mapped)?[^a-z]*(?:to|2|in|into)[^a-z]*depth/;
 const DEPTH = /depth|dpt|(?<![a-z])(?:ranges?|distances?|tof|z ?maps?|z16)(?![a-z])/;
 const CLOUD = whole("velodyne|velodyne ?points|lidars?|clouds?|point ?clouds?|points|pcds?|lasers?|scans?");
 const COLOUR = whole("colou?rs?|rgbs?");
-/** Words that name folders of colour images, but files of any kind. */
+/** Words that, in names of folders, mean colour images, but in names of files mean any kind. */
 const PICTURES = whole("images?|imgs?|photos?|pictures?|frames?");
 
 /** In lower case, with spaces between words that only capitals separate. */
@@ -72,11 +74,11 @@ function common(segment: string): Role | undefined {
   return CLOUD.test(segment) ? "cloud" : undefined;
 }
 
-/** KITTI's depth maps, in folders that are called as those of its images; no file says that they have 256 units to the metre. */
+/** KITTI's depth maps are in folders that are named after those of its images; no file says that they have 256 units to the metre. */
 export const isKittiDepth = (name: string): boolean =>
   /(?<![a-z])(?:proj_depth|velodyne_raw|groundtruth_depth)(?![a-z])/i.test(name);
 
-/** What a file's name says that it holds; nothing where it says nothing. */
+/** What a file's name says about its content; undefined if it says nothing. */
 export function roleOf(name: string): Role | undefined {
   if (isKittiDepth(name)) return "depth";
   const [own = "", folder = "", ...outer] = name.split("/").map(plain).reverse();
@@ -89,22 +91,23 @@ export function roleOf(name: string): Role | undefined {
   return PICTURES.test(own) ? "colour" : undefined;
 }
 
-/** What is neither a colour image nor depth nor a mask. */
+/** Files that are neither colour images nor depth maps nor masks. */
 export type Other = Exclude<Role, "colour" | "depth" | "cloud" | "mask">;
 
-/** What is said of such a file. */
+/** The message about such a file. */
 export const CONTENTS: Record<Other, string> = {
   confidence: "confidences",
   labels: "labels of objects",
   normals: "normals",
   rendering: "a rendering for people",
   disparity: "disparities (or inverse depths)",
+  radar: "a radar's points, which are too few and too coarse",
   infrared: "infrared or intensities",
 };
 
 export const isOther = (role: Role | undefined): role is Other => role !== undefined && Object.hasOwn(CONTENTS, role);
 
-/** Whether a name says that distances were taken along the rays rather than along z. */
+/** Whether a name says that distances were measured along the rays rather than along z. */
 export const isAlongRays = (name: string): boolean =>
   /euclid|distances? to (?:the )?camera|(?<![a-z])(?:ray|radial) ?(?:depths?|distances?)/.test(
     name.split("/").slice(-2).map(plain).join(" "),
@@ -113,7 +116,7 @@ export const isAlongRays = (name: string): boolean =>
 const ALIGNED = /(?<![a-z])(?:aligned|registered|transformed)(?![a-z])/;
 const DEPTH_IN_COLOUR = /depth[^a-z]*(?:to|2|in|into)[^a-z]*(?:colou?r|rgb)/;
 
-/** Whether a depth map's name, or its folder's, says that it was carried into the colour camera's view. */
+/** Whether a depth map's name, or its folder's, says that it was projected into the colour camera's view. */
 export function isAligned(name: string): boolean {
   const near = name.split("/").slice(-2).map(plain);
   const isOther = near.some((each) => /un ?(?:aligned|registered)/.test(each));

@@ -1,12 +1,12 @@
-/** Cameras of pictures that were made smaller or larger. */
+/** Cameras of pictures that were scaled down or up. */
 import type { Pinhole } from "./types.js";
 
 type Size = [width: number, height: number];
 
-/** Sides of pictures are whole pixels: so much may the two scales differ. */
+/** Largest difference of the two scales: sides of pictures are whole pixels. */
 const ASPECT = 0.01;
 
-/** Whether a picture of one size can be a whole one of the other, made smaller or larger. */
+/** Whether a picture of one size can be a scaled version of a picture of the other size. */
 export const haveLikeAspects = ([w, h]: Size, [width, height]: Size): boolean =>
   Math.abs((w * height) / (h * width) - 1) <= ASPECT;
 

@@ -1,5 +1,5 @@
 /**
- * Depth maps of points in metres whose z is not forward: those of LiDARs and of mapping tools.
+ * Depth maps made from points in metres whose z is not forward: those of LiDARs and of mapping tools.
  *
  * Points keep their frame, in which x is forward and z up for most LiDARs; extrinsics have to be those of this frame.
  */
@@ -13,7 +13,7 @@ import { type ReaderWarning, warning } from "./warnings.js";
 
 type Depth = Unnamed<DepthReading>;
 
-/** The median distance of a LiDAR's points, metres, at most; beyond it, the unit is the millimetre. */
+/** Largest median distance of a LiDAR's points, metres; beyond it, the unit is the millimetre. */
 const FARTHEST = 200;
 /** The distance of each point from the origin. */
 export function ranges(points: Float32Array): Float64Array {
@@ -22,7 +22,7 @@ export function ranges(points: Float32Array): Float64Array {
   return found;
 }
 
-/** Whether z is forward, as in a depth camera's frame: the points lie to one side, and along z more than along x and y. */
+/** Whether z is forward, as in a depth camera's frame: the points lie on one side, and extend farther along z than along x and y. */
 export function isOptical(points: Float32Array): boolean {
   const mean = meanDirection(points);
   const [x, y, z] = mean;

@@ -1,9 +1,9 @@
-/** Order statistics of what the readers see. */
+/** Order statistics of values that the readers examine. */
 
-/** The upper of the middle values; NaN where there is no value. */
+/** The upper median; NaN if there is no value. */
 export const median = (values: ArrayLike<number>): number =>
   Float64Array.from(values).sort()[values.length >> 1] ?? NaN;
 
-/** The value at a share, 0 to 1, of values in order; NaN where there is no value. */
+/** The quantile, 0 to 1, of sorted values; NaN if there is no value. */
 export const quantile = (sorted: Float64Array, share: number): number =>
   sorted[Math.floor(share * (sorted.length - 1))] ?? NaN;

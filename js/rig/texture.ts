@@ -1,14 +1,14 @@
-/** What the values of neighbouring pixels reveal: depths of a LiDAR are scattered, and images change from pixel to pixel. */
+/** What the values of neighbouring pixels reveal: depths of a LiDAR are scattered, and images vary from pixel to pixel. */
 
 /** Fewer pixels are not conclusive. */
 const FEWEST = 1000;
 
-/** At most this share of pixels is valid in a projected scan, and of their neighbours hardly more. */
+/** Largest share of valid pixels in a projected scan. */
 const SPARSE = 0.35;
-/** .. and of the neighbours of valid pixels, at most so many are valid, too. */
+/** Largest share of valid pixels among the neighbours of valid pixels in a projected scan. */
 const ALONE = 0.6;
 
-/** Whether valid pixels are few and stand alone, as the points of a LiDAR that were projected; holes of depth cameras are in one piece. */
+/** Whether valid pixels are few and isolated, as the points of a LiDAR that were projected; holes of depth cameras are connected. */
 export function isScattered(data: ArrayLike<number>, width: number): boolean {
   if (data.length < FEWEST) return false;
   let [valid, beside] = [0, 0];
@@ -22,7 +22,7 @@ export function isScattered(data: ArrayLike<number>, width: number): boolean {
 
 /** No surface makes a pixel differ from the mean of its neighbours by more than this share, except at edges. */
 const CHANGE = 0.04;
-/** In a noisy infrared image more than this share of pixels differs so much, ten times as many as in a depth map. */
+/** In a noisy infrared image more than this share of pixels differs that much, ten times as many as in a depth map. */
 const MANY = 0.3;
 
 /** Whether values change from pixel to pixel as those of an image do. */

@@ -115,7 +115,7 @@ export interface ReadOptions {
   as?: RigReading["kind"];
   /** Metres per stored unit of a depth map or cloud; by default the values decide. */
   unit?: number;
-  /** The stored numbers of the depth map are disparities or inverse depths, larger where it is nearer: how they become depths. */
+  /** How the stored numbers become depths if they are disparities or inverse depths, which are larger for nearer surfaces. */
   inverse?: InverseDepth;
   /** Width and height of raw pixels (.raw, .bin), which have no header. */
   size?: readonly [width: number, height: number];

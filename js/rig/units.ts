@@ -1,7 +1,7 @@
 /**
- * The unit of depth maps and the size of raw ones where a text beside them says it, by the names that programs give these numbers.
+ * The unit of depth maps and the size of raw ones, if a text beside them states it, found by the names that programs use for these numbers.
  *
- * Limits: a number is known by its name alone, whatever the text's format.
+ * Limits: a number is recognised by its name alone, whatever the format of the text.
  */
 import { base, folderOf, stem } from "./names.js";
 import { textOf } from "./formats/decode.js";
@@ -9,19 +9,19 @@ import type { Size } from "./formats/raw.js";
 import type { NamedFile } from "./types.js";
 import { type ReaderWarning, warning } from "./warnings.js";
 
-/** Characters of a text in which a unit is looked for. */
+/** Characters of a text that are searched for a unit. */
 const MOST = 2 ** 20;
 
-/** ORB-SLAM, NICE-SLAM, ScanNet, GraspNet and others: stored units to the metre. */
+/** ORB-SLAM, NICE-SLAM, ScanNet, GraspNet and others: stored units per metre. */
 const TO_THE_METRE =
   "(?:rgbd[._])?depth_?map_?factor|png_depth_scale|(?:m_)?depth_?shift|factor_depth|depth_?factor|depth_units_per_met(?:re|er)";
-/** nerfstudio, instant-ngp, librealsense, Kimera: metres to the stored unit. */
+/** nerfstudio, instant-ngp, librealsense, Kimera: metres per stored unit. */
 const METRES =
   "depth_unit_scale_factor|integer_depth_scale|depth_?units?(?:_m|_in_met(?:re|er)s)?|depth_to_met(?:re|er)s?(?:_factor)?|met(?:re|er)s_per_unit";
-/** RealSense: metres; Open3D and others: to the metre; BOP: millimetres. */
-const EITHER = "depth_?scale(?:_factor)?";
+/** RealSense, also as "Depth Scale is: 0.001": metres per unit; Open3D and others: units per metre; BOP: millimetres per unit. */
+const EITHER = "depth[_ ]?scale(?:_factor| is)?";
 
-/** Replica's cameras as NICE-SLAM has them: stored units to the metre as the "scale" of the camera; smaller ones scale pictures. */
+/** Replica's cameras in NICE-SLAM: stored units per metre, as the "scale" of the camera; smaller numbers scale pictures. */
 const [OF_CAMERA, LEAST_SCALE] = [/(?<![a-z_.])scale["']?\s*[:=]\s*(\d+(?:\.\d*)?)(?![\w.])/gi, 1000];
 
 const named = (names: string): RegExp =>
@@ -33,10 +33,16 @@ const named = (names: string): RegExp =>
 const WORD =
   /(?<![a-z])depth_?units?["'\s]*[:=,]\s*["']?(millimet(?:re|er)s?|mm|met(?:re|er)s?|m|centimet(?:re|er)s?|cm)\b/gi;
 
-/** Between a tenth of a millimetre's tenth and a tenth of a metre: other numbers of that name mean something else. */
+/**
+ * Smallest and largest plausible unit, from a hundredth of a millimetre to a tenth of a metre; other numbers of that name mean something
+ * else.
+ */
 const isUnit = (metres: number): boolean => metres >= 9e-6 && metres <= 0.1;
 
-/** Metres of a number that programs call the scale of depths: to the metre if it is large, metres if it is small, else BOP's millimetres. */
+/**
+ * Metres per unit from a number that programs call the scale of depths: units per metre if it is large, metres per unit if it is small,
+ * else BOP's millimetres per unit.
+ */
 function ofScale(value: number): number {
   if (value >= 100) return 1 / value;
   return value >= 0.01 ? value / 1000 : value;
@@ -60,7 +66,7 @@ function unitsIn(text: string): number[] {
   return found.filter(isUnit);
 }
 
-/** What the texts of a folder say of the unit of its depth maps; nothing where they say nothing, or several things. */
+/** What the texts of a folder say about the unit of its depth maps; undefined if they say nothing or contradict each other. */
 export function unitBeside(
   texts: NamedFile[],
   warnings: ReaderWarning[],
@@ -86,7 +92,7 @@ export function unitBeside(
 const WIDE = /(?:resolution[ _]?x|width|cols)["'\s]*[:=,>]\s*(\d{2,5})/i;
 const HIGH = /(?:resolution[ _]?y|height|rows)["'\s]*[:=,>]\s*(\d{2,5})/i;
 
-/** The size of raw pixels by a text that is named after them, as realsense-viewer's metadata are. */
+/** The size of raw pixels from a text that is named after them, such as the metadata of realsense-viewer. */
 export function sizeBeside(raw: NamedFile, texts: NamedFile[]): Size | undefined {
   for (const { name, bytes } of texts) {
     if (folderOf(name) !== folderOf(raw.name) || !base(name).startsWith(stem(raw.name))) continue;

@@ -61,6 +61,7 @@ export type ReaderCode =
   | "names-ambiguous"
   | "pairs-missing"
   | "pairs-by-order"
+  | "pairs-shifted"
   | "pairs-by-content"
   | "pairs-sampled"
   // Recordings
@@ -74,19 +75,19 @@ export type ReaderCode =
 export interface ReaderWarning {
   /** Stable, for programs. */
   code: ReaderCode;
-  /** A sentence; for a file of a folder it begins with the file's name. */
+  /** A sentence; for a file in a folder it begins with the file's name. */
   message: string;
-  /** Whether the values that were read may be wrong, which caps the verdict of a check. Other warnings name what was left out. */
+  /** Whether the values that were read may be wrong, which caps the verdict of a check. Other warnings only name what was left out. */
   isDoubt: boolean;
-  /** The file of a folder that it is about. */
+  /** The file in a folder that the warning is about. */
   file?: string;
-  /** Files of a folder with the same warning, this one included; absent for one. */
+  /** Number of files in a folder with the same warning, including this one; absent for a single file. */
   files?: number;
   /** The numbers in the sentence. */
   [detail: string]: unknown;
 }
 
-/** Codes of what was left out or left as it is, which does not put the values in question. */
+/** Codes about parts that were left out or left unchanged, which is no evidence against the values. */
 const HARMLESS: ReadonlySet<ReaderCode> = new Set([
   "file-left-out",
   "file-alone",
@@ -107,7 +108,7 @@ export const warning = (
   details: Readonly<Record<string, unknown>> = {},
 ): ReaderWarning => ({ code, message, isDoubt: !HARMLESS.has(code), ...details });
 
-/** The warning of a file, with the file's name, for those of its folder. `reason` stays without the name. */
+/** The warning of a file, beginning with the file's name, for those of its folder. `reason` stays without the name. */
 export const ofFile = (file: string, found: ReaderWarning): ReaderWarning => ({
   reason: found.message,
   ...found,
@@ -115,11 +116,11 @@ export const ofFile = (file: string, found: ReaderWarning): ReaderWarning => ({
   file,
 });
 
-/** The key by which warnings are grouped: the code, and for files that were left out the reason as well. */
+/** The key by which warnings are grouped: the code and, for files that were left out, the reason. */
 const likeness = ({ code, reason }: ReaderWarning): string =>
   code === "file-left-out" ? `${code}: ${String(reason)}` : code;
 
-/** One warning for all files of a folder that have it, so that a calibration of a hundred frames warns once. */
+/** Merges equal warnings of all files into one, so that a hundred frames with the same calibration cause a single warning. */
 export function grouped(warnings: readonly ReaderWarning[]): ReaderWarning[] {
   const alike = new Map<string, ReaderWarning[]>();
   for (const each of warnings) alike.set(likeness(each), [...(alike.get(likeness(each)) ?? []), each]);
@@ -133,6 +134,6 @@ export function grouped(warnings: readonly ReaderWarning[]): ReaderWarning[] {
   });
 }
 
-/** The first warnings with different messages, at most so many. */
+/** The first warnings with different messages, at most this many. */
 export const distinct = (warnings: readonly ReaderWarning[], most = Infinity): ReaderWarning[] =>
   [...new Map(warnings.map((each) => [each.message, each])).values()].slice(0, most);

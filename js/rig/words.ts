@@ -1,9 +1,9 @@
-/** Cameras and poses in plain words. */
+/** Describes cameras and poses in plain words. */
 import { degreesOf } from "./formats/poses.js";
 import type { NamedCamera, NamedPose } from "./types.js";
 
 const digits = (value: number): string => Number(value.toPrecision(5)).toString();
-/** Cameras or poses that are described one by one. */
+/** Most cameras or poses that are described individually. */
 const FEW = 4;
 
 function lens({ camera: { model, distortion } }: NamedCamera): string {

@@ -6,7 +6,7 @@ import type { Pose } from "./poses.js";
 
 /** One pair from a rig whose calibration is to be checked. It holds the whole frames; masks are optional. Depth is metric. */
 export interface CheckFrame {
-  /** Without a camera the focal length is estimated, the principal point being the middle of the image. */
+  /** Without a camera the focal length is estimated, and the principal point is the middle of the image. */
   image: Omit<ColorImage, "camera"> & {
     /** The colour camera. */
     camera?: Pinhole;
@@ -22,7 +22,7 @@ export interface CheckFrame {
 
 /** A frame as it may be given: its cameras in any of the forms of `PinholeInput`. */
 export interface CheckFrameInput extends Omit<CheckFrame, "image" | "depth"> {
-  /** Without a camera the focal length is estimated, the principal point being the middle of the image. */
+  /** Without a camera the focal length is estimated, and the principal point is the middle of the image. */
   image: Omit<CheckFrame["image"], "camera"> & {
     /** The colour camera. */
     camera?: PinholeInput;
@@ -41,11 +41,11 @@ export type CheckCue = "shading" | "edges" | "information" | "silhouette";
 export interface CheckOptions {
   /** The cues to use. Default: all. */
   cues?: CheckCue[];
-  /** Threads that may be used, 1 to 16; one is used so far. The result does not depend on it. */
+  /** Threads that may be used, 1 to 16; at present one is used. The result does not depend on it. */
   workers?: number;
   /** Ends the check; the promise is rejected with its reason. */
   signal?: AbortSignal;
-  /** Share of the work done, 0 .. 1, and what is being done. */
+  /** Called with the share of the work done, 0 .. 1, and a description of the current step. */
   onProgress?: (share: number, message: string) => void;
 }
 
@@ -97,13 +97,13 @@ export interface CheckReport {
   warnings: Warning[];
   /** The extrinsics that fit best, scale 1: P_colour = R P_depth + t, metres. */
   estimate: Pose;
-  /** Share of the depth points that the estimate puts onto the image, 0 to 1. Below 0.15 no verdict rests on it. */
+  /** Share of the depth points that the estimate puts onto the image, 0 to 1. Below 0.15 every verdict is "undecided". */
   overlap: number;
   /** The centre of the scene in the colour frame, metres. */
   middle: [number, number, number];
   /** 36 numbers, row-major: a rotation vector in rad about the scene's centre, then a translation in m, in the colour frame. */
   covariance: number[];
-  /** Factor to the assumed focal length, and the sigma of its logarithm, if the colour camera was not given. */
+  /** Factor to the assumed focal length, and the sigma of its logarithm, if no colour camera was given. */
   focal?: [number, number];
   /** Expected reprojection error of the estimate at the scene's depth, pixels of the colour image, and its 95 % interval. */
   health: {
@@ -146,7 +146,7 @@ export interface CheckReport {
   }[];
 }
 
-/** A frame as a pose lays it over its image. */
+/** A frame, projected by a pose onto its image. */
 export interface FrameOverlay {
   /** Column, row, metres of each visible depth point. */
   points: Float32Array;

@@ -10,7 +10,7 @@ export type WasmSource = string | URL | Request | Response | BufferSource | WebA
 
 /** Options of `Estimator.run`. */
 export interface RunOptions {
-  /** The largest number of steps in this call, slices of the search included; `Options.maxIterations` counts iterations. */
+  /** The largest number of steps in this call, counting slices of the search; `Options.maxIterations` counts iterations. */
   maxIterations?: number;
   /** Ends the run between two steps; the promise is rejected with its reason. */
   signal?: AbortSignal;
@@ -39,7 +39,7 @@ export type Layer = "normals" | "depth" | "residual" | "refined" | "refinedNorma
 
 /** How `Estimator.draw` maps numbers to colours. Normals have a fixed mapping. */
 export interface DrawOptions {
-  /** The numbers at the ends of the map. Default: the range of the layer without the lowest and the highest hundredth. */
+  /** The numbers at the ends of the map. Default: the range of the layer without the lowest and the highest one per cent. */
   range?: readonly [number, number];
   /** Default "viridis". */
   map?: "viridis" | "magma";

@@ -44,8 +44,8 @@ export interface DepthMap {
   /** An organised cloud, 3*w*h interleaved, NaN where missing; 1e12 or more is missing, too. */
   points?: Float32Array;
   /**
-   * For the check of a calibration: the strength of the return at each pixel, or any other quantity of the surface's reflectivity, whether it
-   * grows with it or not; NaN where unknown. Only its rank is used.
+   * For the check of a calibration: the strength of the return at each pixel, or any other quantity that depends on the surface's
+   * reflectivity, increasing or decreasing; NaN where unknown. Only its rank is used.
    */
   intensity?: Float32Array;
   /** Unit normals, 3*w*h interleaved; they replace those computed from the depth. */

@@ -4,7 +4,7 @@
 export interface PixelLandscapeRequest {
   /** Natural logarithms of its linear R, G, B. */
   log: ArrayLike<number>;
-  /** 27 coefficients, exposure included. */
+  /** 27 coefficients with the exposure. */
   light: ArrayLike<number>;
   /** The unit normal of a depth map at this pixel. */
   prior?: ArrayLike<number>;

@@ -126,7 +126,7 @@ export interface Options {
    */
   trim?: boolean;
   /**
-   * Number of threads, this one included. All of them share the search, and two share the iterations of larger views. The result is
+   * Number of threads, including this one. All of them share the search, and two share the iterations of larger views. The result is
    * bit-identical for any number. Messages are exchanged while this thread lets events pass, as `run` does, which also waits for answers. A
    * copy of the pair is kept for the other threads.
    * Range: a whole number from 1 to 16.

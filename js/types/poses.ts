@@ -25,7 +25,7 @@ export interface Pose {
   matrix: number[][];
 }
 
-/** A pose by its members. `rotation` wins over `matrix`, and both over `angles`. */
+/** A pose by its members. `rotation` has priority over `matrix`, and both over `angles`. */
 export interface PoseMembers extends Omit<Pose, "matrix" | "angles"> {
   /** Degrees, each from -360 to 360. */
   angles?: Pose["angles"];

@@ -58,9 +58,9 @@ export interface StepReport {
   residual: number;
   /** "running" until the loop ends. */
   status: Status;
-  /** `reason` in words, which may change; programs decide by its code. */
+  /** `reason` in words. The words may change; programs should use the code. */
   message?: string;
-  /** Why the run ended as it did, or what the last step came to. */
+  /** Why the run ended, or the outcome of the last step. */
   reason?: Reason;
   /** Other poses that fit the data as well, best first; only where the status is "ambiguous". */
   rivals?: Pose[];

@@ -14,10 +14,10 @@ export type Order =
   | { kind: "task"; task: Float64Array }
   | { kind: "refine"; numbers: Float64Array; planes: Float32Array };
 
-/** What the first answer says: the pair has been read. */
+/** The first answer: the pair has been read. */
 export const READY = "ready";
 
-/** Numbers that a task of the search gave, planes of a refined shape; `null` where the worker can do nothing, now or later. */
+/** The numbers that a task of the search returned, or planes of a refined shape; `null` if the worker cannot help, now or later. */
 export type WorkerAnswer = Float64Array | Float32Array | typeof READY | null;
 
 /** A worker as its estimator sees it. */

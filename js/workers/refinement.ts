@@ -3,16 +3,18 @@ import type { PlainOptions } from "../options.js";
 import { READY, type WorkerAnswer, type Views, type WorkerHandle } from "./messages.js";
 import { startWorker } from "./start.js";
 
-/** A refinement to be made: the number of the shape that it starts from, numbers, and rasters one after the other. */
+/** A refinement to be computed: the number of the shape that it starts from, numbers, and rasters one after the other. */
 export type RefinementTask = [shape: number, numbers: Float64Array, planes: Float32Array];
 
-/** A refinement that was made: the number of the shape that it started from, and the new one. */
+/** A finished refinement: the number of the shape that it started from, and the new shape. */
 export interface Refinement {
   shape: number;
   planes: Float32Array;
 }
 
-/** Longest wait for an answer, milliseconds: a refinement of the largest views takes half of it. After that the estimator goes on alone. */
+/**
+ * Longest wait for an answer, milliseconds: a refinement of the largest views takes half of it. After that the estimator continues alone.
+ */
 const LONGEST_WAIT = 2000;
 
 /**
@@ -39,7 +41,7 @@ export class RefinementWorker {
     this.#unavailable = unavailable;
   }
 
-  /** A loop begins, unless it is under way. */
+  /** Prepares for a loop, unless it is under way. */
   begin(options: PlainOptions): void {
     if (this.#worker || this.#failed) return;
     const worker = startWorker(this.#pair, options, this.#unavailable);
@@ -53,7 +55,7 @@ export class RefinementWorker {
     });
   }
 
-  /** Requests the next refinement, unless one is still under way; `take` makes its task for a worker that holds a shape. */
+  /** Requests the next refinement, unless one is still under way; `take` makes the task for a worker that has the shape. */
   ask(take: (held: number | undefined) => RefinementTask | undefined): void {
     this.#answer = undefined;
     if (!this.#worker || !this.#ready || this.isBusy) return;
@@ -73,12 +75,12 @@ export class RefinementWorker {
     return this.#asked !== undefined;
   }
 
-  /** What has come back since the last refinement was asked for. */
+  /** The answers since the last refinement was requested. */
   get answer(): Refinement | undefined {
     return this.#answer;
   }
 
-  /** Waits until there is an answer, or it is clear that there will be none. */
+  /** Waits until there is an answer, or it is certain that there will be none. */
   async settled(): Promise<void> {
     if (!this.isBusy) return;
     const late = setTimeout(() => this.#fail(), LONGEST_WAIT);
@@ -86,7 +88,7 @@ export class RefinementWorker {
     clearTimeout(late);
   }
 
-  /** The loop is over, or the estimator freed. */
+  /** Ends the worker, because the loop is over or the estimator was freed. */
   end(): void {
     this.#worker?.end();
     this.#worker = this.#asked = this.#held = this.#answer = undefined;
@@ -112,7 +114,7 @@ export class RefinementWorker {
     this.#resume();
   }
 
-  /** Lets those go on that wait for the answer. */
+  /** Releases the callers that wait for the answer. */
   #resume(): void {
     const waiting = this.#waiting;
     this.#waiting = [];

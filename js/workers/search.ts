@@ -3,18 +3,18 @@ import type { PlainOptions } from "../options.js";
 import { READY, type WorkerAnswer, type Views, type WorkerHandle } from "./messages.js";
 import { startWorker } from "./start.js";
 
-/** The tasks of a search: what the estimator gives away, and what it takes back. */
+/** The tasks of a search: those that the estimator gives to workers, and the results that it receives. */
 export interface Tasks {
   take(): Float64Array | undefined;
   accept(result: Float64Array): void;
 }
 
-/** Tasks that a worker has before it: enough for some ten milliseconds, in which its estimator's thread may be busy. */
+/** Tasks in a worker's queue: enough for about ten milliseconds, during which its estimator's thread may be busy. */
 const QUEUE = 3;
 
 interface SearchWorker {
   handle: WorkerHandle;
-  /** Tasks that it has been sent and has not answered. */
+  /** Tasks that were sent to it and are not answered yet. */
   queued: number;
 }
 
@@ -37,7 +37,7 @@ export class SearchWorkers {
     this.#unavailable = unavailable;
   }
 
-  /** A search begins and starts its workers. */
+  /** Starts the workers of a search. */
   begin(options: PlainOptions): void {
     this.end();
     this.#isBegun = true;
@@ -53,7 +53,7 @@ export class SearchWorkers {
     handle.onFailure(() => this.#drop(worker));
   }
 
-  /** Gives out tasks until all are given or every queue is full; a search around an initial pose begins here. */
+  /** Hands out tasks until no task is left or every queue is full; a search around an initial pose starts here. */
   feed(options: PlainOptions): void {
     if (!this.#isBegun) this.begin(options);
     this.#give();
@@ -75,7 +75,7 @@ export class SearchWorkers {
     }
   }
 
-  /** The search is over, or the estimator freed. */
+  /** Ends the workers, because the search is over or the estimator was freed. */
   end(): void {
     this.#isBegun = false;
     for (const worker of [...this.#workers]) this.#drop(worker);

@@ -18,7 +18,7 @@ export function startWorker(
   let worker: WorkerHandle | undefined;
   try {
     worker = spawn();
-    // One that is ended before it was ready has not failed.
+    // A worker that was ended before it was ready has not failed.
     const { end } = worker;
     let isSettled = false;
     worker.end = () => {
@@ -49,8 +49,8 @@ function spawn(): WorkerHandle {
 }
 
 /**
- * A page may import modules from other origins but start workers only from its origin. A local worker that imports the module satisfies
- * both; it needs thread.js beside the .wasm, as where no bundler has renamed it.
+ * A page may import modules from other origins, but start workers only from its own. A local worker that imports the module satisfies both
+ * rules; it needs thread.js beside the .wasm under this name, which a bundler may change.
  */
 function foreignWorker(thread: URL): Worker {
   const text = `import ${JSON.stringify(thread.href)};`;
@@ -75,7 +75,7 @@ function spawnInBrowser(): WorkerHandle {
     onAnswer: (handler) => worker.addEventListener("message", (event) => handler(event.data)),
     onFailure: (handler) =>
       worker.addEventListener("error", (event) => {
-        // The estimator does the work itself and warns, so that the console need not show it once more.
+        // The estimator does the work itself and warns, so the console need not show the error again.
         event.preventDefault();
         handler(event.message || `${thread.href} could not be loaded`);
       }),
@@ -84,16 +84,16 @@ function spawnInBrowser(): WorkerHandle {
 }
 
 function spawnInNode({ Worker }: typeof import("node:worker_threads")): WorkerHandle {
-  // Not the URL above once more: bundlers would include the file twice. Nor import.meta.url by itself: webpack writes the path on the
-  // machine that bundles in its place.
+  // This is not the URL above again, because bundlers would include the file twice. Nor is it import.meta.url alone, which webpack replaces
+  // with the path on the machine that bundles.
   const file = new URL("thread.js", wasmUrl());
-  // Without the program's own flags: with `node -e TEXT` the worker would be started with the same flag and run TEXT.
+  // Without the program's own flags, because with `node -e TEXT` the worker would run TEXT as well.
   const worker = new Worker(file, { execArgv: [] });
   return {
     post: (order, transfer) => worker.postMessage(order, transfer),
     onAnswer: (handler) => {
       worker.on("message", handler);
-      // Adding a listener refs the worker again, and a program would not end before its workers do.
+      // Adding a listener refs the worker again, and a program would not end before its workers.
       worker.unref();
     },
     onFailure: (handler) => worker.on("error", handler).on("exit", () => handler("it ended")),

@@ -1,4 +1,4 @@
-/** What the thread of a worker runs: it handles one order after the other. */
+/** The code of a worker's thread: it handles one message after the other. */
 import type { Worker as Native } from "../../target/wasm-bindgen/bimodal_stereo.js";
 import { bindings, load } from "../engine.js";
 import { nodeModule } from "../node.js";

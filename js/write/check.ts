@@ -10,7 +10,7 @@ export const checkUnit = word("m", "px");
 
 const channelCount = ranged({ kind: "whole", min: 1 });
 
-/** Checks that a raster is one of these kinds of numbers, and as long as it says. */
+/** Checks that a raster has one of these types and the length that follows from its size. */
 export function checkRaster(raster: Raster<ArrayLike<number>>, field: string, ...kinds: readonly ArrayType[]): void {
   if (!isObject(raster)) throw wrong(field, "an object", raster);
   const { width, height, channels, data } = raster;
@@ -49,7 +49,7 @@ const scaleOf = ranged({ kind: "number", above: 0 });
 const angleOf = ranged({ kind: "number" });
 const [nine, three] = [finite(9), finite(3)];
 
-/** A pose in any of its forms as the members that its matrix is made of. */
+/** A pose in any form as the members from which its matrix is made. */
 export function checkedPose(given: PoseInput, field: string): Pose {
   const pose = wholePoseOf(given, field);
   if (!isObject(pose)) throw wrong(field, "an object", pose);
@@ -59,7 +59,7 @@ export function checkedPose(given: PoseInput, field: string): Pose {
   return pose;
 }
 
-/** A pose in any of its forms as members, its angles among them. */
+/** A pose in any form as members, including its angles. */
 export function checkedWholePose(given: PoseInput, field: string): Pose {
   const pose = checkedPose(given, field);
   like({ angles: {} }, pose, field);

@@ -1,6 +1,6 @@
 /**
- * PNG of 8 or 16 bits, grey or colour, with or without alpha. A canvas would write 8 bits alone. Compressed by the platform's own deflate, so that no second one
- * has to be downloaded; rows are stored as differences to the row above, which suits smooth depths and normals.
+ * PNG of 8 or 16 bits, grey or colour, with or without alpha. A canvas would write only 8 bits. The platform's deflate compresses the data,
+ * so that no second one has to be downloaded; rows are stored as differences from the row above, which suits smooth depths and normals.
  */
 import { crc32 } from "../crc.js";
 import { isObject, wrong } from "../check.js";
@@ -9,14 +9,14 @@ import type { Raster } from "../npy.js";
 import { checkRaster, text } from "./check.js";
 
 const SIGNATURE = [0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a];
-/** The filter of rows as differences to the row above. */
+/** The filter that stores rows as differences from the row above. */
 const UP = 2;
 /** Colour types by the number of channels: grey, grey with alpha, RGB, RGBA. */
 const TYPES: Readonly<Record<number, number>> = { 1: 0, 2: 4, 3: 2, 4: 6 };
 
 type Samples = Uint8Array | Uint8ClampedArray | Uint16Array;
 
-/** Pixels to be written; without `channels` as many as the data hold for each pixel, so that a `ColorImage` is one. */
+/** Pixels to be written; without `channels` their number follows from the length of the data, so that a `ColorImage` can be passed. */
 export type PngInput = Omit<Raster<Samples>, "channels"> & {
   /** 1 grey, 2 grey and alpha, 3 RGB, 4 RGBA. */
   channels?: number;
@@ -32,7 +32,7 @@ function chunk(type: string, body: Uint8Array): Uint8Array<ArrayBuffer> {
   return part;
 }
 
-/** High bytes first, each row behind its filter. */
+/** High bytes first, each row after its filter. */
 function filtered({ width, height, channels, data }: Raster<Samples>): Uint8Array<ArrayBuffer> {
   const [samples, bytes] = [width * channels, data.BYTES_PER_ELEMENT];
   const stride = 1 + samples * bytes;
@@ -46,7 +46,7 @@ function filtered({ width, height, channels, data }: Raster<Samples>): Uint8Arra
       out[to++] = value;
     }
   }
-  // From below, so that the row above is still what it was.
+  // From below, so that the row above is still unchanged.
   for (let row = height - 1; row > 0; row--) {
     for (let at = row * stride + 1; at < (row + 1) * stride; at++) out[at] = (out[at] ?? 0) - (out[at - stride] ?? 0);
   }
@@ -58,7 +58,7 @@ async function deflated(bytes: Uint8Array<ArrayBuffer>): Promise<Uint8Array> {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-/** Of a remark's name, which readers look for. */
+/** Longest name of a remark, which readers look up. */
 const LONGEST_NAME = 79;
 
 function checkTexts(texts: unknown): void {
@@ -77,7 +77,7 @@ function checkTexts(texts: unknown): void {
 }
 
 /**
- * A PNG of 8 or 16 bits, as the data have. `texts` are remarks in English, such as the unit, which readers hand out by their names
+ * A PNG of 8 or 16 bits, as the data have. `texts` are remarks in English, such as the unit, which readers return by their names
  * ("Description", "Unit").
  */
 export async function writePng(

@@ -12,32 +12,32 @@ import { type Unit, lightCsv, matrixText } from "./results.js";
 
 export type { Picture, ReportInput };
 
-/** A name and what it is. */
+/** A name and its value. */
 export type Entry = readonly [name: string, value: string];
 
 /** What the report of a run shows. */
 export interface RunReport {
-  /** How to judge the outcome; "open" if the evidence neither supports nor contradicts it. */
+  /** How to rate the outcome; "open" if the evidence neither supports nor contradicts it. */
   tone: "good" | "open" | "wrong";
-  /** In a word or two: "converged". */
+  /** The outcome in one or two words: "converged". */
   status: string;
-  /** In a sentence or some. */
+  /** The outcome in one or a few sentences. */
   words: readonly string[];
   /** The estimated pose. */
   pose: PoseInput;
   /** The true pose, if known. */
   truth?: PoseInput | null | undefined;
-  /** Of the colour view's lengths. */
+  /** The unit of lengths in the colour view. */
   unit: Unit;
   /** 27 coefficients. */
   light: ArrayLike<number>;
   /** Shown beside the status. */
   numbers: readonly Entry[];
-  /** Options of the run, as the reader should see them. */
+  /** Options of the run, in the form in which the report shows them. */
   options: readonly Entry[];
   /** Shown below the pose. */
   pictures?: readonly Picture[];
-  /** Files that the run was given, with their hashes. */
+  /** The input files of the run, with their hashes. */
   inputs?: readonly ReportInput[];
   /** Heading. Default "A run of bimodal stereo". */
   title?: string;
@@ -116,7 +116,7 @@ const checkTone = word(...Object.keys(CARDS));
 /** The report with its poses as members. */
 type Checked = RunReport & { pose: Pose; truth?: Pose | null | undefined };
 
-/** Checks that the parts are there, and that words are words. */
+/** Checks that the required parts are present, and that words are strings. */
 function checkedReport(report: RunReport): Checked {
   like(PARTS, report, "report");
   const {

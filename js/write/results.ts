@@ -6,7 +6,7 @@ import { real } from "../rig/write/numbers.js";
 import { checkLight, checkRaster, checkStanding, checkUnit, checkedPose, checkedWholePose } from "./check.js";
 import { writePng } from "./png.js";
 
-/** Of lengths: metres where the view has a camera, pixels where it is orthographic. */
+/** The unit of lengths: metres if the view has a camera, pixels if it is orthographic. */
 export type Unit = "m" | "px";
 
 /** The size of a raster. */
@@ -17,13 +17,13 @@ export interface Extent {
   height: number;
 }
 
-/** Floats of a view, as `Estimator` gives them out. */
+/** Floats of a view, as `Estimator` returns them. */
 export interface FloatRaster extends Extent {
-  /** Row by row; three numbers a pixel for normals, else one. */
+  /** Row by row; three numbers per pixel for normals, else one. */
   data: Float32Array;
 }
 
-/** The 4x4 matrix that transforms the depth map's points into the colour view, scale included; `numpy.loadtxt` reads it. */
+/** The 4x4 matrix with the scale that transforms the depth map's points into the colour view; `numpy.loadtxt` reads it. */
 export function matrixText(given: PoseInput): string {
   const pose = checkedPose(given, "pose");
   const { scale } = pose;
@@ -33,7 +33,7 @@ export function matrixText(given: PoseInput): string {
   return rows.map((values) => `${values.map(real).join(" ")}\n`).join("");
 }
 
-/** How far to trust a pose, as in a report. */
+/** The reliability of a pose, as in a report. */
 export type PoseStanding = Pick<StepReport, "status" | "reason" | "message" | "uncertainty">;
 
 const sigmasOf = ({ rotationDegrees, translation, scale, weakest }: Uncertainty): Uncertainty => ({
@@ -48,8 +48,8 @@ const plainReason = (reason: Reason): Record<string, unknown> =>
   Object.fromEntries(Object.entries(reason).filter(([, value]) => ["string", "number"].includes(typeof value)));
 
 /**
- * The pose with its matrix, and in words what it means; beside it, where a report is given, its status and reason and one sigma of each number, `null`
- * where the views cannot see it.
+ * The pose with its matrix and a description in words. If a report is given, also its status, its reason and one sigma of each number,
+ * `null` where the views do not determine it.
  */
 export function poseJson(given: PoseInput, unit: Unit, report?: PoseStanding): string {
   const pose = checkedWholePose(given, "pose");
@@ -65,7 +65,7 @@ export function poseJson(given: PoseInput, unit: Unit, report?: PoseStanding): s
     translation,
     angles: { alpha, beta, gamma },
   } = pose;
-  // Only these members, because others of the object may contradict them.
+  // Only these members are used, because others of the object may contradict them.
   const told = {
     unit,
     scale,
@@ -92,7 +92,7 @@ export function poseJson(given: PoseInput, unit: Unit, report?: PoseStanding): s
 const CHANNELS = ["R", "G", "B"];
 const COEFFICIENTS = 9;
 
-/** Nine coefficients of red, of green and of blue, one channel a line. */
+/** Nine coefficients each of red, green and blue, one channel per line. */
 export function lightCsv(light: ArrayLike<number>): string {
   checkLight(light, "light");
   const names = Array.from({ length: COEFFICIENTS }, (_, k) => `L${k + 1}`);
@@ -102,7 +102,7 @@ export function lightCsv(light: ArrayLike<number>): string {
 }
 
 const LARGEST = 65_535;
-/** Steps of a stored depth, the finest first; the first that reaches the farthest depth is taken. */
+/** Steps of a stored depth, the finest first; the first one that reaches the farthest depth is used. */
 const STEPS: Readonly<Record<Unit, readonly (readonly [step: number, words: string])[]>> = {
   m: [
     [0.0001, "0.1 mm"],
@@ -128,9 +128,9 @@ export interface DepthPng {
   says: string;
 }
 
-/** As numbers of 32 bits have it. */
+/** Rounded to 32-bit floats. */
 const MISSING = Math.fround(1e12);
-/** A depth as the contract has it; all others are holes. */
+/** A depth that the contract accepts; all others are holes. */
 const isThere = (value: number): boolean => value > 0 && value < MISSING;
 
 /**

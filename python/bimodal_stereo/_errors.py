@@ -26,7 +26,7 @@ class BimodalError(ValueError):
         index: Optional[int] = None,
         value: Optional[float] = None,
     ) -> None:
-        # All are the exception's arguments, so that it passes between processes.
+        # All values are the exception's arguments, so that it can be sent between processes.
         super().__init__(code, message, field, index, value)
         self.code, self.field, self.index, self.value = code, field, index, value
 

@@ -35,9 +35,9 @@ class Estimator:
 
     def _begin(self, image: _saved.View, depth: _saved.View, options: dict[str, Any]) -> None:
         self._own = _native.Estimator(image, depth, options)
-        # What `save` writes, as it was when it was given.
+        # The input that `save` writes, as it was at the time of the call.
         self._image, self._depth, self._options = _saved.copied(image), _saved.copied(depth), _saved.text(options)
-        # Between `reset` and `save` alone: the options have to be those of the run.
+        # Held between `reset` and `save`, because the options must be those of the run.
         self._lock = Lock()
 
     def step(self) -> StepReport:
@@ -51,7 +51,7 @@ class Estimator:
     def run(
         self, max_iterations: Optional[int] = None, on_step: Optional[Callable[[StepReport], Any]] = None
     ) -> StepReport:
-        """Steps until the loop ends, at most ``max_iterations`` times, slices of the search included.
+        """Steps until the loop ends, at most ``max_iterations`` times, counting slices of the search.
 
         ``on_step`` is called with the report of each step. An interrupt, or whatever ``on_step`` raises, ends it between two steps; the
         estimator stays as the last step left it.

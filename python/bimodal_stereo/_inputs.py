@@ -100,7 +100,7 @@ def keywords(given: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def whole(value: Any, field: str, least: int) -> int:
-    """A whole number, numpy's included."""
+    """A whole number, also one of numpy."""
     try:
         made = index(value)
     except TypeError as error:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from ._types import Floats, Singles
 
-# A logarithm of a colour, or a coordinate of a normal: the squares of what is farther from zero say nothing.
+# The largest logarithm of a colour or coordinate of a normal; the squares of larger numbers carry no information.
 FARTHEST = 1e6
 LARGEST_SIDE = 512
 
@@ -79,7 +79,7 @@ def pixel_landscape(
 ) -> PixelLandscape:
     """The objective of one pixel over all normals that a camera can see, its minima, and the steps of one descent.
 
-    log: natural logarithms of its linear R, G, B. light: a name of ``sample_lights()``, or 27 coefficients, exposure included. prior: the
+    log: natural logarithms of its linear R, G, B. light: a name of ``sample_lights()``, or 27 coefficients with the exposure. prior: the
     unit normal of a depth map at this pixel. weight: of the prior, as ``lambda_["prior"]`` of ``Options``. robust: whether a prior that is far off
     loses its weight, as in the loop; without it the objective is Eq. 9 as printed in the paper. start: the unit normal at which the descent
     starts; towards the camera. side: rows and columns of ``objective``, 0 .. 512.

@@ -22,18 +22,18 @@ import numpy as np
 from ._errors import BimodalError
 
 NAME = b"bimodal-stereo\n"
-# Python's are above 128, the JavaScript package's below.
+# Python's formats are above 128, the JavaScript package's below.
 FORMAT = 129
 FOREIGN = 128
 MARK = len(NAME) + 1
 WORD = 4
-# Bytes of a header: options hold at most 800 numbers, of 25 letters each.
+# Most bytes of a header: options hold at most 800 numbers, of 25 characters each.
 LONGEST_HEADER = 65_536
-# Bytes in all: both views of 4096 pixels on a side with everything they may have are 0.7 GB.
+# Most bytes in all: two views of 4096 pixels on a side with all members have 0.7 GB.
 MOST_BYTES = 2**30
 
 KINDS = {"uint8": "u1", "uint16": "<u2", "float32": "<f4"}
-# What a member of a view may hold.
+# The types that a member of a view may have.
 MEMBERS = {"data": tuple(KINDS), "mask": ("uint8",), "points": ("float32",), "normals": ("float32",)}
 VIEWS = ("image", "depth")
 STAGES = ("search", "light", "shading", "surface", "registration", "refinement")
@@ -159,6 +159,6 @@ def typed(value: Any, members: Mapping[str, type], path: str) -> None:
     if type(value) is not dict or set(value) != set(members):
         raise bad(f"cannot be run ({path}: must have {', '.join(members)} and nothing else)")
     for name, kind in members.items():
-        # By type itself: True is an int to isinstance.
+        # Compares the type itself, because True is an int to isinstance.
         if type(value[name]) is not kind or (kind is int and value[name] < 0):
             raise bad(f"cannot be run ({path}.{name}: must be of another type or range)")

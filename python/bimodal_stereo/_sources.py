@@ -95,7 +95,7 @@ def camera(value: Any, field: str) -> Any:
 
 
 def of_matrix(value: Any, field: str) -> dict[str, float]:
-    # What a factor of zero or one becomes where a matrix was stored in single precision.
+    # Largest deviation of a factor of zero or one in a matrix that was stored in single precision.
     rounding = 1e-6
     k = matrix(value, 3, field)
     (fx, skew, cx), (below, fy, cy), last = k.tolist()

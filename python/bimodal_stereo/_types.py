@@ -156,7 +156,7 @@ class Uncertainty:
 
     @classmethod
     def _of(cls, raw: Mapping[str, Any]) -> Uncertainty:
-        # As floats `None` is NaN.
+        # Converted to floats, `None` becomes NaN.
         arrays = {name: np.array(raw[key], float) for name, key in (("rotation_degrees", "rotationDegrees"), ("translation", "translation"))}
         return made(cls, raw, **arrays)
 

@@ -35,7 +35,7 @@ def write_results(estimator: Estimator, folder: FilePath) -> list[str]:
 
 
 def write_pose(path: FilePath, pose: PoseInput) -> None:
-    """Writes the 4x4 matrix of a pose, scale included, as four lines of text; ``numpy.loadtxt`` and ``read_calibration`` read it."""
+    """Writes the 4x4 matrix of a pose with its scale as four lines of text; ``numpy.loadtxt`` and ``read_calibration`` read it."""
     _put(path, _native.matrix_text(members_of(pose, "pose")).encode())
 
 
@@ -47,10 +47,10 @@ def write_depth(path: FilePath, depth: ArrayLike, unit: str = "m") -> str:
     made = _inputs.singles(_inputs.shaped(array(depth, "depth", "depths"), "depth", (None, None)))
     if unit not in ("m", "px"):
         raise BimodalError("option", 'unit: must be "m" or "px"', "unit")
-    # Larger ones are holes, as 32 bits have it.
+    # Larger numbers are holes in 32-bit floats.
     lost = (np.rint(made) > LARGEST) & (made < np.float32(1e12))
     if unit == "px":
-        # Depths in pixels may be counted from anywhere, but here these would be holes.
+        # Depths in pixels may have any origin, but values below zero would be holes here.
         lost |= made < 0
     if lost.any():
         value = made[lost][0]

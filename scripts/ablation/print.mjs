@@ -19,7 +19,7 @@ const FOOT = [
   ["median", (rows) => fixed(medianOf(rows), 2)],
   ["worst", (rows) => fixed(worst(known(rows).map(({ degrees }) => degrees)), 1)],
   ["under 3 degrees", (rows) => ratio(rows, isFound)],
-  ["wrong and sure of it", (rows) => ratio(rows, isConfidentlyWrong)],
+  ["confidently wrong", (rows) => ratio(rows, isConfidentlyWrong)],
 ];
 
 const whole = (show) => (rows) => (known(rows).length === rows.length ? show(rows) : "-");

@@ -195,11 +195,11 @@ function distances(edges, { width, height }) {
 }
 
 /** Costs of poses for one frame whose depth camera is at `motion` in the frame of its cloud; lower is better. */
-export function costs({ image, grid, points }, motion) {
+export function costs({ image, grid, points, intensity }, motion) {
   const eye = motion.translation;
   const light = grey(image);
   const equal = levelsOf(light);
-  const levels = equalised(shading(points, grid, eye));
+  const levels = equalised(intensity ?? shading(points, grid, eye));
   const edges = depthEdges(points, grid, eye);
   const far = distances(canny(light, image), image);
   const towards = (pose) => {

@@ -62,7 +62,7 @@ export async function toldOff(check, frames, error, { seed, about = "camera", op
 }
 
 /** 1 if the wrong one is worse, 0 if it is better, one half for a tie or a missing value. */
-const beats = (right, wrong) => (right === wrong || Number.isNaN(right - wrong) ? 0.5 : Number(wrong > right));
+export const beats = (right, wrong) => (right === wrong || Number.isNaN(right - wrong) ? 0.5 : Number(wrong > right));
 
 /**
  * Ranks the true candidate against wrong ones. None of these is the first candidate, on which the prior is centred: that is a third pose,

@@ -16,7 +16,7 @@ const INSIDE = 12.59;
 const nameOf = ({ degrees, millimetres }) => (degrees > 0 ? `${degrees} deg` : `${millimetres} mm`);
 const count = (rows, test) => `${rows.filter(test).length} of ${rows.length}`;
 /** Constants were chosen on every second capture; the others took no part. */
-const halfOf = (index) => (index % 2 === 0 ? "tuning" : "believing");
+const halfOf = (index) => (index % 2 === 0 ? "tuning" : "held-out");
 const captures = (files) => [nyu(files), ...registered(files)].map((frame, index) => ({ frame, half: halfOf(index) }));
 
 async function judged(check, behind, random, first) {
@@ -56,7 +56,7 @@ export async function truths({ check, files, number, progress }) {
 export function printTruths(rows) {
   console.log("\nregistered captures and nyu_raw_pair, the makers' calibration hidden behind 10 degrees and 100 mm");
   for (const about of new Set(rows.map((row) => row.about))) {
-    for (const half of ["tuning", "believing"]) {
+    for (const half of ["tuning", "held-out"]) {
       const some = rows.filter((row) => row.about === about && row.half === half);
       const said = (name, verdict) => count(some, ({ verdicts }) => verdicts[name] === verdict);
       console.log(

@@ -113,7 +113,7 @@ mod tests {
         let two = Distribution::new(vec![part(3.0, 0.0, 1.0), part(1.0, 100.0, 1.0)]);
         let there = two.draws.iter().filter(|draw| (*draw - PoseVector::repeat(100.0)).norm() < 50.0).count();
         assert!((there as f64 / two.draws.len() as f64 - 0.25).abs() < 0.01, "{there}");
-        // Either pose is likely; one in between is not, though it is nearer to the first.
+        // Either pose is likely, but a pose between them is not, although it is nearer to the first.
         assert!(two.probability(&PoseVector::repeat(100.0)) > 0.2);
         assert!(two.probability(&PoseVector::repeat(50.0)) < 0.01);
         let variance = two.covariance()[(0, 0)];

@@ -107,7 +107,7 @@ impl EdgeField {
             // The variance of a uniform distribution over the gap adds to that of the edges.
             let of_gap = rim.gap / EVEN;
             let sigma = sigma.hypot(of_gap);
-            // Neighbours in one gap share its error: the variance of their mean is that of so many independent ones.
+            // Neighbours in one gap share its error: the variance of their mean is that of this many independent ones.
             let weight = 1.0 / (1.0 + (rim.in_gap - 1.0) * (of_gap / sigma).powi(2));
             let window = (WINDOW * sigma).max(widest);
             let edges = edges(planes, start, rim.normal, window, blur)?;

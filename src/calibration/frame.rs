@@ -36,7 +36,7 @@ pub(super) struct Frame {
     pub places: Vec<(usize, usize)>,
     /// In the depth camera's frame, metres; NaN where missing or outside the mask.
     pub points: Vec<[f32; 3]>,
-    /// Of each sample, in the scanner's own unit, if it is known.
+    /// Intensity of each sample, in the scanner's own unit, if it is known.
     pub intensity: Option<Vec<f32>>,
     pub has_depth_mask: bool,
     /// Width of a pixel of `planes` in pixels of the image as given.

@@ -40,7 +40,8 @@ pub(super) fn ranked(scene: &Scene, rounds: &[Round], planes: &[Planes]) -> Vec<
     optima
 }
 
-/// Adds an optimum unless another one is at the same place: of rounds that meet the first stands, and rounding decides nothing.
+/// Adds an optimum unless another one is at the same place. If several rounds end at one place, the first one stays, so
+/// that rounding decides nothing.
 pub(super) fn add(optima: &mut Vec<Optimum>, scene: &Scene, optimum: Optimum) {
     let is_same = |other: &Optimum| {
         let apart = other.findings.units.between(&other.round.state, &optimum.round.state);
@@ -139,7 +140,8 @@ mod tests {
     use crate::view::{Lens, Pinhole};
     use nalgebra::Vector3;
 
-    /// An optimum at a pose so many sigmas from the prior's, with a log likelihood of its edges and their weight.
+    /// An optimum at a pose that is this many sigmas from the prior's, with a log likelihood of its edges and their
+    /// weight.
     fn optimum(sigmas: f64, value: f64, weight: f64) -> Optimum {
         let camera = Pinhole { fx: 500.0, fy: 500.0, cx: 320.0, cy: 240.0, lens: Lens::None };
         let cloud = [[-0.3, -0.2, 1.0], [0.3, -0.2, 1.2], [0.0, 0.3, 0.9]].map(Vector3::from);

@@ -18,7 +18,7 @@ pub(super) struct Rereading {
     optima: Vec<Optimum>,
     starts: Vec<(Reading, Start)>,
     level: usize,
-    /// Of the start that comes next.
+    /// Index of the next start.
     index: usize,
     /// The images at this level.
     planes: Vec<Planes>,
@@ -42,11 +42,12 @@ impl Rereading {
         (self.level as f64 + of_level) / (SIGMAS.len() + 1) as f64
     }
 
-    /// One reading at one level, in the end the best one with all cues on the finest images; whether the search is over.
+    /// Registers one reading at one level; after the last level, the best one with all cues on the finest images.
+    /// Returns whether the search is over.
     pub fn step(&mut self, scene: &Scene, finest: &[Planes]) -> bool {
         if self.level == SIGMAS.len() {
             if let Some((_, start)) = self.starts.first_mut() {
-                // Ends early where a step is short.
+                // Ends early if a step is short.
                 let _ = (0..MOST_SETTLING).any(|_| scene.settle(&mut start.round, finest) < ARRIVED);
             }
             return true;

@@ -33,8 +33,8 @@ pub(super) struct Rim {
     /// Distance on the image along the normal, in pixels, from the near pixel to the nearest next one of the raster that
     /// is not on the near surface. This surface ends anywhere in between.
     pub gap: f64,
-    /// Number of neighbours along a row or column of the raster, itself among them, whose surface ends in the same gap.
-    /// Where a straight boundary lies in its gap is one unknown for all of them.
+    /// Number of neighbours along a row or column of the raster, including the pixel itself, whose surface ends in the
+    /// same gap. The position of a straight boundary in its gap is one unknown for all of them.
     pub in_gap: f64,
 }
 
@@ -53,8 +53,8 @@ pub(super) fn find(frame: &Frame, projection: &Projection) -> Vec<Rim> {
     found
 }
 
-/// The number of neighbours, the pixel among them, along a row or column of the raster whose surface ends in the same gap:
-/// a boundary between two rows goes on along the row, one between two columns along the column.
+/// The number of neighbours, including the pixel itself, along a row or column of the raster whose surface ends in the
+/// same gap: a boundary between two rows continues along the row, one between two columns along the column.
 fn count_in_gap(frame: &Frame, directions: &[usize], index: usize) -> usize {
     let (direction, (column, row)) = (directions[index], frame.grid.position(index));
     let is_between_rows = direction >= 2;

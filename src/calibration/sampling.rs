@@ -7,7 +7,7 @@
 
 use crate::view::Size;
 
-/// Of the cells that neighbour a cell with a sample along an axis, at least this share has to hold a sample too.
+/// Smallest share of the cells next to a cell with a sample, along an axis, that must hold a sample too.
 const COVERED: f64 = 0.6;
 /// Longest side of a cell, pixels: 16 rings in a map of 480 rows are 30 pixels apart.
 const LARGEST_CELL: usize = 32;
@@ -19,7 +19,7 @@ struct Occupied {
 }
 
 impl Occupied {
-    /// Cells of so many columns and rows.
+    /// Cells of this many columns and rows.
     fn of(grid: Size, points: &[[f32; 3]], [columns, rows]: [usize; 2]) -> Self {
         let size = Size { width: grid.width.div_ceil(columns), height: grid.height.div_ceil(rows) };
         let mut is_sample = vec![false; size.len()];
@@ -56,7 +56,7 @@ fn cell(grid: Size, points: &[[f32; 3]]) -> [usize; 2] {
     loop {
         let coverage = Occupied::of(grid, points, cell).coverage();
         let can_grow = |&axis: &usize| coverage[axis] < COVERED && cell[axis] < LARGEST_CELL;
-        // Of two axes with few neighbours the shorter grows, so that cells stay square.
+        // If both axes have few neighbours, the shorter side grows, so that cells stay square.
         let Some(axis) = [0, 1].into_iter().filter(can_grow).min_by_key(|&axis| cell[axis]) else { return cell };
         cell[axis] += 1;
     }

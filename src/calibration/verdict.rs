@@ -179,7 +179,7 @@ impl Judge {
         self.tolerance
     }
 
-    /// The error of a pose that puts hardly any point onto the image, of which nothing is known.
+    /// The error of a pose that puts hardly any point onto the image, about which nothing is known.
     pub fn blind(width: f64) -> Health {
         Health { pixels: width, interval: [0.0, width] }
     }

@@ -1,4 +1,4 @@
-//! The end of an iteration: the solution is accepted or taken back, shapes settle, and the loop continues or ends.
+//! The end of an iteration: the solution is accepted or rejected, shapes settle, and the loop continues or ends.
 
 use super::Estimator;
 use super::checks;

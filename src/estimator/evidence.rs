@@ -24,9 +24,9 @@ pub struct Evidence {
     /// Objective before the iteration (`None` before the first) and after it.
     pub objective_before: Option<f64>,
     pub objective: f64,
-    /// Whether the iteration was taken back.
+    /// Whether the iteration was rejected.
     pub is_rejected: bool,
-    /// Iterations in a row that were taken back or found no better pose.
+    /// Iterations in a row that were rejected or found no better pose.
     pub rejections: u32,
     /// Number of successive iterations in which the registration's whole step was less than the caller's `stopDegrees`.
     pub unmoved: u32,

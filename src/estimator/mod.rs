@@ -2,8 +2,8 @@
 //!
 //! light (Eq. 2) -> shading (Eq. 6 to 9) -> surface -> registration (Eq. 12 to 16) -> refinement (Eq. 17 to 19), until
 //! the rotation settles. After each iteration, the objective l + f + g (Eq. 1) of the new solution is compared with
-//! that of the last accepted one over the same depth points. A worse iteration is taken back, and the next one takes
-//! half the registration's step.
+//! that of the last accepted one over the same depth points. A worse iteration is rejected, and the next one takes half
+//! the registration's step.
 //!
 //! If nothing is known about the pose, the [`finder`] runs first. If an initial pose does not explain the image, it
 //! searches around that pose within the first iteration. Photometric registration has its own objective, so the loop

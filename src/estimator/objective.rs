@@ -1,4 +1,4 @@
-//! The objective l + f + g (Eq. 1), by which an iteration is accepted or taken back.
+//! The objective l + f + g (Eq. 1), by which an iteration is accepted or rejected.
 //!
 //! Two solutions are compared over the SAME depth points, the evaluation points: those with a correspondence before the
 //! iteration. A pose that moves points out of the image pays for each of them in full, so looking away never pays. Each
@@ -205,7 +205,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { cases: 8, failure_persistence: None, ..ProptestConfig::default() })]
 
-        /// Over the points of the last solution the new one is no worse, or it is taken back together with its pose.
+        /// Over the points of the last solution the new one is no worse, or it is rejected together with its pose.
         #[test]
         fn no_accepted_step_raises_the_objective(sample in sample(), known: bool) {
             let light = if known { LightSource::Known(sample.light) } else { LightSource::Estimate };
@@ -228,7 +228,7 @@ mod tests {
                 estimator.run = crate::estimator::Run::Iterating(Stage::Light);
                 let whole = estimator.history.step_fraction;
                 estimator.finish_iteration();
-                // Only a step that is taken back is halved.
+                // Only a rejected step is halved.
                 if estimator.history.step_fraction < whole {
                     prop_assert!(after > before, "{before} would have come to {after}");
                     prop_assert_eq!(estimator.report.pose, pose);

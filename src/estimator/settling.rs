@@ -68,7 +68,7 @@ impl Settling {
         self.keeps_image() && self.keeps_depth()
     }
 
-    /// Restarts if the last iteration used a new pose, albedo or start of the surface, or was taken back.
+    /// Restarts if the last iteration used a new pose, albedo or start of the surface, or was rejected.
     pub const fn restart(&mut self) {
         *self = Self::new(self.tolerance);
     }

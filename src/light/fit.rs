@@ -68,7 +68,7 @@ impl LightFitter {
     ///
     /// # Errors
     /// [`ErrorKind::Degenerate`] if the normals do not determine the light and `weight` is zero, [`ErrorKind::Range`]
-    /// if only a light beyond any real one would fit the image, as on nearly flat relief.
+    /// if only a light more extreme than any real one would fit the image, as on nearly flat relief.
     pub fn fit(&mut self, normals: &Normals, log: [&[f32]; 3], prior: &LightPrior, weight: f64) -> Result<LightFit> {
         self.gather(normals, log);
         let mut light = prior.mean();
@@ -198,7 +198,11 @@ impl LightFitter {
 
 /// Replaces an error about a coefficient, because a fitted light is not an option of the caller.
 fn beyond_any(_: Error) -> Error {
-    Error::new(ErrorKind::Range, "light", "only a light beyond any real one would explain the colours with this shape")
+    Error::new(
+        ErrorKind::Range,
+        "light",
+        "only a light more extreme than any real one would explain the colours with this shape",
+    )
 }
 
 #[cfg(test)]
@@ -280,7 +284,7 @@ mod tests {
         assert_eq!(said.kind(), ErrorKind::Range);
         assert_eq!(
             said.to_string(),
-            "light: only a light beyond any real one would explain the colours with this shape"
+            "light: only a light more extreme than any real one would explain the colours with this shape"
         );
     }
 

@@ -5,7 +5,7 @@
 //! J_n^T J_m, with the normal of the image on one side and that of the depth view on the other, instead of J_n^T J_n.
 //! The errors of two independent normals do not multiply, whereas squared noise would pass for shape.
 //!
-//! One sigma covers the errors that residuals show, correlated ones included. It does not cover errors that leave no
+//! One sigma covers the errors that residuals show, including correlated ones. It does not cover errors that leave no
 //! residual, such as a surface that is tilted as a whole or another local optimum that fits as well. See
 //! docs/method/uncertainty.md.
 

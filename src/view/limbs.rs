@@ -2,7 +2,7 @@
 //!
 //! At the occluding contours of a solid object, where it turns away from the camera, the normals face outward. In a map
 //! with mirrored depths they face inward. The image cannot distinguish the two: mirrored depth gives the same image if
-//! the turns of light and pose towards the camera are mirrored as well.
+//! light and pose are mirrored in depth as well.
 //!
 //! Limits: a relief that ends before it turns away has no occluding contours and is not judged.
 

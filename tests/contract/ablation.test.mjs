@@ -90,7 +90,7 @@ describe("what is told", () => {
     told(/^ {2}a +1\.0 2\.0\? +0\.5 40\?$/);
     told(/^ {2}b +0\.2 5\.0! +0\.3 -$/);
     told(/photographs: under 3 degrees +3 of 4 +-$/);
-    told(/photographs: wrong and sure of it +1 of 4 +-$/);
+    told(/photographs: confidently wrong +1 of 4 +-$/);
     told(/renders: worst +30\.0 +20\.0$/);
     told(/gzipped, kB +300\.0 +-2\.5/);
     told(/paint: better 1, worse 1:/);

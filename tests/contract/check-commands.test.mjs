@@ -22,6 +22,12 @@ const DECISIONS = { sigmas: 0.05, relative: 0.02, curves: 0.2 };
 /** Rounding error of numbers that should be zero. */
 const ZERO = 1e-9;
 
+const STILL = [
+  [1, 0, 0, 0],
+  [0, 1, 0, 0],
+  [0, 0, 1, 0],
+  [0, 0, 0, 1],
+];
 const NYU = inRoot("../shared/data/nyu_raw_pair");
 const PYTHON = inRoot("target/python/venv/bin/python");
 const hasPython = existsSync(PYTHON) && ask(PYTHON, ["-c", "import bimodal_stereo._native"]) !== undefined;
@@ -154,7 +160,10 @@ describe("check by npm, Rust and Python", LONG, () => {
       writeFileSync(join(folder, "empty.json"), "{}");
       const good = join(folder, "good.txt");
       writeFileSync(good, "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+      const carried = join(folder, "carried.json");
+      writeFileSync(carried, JSON.stringify({ from: "camera", to: "base_link", matrix: STILL }));
       const wrong = {
+        "relates camera to base_link": [folder, "--calibration", carried],
         calibration: [folder],
         "holds neither a camera": [folder, "--calibration", join(folder, "empty.json")],
         "nowhere.json": [folder, "--calibration", "nowhere.json"],
@@ -179,6 +188,22 @@ describe("check by npm, Rust and Python", LONG, () => {
       report.inputs.map(({ name }) => basename(name)),
       [...["extrinsics.txt", "color_0.png", "depth_0.png", "color_1.png", "depth_1.png", "cameras.json"]],
     );
+  });
+
+  test("of frames in a chain, the pose between the sensors is checked", async () => {
+    const truth = readFileSync(join(folder, "extrinsics.txt"), "utf8").trim().split("\n");
+    const rows = truth.map((line) => line.trim().split(/\s+/).map(Number));
+    const links = [
+      { from: "depth_optical", to: "mount", matrix: rows },
+      { from: "rgb_optical", to: "mount", matrix: STILL },
+      { from: "mount", to: "base", matrix: STILL },
+    ];
+    const chain = join(folder, "chain.json");
+    writeFileSync(chain, JSON.stringify(links));
+    const json = join(folder, "chained.json");
+    run("npm", ["check", join(folder, "rig"), "--calibration", chain, "--json", json, "--unit", "0.001"]);
+    const { verdict, candidates } = JSON.parse(readFileSync(json, "utf8"));
+    assert.deepEqual([verdict, Object.keys(candidates)], ["consistent", ["chain.json"]]);
   });
 
   test("a raw Kinect has one verdict and one JSON", { skip: existsSync(NYU) ? false : "needs ../shared/data" }, () => {

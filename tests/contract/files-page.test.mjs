@@ -11,9 +11,10 @@ import { bridge } from "./bridge.mjs";
 import { CALIBRATION_SAMPLES } from "./product-calibrations.mjs";
 import { FOLDER_SAMPLES } from "./product-folders.mjs";
 import { PICTURE_SAMPLES } from "./product-pictures.mjs";
+import { PRINT_SAMPLES } from "./product-prints.mjs";
 import { refusedFile } from "./rig-support.mjs";
 
-const SAMPLES = { ...CALIBRATION_SAMPLES, ...PICTURE_SAMPLES, ...FOLDER_SAMPLES };
+const SAMPLES = { ...CALIBRATION_SAMPLES, ...PICTURE_SAMPLES, ...PRINT_SAMPLES, ...FOLDER_SAMPLES };
 const GROUPS = await catalogue();
 const ROWS = GROUPS.flatMap(({ rows }) => rows);
 const { rasterKind, containerOf } = await loaded(

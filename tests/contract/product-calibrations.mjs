@@ -1,4 +1,5 @@
 // A small file of each product that writes calibrations, by the keys of js/rig/formats/catalogue, in the product's format, shortened.
+import { zipSync } from "fflate";
 import {
   K,
   angles,
@@ -13,6 +14,7 @@ import {
   text,
   translation,
 } from "./rig-support.mjs";
+import { npy } from "./support.mjs";
 import { writeNpy } from "../../pkg/write.js";
 
 const [x, y, z, w] = quaternion;
@@ -198,6 +200,13 @@ const TOOLS = {
   ),
   "opencv-yaml": made("opencv.yaml"),
   "opencv-xml": made("stereo-vector.xml"),
+  "opencv-npz": {
+    name: "calibration.npz",
+    bytes: zipSync({
+      "mtx.npy": npy({ descr: "<f8", shape: [3, 3], data: Float64Array.from(intrinsicRows.flat()) }),
+      "dist.npy": npy({ descr: "<f8", shape: [1, 5], data: Float64Array.from(distortion) }),
+    }),
+  },
   open3d: made("open3d-intrinsic.json"),
   "camera-info": made("camera_info.yaml"),
   ost: words(

@@ -145,6 +145,17 @@ const scans = {
       Array.from({ length: COUNT }, (_, at) => [...SCAN.points.subarray(3 * at, 3 * at + 3)].join(" ")).join("\n"),
     ),
   },
+  "scan-columns": {
+    name: "frame.csv",
+    bytes: text(
+      [
+        '"intensity","laser_id","timestamp","Points_m_XYZ:0","Points_m_XYZ:1","Points_m_XYZ:2"',
+        ...Array.from({ length: COUNT }, (_, at) =>
+          [at % 100, SCAN.ring[at], 3600000 + at, ...SCAN.points.subarray(3 * at, 3 * at + 3)].join(","),
+        ),
+      ].join("\n"),
+    ),
+  },
   "scan-npy": { name: "scan.npy", bytes: npy({ descr: "<f4", shape: [COUNT, 4], data: interleaved(half) }) },
   "scan-e57": { name: "scan.e57", bytes: head("ASTM-E57") },
   "scan-pcap": { name: "scan.pcap", bytes: head("", [0xd4, 0xc3, 0xb2, 0xa1]) },

@@ -57,7 +57,7 @@ describe("static transforms of ROS", () => {
       close(pose.pose.translation, [0.1, 0.2, 0.3], 1e-12, name);
     }
     const alone = `<launch><!--\n${node("9 9 9 0 0 0")}\n--></launch>`;
-    await refusedFile(read("tf.launch", alone), "tf.launch", /in comments alone/);
+    await refusedFile(read("tf.launch", alone), "tf.launch", /only in comments/);
   });
 
   test("conditions, and several transforms between the same frames, are doubts", async () => {
@@ -115,7 +115,7 @@ describe("places of a camera in a body or in the world", () => {
     ]) {
       const { status, stderr } = check(name, content);
       assert.equal(status, 3, stderr);
-      assert.match(stderr, /is no sensor of the pictures .*depth_to_color\.txt/s);
+      assert.match(stderr, /is not a sensor of the pictures .*depth_to_color\.txt/s);
     }
     const { status, stderr } = check("c2w.txt", numbersOf(matrix));
     assert.equal(status, 3);

@@ -203,7 +203,7 @@ describe("time stamps as names", () => {
     says(found, "pairs-by-order", /up to 800 ms apart/, true);
     await refused(
       files(["1650000000.100", "1650000010.100"], ["1650000005.000", "1650000006.000"]),
-      /time stamps of their names are more than 20 ms apart/,
+      /time stamps of their names are more than 250 ms apart/,
     );
   });
 

@@ -132,6 +132,40 @@ describe(".npz", () => {
     await refused("a.zip", zip({ "a.txt": depth }, true), /ZIP archive .*unpack/);
   });
 
+  const doubles = (values, shape) => npy({ descr: "<f8", shape, data: new Float64Array(values) });
+  const camera = { "mtx.npy": doubles([611.4312345678901, 0, 324.81, 0, 610.97, 236.44, 0, 0, 1], [3, 3]) };
+
+  test("OpenCV's calibration, to all of its digits", async () => {
+    const arrays = {
+      ...camera,
+      "dist.npy": doubles([0.1, -0.2, 0.001, 0.002, 0.05], [1, 5]),
+      "rvecs.npy": doubles(Array(36).fill(0.3), [12, 3, 1]),
+    };
+    const { cameras, poses } = await read("calib.npz", zip(arrays, true));
+    assert.equal(cameras.length, 1);
+    assert.equal(cameras[0].camera.fx, 611.4312345678901);
+    assert.deepEqual(cameras[0].camera.distortion, [0.1, -0.2, 0.001, 0.002, 0.05]);
+    assert.deepEqual(poses, []);
+  });
+
+  test("matrices by names: two cameras and the pose between them, stored by columns", async () => {
+    const byColumns = npy({
+      descr: "<f8",
+      shape: [4, 4],
+      fortran: true,
+      data: new Float64Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0.015, -0.001, 0.002, 1]),
+    });
+    const arrays = { "K_color.npy": camera["mtx.npy"], "T_depth_to_color.npy": byColumns };
+    const { cameras, poses } = await read("rig.npz", zip(arrays, false));
+    assert.equal(cameras.length, 1);
+    assert.deepEqual(poses[0].pose.translation, [0.015, -0.001, 0.002]);
+    assert.deepEqual([poses[0].from, poses[0].to], ["depth", "color"]);
+  });
+
+  test("a depth map beside its intrinsics stays a depth map", async () => {
+    isMillimetres(await read("frame.npz", zip({ "depth.npy": depth, ...camera }, true)));
+  });
+
   test("a damaged one", async () => {
     const whole = zip({ "depth.npy": depth }, true);
     await refused("frame.npz", whole.slice(0, -30), /damaged or cut off/);

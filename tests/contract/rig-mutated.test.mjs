@@ -7,6 +7,7 @@ import { BimodalError, readRigFile } from "../../pkg/rig.js";
 import { assertSmall, bytes, inTime } from "./malformed.mjs";
 import { CALIBRATION_SAMPLES } from "./product-calibrations.mjs";
 import { PICTURE_SAMPLES } from "./product-pictures.mjs";
+import { PRINT_SAMPLES } from "./product-prints.mjs";
 import { fixture } from "./rig-support.mjs";
 
 /** Mulberry32, for the same cases in each run. */
@@ -45,7 +46,7 @@ const fixtures = readdirSync(folder, { withFileTypes: true })
   .map(({ name }) => ({ name, content: fixture(name), cases: CASES }))
   .sort((a, b) => (a.name < b.name ? -1 : 1));
 const products = await Promise.all(
-  Object.values({ ...CALIBRATION_SAMPLES, ...PICTURE_SAMPLES }).map(async ({ name, bytes: own }) => ({
+  Object.values({ ...CALIBRATION_SAMPLES, ...PICTURE_SAMPLES, ...PRINT_SAMPLES }).map(async ({ name, bytes: own }) => ({
     ...{ name, content: await own, cases: CASES_OF_PRODUCTS },
   })),
 );

@@ -387,7 +387,7 @@ test("frames by letters and by the names of LiDAR-inertial tools", async () => {
     ],
   );
   assert.deepEqual(await ends(`imu_topic: /imu\nbody_T_cam0: [${matrix.flat()}]\n`), [["cam0", "body"]]);
-  assert.deepEqual(await ends(`T_SC: [${matrix.flat()}]\n`), [["camera", "sensor"]]);
+  assert.deepEqual(await ends(`T_SC: [${matrix.flat()}]\n`), [["camera", "imu"]]);
 });
 
 test("OpenCV's vectors need no guess", async () => {

@@ -117,7 +117,7 @@ describe("a camera of many sizes", () => {
   test("a file's name says which way its only pose leads", async () => {
     const matrix = "1 0 0 0.1\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
     for (const [name, ends] of [
-      ["calib/calib_cam_to_velo.txt", ["cam", "velo"]],
+      ["calib/cam_to_velo.txt", ["cam", "velo"]],
       ["lidar2camera.txt", ["lidar", "camera"]],
       ["rgb_to_depth.txt", ["rgb", "depth"]],
       ["rgb_from_depth.txt", [undefined, undefined]],

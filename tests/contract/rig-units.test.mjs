@@ -1,4 +1,4 @@
-// Units of translations: stated in comments, or not at all, where a length that is much for a rig has a warning.
+// Units of translations: stated in comments, or not at all, where a length that is long for a rig has a warning.
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import { close, codes, only, read, rotation } from "./rig-support.mjs";

@@ -132,7 +132,7 @@ test("where storage is full, older files do not come back in the place of those 
 
 for (const [name, words] of [
   ["QuotaExceededError", "its storage is full"],
-  ["SecurityError", "its storage is closed to this page"],
+  ["SecurityError", "it does not let this page store files"],
 ] as const) {
   test(`files work where they can't be kept: ${name}`, async ({ lab, page }) => {
     await page.addInitScript((name) => {

@@ -104,7 +104,7 @@ test("a mask of 16 bits is a mask, and labels are refused in words", async ({ la
   // A file chosen by hand is read as its slot requires, with the objection to it.
   await put(lab, "Depth map", labels);
   await expect(slot(lab, 1)).toContainText(
-    "Without this slot it would have been refused: its few small integers are labels",
+    "Read as this slot requires; without the slot it would have been refused: its few small integers are labels",
   );
 });
 

@@ -84,7 +84,7 @@ test("KITTI: no pose of the inertial unit, words for a LiDAR, the hint once, a t
   await page.getByRole("button", { name: "Next: your calibration" }).click();
   await expect(page.locator(".rig-candidate")).toHaveCount(1);
   await expect(page.locator(".rig-candidate .rig-words")).toHaveText(
-    /^The LiDAR sits .* the colour camera, which is turned by 0\.00° from looking along the LiDAR's x axis, z up\.$/,
+    /^The LiDAR sits .* the colour camera, which looks along the LiDAR's x axis with z up, except for a rotation by 0\.00°\.$/,
   );
   await expect(page.getByText("Does this match your rig?")).toHaveCount(1);
 });

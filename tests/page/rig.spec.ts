@@ -83,6 +83,19 @@ test("calibrations from a file, pasted and typed in; inverted twice they are wha
   await page.getByLabel("Or paste it in any of these formats").fill("what is this");
   await page.getByRole("button", { name: "Add what I pasted" }).click();
   await expect(page.locator(".rig-step:not([hidden]) .rig-error[role=alert]").first()).toContainText("pasted text");
+  const mounted = {
+    from: "camera",
+    to: "base_link",
+    matrix: [
+      [1, 0, 0, 0],
+      [0, 1, 0, 0],
+      [0, 0, 1, 1],
+      [0, 0, 0, 1],
+    ],
+  };
+  await page.getByLabel("Or paste it in any of these formats").fill(JSON.stringify(mounted));
+  await page.getByRole("button", { name: "Add what I pasted" }).click();
+  await expect(page.locator(".rig-step:not([hidden]) .rig-error[role=alert]").first()).toContainText("a robot");
 
   for (const [label, value] of [
     ["x, m", "0"],

@@ -56,7 +56,7 @@ test("where every kind of storage is forbidden all places work", async ({ lab, p
   await page.locator("#theme").click();
   await drop(page, "body", [colourPng("colour.png"), depthPng("depth.png")]);
   await lab.reaches("ready");
-  await expect(keeping(page)).toContainText("its storage is closed to this page");
+  await expect(keeping(page)).toContainText("it does not let this page store files");
   await page.goto("./#learn");
   await expect(page.locator(".learn-figure")).toHaveAttribute("aria-busy", "false");
   await page.goto("./#tables");

@@ -1,4 +1,4 @@
-/** Curves on a logarithmic axis: the Lab's objective and rotation change, and whatever else runs from left to right. Loaded after the first paint. */
+/** Curves on a logarithmic axis: the Lab's objective and rotation change, and other sequences. Loaded after the first paint. */
 
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
@@ -96,7 +96,7 @@ export class Chart {
     this.#plot.begin();
   }
 
-  /** Its first drawing, as a separate task: by then the browser has styled and laid out what was built. */
+  /** The first drawing is a separate task, so that the browser has styled and laid out the new elements by then. */
   begin(): void {
     this.#plot.begin();
   }
@@ -105,7 +105,7 @@ export class Chart {
 const optional = <T>(given: T | undefined, value: (given: T) => number): number | null =>
   given === undefined ? null : value(given);
 
-/** In how many iterations a value is zero, in words; empty if in none. */
+/** The number of iterations in which a value is zero, in words; empty if it never is. */
 function zerosIn(values: readonly (number | null)[]): string {
   const [known, zeros] = [values.filter((value) => value !== null), values.filter((value) => value === 0)];
   return zeros.length > 0 ? `zero in ${zeros.length} of ${known.length} iterations` : "";
@@ -127,18 +127,18 @@ function inWords(name: string, lines: readonly Line[], curves: readonly (readonl
 
 const isPower = (value: number): boolean => Number.isInteger(Math.log10(value));
 
-/** Over many decades the lines in between would be a grey mass. */
+/** Over many decades the lines in between would merge into a grey area. */
 const MOST_LINES = 30;
 const sparse = (_: uPlot, splits: number[]): (number | null)[] =>
   splits.length > MOST_LINES ? splits.map((value) => (isPower(value) ? value : null)) : splits;
 
-/** Numbers that have a dot each. */
+/** Largest number of points that are drawn as dots. */
 const FEW = 12;
 
 export interface PlotOptions {
   xLabel: string;
   curves: readonly Curve[];
-  /** Whether x counts something: then it begins at one and has no ticks in between. */
+  /** Whether x is a count: the axis then begins at one and has no ticks in between. */
   whole: boolean;
   /** Draws nothing before `begin` is called. */
   waits?: boolean;
@@ -151,7 +151,7 @@ export class Plot {
   #plot: uPlot | undefined;
   #begin: (() => void) | undefined;
   #data: uPlot.AlignedData;
-  /** The newest value of each curve, zero included, which no logarithm shows. */
+  /** The newest value of each curve, also if it is zero, which no logarithm shows. */
   #newest: (number | null)[] = [];
 
   constructor(box: HTMLElement, options: PlotOptions) {
@@ -162,13 +162,13 @@ export class Plot {
     if (!options.waits) this.begin();
     this.#observer = new ResizeObserver(() => {
       const size = this.#size();
-      // The first size it reports is the one it was built with.
+      // The first size that it reports is the one with which it was built.
       if (!this.#begin && size.width !== this.#plot?.width) this.#plot?.setSize(size);
     });
     this.#observer.observe(box);
   }
 
-  /** Draws what was built, if the builder likes in a separate task. */
+  /** Draws the chart, in a separate task if the caller wishes. */
   begin(): void {
     const begin = this.#begin;
     this.#begin = undefined;
@@ -179,7 +179,7 @@ export class Plot {
   show(xs: number[], ys: readonly (number | null)[][]): void {
     const positive = (value: number | null) => (value !== null && value > 0 && Number.isFinite(value) ? value : null);
     const curves = ys.map((values) => values.map(positive));
-    // A count begins where there is something to see.
+    // A count begins at the first value that can be shown.
     const first = this.#options.whole
       ? Math.max(
           0,
@@ -207,7 +207,7 @@ export class Plot {
     this.#plot = new uPlot(
       {
         ...this.#size(),
-        // Left of the first number there may be no axis.
+        // There may be no axis to the left of the first number.
         padding: [8, 8, 0, 4],
         cursor: { y: false, drag: { x: false, y: false } },
         scales: { x: { time: false, ...(whole ? counted : {}) }, y: { distr: 3 } },
@@ -229,7 +229,7 @@ export class Plot {
             ...(isPinned ? { dash: [5, 4], class: "pinned-curve" } : {}),
             width: 1.5,
             spanGaps: !whole,
-            // Where there are few, each was measured and deserves a dot; a line alone needs two.
+            // If there are few points, each one is drawn as a dot; a line needs at least two points.
             points: { show: ({ data }: uPlot) => !whole || data[0].length < FEW },
             // The newest value, unless the pointer selects another.
             value: (_: uPlot, value: number | null | undefined, index: number, at: number | null) => {

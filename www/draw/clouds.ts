@@ -12,7 +12,7 @@ import type { Asked } from "./probe";
 import { type CloudsHooks, type Renderer, rendererFor } from "./renderer";
 import type { Change, PinnedSurfaces } from "./stage";
 
-/** How long, in milliseconds, the depth map takes from one pose to the next. */
+/** Milliseconds in which the depth map moves from one pose to the next. */
 const SWING = 220;
 
 const SIDES = ["image", "depth"] as const;
@@ -24,12 +24,18 @@ const IN_FRONT = 5;
 const still = matchMedia("(prefers-reduced-motion: reduce)");
 /** Share of their radius by which surfaces move off the centre before the view follows; iterations move them less. */
 const LEFT_THE_MIDDLE = 0.3;
-/** Ratio of sizes beyond which a pinned run's object counts as one of another resolution. */
+/** Ratio of sizes beyond which a pinned run's object counts as having another resolution. */
 const OTHER_SIZE = 1.5;
-/** How far, in half windows, what is drawn may reach, and how much room is then made: what grows at every step is not to be followed at each. */
+/**
+ * How far, in half windows, the drawn points may reach, and how much room is then made, so that the view does not follow every step of a
+ * growing object.
+ */
 const EDGE = 0.98;
 const ROOM = 1.08;
-/** Before the loop has converged the image's surface may be far off, so the view makes room for at most this multiple of the depth map's size. */
+/**
+ * Before the loop has converged the image's surface may be far off, so the view makes room for at most this multiple of the depth map's
+ * size.
+ */
 const MOST_ROOM = 1.8;
 const NOWHERE = new Matrix4();
 
@@ -83,7 +89,7 @@ export class Clouds {
     // One finger scrolls the page vertically and rotates the clouds horizontally; two fingers rotate them in any direction.
     canvas.style.touchAction = "pan-y";
     this.#controls.touches.TWO = TOUCH.DOLLY_ROTATE;
-    // The clouds have rotated a little before the browser knows which it is.
+    // The clouds rotate a little before the browser knows which gesture it is.
     canvas.addEventListener("pointerdown", ({ pointerType, isPrimary }) => {
       if (pointerType === "touch" && isPrimary) this.#controls.saveState();
     });
@@ -105,8 +111,8 @@ export class Clouds {
   }
 
   /**
-   * `fresh` looks at the new surfaces from the front; otherwise the visitor's viewpoint stays. The depth map's points
-   * come under one `pose` and are `seen` under another, to which they swing.
+   * With `fresh` the new surfaces are seen from the front; otherwise the visitor's viewpoint stays. The depth map's points are given under
+   * `pose`, and move to the pose under which they are `seen`.
    */
   show(surfaces: Record<Side, Surface>, pose: Pose, seen: Pose, fresh: boolean): void {
     this.#shown = surfaces;
@@ -115,7 +121,7 @@ export class Clouds {
     else this.#follow();
     const before = this.#pose;
     this.#pose = matrixOf(pose);
-    // From where it stood, in terms of the new points.
+    // From its previous place, relative to the new points.
     const from =
       before && !fresh
         ? this.#standing.clone().multiply(before).multiply(this.#pose.clone().invert())
@@ -126,7 +132,7 @@ export class Clouds {
     void this.#swing(from, this.#apart(seen));
   }
 
-  /** Keeps surfaces as they stand under a pose, to be seen left of the wipe. */
+  /** Keeps surfaces as they are under a pose, to be shown left of the wipe. */
   pin(surfaces: Record<Side, Surface>, pose: Pose, seen: Pose): void {
     this.#pinned = boundsOf(surfaces);
     const pinned: PinnedSurfaces = { surfaces, swing: matrixOf(seen).multiply(matrixOf(pose).invert()).toArray() };
@@ -139,12 +145,12 @@ export class Clouds {
     this.#change({ pinned: null });
   }
 
-  /** Share of the width that the pinned run has. */
+  /** Share of the width that shows the pinned run. */
   wipe(share: number): void {
     this.#change({ wipe: share });
   }
 
-  /** Moves the pinned run here if it is elsewhere, at a distance that an image does not determine or in pixels of another size. */
+  /** Moves the pinned run to the present one if its distance is not determined by the image or its pixels have another size. */
   #placePinned(): void {
     const [then, now] = [this.#pinned, this.#extent];
     if (!then || !now) return;
@@ -157,17 +163,17 @@ export class Clouds {
     this.#change({ pinnedPlace: place.toArray() });
   }
 
-  /** How a pose differs from the one that the points come under. */
+  /** The transformation from the pose under which the points are given to another pose. */
   #apart(pose: Pose): Matrix4 {
     return this.#pose ? matrixOf(pose).multiply(this.#pose.clone().invert()) : NOWHERE;
   }
 
-  /** Shows the depth map in a pose other than its own, or in its own again. */
+  /** Shows the depth map in another pose, or again in its own. */
   pretend(pose: Pose | undefined): void {
     void this.#swing(this.#standing, pose ? this.#apart(pose) : NOWHERE);
   }
 
-  /** A mark at a point of each surface, where there is one. */
+  /** Marks a point of each surface that has one. */
   mark(points: Record<Side, readonly number[] | null>): void {
     this.#marked = points;
     this.#placeMarks();
@@ -191,7 +197,7 @@ export class Clouds {
     return side === "depth" ? camera.multiply(this.#standing) : camera;
   }
 
-  /** The pixel whose point is seen at a place of the box, CSS pixels. */
+  /** The pixel whose point is drawn at a place of the box, CSS pixels. */
   pick(x: number, y: number): Asked | null {
     const { width, height } = this.#size;
     let found: Asked | null = null;
@@ -277,7 +283,10 @@ export class Clouds {
     this.#controls.update();
   }
 
-  /** Looks from farther away where a surface is cut off, as one does whose scale was found to be larger; unless the visitor has chosen how near to be. */
+  /**
+   * Moves the viewpoint back if a surface is cut off, for example because a larger scale was found, unless the visitor has chosen the
+   * distance.
+   */
   #makeRoom(): void {
     const [shown, size] = [this.#shown, this.#extent?.radius];
     const isMoved =
@@ -332,7 +341,7 @@ export class Clouds {
 
   async #drawAll(): Promise<void> {
     this.#drawing = true;
-    // Handing the surfaces over is a separate task; it takes as long as reading them.
+    // Transferring the surfaces is a separate task, because it takes as long as reading them.
     await nextTask();
     while (this.#next) {
       const next = this.#next;
@@ -359,7 +368,7 @@ function partsOf(matrix: Matrix4): Parts {
 const boundsOf = ({ depth, image }: Record<Side, Surface>): Sphere | undefined =>
   extent(depth.points) ?? extent(image.points);
 
-/** A sphere about the bulk of the points: a few flying ones must not shrink the rest to a dot. */
+/** A sphere around most of the points, so that a few outliers do not shrink the rest to a dot. */
 function extent(points: Float32Array): Sphere | undefined {
   const places: number[] = [];
   const every = Math.max(1, Math.floor(points.length / 3 / 2000));
@@ -377,7 +386,7 @@ function extent(points: Float32Array): Sphere | undefined {
   return new Sphere(new Vector3(x.middle, y.middle, z.middle), Math.hypot(x.half, y.half, z.half) || 1);
 }
 
-/** How far the bulk of the points reaches from the middle of the window, 1 at its edge. */
+/** How far most of the points reach from the middle of the window, 1 at its edge. */
 function reachOf(points: Float32Array, toScreen: Matrix4): number {
   const every = Math.max(1, Math.floor(points.length / 3 / 2000));
   const reaches: number[] = [];

@@ -29,7 +29,7 @@ function tabulate(stops: readonly string[]): Uint8ClampedArray {
 
 const tables: Record<MapName, Uint8ClampedArray> = { viridis: tabulate(STOPS.viridis), magma: tabulate(STOPS.magma) };
 
-/** The map's colour at a share of its way, in bytes. */
+/** The map's colour at a position from 0 to 1, in bytes. */
 export function colourAt(map: MapName, share: number): [number, number, number] {
   const at = 3 * Math.max(0, Math.min(255, Math.round(255 * share)));
   const table = tables[map];
@@ -89,7 +89,7 @@ export function paintPicture(raster: Picture): ImageData {
   });
 }
 
-/** Levels of the table for logarithms, and how far below white it reaches: what is darker is black. */
+/** Levels of the table for logarithms, and how far it extends below white: darker colours are black. */
 const STEPS = 4096;
 const REACH = 14;
 const ofLog = Uint8ClampedArray.from(
@@ -122,10 +122,10 @@ function paint(raster: Raster, pixel: (data: Float32Array, i: number, out: Uint8
   return image;
 }
 
-/** Most values looked at for an automatic range. */
+/** Most values that are examined for an automatic range. */
 const SAMPLES = 4096;
 
-/** Some of the finite values, in their order of size. */
+/** A sample of the finite values, sorted. */
 export function someSorted(values: Float32Array): Float32Array {
   const every = Math.max(1, Math.floor(values.length / SAMPLES));
   const some = new Float32Array(Math.ceil(values.length / every));
@@ -140,7 +140,10 @@ export function someSorted(values: Float32Array): Float32Array {
 export const quantile = (sorted: Float32Array, share: number): number | undefined =>
   sorted[Math.round(share * (sorted.length - 1))];
 
-/** The range of the middle 98 % of the finite values, as the module has it, which does not say which: single outliers must not flatten everything else. */
+/**
+ * The range of the middle 98 % of the finite values, so that single outliers do not flatten the rest. The module uses the same range, but
+ * does not report it.
+ */
 export function automaticRange({ data }: Pick<Raster, "data">): Range | undefined {
   const sorted = someSorted(data);
   const [min, max] = [quantile(sorted, 0.01), quantile(sorted, 0.99)];

@@ -1,6 +1,6 @@
-/** Numbers for display: few digits, and always the same number of them in one place. */
+/** Numbers for display: few digits, and always the same number of digits in one place. */
 
-/** About four significant digits, without an exponent where a reader would not want one. */
+/** About four significant digits, without an exponent if a reader would not expect one. */
 export function short(value: number): string {
   if (!Number.isFinite(value)) return "none";
   const size = Math.abs(value);

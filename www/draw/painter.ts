@@ -1,8 +1,8 @@
-/** Runs drawing jobs in animation frames, as many as fit; the others wait for the next frame. */
+/** Runs as many drawing jobs in an animation frame as fit; the others wait for the next frame. */
 
 /** Milliseconds of a frame that drawing may take; the rest belongs to the browser and the visitor. */
 const BUDGET = 5;
-/** Pixels of canvases per frame at most: the browser copies them after the scripts, which cannot measure that time. */
+/** Most pixels of canvases per frame: the browser copies them after the scripts, which cannot measure that time. */
 const PIXELS = 400_000;
 
 interface Job {
@@ -15,7 +15,7 @@ export class Painter {
   #idle: (() => void)[] = [];
   #scheduled = false;
 
-  /** Queues the painting of `owner`, on a canvas of so many pixels; a newer job replaces one that has not run. */
+  /** Queues the painting of `owner` on a canvas with this many pixels; a newer job replaces one that has not run. */
   request(owner: object, draw: () => void, pixels = 0): void {
     this.#jobs.set(owner, { draw, pixels });
     this.#schedule();

@@ -1,4 +1,4 @@
-/** The picture of the pinned run over the present one; the style sheet cuts it at the position of the wipe. */
+/** The picture of the pinned run on top of the present one; the style sheet cuts it at the position of the wipe. */
 
 import { make } from "../dom";
 import type { Painted } from "../engine/protocol";
@@ -28,7 +28,7 @@ export class Pinned {
     this.#kept = undefined;
   }
 
-  /** Aligns it with the pixels that are shown: both are parts of a view, given as shares of its sides. */
+  /** Aligns it with the visible pixels: both are parts of a view, given as shares of its sides. */
   place(now: Place): void {
     if (!this.#kept) return;
     const { canvas, place } = this.#kept;

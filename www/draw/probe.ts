@@ -48,12 +48,12 @@ export class Probe {
     if (asked) void this.#follow();
   }
 
-  /** The same place again, whose numbers have changed. */
+  /** Asks again for the same pixel, whose numbers have changed. */
   refresh(): void {
     if (this.#asked) void this.#follow();
   }
 
-  /** One request at a time; of later ones only the last counts. */
+  /** Only one request runs at a time; if more arrive, only the last one counts. */
   async #follow(): Promise<void> {
     this.#isStale = true;
     if (this.#isBusy) return;

@@ -19,14 +19,14 @@ import {
 } from "three";
 import type { Side, Surface } from "../engine/protocol";
 
-/** Sizes of a point on the screen, in CSS pixels: near enough to the next to make a surface, small enough to see two. */
+/** Sizes of a point on the screen, in CSS pixels: large enough to close a surface, small enough to keep two surfaces visible. */
 const SMALLEST = 1.5;
 const LARGEST = 6;
 
-/** Times the middle distance of neighbours: what is farther apart has an edge between, and no surface. */
+/** Multiple of the median distance of neighbours beyond which they are separated by an edge. */
 const LONGEST_STEP = 6;
 
-/** From where both are seen, and how large: CSS pixels, matrices as three.js has them. */
+/** The viewpoint for both surfaces and the size: CSS pixels, matrices in three.js's layout. */
 export interface Sight {
   width: number;
   height: number;
@@ -41,13 +41,13 @@ export interface Change {
   sight?: Sight;
   inks?: { image: string; depth: string };
   style?: "points" | "surfaces";
-  /** Where the depth map's surface stands beside its own pose, column by column. */
+  /** The transformation of the depth map's surface relative to its pose, column by column. */
   swing?: number[];
   /** The surfaces of the pinned run, shown left of the wipe. */
   pinned?: PinnedSurfaces | null;
-  /** How they are brought to where those of the present run stand. */
+  /** The transformation that moves them to the surfaces of the present run. */
   pinnedPlace?: number[];
-  /** Share of the width that the pinned run has. */
+  /** Share of the width that shows the pinned run. */
   wipe?: number;
 }
 
@@ -60,7 +60,7 @@ export interface PinnedSurfaces {
 /** Messages to a drawing thread: whether it can draw (in older Safaris it cannot), then the canvas, then changes. */
 export type Asked = "can you draw?" | OffscreenCanvas | Change;
 
-/** Its replies: whether it can draw, whether it has the canvas, after each change that it is drawn, and whether WebGL was lost. */
+/** Its replies: whether it can draw, whether it has the canvas, whether a change is drawn, and whether WebGL was lost. */
 export type Told = boolean | { lost: boolean };
 
 export class CloudStage {
@@ -78,7 +78,7 @@ export class CloudStage {
 
   /** Throws if the browser has no WebGL. A browser may suspend WebGL for a while; that is reported, and the scene is drawn again afterwards. */
   constructor(canvas: NonNullable<WebGLRendererParameters["canvas"]>, onLost: (lost: boolean) => void) {
-    // Points are squares: smoothing their edges costs a browser without a graphics card half of its time.
+    // Points are squares: smooth edges would take half of the time in a browser without a graphics card.
     this.#renderer = new WebGLRenderer({ canvas, alpha: true });
     // Runs after the renderer's listener, which requests the context again and rebuilds its state.
     canvas.addEventListener("webglcontextlost", () => onLost(true));
@@ -124,7 +124,7 @@ export class CloudStage {
     this.#pinned.depth.place(pinned.swing);
   }
 
-  /** Each run on its side of the wipe, from the same place. */
+  /** Draws each run on its side of the wipe, from the same viewpoint. */
   #render({ width, height }: Sight): void {
     const edge = this.#pinned.isShown ? Math.round(this.#wipe * width) : 0;
     this.#renderer.setScissorTest(edge > 0);
@@ -237,10 +237,10 @@ class Sheet {
   }
 }
 
-/** A byte for the screen as light. */
+/** Converts a byte for the screen to linear light. */
 const linear = (byte: number): number => (byte / 255) ** 2.2;
 
-/** Sets an attribute in place where it has the same length. */
+/** Sets an attribute in place if it has the same length. */
 function set(geometry: BufferGeometry, name: string, values: Float32Array): void {
   const old = geometry.getAttribute(name);
   if (old instanceof BufferAttribute && old.array.length === values.length) {
@@ -253,7 +253,7 @@ function set(geometry: BufferGeometry, name: string, values: Float32Array): void
   geometry.setAttribute(name, new BufferAttribute(values, 3));
 }
 
-/** The points that are there, with their colours, and where each pixel's point is now. */
+/** The valid points with their colours, and the index of each pixel's point. */
 function finite({ points, colours }: Surface): { points: Float32Array; colours: Uint8Array | null; at: Int32Array } {
   const count = points.length / 3;
   const at = new Int32Array(count).fill(-1);
@@ -269,7 +269,7 @@ function finite({ points, colours }: Surface): { points: Float32Array; colours: 
   return { points: kept.slice(0, 3 * to), colours: tints ? tints.slice(0, 3 * to) : null, at };
 }
 
-/** Two triangles for each four neighbours that are not torn apart. */
+/** Two triangles for each four neighbours that no edge separates. */
 function triangulate({ width, height, points }: Surface, at: Int32Array): Uint32Array {
   const squared = (a: number, b: number): number => {
     let sum = 0;

@@ -161,7 +161,7 @@ export class View {
     this.#dot.style.top = `${row}%`;
   }
 
-  /** Where a pixel lies in the box, percent; the other view's counterpart may lie beside what is drawn. */
+  /** The position of a pixel in the box, percent; the other view's counterpart may lie outside the drawn part. */
   #placeOf(pixel: Pixel | null): { hidden: boolean; column: number; row: number } {
     const painted = this.#painted;
     if (!painted || !pixel) return { hidden: true, column: 0, row: 0 };
@@ -171,7 +171,7 @@ export class View {
     return { hidden, column: (100 * (column + 0.5)) / width, row: (100 * (row + 0.5)) / height };
   }
 
-  /** Numbers of another pixel must not stand beside this one. */
+  /** Numbers of another pixel must not be shown beside this one. */
   #isAnswered({ column, row }: Pixel): boolean {
     const answered = this.#options.probe.answer?.pixels[this.#side];
     return answered?.column === column && answered.row === row;

@@ -1,8 +1,7 @@
 /**
  * Detects a worker that has ended silently. No event is fired when the browser ends a worker for lack of memory, and a caller would wait
- * for its answer forever. So a worker holds a lock (Web Locks) for as long as it lives, and the page waits for that lock. Where there are
- * no locks, as on pages
- * that are not served over https, an end is not noticed.
+ * for its answer forever. A worker therefore holds a lock (Web Locks) as long as it lives, and the page waits for that lock. On pages
+ * without locks, such as those that are not served over https, such an end is not noticed.
  */
 
 /** The first message of a worker: the name of its lock. */

@@ -2,7 +2,7 @@
 
 import { shadeNormals } from "../../pkg/index.js";
 
-/** Unit normals of a ball seen from the front; its radius is this share of half the square's side; NaN outside. */
+/** Unit normals of a ball seen from the front, NaN outside; its radius is this share of half the square's side. */
 export function ballNormals(side: number, radius = 1): Float32Array {
   const normals = new Float32Array(3 * side * side).fill(NaN);
   for (let index = 0; index < side * side; index++) {

@@ -21,7 +21,7 @@ export class ViewCanvas {
     const { fullWidth, fullHeight } = cut;
     this.#frame = { ...gridOf(cut), full: { width: fullWidth, height: fullHeight } };
     this.#part = contextOf(this.#frame.width, this.#frame.height);
-    // Each drawn pixel is one of the view's, and no mean of several.
+    // Each drawn pixel is a pixel of the view, not a mean of several.
     this.#part.imageSmoothingEnabled = false;
   }
 
@@ -30,7 +30,7 @@ export class ViewCanvas {
     const { left, top, width, height, stride, full } = this.#frame;
     this.#whole ??= contextOf(full.width, full.height);
     estimator.draw(this.#whole, layer, options);
-    // A pixel is picked in the middle of each block, which has to be the first of a stride.
+    // The view's pixel is the middle of each block, which must be the first pixel of a stride.
     const before = (stride - 1) / 2;
     this.#part.drawImage(
       this.#whole.canvas,

@@ -21,7 +21,7 @@ import {
 } from "./protocol";
 import { cutOfDepth, cutOfImage, depthAt, measured, picture, raster, surface, whiteOf, type Cut } from "./rasters";
 
-/** The range of a view that has no values. */
+/** The range for a view without values. */
 const NOTHING: Range = { min: 0, max: 1 };
 /** Values that cannot be negative and should be zero. */
 const isError = (scale: ScaleName): boolean => scale === "residual" || scale.endsWith("Error");
@@ -30,7 +30,7 @@ const mapOf = (scale: ScaleName): MapName => (isError(scale) ? "magma" : "viridi
 /** Never without a width. */
 const wide = ({ min, max }: Range): Range => (max > min ? { min, max } : { min: min - 0.5, max: min + 0.5 });
 
-/** Which picture colours which surface. */
+/** The picture that colours each surface. */
 const TEXTURE_OF: Record<Texture, Partial<Record<Side, ViewName>>> = {
   view: {},
   picture: { image: "picture" },
@@ -54,7 +54,7 @@ export class ViewPainter {
   readonly #errors: Errors | undefined;
   /** The views that were drawn last. */
   errors: Partial<Record<ErrorName, Raster>> = {};
-  /** How the given depth was drawn last: it stays the same until its range changes. */
+  /** How the given depth was last drawn: it stays the same until its range changes. */
   #given: Range | undefined;
 
   /** `truth` is the ground truth of a sample. */
@@ -112,7 +112,7 @@ export class ViewPainter {
       const log = raster(numbers.of(name), 3, this.#cuts.image);
       show(name, (canvas) => canvas.picture(paintLog(log, whiteOf(log))));
     }
-    // Led by the refined depth, from which flying pixels are trimmed: they would stretch the range.
+    // The range is that of the refined depth, from which flying pixels are trimmed, because they would widen the range.
     const range = ranges.refinedDepth;
     if (anew || range.min !== this.#given?.min || range.max !== this.#given.max) {
       this.#given = range;

@@ -116,8 +116,8 @@ export class Engine {
   }
 
   /**
-   * No reply of an instance that has panicked or is being replaced can be used, so all pending calls fail with the same fault. The
-   * next call makes a new worker; making it here would go round in circles where the worker cannot be loaded at all.
+   * No reply of an instance that has panicked or is being replaced can be used, so all pending calls fail with the same error. The next
+   * call makes a new worker; making it here would never end if the worker cannot be loaded at all.
    */
   #drop(fault: Fault): void {
     this.#worker?.terminate();

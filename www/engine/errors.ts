@@ -10,7 +10,7 @@ export type ErrorName = Extract<ScaleName, `${string}Error`>;
 
 const DEGREES = 180 / Math.PI;
 
-/** Angles between unit normals, from the length of their difference because the cosine loses small ones. */
+/** Angles between unit normals, from the length of their difference, because the cosine is inaccurate for small angles. */
 function angles(found: Float32Array, truth: Float32Array): Float32Array {
   const between = new Float32Array(found.length / 3);
   for (let i = 0; i < between.length; i++) {
@@ -24,7 +24,7 @@ function angles(found: Float32Array, truth: Float32Array): Float32Array {
   return between;
 }
 
-/** How far depths differ; where only differences of depth can be seen, the middle of both is the same. */
+/** Differences of depths; if only relative depth is determined, both medians are made equal. */
 function distances(found: Float32Array, truth: Float32Array, isFree: boolean): Float32Array {
   const apart = new Float32Array(found.length);
   for (let i = 0; i < apart.length; i++) apart[i] = (found[i] ?? NaN) - (truth[i] ?? NaN);

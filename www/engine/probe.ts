@@ -1,17 +1,20 @@
-/** One pixel, the one in the other view that sees the same point, and what every picture shows there. Runs in the worker. */
+/** One pixel, its counterpart in the other view, which sees the same point, and the values of every picture there. Runs in the worker. */
 
 import type { ColorImage } from "../../pkg/index.js";
 import type { Pixel, Probed, Raster, Side } from "./protocol";
 import { depthAt, placesOf } from "./rasters";
 import type { Run } from "./drawings";
 
-/** How far, in pixels of the depth map, the counterpart of one of its pixels may lie from it: not each is hit by a pixel of the image. */
+/**
+ * How far, in pixels of the depth map, the counterpart of one of its pixels may lie from it, because not every depth pixel corresponds to
+ * an image pixel.
+ */
 const NEAR = 2;
 
 const indexOf = ({ column, row }: Pixel, width: number): number => row * width + column;
 const pixelOf = (index: number, width: number): Pixel => ({ column: index % width, row: Math.floor(index / width) });
 
-/** The image's pixel whose counterpart is the given one of the depth map, or the nearest to it. */
+/** The image's pixel that corresponds to the given pixel of the depth map, or to the nearest one. */
 function imageIndexOf(correspondence: Int32Array, { column, row }: Pixel, width: number): number {
   let [best, least] = [-1, NEAR * NEAR + 1];
   for (let index = 0; index < correspondence.length; index++) {
@@ -33,7 +36,7 @@ function indices({ image, depth, numbers }: Run, side: Side, pixel: Pixel): Reco
   return { image: imageIndexOf(correspondence, pixel, depth.width), depth: indexOf(pixel, depth.width) };
 }
 
-/** Three numbers of a pixel, if there are such. */
+/** Three numbers of a pixel, if they exist. */
 function three(data: ArrayLike<number>, index: number, channels = 3): number[] | null {
   const found = [0, 1, 2].map((c) => data[channels * index + c] ?? NaN);
   return index >= 0 && found.every(Number.isFinite) ? found : null;
@@ -41,7 +44,7 @@ function three(data: ArrayLike<number>, index: number, channels = 3): number[] |
 
 const one = (value: number | undefined): number[] => (value !== undefined && Number.isFinite(value) ? [value] : []);
 
-/** Stored colours, and what share of linear light each is. */
+/** Converts stored colours to shares of linear light. */
 function coloursAt({ data, mask, transfer }: ColorImage, index: number): { stored: number[]; log: number[] } | null {
   const floats = data instanceof Float32Array;
   const stored = mask && !mask[index] ? null : three(data, index, floats ? 3 : 4);
@@ -65,7 +68,7 @@ function drawnAt(raster: Raster | undefined, pixel: Pixel | null): number | unde
 const turned = (rotation: readonly number[], vector: readonly number[]): number[] =>
   [0, 3, 6].map((row) => vector.reduce((sum, value, c) => sum + (rotation[row + c] ?? NaN) * value, 0));
 
-/** Where a pixel's point lies: points are listed for the pixels that have a depth, in their order. */
+/** The point of a pixel: points are listed in the order of the pixels that have a depth. */
 function pointOf(points: Float32Array, depth: Float32Array, index: number): number[] | null {
   const { places, count } = placesOf(depth);
   const place = places[index] ?? -1;

@@ -13,7 +13,7 @@ export interface Pair {
   unit?: number;
 }
 
-/** Files as dropped or picked, with what only their owner knows about them. */
+/** Files as dropped or picked, with the information that only their owner has. */
 export interface OwnFiles {
   colour: File;
   depth: File;
@@ -21,11 +21,11 @@ export interface OwnFiles {
   depthMask?: File;
   colourCamera?: Pinhole;
   depthCamera?: Pinhole;
-  /** Metres (or pixels) per stored unit of depth; guessed without it where there is a camera. */
+  /** Metres (or pixels) per stored unit of depth; if absent, it is guessed if there is a camera. */
   unit?: number;
-  /** Larger numbers of the depth map are nearer; with the factor where it is known. */
+  /** Whether larger numbers of the depth map are nearer, with the factor if it is known. */
   inverse?: { numerator?: number };
-  /** Guessed from the bit depth without it. */
+  /** If absent, it is guessed from the bit depth. */
   transfer?: "srgb" | "linear";
 }
 
@@ -36,15 +36,18 @@ export type Source = SampleSource | { kind: "files"; files: OwnFiles } | { kind:
 /** The same for the worker, with the files read. */
 export type Input = Exclude<Source, { kind: "files" }> | { kind: "pair"; pair: Pair };
 
-/** Options whose light may also be "known" and whose start "truth": those of the sample, which only the worker holds. */
+/**
+ * Options whose light may also be "known" and whose start may be "truth", which are those of the sample, because only the worker holds
+ * them.
+ */
 export type LabOptions = Omit<Options, "light" | "start"> & {
   light: "known" | "estimate" | number[];
   start: NonNullable<Options["start"]> | "truth";
 };
 
 /**
- * Numbers of one view as they are drawn: from the pixel at `left`, `top` on, every `stride`-th of the full grid, so that
- * a frame costs the same for any size of input. Three channels are interleaved.
+ * Numbers of one view for drawing: from the pixel at `left`, `top` on, every `stride`-th of the full grid, so that a frame takes the same
+ * time for any size of input. Three channels are interleaved.
  */
 export interface Raster {
   left: number;
@@ -63,8 +66,8 @@ export interface Picture extends Raster {
 }
 
 /**
- * Points of one view where its pixels are: every `stride`-th of the full grid from `left`, `top` on, NaN where missing. Without a width
- * they are an unordered list.
+ * Points of one view at its pixels: every `stride`-th of the full grid from `left`, `top` on, NaN where missing. Without a width they are
+ * an unordered list.
  */
 export interface Surface {
   left: number;
@@ -74,7 +77,7 @@ export interface Surface {
   stride: number;
   /** xyz interleaved, in the colour view's frame. */
   points: Float32Array;
-  /** RGB of each point where it is not of one colour. */
+  /** RGB of each point, if they have different colours. */
   colours: Uint8Array | null;
 }
 
@@ -112,7 +115,7 @@ export interface Range {
   max: number;
 }
 
-/** What the surfaces are coloured by; a view has its own colour where it has no such raster. */
+/** How the surfaces are coloured; a view without the chosen raster has a plain colour. */
 export const TEXTURES = ["view", "picture", "normals", "residual"] as const;
 export type Texture = (typeof TEXTURES)[number];
 
@@ -129,12 +132,12 @@ export interface Painted extends Pick<Raster, "left" | "top" | "width" | "height
   bitmap: ImageBitmap;
 }
 
-/** Everything that is drawn except what does not change with a step. */
+/** Everything that is drawn and changes with a step. */
 export interface Drawings {
   views: Partial<Record<ViewName, Painted>>;
   ranges: Record<ScaleName, Range>;
   surfaces: Record<Side, Surface>;
-  /** The pose that the depth map's points stand under (while the search looks at others, that of the start), and the one to be shown. */
+  /** The pose under which the depth map's points are given (during a search, that of the start), and the one to be shown. */
   poses: { points: Pose; seen: Pose };
 }
 
@@ -142,9 +145,9 @@ export interface Drawings {
 export interface Frame extends Drawings {
   /** One for each step since the last frame, the newest last. */
   reports: StepReport[];
-  /** While the search goes on: alpha, beta, gamma and score of each rotation so far. */
+  /** During a search: alpha, beta, gamma and score of each rotation so far. */
   scores: Float32Array;
-  /** A ball under the light that was found, and by what factors it differs from the true one. */
+  /** A ball under the light that was found, and the factors by which it differs from the true light. */
   light: { found: ImageBitmap; difference: ImageBitmap | null };
 }
 
@@ -161,11 +164,11 @@ export interface Opened {
   units: { image: "px" | "m"; depth: "px" | "m" };
   /** Guesses and changes during reading, in words, by field. */
   notes: Record<string, string>;
-  /** The pose to find, where the input is a sample. */
+  /** The true pose, if the input is a sample. */
   truth: Pose | null;
-  /** The light that it was made under. */
+  /** The light under which it was rendered. */
   trueLight: KnownLight | null;
-  /** Whether there is a truth to compare shapes with. */
+  /** Whether true shapes are available for comparison. */
   measured: boolean;
   /** The options of a saved run. */
   options: Options | null;
@@ -184,14 +187,14 @@ export interface Pixel {
   row: number;
 }
 
-/** What is known of a pixel and of the one in the other view that sees the same point. */
+/** What is known about a pixel and about the pixel in the other view that sees the same point. */
 export interface Probed {
   pixels: Record<Side, Pixel | null>;
-  /** Where they lie, in the colour view's frame. */
+  /** The positions of their points, in the colour view's frame. */
   points: Record<Side, number[] | null>;
-  /** What each picture shows there; nothing where it has no value. */
+  /** The value of each picture there; absent if it has none. */
   values: Partial<Record<ViewName, number[]>>;
-  /** Natural logarithms of the linear colours, as they are and as albedo and shading predict them. */
+  /** Natural logarithms of the linear colours, measured and as albedo and shading predict them. */
   log: number[] | null;
   predicted: number[] | null;
   /** The depth map's normal there, turned into the colour view. */
@@ -206,7 +209,7 @@ export interface Catalogue {
 /** The downloads at full resolution. */
 export interface Taken {
   pose: Pose;
-  /** Of the colour view and of the depth view. */
+  /** The colour view's and the depth view's. */
   unit: "px" | "m";
   depthUnit: "px" | "m";
   light: Float64Array;
@@ -227,7 +230,7 @@ export interface Calls {
   reset: { request: { options: LabOptions; look: Look }; reply: Frame };
   look: { request: { look: Look }; reply: Drawings };
   probe: { request: { side: Side; pixel: Pixel }; reply: Probed };
-  /** Steps until the time is up, at least one; a stage is always a single one. */
+  /** Runs steps until the time is up, at least one; a stage is always run alone. */
   advance: { request: { by: "step" | "stage"; milliseconds: number; look: Look }; reply: Frame };
 }
 
@@ -240,7 +243,7 @@ export interface Fault {
   message: string;
   field?: string;
   details?: ErrorDetails;
-  /** After a panic the instance is suspect, and without its module it cannot work: the worker has to be replaced. */
+  /** After a panic the instance cannot be trusted, and without its module it cannot work, so the worker has to be replaced. */
   fatal: boolean;
 }
 

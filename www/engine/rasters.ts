@@ -1,16 +1,16 @@
-/** The library's arrays, cut and thinned to what a screen can show. Runs in the worker. */
+/** The library's arrays, cropped and subsampled to what a screen can show. Runs in the worker. */
 
 import type { ColorImage, DepthMap } from "../../pkg/index.js";
 import { quantile, someSorted } from "../draw/colours";
 import type { Picture, Raster, Surface } from "./protocol";
 
-/** Longest side of a drawn view in pixels: all canvases together are drawn within one frame. */
+/** Longest side of a drawn view in pixels, so that all canvases together are drawn within one frame. */
 const LONGEST = 512;
 
 /** Most points of a drawn cloud. */
 const MOST_POINTS = 20_000;
 
-/** Pixels of air around the object. */
+/** Margin around the object, pixels. */
 const MARGIN = 2;
 
 /** The part of a view that is drawn. */
@@ -23,7 +23,7 @@ export interface Cut {
   height: number;
 }
 
-/** The part in which `inside` holds; all of it where it never does. An object in a far corner is still seen large. */
+/** The part of the view for which `inside` holds, or all of it if it holds nowhere. An object in a corner is then still drawn large. */
 export function cutOf(width: number, height: number, inside: (index: number) => boolean): Cut {
   let [left, top, right, bottom] = [width, height, -1, -1];
   for (let row = 0, index = 0; row < height; row++) {
@@ -116,9 +116,9 @@ export function picture(image: ColorImage, cut: Cut): Picture {
   return { ...drawn, white, encoded };
 }
 
-/** Smallest distance of white from the median log colour, so that a single albedo, zero everywhere, is shown as middle grey. */
+/** Smallest distance of white from the median log colour, so that a single albedo, zero everywhere, is drawn as middle grey. */
 const LEAST_WHITE = Math.LN2;
-/** Share of the numbers that are at most as bright as white: outliers must not darken everything else. */
+/** Share of the numbers that are not brighter than white, so that outliers do not darken the rest. */
 const UP_TO_WHITE = 0.99;
 
 /** The white level of logarithms of colours. */
@@ -137,7 +137,7 @@ export function depthAt({ data, points, mask, unit, camera }: DepthMap): (index:
   };
 }
 
-/** The mask, because refinement fills holes within it; without a mask, the measured pixels. */
+/** The mask, because refinement fills holes within it; if there is no mask, the measured pixels. */
 export function cutOfDepth(depth: DepthMap): Cut {
   const { width, height, mask } = depth;
   const at = depthAt(depth);
@@ -156,7 +156,7 @@ function thinned(points: Float32Array): Float32Array {
   return kept;
 }
 
-/** The place of each pixel's point in the list of those with a depth, -1 for the others. */
+/** The index of each pixel's point in the list of pixels with a depth, -1 for the others. */
 export function placesOf(depth: Float32Array): { places: Int32Array; count: number } {
   const places = new Int32Array(depth.length).fill(-1);
   let count = 0;
@@ -167,7 +167,7 @@ export function placesOf(depth: Float32Array): { places: Int32Array; count: numb
   return { places, count };
 }
 
-/** The points back at the pixels that they come from: those with a depth, in their order. Where these are others, a list. */
+/** Assigns the points to the pixels with a depth, in their order. If the numbers differ, the points remain a list. */
 export function surface(points: Float32Array, depth: Float32Array, cut: Cut): Omit<Surface, "colours"> {
   const { places, count } = placesOf(depth);
   if (3 * count !== points.length || count === 0)

@@ -1,4 +1,4 @@
-/** A ball under a light: what the 27 coefficients of a light look like. Runs in the worker. */
+/** A ball under a light, which shows the 27 coefficients of a light as a picture. Runs in the worker. */
 
 import { shadeNormals } from "../../pkg/index.js";
 import { paintLog } from "../draw/colours";
@@ -7,7 +7,7 @@ import { contextOf } from "./canvas";
 
 /** Pixels across the ball's picture. */
 const SIDE = 72;
-/** Share of the ball's radius in half the picture. */
+/** The ball's radius as a share of half the picture. */
 const RADIUS = 0.97;
 const ball = ballNormals(SIDE, RADIUS);
 let context: OffscreenCanvasRenderingContext2D | undefined;
@@ -32,10 +32,10 @@ export function lit(light: ArrayLike<number>): ImageBitmap {
   );
 }
 
-/** White of a picture of ratios: no difference is a middle grey. */
+/** White level of a picture of ratios, in which no difference is drawn as middle grey. */
 const EVEN = Math.log(2.5);
 
-/** By what factor one light's colours differ from another's, exposure aside. */
+/** The factor by which one light's colours differ from another's, except for exposure. */
 export function ratio(light: ArrayLike<number>, other: ArrayLike<number>): ImageBitmap {
   const [logs, theirs] = [shadeNormals(light, ball), shadeNormals(other, ball)];
   let [sum, count] = [0, 0];

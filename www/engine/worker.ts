@@ -39,7 +39,7 @@ interface Input extends Pick<Run, "image" | "depth"> {
 }
 
 interface OpenInput extends Input, Run {
-  /** The pose of the start, and where it puts the first point of the depth map. */
+  /** The initial pose, and the position to which it maps the first point of the depth map. */
   start: { pose: Pose; first: readonly number[] };
 }
 
@@ -66,7 +66,7 @@ async function load(): Promise<void> {
   isLoaded = true;
 }
 
-/** More do not make a search much shorter, and each takes memory. */
+/** More threads do not make a search much shorter, and each takes memory. */
 const MOST_WORKERS = 4;
 
 function resolve({ light, start, ...rest }: LabOptions, input: Input): Options {
@@ -107,7 +107,7 @@ function frame(run: OpenInput, look: Look, reports: StepReport[], anew = false):
 
 const known = (light: Float64Array): KnownLight => ({ ball: lit(light), coefficients: light.slice() });
 
-/** The new input replaces the old one only when it has been accepted, so a refusal loses nothing. */
+/** The new input replaces the old one only after it has been accepted, so that a refusal loses nothing. */
 async function open({ source, options, look }: Calls["open"]["request"]): Promise<Calls["open"]["reply"]> {
   const { estimator, ...opened } = source.kind === "saved" ? await fromSaved(source.file) : prepared(source, options);
   experiment?.estimator.free();
@@ -140,7 +140,7 @@ function prepared(
   return { ...input, estimator: new Estimator(input.image, input.depth, resolve(options, input)) };
 }
 
-/** It is repeated up to the step that it had reached. */
+/** The run is repeated up to the step that it had reached. */
 async function fromSaved(file: File): Promise<Prepared & { estimator: Estimator }> {
   const estimator = Estimator.restore(new Uint8Array(await file.arrayBuffer()));
   const { image, depth } = estimator.given;
@@ -199,8 +199,8 @@ async function advance({ by, milliseconds, look }: Calls["advance"]["request"]):
   const began = performance.now();
   const reports: StepReport[] = [];
   const isSearch = () => reports.at(-1)?.stage === "search";
-  // A slice of the search is too little to look at: some of them make a frame, which has the report of the last one. Where drawing is
-  // slow the search takes as long as the page does, and so at least half of all the time.
+  // A slice of the search shows too little progress, so that several slices make a frame, which has the report of the last one. If drawing
+  // is slow, the search takes as much time as the page, and so at least half of all the time.
   const searching = Math.min(Math.max(began - answered, SEARCHING[0]), SEARCHING[1]);
   try {
     do {
@@ -276,7 +276,7 @@ async function handle(request: Request): Promise<void> {
   }
 }
 
-/** Decoding waits, so requests are queued: none may see another's half-opened input. */
+/** Decoding is asynchronous, so requests are queued: none may see a half-opened input of another. */
 let last: Promise<void> = Promise.resolve();
 self.onmessage = (event: MessageEvent<Request>) => {
   last = last.then(() => handle(event.data));

@@ -44,7 +44,7 @@ export class CloudPanel {
     seen.observe(this.#box);
   }
 
-  /** The next surfaces are of another object. */
+  /** Announces that the next surfaces are those of another object. */
   lookAnew(): void {
     this.#fresh = true;
   }

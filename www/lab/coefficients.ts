@@ -1,4 +1,4 @@
-/** The 27 numbers of a sample's light, each with a slider: nine a channel, grouped by their order in the normal. */
+/** The 27 numbers of a sample's light, each with a slider: nine per channel, grouped by their order in the normal. */
 
 import { make } from "../dom";
 import { decimals } from "../draw/numbers";

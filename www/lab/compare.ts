@@ -1,4 +1,4 @@
-/** A pinned run, compared with later runs: its curves are dashed, its pictures and surfaces are left of the wipe. */
+/** A pinned run, compared with later runs: its curves are dashed, and its pictures and surfaces are shown left of the wipe. */
 
 import { byId } from "../dom";
 

@@ -5,7 +5,7 @@ import type { Paint } from "../rig/paint";
 import { lookAt, pictureOf } from "./look";
 import { writePng } from "./write";
 
-/** Largest width of the picture that is drawn on: finer than a pointer, and small enough to draw without delay. */
+/** Largest width of the picture on which the mask is drawn: finer than a pointer, and small enough to draw without delay. */
 const WIDEST = 1600;
 
 let tool: MaskTool | undefined;

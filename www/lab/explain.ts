@@ -1,4 +1,4 @@
-/** Explanations that fit the method that runs, with formulas. Loaded with the first question. */
+/** Explanations of the method that is used, with formulas. Loaded with the first question. */
 
 import type { Stage } from "../../pkg/index.js";
 import { make } from "../dom";

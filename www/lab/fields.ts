@@ -1,7 +1,7 @@
 /**
  * All settings of the Lab. The form, its errors, undo and the link are made from this list. Members of the library's options come from the
- * library's rows, with their defaults and words; this file adds what the Lab composes of several members or of files. An empty number is
- * absent, so that the library's default applies.
+ * library's rows, with their defaults and words; this file adds settings that combine several members or depend on files. An empty number
+ * is absent, so that the library's default applies.
  */
 
 import { OPTIONS, RENDERED_ALONE, SAMPLE, paths, type PageField, type Rows, type ShownRow } from "../../pkg/options.js";
@@ -54,7 +54,7 @@ export type Group = PageField["group"] | "colour" | "depth";
 export type Settings = Readonly<Record<string, Value>>;
 
 export const near = (settings: Settings) => settings.start === "near";
-/** The bare grid has no options of rendering: its size follows from the surface, and it has no noise. */
+/** The bare grid has no rendering options: its size follows from the surface, and it has no noise. */
 export const rendered = (settings: Settings) => settings.protocol !== "grid";
 
 /** The field of a row. */

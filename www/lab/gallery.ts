@@ -160,7 +160,7 @@ export class Gallery {
     });
   }
 
-  /** From now on its requests are answered. */
+  /** Registers the handler of its requests. */
   serve(hooks: GalleryHooks): void {
     this.#hooks = hooks;
     void this.#loadCharts();
@@ -177,7 +177,7 @@ export class Gallery {
     return { ranges: Object.fromEntries(fixed) as Look["ranges"], texture: this.#texture };
   }
 
-  /** Has everything redrawn; of several requests in the meantime the last one counts. */
+  /** Requests a redraw of everything; if several requests arrive in the meantime, the last one counts. */
   async #look(): Promise<void> {
     this.#looksAgain = true;
     if (this.#isLooking) return;
@@ -200,12 +200,12 @@ export class Gallery {
     return this.show(frame, []);
   }
 
-  /** Another picture, of which nothing has been computed yet. */
+  /** Announces another picture, for which nothing has been computed yet. */
   preview(picture: Painted): void {
     this.#views.picture.show(picture);
   }
 
-  /** The depth map's surface under another pose than its own, or its own again. */
+  /** Shows the depth map's surface under another pose, or again under its own. */
   pretend(pose: Pose | undefined): void {
     this.#clouds.pretend(pose);
   }
@@ -236,7 +236,7 @@ export class Gallery {
     this.#clouds.show(drawings);
   }
 
-  /** Keeps this run's pictures and curves beside those of the runs to come. */
+  /** Keeps this run's pictures and curves for comparison with later runs. */
   pin(history: readonly StepReport[]): void {
     for (const view of Object.values(this.#views)) view.pin();
     this.#clouds.pin();
@@ -266,7 +266,7 @@ export class Gallery {
     for (const chart of this.#charts) this.#painter.request(chart, () => chart.recolour());
   }
 
-  /** One view alone and large, or all again. Views count from 1. */
+  /** Shows one view alone and large, or all views again. Views count from 1. */
   enlarge(number: number | null): void {
     const chosen = number === null ? undefined : this.#figures[number - 1];
     const wasOpen = chosen?.hasAttribute("data-large") ?? true;
@@ -284,7 +284,7 @@ export class Gallery {
       return;
     }
     chosen.querySelector("canvas")?.focus({ preventScroll: true });
-    // The others have made room above it.
+    // The other views have made room above it.
     chosen.scrollIntoView({ block: "nearest" });
   }
 
@@ -318,7 +318,7 @@ export class Gallery {
     for (const chart of this.#charts) this.#painter.request(chart, () => chart.show(this.#history, this.#pinned));
   }
 
-  /** After the views are on the page, each in a separate task, so that no click waits for all of them. */
+  /** Runs after the views are on the page, each in a separate task, so that no click waits for all of them. */
   async #loadCharts(): Promise<void> {
     await nextTask();
     const { Chart } = await import("../draw/charts");

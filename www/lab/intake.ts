@@ -235,7 +235,7 @@ export class Intake {
     });
   }
 
-  /** Handles several files at once, which are recognised together. */
+  /** Handles several files at once, so that they are recognised together. */
   putAll(files: ReadonlyMap<Slot, File>): void {
     for (const [slot, file] of files) this.#set(slot, file);
     this.#hooks.onChange();
@@ -247,7 +247,7 @@ export class Intake {
     this.#hooks.onChange();
   }
 
-  /** By hand: remarks about earlier files are removed. */
+  /** A choice by hand removes remarks about earlier files. */
   put(slot: Slot, file: File | undefined): void {
     this.remarks("files", []);
     this.#set(slot, file);
@@ -265,7 +265,7 @@ export class Intake {
     else delete this.#files[slot];
     const hint = slots.find((each) => each.slot === slot)?.hint ?? "";
     entry.name.title = file ? file.name : hint;
-    // However long the name, the size beside it stays in sight.
+    // The size stays visible beside a name of any length.
     entry.name.replaceChildren(
       make("span", {}, file ? file.name : hint),
       ...(file ? [` (${sizeInWords(file.size)})`] : []),

@@ -1,13 +1,13 @@
-/** What a file is for, recognised by its first bytes alone: depth maps have one channel of 16 bits or are arrays, masks one of 8. */
+/** The purpose of a file, recognised by its first bytes alone: depth maps have one channel of 16 bits or are arrays, masks one of 8. */
 
 const PNG = [0x89, 0x50, 0x4e, 0x47];
 const NPY = [0x93, 0x4e, 0x55, 0x4d];
-/** Where a PNG says its bits and its kind of colour, of which 0 is grey. */
+/** Where a PNG states its bits and its colour type, of which 0 is grey. */
 const [BITS, COLOUR, END] = [24, 25, 26];
 
 const begins = (bytes: Uint8Array, magic: readonly number[]): boolean => magic.every((byte, i) => bytes[i] === byte);
 
-/** How a saved run begins. */
+/** The first bytes of a saved run. */
 const RUN = new TextEncoder().encode("bimodal-stereo\n");
 
 export async function runAmong(files: readonly File[]): Promise<File | undefined> {

@@ -1,4 +1,4 @@
-/** The Lab: settings in, frames out. It joins the parts and holds the state of one experiment. */
+/** The Lab: settings in, frames out. It connects the parts and holds the state of one experiment. */
 
 import { byId, nextFrame, nextTask } from "../dom";
 import { Engine, EngineError, LOST } from "../engine/engine";
@@ -128,7 +128,7 @@ export class Lab {
     this.#form.adapt(this.store.settings, this.#origin);
   }
 
-  /** These settings on the screen; the first ones open their input in any case, and what played when its visitor went away plays on. */
+  /** Shows these settings. The first settings open their input in any case, and a run that was playing when the visitor left continues. */
   enter(settings: Settings): Promise<void> {
     const [before, goesOn] = [this.#turn, this.#goesOn];
     this.#goesOn = false;
@@ -145,14 +145,14 @@ export class Lab {
     return this.#playOnce(before === this.#turn ? this.restart() : entered);
   }
 
-  /** The visitor has gone to another part of the page, where this one does not play. */
+  /** Pauses, because the visitor has gone to another part of the page. */
   leave(): void {
     this.#goesOn ||= this.player.playing || this.#willPlay;
     this.#willPlay = false;
     this.player.pause();
   }
 
-  /** Samples or own files; the last input stays on the screen until there is a new one. */
+  /** Switches between samples and own files; the last input stays on the screen until there is a new one. */
   choose(origin: Origin): void {
     this.#origin = origin;
     rememberOrigin(origin);
@@ -172,7 +172,7 @@ export class Lab {
     download({ ...this.#good, source: originOf(this.#good.source), truth, report, history });
   }
 
-  /** Hands over one of the results, in full. */
+  /** Returns one of the results at full resolution. */
   async take(kind: Kind): Promise<void> {
     const { report, truth } = this.#record;
     if (!this.#good || !report) return;
@@ -184,7 +184,7 @@ export class Lab {
     }
   }
 
-  /** A saved run, which is run again as far as it had come. */
+  /** Opens a saved run, which is repeated up to the point that it had reached. */
   #goOnWith(file: File): void {
     this.player.pause();
     this.#saved = { kind: "saved", file };
@@ -200,7 +200,7 @@ export class Lab {
     return this.#own.drop(files);
   }
 
-  /** Pictures and true values of a superseded pair do not stay on the screen. */
+  /** Pictures and true values of the previous pair are removed from the screen. */
   #vacate(): void {
     this.#good = undefined;
     this.#record.clear();
@@ -215,7 +215,7 @@ export class Lab {
     writeAddress(settings);
     this.#form.adapt(settings, this.#origin);
     this.#own.adapt(settings);
-    // Those of a run that is there already.
+    // Settings of a run that already exists.
     if (changed.length === 0) return;
     this.#panels.date(true);
     // A slider shows its effect: a run that was playing, is about to play or had ended is played again.
@@ -229,7 +229,7 @@ export class Lab {
     this.#compare.say(this.#record.report ? wordsOf(this.#record.report, this.#record.truth) : "");
   }
 
-  /** Plays a run once it has begun, unless something newer has by then. */
+  /** Plays a run once it has begun, unless it has been superseded by then. */
   async #playOnce(begun: Promise<void>): Promise<void> {
     const turn = this.#turn;
     this.#willPlay = true;
@@ -251,7 +251,7 @@ export class Lab {
     );
   }
 
-  /** The loop from its beginning, on an input that the worker may already hold. */
+  /** Starts the loop, on an input that the worker may already hold. */
   #start(source: Source | string): Promise<void> {
     this.#willPlay = false;
     return this.#enter(this.#attempt(source, ++this.#turn));
@@ -286,7 +286,7 @@ export class Lab {
       } else {
         if (!(await this.#open(source, options, turn))) return;
       }
-      // With what the page has filled in by itself.
+      // Includes what the page has filled in by itself.
       this.#good = { source, settings: turn === this.#turn ? this.store.settings : settings };
       if (turn === this.#turn) this.#notices.settle();
     } catch (error) {
@@ -306,7 +306,7 @@ export class Lab {
     });
   }
 
-  /** Has the worker open an input and shows it, unless that has been overtaken by then. */
+  /** Has the worker open an input and shows it, unless it has been superseded by then. */
   async #open(source: Source, options: LabOptions, turn: number): Promise<boolean> {
     const input = await readable(source, (words) => turn === this.#turn && this.#notices.detail(words));
     if (turn !== this.#turn) return false;
@@ -321,7 +321,7 @@ export class Lab {
     return true;
   }
 
-  /** Pictures in one frame, numbers in the next, so that no click waits for the layout of both. */
+  /** Pictures are drawn in one frame and numbers in the next, so that no click waits for the layout of both. */
   async #present(opened: Opened): Promise<void> {
     const turn = this.#turn;
     fill();
@@ -343,7 +343,7 @@ export class Lab {
 
   async #advance(request: Advance): Promise<boolean> {
     await this.#beginning;
-    // While files are awaited, the pair on the screen is not the requested one.
+    // While files are still missing, the pair on the screen is not the requested one.
     if (typeof this.#wanted === "string") return false;
     if (!this.#good) await this.#start(this.#wanted);
     if (!this.#good || this.#record.isFinished) return false;
@@ -354,7 +354,7 @@ export class Lab {
       if (turn !== this.#turn) return false;
       await this.#show(frame);
     } catch (error) {
-      // Whatever came in between has begun anew by itself.
+      // A change in the meantime has already started a new run.
       if (turn !== this.#turn) return false;
       throw error;
     }
@@ -362,7 +362,7 @@ export class Lab {
     return !this.#record.isFinished;
   }
 
-  /** What the last run showed. */
+  /** The state that the last run showed. */
   #forget(): void {
     this.#record.restart();
     this.#panels.clear();
@@ -397,7 +397,7 @@ export class Lab {
     this.#transport.show(playing, isIdle && notice?.cause ? notice.words : "");
   }
 
-  /** Shows what is wrong beside the field it concerns; what was on the screen stays usable. */
+  /** Shows an error beside the field that it concerns; what was on the screen stays usable. */
   async #fail(error: unknown): Promise<void> {
     this.player.pause();
     const placed = this.#messages.fail(error);
@@ -412,8 +412,8 @@ export class Lab {
   }
 
   /**
-   * What the worker held is lost. The caller that waited for its answer reports that. If none did, as while the page was idle, it is
-   * reported here, after all rejections have been handled.
+   * The worker's input is lost. The caller that waited for its answer reports that. If there was none, for example while the page was idle,
+   * it is reported here, after all rejections have been handled.
    */
   #lose(error: EngineError): void {
     this.#held = undefined;
@@ -433,7 +433,7 @@ export class Lab {
     this.player.toggle();
   }
 
-  /** The worker has lost what is on the screen, as after a panic: the same input again, from its beginning. */
+  /** The worker has lost its input, for example after a panic, so the same input is opened again from its beginning. */
   async #recover({ source, settings }: { source: Source; settings: Settings }): Promise<void> {
     const turn = ++this.#turn;
     try {

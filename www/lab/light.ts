@@ -12,7 +12,7 @@ export interface Turn {
 }
 
 export interface LightHooks {
-  /** How the light is turned before a drag. */
+  /** The rotation of the light before a drag. */
   turn(): Turn;
   /**
    * Called with the changed settings while the light is moved, and once more when it stops or is released; `gesture` is the same for the
@@ -21,9 +21,9 @@ export interface LightHooks {
   onLight(patch: Settings, done: boolean, gesture: object): void;
 }
 
-/** Degrees of a press of an arrow key. */
+/** Degrees per press of an arrow key. */
 const PRESS = 5;
-/** How long, in milliseconds, the light rests before its turn counts. */
+/** How long, in milliseconds, the light must rest before its rotation takes effect. */
 const REST = 200;
 
 const within = (degrees: number): number => Math.round(((((degrees + 180) % 360) + 360) % 360) - 180);
@@ -59,13 +59,13 @@ export class LightPanel {
     this.#listen(this.#truth.canvas);
   }
 
-  /** Whether the light that is shown as found is of the run before. */
+  /** Whether the light that is shown as found is that of the previous run. */
   date(isBefore: boolean): void {
     this.#isBefore = isBefore;
     this.#found.say(dated(this.#isBesideRival ? "best pose" : this.#standing, isBefore));
   }
 
-  /** Beside a rival's surfaces and numbers the light stays that of the pose found, in the words of the button that shows it. */
+  /** While a rival's surfaces and numbers are shown, the light remains that of the pose found; the label says so. */
   beside(isRival: boolean): void {
     this.#isBesideRival = isRival;
     this.date(this.#isBefore);
@@ -97,7 +97,8 @@ export class LightPanel {
     });
     canvas.addEventListener("pointermove", (event) => {
       if (!from) return;
-      // Half a turn across the ball. What is nearest follows the pointer: right is about +y, because y points down and z away.
+      // A drag across the ball rotates by half a turn. The nearest side follows the pointer: right is about +y, because y points down and z
+      // away.
       const degrees = 180 / canvas.clientWidth;
       const [across, down] = [event.clientX - from.x, event.clientY - from.y].map((distance) => degrees * distance);
       this.#to({ beta: within(from.turn.beta - (across ?? 0)), alpha: within(from.turn.alpha + (down ?? 0)) });
@@ -137,7 +138,7 @@ class Ball {
   readonly canvas: HTMLCanvasElement;
   readonly element: HTMLElement;
   readonly #title: HTMLElement;
-  /** Like those of the views, requested before it is on the page. */
+  /** Like those of the views, it is requested before it is on the page. */
   readonly #context: CanvasRenderingContext2D | null;
 
   constructor(title: string, description: string) {

@@ -11,7 +11,7 @@ import { RigError, Session } from "../rig/session";
 import { sniffed } from "./kind";
 import type { Files, Slot } from "./storage";
 
-/** What a file turned out to be. */
+/** What a file was recognised as. */
 export interface Look {
   kind: Summary["kind"] | undefined;
   says: string;
@@ -32,7 +32,7 @@ export interface Look {
   picture?: ImageBitmap;
 }
 
-/** Warnings that the Lab shows beside its fields, and that of holes: an object without a background has them all around. */
+/** Warnings that the Lab shows beside its fields, and the warning about holes: an object without a background has holes all around. */
 const SETTLED: ReadonlySet<string> = new Set(["unit-guessed", "units-differ", "depth-range", "many-holes"]);
 
 /** Width of a preview, pixels. */
@@ -137,7 +137,13 @@ export async function lookIn(slot: Slot, file: File): Promise<Look> {
   if (own.fault === undefined) return own;
   const asked = await glance(file, { as: KINDS[slot] }).catch(() => undefined);
   return asked
-    ? { ...asked, warnings: [...asked.warnings, `Without this slot it would have been refused: ${own.says}`] }
+    ? {
+        ...asked,
+        warnings: [
+          ...asked.warnings,
+          `Read as this slot requires; without the slot it would have been refused: ${own.says}`,
+        ],
+      }
     : own;
 }
 
@@ -173,7 +179,7 @@ async function unread(
 export const camerasFor = (ask: Calls["cameras"]["ask"]): Promise<Calls["cameras"]["answer"]> =>
   session.call("cameras", ask);
 
-/** The files as the input of a run. Errors name the slot; `say` reports at once what is done to a large picture. */
+/** The files as the input of a run. Errors name the slot; `say` reports at once how a large picture is reduced. */
 export async function pairFrom(files: OwnFiles, say: (words: string) => void): Promise<Pair> {
   const { colour, depth, colourMask, depthMask, ...given } = files;
   const slots = Object.entries({ colour, depth, colourMask, depthMask }) as [PartName, File | undefined][];

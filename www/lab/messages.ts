@@ -49,7 +49,7 @@ export class Messages {
     }
   }
 
-  /** Reports an error; if it is shown beside a field, names that field in short. */
+  /** Reports an error; if it is shown beside a field, returns a short name of that field. */
   fail(error: unknown): { field: string; words: string } | undefined {
     const message = error instanceof Error ? error.message : String(error);
     const field = error instanceof EngineError ? error.field : undefined;

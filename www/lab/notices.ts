@@ -20,7 +20,7 @@ export class Notices {
     this.#onChange();
   }
 
-  /** Says what an input lacks, or that files are being looked at which may be that. */
+  /** Says what an input lacks, or that files are being read which may supply it. */
   lack(lacking: string, names = ""): void {
     this.announce(names ? "loading" : "waiting", names ? "looking at the files" : lacking, names || wayOut(lacking));
   }
@@ -38,7 +38,7 @@ export class Notices {
     if (before && this.#now?.state === "loading") this.announce(before.state, before.words, before.cause);
   }
 
-  /** A new frame is on the screen: the loop's status is shown again. */
+  /** A new frame is on the screen, so the loop's status is shown again. */
   settle(): void {
     this.#now = undefined;
     this.#onChange();

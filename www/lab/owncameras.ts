@@ -1,4 +1,4 @@
-/** The cameras of the visitor's files: which picture each took, its numbers in the Lab's fields, and remarks about them. */
+/** The cameras of the visitor's files: the picture that each one took, its numbers in the Lab's fields, and remarks about them. */
 
 import type { Pinhole } from "../../pkg/index.js";
 import type { GivenCamera, PictureSize } from "../rig/protocol";
@@ -53,7 +53,7 @@ export class OwnCameras {
     this.#filled = undefined;
   }
 
-  /** Whether the fields still hold what the files gave. */
+  /** Whether the fields still hold the values from the files. */
   areIn(settings: Settings): boolean {
     return this.#filled === undefined || holds(settings, this.#filled);
   }

@@ -12,7 +12,7 @@ export interface OwnFilesHooks {
   onChange(): void;
   /** A saved run in place of a pair. */
   onRun(file: File): void;
-  /** Whether a file seems to be in the wrong slot has changed. */
+  /** Called when it changes whether a file seems to be in the wrong slot. */
   onDoubt(): void;
   /** Names of the files being recognised; empty if none of them went into a slot. */
   onLooking(names: string): void;
@@ -53,7 +53,7 @@ export class OwnFiles {
     if (this.#cameras && !this.#cameras.areIn(settings)) this.intake.remarks("cameras", []);
   }
 
-  /** Any number of files, each put into the slot of its content. */
+  /** Puts any number of files into the slots that match their content. */
   async drop(files: readonly File[]): Promise<void> {
     this.#restored = true;
     this.#hands++;
@@ -92,7 +92,7 @@ export class OwnFiles {
     return assigned?.fields ?? {};
   }
 
-  /** Restores the stored files, once, unless others were chosen by then. */
+  /** Restores the stored files, once, unless others were chosen in the meantime. */
   async #restore(): Promise<void> {
     if (this.#restored) return;
     this.#restored = true;
@@ -110,7 +110,7 @@ export class OwnFiles {
     void this.#keep();
   }
 
-  /** Shows what each file is, and proposes a change if one seems to be in the wrong slot. */
+  /** Shows what each file was recognised as, and proposes a change if one seems to be in the wrong slot. */
   async #look(): Promise<void> {
     const files: Files = { ...this.intake.files };
     this.#offer(undefined);
@@ -167,7 +167,7 @@ export class OwnFiles {
     if (Object.keys(this.intake.files).length === 0) return;
     const words = isEmpty
       ? "The stored files were removed in another tab of this page. A reload removes them here, too."
-      : "Another tab of this page has stored its own files. A reload brings those, not these.";
+      : "Another tab of this page has stored its own files. A reload shows those files instead of these.";
     this.intake.keeping(words, true);
   }
 

@@ -46,7 +46,7 @@ export class Panels {
     this.date(false);
   }
 
-  /** What a new frame shows besides surfaces. */
+  /** The parts of a new frame besides surfaces. */
   take({ light, scores }: Frame, { report, truth }: RunRecord): void {
     this.light.show(light, report ? standing(report) : "start");
     this.#scores.show(scores, truth);

@@ -9,7 +9,7 @@ export interface Shown {
   canvas: HTMLCanvasElement;
 }
 
-/** A title as it is read: of the figure, of the section, or the first words for those who cannot see it. */
+/** The title of a figure: its caption, the heading of its section, or the first words of its description for screen readers. */
 function titleOf(canvas: HTMLCanvasElement): string {
   const said = canvas.getAttribute("aria-label")?.split(/[:.]/)[0];
   const figure = canvas.closest("figure")?.querySelector(".view-title")?.textContent;
@@ -17,7 +17,7 @@ function titleOf(canvas: HTMLCanvasElement): string {
   return (figure || said || section || "Picture").trim();
 }
 
-/** All that are on the page now, in its order. */
+/** All canvases that are on the page now, in its order. */
 export function shownIn(root: HTMLElement): Shown[] {
   const all = [...root.querySelectorAll("canvas")].filter(
     (canvas) =>
@@ -33,7 +33,7 @@ export function shownIn(root: HTMLElement): Shown[] {
   }));
 }
 
-/** What can be saved as a picture now. */
+/** The pictures that can be saved now. */
 export function offerPictures(root: HTMLElement, select: HTMLSelectElement): void {
   const titles = shownIn(root).map(({ title }) => title);
   const before = select.value;
@@ -42,7 +42,7 @@ export function offerPictures(root: HTMLElement, select: HTMLSelectElement): voi
   if (titles.includes(before)) select.value = before;
 }
 
-/** As it is shown, on the page's background, because curves may be invisible on another one. */
+/** Drawn on the page's background, because curves may be invisible on another one. */
 function flat(canvas: HTMLCanvasElement): HTMLCanvasElement {
   const copy = document.createElement("canvas");
   copy.width = canvas.width;
@@ -64,7 +64,7 @@ export function pngOf(canvas: HTMLCanvasElement): Promise<Blob> {
   );
 }
 
-/** Through a blob, which the browser encodes in a separate thread. */
+/** Saved as a blob, which the browser encodes in a separate thread. */
 export async function dataUrlOf(canvas: HTMLCanvasElement): Promise<string> {
   const blob = await pngOf(canvas);
   return new Promise((resolve, reject) => {

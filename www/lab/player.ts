@@ -12,17 +12,17 @@ export const paces = [
   { label: "fastest", pause: 0, milliseconds: 30 },
 ] as const;
 
-/** Iterations that take longer than this, in milliseconds, are played stage by stage: there is more to see, and a pause takes effect sooner. */
+/** Iterations that take longer than this, in milliseconds, are played stage by stage, which shows more, and a pause takes effect sooner. */
 const SLOW = 300;
 
 export interface PlayerHooks {
   /** Computes and draws one frame; resolves when it is on the screen, true while the loop has more to do. */
   advance(request: Advance): Promise<boolean>;
-  /** Starts the loop over; resolves when its first frame is on the screen, or it has been refused. */
+  /** Restarts the loop; resolves when its first frame is on the screen, or the input has been refused. */
   restart(): Promise<void>;
   isFinished(): boolean;
   onChange(): void;
-  /** What went wrong, and whether it was while the run played. */
+  /** The error, and whether it occurred while the run played. */
   onError(error: unknown, playing: boolean): void;
 }
 
@@ -53,7 +53,7 @@ export class Player {
     this.#hooks.onChange();
   }
 
-  /** One key press waits for the frame under way; further ones, as from a key held down, are ignored. */
+  /** One key press waits for the frame under way; further ones, for example from a key held down, are ignored. */
   async step(by: Advance["by"]): Promise<void> {
     this.pause();
     if (this.#waiting) return;

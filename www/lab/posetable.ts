@@ -7,7 +7,7 @@ import type { Explanations } from "./ask";
 import type { Term } from "./explain";
 import { BEFORE, angleBetween, dated, standing } from "./verdict";
 
-/** Rows, in the words of the run's messages; those without a unit are lengths in the colour view's unit. */
+/** The rows, in the words of the run's messages; those without a unit are lengths in the colour view's unit. */
 const rows: readonly {
   words: string;
   name: string;
@@ -25,7 +25,7 @@ const rows: readonly {
   { words: "translation along z", name: "t", index: "z", decimals: 3, read: ({ translation }) => translation[2] },
 ];
 
-/** Degrees of β from which on α and γ turn about nearly one axis, so that single ones may differ where the rotation does not. */
+/** Degrees of β beyond which α and γ rotate about nearly the same axis, so that each may differ although the rotation is right. */
 const POLE = 85;
 
 export class PoseTable {
@@ -66,7 +66,7 @@ export class PoseTable {
     this.#heading.textContent = words;
   }
 
-  /** A rival's pose in place of the run's own; all other numbers are the run's. */
+  /** Shows a rival's pose instead of the run's; all other numbers are the run's. */
   show(
     report: StepReport,
     rival: Pose | undefined,
@@ -92,7 +92,7 @@ export class PoseTable {
     if (truth) {
       const degrees = angleBetween(pose.rotation, truth.rotation);
       this.#error.dataset.degrees = String(degrees);
-      // Besides the error of the alternative pose, the error that the verdict refers to.
+      // The error that the verdict refers to, beside the error of the alternative pose.
       const before = rival
         ? ` (best pose: ${decimals(angleBetween(report.pose.rotation, truth.rotation), 1)}°)`
         : start
@@ -114,11 +114,11 @@ export class PoseTable {
 interface Extra {
   term: Term;
   name: string;
-  /** Nothing where there is no such number. */
+  /** Undefined if there is no such number. */
   read(report: StepReport, length: string): string | undefined;
 }
 
-/** The numbers beside the pose, as they are shown. */
+/** The numbers beside the pose, as displayed. */
 export function numbersOf(report: StepReport, length: string): [name: string, value: string][] {
   return extras.flatMap(({ name, read }): [string, string][] => {
     const value = read(report, length);

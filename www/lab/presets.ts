@@ -54,7 +54,7 @@ const settingsOf = ({ set }: Preset): Settings => ({ ...defaults, ...set });
 export class Presets {
   readonly #buttons: readonly { preset: Preset; button: HTMLButtonElement }[];
 
-  /** `onChoose` is called for another example, `onAgain` for a click on the one that is set. */
+  /** `onChoose` is called for another example, `onAgain` for a click on the current one. */
   constructor(parent: HTMLElement, onChoose: (settings: Settings) => void, onAgain: () => void) {
     this.#buttons = presets.map((preset) => {
       const button = make(

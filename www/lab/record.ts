@@ -20,14 +20,14 @@ export class RunRecord {
 
   add(reports: readonly StepReport[]): void {
     for (const report of reports) {
-      // The first of a run: a search has found its pose before the first iteration.
+      // Whether this is the first report of a run: a search has found its pose before the first iteration.
       this.from ??= report.pose;
       this.report = report;
       if (report.iteration > (this.history.at(-1)?.iteration ?? 0)) this.history.push(report);
     }
   }
 
-  /** The run begins anew on the same input. */
+  /** Starts a new record for the same input. */
   restart(): void {
     this.history = [];
     this.from = undefined;

@@ -11,7 +11,7 @@ export interface RivalHooks {
   onStart(pose: Pose): void;
 }
 
-/** More could not be distinguished. */
+/** More rivals could not be distinguished on the screen. */
 const MOST = 4;
 
 export class Rivals {

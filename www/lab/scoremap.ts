@@ -7,7 +7,7 @@ import { decimals } from "../draw/numbers";
 
 /** Half of the range shown, degrees; the search leaves out views from behind. */
 const REACH = 105;
-/** Distance of neighbouring rotations, degrees: the side of a square. */
+/** Distance of neighbouring rotations, degrees, which is the side of a square. */
 const SPACING = 16;
 
 export class ScoreMap {

@@ -31,11 +31,11 @@ const text = (settings: Settings, key: string): string => String(settings[key]);
 /** Values that the page has put into fields by itself, until the visitor changes them. */
 const GUESSED = { unit: "guessedUnit", meaning: "guessedMeaning" } as const;
 
-/** Whether the field holds what the page has put there. */
+/** Whether the field still holds the value that the page filled in. */
 export const isGuessed = (settings: Settings, key: keyof typeof GUESSED): boolean =>
   settings[key] !== null && settings[key] === settings[GUESSED[key]];
 
-/** Fills a field for the visitor; nothing empties it. */
+/** Fills a field for the visitor; `undefined` empties it. */
 export const guess = (key: keyof typeof GUESSED, value: Value | undefined): Settings => ({
   [key]: value ?? null,
   [GUESSED[key]]: value ?? null,
@@ -50,7 +50,7 @@ function place(root: Record<string, unknown>, path: string, value: unknown): voi
   inner[last] = value;
 }
 
-/** The values of these rows' fields. Empty fields are left to the library, and so are values that it would refuse beside the others. */
+/** The values of these rows' fields. Empty fields are left to the library, and so are values that it would refuse in combination. */
 function told<T extends object>(given: readonly Field[], settings: Settings, source: Origin): Partial<T> {
   const object: Record<string, unknown> = {};
   for (const { key, path, when } of given) {
@@ -76,7 +76,7 @@ export function sampleRequest(settings: Settings): SampleRequest {
 export const lightOf = (text: string): string | number[] => (isLightText(text) ? text.split(" ").map(Number) : text);
 export const isLightText = (text: string): boolean => text.includes(" ");
 
-/** Coefficients for an address: four digits are finer than any eye, and than the sliders. */
+/** Coefficients for an address: four digits are finer than the eye and the sliders can resolve. */
 export const lightText = (coefficients: readonly number[]): string =>
   coefficients.map((value) => String(Number(value.toPrecision(4)))).join(" ");
 
@@ -120,7 +120,7 @@ export function runOptions(settings: Settings, source: Origin): LabOptions {
   };
 }
 
-/** A run that starts near these angles; tenths of a degree are finer than a start has to be. */
+/** The address of a run that starts near these angles; tenths of a degree are precise enough. */
 export function startNear({ alpha, beta, gamma }: Record<"alpha" | "beta" | "gamma", number>): Settings {
   const rounded = (degrees: number) => Math.round(10 * degrees) / 10;
   return { start: "near", "start.alpha": rounded(alpha), "start.beta": rounded(beta), "start.gamma": rounded(gamma) };
@@ -133,7 +133,7 @@ const valueAt = (root: unknown, path: string): unknown =>
     .slice(1)
     .reduce<unknown>((inner, name) => (inner as Record<string, unknown> | undefined)?.[name], root);
 
-/** The fields for the options of a saved run; of an initial pose only the angles, because the fields have no more. */
+/** The fields for the options of a saved run; only the angles of an initial pose, because there are no other fields. */
 export function settingsOf(options: Options): Settings {
   const own = optionFields.map((field): [string, Value] => {
     const value = valueAt(options, field.path);
@@ -184,7 +184,7 @@ export function optionsInWords(settings: Settings, source: Origin): [name: strin
 
 const lensKeys = ["fx", "fy", "cx", "cy"] as const;
 
-/** A camera if all four numbers are given, nothing if none is, otherwise the names of the missing ones. */
+/** A camera if all four numbers are given, undefined if none is, otherwise the names of the missing ones. */
 export function camera(settings: Settings, side: "colour" | "depth"): Pinhole | undefined | string {
   const [fx, fy, cx, cy] = lensKeys.map((key) => number(settings, `${side}.${key}`));
   const distortion = listed(settings, `${side}.distortion`);

@@ -22,14 +22,14 @@ interface Seen {
   look: Look;
 }
 
-/** Of two pictures for one slot, the one that belongs in the other: by its name, or else the grey one. */
+/** If two pictures compete for one slot, the one that belongs in the other slot: by its name, or else the grey one. */
 function odd(pair: readonly [Seen, Seen], isOther: (name: string) => boolean): Seen {
   return pair.find(({ file }) => isOther(file.name)) ?? pair.find(({ look }) => look.isGrey) ?? pair[1];
 }
 
 const ofKind = (seen: readonly Seen[], kind: Look["kind"]): Seen[] => seen.filter(({ look }) => look.kind === kind);
 
-/** Colour images and depth maps. If two of one kind arrive while the slot of the other is free, one of them goes there. */
+/** Assigns colour images and depth maps. If two of one kind arrive while the slot of the other kind is free, one of them goes there. */
 function picturesOf(seen: readonly Seen[], there: Files): { colours: Seen[]; depths: Seen[] } {
   const [colours, depths] = [ofKind(seen, "colour"), ofKind(seen, "depth")];
   const [one, two] = colours.length > 0 ? colours : depths;
@@ -96,7 +96,7 @@ function sayOthers(seen: readonly Seen[], say: (words: string, wrong?: boolean) 
   }
 }
 
-/** At most one file of each kind; `there` are the files already in the slots. */
+/** Takes at most one file of each kind; `there` are the files already in the slots. */
 export async function sorted(files: readonly File[], there: Files, settings: Settings): Promise<Sorted> {
   const seen = await Promise.all(files.map(async (file): Promise<Seen> => ({ file, look: await lookAt(file) })));
   const slots: Sorted["slots"] = new Map();

@@ -7,13 +7,13 @@ import { camera, isGuessed, sampleRequest, turnOf, type Origin, type Settings } 
 
 const OWN = "own-files";
 
-/** For this tab alone: a link that is opened anew shows what it says. */
+/** Stored for this tab alone, so that a link that is opened in a new tab shows its own settings. */
 export function rememberOrigin(origin: Origin): void {
   try {
     if (origin === "files") sessionStorage.setItem(OWN, "1");
     else sessionStorage.removeItem(OWN);
   } catch {
-    // A browser that stores nothing needs the files again.
+    // If the browser stores nothing, the files have to be chosen again.
   }
 }
 
@@ -28,7 +28,7 @@ export function wasOwn(): boolean {
 /** The fields that belong to a source. */
 export const originOf = (source: Source): Origin => (source.kind === "sample" ? "sample" : "files");
 
-/** The object of a sample, whatever its light or noise; undefined for other sources. */
+/** The object of a sample, regardless of its light and noise; undefined for other sources. */
 export const objectOf = (source: Source | string, { surface, size, protocol }: Settings): string =>
   typeof source === "string" || source.kind !== "sample" ? "" : [surface, size, protocol].join(" ");
 
@@ -39,14 +39,14 @@ export function namesIn(source: Source): string {
   return files.map(({ name, size }) => `${name}, ${sizeInWords(size)}`).join("; ");
 }
 
-/** With the visitor's files read; what reads them loads with the first of them, and says what it does to a large one. */
+/** The source with the visitor's files read. The readers are loaded with the first file, and report how a large one is reduced. */
 export async function readable(source: Source, say: (words: string) => void): Promise<Input> {
   if (source.kind !== "files") return source;
   const { pairFrom } = await import("./look");
   return { kind: "pair", pair: await pairFrom(source.files, say) };
 }
 
-/** The memory of an input's pictures, which the worker is given. */
+/** The memory of an input's pictures, which is transferred to the worker. */
 export function belongings(input: Input): ArrayBuffer[] {
   if (input.kind !== "pair") return [];
   const { image, depth } = input.pair;
@@ -70,7 +70,7 @@ export const sampleOf = (settings: Settings): SampleSource => ({
   turn: turnOf(settings),
 });
 
-/** Or what it still lacks, in words. */
+/** The source, or what it still lacks, in words. */
 export function sourceOf(
   origin: Origin,
   settings: Settings,

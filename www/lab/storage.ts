@@ -1,4 +1,7 @@
-/** The visitor's files in the browser's own database, so that a reload keeps them. Everything may fail: storage is full, or forbidden. */
+/**
+ * The visitor's files in the browser's own database, so that a reload keeps them. Every access may fail, because storage is full or
+ * forbidden.
+ */
 
 /** The slot of a visitor's file. */
 export type Slot = "colour" | "depth" | "colourMask" | "depthMask";
@@ -44,7 +47,7 @@ function channel(): BroadcastChannel | undefined {
   try {
     return new BroadcastChannel(`${NAME} ${STORE}`);
   } catch {
-    // Closed as storage is; then nothing is kept either.
+    // Closed if storage is forbidden; nothing is stored then.
     return undefined;
   }
 }
@@ -57,7 +60,7 @@ const namesOf = (files: Files): string =>
       .sort(),
   );
 
-/** Calls back with what another tab has stored, or when it has removed everything. */
+/** Reports what another tab has stored, or that it has removed everything. */
 export function hearOthers(here: () => Files, tell: (isEmpty: boolean) => void): void {
   if (!tabs) return;
   tabs.onmessage = ({ data }: MessageEvent<string>) => {
@@ -65,7 +68,7 @@ export function hearOthers(here: () => Files, tell: (isEmpty: boolean) => void):
   };
 }
 
-/** These files and no others. */
+/** Stores these files and no others. */
 export async function keep(files: Files): Promise<void> {
   await change((store) => {
     store.clear();
@@ -92,5 +95,5 @@ export async function kept(): Promise<Map<string, File>> {
 /** Why files could not be stored, in words. */
 export function reasonOf(error: unknown): string {
   const name = error instanceof DOMException ? error.name : "";
-  return name === "QuotaExceededError" ? "its storage is full" : "its storage is closed to this page";
+  return name === "QuotaExceededError" ? "its storage is full" : "it does not let this page store files";
 }

@@ -2,7 +2,7 @@
 
 import { defaults, type Settings, type Value } from "./settings";
 
-/** `live` is a change by a control that is still being moved, or has just been let go, and one that is undone or redone. */
+/** `live` is a change by a control that is still being moved or has just been released, or a change that is undone or redone. */
 export type Listener = (settings: Settings, changed: readonly string[], live: boolean) => void;
 
 const differing = (a: Settings, b: Settings): string[] => Object.keys(a).filter((key) => a[key] !== b[key]);
@@ -45,7 +45,7 @@ export class Store {
     this.#become(next, live);
   }
 
-  /** Settings of a run that is there already: shown, and nothing has to be run for them. */
+  /** Shows the settings of an existing run, without running anything. */
   adopt(patch: Settings): void {
     const next = { ...this.#now, ...patch };
     if (differing(next, this.#now).length === 0) return;
@@ -56,10 +56,10 @@ export class Store {
     for (const listener of this.#listeners) listener(next, [], false);
   }
 
-  /** What the page fills in by itself, such as guesses: not a step of undo, and nothing runs because of it. */
+  /** Fills in values, such as guesses, that are not a step of undo and do not start a run. */
   complete(patch: Settings): void {
     const isNew = Object.entries(patch).some(([key, value]) => value !== (this.#now[key] ?? null));
-    // Every change overwrites what the visitor is typing meanwhile.
+    // A change would overwrite what the visitor is typing.
     if (!isNew) return;
     const next = { ...this.#now, ...patch };
     this.#now = next;

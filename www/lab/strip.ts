@@ -39,7 +39,7 @@ export class Strip {
       const spent = report.milliseconds[name];
       button.toggleAttribute("data-lit", name === report.stage && begun);
       if (name === "search" && report.stage === name) time.textContent = searched(report);
-      // The last slice that was drawn is seldom the last one that ran.
+      // The last slice that was drawn is seldom the last slice that ran.
       else if (name === "search" && begun && time.textContent?.endsWith("%")) time.textContent = "100 %";
       // A converged stage is not computed again, so its time rounds to zero.
       else if (spent !== undefined && spent < LEAST) time.textContent = "";
@@ -49,7 +49,7 @@ export class Strip {
     this.#count.textContent = String(report.iteration);
   }
 
-  /** A stage is under way: the one after the last; a search is many stages. */
+  /** Marks the stage under way: the one after the last; a search has many slices. */
   run(): void {
     if (this.#last === "search") return;
     const names = [...this.#buttons.keys()];

@@ -1,4 +1,4 @@
-/** Results as files of common formats. Loaded with the first download. */
+/** Results as files in common formats. Loaded with the first download. */
 
 import type { Pose, StepReport } from "../../pkg/index.js";
 import { byId } from "../dom";
@@ -13,16 +13,16 @@ import { optionsInWords, type Origin, type Settings } from "./settings";
 import type { Verdict } from "./verdict";
 import { lightCsv, matrixText, poseJson, runReportHtml } from "./write";
 
-/** A run as the page knows it. */
+/** A run with the information that the page has about it. */
 export interface Run {
   taken: Taken;
   report: StepReport;
-  /** Nothing while it is not over. */
+  /** Undefined while it is not over. */
   end: Verdict | undefined;
   truth: Pose | null;
   origin: Origin;
   settings: Settings;
-  /** The visitor's own, with what they were read as. */
+  /** The visitor's files, with descriptions of how they were read. */
   files: readonly { file: File; says: string }[];
   link: string;
 }
@@ -40,7 +40,7 @@ const made = (name: string, type: string, part: BlobPart, says?: string): Made =
   ...(says === undefined ? {} : { says }),
 });
 
-/** Made in a separate thread. */
+/** Kinds that are made in a separate thread. */
 function madeApart(kind: LargeKind, taken: Taken): Promise<Extract<FileAnswer, { bytes: Uint8Array }>> {
   const worker = new Worker(new URL("./files-thread.ts", import.meta.url), { type: "module" });
   const answer = new Promise<Extract<FileAnswer, { bytes: Uint8Array }>>((resolve, reject) => {
@@ -134,7 +134,7 @@ export async function fileOfKind(kind: Exclude<Kind, "run">, run: Run): Promise<
     case "report":
       return report(run);
     default: {
-      // The first iteration finds them.
+      // The first iteration computes them.
       const normals = {
         normals: image.normals,
         depthNormals: depth.normals,

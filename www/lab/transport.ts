@@ -4,7 +4,7 @@ import { byId } from "../dom";
 
 const IDS = ["play", "step", "stage-step", "reset"] as const;
 
-/** The same height as in bar.css. */
+/** The same height is set in bar.css. */
 const low = matchMedia("(max-height: 30rem)");
 
 export class Transport {
@@ -15,14 +15,14 @@ export class Transport {
     low.addEventListener("change", () => this.#settle());
     this.#settle();
     for (const button of this.#buttons) {
-      // Before anyone else who listens: it comes first.
+      // Registered before all other listeners, so that it is called first.
       button.addEventListener("click", (event) => {
         if (button.getAttribute("aria-disabled") === "true") event.stopImmediatePropagation();
       });
     }
   }
 
-  /** At the lower edge of the window, which is the page's end; in a low one, where nothing sticks, right above what it runs. */
+  /** The buttons stick to the lower edge of the window; in a low window, where nothing sticks, they stand above the surfaces. */
   #settle(): void {
     const bar = byId("bar", HTMLElement);
     const focused = bar.contains(document.activeElement) ? document.activeElement : undefined;

@@ -29,7 +29,7 @@ class Trial {
     this.#isLooking = false;
   }
 
-  /** The control has come to rest: the preview ends. */
+  /** The control is at rest, so the preview ends. */
   end(): void {
     this.#next = undefined;
   }
@@ -41,7 +41,7 @@ export interface Lit {
   engine: Engine;
   gallery: Gallery;
   panels: Panels;
-  /** Counts the Lab's beginnings; undefined where the light is not a sample's. */
+  /** Counts the Lab's runs; undefined if the light is not a sample's. */
   turn: () => number | undefined;
 }
 
@@ -64,7 +64,7 @@ export class LightTrial {
     this.#trial.end();
     const before = store.settings;
     store.change(patch, true, gesture);
-    // Turned back to where it was: what has been found is of this light.
+    // The light is back where it was, so the results still belong to it.
     if (store.settings === before) panels.date(false);
   }
 

@@ -1,4 +1,4 @@
-/** A placeholder for the surfaces while those of another pair are awaited: what to add, or what is being done. */
+/** A placeholder for the surfaces while those of another pair are awaited. It says what to add or what is being done. */
 
 import { byId } from "../dom";
 import type { Source } from "../engine/protocol";

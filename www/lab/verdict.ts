@@ -17,16 +17,16 @@ export interface Verdict {
 export const isSearching = ({ status, stage, iteration }: StepReport): boolean =>
   status === "running" && stage === "search" && iteration === 0;
 
-/** The words for pose and light at this moment: before the first step nothing has been found. */
+/** The words for pose and light at this moment; before the first step nothing has been found. */
 export const standing = (report: StepReport): string =>
   isSearching(report) ? "candidate" : report.status === "running" && report.iteration === 0 ? "start" : "found";
 
-/** What they are once the settings are no longer those that they were found under; a start is not found. */
+/** These words once the settings have changed; an initial pose is not "found". */
 export const BEFORE = "last run";
 export const dated = (standing: string, isBefore: boolean): string =>
   isBefore && standing !== "start" ? BEFORE : standing;
 
-/** How far a run is, in a few words. */
+/** The progress of a run, in a few words. */
 export function wordsOf({ status, iteration, pose }: StepReport, truth: Pose | null): string {
   const off = truth ? `, ${decimals(angleBetween(pose.rotation, truth.rotation), 2)}° off` : "";
   return `${status === "running" ? `iteration ${iteration}` : ends[status]}${off}`;
@@ -36,7 +36,7 @@ export function wordsOf({ status, iteration, pose }: StepReport, truth: Pose | n
 const FOUND = 1;
 const MISSED = 5;
 
-/** Degrees below which the pose has not left its start. */
+/** Degrees below which the pose counts as not moved from the initial pose. */
 const STAYED = 0.5;
 
 /** The angle of a bᵀ in degrees, from |a − b| because the trace loses the small angles that matter here. */
@@ -57,7 +57,7 @@ const HARDER = "Rotate the surfaces, drag the light, or try “Too hard”, wher
 /** The right pose, up to noise. */
 const FINER = "Less noise or a larger image would bring it closer.";
 
-/** Where the pose is not sought at all. */
+/** For runs that do not estimate the pose. */
 const HELD = "The pose stayed at its initial value, as set under Registration.";
 const FREE = "To let it move, choose Settings, Registration, joint.";
 
@@ -120,7 +120,7 @@ export function verdict(
   };
 }
 
-/** As what stands alone is written; the name of a file stays as it is. */
+/** Capitalises a sentence; the name of a file stays unchanged. */
 export function sentence(words: string): string {
   const first = /^[^:]*\.\w+: /.test(words) ? words.charAt(0) : words.charAt(0).toUpperCase();
   return `${first}${words.slice(1)}${/[.!?]$/.test(words) ? "" : "."}`;

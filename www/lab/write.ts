@@ -1,4 +1,4 @@
-/** The package's writers of a run, under the types that it declares for them. Loaded when something is saved. */
+/** The package's writers of a run, with the package's declared types. Loaded when something is saved. */
 
 import * as write from "../../pkg/write.js";
 import type * as Write from "../../pkg/write/index.js";

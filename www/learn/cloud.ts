@@ -4,7 +4,7 @@ import { freshId, ink, make } from "../dom";
 import type { CloudPanel, Panel } from "./protocol";
 
 const SIDE = 320;
-/** Side of a point on the canvas, which is shown at half its size: smaller ones are hardly seen on a dark ground. */
+/** Side of a point on the canvas, which is shown at half its size; smaller points are hardly visible on a dark background. */
 const POINT = 3.5;
 /** The initial viewpoint: half way between front and side, so that depth is visible. */
 const FIRST_TURN = 50;

@@ -1,4 +1,4 @@
-/** The HTML that shows a lesson's figure with its present settings in another page; in such a frame, a link to the lesson. */
+/** The HTML that shows a lesson's figure with its present settings in another page. Such a frame has a link to the lesson. */
 
 import { make } from "../dom";
 
@@ -37,7 +37,7 @@ export class Embed {
     const url = new URL(location.href);
     url.hash = hash;
     this.#link.href = hash;
-    // The browser's own way to write it, so that nothing in it can end an attribute.
+    // Written by the browser, so that no content can end an attribute.
     this.#line.value = make("iframe", {
       src: `${url.href}&embed`,
       title: this.#title,

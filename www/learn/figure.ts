@@ -111,7 +111,7 @@ function drawn({ ink, shape, points, size = 2 }: Mark): SVGElement[] {
   });
 }
 
-/** Reports where in an element the pointer is while it is held down. The keyboard has the sliders. */
+/** Reports the pointer's position in an element while it is held down. Keyboards can use the sliders. */
 function draggable(box: HTMLElement, onMove: (x: number, y: number) => void): void {
   box.classList.add("learn-draggable");
   const tell = (event: PointerEvent) => {

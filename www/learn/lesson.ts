@@ -73,7 +73,7 @@ export const LIGHTS = [
 export const initialValues = ({ controls }: Lesson): Values =>
   Object.fromEntries(controls.map(({ key, initial }) => [key, initial]));
 
-/** The values as they are computed with: a logarithmic slider's are powers of ten, and zero at its lower end. */
+/** The values for computation: a logarithmic slider gives powers of ten, and zero at its lower end. */
 export function computed({ controls }: Lesson, values: Values): Values {
   return Object.fromEntries(
     controls.map((control) => {
@@ -89,7 +89,7 @@ export const amount = ({ logarithmic, min }: SliderControl, value: number): numb
 export const labelOf = ({ label }: Control, values: Values): string =>
   typeof label === "string" ? label : label(values);
 
-/** The value of a control as people read it. */
+/** The value of a control as displayed. */
 export function shown(control: SliderControl, value: number, values: Values): string {
   if (control.reads) return control.reads(value, values);
   const number = amount(control, value);
@@ -103,7 +103,7 @@ export function shown(control: SliderControl, value: number, values: Values): st
   return `${decimals(number, digits)}${unit}`;
 }
 
-/** Takes over the values of an address that are valid for their controls. */
+/** Takes the values from an address that are valid for their controls. */
 export function valuesFrom(lesson: Lesson, asked: URLSearchParams): Values {
   const values: Record<string, number | string> = { ...initialValues(lesson) };
   for (const control of lesson.controls) {

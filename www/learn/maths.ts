@@ -25,7 +25,7 @@ export const frac = (up: Element, down: Element): Element => math("mfrac", {}, u
 export const sum = (below: Element): Element => math("munder", {}, mo("∑"), below);
 export const norm = (inside: Element): Element => sup(row(mo("‖"), inside, mo("‖")), mn("2"));
 
-/** With space before and after, as in print; browsers set none. */
+/** Space before and after, as in print; browsers add none. */
 const space = (width: string): Element => math("mspace", { width });
 export const log = (of: Element): Element => row(mi("log"), space("0.1667em"), of);
 export const comma = (): Element => row(mo(","), space("0.6em"));
@@ -43,7 +43,7 @@ const tilde = (base: Element) => math("mover", { accent: "true" }, base, mo("~")
 /** Every symbol of the lessons, once. */
 const SYMBOLS = {
   n: { make: () => bold("n"), ink: "normal", name: "unit normal of the surface" },
-  // Not a hat, which would mean a unit vector: its length is the square root of two.
+  // It has no hat, which would mean a unit vector: its length is the square root of two.
   N: { make: () => tilde(bold("n")), ink: "normal", name: "unit normal with a fourth component 1" },
   m: { make: () => bold("m"), ink: "prior", name: "normal of the depth map at that point" },
   M: { make: () => sub(bold("M"), mi("j")), ink: "light", name: "light of colour j, a 4 by 4 matrix of 9 numbers" },
@@ -79,13 +79,13 @@ export const colourTerm = (normal?: () => Element): Element =>
 
 export const inline = (...children: Element[]): Element => math("math", {}, row(...children));
 export const block = (...children: Element[]): Element => math("math", { display: "block" }, row(...children));
-/** One below the other, where one line would be wider than the text of a small window. */
+/** Formulas below each other, because one line would be wider than the text of a small window. */
 export const lines = (...blocks: Element[]): Element => make("div", {}, ...blocks);
 
-/** A sentence; {n} is the symbol n, {−n_x} its part along x turned round, and {link|address} leads elsewhere. */
+/** A sentence in which {n} is the symbol n, {−n_x} its negative component along x, and {link|address} a link. */
 export function sentence(words: string): (Node | string)[] {
   return words.split(/(\{[^}]+\})/).map((part) => {
-    // A number keeps its sign on its line.
+    // A number and its sign stay on one line.
     if (!part.startsWith("{")) return part.replace(/(\d) %/g, "$1\u00a0%");
     const inside = part.slice(1, -1);
     const [label = "", address] = inside.split("|");

@@ -81,12 +81,12 @@ export class LearnPage {
     const values = isTold ? valuesFrom(lesson, asked) : (this.#kept.get(lesson.id) ?? initialValues(lesson));
     this.#show(lesson, values);
     if (asked.has("slides")) this.#startSlides();
-    // Back from the slides to the lesson at which they were opened.
+    // Returns from the slides to the lesson at which they were opened.
     else this.#slides.close();
     this.#writeAddress();
   }
 
-  /** Nothing is computed for a page that is not shown. */
+  /** Nothing is computed for a hidden page. */
   leave(): void {
     if (!this.#isOpen) return;
     this.#isOpen = false;
@@ -210,7 +210,7 @@ export class LearnPage {
     );
   }
 
-  /** A place on a panel, as shares of its sides, sets the two sliders of its axes. */
+  /** Sets the two sliders of a panel's axes from a place on it, given as shares of its sides. */
   #drag(key: string, x: number, y: number): void {
     const shown = this.#shown;
     const axes = shown?.lesson.drags[key];
@@ -256,7 +256,7 @@ export class LearnPage {
   #go(by: 1 | -1): void {
     const next = this.#shown && beside(this.#shown.lesson.id, by);
     if (!next) return;
-    // Before it is shown, which writes the address of its values.
+    // Before the lesson is shown, because that writes the address of its values.
     this.#writeAddress("another");
     this.#show(next, this.#kept.get(next.id) ?? initialValues(next));
     this.#writeAddress();
@@ -275,7 +275,7 @@ export class LearnPage {
     this.#writeAddress();
   }
 
-  /** In the place of the entry that the browser's history is at; a slide that is turned to is another one, so that Back turns back. */
+  /** Replaces the present entry of the browser's history; a new slide adds an entry, so that Back returns to the previous slide. */
   #writeAddress(entry: "same" | "another" = "same"): void {
     const shown = this.#shown;
     if (!shown || !this.#isOpen) return;

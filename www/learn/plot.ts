@@ -5,15 +5,15 @@ import { short } from "../draw/numbers";
 import type { Panel, PlotPanel } from "./protocol";
 import { svg } from "./svg";
 
-/** Of the drawing, which is as wide as its place: one that is scaled has type too small to read where it is narrow. */
+/** The size of the drawing, which is as wide as its place: scaling it would make its type too small in a narrow place. */
 const WIDTH = 320;
-/** A landscape format if there is room, no lower than is legible and no higher than a screen. */
+/** Landscape format if there is room, not too low to be legible and not higher than a screen. */
 const heightOf = (width: number): number => Math.round(Math.max(Math.min(width, 200), Math.min(0.5 * width, 280)));
-/** From the axes to the edges. */
+/** Margins between the axes and the edges. */
 const MARGIN = { left: 40, top: 8, right: 14, bottom: 36 };
-/** Height of the type that the margins are for, px; larger type, of slides, enlarges all. */
+/** Height of the type for which the margins are set, px; with larger type, on slides, everything is enlarged. */
 const TYPE = 11;
-/** Marks along an axis of some length, each with the room for its number. */
+/** Number of ticks on an axis of a given length, each with room for its number. */
 const marks = (length: number, room: number): number => Math.max(2, Math.min(6, Math.floor(length / room)));
 
 interface Span {
@@ -28,7 +28,7 @@ function spanOf(values: number[], range?: readonly [number, number]): Span {
   return most > least ? { least, most } : { least: least - 0.5, most: most + 0.5 };
 }
 
-/** Round numbers within a span, about as many as requested and at least two, because a single one gives no scale. */
+/** Round numbers within a range, about as many as requested and at least two, because a single one gives no scale. */
 function ticks({ least, most }: Span, count: number): number[] {
   const rough = (most - least) / count;
   const power = 10 ** Math.floor(Math.log10(rough));

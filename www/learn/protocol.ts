@@ -8,10 +8,10 @@ export type Values = Readonly<Record<string, number | string>>;
 export const LESSONS = ["pixel", "grey", "colours", "surface", "prior", "pose", "sensor", "paint", "failure"] as const;
 export type LessonId = (typeof LESSONS)[number];
 
-/** Ends of the slider of lesson 9: the narrowest depth map as a share of its width, and the largest turn in degrees. */
+/** Ends of the slider of lesson 9: the narrowest depth map as a share of its width, and the largest rotation in degrees. */
 export const [LEAST_OVERLAP, LARGEST_TURN] = [0.08, 90];
 
-/** What is drawn over a picture; the style sheet gives each its colour, the same as that of its symbol in the text. */
+/** Marks on a picture; the style sheet gives each its colour, the same as that of its symbol in the text. */
 export type Ink =
   | "normal"
   | "light"
@@ -39,7 +39,7 @@ export interface Mark {
 }
 
 interface Common {
-  /** Stays the same while values change. */
+  /** The key of a panel, which stays the same while values change. */
   key: string;
   title: string;
   /** A description for screen readers. */
@@ -71,9 +71,9 @@ export interface PlotPanel extends Common {
   series: Series[];
   /** Where the control stands now. */
   at?: number;
-  /** Least range of x, so that the axis stands still while the curve grows. */
+  /** Smallest range of x, so that the axis does not move while the curve grows. */
   domain?: readonly [number, number];
-  /** Least range of y, so that noise does not fill the picture. */
+  /** Smallest range of y, so that noise does not fill the picture. */
   range?: [number, number];
 }
 

@@ -1,8 +1,8 @@
-/** Where a lesson's method is written down, as links out of the page: nothing is requested before a click. */
+/** The sources of a lesson's method, as links to other sites: nothing is requested before a click. */
 
 import { make } from "../dom";
 
-/** The paper, where everybody may read it. */
+/** The paper, at an address that everybody can read. */
 const PAPER = "https://arxiv.org/abs/1905.06499";
 const DOCS = "https://github.com/bimodal-stereo/bimodal-stereo/blob/main/docs";
 
@@ -28,7 +28,7 @@ export interface References {
   others?: readonly (readonly [doi: string, words: string])[];
 }
 
-/** The name that a heading has in an address. */
+/** The anchor of a heading in an address. */
 const anchor = (heading: string): string =>
   heading
     .toLowerCase()

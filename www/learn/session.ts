@@ -24,7 +24,7 @@ export class Session {
     this.#worker.postMessage(request);
   }
 
-  /** The request under way is obsolete. */
+  /** Ends the request under way, which is obsolete. */
   end(): void {
     this.#worker?.terminate();
     this.#worker = undefined;

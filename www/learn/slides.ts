@@ -8,7 +8,7 @@ const MOVED_BY_ARROWS = "input, select, textarea";
 export interface Slide {
   article: HTMLElement;
   title: string;
-  /** Whether there is one after it, or before it. */
+  /** Whether there is a next or a previous slide. */
   hasBeside(by: 1 | -1): boolean;
 }
 

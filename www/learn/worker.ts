@@ -1,4 +1,4 @@
-/** The thread that computes what the lessons show. A newer request ends the one under way. */
+/** The thread that computes the figures of the lessons. A newer request ends the one under way. */
 
 import "../engine/hold";
 import init from "../../pkg/index.js";
@@ -26,7 +26,7 @@ let newest: Request | undefined;
 let isBusy = false;
 
 const post = (message: Answer): void => self.postMessage(message);
-/** Lets messages in; a timer of zero would wait four milliseconds each time. */
+/** Lets messages arrive; a timer of zero would wait four milliseconds each time. */
 const channel = new MessageChannel();
 let wake: (() => void) | undefined;
 channel.port1.onmessage = () => wake?.();

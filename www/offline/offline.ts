@@ -1,8 +1,8 @@
-/** Has the page's files kept for a visit without a network, and says how that stands. The development server has no such files. */
+/** Stores the page's files for visits without a network, and reports the state. The development server has no such files. */
 
 export async function keepForOffline(line: HTMLElement): Promise<void> {
   if (!import.meta.env.PROD || !("serviceWorker" in navigator)) return;
-  // The first run comes first.
+  // Waits until the first run has started.
   if (document.readyState !== "complete")
     await new Promise((loaded) => addEventListener("load", loaded, { once: true }));
   try {
@@ -24,6 +24,6 @@ export async function keepForOffline(line: HTMLElement): Promise<void> {
     registration.addEventListener("updatefound", () => follow(registration.installing));
     tell();
   } catch {
-    // Private windows, and pages that are not served over https, have none: the page then needs its network.
+    // Private windows, and pages that are not served over https, have no service workers; the page then needs its network.
   }
 }

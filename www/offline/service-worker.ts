@@ -1,7 +1,7 @@
 /**
- * Keeps the page's files, so that it opens without a network. All of them are fetched once, checked against the hashes that the build wrote down,
- * and answered from the cache: one version is never mixed with the next. A new version is fetched beside the old one, and takes its place once
- * no tab shows that any more. Not kept: the .wasm of the two that this machine does not run.
+ * Stores the page's files, so that it opens without a network. All of them are fetched once, checked against the hashes that the build
+ * recorded, and answered from the cache; versions are never mixed. A new version is fetched beside the old one, and replaces it once no tab
+ * shows the old one any more. The .wasm that this machine does not run is not stored.
  */
 
 import { hasSimd } from "../../js/wasm";
@@ -9,22 +9,22 @@ import { hasSimd } from "../../js/wasm";
 interface Site {
   /** A hash of all contents. */
   version: string;
-  /** Paths below the page's own, and hashes of what is in them. */
+  /** Paths relative to the page's folder, and hashes of the files. */
   files: Record<string, string>;
 }
 declare const self: ServiceWorkerGlobalScope & { site: Site };
 
 const { scope } = self.registration;
-/** Two copies of the page may lie on one host, and each sees all caches there. */
+/** A host may have two copies of the page, each of which sees all caches. */
 const OURS = `bimodal-stereo ${scope} `;
 const NAME = OURS + self.site.version;
 
-/** The .wasm of the loop that runs on other machines. */
+/** The .wasm of the loop for other machines. */
 const OTHER = hasSimd() ? /bimodal_stereo_scalar_bg/ : /bimodal_stereo_bg/;
-/** Names in here hold a hash of the content: what an earlier version has fetched under one of them serves again. */
+/** Names in this folder contain a hash of the content, so files fetched by an earlier version can be used again. */
 const NAMED_BY_CONTENT = /^assets\//;
 
-/** The document has the folder's own address: some servers redirect requests for index.html there. */
+/** The document's address is the folder's: some servers redirect requests for index.html to it. */
 const addressOf = (path: string): string => new URL(path === "index.html" ? "./" : path, scope).href;
 
 self.addEventListener("install", (event) => event.waitUntil(keepAll()));
@@ -34,7 +34,10 @@ self.addEventListener("fetch", (event) => {
   if (request.method === "GET" && request.url.startsWith(scope)) event.respondWith(answer(request));
 });
 
-/** One after the other, behind whatever the page itself loads. A file that is missing or another one makes all of it fail, to be tried again at the next visit. */
+/**
+ * Fetches one file after the other, after everything that the page itself loads. A missing or changed file makes the whole installation
+ * fail; it is repeated at the next visit.
+ */
 async function keepAll(): Promise<void> {
   const cache = await caches.open(NAME);
   for (const [path, integrity] of Object.entries(self.site.files)) {
@@ -49,7 +52,7 @@ async function keepAll(): Promise<void> {
   }
 }
 
-/** Without the mark of having been sent elsewhere, with which no document may be answered. */
+/** Removes the mark of a redirect, because a document with that mark may not be answered. */
 function plain(response: Response): Response {
   if (!response.ok) throw new Error(`${response.url}: ${response.status}`);
   return response.redirected ? new Response(response.body, { headers: response.headers }) : response;
@@ -58,7 +61,7 @@ function plain(response: Response): Response {
 async function takeOver(): Promise<void> {
   const others = (await caches.keys()).filter((name) => name.startsWith(OURS) && name !== NAME);
   for (const name of others) await caches.delete(name);
-  // The page requests more later on: other places and their workers.
+  // The page requests more files later: other parts and their workers.
   await self.clients.claim();
 }
 

@@ -1,8 +1,8 @@
-/** Files that came one by one, arranged as the readers of folders arrange theirs: which camera took which pictures, and which poses matter. */
+/** Files that were added one by one, arranged by the readers of folders: which camera took which pictures, and which poses matter. */
 
 import type { RigState } from "./state";
 
-/** Candidates of files that were arranged before stay as the visitor has left them. */
+/** Candidates from files that were arranged before keep the visitor's choices. */
 export async function arrange(rig: RigState): Promise<void> {
   const frames = rig.complete.flatMap(({ colour, depth }) =>
     colour === undefined || depth === undefined ? [] : [{ colour, depth }],

@@ -5,7 +5,7 @@ import { decimals } from "../draw/numbers";
 import { dropTarget } from "./drop";
 import { choose, Keyed, labelled, numberField, press } from "./parts";
 import { fromEuler, fromQuaternion, identity, inverse, isOfWorld, matrixText, poseOf, type EulerOrder } from "./poses";
-import { placeInWords } from "./words";
+import { isOfCarrier, placeInWords } from "./words";
 import { messageOf, type Candidate, type Rig } from "./rig";
 
 type By = "quaternion" | EulerOrder;
@@ -16,9 +16,9 @@ const TURNS: Record<By, readonly string[]> = {
   xyz: ["about x", "about y", "about z"],
 };
 
-/** Above this distance of two cameras, metres, a wrong unit or a pose in the world is likelier than a rig. */
+/** Distance of two cameras, metres, above which a wrong unit or a pose in the world is likelier than a rig. */
 const FAR = 0.5;
-/** .. of a LiDAR and a camera on one vehicle. */
+/** The same distance for a LiDAR and a camera on one vehicle. */
 const FAR_ON_VEHICLE = 3;
 
 export class CalibrationStep {
@@ -33,7 +33,7 @@ export class CalibrationStep {
     "The check only estimates one; add yours to have it checked. Depth maps that are already registered to the images, as phones and many drivers save them, have the identity. ",
     press("Add the identity", () => this.#rig.addPose({ name: "identity", pose: identity }, "the identity")),
   );
-  /** Said once for all candidates. */
+  /** Shown once for all candidates. */
   readonly #hint = make("p", { class: "soft rig-hint" });
   readonly #alert = make("p", { class: "rig-error", role: "alert", hidden: true });
   readonly #next: HTMLButtonElement;
@@ -194,8 +194,12 @@ export class CalibrationStep {
         throw new Error(
           "This is the pose of a camera in the world (camera to world). A calibration transforms points from the depth camera to the colour camera.",
         );
-      for (const pose of poses.filter((each) => !isOfWorld(each)))
-        this.#rig.addPose({ ...pose, name: pose.name ?? "pasted" }, name);
+      const ofSensors = poses.filter((each) => !isOfWorld(each) && !isOfCarrier(each));
+      if (ofSensors.length === 0)
+        throw new Error(
+          "This pose relates a sensor to a body, a vehicle, a robot or a calibration target. A calibration transforms points from the depth camera or the LiDAR to the colour camera.",
+        );
+      for (const pose of ofSensors) this.#rig.addPose({ ...pose, name: pose.name ?? "pasted" }, name);
     } catch (error) {
       this.#complain(messageOf(error));
     } finally {

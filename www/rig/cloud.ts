@@ -1,4 +1,4 @@
-/** A frame's depths as points in the colour camera's frame, with the colours at their projections. */
+/** A frame's depths as points in the colour camera's frame, with the colours of the image at their projections. */
 
 import { projectFrame, type CheckFrame, type Pose } from "../../pkg/index.js";
 

@@ -1,4 +1,7 @@
-/** How well each cue constrains each axis: the loss of log likelihood when the calibration found is moved. Loaded with the first verdict. */
+/**
+ * How well each cue constrains each axis: the loss of log likelihood when the estimated calibration is moved. Loaded with the first
+ * verdict.
+ */
 
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
@@ -24,9 +27,9 @@ const tokens: Record<string, string> = {
   information: "series-2",
   silhouette: "series-4",
 };
-/** Curves that lose less than this are not scaled up to fill the height. */
+/** Smallest loss at which curves are scaled up to fill the height. */
 const FLAT = 4;
-/** Sigmas to each side of a 95 % interval. */
+/** Half width of a 95 % interval, sigmas. */
 const WITHIN = 1.96;
 
 export class SensitivityCharts {
@@ -159,7 +162,7 @@ function lossesOf(curves: readonly Sensitivity[]): {
   return { xs, lines: same.map(({ cue, values }) => ({ cue, losses: lost(values) })), total: lost(sum) };
 }
 
-/** Half width of the 95 % interval, in degrees or millimetres, from the covariance, which accounts for what the cues share. */
+/** Half width of the 95 % interval, in degrees or millimetres, from the covariance, which includes errors that the cues share. */
 function certainty(covariance: readonly number[], axis: Axis): number {
   const index = (Object.keys(axes) as Axis[]).indexOf(axis);
   const sigma = Math.sqrt(Math.max(0, covariance[7 * index] ?? 0));

@@ -1,4 +1,4 @@
-/** The package's readers, under the types that it declares for them. */
+/** The package's readers, with the package's declared types. */
 
 import * as rig from "../../pkg/rig.js";
 import type * as Rig from "../../pkg/rig/index.js";

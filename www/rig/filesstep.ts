@@ -162,7 +162,7 @@ export class FilesStep {
     });
   }
 
-  /** A folder is read as a whole, since its frames may be matched by time; files that came one by one are listed for review. */
+  /** A folder is read as a whole, since its frames may be matched by time; files that were added one by one are listed for review. */
   async #take(files: Named[], isFolder: boolean): Promise<void> {
     this.#complain("");
     this.#filesCard.open ||= !isFolder;

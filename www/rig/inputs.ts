@@ -1,11 +1,11 @@
-/** The files of a check for its report: sizes, hashes, and the files of folders in place of what was made of them. */
+/** The files of a check for its report: sizes and hashes, with the files of a folder instead of the items that were made from them. */
 
 import { sha256 } from "../hash";
 import type { Reading } from "./files";
 import type { Calls } from "./protocol";
 import type { ReportInput } from "./report";
 
-/** A folder that was read: what it became, and its files. */
+/** A folder that was read: its items, and its files. */
 export interface ReadFolder {
   /** The numbers of its items. */
   items: number[];
@@ -41,7 +41,7 @@ export async function inputsOf(
 /** The name of the item that holds the cameras of a folder's files. */
 const FOLDER = "the folder";
 
-/** Of the numerics that this thread runs. */
+/** The hash of the numerics that this thread runs. */
 export async function moduleHash(): Promise<string | undefined> {
   const [entry] = performance.getEntriesByType("resource").filter(({ name }) => /check_bg[^/]*\.wasm$/.test(name));
   const answer = entry && (await fetch(entry.name).catch(() => undefined));

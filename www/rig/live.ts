@@ -5,7 +5,7 @@ import type { Assembly } from "./protocol";
 import { type Session, wasCancelled } from "./session";
 import { type Item, type RigState, messageOf } from "./state";
 
-/** Number of views taken; more of one rig add little. */
+/** Most views that are taken; more views of one rig add little. */
 const MOST = 10;
 
 export type LiveState = "off" | "connecting" | "connected" | "looking" | "checking" | "done" | "lost";
@@ -111,7 +111,7 @@ export class Live {
       }
       this.#become(this.#isStopping ? "connected" : "done");
     } catch (error) {
-      // A connection that was lost has taken the turn.
+      // A lost connection has changed the number of the turn.
       if (isMine()) this.#become("connected", this.#isStopping || wasCancelled(error) ? "" : messageOf(error));
     }
   }
@@ -131,7 +131,7 @@ export class Live {
     );
   }
 
-  /** The robot among the files. */
+  /** Adds the robot to the list of files. */
   #list(): Item {
     const says = `${this.name || "a robot"}, ${this.chosen.colour} and ${this.chosen.depth}`;
     const summary = { kind: "robot" as const, says, warnings: [], guessed: [], cameras: [], poses: [] };

@@ -1,6 +1,6 @@
 /**
- * A dialog that restricts which part of a picture is used: rectangle, brush, growing and shrinking, and with a depth map a range of depths.
- * The Lab draws its masks with it, too.
+ * A dialog that restricts the part of a picture that is used: rectangle, brush, growing and shrinking, and with a depth map a range of
+ * depths. The Lab draws its masks with it, too.
  */
 
 import "../style/rig-mask.css";
@@ -11,15 +11,15 @@ import { Paint, type Box } from "./paint";
 /** Nearest and farthest depth, metres. */
 type Depths = [number, number];
 
-/** What a mask is drawn for. */
+/** The picture for which a mask is drawn. */
 export interface Subject {
   title: string;
   advice: string;
   picture(): Promise<ImageBitmap>;
-  /** What is used so far, of the picture's size; nothing as long as all of it is. */
+  /** The present mask, at the picture's size; absent as long as the whole picture is used. */
   paint?: Uint8Array | undefined;
   range?: Depths | undefined;
-  /** The depth map, of which the range is used. */
+  /** The depth map whose range can be restricted. */
   depth?: ((range: Depths | undefined) => Promise<ImageBitmap>) | undefined;
   done(paint: Paint, range: Depths | undefined): void;
 }
@@ -75,7 +75,7 @@ export class MaskTool {
     );
     const board = make(
       "div",
-      // Of a picture that is taller than the window it scrolls.
+      // A picture that is taller than the window scrolls.
       { class: "rig-mask-board", tabindex: "0", role: "group", "aria-label": "Picture" },
       make("div", { class: "rig-mask-picture" }, this.#image, this.#layer, this.#frameBox),
     );

@@ -19,11 +19,11 @@ interface Stop {
 
 /** Steps of the slider from one calibration to the next. */
 const WAY = 20;
-/** Distinct from every colour of the depths, and from most objects. */
+/** Distinct from all depth colours, and from most objects. */
 const EDGE = [255, 60, 190] as const;
-/** Factor of the point size to the mean distance of points, so that sparse regions are covered. */
+/** Ratio of the point size to the mean distance of points, so that sparse regions are covered. */
 const OVERLAP = 1.2;
-/** Pictures of the report are at most so wide, px, and of so many frames. */
+/** Largest width of the report's pictures, px, and most frames in the report. */
 const [REPORT_WIDTH, REPORT_FRAMES] = [1280, 3];
 
 export class Overlay {
@@ -215,7 +215,7 @@ export class Overlay {
     );
   }
 
-  /** The frames that say most, with the depth edges of the calibration in question and of the one found, for the report. */
+  /** The most informative frames, with the depth edges of the calibration in question and of the estimate, for the report. */
   async forReport(): Promise<ReportOverlay[]> {
     const run = this.#run;
     if (!run) return [];
@@ -245,7 +245,7 @@ function jpegOf(bitmap: ImageBitmap): string {
   return canvas.toDataURL("image/jpeg", 0.85);
 }
 
-/** Points as squares that meet where the depth map is coarser than the image; says the range of depths. */
+/** Draws points as squares that touch if the depth map is coarser than the image, and states the range of depths. */
 function paint(layer: HTMLCanvasElement, { points, edges }: Projection, what: What): { min: number; max: number } {
   const { width, height } = layer;
   const context = layer.getContext("2d");

@@ -19,7 +19,10 @@ export class Paint {
     this.data = data?.slice();
   }
 
-  /** The first stroke decides about the rest: outside a stroke of used pixels nothing is used, outside a stroke of excluded pixels everything is. */
+  /**
+   * The first stroke decides about the rest: if it marks used pixels, nothing else is used; if it marks excluded pixels, everything else is
+   * used.
+   */
   #start(use: boolean): Uint8Array {
     this.data ??= new Uint8Array(this.width * this.height).fill(use ? 0 : 255);
     return this.data;
@@ -50,7 +53,7 @@ export class Paint {
     return box;
   }
 
-  /** Widens what is used by so many pixels to all sides; a negative number narrows it. */
+  /** Grows the used part by this many pixels on all sides; a negative number shrinks it. */
   grow(pixels: number): void {
     if (!this.data || pixels === 0) return;
     const value = pixels > 0 ? 255 : 0;
@@ -58,7 +61,7 @@ export class Paint {
     this.#spread(value, Math.abs(pixels), this.width, this.height, 1, this.width);
   }
 
-  /** Along each line, both ways: whatever lies within so many steps behind a pixel of this value. */
+  /** Spreads a value along each line in both directions, by this many pixels. */
   #spread(value: number, pixels: number, lines: number, length: number, line: number, step: number): void {
     const data = this.data;
     if (!data) return;

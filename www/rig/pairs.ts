@@ -1,4 +1,4 @@
-/** The visitor's files of the Lab as the pair of a run, by the readers that read a rig's. Runs in the worker. */
+/** The visitor's files of the Lab as the pair of a run, read by the readers of rig files. Runs in the worker. */
 
 import { BimodalError } from "../../pkg/index.js";
 import * as pair from "../../pkg/pair.js";
@@ -11,7 +11,7 @@ const pairOf = pair.pairOf as typeof Pairs.pairOf;
 export const arranged = pair.arranged as typeof Pairs.arranged;
 export const camerasFor = pair.camerasFor as typeof Pairs.camerasFor;
 
-/** What a part is read as, and the library's name for its place. */
+/** The kind as which a part is read, and the library's name for it. */
 const PLACES: Record<PartName, { as: "colour" | "depth" | "mask"; field: string }> = {
   colour: { as: "colour", field: "image" },
   depth: { as: "depth", field: "depth" },
@@ -19,10 +19,10 @@ const PLACES: Record<PartName, { as: "colour" | "depth" | "mask"; field: string 
   depthMask: { as: "mask", field: "depth.mask" },
 };
 
-/** Files that were read otherwise than their content suggests, by their number and how. */
+/** Files that were read as another kind than their content suggests, by number and kind. */
 const others = new Map<string, RigReading>();
 
-/** Forgets what else was read of a file. */
+/** Forgets the other readings of a file. */
 export function forgetOthers(file: number): void {
   for (const key of others.keys()) if (key.startsWith(`${file} `)) others.delete(key);
 }
@@ -33,7 +33,7 @@ async function bytesOf({ name, blob }: PartFile): Promise<Uint8Array> {
   try {
     return new Uint8Array(await blob.arrayBuffer());
   } catch (error) {
-    // It is gone, or another one by now.
+    // It was removed, or replaced by another one.
     throw new BimodalError("file", `${name}: ${error instanceof Error ? error.message : String(error)}`);
   }
 }
@@ -54,7 +54,7 @@ const isOfKind = <K extends RigReading["kind"]>(
   kind: K,
 ): reading is Extract<RigReading, { kind: K }> => reading.kind === kind;
 
-/** The reading of a part; what is wrong with it is said of its place. */
+/** The reading of a part; errors name the part. */
 async function placed<K extends "colour" | "depth" | "mask">(
   name: PartName,
   kind: K,
@@ -74,7 +74,7 @@ async function placed<K extends "colour" | "depth" | "mask">(
   }
 }
 
-/** A cloud as it is stored, with what was guessed of its unit: the readers convert its points to metres. */
+/** A cloud in its stored unit, with the guess of that unit, because the readers convert its points to metres. */
 async function asStored(
   depth: Extract<RigReading, { kind: "depth" }>,
   part: PartFile,

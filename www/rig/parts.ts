@@ -2,7 +2,7 @@
 
 import { freshId, make } from "../dom";
 
-/** Small pictures in lists, px: twice as fine as they are shown. */
+/** Width of thumbnails in lists, px: twice the displayed size. */
 export const THUMB = 360;
 
 const SVG = "http://www.w3.org/2000/svg";
@@ -43,7 +43,7 @@ export class Keyed<T extends { id: number }> {
         row = this.#make(thing);
         this.#rows.set(thing.id, row);
       }
-      // Moving an element that is in its place would take the focus away.
+      // Moving an element that is already in its place would remove the focus.
       if (this.#parent.children[i] !== row.element)
         this.#parent.insertBefore(row.element, this.#parent.children[i] ?? null);
       row.show(thing);
@@ -72,7 +72,7 @@ export function labelled(label: string, control: HTMLElement, note?: HTMLElement
   return make("div", { class: "rig-field" }, make("label", { for: id }, label), control, ...(note ? [note] : []));
 }
 
-/** Fills a select without losing what is chosen. */
+/** Fills a select element and keeps its selection. */
 export function fill(
   select: HTMLSelectElement,
   options: readonly { value: string; label: string }[],

@@ -1,25 +1,25 @@
-/** Files as pictures: colours as they are, depths in colours, masks in black and white. */
+/** Files as pictures: colour images unchanged, depths in colours, masks in black and white. */
 
 import { automaticRange, paintScalar } from "../draw/colours";
 import type { CheckFrame } from "../../pkg/index.js";
 import type { RigReading } from "./files";
 import { metresOf } from "./restrict";
 
-/** Every so many pixels of a picture, across and down. */
+/** Subsampled pixels of a picture. */
 interface Grid {
   width: number;
   height: number;
-  /** The place in the whole picture of each. */
+  /** The index of each pixel in the whole picture. */
   from(pixel: number): number;
 }
 
-/** A picture that is so many times as wide as high is a range image of a LiDAR. */
+/** Ratio of width to height at which a picture counts as a range image of a LiDAR. */
 const PANORAMA = 4;
 
-/** A preview is picked from twice as many pixels as it is wide: the whole of a photograph would take long to paint. */
+/** A preview is subsampled to twice its width first, because scaling a whole photograph would take long. */
 function gridOf({ width, height }: { width: number; height: number }, wanted: number | undefined): Grid {
   const stride = wanted === undefined ? 1 : Math.max(1, Math.floor(width / (2 * wanted)));
-  // Of a range image, which is many times as wide as high, every row is kept.
+  // Every row of a range image is kept, because it is many times as wide as high.
   const down = width > PANORAMA * height ? 1 : stride;
   const columns = Math.ceil(width / stride);
   const from = (pixel: number) => down * Math.floor(pixel / columns) * width + stride * (pixel % columns);
@@ -50,7 +50,7 @@ function colour({ data, transfer }: CheckFrame["image"], { width, height, from }
   return out;
 }
 
-/** Depths; of a scan in a LiDAR's axes, half of whose z is below the LiDAR, distances. */
+/** Depths, or distances for a scan in a LiDAR's axes, half of whose points have a z below the LiDAR. */
 function distancesOf(map: CheckFrame["depth"]): Float32Array {
   const { points } = map;
   if (!points) return metresOf(map);

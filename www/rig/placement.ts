@@ -5,7 +5,7 @@ import { degreesOf, inverse, poseOf, times } from "./poses";
 import type { Run } from "./rig";
 import { placeInWords } from "./words";
 
-/** Where the best fit puts the depth camera, its overlap, and how far the checked calibration puts the camera from there. */
+/** The place of the depth camera in the best fit, the overlap, and the distance of the checked calibration's camera from that place. */
 export function placement({ report: { estimate, overlap }, candidates, estimateOnly, isLidar }: Run): string {
   const found = `Best fit: ${placeInWords(estimate, isLidar)} It puts ${(100 * overlap).toFixed(0)} % of the depth points onto the image.`;
   const given = Object.values(candidates)[0];
@@ -15,7 +15,7 @@ export function placement({ report: { estimate, overlap }, candidates, estimateO
   return `${found} Your calibration puts it ${decimals(1000 * Math.hypot(...shift), 1)} mm from there, rotated by ${decimals(turn, 2)}°.`;
 }
 
-/** Candidates' codes where the best fit shows too little of the depth map to rely on. */
+/** Candidates' codes for which the best fit covers too little of the depth map to be reliable. */
 const UNFIT: readonly string[] = ["little-overlap", "no-pose-on-image"];
 
 export const isUsable = ({ report }: Run): boolean =>

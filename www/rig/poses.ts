@@ -1,4 +1,4 @@
-/** Extrinsics in the notations in use, and in words. P_colour = R P_depth + t, metres. */
+/** Extrinsics in the common notations, and in words. P_colour = R P_depth + t, metres. */
 
 import type { Pose } from "../../pkg/index.js";
 import { decimals } from "../draw/numbers";
@@ -6,7 +6,7 @@ import { decimals } from "../draw/numbers";
 const DEGREE = Math.PI / 180;
 const at = (values: ArrayLike<number>, index: number): number => values[index] ?? 0;
 
-/** Angles of R = Rx Ry Rz, as the package has them. */
+/** Angles of R = Rx Ry Rz, the package's convention. */
 export function poseOf(rotation: readonly number[], translation: readonly number[]): Pose {
   const r = (row: number, column: number) => at(rotation, 3 * row + column);
   const angles = {
@@ -106,7 +106,7 @@ export function between(a: Pose, b: Pose, share: number): Pose {
   );
 }
 
-/** Four rows, as a text file has them. */
+/** Four rows in the form of a text file. */
 export const matrixText = ({ rotation, translation }: Pose): string =>
   [0, 1, 2]
     .map((row) =>

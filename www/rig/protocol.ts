@@ -26,7 +26,7 @@ export interface Summary extends Omit<Reading, "name"> {
   /** For a recording: its topics, and those chosen. */
   topics?: Topic[];
   chosen?: { colour?: string; depth?: string };
-  /** What the reader had to guess, such as the unit of a depth map. */
+  /** What the reader guessed, such as the unit of a depth map. */
   guessed: string[];
   width?: number;
   height?: number;
@@ -95,13 +95,13 @@ export interface Projection {
 
 export type PoseFormat = "matrix" | "opencv" | "kalibr" | "ros2" | "open3d" | "realsense";
 
-/** Each kind of request, what it carries and what it is answered with. */
+/** Each kind of request, its content and its reply. */
 export interface Calls {
   read: {
     ask: { file: number; name: string; blob: Blob; as?: Kind; unit?: number; inverse?: InverseDepth };
     answer: Summary;
   };
-  /** The files of the Lab as the pair of a run; tells what it does to a large one. */
+  /** The files of the Lab as the pair of a run; reports how a large one is reduced. */
   pair: {
     ask: {
       parts: Partial<Record<PartName, PartFile>>;
@@ -113,12 +113,12 @@ export interface Calls {
     };
     answer: Pair;
   };
-  /** Which of the cameras took which of two pictures, at the size of these. */
+  /** The camera of each of two pictures, scaled to the size of the picture. */
   cameras: {
     ask: { cameras: GivenCamera[]; colour: PictureSize; depth: PictureSize };
     answer: { colour?: GivenCamera; depth?: GivenCamera; warnings: ReaderWarning[] };
   };
-  /** The calibrations of single files as those of a folder: the places of its frames' cameras, and the poses that matter. */
+  /** The calibrations of single files, arranged like those of a folder: the cameras of its frames, and the poses that matter. */
   arrange: {
     ask: { frames: { colour: number; depth: number }[]; texts: number[] };
     answer: {
@@ -127,13 +127,13 @@ export interface Calls {
       warnings: ReaderWarning[];
     };
   };
-  /** Metres per stored unit of a depth map that came with others. */
+  /** Metres per stored unit of a depth map that was read with others. */
   unit: { ask: { file: number; unit: number }; answer: Summary };
   folder: { ask: { first: number; files: { name: string; blob: Blob }[] }; answer: Assembly };
   example: { ask: { first: number }; answer: Assembly };
-  /** Frames out of a recording that has been read. */
+  /** Takes frames from a recording that has been read. */
   take: { ask: { file: number; first: number; colour?: string; depth?: string; frames: number }; answer: Assembly };
-  /** Opens a connection to a robot's bridge, in place of one that is open. */
+  /** Opens a connection to a robot's bridge, which replaces an open one. */
   connect: {
     ask: { address: string };
     answer: { name: string; topics: Topic[]; chosen: { colour?: string; depth?: string } };
@@ -142,11 +142,11 @@ export interface Calls {
   observe: { ask: { first: number; colour: string; depth: string; fresh: boolean }; answer: Assembly };
   /** Ends the observation. */
   rest: { ask: object; answer: null };
-  /** Is answered with the reason once the connection has ended. */
+  /** Answered with the reason once the connection has ended. */
   closed: { ask: object; answer: string };
   disconnect: { ask: object; answer: null };
   forget: { ask: { file: number }; answer: null };
-  /** In full, or scaled to a maximum width; depths outside the range are grey. */
+  /** The picture at full size, or scaled to a maximum width; depths outside the range are grey. */
   picture: { ask: { file: number; range?: [number, number]; width?: number }; answer: ImageBitmap };
   /** The frames to which the following requests refer. */
   frames: { ask: { frames: FramePlan[] }; answer: null };
@@ -158,7 +158,10 @@ export interface Calls {
   };
   /** One cloud of the frame for each pose, in the colour camera's frame. */
   clouds: { ask: { frame: number; poses: { name: string; pose: Pose }[] }; answer: Uint8Array };
-  /** The files that were read, with sizes and hashes, those of a folder in place of what was made of them; and the hash of the numerics. */
+  /**
+   * The files that were read, with sizes and hashes, with the files of a folder instead of the items made from them; and the hash of the
+   * numerics.
+   */
   inputs: {
     ask: { items: { file: number; name: string; says: string; notes: string[]; blob?: Blob }[] };
     answer: { inputs: ReportInput[]; module: string | undefined };

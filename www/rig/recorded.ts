@@ -1,4 +1,4 @@
-/** Recordings and robots in the worker. Loaded when one comes in. */
+/** Recordings and robots in the worker. Loaded with the first recording or connection. */
 
 import type { CheckFrame } from "../../pkg/index.js";
 import type { RigFolder } from "../../pkg/rig/index.js";
@@ -21,7 +21,7 @@ const takenOf = (origin: string, { frames, cameras, poses, warnings }: RigFolder
   origin,
   frames: frames.map(withoutCameras),
   cameras,
-  // The direction is that of the reader: names of frames here are those of a robot and do not state colour and depth.
+  // The reader determines the direction, because frames are named by the robot here and do not state colour and depth.
   poses: poses.map(({ name = "tf", pose }) => ({ name, pose })),
   warnings,
 });

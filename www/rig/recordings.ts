@@ -1,4 +1,4 @@
-/** The package's readers of recordings, under the types that it declares for them. */
+/** The package's readers of recordings, with the package's declared types. */
 
 import * as recordings from "../../pkg/rig-recordings.js";
 import type * as Recordings from "../../pkg/rig/recordings/index.js";

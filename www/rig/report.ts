@@ -1,4 +1,4 @@
-/** The package's report of a check, under the types that it declares for it. Loaded when one is saved. */
+/** The package's report of a check, with the package's declared types. Loaded when a report is saved. */
 
 import * as report from "../../pkg/rig-report.js";
 import type * as Report from "../../pkg/rig/write/report/index.js";

@@ -1,4 +1,4 @@
-/** The report of a run as a file: its numbers, what the page knows of the files, and how to repeat it. Loaded when one is saved. */
+/** The report of a run as a file: its numbers, the page's information about the files, and how to repeat it. Loaded when one is saved. */
 
 import { version } from "../../pkg/package.json";
 import type { Calls } from "./protocol";
@@ -8,7 +8,7 @@ import { isRestricted, shellOf } from "./shell";
 import type { Item, Run } from "./state";
 import { whole } from "./words";
 
-/** The codes of a file's warnings; a unit that the visitor confirmed is no guess any more. */
+/** The codes of a file's warnings; a unit that the visitor has confirmed is no longer a guess. */
 const notesOf = ({ summary }: Item): string[] =>
   [...new Set((summary?.warnings ?? []).map(({ code }) => code))].filter(
     (code) => code !== "unit-guessed" || summary?.guessed.includes("unit"),
@@ -26,7 +26,7 @@ export const inputsOf = (rig: Rig): Promise<Calls["inputs"]["answer"]> =>
     })),
   });
 
-/** The browser's name and version, the most telling one of those that it claims. */
+/** The browser's name and version, the most specific of those that it claims. */
 function browser(): string {
   const agent = navigator.userAgent;
   const [name] = /(?:Firefox|Edg|OPR|HeadlessChrome|Chrome|Version)\/[\d.]+/.exec(agent) ?? ["unknown"];
@@ -46,7 +46,7 @@ function settingsOf(rig: Rig, run: Run): [string, string][] {
   ];
 }
 
-/** Digits of a hash that distinguish versions. */
+/** Number of digits of a hash that are enough to distinguish versions. */
 const HASH = 16;
 const ESTIMATE = "The command checks a calibration; none was given here.";
 const LIKE = "Type it in the folder that holds these files and no others.";

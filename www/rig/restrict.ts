@@ -1,4 +1,4 @@
-/** Which part of a frame is used: the combined masks of the colour image, and a range of depths. */
+/** The part of a frame that is used: the combined masks of the colour image, and a range of depths. */
 
 import type { CheckFrame } from "../../pkg/index.js";
 

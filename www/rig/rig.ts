@@ -42,7 +42,7 @@ export class Rig implements RigState {
   notes: ReaderWarning[] = [];
   /** The cameras that the readers of folders would choose. */
   arranged: Partial<Record<Side, string>> = {};
-  /** A description of what is being read as a whole. */
+  /** A description of the folder that is being read. */
   busy = "";
   run: Run | undefined;
   /** The precision of each run, with its number of frames. */
@@ -96,7 +96,7 @@ export class Rig implements RigState {
     this.changed();
   }
 
-  /** Reads a file once more, as something else or in another unit. */
+  /** Reads a file again, as another kind or in another unit. */
   async reread(item: Item): Promise<void> {
     await this.#read(item);
     if (!this.items.includes(item)) return;
@@ -111,7 +111,7 @@ export class Rig implements RigState {
     return this.of("depth").filter(({ summary }) => summary?.guessed.includes("unit"));
   }
 
-  /** A rig has one depth camera: depth maps whose unit is still a guess take it as well. */
+  /** A rig has one depth camera, so depth maps whose unit is still a guess get this unit as well. */
   async setUnit(item: Item, unit: number): Promise<void> {
     const together = item.blob ? [] : this.of("depth").filter(({ blob }) => !blob);
     await this.#giveUnits(new Map([item, ...together, ...this.unitsGuessed].map((each) => [each, unit])));
@@ -158,17 +158,16 @@ export class Rig implements RigState {
     this.changed();
   }
 
-  /** Cameras and poses of a file go to where they are used. */
+  /** Assigns cameras and poses of a file to their uses. */
   #take(item: Item, summary: Summary): void {
     this.candidates = this.candidates.filter(({ file }) => file !== item.id);
     for (const each of summary.poses) if (!isOfWorld(each)) this.addPose(each, item.name, item.id);
     this.#chooseCameras();
   }
 
-  /** A pose that is stated to lead from colour to depth, or to a LiDAR, is inverted. */
+  /** A pose that leads away from the colour camera, or to the depth camera or a LiDAR, by the names of its frames is inverted. */
   addPose({ name, pose, from, to }: Summary["poses"][number], origin: string, file?: number): void {
-    const isStated = (from !== undefined && COLOUR.test(from)) || (to !== undefined && DEPTH.test(to));
-    const isBackward = isStated || isBackwards({ from, to });
+    const isBackward = isBackwards({ from, to });
     const direction = isBackward
       ? `, given from ${from ?? "colour"} to ${to ?? "depth"} and inverted`
       : from && to
@@ -283,12 +282,12 @@ export class Rig implements RigState {
     return first;
   }
 
-  /** What came together; of a recording it goes when that goes. */
+  /** Removes items that were added together; those of a recording are removed with it. */
   join({ origin, items, frames, cameras, poses, warnings }: Assembly, recording?: Item): void {
     const of = recording ? { recording: recording.id } : {};
     for (const { file, name, summary } of items) this.items.push({ id: file, name, state: "read", summary, ...of });
     for (const frame of frames) this.frames.push({ id: this.freshId(), ...frame });
-    // Cameras of a folder's own files, beside those that its frames were given.
+    // Cameras in a folder's own files, besides those assigned to its frames.
     if (cameras.length > 0) {
       const summary: Summary = {
         kind: "cameras",
@@ -320,11 +319,11 @@ export class Rig implements RigState {
     );
   }
 
-  /** Where names or sizes tell which camera is which, nobody has to choose. */
+  /** If names or sizes show which camera is which, the visitor need not choose. */
   #chooseCameras(): void {
     const all = this.given;
     for (const side of ["colour", "depth"] as const) {
-      // A file may list a camera at every size that it can have.
+      // A file may list a camera at every size that it supports.
       const size = this.sizeOf(side);
       const rank = ({ camera: { name, width, height } }: (typeof all)[number]) =>
         name === undefined && width === undefined ? 0 : width === size?.width && height === size?.height ? 1 : 2;
@@ -403,7 +402,7 @@ export class Rig implements RigState {
     return units.length > 2 ? [`the unit of ${units.length} depth maps`] : units.map((name) => `the unit of ${name}`);
   }
 
-  /** Whether a picture of a folder came with a camera of its frame alone, and the visitor has chosen no other. */
+  /** Whether a picture of a folder has a camera for its frame alone, and the visitor has chosen no other. */
   #hasOwn(side: Side, file: number): boolean {
     return this.item(file)?.summary?.hasOwnCamera === true && !this.cameras[side].chosen;
   }

@@ -4,7 +4,7 @@ import { GONE, onGone } from "../engine/alive";
 import type { Fault } from "../engine/protocol";
 import type { Answer, CallKind, Calls, Request } from "./protocol";
 
-/** Milliseconds that a cancelled check has to end by itself before its worker is ended. */
+/** Milliseconds within which a cancelled check has to end by itself before its worker is terminated. */
 const PATIENCE = 1500;
 
 /** What went wrong in the worker. */
@@ -26,10 +26,10 @@ interface Waiting {
   onProgress?: ((share: number, message: string) => void) | undefined;
 }
 
-/** Requests after which the worker holds pixels: they are repeated for a new worker, except the one that ended the old worker. */
+/** Requests after which the worker holds pixels. They are repeated for a new worker, except the one that ended the old worker. */
 const READS: readonly CallKind[] = ["read", "folder", "example", "take"];
 
-/** A file that came with others has a separate unit; they are remembered under the first of them. */
+/** The unit of a file that was added with others is requested separately; it is remembered under the first of these files. */
 function keyOf(kind: CallKind, ask: object): string {
   if ((kind === "unit" || kind === "take") && "file" in ask) return `${kind} ${ask.file}`;
   return "file" in ask ? `file ${ask.file}` : "first" in ask ? `files from ${ask.first}` : kind;
@@ -49,7 +49,7 @@ export class Session {
     ask: Calls[K]["ask"],
     onProgress?: (share: number, message: string) => void,
   ): Promise<Calls[K]["answer"]> {
-    // A new worker repeats what is remembered; this request would be among it and run twice.
+    // A new worker repeats the remembered requests; this request would be one of them and run twice.
     const worker = this.#thread();
     this.#remember(kind, ask);
     const id = this.#next++;
@@ -114,7 +114,7 @@ export class Session {
     this.#waiting.delete(data.id);
     if ("answer" in data) return waiting.resolve(data.answer as never);
     waiting.reject(new RigError(data.fault));
-    // After a panic the numerics are suspect.
+    // After a panic the numerics cannot be trusted.
     if (data.fault.fatal) this.#restart(data.fault.message);
   }
 
@@ -133,7 +133,7 @@ export class Session {
     this.onReplaced();
     const left = [...this.#waiting.values()];
     this.#waiting.clear();
-    // What was being read may have ended the worker, so no other worker reads it.
+    // The file being read may have ended the worker, so no other worker reads it.
     for (const { kind, ask } of left) if (READS.includes(kind)) this.#known.delete(keyOf(kind, ask));
     for (const { reject } of left) reject(new RigError({ code: "internal", message, fatal: true }));
   }

@@ -1,4 +1,4 @@
-/** What a shell is given to repeat a check of the page: the files by their names, and typed values as separate files. */
+/** The command that repeats a check of the page in a shell: the files by their names, and typed values as separate files. */
 
 import type { Pinhole, Pose } from "../../pkg/index.js";
 import type { ShellCheck } from "../../pkg/rig/write/report/index.js";
@@ -8,14 +8,14 @@ import type { Run, Side } from "./state";
 /** Pairs that the command takes by default. */
 const FRAMES = 20;
 
-/** All digits, since it is the pose that was judged. */
+/** All digits, since this is the pose that was checked. */
 const matrixOf = ({ rotation: r, translation: t }: Pose): string =>
   [...[0, 1, 2].map((i) => [...r.slice(3 * i, 3 * i + 3), t[i]].join(" ")), "0 0 0 1"].join("\n");
 
 const isSame = (a: Pose, b: Pose): boolean =>
   JSON.stringify([a.rotation, a.translation]) === JSON.stringify([b.rotation, b.translation]);
 
-/** The file that holds this pose as it was judged, and no other pose. */
+/** The file that holds exactly this pose and no other pose. */
 function fileOf(rig: Rig, name: string, pose: Pose): string | undefined {
   const candidate = rig.candidates.find((each) => each.name === name);
   const item = rig.item(candidate?.file);
@@ -23,7 +23,7 @@ function fileOf(rig: Rig, name: string, pose: Pose): string | undefined {
   return item?.blob && only && others.length === 0 && isSame(only.pose, pose) ? item.name : undefined;
 }
 
-/** A camera as the readers of JSON know it. */
+/** A camera in the form that the JSON readers know. */
 const cameraOf = ({ model, ...camera }: Pinhole, size: object | undefined): object => ({
   ...camera,
   ...(camera.distortion ? { distortion: Array.from(camera.distortion) } : {}),
@@ -31,7 +31,7 @@ const cameraOf = ({ model, ...camera }: Pinhole, size: object | undefined): obje
   ...size,
 });
 
-/** Cameras from files, which the command finds as the page does; else both as they were used. */
+/** Cameras from files, which the command finds as the page does; otherwise both cameras as they were used. */
 function camerasOf(rig: Rig, { plans: [plan] }: Run): { names: string[]; text?: string } {
   const sides: Side[] = ["colour", "depth"];
   const items = sides.map((side) => rig.item(Number.parseInt(rig.cameras[side].source, 10)));
@@ -45,7 +45,7 @@ function camerasOf(rig: Rig, { plans: [plan] }: Run): { names: string[]; text?: 
   return { names: [], text: JSON.stringify(cameras) };
 }
 
-/** The folder is that in which the command is typed. */
+/** The folder is the one in which the command is typed. */
 export function shellOf(rig: Rig, run: Run): ShellCheck {
   const cameras = camerasOf(rig, run);
   const calibrations = Object.entries(run.candidates).map(([name, pose], k) => {

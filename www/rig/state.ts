@@ -10,20 +10,20 @@ export type Side = "colour" | "depth";
 export interface Item {
   id: number;
   name: string;
-  /** Absent where it came with others, as a folder or the example: then nothing of it can be read another way. */
+  /** Absent if it was added with others, for example in a folder or as the example; it cannot then be read in another way. */
   blob?: Blob;
   state: "reading" | "read" | "failed";
   summary?: Summary;
   error?: string;
   as?: Kind;
   unit?: number;
-  /** Its frame was taken away: it makes no new one by itself. */
+  /** Its frame was removed, so that it does not make a new one automatically. */
   aside?: true;
   /** Its calibration has been arranged for the frames. */
   arranged?: true;
-  /** The recording that it came out of, with which it goes. */
+  /** The recording from which it was taken; it is removed with the recording. */
   recording?: number;
-  /** Of a recording: what its frames are taken of, and how that goes. */
+  /** For a recording: the topics from which frames are taken, and the progress. */
   taking?: Taking;
 }
 
@@ -35,7 +35,7 @@ export interface Taking {
   /** 0 to 1. */
   share: number;
   error?: string;
-  /** What its frames were taken with, among the notes of the rig. */
+  /** The options with which its frames were taken, among the notes of the rig. */
   notes: ReaderWarning[];
 }
 
@@ -65,7 +65,7 @@ export interface TypedCamera {
 export interface CameraChoice {
   /** "", "typed", "same" as the colour camera, or the camera's place among those of the files, "3:0". */
   source: string;
-  /** Whether the visitor has chosen it; else it follows the files. */
+  /** Whether the visitor has chosen it; otherwise it follows the files. */
   chosen: boolean;
   typed: TypedCamera;
 }
@@ -76,7 +76,7 @@ export interface Candidate {
   /** Where it comes from, in words. */
   origin: string;
   pose: Pose;
-  /** The file it came from; it goes with it. */
+  /** The file that it came from; it is removed with that file. */
   file?: number;
 }
 
@@ -90,9 +90,9 @@ export interface Run {
   report: CheckReport;
   plans: FramePlan[];
   candidates: Record<string, Pose>;
-  /** The cues that were used; none for all. */
+  /** The cues that were used; absent for all. */
   cues: CheckCue[];
-  /** Whether no calibration was given and the identity stood in. */
+  /** Whether no calibration was given, so that the identity was used. */
   estimateOnly: boolean;
   /** The guesses at the time of the run, in words. */
   guessed: string[];
@@ -100,13 +100,13 @@ export interface Run {
   doubts: Doubt[];
   /** Whether the depths are those of a LiDAR, in its axes. */
   isLidar: boolean;
-  /** Of the colour image, pixels; errors beyond it are outside the picture. */
+  /** Width of the colour image, pixels; larger errors are outside the picture. */
   diagonal: number;
 }
 
 export const messageOf = (error: unknown): string => (error instanceof Error ? error.message : String(error));
 
-/** A rig, as far as pairing, warnings and undo use it. */
+/** The parts of a rig that pairing, warnings and undo use. */
 export interface RigState {
   items: Item[];
   frames: Frame[];

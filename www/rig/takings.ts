@@ -1,11 +1,11 @@
-/** Frames from recordings, taken again when other topics are chosen. */
+/** Frames from recordings, which are taken again when other topics are chosen. */
 
 import { type Item, type Taking, messageOf } from "./state";
 import type { Assembly } from "./protocol";
 import type { Session } from "./session";
 import type { RigState } from "./state";
 
-/** Number of frames taken from a recording; more of one rig add little. */
+/** Number of frames taken from a recording; more frames of one rig add little. */
 const FRAMES = 10;
 
 interface Taker extends RigState {
@@ -22,7 +22,7 @@ export class Takings {
     this.#rig = rig;
   }
 
-  /** Whatever was taken of it before goes. */
+  /** Frames that were taken from it before are removed. */
   async take(item: Item, changes: Partial<Pick<Taking, "colour" | "depth" | "frames">> = {}): Promise<void> {
     const { chosen = {} } = item.summary ?? {};
     const before = item.taking;

@@ -1,4 +1,4 @@
-/** The topics of a recording or of a robot: what they hold, and which of them are the two cameras'. */
+/** The topics of a recording or of a robot: their content, and which of them belong to the two cameras. */
 
 import { make } from "../dom";
 import { choose, fill, labelled } from "./parts";
@@ -17,7 +17,7 @@ const bytesInWords = (bytes: number): string =>
 
 const rateInWords = (rate: number): string => (rate === 0 ? "" : `${rate.toFixed(rate < 10 ? 1 : 0)} Hz`);
 
-/** What is taken comes first, what is not used last. */
+/** Used topics come first, unused ones last. */
 const ORDER: readonly Topic["kind"][] = ["picture", "cloud", "camera", "transforms", "other"];
 
 export interface Chosen {

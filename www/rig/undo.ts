@@ -2,10 +2,10 @@
 
 import type { RigState } from "./state";
 
-/** The number of undo steps; their contents stay in memory. */
+/** Most undo steps; their contents stay in memory. */
 const MOST_STEPS = 20;
 
-/** An object as it was; lists hold the objects themselves, which rows of the page are about. */
+/** An object in its earlier state; lists contain the same objects, to which rows of the page refer. */
 interface Kept {
   thing: object;
   copy: object;
@@ -19,9 +19,9 @@ interface Step {
   where: Where;
   /** Whether the removed item has been restored in another way. */
   isMoot(): boolean;
-  /** What came later has higher numbers. */
+  /** Later items have higher numbers. */
   last: number;
-  /** Everything was removed: later items belong to another rig. */
+  /** Everything was removed, so later items belong to another rig. */
   isWhole: boolean;
   lists: Pick<RigState, "items" | "frames" | "candidates">;
   rest: Pick<RigState, "notes" | "history" | "run">;
@@ -48,7 +48,7 @@ export class Undo {
     return last?.where === where ? last.words : undefined;
   }
 
-  /** To be called before the change. */
+  /** Must be called before the change. */
   keep(
     words: string,
     {

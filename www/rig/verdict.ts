@@ -1,4 +1,4 @@
-/** The result of the check in words: the card, what to do next, the tables. */
+/** The result of the check in words: the verdict, what to do next, the tables. */
 
 import type { CandidateReport, CheckReport } from "../../pkg/index.js";
 import { decimals } from "../draw/numbers";
@@ -36,7 +36,7 @@ const ENDS: Record<string, string> = {
   "Looks right, see warnings": "your calibration is consistent, but see the warnings below",
   Off: "your calibration is off",
   "Off, see warnings": "your calibration is off, but see the warnings below",
-  Undecided: "this scene does not decide it",
+  Undecided: "this scene leaves the verdict open",
 };
 
 const WORDS: Record<CheckReport["verdict"], { word: string; tone: Tone }> = {
@@ -54,7 +54,7 @@ const interval = ([low, high]: [number, number], most = Infinity): string =>
       ? `${px(low)} to outside the picture`
       : `${decimals(low, 2)} to ${decimals(high, 2)} px`;
 
-/** Anything guessed prevents a better verdict than the files justify. */
+/** A guess caps the verdict, because the files do not justify a better one. */
 function headline(run: Run): { word: string; tone: Tone; sentence: string } {
   const report = whole(run);
   const { diagonal } = run;
@@ -88,7 +88,7 @@ const FOR_LIDAR = [
   "take frames with kerbs, signs and parked cars, whose upper and lower edges the scan crosses",
   "take frames with things near the rig as well as far away",
 ];
-/** A share below this adds little, of the frames' mean share. */
+/** A frame whose share is below this fraction of the mean share adds little. */
 const LITTLE = 0.3;
 
 const SWAPPED = "Check step 1: colour image and depth map seem to be swapped.";
@@ -257,7 +257,7 @@ export function candidatesTable({ report, estimateOnly, diagonal }: Run): HTMLEl
     CandidateReport,
   ]) => {
     const { word, tone } = WORDS[verdict];
-    // Where nothing is known of the pose, any result is as far off as expected.
+    // If nothing is known about the pose, any result is as far off as expected.
     const isKnown = probability < 0.99 && pixels <= diagonal;
     const chance = !isKnown
       ? ""

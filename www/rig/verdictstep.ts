@@ -38,7 +38,7 @@ export class VerdictStep {
   );
   readonly #card = make("div", { class: "rig-card rig-verdict-box", hidden: true });
   readonly #results = make("div", { class: "rig-results", hidden: true });
-  /** In the order of reading; on wide screens the pictures stand beside both. */
+  /** In reading order; on wide screens the pictures are beside both. */
   readonly #first = make("div", { class: "rig-column" });
   readonly #last = make("div", { class: "rig-column" });
   readonly #overlay: Overlay;
@@ -142,7 +142,7 @@ export class VerdictStep {
 
   #tell(share: number, message: string): void {
     this.#progress.value = share;
-    // Read out when it changes, which a share does all the time.
+    // Read out by screen readers when it changes; the share changes all the time.
     if (this.#status.textContent !== message) this.#status.textContent = message;
   }
 

@@ -1,4 +1,4 @@
-/** The verdict and a camera's place in the words of the report, under the types that the package declares for them. */
+/** The verdict and a camera's place in the words of the report, with the package's declared types. */
 
 import * as words from "../../pkg/rig-words.js";
 import type * as Words from "../../pkg/rig/write/report/words.js";
@@ -7,6 +7,7 @@ import type { Run } from "./state";
 
 export const placeInWords = words.placeInWords as typeof Words.placeInWords;
 export const isBackwards = words.isBackwards as typeof Words.isBackwards;
+export const isOfCarrier = words.isOfCarrier as typeof Words.isOfCarrier;
 export const isOfScan = words.isOfScan as typeof Words.isOfScan;
 export const verdictReason = words.verdictReason as typeof Words.verdictReason;
 export const verdictWords = words.verdictWords as typeof Words.verdictWords;

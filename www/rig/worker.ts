@@ -19,14 +19,14 @@ let recorded: Promise<Recorded> | undefined;
 const recordedOf = () => (recorded ??= import("./recorded").then(({ Recorded }) => new Recorded()));
 let paired: ReturnType<typeof loadPairs> | undefined;
 const loadPairs = () => import("./pairs");
-/** What makes pairs for the Lab. */
+/** The code that makes pairs for the Lab. */
 const pairs = () => (paired ??= loadPairs());
-/** Bytes of a file by which recordings are known. */
+/** Bytes of a file that identify recordings. */
 const HEAD = 16;
-/** The frames as they were last checked; the overlay and the exported files refer to these. */
+/** The frames that were checked last; the overlay and the exported files refer to these. */
 let frames: CheckFrame[] = [];
 let running: AbortController | undefined;
-/** What came out of folders, and their files, for the report. */
+/** The items that came from folders, and their files, for the report. */
 const folders: ReadFolder[] = [];
 
 function post(answer: Answer, transfer: Transferable[] = []): void {
@@ -76,7 +76,7 @@ function readingOf<K extends RigReading["kind"]>(file: number, kind: K): Extract
   return reading as Extract<RigReading, { kind: K }>;
 }
 
-/** Stores pairs that came together as separate files; their cameras, which all of them share, are reported once. */
+/** Stores pairs that were added together as separate files; their shared cameras are reported once. */
 function assemble(
   origin: string,
   first: number,
@@ -110,7 +110,7 @@ function assemble(
         guessed,
         depth,
       }),
-      // A separate file, so that it is visible and can be removed: the background is informative.
+      // A separate file, so that it is visible and can be removed, because the background is informative.
       ...(mask
         ? {
             mask: keep({
@@ -281,7 +281,7 @@ const handlers: Handlers = {
   },
 };
 
-/** What may be transferred without a copy; everything else stays with the worker. */
+/** Data that may be transferred without a copy; everything else stays with the worker. */
 function transferable(answer: unknown): Transferable[] {
   if (answer instanceof ImageBitmap) return [answer];
   if (answer instanceof Uint8Array) return [answer.buffer as ArrayBuffer];
@@ -301,7 +301,7 @@ self.onmessage = async ({ data }: MessageEvent<Request>) => {
   const isRead = kind === "read" || kind === "folder" || kind === "example" || kind === "take";
   const handle = () => (handlers[kind] as (ask: unknown, id: number) => Promise<Calls[CallKind]["answer"]>)(data, id);
   try {
-    // What a recording holds can be taken once it has been opened.
+    // Frames can be taken from a recording once it has been opened.
     const result = isRead && kind !== "take" ? handle() : reads.then(handle);
     if (isRead) reads = Promise.allSettled([reads, result]);
     const answer = await result;

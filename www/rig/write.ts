@@ -1,4 +1,4 @@
-/** The package's writers, under the types that it declares for them. Loaded when something is saved. */
+/** The package's writers, with the package's declared types. Loaded when something is saved. */
 
 import * as write from "../../pkg/rig-write.js";
 import type * as Write from "../../pkg/rig/write/index.js";

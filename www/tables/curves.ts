@@ -1,4 +1,4 @@
-/** Figures as curves over the cells that are done. Loaded with the first of them. */
+/** Figures as curves over the finished cells. Loaded with the first figure. */
 
 import { Plot, type Curve } from "../draw/charts";
 import { make } from "../dom";

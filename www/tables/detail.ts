@@ -17,7 +17,7 @@ interface Fact {
 const degrees = (value: number): string => `${short(value)}°`;
 const pixels = (value: number): string => `${short(value)} px`;
 
-/** What a result may hold besides its main number; each kind of cell has some of it. */
+/** Values of a result besides its main number; each kind of cell has some of them. */
 const lines: readonly Fact[] = [
   { term: "Bound, one sigma", read: ({ bound }) => bound, show: degrees },
   { term: "Rotation error", read: (result) => ("rivals" in result ? result.degrees : undefined), show: degrees },
@@ -66,7 +66,7 @@ export class Detail {
     this.element.append(this.#title, this.#outcome, this.#mark, this.#more, this.#obstacle, actions);
   }
 
-  /** What is there stays there and only changes, so that no focus or press is lost while a cell runs. */
+  /** Existing elements are only updated, so that no focus or press is lost while a cell runs. */
   show(panel: Panel, cell: Cell | undefined, state: State | undefined): void {
     const moved = this.#cell !== cell;
     this.#cell = cell;

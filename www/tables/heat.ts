@@ -1,4 +1,4 @@
-/** A table as a grid of buttons, coloured by their numbers. One of them is in the tab order; arrows lead to the others. */
+/** A table as a grid of buttons, coloured by their numbers. One of them is in the tab order; arrow keys move to the others. */
 
 import { short } from "../draw/numbers";
 import { make } from "../dom";
@@ -22,7 +22,7 @@ export const marks: readonly Mark[] = [
   { kind: "wrong", glyph: "!", words: "more than 3° off and not flagged" },
 ];
 
-/** A wrong pose that is not flagged is worse than any that is, so its mark comes first. */
+/** A wrong pose that is not flagged is worse than a flagged one, so its mark has priority. */
 export function markOf(state: State | undefined): Mark | undefined {
   if (state?.kind !== "done") return undefined;
   const { result } = state;
@@ -38,7 +38,7 @@ export function markOf(state: State | undefined): Mark | undefined {
   return marks.find((mark) => mark.kind === kind);
 }
 
-/** How a state reads aloud. */
+/** The text of a state for screen readers. */
 export function inWords(panel: Panel, state: State | undefined): string {
   switch (state?.kind) {
     case undefined:
@@ -65,7 +65,7 @@ const values = (axis: Axis, cells: readonly Cell[]): (string | number)[] => [
   ...new Set(cells.map((cell) => axis.of(cell))),
 ];
 
-/** Numbers in their order; words in the protocol's. */
+/** Numbers are sorted by size, words in the protocol's order. */
 const ordered = (axis: Axis, cells: readonly Cell[]): (string | number)[] => {
   const all = values(axis, cells);
   return all.every((value) => typeof value === "number") ? all.sort((a, b) => a - b) : all;
@@ -73,7 +73,7 @@ const ordered = (axis: Axis, cells: readonly Cell[]): (string | number)[] => {
 
 export interface HeatHooks {
   onPress(cell: Cell): void;
-  /** The heading of a row was pressed. */
+  /** Called when the heading of a row is pressed. */
   onRow(cells: readonly Cell[]): void;
 }
 
@@ -158,7 +158,7 @@ export class Heat {
     button.title = `${inWords(this.#panel, state)}${reference}`;
   }
 
-  /** The chosen cell is the one that the tab key comes back to. */
+  /** The chosen cell is the one in the tab order. */
   choose(id: string | undefined): void {
     const chosen = id === undefined ? undefined : this.#byId.get(id)?.button;
     for (const { button } of this.#byId.values()) button.setAttribute("aria-pressed", String(button === chosen));
@@ -196,8 +196,8 @@ export class Heat {
   }
 }
 
-/** Nothing yet is a dash, never a zero. */
-/** In the narrow cells of a phone an exponent has room for one digit; what is said agrees with what is seen. */
+/** A missing result is a dash, never a zero. */
+/** In the narrow cells of a phone an exponent has room for one digit; the text for screen readers agrees with the visible one. */
 const brief = (value: number): string => (value > 0 && value < 1e-3 ? value.toExponential(0) : short(value));
 
 function caption(state: State | undefined, value: number | undefined): string {

@@ -1,4 +1,4 @@
-/** What the colours and shapes of a grid mean. */
+/** The meaning of the colours and shapes of a grid. */
 
 import { make } from "../dom";
 import { marks } from "./heat";

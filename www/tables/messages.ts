@@ -8,5 +8,5 @@ export interface Task {
 }
 
 export type CellAnswer =
-  /** How far the cell is, in words, and how far its search is, in percent. */
+  /** The progress of the cell, in words, and that of its search, in percent. */
   { id: string; progress: string; share: string } | { id: string; result: Result } | { id: string; fault: Fault };

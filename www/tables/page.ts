@@ -1,4 +1,4 @@
-/** The Tables: every table and figure that can be made from built-in scenes, computed here cell by cell. */
+/** The Tables: every table and figure that can be made from built-in scenes, computed in the browser cell by cell. */
 
 import "../style/heat.css";
 import "../style/tables.css";
@@ -13,7 +13,7 @@ import { rowsOf, type Cell } from "./protocol";
 import { Runner } from "./runner";
 import { summary } from "./summary";
 
-/** What is chosen in a table, kept while others are looked at. */
+/** The choices in a table, kept while other tables are shown. */
 interface Chosen {
   values: Record<string, string>;
   cell: Cell | undefined;
@@ -62,7 +62,7 @@ export class TablesPage {
     this.#show(panel ?? this.#panel);
   }
 
-  /** Nothing is computed for a page that is not shown; what is done stays. */
+  /** Nothing is computed for a hidden page; finished results stay. */
   leave(): void {
     this.#open = false;
     this.#runner.stop();
@@ -72,7 +72,7 @@ export class TablesPage {
     this.#curves?.recolour();
   }
 
-  /** The rows of all that is done, under the names that the command gives them. */
+  /** The rows of all finished cells, under the names that the command gives them. */
   download(): void {
     const done = panels
       .map(({ name, cells }) => [name, this.#runner.results(cells)] as const)
@@ -157,7 +157,7 @@ export class TablesPage {
     return make("label", { class: "choice", "data-key": key }, make("span", {}, label), select);
   }
 
-  /** The chosen place stays chosen when the same table is shown under another light. */
+  /** The chosen place is kept when the same table is shown under another light. */
   #follow(): void {
     const chosen = this.#of(this.#panel);
     const { down, across } = this.#panel;
@@ -167,7 +167,7 @@ export class TablesPage {
       this.#shown().find((cell) => down.of(cell) === down.of(before) && across.of(cell) === across.of(before));
   }
 
-  /** A cell that has come to nothing yet runs at once. */
+  /** A cell without a result runs at once. */
   #press(cell: Cell): void {
     this.#of(this.#panel).cell = cell;
     this.#heat?.choose(cell.id);
@@ -204,7 +204,7 @@ export class TablesPage {
 
   #showSummary(): void {
     const done = this.#runner.results(this.#shown());
-    // Opened aims stay open while more cells come in.
+    // Opened aims stay open while more results arrive.
     const open = this.#summary.querySelector("details")?.open ?? false;
     this.#summary.replaceChildren(...summary(this.#panel, done));
     this.#summary.querySelector("details")?.toggleAttribute("open", open);
@@ -254,7 +254,7 @@ function intro(): HTMLElement {
         {},
         "The same protocols run on the command line, ",
         make("code", {}, "npm run tables"),
-        ". These need recordings that are not ours to ship:",
+        ". These need recordings that the project may not redistribute:",
       ),
       make("ul", {}, ...elsewhere.map((title) => make("li", {}, title))),
     ),

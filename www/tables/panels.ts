@@ -1,4 +1,4 @@
-/** How each table is laid out on the page: what is chosen, what runs down, what runs across, and the number in a cell. */
+/** The layout of each table on the page: the choices above the grid, its rows and columns, and the number in a cell. */
 
 import { cellsOf, paperDegrees, tableNamed, type Cell, type Result } from "./protocol";
 
@@ -25,15 +25,15 @@ export interface Panel {
   choices: readonly Choice[];
   down: Axis;
   across: Axis;
-  /** What a single cell is called, where its place in the grid says too little. */
+  /** The name of a single cell, if its place in the grid says too little. */
   where?(cell: Cell): string;
-  /** What the numbers are in, and of what. */
+  /** The unit of the numbers, and what they measure. */
   unit: string;
   quantity: string;
   value(result: Result): number | undefined;
   /** The paper's own figure for a cell. */
   paper?(cell: Cell): number | undefined;
-  /** What is drawn as curves below: the rows of the grid, or each cell's iterations. */
+  /** The curves below the grid: its rows, or each cell's iterations. */
   curves?: "across" | "iterations";
   cells: readonly Cell[];
 }
@@ -70,7 +70,7 @@ const COLUMNS = 10;
 type Layout = Omit<Panel, "title" | "cells" | "value" | "unit" | "quantity" | "choices"> &
   Partial<Pick<Panel, "value" | "unit" | "quantity" | "choices">>;
 
-/** Titles are the protocol's own; they begin with the name that the tab already says. */
+/** Titles are the protocol's; they begin with the name that the tab already shows. */
 function panel(layout: Layout): Panel {
   const title = tableNamed(layout.name).title.replace(/^[^:]+?: /, "");
   return {
@@ -190,7 +190,7 @@ export const panels: readonly Panel[] = [
   }),
 ];
 
-/** What needs other people's recordings, which the page does not have. */
+/** Tables that need third-party recordings, which the page does not have. */
 export const elsewhere: readonly string[] = ["table3", "figure7", "sensors", "photographs", "albedo", "rgbd"].map(
   (name) => tableNamed(name).title,
 );

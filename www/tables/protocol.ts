@@ -1,6 +1,6 @@
 /**
- * The protocols of `npm run tables` as the page knows them: the same cells, measured by the same modules. Nothing of them is
- * repeated here but the shape of what they hand over.
+ * The protocols of `npm run tables` for the page: the same cells, measured by the same modules. This file only declares the types of their
+ * results.
  */
 
 import { aims as judge } from "../../protocols/aims.mjs";
@@ -31,7 +31,7 @@ export interface Cell {
   alternations?: number;
 }
 
-/** A measured cell. Only what every kind of them has is named. */
+/** A measured cell, with the members that all kinds of cells share. */
 export interface Result extends Row {
   status?: StepReport["status"];
   message?: string;
@@ -39,10 +39,10 @@ export interface Result extends Row {
   milliseconds?: number;
 }
 
-/** Cells that have come to an end, each with its result. */
+/** Finished cells with their results. */
 export type Done = readonly { cell: Cell; result: Result }[];
 
-/** If a result lacks the requested number, the protocol's answer is no. */
+/** A result without the requested number counts as "no", as in the protocol. */
 const judgement = (judge: (result: never) => boolean) => judge as (result: Result) => boolean;
 export const isFound = judgement(counts.isFound);
 export const isFlagged = judgement(counts.isFlagged);
@@ -54,7 +54,7 @@ export interface Table {
   notes?: readonly string[];
 }
 
-/** One aim of the project beside what the rows came to; `ok` is null where nothing can be said. */
+/** One aim of the project beside the value from the rows; `ok` is null if nothing can be said. */
 export interface Aim {
   what: string;
   measured: number | null;
@@ -64,7 +64,7 @@ export interface Aim {
   ok: boolean | null;
 }
 
-/** Names stand for the package's own scenes: third-party surfaces and lights are not part of the page. */
+/** Names of the package's own scenes; third-party surfaces and lights are not part of the page. */
 export const library = { surface: (name: string) => name, light: (name: string) => name };
 
 const own = kit(false);

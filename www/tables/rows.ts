@@ -1,4 +1,4 @@
-/** The rows of a table as the command writes them, where they say more than the grid can. */
+/** The rows of a table as the command writes them, if they contain more than the grid can show. */
 
 import { short } from "../draw/numbers";
 import { make } from "../dom";
@@ -61,7 +61,7 @@ function shown(value: unknown): string {
   return typeof value === "string" ? value : "–";
 }
 
-/** The paper's own figures as a first line, where the cells carry them. */
+/** The paper's figures as a first line, if the cells have them. */
 function paperRow(name: string, [first]: readonly { cell: Cell }[]): Row[] {
   const paper = first?.cell.row.paper;
   return name === "table1" && typeof paper === "object" && paper !== null

@@ -40,7 +40,7 @@ export class Runner {
     });
   }
 
-  /** One cell before all others, whatever it had come to. */
+  /** Runs one cell before all others, whether or not it has a result. */
   runFirst(cell: Cell): void {
     if (this.#running?.id === cell.id) return;
     const rest = this.#queue.filter(({ id }) => id !== cell.id);
@@ -49,7 +49,7 @@ export class Runner {
     this.#next();
   }
 
-  /** Cells that have no result yet, behind those that already wait. */
+  /** Queues cells that have no result yet, after those that already wait. */
   runAll(cells: readonly Cell[]): void {
     for (const cell of cells) {
       const kind = this.#states.get(cell.id)?.kind;
@@ -60,7 +60,7 @@ export class Runner {
     this.#next();
   }
 
-  /** Ends the worker, which may be in the middle of a cell; what is done stays. */
+  /** Ends the worker, which may be in the middle of a cell; finished results stay. */
   stop(): void {
     this.#worker?.terminate();
     this.#worker = undefined;
@@ -132,7 +132,7 @@ export class Runner {
     }
   }
 
-  /** An instance that has panicked measures nothing more; the next cell gets a new one. */
+  /** An instance that has panicked cannot measure any more; the next cell gets a new one. */
   #breakDown(message: string): void {
     this.#worker?.terminate();
     this.#worker = undefined;
@@ -145,7 +145,7 @@ export class Runner {
     this.#running = undefined;
     this.#become(id, state);
     this.#next();
-    // Reported once more, now that nothing runs.
+    // Reported once more after the run has ended.
     if (!this.#running) this.#onChange(id);
   }
 }

@@ -1,11 +1,11 @@
-/** A cell as settings of the Lab, which then shows that very run. */
+/** A cell as settings of the Lab, which then shows that run. */
 
 import { SAMPLE } from "../../pkg/options.js";
 import { defaults, toLink, type Settings, type Value } from "../lab/settings";
 import { short } from "../draw/numbers";
 import { sceneOf, type Cell } from "./protocol";
 
-/** Why the Lab can't show a cell, in words; nothing where it can. */
+/** Why the Lab cannot show a cell, in words; undefined if it can. */
 export function obstacle({ kind, exposure, alternations }: Cell): string | undefined {
   if (kind === "shading")
     return "This run uses true normals in a share of the pixels; the Lab has no setting for that.";
@@ -15,7 +15,7 @@ export function obstacle({ kind, exposure, alternations }: Cell): string | undef
   return undefined;
 }
 
-/** The scene and what is given, in one line. */
+/** The scene and the given values, in one line. */
 export function described(cell: Cell): string {
   const scene = sceneOf(cell);
   if (!scene) return "";
@@ -38,7 +38,7 @@ export function described(cell: Cell): string {
   ].join(", ");
 }
 
-/** What is not named here is at the Lab's default, which is the library's but for the size. */
+/** Settings that are not named here have the Lab's defaults, which are those of the library except for the size. */
 export function settingsOf(cell: Cell): Settings | undefined {
   const scene = sceneOf(cell);
   if (!scene || obstacle(cell)) return undefined;
@@ -48,7 +48,7 @@ export function settingsOf(cell: Cell): Settings | undefined {
     surface,
     light,
     protocol,
-    // The Lab's own pictures are larger than the library's.
+    // The Lab's pictures are larger than the library's by default.
     size: String(size ?? SAMPLE.size.default),
     alpha: angles?.alpha ?? 0,
     beta: angles?.beta ?? 0,

@@ -1,4 +1,4 @@
-/** What the cells that are done come to: the rows and aims of the command, from the command's own modules. */
+/** The summary of the finished cells: the rows and aims of the command, computed by the command's modules. */
 
 import { short } from "../draw/numbers";
 import { make } from "../dom";
@@ -28,7 +28,7 @@ function overview(panel: Panel, done: Done): HTMLElement {
   return make("p", {}, `${words.join("; ")}.`);
 }
 
-/** The aims refer to whole tables, so each states from how many rows its figure comes. */
+/** The aims refer to whole tables, so each states the number of rows behind its figure. */
 function aims(panel: Panel, done: Done): HTMLElement[] {
   const list = aimsOf(panel.name, done).filter(({ rows }) => rows > 0);
   if (list.length === 0) return [];

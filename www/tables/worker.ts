@@ -1,4 +1,4 @@
-/** The thread that measures cells, one after the other. What is measured and how is the protocol's alone. */
+/** The thread that measures cells, one after the other. The protocol determines what is measured and how. */
 
 import "../engine/hold";
 import init, { Estimator, sample, sampleBound } from "../../pkg/index.js";
@@ -9,7 +9,7 @@ import { searched } from "../engine/searched";
 import type { CellAnswer, Task } from "./messages";
 import { library, type Result } from "./protocol";
 
-/** Milliseconds between two words on how far a cell is. */
+/** Milliseconds between two reports of a cell's progress. */
 const TELL_EVERY = 100;
 
 let isLoaded = false;

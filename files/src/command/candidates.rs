@@ -5,14 +5,11 @@ use std::path::{Path, PathBuf};
 use bimodal_stereo::Similarity;
 
 use super::arguments::Arguments;
+use super::frames::{is_backwards, is_of_carrier};
 use crate::problem::{Problem, Result, own_name};
 use crate::rig::{Reading, given_name, read_calibration, says};
-use crate::text::names::{Pattern, pattern};
 use crate::text::{Calibration, NamedPose};
 use crate::warning::{Warning, Warnings};
-
-static COLOUR: Pattern = Pattern::new(|| pattern("(?i)colou?r|rgb"));
-static DEPTH: Pattern = Pattern::new(|| pattern(r"(?i)depth|infra|\bir\b|tof"));
 
 pub struct Candidates {
     /// By name, with the calibration to be checked first.
@@ -22,10 +19,15 @@ pub struct Candidates {
     pub cameras: Vec<PathBuf>,
 }
 
-/// Whether the names state that a pose maps colour to depth.
-fn is_backwards(pose: &NamedPose) -> bool {
-    let [from, to] = [&pose.names.from, &pose.names.to].map(|name| name.as_deref().unwrap_or(""));
-    COLOUR.is_match(from) && !DEPTH.is_match(from) && DEPTH.is_match(to) && !COLOUR.is_match(to)
+/// The refusal of a file of poses between a sensor and what carries it or what it looks at.
+fn of_carriers(path: &Path, pose: &NamedPose) -> Problem {
+    let [from, to] = [&pose.names.from, &pose.names.to].map(|name| name.as_deref().unwrap_or("another frame"));
+    let words = format!(
+        "it relates {from} to {to}, one of which is no sensor of the pictures (but an inertial unit, a body, a vehicle, \
+         a robot or a calibration target); extrinsics relate the depth camera or the LiDAR to the colour camera. Give \
+         that pose as a 4x4 matrix, in a file named depth_to_color.txt or lidar_to_camera.txt"
+    );
+    Problem::file(path, words)
 }
 
 pub fn candidates(arguments: &Arguments, warnings: &mut Warnings) -> Result<Candidates> {
@@ -55,11 +57,15 @@ fn add(
     poses: &mut Vec<(String, Similarity)>,
     warnings: &mut Warnings,
 ) -> Result<()> {
-    if calibration.poses.is_empty() {
+    let Some(first) = calibration.poses.first() else {
         return Err(Problem::file(path, "it contains no extrinsics"));
+    };
+    let between: Vec<&NamedPose> = calibration.poses.iter().filter(|pose| !is_of_carrier(pose)).collect();
+    if between.is_empty() {
+        return Err(of_carriers(path, first));
     }
-    let is_only = calibration.poses.len() == 1;
-    for (index, pose) in calibration.poses.iter().enumerate() {
+    let is_only = between.len() == 1;
+    for (index, pose) in between.into_iter().enumerate() {
         let own = match (&pose.names.name, &pose.names.from, &pose.names.to) {
             (Some(name), ..) => name.clone(),
             (None, Some(from), Some(to)) => format!("{from} to {to}"),

@@ -1,7 +1,7 @@
 //! NumPy's .npy, in the few types that images and depth maps come in, like js/npy.ts.
 //!
-//! Not through npyz (0.9.1), which multiplies the sides of a shape before they can be checked, and so overflows on a
-//! hostile header.
+//! npyz (0.9.1) is not used, because it multiplies the sides of a shape before they can be checked, and so overflows on
+//! a hostile header.
 
 use super::raster::{Raster, Samples, check_size};
 

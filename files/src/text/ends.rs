@@ -72,16 +72,18 @@ pub fn world_frames(name: &str) -> Option<Frames> {
     });
     static PLACED: Pattern = Pattern::new(|| pattern(r"\b(?:in|wrt|relative to|with respect to)\b"));
     let words = words(name).join(" ");
-    match () {
-        // "depth_pose_in_color" names both frames.
-        () if PLACED.is_match(&words) => None,
-        () if TO_CAMERA.is_match(&words) => Some(Frames::between("world", "camera")),
-        () if OF_WORLD.is_match(&words) => Some(Frames::between("camera", "world")),
-        () => None,
+    // "depth_pose_in_color" names both frames.
+    if PLACED.is_match(&words) {
+        return None;
     }
+    if TO_CAMERA.is_match(&words) {
+        return Some(Frames::between("world", "camera"));
+    }
+    OF_WORLD.is_match(&words).then(|| Frames::between("camera", "world"))
 }
 
-/// The frames of a file called as a pose of the camera in the world, or whose folder is: "pose.txt", "c2w/0.txt".
+/// The frames of a file that is named, by itself or by its folder, as a pose of the camera in the world: "pose.txt",
+/// "c2w/0.txt".
 pub fn world_frames_of_file(path: &str) -> Option<Frames> {
     static PLACE: Pattern = Pattern::new(|| {
         pattern(
@@ -100,7 +102,7 @@ pub fn world_frames_of_file(path: &str) -> Option<Frames> {
     let is_counted = name.trim_end_matches(|letter: char| letter.is_ascii_digit()).chars().all(|c| !c.is_ascii_digit());
     let places = if is_counted { vec![name.as_str(), folder] } else { vec![name.as_str()] };
     places.into_iter().find_map(|place| {
-        // "stereo_pose" is no place of a camera.
+        // "stereo_pose" is not the pose of a camera in the world.
         let bare = POSE.replace_all(place, "");
         let names = named(&bare, &Frames::default());
         let ends = Frames { from: names.from, to: names.to };

@@ -56,7 +56,7 @@ pub fn text_of(bytes: &[u8]) -> Option<String> {
     (!text.contains(is_binary)).then_some(text)
 }
 
-/// Poses of a file of nothing but numbers, whose name may say that its only pose is a camera's place in the world.
+/// Poses of a file that holds only numbers, whose name may say that its only pose is a camera's pose in the world.
 fn placed(mut found: Calibration, path: &str) -> Calibration {
     let [NamedPose { names: Names { from: None, to: None, .. }, pose }] = &found.poses[..] else { return found };
     let Some(frames) = ends::world_frames_of_file(path) else { return found };
@@ -64,7 +64,7 @@ fn placed(mut found: Calibration, path: &str) -> Calibration {
     let pose = if is_place { *pose } else { pose.inverse() };
     let from = if is_place { frames.from } else { frames.to };
     found.poses = vec![NamedPose { names: Names { name: None, from, to: Some("world".into()) }, pose }];
-    const SAID: &str = "Its name says that it is the pose of a camera in the world (camera to world), which was not used as extrinsics between two cameras. If it is, name the file depth_to_color.txt or the like.";
+    const SAID: &str = "Its name says that it is the pose of a camera in the world (camera to world), which was not used as extrinsics between two cameras. If it does relate two cameras, name the file depth_to_color.txt or the like.";
     found.warnings.add("camera-to-world", SAID);
     found
 }

@@ -30,7 +30,8 @@ fn is_numbered(camera: &str) -> bool {
     digits.is_some_and(|digits| !digits.is_empty() && digits.bytes().all(|letter| letter.is_ascii_digit()))
 }
 
-/// Calls cameras that are only numbered, and the ends of poses, by the topics of their images: pairs of camera and topic.
+/// Names cameras that are only numbered, and the ends of poses, after the topics of their images: pairs of camera and
+/// topic.
 pub fn by_topics(topics: &[(String, String)], found: &mut Calibration) {
     let names: Vec<(&str, String)> = topics.iter().map(|(camera, topic)| (camera.as_str(), called(topic))).collect();
     let is_own = |index: usize| names[..index].iter().all(|(_, name)| *name != names[index].1);

@@ -1,6 +1,7 @@
 /**
- * `cams_lidars.json` of Audi's A2D2. `CamMatrixOriginal` and `Distortion` are those of the pictures, and `CamMatrix` those of pictures that were
- * undistorted by its tutorial. The views are sensors in axes x forward, y left and z up, in which its clouds are stored, too; they are left out.
+ * `cams_lidars.json` of Audi's A2D2. `CamMatrixOriginal` and `Distortion` belong to the pictures as stored, and `CamMatrix` to pictures
+ * that its tutorial has undistorted. The views are the sensors' poses in axes x forward, y left and z up, in which its clouds are stored,
+ * too; they are left out.
  */
 import { ofMatrix } from "./cameras.js";
 import { Findings, flat } from "./findings.js";

@@ -17,12 +17,12 @@ const isPlace = (value: unknown): value is Node =>
   KEYS.every((key) => numberOf(value[key]) !== undefined) &&
   !Object.keys(value).some((key) => /unit|deg/i.test(key));
 
-/** Whether a parent frame has such children and nothing else. */
+/** Whether all children of a parent frame have this form. */
 export const isAutoware = (root: Node): boolean =>
   Object.values(root).some((each) => {
     if (!isNode(each)) return false;
     const names = Object.keys(each);
-    // A name of two frames is the name of a pose, not of a frame.
+    // A name that contains two frames names a pose, not a frame.
     return names.length > 0 && names.every((name) => isPlace(each[name]) && endsOf(name) === undefined);
   });
 

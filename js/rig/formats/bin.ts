@@ -1,8 +1,8 @@
 /**
  * Scans without a header, as KITTI (x y z reflectance) and nuScenes (x y z intensity ring) store them: floats, point after point.
  *
- * The file does not give the number of floats per point. Each number that divides the length of the file is tried, and the one at which
- * consecutive points lie nearest to each other is taken; at a wrong number, coordinates are mixed up.
+ * The file does not give the number of floats per point. The reader tries each number that divides the length of the file, and takes the
+ * one at which consecutive points are nearest to each other; at a wrong number, coordinates are mixed up.
  */
 import { median } from "../statistics.js";
 import { FEWEST_POINTS, channelOf, columnOf, pointsOf } from "./channels.js";
@@ -18,15 +18,15 @@ const LAYOUTS: [floats: number, others: string[], of: string][] = [
   [7, [], "x y z and four others"],
   [8, [], "x y z and five others"],
 ];
-/** Coordinates of a LiDAR's points, metres, at most. */
+/** Largest coordinate of a LiDAR's points, metres. */
 const FARTHEST = 500;
-/** A smaller float other than zero is not a coordinate but the bits of another type. */
+/** Smaller floats other than zero are bits of another type, not coordinates. */
 const LEAST = 1e-6;
 /** Share of points whose coordinates have to be plausible. */
 const NEARLY_ALL = 0.99;
-/** Share of points with a negative coordinate, at least; depths are never negative. */
+/** Smallest share of points with a negative coordinate; depths are never negative. */
 const LEAST_NEGATIVE = 0.1;
-/** Points that are examined, at most. */
+/** Most points that are examined. */
 const LOOKED_AT = 20_000;
 
 /** Median distance from point to point over the median range; undefined where the numbers are not coordinates. */
@@ -49,12 +49,12 @@ function unevenness(values: Float32Array, floats: number): number | undefined {
   return range > 0.1 ? median(steps) / range : undefined;
 }
 
-/** Whether values are the numbers of a scanner's lasers: small integers, more than one. */
+/** Whether the values are laser numbers: several different small integers. */
 function isRing(values: Float32Array): boolean {
   return values.every((value) => Number.isInteger(value) && value >= 0 && value < 512) && new Set(values).size > 1;
 }
 
-/** The scan in a file of nothing but floats; undefined where these are not points. */
+/** The scan in a file that consists of floats only; undefined if these are not points. */
 export function readBin(bytes: Uint8Array): Points | undefined {
   if (bytes.length % 4 !== 0 || bytes.length > 32 * MOST_POINTS) return undefined;
   const values = new Float32Array(bytes.slice().buffer);
@@ -75,7 +75,7 @@ export function readBin(bytes: Uint8Array): Points | undefined {
     points: pointsOf(values, floats),
     ...(intensity && { intensity }),
     ...(ring && isRing(ring) && { ring }),
-    // Whatever the last number is, a scanner that turns has measured the points one after the other.
+    // Whatever the last number means, a spinning scanner measures its points one after the other.
     ...(times && { times: Float64Array.from(times) }),
   };
   const notes = [`${floats} floats to a point (guessed: ${of})`];

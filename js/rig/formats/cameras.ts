@@ -144,7 +144,7 @@ function fisheye({ distortion, isByName = false }: RawCamera, label: string, war
   return { model: "fisheye", distortion: [0, 1, 2, 3].map((index) => four[index] ?? 0) };
 }
 
-/** The lens by its name; one that is not known is neither Brown's nor none without a word. */
+/** The lens by its name. If the name is unknown, the camera is not silently read as Brown's model or as a camera without lens. */
 function lensOf(raw: RawCamera, label: string, warnings: ReaderWarning[]): Lens {
   const { distortion: values = [] } = raw;
   const written = (raw.model ?? "").trim();
@@ -193,7 +193,7 @@ function ofFour(label: string, { name, isFourRadial = false }: RawCamera): Reade
 
 const isOfFour = ({ isFour }: ReaderWarning): boolean => isFour === true;
 
-/** Reads the four coefficients of cameras without a lens model as a fisheye's, where `says` of the file mentions one. */
+/** Reads the four coefficients of cameras without a lens model as those of a fisheye, if `says` mentions one. */
 export function asFisheye(cameras: NamedCamera[], warnings: ReaderWarning[], says: string): void {
   if (!FISHEYE_WORD.test(says)) return;
   for (const [index, { camera: name }] of [...warnings].entries()) {

@@ -1,4 +1,4 @@
-/** What clouds hold besides coordinates: laser, intensity and time, by the names that drivers and tools give these. */
+/** Channels of clouds besides coordinates: laser, intensity and time, by the names that drivers and tools use. */
 import type { Scan } from "../lidar/scan.js";
 
 export type Channel = "ring" | "intensity" | "times";
@@ -23,10 +23,10 @@ export function roomFor(count: number, channels: readonly (Channel | undefined)[
   };
 }
 
-/** Points of a scan, at least; fewer show neither how they were scanned nor whether a calibration is right. */
+/** Fewest points of a scan; fewer show neither how they were scanned nor whether a calibration is right. */
 export const FEWEST_POINTS = 200;
 
-/** One column of a table with so many numbers per row. */
+/** One column of a table with this many numbers per row. */
 export const columnOf = (values: ArrayLike<number>, columns: number, column: number): Float32Array =>
   Float32Array.from({ length: Math.floor(values.length / columns) }, (_, row) => values[row * columns + column] ?? NaN);
 

@@ -1,8 +1,8 @@
 /**
  * Depths that an 8-bit picture stores in its colour channels: CARLA's and AirSim's 24 bits, or a high and a low byte.
  *
- * Carries distinguish them from photographs and colour-mapped renderings: where the higher byte changes by one between two neighbours, the
- * lower one wraps around. Limits: only the four orders of bytes below, and 24 bits are read in CARLA's unit.
+ * Carries distinguish such pictures from photographs and colour-mapped renderings: if the higher byte changes by one between two
+ * neighbours, the lower byte wraps around. Limits: only the four orders of bytes below are known, and 24 bits are read in CARLA's unit.
  */
 import { median } from "../statistics.js";
 import { type ReaderWarning, warning } from "../warnings.js";
@@ -22,14 +22,14 @@ const CODES: readonly Code[] = [
 ];
 /** Metres per unit of CARLA's 24 bits, whose full range is 1000 m. */
 const CARLA = 1000 / (2 ** 24 - 1);
-/** Change of the lower byte, against that of the higher byte, that counts as a wrap. */
+/** The smallest change of the lower byte, in the direction opposite to that of the higher byte, that counts as a wrap. */
 const WRAP = 64;
-/** Changes of the higher byte by one, at least, and the share of them that have to be carries. */
+/** The fewest steps of the higher byte by one that are needed for a decision, and the smallest share of them that must be carries. */
 const [FEWEST_MOVES, MOSTLY] = [20, 0.7];
-/** The median of depths in millimetres, at most. */
+/** The largest median of depths in millimetres. */
 const USUAL = 8000;
 
-/** Of the changes of the higher channel by one between neighbours in a row, the share at which the lower channel wraps around. */
+/** The share of carries: how often the lower channel wraps around if the higher one changes by one between neighbours in a row. */
 function carries({ data, width, channels }: Picture, low: number, high: number): number {
   let [moves, carried] = [0, 0];
   for (let pixel = 1; pixel < data.length / channels; pixel++) {
@@ -47,9 +47,9 @@ const isEmpty = ({ data, channels }: Picture, channel: number): boolean => {
   return true;
 };
 
-/** Share of neighbours between which the highest of three bytes changes, at most .. */
+/** Largest share of neighbours between which the highest of three bytes may change. */
 const SELDOM = 0.1;
-/** .. the median change of the lowest byte, at least, and the median second difference of the two lower bytes together, at most. */
+/** Smallest median change of the lowest byte, and largest median second difference of the two lower bytes together. */
 const [ROUGH, SMOOTH] = [16, 4096];
 
 /** Whether three channels, from the lowest byte to the highest, hold one smooth number of 24 bits. */
@@ -75,9 +75,9 @@ function isSmooth({ data, width, channels }: Picture, [low = 0, middle = 0, high
   );
 }
 
-/** Whether a picture has carries, or three bytes that are smooth together: near the camera, the highest byte hardly changes. */
+/** Whether a picture has carries, or three bytes that form a smooth number: near the camera, the highest byte hardly changes. */
 function fits(picture: Picture, { order }: Code): boolean {
-  // Blue is empty in codes of two bytes.
+  // Two-byte codes leave blue empty.
   const isTwo = order.length === 2;
   if (isTwo ? !isEmpty(picture, 2) : order.some((channel) => isEmpty(picture, channel))) return false;
   const [low = 0, high = 1] = order.slice(-2);
@@ -101,7 +101,7 @@ export function decoded(picture: Picture): Picture | undefined {
       (sum, channel, byte) => sum + (data[pixel * channels + channel] ?? 0) * 256 ** byte,
       0,
     );
-  // CARLA's depths below 3.9 m leave the highest byte empty, and would be too far in millimetres.
+  // CARLA's depths below 3.9 m leave the highest byte empty; read as millimetres, they would be too far away.
   const is24 = code.order.length === 3 || (code.order[0] === 0 && median(values.filter((value) => value > 0)) > USUAL);
   const warnings: ReaderWarning[] = [
     ...picture.warnings,

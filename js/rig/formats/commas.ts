@@ -5,8 +5,9 @@ const NUMBER = /^[-+]?\d+,\d+(?:[eE][-+]?\d+)?$/;
 const MOST = 4_000_000;
 
 /**
- * The text with decimal points for its decimal commas; undefined where its commas may separate numbers. Commas are decimal where every number
- * has at most one and no point, and either one number has three digits after it or begins with "0,", or each number has a line and a name.
+ * The text with decimal points in place of decimal commas; undefined if its commas may separate numbers. Commas count as decimal if every
+ * number has at most one comma and no point, and if either one number has three digits after it or begins with "0,", or each number has a
+ * line and a name.
  */
 export function withPoints(text: string): string | undefined {
   if (text.length > MOST || !/\d,\d/.test(text) || /\d\.\d/.test(text) || /[[{]/.test(text)) return undefined;

@@ -1,6 +1,8 @@
 /** Files that are not read: their formats, by first bytes or names, and what to do with them. */
 import { type BimodalError, badFile } from "../../errors.js";
 
+export { pointList } from "./point-list.js";
+
 /** `isPicture`: a browser may be able to read it. */
 type Row = [pattern: RegExp, advice: string, isPicture?: true];
 
@@ -109,14 +111,14 @@ const TEXTS: Row[] = [
 const refused = ([, advice, isPicture]: Row): BimodalError =>
   badFile(`it is ${advice}`, undefined, isPicture && { problem: "picture" });
 
-/** The error about a file of a known format that is not read; undefined for other files. */
+/** The error about a file in a known format that is not supported; undefined for other files. */
 export function knownContainer(name: string, bytes: Uint8Array): BimodalError | undefined {
   const head = String.fromCharCode(...bytes.subarray(0, 16));
   const row = FIRST.find(([pattern]) => pattern.test(head)) ?? NAMED.find(([pattern]) => pattern.test(name));
   return row && refused(row);
 }
 
-/** .. and about such a text. */
+/** The error about a text in a known format that is not supported. */
 export function knownText(text: string): BimodalError | undefined {
   const head = text.slice(0, 8192);
   const row = TEXTS.find(([pattern]) => pattern.test(head));

@@ -1,4 +1,4 @@
-/** What the objects around a motion specify for it. */
+/** What the surrounding objects specify for a motion. */
 import type { Frames } from "./ends.js";
 import { angleOf, lengthOf, member } from "./names.js";
 import { type Node, isNode } from "./numbers.js";

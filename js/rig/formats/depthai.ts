@@ -70,7 +70,7 @@ function motionOf(found: Findings, from: string, extrinsics: unknown): void {
   );
 }
 
-/** Puts the poses into the colour camera first, those by way of another camera among them. */
+/** Moves the poses into the colour camera to the front, including those that lead through another camera. */
 function toColour(found: Findings): void {
   const [colour = ""] = SOCKETS;
   const direct = found.poses.filter(({ to }) => to === colour);

@@ -25,7 +25,7 @@ export function worldFrames(name: string): Frames | undefined {
   return undefined;
 }
 
-/** Words of names that say what an estimate is worth and where it comes from, not which frames it relates. */
+/** Words in names that say how good an estimate is and where it comes from, not which frames it relates. */
 const NO_FRAME = [
   "init|initial|guess|prior|coarse|rough|nominal|cad|default|factory|manual|auto|est|estimated?|estimation|opt",
   "optimi[sz]ed|optimi[sz]ation|refined?|refinement|final|best|result|results|solution|solved|corrected|adjusted",
@@ -35,7 +35,7 @@ const NO_FRAME = [
 const AROUND = new RegExp(`^(?:(?:${NO_FRAME})[ _-]+)+|(?:[ _-]+(?:${NO_FRAME}))+$`, "gi");
 /** Names of frames. */
 const FRAME =
-  /^(?:cam|camera|colou?r|rgb|depth|ir|infra|infrared|tof|lidar|velo|velodyne|laser|livox|ouster|hesai|scanner|radar|imu|ins|gps|gnss|body|base|vehicle|ego|car|robot|hand|gripper|flange|ee|tool|world|map|odom|left|right|board|target|sensor)$/;
+  /^(?:cam|camera|colou?r|rgb|depth|ir|infra|infrared|tof|lidar|velo|velodyne|laser|livox|ouster|hesai|scanner|radar|imu|ins|gps|gnss|body|base|vehicle|ego|car|robot|hand|gripper|flange|ee|tool|world|map|odom|left|right|board|target|tag|marker|object|table|sensor)$/;
 const isFrame = (word: string): boolean => FRAME.test(word.toLowerCase().replace(/\d+$/, ""));
 
 /** A name without the words around its frames. */
@@ -44,11 +44,13 @@ function plainName(name: string): string {
   return (bare === "" ? name : bare).replace(/[ -]/g, "_");
 }
 
-/** Whether a name is that of a first estimate, which another one of the same frames supersedes. */
+/** Whether a name is that of a first estimate, which another pose between the same frames supersedes. */
 export const isFirstEstimate = (name: string): boolean =>
   /(?<![a-z])(?:init|initial|guess|prior|coarse|rough|nominal|cad|default|factory|old)(?![a-z])/i.test(name);
 
-/** "camera_in_lidar", "camera_pose_wrt_lidar": where the first frame is in the second, which carries its points there. */
+/**
+ * "camera_in_lidar", "camera_pose_wrt_lidar": the pose of the first frame in the second, which carries points of the first into the second.
+ */
 function placedIn(bare: string): Frames | undefined {
   const [, of = "", within = ""] =
     /^(?:T_)?([a-z0-9]+)_(?:(?:pose|position|place|orientation|rotation|frame)_)?(?:in|wrt|relative_to|with_respect_to)_(?:the_)?([a-z0-9]+)(?:_frame)?$/i.exec(
@@ -63,9 +65,10 @@ export function mentionsTwo(name: string): boolean {
   return frames.size > 1;
 }
 
-/** Frames of names that one program uses: Autoware's calibration toolkit; RTAB-Map, which has the camera in the robot's base; DSEC. */
+/** Frames of names that one program uses: Autoware's calibration toolkit; RTAB-Map, which has the camera in the robot's base; DSEC; RealityCapture. */
 function ofProduct(name: string): Frames | undefined {
   if (name === "CameraExtrinsicMat") return { from: "camera", to: "lidar" };
+  if (name === "xcr") return { from: "camera", to: "world" };
   // DSEC's T_10 carries points of camera 0 to camera 1.
   const [, to, from] = /^T_(\d)(\d)$/.exec(name) ?? [];
   if (to !== from) return { from: `cam${from}`, to: `cam${to}` };
@@ -78,7 +81,7 @@ export function named(written: string, frames: Frames): PoseNames {
   const name = written.replace(/^\w{1,40}\.(?=\w+$)/, "");
   if (frames.from !== undefined || frames.to !== undefined) return { ...(name !== "" && { name }), ...frames };
   if (name === "") return {};
-  // Matterport's "scan a_d0_0.png a_i0_0.jpg": a pose called as a picture is the place where that was taken.
+  // Matterport's "scan a_d0_0.png a_i0_0.jpg": a pose named after a picture is the pose from which the picture was taken.
   if (/\.(?:png|jpe?g|tiff?|exr)\b/i.test(name)) return { name, from: "camera", to: "world" };
   const own = ofProduct(name);
   if (own !== undefined) return { name, ...own };

@@ -1,4 +1,4 @@
-/** Which side of a picture is up, as EXIF says it. */
+/** The side of a picture that is up, according to EXIF. */
 import type { Picture } from "./picture.js";
 import { type ReaderWarning, warning } from "../warnings.js";
 

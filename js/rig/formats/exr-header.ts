@@ -94,7 +94,7 @@ export function readHeader(bytes: Uint8Array): Header {
 export const strideOf = ({ width, channels }: Pick<Header, "width" | "channels">): number =>
   width * channels.reduce((sum, { type }) => sum + (SIZES[type] ?? 0), 0);
 
-/** The blocks: the first line of each, its bytes in the file, and their number once uncompressed. */
+/** The blocks: the first line of each, its bytes in the file, and its number of bytes once uncompressed. */
 export function blocks(bytes: Uint8Array, header: Header): { row: number; body: Uint8Array; length: number }[] {
   const { height, top, lines, end } = header;
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);

@@ -27,7 +27,7 @@ export class Findings implements Calibration {
     this.warnings.push(warning(code, message));
   }
 
-  /** The result of `read`; where it throws, adds a warning that `what` was left out. */
+  /** The result of `read`; if it throws, adds a warning that `what` was left out. */
   #attempt<T>(code: ReaderCode, what: string, read: () => T): T | undefined {
     if (this.cameras.length + this.poses.length > MOST_FOUND)
       throw badFile(`it holds more than ${MOST_FOUND} cameras and poses`);
@@ -73,7 +73,7 @@ export class Findings implements Calibration {
     });
   }
 
-  /** This, if it holds a camera or a pose; `what` names the format in the error. */
+  /** The findings, if there is a camera or a pose; `what` names the format in the error. */
   done(what: string): this {
     if (this.cameras.length + this.poses.length > 0) return this;
     if (this.#reason instanceof BimodalError) throw badFile(`it is ${what}, but ${this.#reason.message}`);
@@ -81,7 +81,7 @@ export class Findings implements Calibration {
   }
 }
 
-/** So many numbers, flat or in rows; undefined where the value has another count. */
+/** This many numbers, flat or in rows; undefined if the value has another count. */
 export function flat(value: unknown, count: number): Numbers | undefined {
   if (!Array.isArray(value)) return undefined;
   const values = value.flat(2);

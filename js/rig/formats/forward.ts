@@ -1,5 +1,5 @@
 /**
- * The direction of a pose between a LiDAR and a camera whose file does not state it: the one at which the camera stands upright.
+ * The direction of a pose between a LiDAR and a camera if the file does not state it: the direction in which the camera stands upright.
  *
  * A LiDAR has z up and a camera y down, whichever way the camera looks. Limit: rigs that stand upright.
  */
@@ -15,7 +15,7 @@ const UPRIGHT = Math.SQRT1_2;
 /** Whether a rotation from axes with z up leads to a camera whose y points down. */
 const isUpright = (rotation: readonly number[]): boolean => (rotation[5] ?? 0) < -UPRIGHT;
 
-/** Inverts a pose without frames, whose names mention a LiDAR, where only its inverse has the camera upright. */
+/** Inverts a pose without frames whose name mentions a LiDAR, if the camera is upright only under its inverse. */
 export function lookForward(found: NamedPose, called: string, warnings: ReaderWarning[]): void {
   if (found.from !== undefined || found.to !== undefined || !LIDAR.test(called.replaceAll("_", " "))) return;
   const back = inverseOf(found.pose);
@@ -24,7 +24,7 @@ export function lookForward(found: NamedPose, called: string, warnings: ReaderWa
   warnings.push(
     warning(
       "pose-assumed",
-      `"${found.name ?? "its pose"}" does not state which way it leads between the LiDAR and the camera. It was inverted, because only then the camera stands upright on a LiDAR whose z points up; name it lidar_to_camera or camera_to_lidar.`,
+      `"${found.name ?? "its pose"}" does not state its direction between the LiDAR and the camera. It was inverted, because only then does the camera stand upright on a LiDAR whose z points up; name it lidar_to_camera or camera_to_lidar.`,
     ),
   );
 }

@@ -1,5 +1,6 @@
 /** Poses between frames, as in robot descriptions, and the pose between two frames that a chain of them relates. */
 import type { NamedPose, Pose } from "../types.js";
+import { type ReaderWarning, warning } from "../warnings.js";
 import { chained, identity, inverseOf, poseOf } from "./poses.js";
 
 const COLOUR = /colou?r|rgb/i;
@@ -28,7 +29,7 @@ interface Placed {
   pose: Pose;
 }
 
-/** The pose of each frame in the root of its tree. */
+/** The pose of each frame relative to the root of its tree. */
 function places(poses: readonly NamedPose[]): Map<string, Placed> {
   const parents = new Map<string, { to: string; pose: Pose }>();
   for (const { from, to, pose } of poses)
@@ -48,6 +49,12 @@ function places(poses: readonly NamedPose[]): Map<string, Placed> {
   return placed;
 }
 
+const bodyAxes = (frames: readonly string[]): ReaderWarning =>
+  warning(
+    "pose-assumed",
+    `The frame ${frames.join(" and ")} is not an optical frame by its name and was read as looking along x with z up, as in ROS.`,
+  );
+
 /** The first optical frame that fits, or else the first one. */
 function best(names: string[], is: (name: string) => boolean): string | undefined {
   const fitting = names.filter(is);
@@ -55,10 +62,11 @@ function best(names: string[], is: (name: string) => boolean): string | undefine
 }
 
 /**
- * The pose from the depth camera (or else the LiDAR) to the colour camera (or else the first camera), where both are in one tree and no pose
- * of the file relates them directly. A camera frame without "optical" in its name has body axes by ROS's convention and is turned.
+ * The pose from the depth camera (or else the LiDAR) to the colour camera (or else the first camera), if both are in one tree and no pose
+ * of the file relates them directly. A camera frame without "optical" in its name has body axes by ROS's convention and is converted,
+ * with a warning.
  */
-export function wayBetween(poses: readonly NamedPose[]): { pose: NamedPose; turned: string[] } | undefined {
+export function wayBetween(poses: readonly NamedPose[]): { pose: NamedPose; warnings: ReaderWarning[] } | undefined {
   const placed = places(poses);
   const names = [...placed.keys()];
   const depth = best(names, (name) => DEPTH.test(name) && !COLOUR.test(name));
@@ -78,7 +86,8 @@ export function wayBetween(poses: readonly NamedPose[]): { pose: NamedPose; turn
     return asOptical(pose);
   };
   const pose = chained(inverseOf(optical(colour, b)), optical(from, a));
-  return { pose: { name: `${colour} from ${from}`, from, to: colour, pose }, turned };
+  const warnings = turned.length > 0 ? [bodyAxes(turned)] : [];
+  return { pose: { name: `${colour} from ${from}`, from, to: colour, pose }, warnings };
 }
 
 /** Longest chain of poses between two frames. */
@@ -108,21 +117,27 @@ export function linked(poses: readonly NamedPose[], from: string, to: string): N
 /** Whether a frame is a LiDAR's, by its name. */
 export const isLidar = (name: string): boolean => LIDAR.test(name) && !CAMERA.test(name);
 
-/** Frames of no camera and no LiDAR: the inertial unit, the body, a vehicle, a robot and its hand, and what a calibration looks at. */
+/**
+ * Frames that are neither a camera's nor a LiDAR's: the inertial unit, the body, a vehicle, a robot and its hand, and the calibration
+ * target.
+ */
 const CARRIER =
   /^(?:b|body|i|imu\w*|base(?:[_ ]?(?:link|footprint))?|rig|vehicle|ego(?:[_ ]?vehicle)?|car|robot\w*|hand|gripper|flange|tool\d*|\w+_(?:hand|gripper|flange|tool\d*)|gps|ins|oxts|(?:april|aru|charu)\w*|tag\w*|marker\w*|(?:chess|checker|calib\w*)?_?board|target|pattern|object|table)$/i;
 
-/** Whether a motion relates a sensor to what carries it or what it looks at, so that it does not relate two sensors. */
-export const isOfCarrier = ({ from = "", to = "" }: Ends): boolean => CARRIER.test(from) !== CARRIER.test(to);
+/** Whether a motion relates a sensor to what carries it or to what it looks at, instead of relating two sensors. */
+export const isOfCarrier = ({ from = "", to = "" }: Ends): boolean => CARRIER.test(from) || CARRIER.test(to);
 
 type Ends = { from?: string | undefined; to?: string | undefined };
 const isColour = (name: string): boolean => COLOUR.test(name) && !DEPTH.test(name);
 const isDepth = (name: string): boolean => DEPTH.test(name) && !COLOUR.test(name);
 const isCamera = (name: string): boolean => isColour(name) || (CAMERA.test(name) && !DEPTH.test(name));
 
-/** Whether a pose leads from the colour camera to the depth camera, or from any frame to a LiDAR, by the names of its frames. */
-export const isBackwards = ({ from = "", to = "" }: Ends): boolean =>
-  (isColour(from) && isDepth(to)) || (isLidar(to) && from !== "" && !isLidar(from) && !isDepth(from));
+/** Whether a pose leads away from the colour camera, or into the depth camera or a LiDAR, by the names of its frames. */
+export function isBackwards({ from = "", to = "" }: Ends): boolean {
+  if (isColour(from)) return !isColour(to);
+  if (isDepth(to)) return !isDepth(from) && !isLidar(from);
+  return isLidar(to) && from !== "" && !isLidar(from) && !isDepth(from);
+}
 
 /** Whether a pose relates the depth camera or a LiDAR to the colour camera or another camera, by the names of its frames. */
 export const isOfRig = ({ from = "", to = "" }: Ends): boolean =>

@@ -25,7 +25,7 @@ export const SIZES = [
   [160, 120],
 ] as const;
 
-/** Points of a cloud, at most. */
+/** Most points of a cloud. */
 export const MOST_POINTS = 2 ** 22;
 
 export function checkPoints(count: number): void {
@@ -33,7 +33,7 @@ export function checkPoints(count: number): void {
   if (count > MOST_POINTS) throw badFile(`it declares ${count} points; up to ${MOST_POINTS} are supported`);
 }
 
-/** Whether so many points are a whole image of a depth camera. */
+/** Whether this number of points fills an image of a depth camera. */
 export const isImage = (count: number): boolean => SIZES.some(([width, height]) => width * height === count);
 
 /** The image size that has this number of points, with a warning; throws if no such size is known. */

@@ -6,7 +6,7 @@ const MOST = 300;
 /** Lengths of the lists in cameras and motions. */
 const LENGTHS = new Set([3, 4, 5, 8, 9, 12, 14, 16]);
 
-/** The members of a group: those whose names `part` accepts, by the rest of these names. */
+/** The members of a group, which are those whose names `part` accepts; the rest of the name is the key. */
 function taken(node: Node, keys: string[], part: (key: string) => string | undefined): Node {
   const group: Node = {};
   for (const key of keys) {
@@ -22,7 +22,7 @@ const before = (end: string) => (key: string) => (key.endsWith(end) ? key.slice(
 const DOTTED = /^(\w{1,40})\.(\w{1,40})$/;
 const isObject = (value: unknown): boolean => isNode(value) && matrixOf(value) === undefined;
 
-/** Whether a member is read with its group alone: "IMU.T_b_c1" of ORB-SLAM. */
+/** Whether a member is read only as part of its group: "IMU.T_b_c1" of ORB-SLAM. */
 export const isOfGroup = (node: Node, key: string): boolean => DOTTED.test(key) && !isObject(node[key]);
 
 /** Coefficients by plain names, which belong to the only camera with a prefix: "k1" beside "cam_fx" (vikit, FAST-LIVO2). */

@@ -1,6 +1,6 @@
 /** Files of pixels and points without known first bytes, recognised by their content. */
 import { type Kind, kindOf } from "./kinds.js";
-import { matrixText } from "./npy-matrix.js";
+import { archiveText, matrixText } from "./npy-matrix.js";
 import { arePoints, isColmapMap } from "./raw.js";
 import { isTable } from "./table.js";
 
@@ -13,6 +13,7 @@ const HEAD = 512;
 export function rasterKind(bytes: Uint8Array): RasterKind | undefined {
   const known = kindOf(bytes);
   if (known === "npy" && matrixText(bytes) !== undefined) return undefined;
+  if (known === "npz" && archiveText(bytes) !== undefined) return undefined;
   if (known !== undefined) return known;
   if (isColmapMap(bytes)) return "colmap";
   const isText = bytes.subarray(0, HEAD).every((byte) => byte > 13 || (byte > 8 && byte < 11) || byte === 13);

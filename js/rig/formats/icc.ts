@@ -1,7 +1,8 @@
 /**
- * Colour profiles: those of a matrix and three curves are brought to sRGB, others are named.
+ * Colour profiles: those that consist of a matrix and three curves are converted to sRGB; others cause a warning.
  *
- * Written here because lcms as wasm is 100 kB; what cameras and screens embed (Display P3, Adobe RGB, ProPhoto) is of this kind.
+ * Written here because lcms as wasm has 100 kB. The profiles that cameras and screens embed (Display P3, Adobe RGB, ProPhoto) are of this
+ * kind.
  */
 import { inflateUpTo } from "../../inflate.js";
 import type { Picture } from "./picture.js";
@@ -12,7 +13,7 @@ const MOST_TAGS = 200;
 
 /** From the connection space (XYZ under D50) to linear sRGB: the inverse of sRGB's own profile. */
 const FROM_XYZ = [3.1338561, -1.6168667, -0.4906146, -0.9787684, 1.9161415, 0.033454, 0.0719453, -0.2289914, 1.4052427];
-/** How finely curves are tabulated: an eighth of a step of 8 bits where they are steepest. */
+/** Resolution of the tabulated curves: an eighth of a step of 8 bits where they are steepest. */
 const TABLE = 16_384;
 /** Profiles that differ by less are sRGB under another name: one step of 8 bits. */
 const SAME = 1 / 255;
@@ -23,7 +24,7 @@ const encoded = (linear: number): number =>
 type Curve = (value: number) => number;
 interface Profile {
   name: string;
-  /** From linear device values to XYZ, by columns red, green and blue; nothing where the profile is of another kind. */
+  /** From linear device values to XYZ, with columns red, green and blue; undefined if the profile is of another kind. */
   matrix?: number[];
   curves?: Curve[];
 }

@@ -1,8 +1,8 @@
 /**
  * JPEG and WebP. Browsers decode them, turn them as EXIF says and bring their colours to sRGB; Node has jpeg-js for JPEG.
  *
- * jpeg-js (0.4, 8 kB gzipped, loaded on demand) and not sharp, which is a binary of megabytes for each system, or mozjpeg as wasm, 100 kB.
- * It trusts what a file declares, so sizes, channels and the number of scans are checked first.
+ * jpeg-js (0.4, 8 kB gzipped, loaded on demand) is used instead of sharp, a binary of megabytes for each system, and of mozjpeg as wasm,
+ * 100 kB. It trusts what a file declares, so sizes, channels and the number of scans are checked first.
  */
 import { BimodalError, badFile } from "../../errors.js";
 import { exifOrientation, turnedBy, turnedWords } from "./exif.js";
@@ -10,12 +10,12 @@ import { inSrgb } from "./icc.js";
 import { checkSize } from "./limits.js";
 import type { Picture } from "./picture.js";
 
-/** Progressive files have ten or so; each costs a pass over all blocks. */
+/** Most scans. Progressive files have about ten; each costs a pass over all blocks. */
 const MOST_SCANS = 64;
 const MEMORY = 512;
-/** Tables, remarks and scans; a camera's file has a few dozen. */
+/** Most segments: tables, remarks and scans. A camera's file has a few dozen. */
 const MOST_SEGMENTS = 5000;
-/** A block of 8x8 takes two bits at least: one for its mean, one for the end. */
+/** A block of 8x8 takes at least two bits: one for its mean, one for the end. */
 const BITS_OF_BLOCK = 2;
 const MOST_PROFILE = 2 ** 22;
 
@@ -69,7 +69,7 @@ function marked(bytes: Uint8Array): Marked {
       ended = true;
       break;
     }
-    // Stuffed, filled, restarted: no segment follows.
+    // Stuffed bytes, fill bytes and restart markers are not segments.
     if (kind === 0 || kind === 0xff || kind === 1 || (kind >= 0xd0 && kind <= 0xd8)) {
       at += kind === 0xff ? 1 : 2;
       continue;
@@ -87,7 +87,7 @@ function marked(bytes: Uint8Array): Marked {
     at += 2 + length;
   }
   if (!size || scans === 0) throw badFile("this JPEG is cut off: it has no pixels");
-  // Browsers show grey for what is missing.
+  // Browsers show missing parts as grey.
   if (!ended) throw badFile("this JPEG is cut off: its end is missing");
   const total = profile.reduce((sum, part) => sum + part.length, 0);
   if (total === 0 || total > MOST_PROFILE) return { ...size, orientation };
@@ -102,7 +102,7 @@ function reasonOf(error: unknown): string {
   return error instanceof Error ? error.message : String(error);
 }
 
-/** By the browser, which needs no more than the bytes; `check` refuses a size. */
+/** Decodes with the browser, which needs only the bytes; `check` refuses a size. */
 export async function byBrowser(bytes: Uint8Array, format: string, check = checkSize): Promise<Picture> {
   let bitmap: ImageBitmap;
   try {
@@ -125,7 +125,7 @@ export async function byBrowser(bytes: Uint8Array, format: string, check = check
 
 const hasBrowser = (): boolean => typeof createImageBitmap === "function" && typeof OffscreenCanvas === "function";
 
-/** Three channels of four; all is opaque. */
+/** Three of four channels; the image is opaque. */
 function withoutAlpha(picture: Picture): Picture {
   const { width, height, data } = picture;
   const out = new Uint8Array(3 * width * height);
@@ -145,7 +145,7 @@ export async function readJpeg(bytes: Uint8Array): Promise<Picture> {
     const { note, turned } = turnedWords(orientation, "EXIF says");
     return { ...picture, notes: [note], warnings: [turned] };
   }
-  // The file itself and not the package's front door, which brings the encoder along.
+  // Imports the decoder's file instead of the package's main module, which contains the encoder as well.
   const { default: decode } = await import("jpeg-js/lib/decoder.js");
   let data: Uint8Array;
   try {

@@ -14,7 +14,7 @@ const HEAD = 5000;
 /** Longest part of the text about one camera or baseline. */
 const LONGEST = 3000;
 const MOST_PARTS = 200;
-/** Any pixels, for a camera that is refused for its model. */
+/** Placeholder pixels for a camera that is refused because of its model. */
 const PLACEHOLDER = [100, 100];
 
 export const isKalibrResults = (text: string): boolean =>

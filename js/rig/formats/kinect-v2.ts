@@ -1,4 +1,4 @@
-/** Intrinsics of a Kinect v2 as its SDK and libfreenect2 name them, and the constant that iai_kinect2 adds to depths. */
+/** Intrinsics of a Kinect v2 under the names of its SDK and of libfreenect2, and the constant that iai_kinect2 adds to depths. */
 import { badFile } from "../../errors.js";
 import { Findings } from "./findings.js";
 import { type Node, numberOf, numbersAt } from "./numbers.js";

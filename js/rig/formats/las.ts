@@ -12,7 +12,7 @@ import type { Points } from "./picture.js";
 /** Bytes of the shortest header, and of the header of LAS 1.4. */
 const HEADER = 227;
 const HEADER_14 = 375;
-/** Bytes of a point of each format, at least, and the offset of its GPS time. */
+/** Fewest bytes of a point in each format, and the offset of its GPS time. */
 const FORMATS: [bytes: number, time: number | undefined][] = [
   [20, undefined],
   [28, 20],
@@ -31,7 +31,7 @@ const WAVES = [4, 5, 9, 10];
 /** Bit of the format that marks compressed points. */
 const COMPRESSED = 0x80;
 const INTENSITY = 12;
-/** Compressed bytes of a point, at least: noise by itself takes several. With fewer, a small file would be millions of copies. */
+/** Fewest compressed bytes of a point: its noise alone takes several. With fewer, a small file would be millions of copies. */
 const FEWEST_BYTES = 0.25;
 /** Share of the points that may lie outside the box that the header declares. */
 const OUTSIDE = 0.01;
@@ -48,7 +48,7 @@ interface Header {
   /** A coordinate is an integer times its scale plus its offset; by axis. */
   scale: number[];
   offset: number[];
-  /** The largest and the smallest coordinate of each axis. */
+  /** The largest and the smallest coordinate along each axis. */
   box: [most: number, least: number][];
 }
 

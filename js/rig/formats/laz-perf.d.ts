@@ -1,4 +1,4 @@
-/** The decoder for browsers, and its code as scripts/build.mjs packs it; the package declares only its front door. */
+/** The decoder for browsers, and its code as scripts/build.mjs packs it; the package declares types only for its main module. */
 declare module "laz-perf/lib/web/laz-perf.js" {
   interface Options {
     instantiateWasm: (

@@ -1,16 +1,16 @@
 /**
  * The points of LAZ, which is LAS compressed by arithmetic coding: laz-perf, loaded with the first such file.
  *
- * laz-perf (0.0.7, 100 kB gzipped) reads bytes in memory and makes no code at run time, which a content security policy would forbid. copc and
- * @loaders.gl/las contain it beside code for pyramids of tiles and tables. Its code comes inside the script, so that no bundler leaves it behind.
- * Limits: it does not know wave packets (point formats 4, 5, 9 and 10), and LAZ has no checksums.
+ * laz-perf (0.0.7, 100 kB gzipped) reads bytes in memory and creates no code at run time, which a content security policy would forbid.
+ * copc and @loaders.gl/las contain it beside code for pyramids of tiles and tables. Its code is embedded in the script, so that no bundler
+ * loses it. Limits: it does not read wave packets (point formats 4, 5, 9 and 10), and LAZ has no checksums.
  */
 import create, { type LazPerf } from "laz-perf/lib/web/laz-perf.js";
 import packed from "laz-perf/lib/web/laz-perf.wasm";
 import { badFile } from "../../errors.js";
 import { inflateUpTo } from "../../inflate.js";
 
-/** Bytes of its code, at most. */
+/** Most bytes of its code. */
 const MOST_CODE = 2 ** 20;
 
 let code: Promise<WebAssembly.Module> | undefined;
@@ -37,7 +37,7 @@ async function instance(): Promise<LazPerf> {
   });
 }
 
-/** Calls `take` with each record of the file and its place in a view; the view holds until the next one. */
+/** Calls `take` with each record of the file and its offset in a view, which is valid until the next call. */
 export async function eachRecord(
   bytes: Uint8Array,
   { count, size }: { count: number; size: number },

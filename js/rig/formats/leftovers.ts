@@ -1,6 +1,6 @@
 /**
- * Lenses and sizes beside their cameras: "rgbDistortion" beside "rgbIntrinsic", a section [image] beside that of the camera. Each is given
- * to the only camera that it can belong to, by its label or because there is no other; a warning names the rest.
+ * Lenses and sizes beside their cameras: "rgbDistortion" beside "rgbIntrinsic", a section [image] beside that of the camera. Each is
+ * assigned to the only camera to which it can belong, by its label or because there is no other; a warning names the rest.
  */
 import { type ReaderWarning, warning } from "../warnings.js";
 import { BROWN_NAMES, type RawCamera } from "./cameras.js";
@@ -9,7 +9,7 @@ import { modelIn } from "./stated.js";
 import { isIntrinsics, isLens, isTranslation, member, rotationName, wordsOf } from "./names.js";
 import { type Node, type Numbers, isNode, matrixOf, numberOf } from "./numbers.js";
 
-/** An object with those around it. */
+/** An object with the objects around it. */
 export interface Place {
   node: Node;
   parent: Place | undefined;
@@ -152,9 +152,9 @@ const isSame = (a: string, b: string): boolean => plainLabel(a) === plainLabel(b
 
 export class Leftovers {
   readonly #lenses: Lens[] = [];
-  /** Lists that may be lenses by their numbers, of cameras that have none. */
+  /** Lists whose numbers may be a lens of a camera that has none. */
   readonly #doubtful: { key: string; place: Place; distortion: Numbers }[] = [];
-  /** Values that may be lenses by their names, which no known program uses. */
+  /** Values whose names suggest a lens, but which no known program uses. */
   readonly #unknown: Pick<Lens, "key" | "distortion">[] = [];
   /** Objects that are lenses. */
   readonly #parts = new WeakSet<Node>();
@@ -164,7 +164,7 @@ export class Leftovers {
   collect(place: Place, used: ReadonlySet<string>): void {
     const { node } = place;
     for (const key of Object.keys(node)) {
-      // The walk reads its group, too.
+      // The walk reads its group as well.
       if (isOfGroup(node, key)) continue;
       const label = used.has(key) ? undefined : isLens(key);
       const lens = label === undefined && !LENS_LIKE.test(key) ? undefined : lensOf(node[key]);

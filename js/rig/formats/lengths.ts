@@ -1,5 +1,6 @@
 /**
- * Units of translations: those that a file's comments state, and a warning where a translation is longer than the cameras of a rig are apart.
+ * Units of translations: the unit that a file's comments state, and a warning if a translation is longer than the cameras of a rig are
+ * apart.
  *
  * Limit: rigs whose cameras are farther apart have to state the unit.
  */
@@ -9,13 +10,13 @@ import { isLidar } from "./frames.js";
 import { lengthOf } from "./names.js";
 import { degreesOf } from "./poses.js";
 
-/** Longest translations that need no word, metres: between cameras, and between a LiDAR and a camera. */
+/** Longest translations without a warning, metres: between cameras, and between a LiDAR and a camera. */
 const [CAMERAS, LIDARS] = [1, 3];
-/** Cameras of a rig look nearly the same way, and axes of a LiDAR are turned against a camera's by 120 degrees. */
+/** Cameras of a rig look in nearly the same direction; axes of a LiDAR are rotated against a camera's by 120 degrees. */
 const PARALLEL = 60;
 /** Frames of vehicles, robots and boards, in which sensors may be far away. */
 const FAR = /imu|body|base|vehicle|ego|car\b|robot|world|map|odom|hand|gripper|flange|tool|board|target|reference|gps/i;
-/** Most comments that are looked at. */
+/** Most comments that are examined. */
 const MOST = 200;
 
 const COMMENT = /(?:^|[\s,;{])(?:#|\/\/|%|;|\/\*)([^\n]{1,200})/gm;
@@ -50,7 +51,7 @@ export function checkLength({ name, from = "", to = "", pose }: NamedPose, warni
   warnings.push(
     warning(
       "translation-unit-guessed",
-      `The translation${name === undefined || name === "" ? "" : ` of "${name}"`} was read in metres, as the file does not state its unit; its length of ${length.toPrecision(4)} m is much for a rig. It would be ${says(length, 0.001)} if the numbers are millimetres, and ${says(length, 0.01)} if they are centimetres. Write the unit into the file, as "unit": "cm".`,
+      `The translation${name === undefined || name === "" ? "" : ` of "${name}"`} was read in metres, as the file does not state its unit; its length of ${length.toPrecision(4)} m is long for a rig. It would be ${says(length, 0.001)} if the numbers are millimetres, and ${says(length, 0.01)} if they are centimetres. Write the unit into the file, as "unit": "cm".`,
       { length },
     ),
   );

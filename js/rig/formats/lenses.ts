@@ -1,12 +1,12 @@
 /**
- * Lens models by the names that programs give them: one table with all spellings. A name that is not in it is nobody's default; the camera is
+ * Lens models by the names that programs use: one table with all spellings. For a name that is not in it there is no default: the camera is
  * refused, or a warning names it (cameras.ts).
  */
 
-/** `realsense` has librealsense's variants of Brown's model; `other` what is known and not supported. */
+/** `realsense` has librealsense's variants of Brown's model, `other` the known models that are not supported. */
 type Family = "brown" | "fisheye" | "realsense" | "other";
 
-/** Names in small letters and digits alone, as patterns of whole names. */
+/** Patterns of whole names, in lower-case letters and digits only. */
 const BROWN = [
   "|none|no|null|undistorted|rectified|pinhole|simplepinhole|perspective|rectilinear|linear|standard",
   "plumbbob|radtan\\d*|radialtangential\\d*|radial|simpleradial|brown|brownconrady\\d*|opencv\\d*|fullopencv",
@@ -16,7 +16,10 @@ const BROWN = [
 const FISHEYE = [
   "(?:pinhole|opencv)?(?:fisheye4?|fisheyeopencv|equi|equid4?|equidistant4?|equidistantdistortedpinhole|kb[48]?|kannalabrandt[48]?)",
 ];
-/** librealsense projects both as Brown's (its older versions followed the second the other way), but for products of terms. */
+/**
+ * librealsense projects with both as with Brown's model, except for products of terms (its older versions used the inverse direction for
+ * the second).
+ */
 const REALSENSE = ["modifiedbrownconrady|inversebrownconrady"];
 /** Models that are not supported, with what they stand for. */
 const OTHERS: [pattern: string, meaning: string][] = [
@@ -45,7 +48,7 @@ const FAMILIES: [Family, string[]][] = [
 ];
 const TABLE = FAMILIES.map(([family, patterns]) => [family, new RegExp(`^(?:${patterns.join("|")})$`)] as const);
 
-/** What names of classes and enumerations add: "distortion.brown_conrady", "LENSMODEL_OPENCV5", "EquidistantCamera". */
+/** Additions in names of classes and enumerations: "distortion.brown_conrady", "LENSMODEL_OPENCV5", "EquidistantCamera". */
 const BEFORE =
   /^(?:rs2?distortion|distortion|lensmodel|cameramodel|projectionmodel|cameratype|projection|lens|model|type)/;
 const BEHIND = /(?:projection|camera|geometry|distortion|model|lens|type)$/;

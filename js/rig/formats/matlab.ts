@@ -1,8 +1,8 @@
 /**
  * MATLAB's camera and stereo parameters as JSON (jsonencode(toStruct(params))), and the scripts that Bouguet's toolbox saves.
  *
- * MATLAB counts pixels from 1, multiplies row vectors by its matrices, so that these are transposed, and gives sizes as rows by columns.
- * Bouguet counts pixels from 0. Poses of calibration boards are not extrinsics.
+ * MATLAB counts pixels from 1, multiplies row vectors by its matrices (so they are transposed here), and gives sizes as rows by columns.
+ * Bouguet's toolbox counts pixels from 0. Poses of calibration boards are not extrinsics.
  */
 import { badFile } from "../../errors.js";
 import { ofMatrix } from "./cameras.js";

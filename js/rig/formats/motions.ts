@@ -40,7 +40,7 @@ import { type Turn, numbersAsRotation, ofFour, ofNine, ofThree, orderWarning } f
 const FEW = 4;
 /** Tolerances within which two motions of a file are inverse, degrees and metres. */
 const AGREES = { degrees: 0.02, metres: 1e-3 };
-/** How far the length of a quaternion in a list of seven numbers may be from 1. */
+/** Largest deviation from 1 of the length of a quaternion in a list of seven numbers. */
 const QUATERNION_TOLERANCE = 1e-2;
 const at = (values: Numbers, index: number): number => values[index] ?? NaN;
 
@@ -62,7 +62,7 @@ export class Motions {
   readonly #unitless: NamedPose[] = [];
   /** The names of the objects around poses. */
   readonly #parents = new Map<NamedPose, string>();
-  /** Poses that lead into the world by the definition of a format. */
+  /** Poses that, by the definition of a format, lead into the world. */
   readonly #defined = new Set<NamedPose>();
   readonly #signs: Signs;
   readonly #warnings: ReaderWarning[];
@@ -72,12 +72,12 @@ export class Motions {
     this.#warnings = warnings;
   }
 
-  /** Adds the motions of an object; with `isCamera` it has a camera, whose rotation and projection are those of rectification. */
+  /** Adds the motions of an object. With `isCamera` it has a camera, whose rotation and projection belong to the rectification. */
   read(node: Node, parent: string, context: Context, isCamera: boolean): void {
     const used = new Set<string>();
     const before = this.poses.length;
     for (const key of Object.keys(node)) {
-      // The walk reads its group, too.
+      // The walk reads its group as well.
       if (isOfGroup(node, key)) continue;
       const name = rotationName(key);
       if (name !== undefined && this.#pair(node, key, name, parent, context)) {
@@ -95,7 +95,7 @@ export class Motions {
       if (!used.has(key) && !isOfGroup(node, key) && isPoseLike(key, node[key], rectifies)) this.#unused.push(key);
   }
 
-  /** Drops the rotations for row vectors beside a matrix for them, as in MATLAB's rigid3d, which has both. */
+  /** Drops rotations for row vectors that stand beside a matrix for row vectors, as in MATLAB's rigid3d, which has both. */
   #dropRowVectors(first: number): void {
     const all = this.poses.splice(first);
     const isTwin = ({ pose }: NamedPose) =>
@@ -160,7 +160,7 @@ export class Motions {
     const r = this.#rotationParts(node[key]);
     const t = parts(other.value, ["x", "y", "z"]);
     if (r === undefined || t === undefined) return false;
-    // Projections and disparity matrices have names of a single letter, too.
+    // Projections and disparity matrices have names of a single letter as well.
     if (/^[qp]$/i.test(key) && r.values.length !== 4) return false;
     if (/^p/i.test(other.key) && t.values.length !== 3) return false;
     if (t.values.length !== 3) throw badFile(`its ${other.key} has ${t.values.length} numbers, not three`);
@@ -181,7 +181,7 @@ export class Motions {
     return true;
   }
 
-  /** The numbers of a rotation, with what the names of its members specify. */
+  /** The numbers of a rotation, and what the names of its members specify. */
   #rotationParts(value: unknown): (Matrix & { said: Attributes; isMatrix: boolean }) | undefined {
     const isMatrix = isNode(value) && value.data !== undefined;
     const four = parts(value, ["x", "y", "z", "w"]) ?? parts(value, ["qx", "qy", "qz", "qw"]);
@@ -279,7 +279,7 @@ export class Motions {
   /** Resolves what depends on the whole file: the order of rotations, the frames, and the warnings. */
   finish(cameras: readonly NamedCamera[], own: readonly NamedPose[]): void {
     this.#dropReference(cameras);
-    // Where several cameras have one pose each, the poses relate them to the world.
+    // If several cameras have one pose each, these are poses in the world.
     const each = own.filter((pose) => this.poses.includes(pose));
     if (each.length > 1)
       for (const pose of each)
@@ -293,7 +293,7 @@ export class Motions {
     }
     // ARKit's transforms are poses of the camera in the world.
     if (this.#signs.isARKit) this.placeInWorld(0);
-    // All poses of the world lead into it, so that they are not mistaken for extrinsics.
+    // All poses in the world lead into it, so that they are not mistaken for extrinsics.
     for (const pose of this.poses)
       if (pose.from === "world" && pose.to !== undefined && !this.#defined.has(pose))
         Object.assign(pose, { from: pose.to, to: "world", pose: inverseOf(pose.pose) });
@@ -322,13 +322,13 @@ export class Motions {
     this.#warnings.push(
       warning(
         "pose-assumed",
-        `The file has ${unnamed.length} poses without the names of their frames (${names.join(", ")}). Each was taken to lead from the depth camera or the LiDAR to the colour camera; keep the one that does, and name it depth_to_color or lidar_to_camera.`,
+        `The file has ${unnamed.length} poses without the names of their frames (${names.join(", ")}). Each was read as leading from the depth camera or the LiDAR to the colour camera; keep the one that does, and name it depth_to_color or lidar_to_camera.`,
         { poses: unnamed.length },
       ),
     );
   }
 
-  /** Of several poses between the same frames first estimates come last; each is called by the object around it, too. */
+  /** If there are several poses between the same frames, first estimates come last; each is also named after the object around it. */
   #rankEstimates(): void {
     const calledOf = (pose: NamedPose) => `${this.#parents.get(pose) ?? ""} ${pose.name ?? ""}`.trim();
     const hasOther = (pose: NamedPose) =>
@@ -345,12 +345,12 @@ export class Motions {
     this.#warnings.push(
       warning(
         "pose-assumed",
-        `The file has several poses between the same frames; ${left.slice(0, FEW).join(", ")} ${left.length > 1 ? "are first estimates by their names and come" : "is a first estimate by its name and comes"} after the others.`,
+        `The file has several poses between the same frames; ${left.slice(0, FEW).join(", ")} ${left.length > 1 ? "have the names of first estimates and come" : "has the name of a first estimate and comes"} after the others.`,
       ),
     );
   }
 
-  /** Makes poses of the camera in the world of those without frames, from this index on. */
+  /** Turns poses without frames, from this index on, into poses of the camera in the world. */
   placeInWorld(first: number): void {
     for (const pose of this.poses.slice(first))
       if (pose.from === undefined && pose.to === undefined) Object.assign(pose, { from: "camera", to: "world" });
@@ -370,19 +370,19 @@ export class Motions {
     this.poses.splice(0, this.poses.length, ...kept);
   }
 
-  /** Warns where a name mentions two frames and it is not understood which way the pose leads. */
+  /** Warns if a name mentions two frames and the direction of the pose is not clear. */
   #checkDirection({ name = "", from, to }: NamedPose): void {
     if (from !== undefined || to !== undefined || !mentionsTwo(name)) return;
     this.#warnings.push(
       warning(
         "pose-assumed",
-        `"${name}" names two frames, but not in a known way which one it leads to. It was taken to lead to the colour camera; name it depth_to_color, lidar_to_camera or the like.`,
+        `"${name}" names two frames, but its direction is not clear. It was read as leading to the colour camera; name it depth_to_color, lidar_to_camera or the like.`,
         { name },
       ),
     );
   }
 
-  /** Determines rows or columns where the file has the inverse motion, too. */
+  /** Decides between rows and columns if the file has the inverse motion as well. */
   #checkOrder(pose: NamedPose): void {
     const other = this.poses.find(({ from, to }) => from !== undefined && from === pose.to && to === pose.from);
     if (other === undefined || !this.#open.has(other)) return;
@@ -394,7 +394,7 @@ export class Motions {
     this.#open.delete(other);
   }
 
-  /** Names the frames of FAST-LIO's "extrinsic_R", from the LiDAR, and VINS's "extrinsicRotation", from the camera, into the inertial unit. */
+  /** Names the frames of FAST-LIO's "extrinsic_R" (LiDAR to inertial unit) and of VINS's "extrinsicRotation" (camera to inertial unit). */
   #nameExtrinsic(pose: NamedPose): void {
     if (pose.from !== undefined || pose.to !== undefined || !this.#signs.hasImu) return;
     if (!/^extrinsic|^extrin/i.test(pose.name ?? "")) return;

@@ -118,7 +118,7 @@ function remembered<T>(of: (name: string) => T): (name: string) => T {
   };
 }
 
-/** The words without the first phrase that they begin or end with; undefined where there is no such phrase. */
+/** The words without the first phrase with which they begin or end; undefined without one. */
 function without(words: string[], phrases: string[][]): string | undefined {
   for (const phrase of phrases) {
     const is = (some: string[]) => some.length === phrase.length && some.every((word, at) => word === phrase[at]);
@@ -188,8 +188,8 @@ export interface MotionName extends Attributes {
 }
 
 /** Frames of one letter each, as in robotics papers: "Rcl" is the rotation from the LiDAR to the camera. */
-const LETTERED = /^([RrTtPp])_?(?:([a-z])_?([a-z])|([A-Z])_?([A-Z]))$/;
-/** Frames in capitals, as in OKVIS and EuRoC. */
+const LETTERED = /^([RrTtPpX])_?(?:([a-z])_?([a-z])|([A-Z])_?([A-Z]))$/;
+/** Frames in capitals, as in OKVIS, whose "T_SC" has the inertial sensor beside a camera, and in EuRoC, whose "T_BS" has any sensor. */
 const CAPITALS: Record<string, string> = {
   ...{ B: "body", S: "sensor", C: "camera" },
   ...{ W: "world", G: "world", L: "lidar", I: "imu" },
@@ -201,12 +201,20 @@ const LETTERS: Record<string, string> = {
 /** The cameras of a stereo pair: ORB-SLAM's "Tlr" carries points of the right camera into the left one. */
 const SIDES: Record<string, string> = { l: "left", r: "right" };
 
-/** The frames of "Rcl", "T_ic" and the like. */
+/** Frames of ViSP's "cMo" and "eMc": camera, end effector, the robot's fixed frame, object, world. */
+const VISP = /^([cefow])[MT]([cefow])$/;
+const OF_VISP: Record<string, string> = { c: "camera", e: "gripper", f: "base", o: "object", w: "world" };
+
+/** The frames of "Rcl", "T_ic", "cMo" and the like. */
 export function letteredFrames(name: string): { from: string; to: string } | undefined {
+  const [, into, of] = VISP.exec(name) ?? [];
+  if (into !== of) return { from: OF_VISP[of ?? ""] ?? "", to: OF_VISP[into ?? ""] ?? "" };
   const [, , to = "", from = "", above = "", below = ""] = LETTERED.exec(name) ?? [];
   const pair = [SIDES[to || above.toLowerCase()], SIDES[from || below.toLowerCase()]];
   if (pair[0] !== undefined && pair[1] !== undefined && pair[0] !== pair[1]) return { from: pair[1], to: pair[0] };
-  const [target, source] = [LETTERS[to] ?? CAPITALS[above], LETTERS[from] ?? CAPITALS[below]];
+  const named = (lower: string, upper: string, other: string) =>
+    LETTERS[lower] ?? (upper === "S" && other === "C" ? "imu" : CAPITALS[upper]);
+  const [target, source] = [named(to, above, below), named(from, below, above)];
   return target !== undefined && source !== undefined && target !== source ? { from: source, to: target } : undefined;
 }
 
@@ -230,7 +238,7 @@ function motionName(name: string, phrases: string[][], letters: string): MotionN
   }
   const label = without(rest, phrases);
   if (label !== undefined) return { label, ...said };
-  // "euler_deg" and "rpy" name a rotation without any other word.
+  // "euler_deg" and "rpy" name a rotation even without another word.
   return phrases === ROTATION && said.kind === "euler" ? { label: rest.join(" "), ...said } : undefined;
 }
 

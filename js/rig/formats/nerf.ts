@@ -1,6 +1,6 @@
 /**
  * `transforms.json` of nerfstudio, instant-ngp and Blender's synthetic scenes: one camera, or one for each frame, and its poses. These lead
- * from the camera into the world and are not extrinsics. They are turned from OpenGL's axes (y up, z backward) to OpenCV's.
+ * from the camera into the world and are not extrinsics. They are converted from OpenGL's axes (y up, z backward) to OpenCV's.
  */
 import { BROWN_NAMES, FISHEYE_NAMES, type RawCamera } from "./cameras.js";
 import { CORNER } from "./colmap.js";

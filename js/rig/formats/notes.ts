@@ -6,7 +6,7 @@ import type { Node, Numbers } from "./numbers.js";
 import { numberOf } from "./numbers.js";
 import { plainPython } from "./settings.js";
 
-/** Most lines and numbers of such a text; calibrations have some hundred. */
+/** Most lines and numbers of such a text; calibrations have a few hundred. */
 const MOST_LINES = 5000;
 const MOST_NUMBERS = 20_000;
 const LONGEST_NAME = 80;
@@ -45,7 +45,7 @@ class Notes {
         this.#add(number);
         [key, value] = [[], undefined];
       } else if (token === ":" || token === "=") {
-        // Of two names, as in "depth intrinsics: width: 640", the first one is the group's.
+        // If there are two names, as in "depth intrinsics: width: 640", the first one is the group's.
         if (value !== undefined && value.length > 0) {
           this.#close();
           this.#begin(key.join(" "));
@@ -127,7 +127,7 @@ class Notes {
   }
 }
 
-/** The numbers of a text by their names; undefined where there are too many. */
+/** The numbers of a text by their names; undefined if there are too many. */
 export function readNotes(text: string): Node | undefined {
   const lines = plainPython(text).split(/\r?\n/);
   if (lines.length > MOST_LINES) return undefined;

@@ -1,27 +1,84 @@
-/** Matrices in .npy files: intrinsics of 3x3, motions of 3x4 and 4x4, which are too small to be images. */
+/** Calibrations in .npy and .npz files: intrinsics of 3x3 and motions of 3x4 and 4x4, which are too small to be images. */
 import { BimodalError } from "../../errors.js";
-import { isNpy, readNpy } from "../../npy.js";
+import { isNpy, readSmall } from "../../npy.js";
+import { entriesOf, unpacked } from "./zip.js";
 import { isLastRow } from "./poses.js";
 
 /** Most bytes of such a file, with any header. */
 const MOST_BYTES = 1024;
 
+/** Whether rows are intrinsics of 3x3, or a motion of 3x4 or 4x4. */
+function isMatrix(rows: readonly (readonly number[])[]): boolean {
+  const [width = 0, height] = [rows[0]?.length, rows.length];
+  const [a = 0, b = 0, c = 0] = rows[2] ?? [];
+  if (width === 3) return height === 3 && a === 0 && b === 0 && c === 1;
+  if (width !== 4 || (height !== 3 && height !== 4)) return false;
+  return height === 3 ? Math.abs(Math.hypot(a, b, c) - 1) < 1e-2 : isLastRow([...(rows[3] ?? [])]);
+}
+
+/** The numbers in rows of one width. */
+const inRows = (values: readonly number[], [height = 1, width = 1]: readonly number[]): number[][] =>
+  Array.from({ length: height }, (_, at) => values.slice(at * width, (at + 1) * width));
+
 /** The rows as text, as numpy.savetxt writes them; undefined where the array is not such a matrix. */
 export function matrixText(bytes: Uint8Array): string | undefined {
   if (bytes.length > MOST_BYTES || !isNpy(bytes)) return undefined;
   try {
-    const { width, height, channels, data } = readNpy(bytes);
-    if (channels !== 1 || height < 3 || height > 4 || width < 3 || width > 4) return undefined;
-    const rows = Array.from({ length: height }, (_, at) =>
-      Array.from(data.slice(at * width, (at + 1) * width), Number),
-    );
-    const [a = 0, b = 0, c = 0] = rows[2] ?? [];
-    const isIntrinsics = width === 3 && height === 3 && a === 0 && b === 0 && c === 1;
-    const isMotion =
-      width === 4 && (height === 3 ? Math.abs(Math.hypot(a, b, c) - 1) < 1e-2 : isLastRow(rows[3] ?? []));
-    return isIntrinsics || isMotion ? rows.map((row) => row.join(" ")).join("\n") : undefined;
+    const { axes, values } = readSmall(bytes, MOST_NUMBERS);
+    if (values === undefined) return undefined;
+    const rows = inRows(values, axes);
+    return isMatrix(rows) ? rows.map((row) => row.join(" ")).join("\n") : undefined;
   } catch (error) {
     if (error instanceof BimodalError) return undefined;
+    throw error;
+  }
+}
+
+/** The numbers of an array of one row or column, as those of a lens; undefined for other files. */
+export function lensArray(bytes: Uint8Array): number[] | undefined {
+  if (bytes.length > MOST_BYTES || !isNpy(bytes)) return undefined;
+  try {
+    const { axes, values } = readSmall(bytes, MOST_NUMBERS);
+    return axes.length < 2 || axes.includes(1) ? values : undefined;
+  } catch (error) {
+    if (error instanceof BimodalError) return undefined;
+    throw error;
+  }
+}
+
+/** Most numbers of an array of a calibration: matrices of 16 and lenses of 14, and motions of the views that it was made from. */
+const MOST_NUMBERS = 400;
+/** Most bytes of such an archive; a picture beside the matrices takes more. */
+const MOST_ARCHIVE = 1 << 17;
+/** The plainest names of a depth map in an archive. */
+export const DEPTH = /^(?:depth|depths|depth_?map|depth_?image)$/i;
+/** Bytes at the start of an archive that has one array at least. */
+const IS_ZIP = [0x50, 0x4b, 0x03, 0x04];
+
+/** An array as JSON has it: a list, or rows; undefined where it is too large for a calibration. */
+function listed(bytes: Uint8Array): number[] | number[][] | undefined {
+  const { axes, values } = readSmall(bytes, MOST_NUMBERS);
+  if (values === undefined) return undefined;
+  return axes.length < 2 || axes.includes(1) ? values : inRows(values, axes);
+}
+
+/**
+ * The arrays of an archive by their names, as JSON, where one is a matrix of a calibration, as OpenCV's users save it.
+ * Arrays too large for that, as those of the board's corners, are left out.
+ */
+export function archiveText(bytes: Uint8Array): string | undefined {
+  if (bytes.length > MOST_ARCHIVE || !IS_ZIP.every((byte, at) => bytes[at] === byte)) return undefined;
+  try {
+    const arrays = entriesOf(bytes).map(
+      (entry) => [entry.name.replace(/\.npy$/i, ""), unpacked(bytes, entry)] as const,
+    );
+    const found = arrays.filter(([, array]) => isNpy(array)).map(([name, array]) => [name, listed(array)] as const);
+    if (found.some(([name]) => DEPTH.test(name))) return undefined;
+    const isCalibration = found.some(([, rows]) => Array.isArray(rows?.[0]) && isMatrix(rows as number[][]));
+    return isCalibration ? JSON.stringify(Object.fromEntries(found)) : undefined;
+  } catch (error) {
+    // What reads it as an image says what is wrong with it.
+    if (error instanceof BimodalError || error instanceof RangeError) return undefined;
     throw error;
   }
 }

@@ -5,23 +5,27 @@ import type { Pixels } from "../../raster.js";
 import { FEWEST_POINTS, columnOf, pointsOf } from "./channels.js";
 import { isImage, sizeOfCount } from "./grid.js";
 import { checkSize } from "./limits.js";
+import { DEPTH } from "./npy-matrix.js";
 import type { Picture } from "./picture.js";
 import type { ReaderWarning } from "../warnings.js";
 import { entriesOf, unpacked } from "./zip.js";
 
 /** Columns of a list of points: x, y, z and, for instance, intensity or colours; images are wider. */
 const [FEWEST_COLUMNS, MOST_COLUMNS] = [3, 8];
-/** Rows over columns of a list of points, at least; images are not so tall. */
+/** Smallest ratio of rows to columns of a list of points; images are not so tall. */
 const TALL = 10;
 const MOST_LEVEL = 0xffff;
 
-/** Integers of any type as 16 bits, which depth cameras write, where all fit; negative ones are holes. */
+/** Integers of any type as 16 bits, which depth cameras write, if all of them fit; negative ones are holes. */
 function asLevels(data: Pixels): Pixels {
   if (!(data instanceof Float32Array) || data.some((value) => value > MOST_LEVEL)) return data;
   return Uint16Array.from(data, (value) => Math.max(0, value));
 }
 
-/** A list of points as a scan, with intensities where it has the columns of KITTI or nuScenes; as an organised cloud where it has a depth camera's number of pixels. */
+/**
+ * A list of points as a scan, with intensities if it has the columns of KITTI or nuScenes; as an organised cloud if it has as many points
+ * as a depth camera has pixels.
+ */
 function ofList(data: Pixels, count: number, columns: number): Picture {
   const points = pointsOf(data, columns);
   const warnings: ReaderWarning[] = [];
@@ -32,6 +36,16 @@ function ofList(data: Pixels, count: number, columns: number): Picture {
   return { ...list, width: count, height: 1, scan };
 }
 
+/** White and full opacity, for numbers from 0 to 1 and of 8 and 16 bits. */
+const WHITES = [1, 0xff, MOST_LEVEL];
+
+/** Whether the fourth of four channels is no alpha, which is opaque somewhere, but, for instance, the depths of an RGB-D image. */
+function hasDepths(data: Pixels): boolean {
+  let most = 0;
+  for (let at = 3; at < data.length; at += 4) most = Math.max(most, data[at] ?? 0);
+  return most > 0 && !WHITES.includes(most);
+}
+
 /** `check` refuses a size. */
 export function npyPicture(bytes: Uint8Array, check = checkSize): Picture {
   const { type, ...raster } = readNpy(bytes);
@@ -39,13 +53,17 @@ export function npyPicture(bytes: Uint8Array, check = checkSize): Picture {
   const isList = channels === 1 && width >= FEWEST_COLUMNS && width <= MOST_COLUMNS && height >= TALL * width;
   if (isList) return ofList(raster.data, height, width);
   check(width, height);
+  if (channels === 4 && !(raster.data instanceof Uint8Array) && hasDepths(raster.data))
+    throw badFile(
+      "its pixels have four channels, the last of which is nowhere opaque, so that it is no alpha but, for instance, depth; save colours and depths as two files",
+    );
   const data = /^[iu]/.test(type) && channels === 1 ? asLevels(raster.data) : raster.data;
   const bits = 8 * (type === "f2" ? 2 : data.BYTES_PER_ELEMENT);
   return { ...raster, data, format: "npy", bits, notes: [], warnings: [] };
 }
 
-/** Names of arrays that hold depths, the clearest first. */
-const DEPTHS = [/^(?:depth|depths|depth_?map|depth_?image)$/i, /depth|dpt/i, /^(?:z|range|xyz|points?|cloud)$/i];
+/** Names of arrays that hold depths, the most specific first. */
+const DEPTHS = [DEPTH, /depth|dpt/i, /^(?:z|range|xyz|points?|cloud)$/i];
 
 /** The array of an archive that holds the depth map, by its name; the only array of an archive may have any name. */
 export function npzPicture(bytes: Uint8Array): Picture {

@@ -1,4 +1,4 @@
-/** Numbers and matrices as the many files write them. */
+/** Reads numbers and matrices in the many forms in which files write them. */
 
 export type Numbers = number[];
 export type Node = Record<string, unknown>;
@@ -6,11 +6,11 @@ export type Node = Record<string, unknown>;
 export const isNode = (value: unknown): value is Node =>
   typeof value === "object" && value !== null && !Array.isArray(value);
 
-// There is one way to match any digits; with two ways, a long run of digits would take minutes.
+// The pattern matches any digits in only one way; with two ways, a long run of digits would take minutes.
 const NUMBER = /^[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eEdD][-+]?\d+)?$/;
 /** Most numbers of a list; calibrations have matrices of 16 and distortions of 14. */
 const MOST = 64;
-/** Names of a text of numbers. */
+/** Names for "a text of numbers". */
 const MOST_NAMES = 400;
 const LONGEST_TEXT = 200;
 
@@ -32,7 +32,7 @@ export const nodesOf = (value: unknown): Node[] => (Array.isArray(value) ? value
 export const textOf = (value: unknown): string | undefined =>
   typeof value === "string" && value !== "" ? value.slice(0, LONGEST_TEXT) : undefined;
 
-/** Lines of a name and numbers, by their names; `line` matches the name and the rest. */
+/** Lines that consist of a name and numbers, by their names; `line` matches the name and the rest. */
 export function numbersByName(text: string, line: RegExp): Map<string, Numbers> {
   const found = new Map<string, Numbers>();
   for (const each of text.split(/\r?\n/)) {
@@ -57,7 +57,7 @@ function listOf(value: unknown): Numbers | undefined {
   return numbers.every((number) => number !== undefined) ? numbers : undefined;
 }
 
-/** The columns of a square matrix, as Apple's simd has them. */
+/** The columns of a square matrix, in which Apple's simd stores it. */
 function ofColumns(columns: unknown[]): Matrix | undefined {
   const side = columns.length;
   const values = columns.flatMap((column) => listOf(column) ?? []);

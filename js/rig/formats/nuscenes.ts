@@ -24,7 +24,7 @@ export const isNuscenes = (root: unknown): boolean =>
     .slice(0, 20)
     .some(([, each]) => isRecord(each));
 
-/** The name of a record: its channel, where the tables were joined, or else its kind and the beginning of its token. */
+/** The name of a record: its channel if the tables were joined, or else its kind and the beginning of its token. */
 function called(name: string, record: Node): string {
   const channel = record.channel ?? record.sensor_name ?? (name === "" ? undefined : name);
   if (typeof channel === "string") return channel.slice(0, 60);

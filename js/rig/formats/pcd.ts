@@ -13,7 +13,7 @@ interface Field {
   size: number;
   type: string;
   count: number;
-  /** Bytes before it in a point. */
+  /** Bytes that precede it in a point. */
   offset: number;
 }
 
@@ -124,7 +124,7 @@ const READS: Record<string, Read> = {
   I8: (view, at) => Number(view.getBigInt64(at, true)),
 };
 
-/** Where the values of a field are written: at `first` and every `step` places from there. */
+/** Where the values of a field are written: at `first` and then every `step` places. */
 interface Target {
   field: Field;
   into: Float32Array | Float64Array;
@@ -203,7 +203,7 @@ function scanOf(body: Uint8Array, head: Header): Scan {
   return ofBinary(lzf(body.subarray(8, 8 + packed), length), head, true);
 }
 
-/** Bytes of uncompressed points, at most; a short file may declare any number. */
+/** Most bytes of uncompressed points; a short file may declare any number. */
 const MOST_BYTES = 2 ** 28;
 
 export function readPcd(bytes: Uint8Array): Cloud | Points {

@@ -1,4 +1,4 @@
-/** Files of only numbers: K.txt, matrices of motions, and trajectories as those of TUM and Redwood. */
+/** Files that contain only numbers: K.txt, matrices of motions, and trajectories in the formats of TUM and Redwood. */
 import { badFile } from "../../errors.js";
 import type { NamedPose } from "../types.js";
 import { cameraOf, ofMatrix } from "./cameras.js";
@@ -17,7 +17,7 @@ const MOST_NUMBERS = 200_000;
 const HEAD = 1000;
 const near = (value: number | undefined, to: number): boolean => value !== undefined && Math.abs(value - to) < 1e-9;
 
-/** Rows of numbers, without comments and brackets; undefined where the text has anything else. */
+/** Rows of numbers, without comments and brackets; undefined if the text contains anything else. */
 function rowsOf(text: string): Numbers[] | undefined {
   const rows: Numbers[] = [];
   let count = 0;
@@ -47,6 +47,8 @@ const camera = (k: Numbers, size: Numbers, distortion: Numbers = []): Found => {
   return { cameras: [cameraOf(raw, warnings)], poses: [], warnings, format: "a matrix of intrinsics" };
 };
 
+const cameraMatrix = ([fx = NaN, fy = NaN, cx = NaN, cy = NaN]: Numbers): Numbers => [fx, 0, cx, 0, fy, cy, 0, 0, 1];
+
 /** Nine numbers: a matrix of intrinsics, or a rotation without its translation. */
 function nine(values: Numbers, size: Numbers): Found {
   if (near(values[3], 0) && near(values[6], 0) && near(values[7], 0) && near(values[8], 1)) return camera(values, size);
@@ -65,6 +67,41 @@ function intrinsicsOf4x4(values: Numbers): Numbers | undefined {
   const isK = zeros && near(values[10], 1) && near(values[15], 1) && (values[0] ?? 0) > 2 && (values[5] ?? 0) > 2;
   return isK ? parted(values)[0] : undefined;
 }
+
+/** Numbers of distortion that OpenCV writes. */
+const LENSES = [4, 5, 8, 12, 14];
+const isK = (k: Numbers): boolean =>
+  k.length === 9 && [3, 6, 7].every((at) => near(k[at], 0)) && near(k[8], 1) && Math.min(k[0] ?? 0, k[4] ?? 0) > 10;
+
+/** A matrix of intrinsics, a line of OpenCV's distortion and, where there is one, the motion below it; a size may be the first line. */
+function withLens(rows: Numbers[], text: string): Found | undefined {
+  const size = rows[0]?.length === 2 ? rows.slice(0, 1) : [];
+  const body = rows.slice(size.length);
+  const count = body[0]?.length === 9 ? 1 : 3;
+  const [k, lens] = [body.slice(0, count).flat(), body[count] ?? []];
+  const motion = body.slice(count + 1);
+  if (!isK(k) || body.slice(0, count).some((row) => row.length !== 9 / count) || !LENSES.includes(lens.length))
+    return undefined;
+  const isMotion = [3, 4].includes(motion.length) && motion.every((row) => row.length === 4);
+  if (motion.length > 0 && !isMotion) return undefined;
+  const found = camera(k, size.flat(), lens);
+  if (isMotion) found.poses.push(aloneOf(motion.flat(), text, found.warnings));
+  return found;
+}
+
+/** "fx fy cx cy k1 k2 p1 p2" in one line, rather than a time, a translation and a quaternion. */
+function isCameraOfEight([row = [], ...others]: Numbers[]): boolean {
+  const [fx = 0, fy = 0, cx = 0, cy = 0] = row;
+  if (others.length > 0 || row.length !== 8 || Math.min(fx, fy, cx, cy) <= 10 || fx > 2 * fy || fy > 2 * fx)
+    return false;
+  if (Math.abs(Math.hypot(...row.slice(4)) - 1) < UNIT_SLACK)
+    throw badFile(
+      "its eight numbers may be fx fy cx cy k1 k2 p1 p2 or a time, a translation and a quaternion; write the camera as a matrix of 3x3 above a line of its distortion, or the pose as a matrix of 4x4",
+    );
+  return true;
+}
+/** Largest difference of a written quaternion's length from 1. */
+const UNIT_SLACK = 0.01;
 
 /** ARKitScenes' .pincam: "width height fx fy cx cy" in one line. */
 function isPincam(rows: Numbers[]): boolean {
@@ -113,7 +150,7 @@ function matrices(rows: Numbers[]): Found {
   return { cameras: [], poses, warnings: distinct(warnings, 4), format: "a trajectory" };
 }
 
-/** The motion of a file without names, in the unit of its comments. */
+/** The motion of a file without names, in the unit that its comments state. */
 function aloneOf(read: Numbers, text: string, warnings: ReaderWarning[]): NamedPose {
   const unit = unitInComments(text);
   if (isProjection(read)) throw badFile(`its matrix ${PROJECTION}`);
@@ -133,6 +170,9 @@ export function readNumbers(text: string): Found | undefined {
   const widths = new Set(rows.map((row) => row.length));
   const [width] = widths;
   if (rows.length % 5 === 0 && rows.every((row, index) => row.length === (index % 5 === 0 ? 3 : 4))) return log(rows);
+  const lensed = withLens(rows, text);
+  if (lensed !== undefined) return lensed;
+  if (isCameraOfEight(rows)) return camera(cameraMatrix(values), [], values.slice(4));
   if (widths.size === 1 && (width === 8 || width === 7) && rows.length >= 1) return trajectory(rows, text);
   if (widths.size === 1 && (width === 12 || width === 16) && rows.length >= 2) return matrices(rows);
   const size = rows[0]?.length === 2 && values.length === 11 ? values.slice(0, 2) : [];
@@ -142,15 +182,15 @@ export function readNumbers(text: string): Found | undefined {
   if (k !== undefined) return camera(k, []);
   if (isPincam(rows)) {
     const [, , fx = NaN, fy = NaN, cx = NaN, cy = NaN] = values;
-    return camera([fx, 0, cx, 0, fy, cy, 0, 0, 1], values.slice(0, 2));
+    return camera(cameraMatrix([fx, fy, cx, cy]), values.slice(0, 2));
   }
   if (values.length === 12 || values.length === 16) {
     const warnings: ReaderWarning[] = [];
     return { cameras: [], poses: [aloneOf(values, text, warnings)], warnings, format: "a matrix of a transform" };
   }
-  const [fx = 0, fy = 0, cx = 0, cy = 0, ...lens] = values;
+  const [fx = 0, fy = 0, , , ...lens] = values;
   if (rows.length === 1 && [4, 9, 12].includes(values.length) && fx > 10 && fy > 10)
-    return camera([fx, 0, cx, 0, fy, cy, 0, 0, 1], [], lens);
+    return camera(cameraMatrix(values), [], lens);
   throw badFile(
     `it has ${values.length} numbers in ${rows.length} rows; 3x3 of intrinsics, 3x4 or 4x4 of a transform, or rows of a trajectory are needed`,
   );

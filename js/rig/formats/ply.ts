@@ -32,7 +32,7 @@ interface Property {
   name: string;
   size: number;
   read: Read;
-  /** Of a list: how its length is written. */
+  /** The type of the length, for a list. */
   count?: { size: number; read: Read };
 }
 
@@ -87,7 +87,7 @@ function property(element: Element | undefined, [type, ...rest]: string[]): void
   if (element.properties.length > 100) throw badFile("this PLY has more than 100 properties");
 }
 
-/** One number after the other. */
+/** Reads one number after the other. */
 interface Source {
   next(type: { size: number; read: Read }): number;
 }
@@ -155,7 +155,7 @@ function scanOf(source: Source, { count, properties }: Element): Scan {
   return scan;
 }
 
-/** The points of a grid's cells, each of which has the number of its point or none. */
+/** The points of a grid's cells, each of which has the index of its point or none. */
 function inCells(
   source: Source,
   grid: Element,
@@ -186,7 +186,7 @@ export function readPly(bytes: Uint8Array): Cloud | Points {
   const warnings: ReaderWarning[] = [];
   const grid = others[0]?.name === "range_grid" ? others[0] : undefined;
   const body = bytes.subarray(end);
-  // A number as text has a digit and a space at least.
+  // A number as text has at least a digit and a space.
   const least =
     vertices.count * vertices.properties.reduce((sum, { size }) => sum + (format === "ascii" ? 2 : size), 0) - 1;
   checkBytes(least, body.length, "this PLY");

@@ -1,4 +1,4 @@
-/** PNG upright and in sRGB, as far as its metadata say. */
+/** PNG, turned upright and converted to sRGB as its metadata say. */
 import { readPng } from "../../png.js";
 import { exifOrientation, turnedBy } from "./exif.js";
 import { damagedProfile, inSrgb, pngProfile } from "./icc.js";
@@ -6,7 +6,7 @@ import { checkSize } from "./limits.js";
 import type { Picture } from "./picture.js";
 import { warning } from "../warnings.js";
 
-/** gAMA of a linear picture and of sRGB, and how far off they may be. */
+/** gAMA of a linear picture and of sRGB, and the tolerance for both. */
 const LINEAR = 100_000;
 const SRGB = 45_455;
 const SAME = 0.02;

@@ -4,7 +4,7 @@ import { checkBytes, checkSize } from "./limits.js";
 import type { Picture } from "./picture.js";
 import { Words } from "./tokens.js";
 
-/** A maximum of PNM's samples; more does not fit 16 bits. */
+/** Largest maximum of PNM's samples; more does not fit 16 bits. */
 const MOST_LEVEL = 65_535;
 
 const whole = (words: Words, what: string): number => {
@@ -55,7 +55,7 @@ function level(words: Words, most: number, at: number, count: number): number {
   return value;
 }
 
-/** P1 may go without spaces between its bits. */
+/** In P1 the spaces between bits may be missing. */
 function bitText(words: Words, data: Uint8Array | Uint16Array): void {
   let word = "";
   for (let at = 0; at < data.length; at++) {
@@ -85,12 +85,12 @@ function unpackBytes(body: Uint8Array, data: Uint8Array | Uint16Array, most: num
   for (let at = 0; at < data.length; at++) {
     const value = wide ? ((body[2 * at] ?? 0) << 8) | (body[2 * at + 1] ?? 0) : (body[at] ?? 0);
     data[at] = value;
-    // Bytes in the wrong order go beyond an odd maximum; the depth reader looks at that.
+    // Bytes in the wrong order exceed an unusual maximum; the depth reader handles them.
     if (value > most && !wide) throw badFile(`its level ${at} is ${value}, beyond its maximum of ${most}`);
   }
 }
 
-/** Rows from the bottom up; the sign of the scale gives the byte order. */
+/** Rows are stored from the bottom up; the sign of the scale gives the byte order. */
 export function readPfm(bytes: Uint8Array): Picture {
   const words = new Words(bytes, true);
   const channels = words.next() === "PF" ? 3 : 1;

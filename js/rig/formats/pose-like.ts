@@ -3,7 +3,7 @@ import { isNoMotion, isTranslation, rotationName, wordsOf } from "./names.js";
 import { isNode, matrixOf } from "./numbers.js";
 import { isRotation, parted } from "./poses.js";
 
-/** Names of transforms. A matrix by another name has to be a motion by its numbers. */
+/** Names of transforms. A matrix under another name counts only if its numbers are a motion. */
 export const TRANSFORM = /^T_|(?:_to_|_from_|2)[a-z]|transform|extrinsic|pose/i;
 /** Names of lists of poses, such as those of a calibration board. */
 const SERIES =
@@ -20,7 +20,7 @@ export function isPoseLike(key: string, value: unknown, rectifies: boolean): boo
   if (values === undefined) return false;
   if (values.length === 16 || values.length === 12) return isRotation(parted(values)[0]);
   if ((values.length === 6 || values.length === 7) && TRANSFORM.test(key)) return true;
-  // An identity in a camera is that of rectification, whatever its name.
+  // An identity in a camera belongs to the rectification, whatever its name.
   const isIdentity = values.length === 9 && values.every((each, index) => each === (index % 4 === 0 ? 1 : 0));
   if (rectifies && isIdentity) return false;
   if (rotationName(key) !== undefined && !/^[qr]\d*$/i.test(key))

@@ -1,5 +1,5 @@
 /**
- * Rigid motions as files write them: checked, orthonormal to the last digit, in metres, P_to = R P_from + t.
+ * Rigid motions as files write them, P_to = R P_from + t, checked, made exactly orthonormal and converted to metres.
  */
 import { badFile } from "../../errors.js";
 import { anglesOf, determinant, matrixOf } from "../../matrices.js";
@@ -31,7 +31,7 @@ function skewness(r: Numbers): number {
   return most;
 }
 
-/** The nearest rotation, by Newton's iteration for the polar factor: quadratic, four steps from 1e-2 are exact. */
+/** The nearest rotation, by Newton's iteration for the polar factor: convergence is quadratic, and four steps from 1e-2 are exact. */
 function nearestRotation(matrix: Numbers): Numbers {
   let r = matrix;
   for (let step = 0; step < 6; step++) {
@@ -47,7 +47,7 @@ function nearestRotation(matrix: Numbers): Numbers {
   return r;
 }
 
-/** Whether nine numbers are a rotation, to the digits of a file. */
+/** Whether nine numbers are a rotation, within the precision of the file's digits. */
 export const isRotation = (values: Numbers): boolean => values.length === 9 && skewness(values) <= ROTATION_TOLERANCE;
 
 /** The angle of a rotation, degrees. */
@@ -104,7 +104,7 @@ export function ofVector([x = 0, y = 0, z = 0]: Numbers): Numbers {
   return ofQuaternion([x * half, y * half, z * half, Math.cos(angle / 2)], []);
 }
 
-/** ROS 1's yaw, pitch and roll in rad: about z, then y, then x, of fixed axes in the order roll, pitch, yaw. */
+/** ROS 1's yaw, pitch and roll in rad: rotations about the fixed axes in the order roll (x), pitch (y), yaw (z). */
 export function ofYawPitchRoll([yaw = 0, pitch = 0, roll = 0]: Numbers): Numbers {
   const [cy, sy, cp, sp, cr, sr] = [
     Math.cos(yaw),
@@ -182,7 +182,7 @@ export function chained(a: Pose, b: Pose): Pose {
   );
 }
 
-/** A translation in metres. With `isRig` it relates two cameras, and one that is longer than a rig is in millimetres. */
+/** A translation in metres. With `isRig` it relates two cameras; if it is longer than a rig, it is in millimetres. */
 function shiftOf(values: Numbers, isRig: boolean, warnings: ReaderWarning[]): Numbers {
   if (values.length !== 3 || !values.every((value) => Number.isFinite(value) && Math.abs(value) < 1e9))
     throw badFile("a translation has three numbers");
@@ -248,6 +248,6 @@ export function motionOfMatrix(
   return motion(...parted(values), names, warnings, isRig);
 }
 
-/** Whether a pose is for points in a LiDAR's axes: two cameras that see the same thing look nearly along one axis z. */
+/** Whether a pose is for points in a LiDAR's axes: two cameras that see the same scene look nearly along the same axis z. */
 export const isOfScan = ({ rotation }: { readonly rotation: ArrayLike<number> }): boolean =>
   (rotation[8] ?? 1) < Math.SQRT1_2;

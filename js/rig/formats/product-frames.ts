@@ -1,10 +1,10 @@
-/** The frames of motions whose names are a product's own. */
+/** The frames of motions with names that only one product uses. */
 import type { Frames, PoseNames } from "./ends.js";
 import type { Signs } from "./signs.js";
 
 /**
- * The frames of rotations and translations whose names are a product's own: FAST-LIO has the LiDAR in the inertial unit, VINS and R3LIVE the
- * camera.
+ * The frames of rotations and translations with names that only one product uses: FAST-LIO has the LiDAR in the inertial unit, VINS and
+ * R3LIVE the camera.
  */
 export function productFrames(turn: string, shift: string, { isR3Live }: Signs): Frames {
   if (turn === "extrinsic_R" && shift === "extrinsic_T") return { from: "lidar", to: "imu" };

@@ -1,6 +1,6 @@
 /**
- * Files of products whose units, quaternion order, frames or modes are not in the file but in the product's documentation. Each product has a
- * reader, and these come before the search by names of members (tree.ts).
+ * Files of products whose documentation, not the file, gives the units, quaternion order, frames or modes. Each product has a reader; these
+ * run before the search by names of members (tree.ts).
  */
 import { isA2d2, readA2d2 } from "./a2d2.js";
 import { isAria, readAria } from "./aria.js";
@@ -25,15 +25,18 @@ import { isKitti, readKitti } from "./kitti.js";
 import { isBouguet, isMatlab, readBouguet, readMatlab } from "./matlab.js";
 import { isMiddlebury, readMiddlebury } from "./middlebury.js";
 import { isMrcal, looksLikeMrcal, readMrcal } from "./mrcal.js";
+import { isMultical, readMultical } from "./multical.js";
 import { isNerf, readNerf } from "./nerf.js";
 import { isNode, type Node } from "./numbers.js";
 import { isNuscenes, readNuscenes } from "./nuscenes.js";
+import { isInfoTable, isSimd, isStamped, readInfoTable, readSimd, readStamped } from "./prints.js";
 import { isEnumeration, isPrinted, isSnapshot, readEnumeration, readPrinted, readSnapshot } from "./realsense.js";
 import { isRecord3d, readRecord3d } from "./record3d.js";
 import { isScannet, readScannet } from "./scannet.js";
 import { isUrdf, readUrdf } from "./urdf.js";
 import { isVlcal, readVlcal } from "./vlcal.js";
 import { isWaymo, isWaymoText, readWaymo, readWaymoText } from "./waymo.js";
+import { isCommandWindow, isOrbbecPrint, readCommandWindow, readOrbbecPrint } from "./windows.js";
 import type { Element } from "./xml.js";
 import { isZed, readZed } from "./zed.js";
 import { isZivid, readZivid } from "./zivid.js";
@@ -44,6 +47,11 @@ const TEXTS: Product<string>[] = [
   ["RealSense's list of streams", isEnumeration, readEnumeration],
   ["a print of pyrealsense2", isPrinted, readPrinted],
   ["a snapshot of RealSense's viewer", isSnapshot, readSnapshot],
+  ["a print of Orbbec's SDK", isOrbbecPrint, readOrbbecPrint],
+  ["a print of MATLAB's command window", isCommandWindow, readCommandWindow],
+  ["a print of simd", isSimd, readSimd],
+  ["a print of ROS's transform", isStamped, readStamped],
+  ["a table of ROS's camera_info", isInfoTable, readInfoTable],
   ["an Azure Kinect's printed calibration", isAzurePrint, readAzurePrint],
   ["a ZED's calibration", isZed, readZed],
   ["ScanNet's description of a scene", isScannet, readScannet],
@@ -71,13 +79,14 @@ const TREES: Product<Node>[] = [
   ["a result of easy_handeye", isHandEye, readHandEye],
   ["a transforms.json of nerfstudio", isNerf, readNerf],
   ["the metadata of Record3D", isRecord3d, readRecord3d],
+  ["a calibration of multical", isMultical, readMultical],
   ["a camera with a depth_scale, as of BOP", isBop, readBop],
   ["a sensor kit's calibration of Autoware", isAutoware, readAutoware],
 ];
 
 type Found = Findings & { format: string };
 
-/** The findings of a reader, which must not be empty, with the name of the format. */
+/** The findings of a reader, with the name of the format; they must not be empty. */
 const named = (found: Findings, format: string): Found => Object.assign(found.done(format), { format });
 
 /** The cameras and poses of a product's text; undefined where no product is recognised. */
@@ -92,7 +101,7 @@ const MOST_MEMBERS = 20_000;
 /** The cameras and poses of a product's object, which may be the only document of a YAML file. */
 export function productOfTree(value: unknown): Found | undefined {
   const whole: unknown = Array.isArray(value) && value.length === 1 ? value[0] : value;
-  // Each reader looks through all members to recognise its product.
+  // To recognise its product, each reader looks through all members.
   if (isNode(whole) && Object.keys(whole).length > MOST_MEMBERS) return undefined;
   const [format, , read] = (isNode(whole) ? TREES.find(([, is]) => is(whole)) : undefined) ?? [];
   if (format !== undefined && read && isNode(whole)) return named(read(whole), format);

@@ -35,7 +35,7 @@ export function readColmapMap(bytes: Uint8Array): Picture {
   return { ...size, channels: 1, data, format: "COLMAP", bits: 32, unit: 1, notes: ["COLMAP's depth map"], warnings };
 }
 
-/** Points that are examined, at most. */
+/** Most points that are examined. */
 const LOOKED_AT = 256;
 /** The range of a LiDAR, metres. */
 const REACH = 400;
@@ -56,7 +56,7 @@ function isCloudOf(view: DataView, floats: number): boolean {
     if (floats > 4 && !(at(4) >= -1 && at(4) < MOST_RINGS)) return false;
     seen++;
     if (x < 0 || y < 0) negative++;
-    // Integers are next to zero when they are read as floats.
+    // Integers that are read as floats are next to zero.
     if (Math.hypot(x, y, z) > 0.1) there++;
   }
   return there > 0.5 * seen && negative > 0.1 * seen;
@@ -68,10 +68,10 @@ export function arePoints(bytes: Uint8Array): boolean {
   return isCloudOf(view, 4) || isCloudOf(view, 5);
 }
 
-/** The error about such points where they are not a scan. */
+/** The error about such points if they are not a scan. */
 export const pointsRefused = () =>
   badFile(
-    "it looks like the points of a LiDAR (a velodyne .bin of KITTI or nuScenes) in no rows and columns (unorganised), and they are too few or too scattered for a range image; save them as an organised cloud or as a depth map",
+    "it looks like a LiDAR's points without rows and columns (unorganised; a velodyne .bin of KITTI or nuScenes), which are too few or too scattered for a range image; save them as an organised cloud or as a depth map",
   );
 
 const EXTENSION = /\.(?:raw|bin|dat|depth|z16|data|yuv)$/i;

@@ -23,7 +23,7 @@ const numbersOf = (text: string): Numbers =>
     .map(numberOf)
     .filter((value) => value !== undefined);
 
-/** Whether images of this stream are colours or depths. */
+/** Whether images of this stream are colour images or depth maps. */
 const takesOf = (name: string): "colour" | "depth" | undefined =>
   /^colou?r|^rgb/i.test(name) ? "colour" : /^depth/i.test(name) ? "depth" : undefined;
 

@@ -1,13 +1,13 @@
 /**
- * ROS's CameraInfo describes the whole sensor; its pictures are the region of interest, with pixels binned. By its definition, the region's
- * corner is subtracted from the principal point, and the rest is divided by the binning.
+ * ROS's CameraInfo describes the whole sensor; its pictures show only the region of interest, with pixels binned. By its definition, the
+ * region's corner is subtracted from the principal point, and the intrinsics are then divided by the binning.
  */
 import { scaledCamera } from "../scale.js";
 import type { RawCamera } from "./cameras.js";
 import { member } from "./names.js";
 import { type Node, isNode, numberOf } from "./numbers.js";
 
-/** The camera of the pictures that a region or binning leaves of those of the whole sensor. */
+/** The camera of the pictures that remain after the region of interest and binning are applied. */
 export function ofRegion(raw: RawCamera, node: Node): RawCamera {
   const roi = member(node, "roi");
   const inRegion = (key: string) => (isNode(roi) ? (numberOf(member(roi, key)) ?? 0) : 0);

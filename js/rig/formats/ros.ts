@@ -7,7 +7,7 @@ import type { Calibration } from "./tree.js";
 import { type ReaderWarning, warning } from "../warnings.js";
 
 const NAME = "static_transform_publisher";
-/** Characters after the name in which its arguments are. */
+/** Characters after the name that may contain its arguments. */
 const REACH = 2000;
 const MOST = 1000;
 
@@ -38,15 +38,15 @@ function mentions(text: string): string[] {
   });
 }
 
-/** Conditions of nodes and groups: of XML, and of launch files in Python. */
+/** Conditions of nodes and groups, in XML and in launch files in Python. */
 const CONDITION = /<(?:node|group|include)\b[^<>]*?\s(?:if|unless)\s*=|\b(?:IfCondition|UnlessCondition)\s*\(/;
 /** Arguments that ROS computes when it starts the file. */
 const COMPUTED = /\$\([^)]{0,80}\)?|\$\{?\w{1,40}\}?|\b(?:LaunchConfiguration|math\.\w+|str|float)\b/;
-/** Such an argument behind a flag for a number. */
+/** Such an argument after a flag that takes a number. */
 const COMPUTED_FLAG = new RegExp(`--(?:x|y|z|roll|pitch|yaw|q[xyzw])[\\s'",=]+(${COMPUTED.source})`);
 const words = (text: string): string[] => text.split(/[\s,'"[\]()=]+/).filter((part) => part !== "");
 
-/** The words of an argument list whose numbers are written out; in the names of frames, "$(arg robot)" stands for itself. */
+/** The words of an argument list whose numbers are literal; in the names of frames, "$(arg robot)" stands for itself. */
 function written(args: string): string[] {
   const all = words(args);
   const isFlags = all.some((word) => word.startsWith("--"));
@@ -114,7 +114,7 @@ export function readPublishers(whole: string): Calibration {
   const warnings: ReaderWarning[] = [];
   const text = withoutComments(whole);
   if (!isPublisher(text))
-    throw badFile(`it names ${NAME} in comments alone: remove the comment signs if it is the right one`);
+    throw badFile(`it names ${NAME} only in comments: remove the comment signs if that line is the right one`);
   const found = mentions(text)
     .filter((args) => COMPUTED.test(args) || words(args).some((word) => numberOf(word) !== undefined))
     .map(written);
@@ -124,7 +124,7 @@ export function readPublishers(whole: string): Calibration {
   return { cameras: [], poses, warnings };
 }
 
-/** Which of several transforms between the same frames ROS publishes is open, and so is whether it publishes one with a condition. */
+/** It is not known which of several transforms between the same frames ROS publishes, or whether it publishes one with a condition. */
 function doubtsOf(poses: NamedPose[], text: string): ReaderWarning[] {
   const isConditional = CONDITION.test(text);
   const twice = poses.find((pose, index) =>
@@ -132,9 +132,9 @@ function doubtsOf(poses: NamedPose[], text: string): ReaderWarning[] {
   );
   if (twice === undefined && !isConditional) return [];
   const which = isConditional
-    ? "It starts its transforms by conditions (if, unless), which were not evaluated: all transforms were read"
-    : `It has several transforms from ${twice?.from} to ${twice?.to}: all were read, the first one first`;
-  return [warning("pose-assumed", `${which}. Remove those that do not hold.`)];
+    ? "It publishes its transforms under conditions (if, unless), which were not evaluated: all transforms were read"
+    : `It has several transforms from ${twice?.from} to ${twice?.to}: all were read, in their order`;
+  return [warning("pose-assumed", `${which}. Remove those that do not apply.`)];
 }
 
 const TRIPLE = /Translation:\s*\[([^\]\n]{1,200})\]/;
@@ -143,10 +143,10 @@ const QUATERNION = /Quaternion\s*(?:\(xyzw\)\s*)?\[([^\]\n]{1,200})\]/;
 export const isEcho = (text: string): boolean =>
   TRIPLE.test(text.slice(0, REACH)) && QUATERNION.test(text.slice(0, REACH));
 
-/** tf2_echo waits for the pose of its second frame in its first one, and says so. */
+/** tf2_echo, while it waits for the pose of its second frame in its first one, prints both names. */
 const WAITS = /Waiting for transform (\S{1,80}) -> +(\S{1,80}?):? /;
 
-/** The first transform of tf_echo's print, which names the frames only while it waits. */
+/** The first transform in the output of tf_echo, which names the frames only while it waits. */
 export function readEcho(text: string): Calibration {
   const warnings: ReaderWarning[] = [];
   const numbers = (pattern: RegExp, count: number): Numbers => {

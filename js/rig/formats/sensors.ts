@@ -1,12 +1,12 @@
-/** Names of cameras that stand beside their numbers: the object that holds a camera and its pose, and the topic of its images. */
+/** Names of cameras that stand near their numbers: the object that holds a camera and its pose, and the topic of its images. */
 import type { NamedCamera, NamedPose } from "../types.js";
 
-/** Ends of a pose that say that it is a camera's, but not which. */
+/** Ends of a pose that name a camera, but not which one. */
 const SOME_CAMERA = /^(?:cam|camera|image|img)$/i;
 /** What topics have in common: the kind of message, and whether it was rectified. */
 const MESSAGE = /\/(?:image|compressed|image_raw|image_rect|image_rect_raw|image_color|image_mono|raw)$/i;
 
-/** Where several cameras have one pose each, each leads to or from its own: "lidar2cam" of CAM_FRONT leads to CAM_FRONT. */
+/** If several cameras have one pose each, each pose leads to or from its camera: "lidar2cam" of CAM_FRONT leads to CAM_FRONT. */
 export function ofOwnCameras(own: ReadonlyMap<NamedPose, string | undefined>): void {
   if (own.size < 2) return;
   for (const [each, camera] of own) {
@@ -24,7 +24,7 @@ function called(topic: string): string {
   return name.replace(/^\/+/, "");
 }
 
-/** Cameras that are only numbered (Kalibr's cam0) are called as the topics of their images, and so are the ends of poses. */
+/** Cameras that are only numbered (Kalibr's cam0), and the ends of poses, are named after the topics of their images. */
 export function byTopics(topics: ReadonlyMap<string, string>, cameras: NamedCamera[], poses: NamedPose[]): void {
   const names = new Map([...topics].map(([camera, topic]) => [camera, called(topic)]));
   const isClear = new Set(names.values()).size === names.size && ![...names.values()].includes("");

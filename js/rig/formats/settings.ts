@@ -2,7 +2,7 @@
  * Texts of settings: JSON with comments, TOML, and sections of "name = value" as in .ini files.
  *
  * Each library is loaded with the first such text. json5 (11 kB gzipped) reads comments, trailing commas, single quotes and numbers such as
- * "1." that Python prints, while jsonc-parser reads only comments; smol-toml (6 kB) is smaller and stricter than @iarna/toml.
+ * "1.", which Python prints; jsonc-parser reads only comments. smol-toml (6 kB) is smaller and stricter than @iarna/toml.
  */
 import { badFile } from "../../errors.js";
 import type { Node } from "./numbers.js";
@@ -24,7 +24,7 @@ const pythonWords = (text: string): string =>
     .replace(/\bFalse\b/g, "false")
     .replace(/\b(?:None|nan)\b/g, "null");
 
-/** The objects of a text with one on each line. */
+/** The objects of a text that has one on each line. */
 function objectsOf(text: string): unknown[] | undefined {
   const lines = text.split(/\r?\n/).filter((line) => line.trim() !== "");
   if (!lines.every((line) => /^\s*\{.*\}\s*$/.test(line))) return undefined;
@@ -37,10 +37,10 @@ function objectsOf(text: string): unknown[] | undefined {
 
 const isJson = (text: string): boolean => /^[{[]/.test(text);
 
-/** JSON, also with comments and as Python prints it. */
+/** JSON, possibly with comments or as printed by Python. */
 export async function readJson(text: string): Promise<unknown> {
   try {
-    // Python writes these three, which JSON does not have; values of a calibration are finite.
+    // Python writes these three values, which JSON lacks; values of a calibration are finite.
     return JSON.parse(text.replace(/\b(?:NaN|-?Infinity)\b/g, "null"));
   } catch (error) {
     const damaged = badFile(
@@ -66,7 +66,7 @@ const SETTING = /^[ \t]*["']?[A-Za-z_][\w.\- ]{0,80}["']?[ \t]*[=:][ \t]*\S/m;
 export const isSectioned = (text: string): boolean =>
   SECTION.test(text) && SETTING.test(text) && !isJson(text.replace(SECTION, ""));
 
-/** The sections of an .ini file, which has names and texts without quotes, so that TOML's parser refuses it. */
+/** The sections of an .ini file. Its names and texts have no quotes, so TOML's parser refuses it. */
 export function readIni(text: string): Node {
   const root: Node = {};
   let section = root;

@@ -1,6 +1,6 @@
-/** Signs of the whole text of a file: its product, its sensors and the order of its quaternions. */
+/** Hints in the whole text of a file: its product, its sensors and the order of its quaternions. */
 
-/** Signs in the whole text of a file. */
+/** Hints in the whole text of a file. */
 export interface Signs {
   isRealSense: boolean;
   order: "wxyz" | "xyzw" | undefined;

@@ -23,7 +23,7 @@ const first = (node: Node, key: string): number => {
   return numberOf(value) ?? matrixOf(value)?.values[0] ?? 0;
 };
 
-/** The parameters of an object that only lenses other than Brown's and Kannala-Brandt's have, as a name of the table. */
+/** Parameters that only lenses other than Brown's and Kannala-Brandt's have, as a name of the table. */
 function parametersOf(node: Node): string | undefined {
   if (first(node, "xi") !== 0 || first(node, "xi1") !== 0) return first(node, "alpha") === 0 ? "xi" : "xi alpha";
   if (member(node, "mirrorparameters", "mirrorparameter") !== undefined) return "mirror_parameters";
@@ -38,7 +38,7 @@ export interface Stated {
   isLens: boolean;
 }
 
-/** The lens model of an object with a camera; an unsupported one decides, as "omni" does beside "radtan". */
+/** The lens model of an object with a camera. If one of several is not supported, that one counts, such as "omni" beside "radtan". */
 export function modelIn(node: Node): Stated | undefined {
   const isFisheye =
     Number(member(node, "fisheyemodel")) === 1 || member(node, "fisheye", "isfisheye", "usefisheye") === true;
@@ -51,7 +51,7 @@ export function modelIn(node: Node): Stated | undefined {
   return { model, isLens: lenses?.includes(model) === true || lensNamed(model).family !== undefined };
 }
 
-/** The lens model that an object without a camera states for those around it, as ORB-SLAM's "Camera.type" does. */
+/** The lens model that an object without a camera states for the cameras around it, such as ORB-SLAM's "Camera.type". */
 export function sharedModelIn(node: Node): string | undefined {
   const names = textsAt(node, [...LENS_KEYS, ...MODEL_KEYS.slice(1)]);
   return names.find((name) => lensNamed(name).family !== undefined) ?? (first(node, "xi") !== 0 ? "xi" : undefined);

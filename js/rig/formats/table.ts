@@ -1,33 +1,26 @@
 /**
- * Texts that are tables of numbers: a depth map row by row (CSV, TXT of numpy.savetxt or MATLAB), or a list of points (XYZ, PTS, PTX, ASC).
+ * Texts that are tables of numbers: a depth map row by row (CSV, TXT of numpy.savetxt or MATLAB). Lists of points are in point-list.ts.
  *
  * The size distinguishes a depth map from matrices and trajectories. Limits: all rows of a table need the same number of columns.
  */
-import { type BimodalError, badFile } from "../../errors.js";
+import { badFile } from "../../errors.js";
 import { numberOf } from "./numbers.js";
-import { FEWEST_POINTS } from "./channels.js";
 import { MOST_SIDE, checkSize } from "./limits.js";
 import type { Picture } from "./picture.js";
 
 /** The smallest depth map; matrices and trajectories have fewer columns or rows. */
 const [FEWEST_COLUMNS, FEWEST_ROWS] = [24, 18];
-/** Share of the first rows that must have as many numbers as the first one. */
+/** Smallest share of the first rows that must have as many numbers as the first one. */
 const MOSTLY = 0.9;
-/** Lines by which a text is recognised. */
+/** Most lines that are examined to recognise a text. */
 const HEAD = 40;
 /** Most characters of these lines. */
 const HEAD_CHARACTERS = 2 ** 19;
-/** Fewest lines of a list of points; a shorter text is a matrix or a short trajectory. */
-const FEWEST_LINES = 20;
-/** Most columns of a point: x y z, intensity, colours, normals. */
-const MOST_OF_POINT = 10;
-/** Largest difference of a quaternion's length from 1. */
-const SLACK = 0.01;
 
 const isComment = (line: string): boolean => /^\s*(?:[#%]|\/\/|$)/.test(line);
 const isHole = (word: string): boolean => /^[-+]?(?:nan|inf|infinity|none|null|na)?$/i.test(word);
 
-/** The separator of the words of a line; between semicolons a comma is a decimal one. */
+/** The separator of the words of a line; if semicolons separate them, a comma is decimal. */
 const separatorOf = (line: string): string => [";", ",", "\t"].find((each) => line.includes(each)) ?? " ";
 
 export function wordsOf(line: string, separator: string): string[] {
@@ -64,7 +57,7 @@ export function headOf(bytes: Uint8Array): Head {
   return { rows: rows.map(ofRow), separator, isTrailing };
 }
 
-/** Whether the first lines of a text are rows of equally many numbers, in the size of a depth map. */
+/** Whether the first lines of a text are rows with equally many numbers, at the size of a depth map. */
 export function isTable(bytes: Uint8Array): boolean {
   const { rows } = headOf(bytes);
   // The first row may name the columns.
@@ -81,8 +74,8 @@ const [TAB, NEWLINE, RETURN, SPACE, QUOTE, ZERO, NINE] = [9, 10, 13, 32, 34, 48,
 const [PLUS, COMMA, MINUS, POINT, LOWER_E, UPPER_E] = [43, 44, 45, 46, 101, 69];
 
 /**
- * A decimal number straight from its bytes, because making texts takes most of the time; undefined where the bytes are anything else. It is
- * more precise than the floats that are made of it.
+ * Parses a decimal number directly from its bytes, because creating strings takes most of the time; undefined if the bytes are anything
+ * else. It is more precise than the floats that are made from it.
  */
 function decimal(bytes: Uint8Array, from: number, to: number, point: number): number | undefined {
   let at = from;
@@ -108,7 +101,7 @@ function decimal(bytes: Uint8Array, from: number, to: number, point: number): nu
   return at === to && Number.isFinite(size) ? first * size : undefined;
 }
 
-/** The number in these bytes; NaN where it is a hole. */
+/** The number in these bytes; NaN if it is a hole. */
 function cell(bytes: Uint8Array, from: number, to: number, hasCommas: boolean): number {
   const isPadding = (byte: number | undefined) => byte === SPACE || byte === TAB || byte === RETURN || byte === QUOTE;
   while (from < to && isPadding(bytes[from])) from++;
@@ -219,51 +212,9 @@ export function readTable(bytes: Uint8Array): Picture {
   return { width, height, channels: 1, ...levels(values), format: "table", notes: ["a table as text"], warnings: [] };
 }
 
-/** The values in 16 bits where all are integers of this range, as depth cameras write them, or else as floats. */
+/** The values in 16 bits, as depth cameras write them, if all are integers of this range, or else as floats. */
 function levels(values: Float64Array): Pick<Picture, "data" | "bits"> {
   const isLevel = (value: number) => Number.isNaN(value) || (Number.isInteger(value) && value <= 0xffff);
   if (values.every(isLevel)) return { data: Uint16Array.from(values, (value) => Math.max(0, value || 0)), bits: 16 };
   return { data: new Float32Array(values), bits: 32 };
-}
-
-const isUnit = (quaternion: number[]): boolean => Math.abs(Math.hypot(...quaternion) - 1) < SLACK;
-
-/** Whether all rows end in a quaternion, in either order. */
-const isTrajectory = (rows: number[][]): boolean =>
-  rows.every((row) => (row.length === 7 || row.length === 8) && isUnit(row.slice(-4)));
-
-/** The error about a list of points as text that cannot be read; undefined where the text is not such a list. */
-export function pointList(bytes: Uint8Array): BimodalError | undefined {
-  const { rows } = headOf(bytes);
-  const single = (row: string[] | undefined) => row?.length === 1 && /^\d+$/.test(row[0] ?? "");
-  if (single(rows[0]) && single(rows[1]) && rows.slice(2, 6).every((row) => row.length === 3))
-    return badFile(
-      "it is a scan in PTX, whose points have the scanner's axes; save it as an organised PLY or PCD with z forward, or as a depth map",
-    );
-  const body = single(rows[0]) || (rows[0] !== undefined && !isNumbers(rows[0])) ? rows.slice(1) : rows;
-  const columns = body[0]?.length ?? 0;
-  if (body.length < FEWEST_LINES || columns < 3 || columns > MOST_OF_POINT) return undefined;
-  if (!body.every((row) => row.length === columns && isNumbers(row))) return undefined;
-  const isNamed = body !== rows && !single(rows[0]);
-  const names = (rows[0] ?? []).map((name) => name.replace(/^\/+/, "").toLowerCase());
-  if (
-    isNamed &&
-    (!names.includes("x") || !names.includes("z") || names.some((name) => /^q[wxyz]$|time|frame/.test(name)))
-  )
-    return undefined;
-  const numbers = body.map((row) => row.map((word) => numberOf(word) ?? NaN));
-  if (isTrajectory(numbers) || isLog(numbers)) return undefined;
-  return badFile(
-    `it is a list of points as text (${columns} numbers each) without rows and columns (unorganised); such a list needs x, y, z and at least ${FEWEST_POINTS} points`,
-  );
-}
-
-/** Redwood's trajectories: three integers, then a matrix of 4x4. */
-const isLog = (rows: number[][]): boolean => rows.some((row) => row.length !== rows[0]?.length) || isMatrices(rows);
-/** Whether the rows are matrices of 4x4 or 3x3, which end in 0 0 0 1 or 0 0 1. */
-function isMatrices(rows: number[][]): boolean {
-  const side = rows[0]?.length ?? 0;
-  if (side !== 3 && side !== 4) return false;
-  const last = rows.filter((_, at) => at % side === side - 1);
-  return last.every((row) => row.every((value, at) => value === (at === side - 1 ? 1 : 0)));
 }

@@ -16,10 +16,10 @@ import { type Calibration, searchTree } from "./tree.js";
 import { type ReaderWarning, warning } from "../warnings.js";
 import { type Element, plainXml, readXml } from "./xml.js";
 
-/** So that a small file cannot become a large value. */
+/** Aliases are bounded so that a small file cannot become a large value. */
 const YAML_LIMITS = { maxDepth: 32, maxAliases: 64 };
 
-/** YAML without the directive "%YAML:1.0" and the tags of OpenCV and Python, which are not standard, and with spaces for tabs. */
+/** YAML without the directive "%YAML:1.0" and the non-standard tags of OpenCV and Python, and with spaces in place of tabs. */
 const plainYaml = (text: string): string =>
   text
     .replace(/^%YAML.*$/m, "")
@@ -29,7 +29,7 @@ const plainYaml = (text: string): string =>
 /** Most characters of a list that is put into one line. */
 const LONGEST_LIST = 20_000;
 
-/** YAML as OpenCV and PyYAML accept it, for js-yaml: "data:[" without a blank, and lists that go on at the column of their name. */
+/** Converts YAML as OpenCV and PyYAML accept it for js-yaml: "data:[" without a space, and lists that are indented as far as their name. */
 function strictYaml(text: string): string {
   const lines: string[] = [];
   let depth = 0;
@@ -49,7 +49,7 @@ const count = (text: string, pattern: RegExp): number => text.match(pattern)?.le
 const withColons = (text: string): string =>
   /^[ \t]*[\w.]{1,80}[ \t]*:/m.test(text) ? text : text.replace(/^([ \t]*[\w.]{1,80})[ \t]*=[ \t]*/gm, "$1: ");
 
-/** The first line of what a parser says. */
+/** The first line of a parser's message. */
 const reasonOf = (error: unknown): string =>
   error instanceof Error ? (error.message.split("\n")[0] ?? "") : String(error);
 
@@ -65,7 +65,7 @@ async function readYaml(text: string): Promise<unknown> {
     try {
       return parsed(strictYaml(plain));
     } catch {
-      // The reason of the file as it is says more.
+      // The error about the unchanged file is more informative.
     }
     throw badFile(`it is text in an unknown format, or damaged (as YAML: ${reasonOf(error)})`, error);
   }
@@ -74,7 +74,7 @@ async function readYaml(text: string): Promise<unknown> {
 const NEITHER =
   "neither a camera (camera_matrix, K, fx fy cx cy, intrinsics) nor a transform (R and T, T_.., rotation and translation, a 4x4 matrix)";
 
-/** With `isBare` it has nothing but its numbers. */
+/** With `isBare` the file holds only numbers. */
 type Read = Calibration & { format: string; isBare?: boolean };
 
 /** The readers of products, which are loaded with the first text. */
@@ -100,11 +100,11 @@ async function searched(value: unknown, format: string, text: string): Promise<R
   return found;
 }
 
-/** The rows of a table by their numbers. Rows with times or images are poses of the camera in the world. */
+/** The rows of a table, by their numbers. Rows with times or images are poses of the camera in the world. */
 async function ofTable({ rows, isSeries }: { rows: Node[]; isSeries: boolean }, text: string): Promise<Read> {
   const named = Object.fromEntries(rows.map((row, at) => [isSeries ? `pose ${at + 1}` : `row ${at + 1}`, row]));
   const found = await searched(named, isSeries ? "a table of poses" : "a table", text);
-  // All rows have the same columns, so one warning of a code is enough.
+  // All rows have the same columns, so one warning per code is enough.
   return { ...found, warnings: [...new Map([...found.warnings].reverse().map((each) => [each.code, each])).values()] };
 }
 
@@ -122,8 +122,8 @@ function ofNotes(text: string): Read | undefined {
   return { ...found, format: "numbers with labels" };
 }
 
-/** What only YAML has: its directive, and the matrices of OpenCV. */
-const IS_YAML = /^%YAML|!!opencv-matrix/m;
+/** Signs of YAML: its directive, the matrices of OpenCV, and lists of members. */
+const IS_YAML = /^%YAML|!!opencv-matrix|^\s*- \w+:\s*$/m;
 /** YAML, or else numbers with labels. */
 async function ofYaml(text: string): Promise<Read> {
   let value: unknown;
@@ -146,7 +146,7 @@ async function ofYaml(text: string): Promise<Read> {
   return found;
 }
 
-/** XML, or Python's print of an object, which begins with "<", too. */
+/** XML, or an object printed by Python, which also begins with "<". */
 async function ofXml(text: string): Promise<Read> {
   let root: Element;
   try {
@@ -159,18 +159,25 @@ async function ofXml(text: string): Promise<Read> {
   return (await products()).productOfXml(root) ?? searched(plainXml(root), "XML", text);
 }
 
-/** The cameras and poses of a text, with the name of its format; the file's name says what the text leaves open. */
+/** The cameras and poses of a text, with the name of its format; the file's name supplies what the text leaves open. */
 export async function readText(text: string, file: string): Promise<Read> {
   const { isBare = false, ...found } = await ofContent(text);
   asFisheye(found.cameras, found.warnings, `${file.replace(/^.*[/\\]/, "")}\n${text}`);
-  const { poses, isPlace } = withEnds(found.poses, file, isBare);
-  return { ...found, poses, warnings: isPlace ? [...found.warnings, placeOfName()] : found.warnings };
+  const { poses, isPlace = false, isOneEnd = false } = withEnds(found.poses, file, isBare);
+  const said = [...(isPlace ? [placeOfName()] : []), ...(isOneEnd ? [oneEndNamed()] : [])];
+  return { ...found, poses, warnings: [...found.warnings, ...said] };
 }
+
+const oneEndNamed = (): ReaderWarning =>
+  warning(
+    "pose-assumed",
+    "Its name says which camera the pose belongs to, but not which way it leads and from or to what. It was taken to lead from the depth camera to the colour camera; if it does, name the file depth_to_color.txt.",
+  );
 
 const placeOfName = (): ReaderWarning =>
   warning(
     "camera-to-world",
-    "Its name says that it is the pose of a camera in the world (camera to world), which was not used as extrinsics between two cameras. If it is, name the file depth_to_color.txt or the like.",
+    "Its name says that it is the pose of a camera in the world (camera to world), which was not used as extrinsics between two cameras. If it does relate two cameras, name the file depth_to_color.txt or the like.",
     { poses: 1 },
   );
 

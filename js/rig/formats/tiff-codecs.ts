@@ -1,7 +1,7 @@
 /**
- * Strips and tiles of TIFF by ZSTD and LERC: fzstd and lerc. Loaded when such a file comes.
+ * Strips and tiles of TIFF that are compressed by ZSTD or LERC, read by fzstd and lerc. Loaded with the first such file.
  *
- * Neither writes more than requested: fzstd gets a buffer of fixed size, and what a LERC blob declares is checked first.
+ * Neither writes more than requested: fzstd gets a buffer of fixed size, and the declared sizes of a LERC blob are checked first.
  */
 import { decompress } from "fzstd";
 import Lerc from "lerc";
@@ -9,15 +9,15 @@ import { badFile } from "../../errors.js";
 import { inflateUpTo } from "../../inflate.js";
 import { OVERHEAD } from "./limits.js";
 
-/** As many of `length` bytes as there are. */
+/** `length` bytes, filled as far as there are data. */
 export const unpackZstd = (bytes: Uint8Array, length: number): Uint8Array => decompress(bytes, new Uint8Array(length));
 
-/** How LERC may be compressed once more. */
+/** The second compression that LERC data may have. */
 const [DEFLATE, ZSTD] = [1, 2];
 /** Bytes of a value of each of LERC's types. */
 const SIZES = [1, 1, 2, 2, 4, 4, 4, 8];
 
-/** A blob of so many bytes, in this machine's order; lerc goes on for ever over blobs of no length or blocks of no pixels. */
+/** A blob of this many bytes, in this machine's order; lerc would loop forever on blobs of no length or blocks of no pixels. */
 export function unpackLerc(packed: Uint8Array, length: number, again: number): Uint8Array {
   const most = 2 * length + OVERHEAD;
   const bytes =
@@ -25,11 +25,11 @@ export function unpackLerc(packed: Uint8Array, length: number, again: number): U
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   const isKnown = String.fromCharCode(...bytes.subarray(0, 6)) === "Lerc2 ";
   const version = isKnown ? view.getInt32(6, true) : 0;
-  // Behind name and version comes a checksum, from the third one on.
+  // From version 3 on, a checksum follows name and version.
   const at = version >= 3 ? 14 : 10;
   const word = (index: number) => view.getUint32(at + 4 * index, true);
   const [height, width, depths] = [word(0), word(1), version >= 4 ? word(2) : 1];
-  // Behind the number of valid pixels.
+  // Follows the number of valid pixels.
   const [block, declared, type] = (version >= 4 ? [4, 5, 6] : [3, 4, 5]).map(word) as [number, number, number];
   const isSound = isKnown && block >= 1 && declared <= bytes.length;
   if (!isSound || width * height * depths * (SIZES[type] ?? 0) !== length)

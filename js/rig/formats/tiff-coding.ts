@@ -8,10 +8,10 @@ const LONGEST_CODE = 12;
 const short = (made: number, length: number) =>
   badFile(`this TIFF is damaged or cut off: one of its strips or tiles expands to ${made} of ${length} bytes`);
 
-/** LZW, codes from the high bit down and a code wider one early. Of an entry its predecessor and last byte are kept. */
+/** LZW with codes from the high bit down, whose width grows one code early. For each entry its predecessor and its last byte are kept. */
 export function lzw(bytes: Uint8Array, length: number): Uint8Array {
   const out = new Uint8Array(length);
-  /** Where in `out` an entry was first written, and how long it is. */
+  /** The place in `out` where an entry was first written, and its length. */
   const places = new Uint32Array(1 << LONGEST_CODE);
   const lengths = new Uint32Array(1 << LONGEST_CODE);
   let [made, next, width, held, bits, last, lastAt] = [0, END + 1, 9, 0, 0, -1, 0];
@@ -33,7 +33,7 @@ export function lzw(bytes: Uint8Array, length: number): Uint8Array {
     else if (code < next) made = copied(out, places[code] ?? 0, lengths[code] ?? 0, made);
     else if (code === next && last >= 0) made = copied(out, lastAt, from - lastAt, made, out[lastAt]);
     else throw badFile("this TIFF is damaged: its LZW data refer to a missing entry");
-    // The entry before and the first byte of this one lie side by side in `out`.
+    // The previous entry and the first byte of this one are adjacent in `out`.
     if (last >= 0 && next < 1 << LONGEST_CODE) {
       places[next] = lastAt;
       lengths[next++] = from - lastAt + 1;
@@ -44,7 +44,7 @@ export function lzw(bytes: Uint8Array, length: number): Uint8Array {
   return out;
 }
 
-/** Copies within `out` as far as it reaches, and one byte more where it is given. */
+/** Copies within `out` as far as it reaches, plus one byte if it is given. */
 function copied(out: Uint8Array, from: number, count: number, made: number, more?: number): number {
   let at = made;
   for (let index = 0; index < count && at < out.length; index++) out[at++] = out[from + index] ?? 0;
@@ -72,7 +72,7 @@ export function packBits(bytes: Uint8Array, length: number): Uint8Array {
   return out;
 }
 
-/** Each sample is the difference to the one of the pixel before it. */
+/** Each sample is the difference from the sample of the previous pixel. */
 export function undoIntegers(part: Uint8Array, width: number, size: number, samples: number): void {
   const { buffer, byteOffset, length } = part;
   const values =
@@ -86,7 +86,9 @@ export function undoIntegers(part: Uint8Array, width: number, size: number, samp
     if (at % stride >= samples) values[at] = (values[at] ?? 0) + (values[at - samples] ?? 0);
 }
 
-/** Rows hold all high bytes, then all next ones, and so on; differences run over the whole row. Into little-endian order. */
+/**
+ * A row holds all high bytes, then all second bytes, and so on; differences run over the whole row. The result is in little-endian order.
+ */
 export function undoFloats(part: Uint8Array, count: number, size: number, samples: number): void {
   const stride = count * size;
   const row = new Uint8Array(stride);

@@ -2,10 +2,9 @@
  * TIFF and BigTIFF of one picture: integers, and floats of 16, 32 and 64 bits, in strips or tiles, plain, LZW, deflate, PackBits, ZSTD or
  * LERC, with either predictor.
  *
- * The containers are read here, ZSTD and LERC by libraries (tiff-codecs.ts). Why not geotiff (3.0): it takes sizes as a file declares
- * them and inflates whatever there is, it imports http, fs and vm, which browsers do not have, and its ZSTD fetches a data: address, which
- * the page's policy forbids. Why not tiff (7.1): it knows no predictor of floats, with which GDAL and tifffile write depth. Not read: JPEG
- * inside, palettes.
+ * The containers are read here, ZSTD and LERC by libraries (tiff-codecs.ts). geotiff (3.0) is not used because it trusts declared sizes,
+ * inflates any amount, imports http, fs and vm, which browsers lack, and fetches a data: address for ZSTD, which the page's policy forbids.
+ * tiff (7.1) is not used because it lacks the predictor of floats, with which GDAL and tifffile write depth. Not read: JPEG data, palettes.
  */
 import { badFile } from "../../errors.js";
 import { inflateExactly } from "../../inflate.js";
@@ -98,13 +97,13 @@ interface Layout {
   isFloat: boolean;
   isSigned: boolean;
   compression: number;
-  /** How LERC is compressed once more. */
+  /** The second compression of LERC data. */
   again: number;
   predictor: number;
   /** Whether each channel has separate strips or tiles. */
   isApart: boolean;
   isTiled: boolean;
-  /** Of a tile; a strip is one as wide as the picture. */
+  /** The size of a tile; a strip is a tile as wide as the picture. */
   tileWidth: number;
   tileHeight: number;
   offsets: number[];
@@ -150,7 +149,7 @@ function layout(tags: Tags): Layout {
     predictor: one(Tag.Predictor, 1),
     isApart,
   };
-  // Tiles at the edges are padded: together they may not be much more than the picture.
+  // Tiles at the edges are padded; all tiles together may be only little larger than the picture.
   if (isTiled && each * tileWidth * tileHeight > 4 * width * height + 4 * tileWidth * tileHeight)
     throw badFile("this TIFF has tiles much larger than its picture");
   return { width, height, samples, bits, ...rest, isTiled, tileWidth, tileHeight, offsets, counts };
@@ -188,7 +187,7 @@ function expanded(bytes: Uint8Array, { compression, again }: Layout, length: num
   );
 }
 
-/** Channels apart, side by side. */
+/** Interleaves channels that are stored separately. */
 function joined(bytes: Uint8Array, found: Layout, little: boolean, codecs?: Codecs): Uint8Array {
   const { width, height, samples, bits, offsets, counts } = found;
   const [size, each] = [bits / 8, Math.floor(offsets.length / samples)];
@@ -203,7 +202,7 @@ function joined(bytes: Uint8Array, found: Layout, little: boolean, codecs?: Code
   return out;
 }
 
-/** All samples, as bytes in this machine's order. */
+/** All samples, as bytes in the order of this machine. */
 function pixels(bytes: Uint8Array, found: Layout, little: boolean, codecs?: Codecs): Uint8Array {
   if (found.isApart) return joined(bytes, found, little, codecs);
   const { width, height, samples, bits, isTiled, tileWidth, tileHeight, offsets, counts, predictor } = found;
@@ -211,7 +210,7 @@ function pixels(bytes: Uint8Array, found: Layout, little: boolean, codecs?: Code
   const out = new Uint8Array(width * height * size);
   const across = Math.ceil(width / tileWidth);
   for (let row = 0; row < height; row += tileHeight) {
-    // The last strip has no more rows than there are; the last tile is padded.
+    // The last strip has only the remaining rows; the last tile is padded.
     const rows = isTiled ? tileHeight : Math.min(tileHeight, height - row);
     for (let column = 0; column < width; column += tileWidth) {
       const index = Math.floor(row / tileHeight) * across + Math.floor(column / tileWidth);

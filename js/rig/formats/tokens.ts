@@ -1,4 +1,4 @@
-/** Words of a text that may be long, one at a time, straight from its bytes: no copy of it is made. */
+/** The words of a text, one at a time, directly from its bytes, because a copy of a long text would take memory. */
 const HASH = 35;
 const NEWLINE = 10;
 
@@ -33,7 +33,7 @@ export class Words {
     return word;
   }
 
-  /** The rest of this line, or the next one; nothing at the end. */
+  /** The rest of this line, or the next one; undefined at the end. */
   line(): string | undefined {
     const bytes = this.#bytes;
     if (this.at >= bytes.length) return undefined;

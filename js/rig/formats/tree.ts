@@ -1,5 +1,5 @@
 /**
- * Cameras and motions in JSON, YAML, TOML and XML, whatever program wrote them: ROS, OpenCV, Open3D, Kalibr, RealSense, or by hand.
+ * Cameras and motions in JSON, YAML, TOML and XML of any program: ROS, OpenCV, Open3D, Kalibr, RealSense, or written by hand.
  *
  * A walk over all objects recognises them by the names and shapes of their members (names.ts). Its depth and its number of objects are
  * bounded, which also bounds the aliases of YAML. A warning names each lens, size or pose that was not used.
@@ -39,7 +39,7 @@ const MOST_MEMBERS = 200_000;
 const MOST_OWN = 300;
 const MOST_DEPTH = 24;
 
-/** A list of at least so many poses is a trajectory. */
+/** A list of at least this many poses is a trajectory. */
 const SERIES = 3;
 /** Labels of cameras that are derived from another one, for rectified or undistorted images. */
 const DERIVED = /^(?:new|optimal|rectified|undistorted|original)$/;
@@ -56,7 +56,7 @@ class Search {
   readonly #leftovers = new Leftovers();
   /** Lens models that objects without cameras state. */
   readonly #lenses: { place: Place; model: string }[] = [];
-  /** Poses that are the only one in the object of a single camera. */
+  /** Poses that are the only one in an object with a single camera. */
   readonly #own = new Map<NamedPose, string | undefined>();
   /** Topics of cameras by their names, where a file has both. */
   readonly #topics = new Map<string, string>();
@@ -168,7 +168,7 @@ class Search {
     return used;
   }
 
-  /** Warns of a camera whose intrinsics are those of a lens that is not supported, beside what else the file holds. */
+  /** Warns of a camera whose intrinsics belong to an unsupported lens, if the file holds something else as well. */
   #nameUnsupported(node: Node, name: string | undefined): void {
     const stated = modelIn(node);
     const isCamera = member(node, "intrinsics", "intrinsic", "projectionparameters", "mirrorparameters") !== undefined;
@@ -197,7 +197,7 @@ class Search {
     return { distortion: isNone ? [] : undefined, ...coefficientsOf(node), ...model, ...size };
   }
 
-  /** The lens model that the objects around a camera state, or else the only one that the file does. */
+  /** The lens model that the objects around a camera state, or else the only one that the file states. */
   #sharedModel(place: Place): string | undefined {
     for (let each: Place | undefined = place; each !== undefined; each = each.parent)
       for (const { place: at, model } of this.#lenses) if (at.node === each.node) return model;
@@ -205,7 +205,7 @@ class Search {
     return more.length === 0 ? only : undefined;
   }
 
-  /** Adds the cameras; one that cannot be read is left out with a warning where the file holds something else. */
+  /** Adds the cameras; one that cannot be read is left out with a warning if the file holds something else. */
   #check(): void {
     let reason: BimodalError | undefined;
     // Cameras without names in a list are numbered.
@@ -243,7 +243,7 @@ class Search {
   }
 }
 
-/** Adds the pose from each camera to the next one, where both are related to the same inertial unit or body, in whichever direction. */
+/** Adds the pose from each camera to the next one if both are related, in either direction, to the same inertial unit or body. */
 function chain(poses: NamedPose[]): void {
   /** The poses of cameras in the frame of the body, by the camera's name. */
   const places = new Map<string, { body: string; pose: NamedPose["pose"] }>();
@@ -285,12 +285,12 @@ function framesOf(node: Node): Context | undefined {
   const parent = textOf(member(isNode(header) ? header : node, "frameid", "parentframe"));
   if (child !== undefined) return { from: child, ...(parent !== undefined && { to: parent }) };
   for (const [from, to] of ENDS) {
-    // Objects other than transforms have parents, too.
+    // Objects other than transforms may also have parents.
     if (from === "child" && !isTransform(node)) continue;
     const ends = [textOf(member(node, from)), textOf(member(node, to))];
     if (ends[0] !== undefined && ends[1] !== undefined && ends[0] !== ends[1]) return { from: ends[0], to: ends[1] };
   }
-  // A pose beside an image's file name says where that image was taken.
+  // A pose beside an image's file name is the pose from which that image was taken.
   const picture = textOf(member(node, "filepath", "imagepath", "imgpath", "imagefile", "imgname", "imagename"));
   if (picture !== undefined) return { from: "camera", to: "world" };
   return undefined;
@@ -304,7 +304,7 @@ function nameIn(node: Node): string | undefined {
   return textOf(member(node, "stream", "streamname", "sensor")) ?? (SIDE.test(type ?? "") ? type : undefined);
 }
 
-/** The name for a member's cameras and poses: the parent's where the member's own name is generic. */
+/** The name for a member's cameras and poses: the parent's name if the member's is generic. */
 const nameOf = (key: string, parent: string): string => {
   if (/^(transforms?|intrinsics?|pose|param|opencv_storage|launch|parameters|ros__parameters|nodes)$/.test(key))
     return parent;
@@ -315,7 +315,7 @@ const nameOf = (key: string, parent: string): string => {
 const isEmpty = (value: unknown): boolean =>
   value === null || value === "" || (Array.isArray(value) && value.length === 0);
 
-/** `text` is that of the file; its comments and product names are used as well. */
+/** `text` is the text of the file, whose comments and product names are used as well. */
 export function searchTree(value: unknown, text = ""): Calibration {
   const search = new Search(text);
   const unit = unitInComments(text);

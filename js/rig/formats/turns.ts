@@ -2,8 +2,8 @@
  * Rotations whose numbers can be read in more than one way: quaternions with w first or last, Euler angles or a rotation vector, degrees or
  * radians, rows or columns.
  *
- * Words in the file decide where there are any. Otherwise the reading is taken by which the cameras look nearly the same way (a rig), with a
- * warning. Limit: where both readings make a rig, or neither does, the common one is taken, with the warning.
+ * Words in the file decide if there are any. Otherwise the reading is chosen under which the cameras look in nearly the same direction (a
+ * rig), with a warning. Limit: if both readings make a rig, or neither does, the more common one is used, with a warning.
  */
 import { badFile } from "../../errors.js";
 import { type ReaderWarning, warning } from "../warnings.js";
@@ -11,9 +11,9 @@ import type { Attributes } from "./names.js";
 import { type Numbers, transposed } from "./numbers.js";
 import { degreesOf, ofQuaternion, ofScalarFirst, ofVector, ofYawPitchRoll } from "./poses.js";
 
-/** Largest angle between the cameras of a rig, degrees: more than within any depth camera, less than to a side view. */
+/** Largest angle between the cameras of a rig, degrees: larger than within any depth camera, smaller than to a side view. */
 const PARALLEL = 45;
-/** Angles this close to multiples of 90 degrees change between conventions of axes, radians. */
+/** Angles within this tolerance of multiples of 90 degrees are changes between conventions of axes, radians. */
 const AXES = 0.15;
 /** Readings that differ by less than this need no warning, degrees; the digits of a file differ by more. */
 const ALIKE = 0.05;
@@ -70,7 +70,7 @@ export function ofFour(values: Numbers, { order }: Attributes, name: string, war
 const ofAngles = ([x = 0, y = 0, z = 0]: Numbers, isDegrees: boolean): Numbers =>
   ofYawPitchRoll([z, y, x].map((angle) => (isDegrees ? angle / RADIAN : angle)));
 
-/** Whether angles in radians only change from the axes of a body or a LiDAR to those of a camera. */
+/** Whether angles in radians only convert the axes of a body or a LiDAR to those of a camera. */
 const turnsAxes = (values: Numbers): boolean => {
   const quarters = values.map((value) => Math.round(value / (Math.PI / 2)));
   const isNear = values.every((value, at) => Math.abs(value - ((quarters[at] ?? 0) * Math.PI) / 2) < AXES);
@@ -117,7 +117,7 @@ export function ofThree(values: Numbers, said: Attributes, name: string, warning
   return turned;
 }
 
-/** How nine numbers stand in their file. */
+/** How nine numbers are stored in their file. */
 export interface Layout {
   /** The number of rows, where the numbers are a list of rows or a matrix with this member. */
   rows?: number | undefined;
@@ -149,7 +149,7 @@ export const orderWarning = (name: string, order: "rows" | "columns"): ReaderWar
     { order },
   );
 
-/** What a rotation of so many numbers is. */
+/** The kind of rotation that this many numbers are. */
 export function numbersAsRotation(values: Numbers, key: string): "quaternion" | "three" | "nine" {
   if (values.length === 9) return "nine";
   if (values.length === 4) return "quaternion";

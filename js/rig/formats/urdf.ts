@@ -78,7 +78,7 @@ export function readUrdf(root: Element): Findings {
   if (missing.length > 0)
     found.warn(
       "pose-left-out",
-      `The origin of ${missing.length === 1 ? "the joint" : `${missing.length} joints, among them`} "${missing[0]?.slice(0, 60)}" depends on a macro's parameters and was left out. Expand the file by xacro first.`,
+      `The origin of ${missing.length === 1 ? "the joint" : `${missing.length} joints, such as`} "${missing[0]?.slice(0, 60)}" depends on a macro's parameters and was left out. Expand the file by xacro first.`,
     );
   if (found.poses.length === 0)
     throw badFile(
@@ -97,7 +97,7 @@ export function readUrdf(root: Element): Findings {
         .map((name) => `"${name.slice(0, 60)}"`)
         .join(
           ", ",
-        )} between the sensors moves, and was taken at its zero, because the file does not give its position. Give the pose at the position of the pictures.`,
+        )} between the sensors moves. Its zero position was used, because the file does not give another one. Give the pose at the position of the pictures.`,
     );
   return found;
 }
@@ -119,9 +119,5 @@ export function toCameras(found: Findings): void {
   const way = wayBetween(found.poses);
   if (way === undefined) return;
   found.poses.unshift(way.pose);
-  if (way.turned.length > 0)
-    found.warn(
-      "pose-assumed",
-      `The frame ${way.turned.join(" and ")} is not an optical frame by its name and was read as looking along x with z up, as in ROS.`,
-    );
+  found.warnings.push(...way.warnings);
 }

@@ -1,7 +1,7 @@
 /**
- * The little XML that OpenCV and ROS launch files are written in: elements, attributes, text, comments. Written here because
- * fast-xml-parser (5.12, 20 kB gzipped and seven packages) reads much more, entities included, which these files never have; here a
- * document that declares any is refused.
+ * The subset of XML in which OpenCV and ROS launch files are written: elements, attributes, text, comments. Written here because
+ * fast-xml-parser (5.12, 20 kB gzipped and seven packages) reads much more, including entities, which these files never have. This reader
+ * refuses documents that declare entities.
  */
 import { badFile } from "../../errors.js";
 
@@ -29,7 +29,7 @@ function attributesOf(text: string): Record<string, string> {
   return found;
 }
 
-/** Where `what` next ends, or an error. */
+/** The place where `what` occurs next, or an error. */
 function after(text: string, what: string, from: number): number {
   const at = text.indexOf(what, from);
   if (at < 0) throw badFile(`this XML is cut off: a ${JSON.stringify(what)} is missing`);

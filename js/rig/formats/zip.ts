@@ -14,7 +14,7 @@ export interface Entry {
   packed: number;
   length: number;
   checksum: number;
-  /** Where its local header begins. */
+  /** The place where its local header begins. */
   at: number;
 }
 

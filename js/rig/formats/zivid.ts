@@ -5,7 +5,7 @@ import { parted } from "./poses.js";
 
 /** Metres per unit of its translations. */
 const MILLIMETRE = 0.001;
-/** A member by its name in any case, with or without underscores, which YAML and Python write differently. */
+/** A member by its name, regardless of case and underscores, which YAML and Python write differently. */
 const part = (node: unknown, name: string): unknown =>
   isNode(node) ? Object.entries(node).find(([key]) => key.toLowerCase().replace(/_/g, "") === name)?.[1] : undefined;
 const bodyOf = (root: Node): unknown => part(root, "cameraintrinsics") ?? root;
@@ -24,7 +24,7 @@ export function readZivid(root: Node): Findings {
   const [matrix, lens] = [part(body, "cameramatrix"), part(body, "distortion")];
   const [fx = NaN, fy = NaN, cx = NaN, cy = NaN] = ["fx", "fy", "cx", "cy"].map((key) => numberOf(part(matrix, key)));
   const distortion = ["k1", "k2", "p1", "p2", "k3"].map((key) => numberOf(part(lens, key)) ?? 0);
-  // The same pixels of a Zivid measure colours and points.
+  // The same pixels of a Zivid camera measure colours and points.
   if (Number.isFinite(fx)) found.camera({ name: "camera", focal: [fx, fy], centre: [cx, cy], distortion }, "both");
   const m = matrixOf(root);
   if (m) {

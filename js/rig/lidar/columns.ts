@@ -10,20 +10,23 @@ import { DEGREE, TURN } from "./frame.js";
 import type { Image } from "./image.js";
 import type { Rows } from "./rows.js";
 
-/** Columns of a full turn, at least. */
+/** Fewest columns of a full turn. */
 const FEWEST_COLUMNS = 90;
 /** Azimuths that differ by less, radians, belong to one pulse. */
 const ONE_PULSE = 0.008 * DEGREE;
 /** Consecutive steps whose mean is the pace: the ticks of the clock average out. */
 const WINDOW = 16;
-/** A step longer than so many usual ones is a gap. */
+/** A step longer than this many usual ones is a gap. */
 const GAP = 2.5;
 /** The pace is that of the row at this share of all rows, ordered from the finest. */
 const FINEST = 0.2;
 /** The pace of a scan whose rows are too short to measure it, radians. */
 const USUAL_PACE = 0.2 * DEGREE;
 
-/** Columns over the pace: finer ones leave room for pulses that come early. Set on one frame of KITTI, where 0.95 to 0.98 keep all points. */
+/**
+ * Columns over the pace: finer columns leave room for pulses that come early. Set on one frame of KITTI, where 0.95 to 0.98 keep all
+ * points.
+ */
 const SLACK = 0.98;
 
 /** The points of each row in order of azimuth. */
@@ -60,7 +63,7 @@ function stepOf(members: number[][], azimuth: Float64Array): number {
   return TURN / Math.min(MOST_SIDE, Math.max(FEWEST_COLUMNS, Math.round(TURN / (SLACK * pace))));
 }
 
-/** The points of one row in its cells, in the order of their azimuths, each about a cell from its azimuth at most. */
+/** Assigns the points of one row to cells in the order of their azimuths, each at most about one cell from its azimuth. */
 class Line {
   readonly cells: Int32Array;
   /** The cell that was filled last. */
@@ -109,7 +112,7 @@ class Line {
 const ONE_PULSE_SHARE = 0.04;
 /** Cells that may shift to make room. */
 const MOST_SHIFTED = 64;
-/** Cells from a point's azimuth to the middle of its cell, at most; a larger shift would misplace its neighbours. */
+/** Most cells between a point's azimuth and the middle of its cell; a larger shift would misplace its neighbours. */
 const FARTHEST_SHIFT = 1.1;
 
 /** The range image of a full turn, with the seam behind `forward`. */

@@ -23,7 +23,7 @@ export interface Image {
 /** Rows and columns of the smallest image that the package takes. */
 export const LEAST_SIDE = 4;
 
-/** A first and a last line, widened to the smallest side where the image has as many lines. */
+/** A first and a last line, widened to the smallest side if the image has that many lines. */
 function widened(first: number, last: number, count: number): [number, number] {
   const missing = Math.max(0, LEAST_SIDE - (last - first + 1));
   const end = Math.min(count - 1, last + Math.ceil(missing / 2));

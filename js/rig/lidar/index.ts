@@ -4,8 +4,8 @@
  * Points keep their coordinates in the cloud's own frame, so that extrinsics for that frame hold; only their order changes. Rows come from the
  * scanner's rings (`rows.ts`), or from a z-buffer for clouds without rings (`sphere.ts`); columns come from azimuths.
  *
- * Limits. All points count as measured at one moment and from one place. Where the rig or the scene moves during a sweep, or between the sweep
- * and the picture, the range image and the picture disagree. A cloud of many sweeps is seen from its origin alone.
+ * Limits. All points count as measured at one moment and from one place. If the rig or the scene moves during a sweep, or between the sweep
+ * and the picture, the range image and the picture disagree. A cloud of many sweeps is treated as seen from its origin.
  */
 import { buffered } from "./sphere.js";
 import { spun } from "./columns.js";
@@ -22,7 +22,7 @@ export type { View } from "./view.js";
 export interface RangeImage extends Image {
   /** x, y, z of each cell in the cloud's frame, metres; NaN where the cell is empty. */
   points: Float32Array;
-  /** The intensity of each cell where the scan has intensities, NaN where the cell is empty. */
+  /** The intensity of each cell if the scan has intensities, NaN if the cell is empty. */
   intensity?: Float32Array;
 }
 

@@ -26,13 +26,13 @@ export interface Rows {
 
 const FEWEST_ROWS = 4;
 const MOST_ROWS = 512;
-/** Points of a row that its cone is fitted to, at least. */
+/** Fewest points in a row for the fit of its cone. */
 const FEWEST_POINTS = 20;
-/** Median distance of points from their cones over the distance of neighbouring cones, at most: points without rows have 0.25. */
+/** Largest ratio of the median distance of points from their cones to the distance of neighbouring cones; points without rows have 0.25. */
 const FITTING = 0.15;
-/** .. where the rows come from rings or from turns, which are rows even where their cones fit poorly. */
+/** The same limit if the rows come from rings or from turns, which are rows even if their cones fit poorly. */
 const FITTING_RINGS = 0.5;
-/** Points that this ratio is measured on, at most. */
+/** Most points on which this ratio is measured. */
 const LOOKED_AT = 50_000;
 /** Share of points that have to lie in rows. */
 const NEARLY_ALL = 0.95;
@@ -58,7 +58,7 @@ function cone({ radius, height }: Polar, members: readonly number[]): Row {
       y += weight * slope;
       uy += weight * slope * inverse;
     }
-    // A row whose points are all equally far away does not determine its origin; the prior draws it to zero.
+    // A row whose points all have the same distance does not determine its origin; the prior draws it to zero.
     uu += n * UNKNOWN_ORIGIN;
     const determinant = n * uu - u * u;
     row = { tangent: (y * uu - uy * u) / determinant, origin: (n * uy - u * y) / determinant };
@@ -68,15 +68,15 @@ function cone({ radius, height }: Polar, members: readonly number[]): Row {
 }
 /** Variance of the systematic errors of elevations (0.6 mrad, of a tilted axis) over the prior variance of an origin (0.15 m). */
 const UNKNOWN_ORIGIN = (0.0006 / 0.15) ** 2;
-/** Height of a laser over the scanner's origin, metres, at most. */
+/** Largest height of a laser above the scanner's origin, metres. */
 const MOST_ORIGIN = 0.5;
 
 /** Tangent of the elevation of a row's points at this radius, metres, seen from the cloud's origin. */
 const slopeOf = ({ tangent, origin }: Row, radius = 10): number => tangent + origin / radius;
 
-/** Rows on either side of a row whose median origin its own is compared with .. */
+/** Number of rows on either side with whose median origin a row's origin is compared. */
 const AROUND = 2;
-/** .. and the difference from that median, metres, from which on a row's own origin counts as unreliable. */
+/** Smallest difference from that median, metres, at which a row's origin counts as unreliable. */
 const UNSTEADY = 0.1;
 
 /** Rows with unreliable origins replaced by the median of their neighbours'; a row that sees only the ground does not determine its origin. */
@@ -130,7 +130,10 @@ function isFit({ how, polar: { radius, height }, rows, row }: Rows): boolean {
   return offs.length >= (NEARLY_ALL * row.length) / stride && median(offs) <= most;
 }
 
-/** An axis of the frame is the scanner's where directions scatter at most so many times as much along it as along the best axis. */
+/**
+ * Largest ratio of the scatter of directions along a frame's axis to that along the best axis at which the frame's axis counts as the
+ * scanner's.
+ */
 const AS_GOOD = 1.5;
 /** Cosine of 1.5 degrees. */
 const NEAR = 0.99966;
@@ -148,11 +151,11 @@ function upwards(axis: Vector): Vector {
   return dot(nearest, axis) < 0 ? [-axis[0], -axis[1], -axis[2]] : axis;
 }
 
-/** Radians by which azimuths may step back within a turn. */
+/** Largest backward step of azimuth within a turn, radians. */
 const BACKWARDS = 20 * DEGREE;
-/** Share of steps from point to point that have to be short and in the scanner's direction of rotation .. */
+/** Smallest share of steps between consecutive points that must be short and in the scanner's direction of rotation. */
 const MOSTLY = 0.8;
-/** .. and the longest short step, radians. */
+/** The longest short step, radians. */
 const SHORT = 3 * DEGREE;
 /** Radians on either side of the seam within which a new turn may begin. */
 const SEAM = 4 * DEGREE;
@@ -183,7 +186,7 @@ export function byOrder(polar: Polar): Rows | undefined {
   return coarse && refined(coarse, isSeam);
 }
 
-/** Two points whose distances differ by less, as a share, lie on one surface, on which elevations only jump from laser to laser. */
+/** Two points whose distances differ by a smaller share lie on one surface, on which elevations jump only between lasers. */
 const LEVEL = 0.05;
 
 /** The change of the slope from each point's predecessor on the same surface; 0 where the two lie on different surfaces. */
@@ -234,11 +237,11 @@ function turnsOf(polar: Polar, travelled: Float64Array): { turn: Int32Array; isS
 const BIN = 0.02 * DEGREE;
 /** Points nearer to the axis than this, metres, are left out of the histogram, because they blur the clusters. */
 const BLURRED = 2;
-/** Height of a cluster over that of the highest ones, at least; a low share, because rays into the sky do not return. */
+/** Smallest ratio of the height of a cluster to that of the highest ones; it is low, because rays into the sky do not return. */
 const LEAST_CLUSTER = 0.05;
 /** Bins that count as the highest ones. */
 const HIGHEST_BINS = 5 * FEWEST_ROWS;
-/** Height of a valley between two clusters as a share of the lower one, at most. */
+/** Largest ratio of the height of a valley between two clusters to that of the lower cluster. */
 const VALLEY = 0.5;
 
 /** Rows from clusters of elevations. */

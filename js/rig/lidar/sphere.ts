@@ -8,14 +8,14 @@ import { MOST_SIDE } from "../formats/limits.js";
 import { DEGREE, type Polar } from "./frame.js";
 import { type Image, LEAST_SIDE } from "./image.js";
 
-/** The finest and the coarsest cell, radians. */
+/** The smallest and the largest cell, radians. */
 const FINEST = 0.02 * DEGREE;
 const COARSEST = 4 * DEGREE;
 /** Points per occupied cell at the wanted density, two random points to three cells: x / (1 - exp(-x)) at x = 2/3. */
 const FILLED = 1.37;
-/** Two points lie on one surface where their ranges differ by less than this share .. */
+/** Two points lie on one surface if their ranges differ by less than this share. */
 const ONE_SURFACE = 0.02;
-/** .. or by less than this, metres. */
+/** Two points also lie on one surface if their ranges differ by less than this, metres. */
 const ONE_SURFACE_LEAST = 0.03;
 /** Bisection steps for the logarithm of the cell. */
 const STEPS = 9;
@@ -75,7 +75,7 @@ function stepOf(sphere: Sphere, points: Uint32Array, area: Extent): number {
   return Math.exp(high);
 }
 
-/** Where the cells begin and how wide they are, radians; how many there are. */
+/** The first cell, the width of a cell in radians, and the number of cells. */
 interface Grid {
   left: number;
   top: number;
@@ -194,9 +194,9 @@ const AROUND = [
   [0, 1],
   [1, 1],
 ] as const;
-/** Nearer neighbours that hide a point, at least; at a straight edge, three of eight are nearer. */
+/** Fewest nearer neighbours that hide a point; at a straight edge, three of eight are nearer. */
 const FEWEST_BEFORE = 4;
-/** .. and the share of all neighbours that they have to be. */
+/** Smallest share of the neighbours that must be nearer to hide a point. */
 const MOSTLY_BEFORE = 0.75;
 
 /** The range image of these points. */

@@ -14,7 +14,7 @@ export interface View {
 
 /** Radians beyond the picture's border: a candidate calibration may be off by some degrees. */
 const MARGIN = 8 * DEGREE;
-/** Widest angle from the optical axis, radians; a pinhole's picture has no wider. */
+/** Widest angle from the optical axis, radians; a pinhole's picture is not wider. */
 const WIDEST = 85 * DEGREE;
 /** Points whose depth is less, metres, are out of focus, and their directions are unreliable. */
 const NEAREST = 0.05;

@@ -1,6 +1,7 @@
 /**
- * Clouds in a robot's axes (x forward, z up). A camera's axes are x right, y down, z forward, and depth is along z. The transform to the
- * colour camera tells which axis is which where both look the same way: the points are turned by it, and the transform is turned back.
+ * Clouds in a robot's axes (x forward, z up). A camera's axes are x right, y down, z forward, and depth is along z. If the cloud's sensor
+ * and the colour camera look in the same direction, the transform between them shows which axis is which; the points are then rotated by
+ * it, and the transform is rotated back.
  */
 import { determinant } from "../../matrices.js";
 import { chained, inverseOf, poseOf } from "../formats/poses.js";
@@ -27,7 +28,7 @@ export function turnOf(rotation: readonly number[]): Turn | undefined {
 export function turned(points: Float32Array, turn: Turn): Float32Array {
   const found = new Float32Array(points.length);
   for (let row = 0; row < 3; row++) {
-    // Each coordinate comes from one column alone: a missing one must not spread where its factor is zero.
+    // Each coordinate comes from a single column, so that a missing one does not spread through a factor of zero.
     const column = [0, 1, 2].findIndex((each) => turn[3 * row + each] !== 0);
     const sign = turn[3 * row + column] ?? 0;
     for (let at = 0; at < points.length; at += 3) found[at + row] = sign * (points[at + column] ?? NaN);

@@ -58,7 +58,7 @@ export class Bridge {
         end(reason);
       };
       socket.addEventListener("close", ({ code, reason }) => close(reason || `the connection was closed (${code})`));
-      // A browser whose policy forbids the address reports an error that no end follows.
+      // If a browser's policy forbids the address, it reports an error, but no end.
       socket.addEventListener("error", () =>
         setTimeout(() => socket.readyState === socket.CLOSED && close("the connection was refused")),
       );

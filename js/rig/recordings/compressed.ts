@@ -13,7 +13,9 @@ const HEAD = 12;
 
 export const isCompressedDepth = (format: string): boolean => /compressedDepth/i.test(format);
 
-/** Numbers in nibbles: three bits and a bit for "more follows", lowest bits first, in 32-bit words read from the highest nibble. */
+/**
+ * Numbers in nibbles: three bits and a bit for "more follows", lowest bits first, in 32-bit words that are read from the highest nibble.
+ */
 class Nibbles {
   readonly #view: DataView;
   #at = 0;

@@ -2,7 +2,7 @@
  * EBML, the elements of Matroska: an id, a size, and bytes or further elements. Only the parts that are needed are read, since a recording may
  * be larger than memory.
  *
- * The packages on npm read a whole file, as a stream of Node.
+ * The packages on npm read a whole file, as a stream in Node.
  */
 import { badFile } from "../../errors.js";
 import type { Bytes } from "./source.js";
@@ -16,7 +16,7 @@ export interface Element {
 
 /** Bytes of the longest head: four of an id, eight of a size. */
 const HEAD = 12;
-/** Bytes that are read at once while elements are small. */
+/** Bytes that are read at once if elements are small. */
 const WINDOW = 2048;
 /** Bytes of the largest content that is read whole: a calibration has some thousand, a list of tracks fewer. */
 const MOST_CONTENT = 2 ** 24;
@@ -31,7 +31,7 @@ export class Elements {
     this.bytes = bytes;
   }
 
-  /** So many bytes from a place, fewer at the end of the file. */
+  /** This many bytes from a place, or fewer at the end of the file. */
   async peek(from: number, length: number): Promise<Uint8Array> {
     if (from < this.#at || from + length > this.#at + this.#window.length) {
       this.#window = (await this.bytes.read(from, Math.max(WINDOW, length))) as Uint8Array<ArrayBuffer>;

@@ -18,19 +18,19 @@ import type { Found, Shot, Source, Track } from "./source.js";
 import { type Topic, folderOf, topicsOf } from "./folder.js";
 import { Transforms, isStatic } from "./transforms.js";
 
-/** Milliseconds in which the first message of each topic has to come. */
+/** Milliseconds within which the first message of each topic must arrive. */
 const FIRST = 4000;
-/** Topics whose first message is awaited, at most. */
+/** Most topics whose first message is awaited. */
 const MOST_TOPICS = 40;
-/** Shots of each topic among which the nearest pair is sought. */
+/** Shots of each topic among which the nearest pair is chosen. */
 const KEPT = 8;
 /** Milliseconds between two comparisons of the view. */
 const PAUSE = 250;
-/** Difference of two views that count as two: well above noise, since the robot is meant to move. */
+/** Smallest difference of two different views: well above noise, since the robot is meant to move. */
 const APART = 2.5 * ALIKE;
-/** Milliseconds after which a frame is taken although the view moves. */
+/** Milliseconds after which a frame is taken even if the view moves. */
 const RESTLESS = 5000;
-/** Seconds between the stamps of a pair, at most, for it to be taken before that. */
+/** Most seconds between the stamps of a pair that is taken earlier. */
 const NEAR = 0.02;
 
 const wait = (milliseconds: number) => new Promise<void>((go) => setTimeout(go, milliseconds));
@@ -89,7 +89,7 @@ class Heard implements Pick<Source, "camera" | "poses"> {
   }
 }
 
-/** The first message of each topic of images or clouds, or why it cannot be read; nothing for a topic that is late. */
+/** The first message of each topic of images or clouds, or why it cannot be read; undefined for a topic that is late. */
 async function firstShots(bridge: Bridge, tracks: readonly Track[]): Promise<Map<string, Shot | string>> {
   const found = new Map<string, Shot | string>();
   const wanted = tracks.filter(({ kind }) => kind === "picture" || kind === "cloud").slice(0, MOST_TOPICS);
@@ -174,7 +174,7 @@ class OpenRobot implements Robot {
     }
   }
 
-  /** Compares what comes in until the view is new and rests. */
+  /** Compares incoming frames until the view is new and at rest. */
   async #look(pairNow: () => Pair | undefined, signal: AbortSignal | undefined): Promise<RigFolder> {
     let before: { signature: Signature; pair: Pair } | undefined;
     const start = performance.now();

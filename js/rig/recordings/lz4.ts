@@ -1,7 +1,7 @@
 /**
  * LZ4 frames, which compress the chunks of MCAP files and ROS bags: literals and copies of earlier bytes. Checksums are skipped.
  *
- * The packages on npm have no licence, or a .wasm that only one bundler finds.
+ * The packages on npm have no licence, or a .wasm that only one bundler can include.
  */
 import { badFile } from "../../errors.js";
 

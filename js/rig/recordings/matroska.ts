@@ -45,7 +45,7 @@ const TOP: ReadonlySet<number> = new Set([
   0x1c53bb6b,
   0x114d9b74,
 ]);
-/** Bytes before the content of a block, at most: track number, time and flags. */
+/** Most bytes before the content of a block: track number, time and flags. */
 const BLOCK_HEAD = 12;
 /** Most blocks of a recording; an hour of three cameras has a third as many. */
 const MOST_BLOCKS = 1_000_000;
@@ -168,7 +168,7 @@ class Reader {
     let track = (head[0] ?? 0) & (0xff >> width);
     for (let i = 1; i < width; i++) track = track * 256 + (head[i] ?? 0);
     const view = new DataView(head.buffer, head.byteOffset, head.byteLength);
-    // A laced block holds several small frames; each picture has a block to itself.
+    // A laced block holds several small frames; pictures are not laced.
     if ((view.getUint8(width + 2) & 6) !== 0 || !this.videos.has(track)) return;
     if (this.blocks.length >= MOST_BLOCKS)
       throw badFile(`it holds more than ${MOST_BLOCKS} pictures; cut it into shorter recordings`);

@@ -56,7 +56,7 @@ async function indexed(bytes: Bytes): Promise<RosFile | undefined> {
   );
   async function* messages(names: readonly string[], from: number, until: number) {
     const range = { startTime: nanoseconds(from), endTime: nanoseconds(until) };
-    // A double cannot hold a Unix time to the nanosecond: rounding must not exclude the first and the last message.
+    // A double cannot represent a Unix time to the nanosecond; rounding must not exclude the first and the last message.
     if (range.startTime < least || from <= seconds(least)) range.startTime = least;
     if (range.endTime > last || until >= seconds(last)) range.endTime = last;
     for await (const { channelId, logTime, data } of reader.readMessages({ topics: names, ...range }))

@@ -156,7 +156,7 @@ export const textIn = (message: Message, name: string): string => {
   const value = message[name];
   return typeof value === "string" ? value : "";
 };
-/** A list of numbers under one of several names: ROS 1 has D, K, P where ROS 2 has d, k, p. */
+/** A list of numbers under one of several names: ROS 1 has D, K, P; ROS 2 has d, k, p. */
 export const numbersIn = (message: Message, ...names: string[]): number[] => {
   for (const name of names) {
     const value = message[name];
@@ -171,7 +171,7 @@ export const bytesIn = (message: Message, name: string): Uint8Array => {
   if (ArrayBuffer.isView(value)) return new Uint8Array(value.buffer, value.byteOffset, value.byteLength);
   return Uint8Array.from(Array.isArray(value) ? value : []);
 };
-/** Seconds of a header's stamp; undefined without one, and where the driver left it at zero. */
+/** Seconds of a header's stamp; undefined without one, or if the driver left it at zero. */
 export const stampOf = (message: Message): number | undefined => {
   const stamp = inner(inner(message, "header"), "stamp");
   return (numberIn(stamp, "sec") || 0) + (numberIn(stamp, "nanosec", "nsec") || 0) * 1e-9 || undefined;

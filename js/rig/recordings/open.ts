@@ -20,8 +20,7 @@ export interface RecordingFile {
   content: Blob | Uint8Array;
 }
 
-/** How frames are taken from a recording. */
-/** Topics that are left out are those of `chosen`. */
+/** Options for taking frames from a recording. Topics that are not given are those of `chosen`. */
 export interface RecordingOptions extends Choice {
   /** The largest number of frames; default 10. */
   frames?: number;
@@ -52,7 +51,7 @@ export interface Recording {
 }
 
 const FRAMES = 10;
-/** Topics whose first message is read, at most. */
+/** Most topics whose first message is read. */
 const MOST_TOPICS = 100;
 
 const topicName = (value: unknown, field: string): void => {

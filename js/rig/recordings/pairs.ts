@@ -1,7 +1,7 @@
 /**
- * Takes pairs of a colour image and a depth map from a recording, in three steps. Moments are spread evenly over the recording, each with the
- * pair whose stamps are nearest. Of these the moments at which the rig moves least are kept, since two cameras are seldom exposed at the same
- * time. Of the rest, those that differ most are taken.
+ * Takes pairs of a colour image and a depth map from a recording, in three steps. Moments are spread evenly over the recording, each with
+ * the pair whose stamps are nearest. Those at which the rig moves least are kept, since two cameras are seldom exposed at the same time. Of
+ * these, the ones that differ most are taken.
  */
 import { breathe } from "../../breathe.js";
 import { BimodalError } from "../../errors.js";
@@ -15,9 +15,9 @@ import type { Content, Shot, Source } from "./source.js";
 const PER_FRAME = 4;
 /** Length of a moment, in periods of the slower topic. */
 const REACH = 2.5;
-/** Seconds between the stamps of a pair, at most, without a warning; the limit of TUM's tool. */
+/** Most seconds between the stamps of a pair without a warning; the limit of TUM's tool. */
 const APART = 0.02;
-/** Seconds by which the delays of two topics differ, at most, if one clock has set their stamps. */
+/** Most seconds by which the delays of two topics may differ if one clock has set their stamps. */
 const CLOCKS = 10;
 
 export interface Pair {
@@ -101,7 +101,7 @@ interface Candidate {
   again(): Promise<Pair | undefined>;
 }
 
-/** Each shot of the slower topic with the nearest of the other, for short recordings, which are read at once. */
+/** Each shot of the slower topic with the nearest one of the other topic. For short recordings, which are read at once. */
 async function allPairs(source: Source, { colour, depth }: Wanted): Promise<Pair[]> {
   const shots: Shot[] = [];
   for await (const shot of source.shots([colour, depth], ...source.span)) shots.push(shot);
@@ -143,7 +143,7 @@ interface Seen {
   unrest: number;
 }
 
-/** The half at which the rig moves least, but no fewer than are wanted. */
+/** The half of the moments at which the rig moves least, but at least as many as are wanted. */
 function restful(seen: readonly Seen[], wanted: number): Seen[] {
   const kept = Math.max(wanted, Math.ceil(seen.length / 2));
   const limit = seen.map(({ unrest }) => unrest).sort((a, b) => a - b)[kept - 1] ?? Infinity;
@@ -186,7 +186,7 @@ export async function moments(
   return { moments: found, warnings: judged(found, seen.length, wanted.frames) };
 }
 
-/** The warnings for moments that were taken: their times, their clocks, and how few of those that were examined differ. */
+/** The warnings about the chosen moments: their times, their clocks, and how few of the examined moments differ. */
 export function judged(found: readonly Moment[], seen = found.length, wanted = found.length): ReaderWarning[] {
   const warnings: ReaderWarning[] = [];
   const apart = Math.max(0, ...found.map(({ pair }) => pair.apart));

@@ -1,6 +1,6 @@
 /**
- * What librealsense records besides standard messages: `tf/0` below the name of each stream, the motion from the reference of the device into
- * the stream, and `option/Depth Units/value` below the name of each sensor, the unit of its depths.
+ * librealsense's additions to standard messages: `tf/0` below the name of each stream, the motion from the reference of the device into the
+ * stream, and `option/Depth Units/value` below the name of each sensor, the unit of its depths.
  */
 import { chained, inverseOf } from "../formats/poses.js";
 import type { NamedPose, Pose } from "../types.js";

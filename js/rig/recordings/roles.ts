@@ -1,7 +1,8 @@
 /**
  * Which topics hold the images of the colour camera and of the depth camera, judged by encoding, name, and whether there are intrinsics.
  *
- * A depth image in its own pixels is preferred to one that was registered to the colour image: registration used the calibration to be checked.
+ * A depth image in its own pixels is preferred to one that was registered to the colour image, because the registration used the
+ * calibration to be checked.
  */
 import { isCompressedDepth } from "./compressed.js";
 import { baseOf } from "./infos.js";

@@ -16,7 +16,7 @@ export interface RosTopic {
   by: { decoder: Decoder } | { unread: string };
 }
 
-/** The topics of several channels; channels of one name, as of a publisher that was restarted, are one topic. */
+/** The topics of several channels; channels with the same name, for example of a publisher that was restarted, are one topic. */
 export function byName(channels: Iterable<Omit<RosTopic, "by"> & { by: () => RosTopic["by"] }>): RosTopic[] {
   const found = new Map<string, RosTopic>();
   for (const { by, ...channel } of channels) {

@@ -80,7 +80,7 @@ export function shotOf(track: string, type: string, logged: number, message: Mes
   const common = head(track, logged, message);
   const withUnit = (options: ReadOptions) => (unit === undefined ? options : { unit, ...options });
   const size = { width: numberIn(message, "width"), height: numberIn(message, "height") };
-  // A scan keeps its axes: its extrinsics are those of that frame.
+  // A scan keeps its axes, because the extrinsics refer to that frame.
   const isCloud = kindOfType(type) === "cloud";
   if (isCloud && isScan(message))
     return {
@@ -101,7 +101,7 @@ export function shotOf(track: string, type: string, logged: number, message: Mes
   };
 }
 
-/** Why a topic is not read whose first message failed. */
+/** Why a topic whose first message failed is not read. */
 export const unreadFirst = (error: unknown): string => `its first message cannot be read (${reasonOf(error)})`;
 
 /** Why images of this encoding are not read; undefined if they are. */

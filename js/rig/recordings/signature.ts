@@ -75,11 +75,11 @@ export function differenceOf(a: Signature, b: Signature): number {
 export const changeOf = (a: Float32Array, b: Float32Array): number =>
   a.reduce((sum, value, cell) => sum + Math.abs(value - (b[cell] ?? 0)), 0) / a.length;
 
-/** A smaller difference is noise: that of a camera on a table is some thousandths. */
+/** A smaller difference is noise: that of a camera on a table is a few thousandths. */
 export const ALIKE = 0.02;
 
 /**
- * Indices of at most so many signatures that differ most from each other, beginning with the fullest depth map. Signatures that are alike are
+ * Indices of at most this many signatures that differ most from each other, beginning with the fullest depth map. Similar signatures are
  * taken once, since two images of one view carry no more information than one.
  */
 export function different(all: readonly Signature[], most: number): number[] {

@@ -64,7 +64,7 @@ export interface Source {
   tracks: Track[];
   /** Seconds of the first and the last message. */
   span: [number, number];
-  /** What was recorded on these tracks from one time of recording to another, both included, in order. */
+  /** The recorded data of these tracks from one time of recording to another, including both, in order. */
   shots(tracks: readonly string[], from: number, until: number): AsyncIterable<Shot>;
   /** The intrinsics of the camera that took a shot. */
   camera(shot: Shot): Promise<Found<NamedCamera | undefined>>;

@@ -11,7 +11,7 @@ import { type Message, frameOf, inner, isMessage, numberIn, textIn } from "./mes
 
 interface Edge {
   parent: string;
-  /** As it was first recorded, and as it was last. */
+  /** The first pose recorded, and the last one. */
   first: Pose;
   pose: Pose;
   /** The largest change from the first, radians and metres. */

@@ -1,7 +1,7 @@
-/** Checks the input of writers by name, because the reader of a file would trust wrong contents. */
+/** Checks the input of writers by name, because readers of the written file would trust wrong contents. */
 import { BimodalError, type ErrorCode, refused } from "../../errors.js";
 
-/** `value` is what was refused, and `index` the entry that it is. */
+/** `value` is the refused value, and `index` the number of the entry. */
 export const fault = (
   code: ErrorCode,
   field: string,
@@ -15,10 +15,10 @@ export function oneOf(words: readonly string[], value: unknown, field: string): 
     throw fault("option", field, `"${String(value)}" is unknown; known: ${words.join(", ")}`, { value });
 }
 
-/** Lists by one entry, objects by their members, those of any name by "*"; what is in neither is not looked at. */
+/** Describes lists by one entry, objects by their members, and objects with arbitrary names by "*"; other members are not checked. */
 export type Example = readonly Example[] | { readonly [name: string]: Example };
 
-/** Checks that there are the lists and objects of an example. */
+/** Checks that the lists and objects of an example are present. */
 export function like(example: Example, value: unknown, field: string): void {
   const isList = Array.isArray(example);
   const members = Object(value) as Record<string, unknown>;

@@ -25,7 +25,7 @@ function check(cloud: Cloud, index: number): void {
   if (!(points instanceof Float32Array)) throw fault("type", `${field}.points`, "must be a Float32Array");
   if (points.length % 3 !== 0)
     throw fault("size", `${field}.points`, `needs 3 numbers for each point, not ${points.length}`);
-  // Other numbers would be cut to bytes.
+  // Larger numbers would be truncated to bytes.
   if (colours !== undefined && Object(colours).byteLength !== points.length)
     throw fault("size", `${field}.colours`, `needs ${points.length} bytes`);
 }

@@ -1,9 +1,9 @@
-/** Extrinsics as Open3D's PinholeCameraParameters and as librealsense's structures have them, both JSON. */
+/** Extrinsics as Open3D's PinholeCameraParameters and as librealsense's structures, both in JSON. */
 import { fault } from "./built.js";
 import { list } from "./numbers.js";
 import { type Camera, type Rig, padded, reaches, rows } from "./rig.js";
 
-/** Entry by entry down the columns. */
+/** The entries column by column. */
 const columns = (matrix: readonly (readonly number[])[]): number[] =>
   (matrix[0] ?? []).flatMap((_, column) => matrix.map((row) => row[column] ?? NaN));
 
@@ -27,7 +27,7 @@ function open3dIntrinsic(camera: Camera | undefined, notes: string[]): string[] 
   ];
 }
 
-/** The extrinsic carries the world, which is the depth camera's frame here, into the camera's, and lies column by column. */
+/** The extrinsic maps the world, which here is the depth camera's frame, into the camera's frame, and is stored column by column. */
 export function open3dJson(rig: Rig, notes: string[]): string {
   return [
     "{",
@@ -43,14 +43,14 @@ export function open3dJson(rig: Rig, notes: string[]): string {
   ].join("\n");
 }
 
-/** librealsense's names of its models, and its five coefficients; nothing where it has no such model. */
+/** librealsense's names of its models, and its five coefficients; undefined if it has no such model. */
 function realsenseDistortion({ model, distortion }: Camera): { model: string; coeffs: number[] } | undefined {
   if (model === "fisheye") return { model: "Kannala Brandt4", coeffs: padded(distortion, 5) };
   if (reaches(distortion, 5)) return undefined;
   return { model: reaches(distortion, 0) ? "Brown Conrady" : "None", coeffs: padded(distortion, 5) };
 }
 
-/** Intrinsics without their distortion would be read as a camera that has none: both or neither. */
+/** Intrinsics without their distortion would be read as a camera without distortion, so both are written or neither. */
 function realsenseCamera(camera: Camera | undefined, key: string, name: string, notes: string[]): string[] {
   if (camera === undefined) {
     notes.push(`the ${name} camera's intrinsics are not known`);
@@ -74,7 +74,7 @@ function realsenseCamera(camera: Camera | undefined, key: string, name: string, 
   return [`  "${key}": {`, lines.join(",\n"), "  },"];
 }
 
-/** As `rs2_extrinsics` has it: the rotation column by column, the translation in metres, from the depth to the colour stream. */
+/** The form of `rs2_extrinsics`: the rotation column by column, the translation in metres, from the depth to the colour stream. */
 export function realsenseJson(rig: Rig, notes: string[]): string {
   const rotation = [0, 3, 6, 1, 4, 7, 2, 5, 8].map((at) => rig.rotation[at] ?? NaN);
   return [

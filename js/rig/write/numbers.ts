@@ -1,6 +1,6 @@
 /**
- * Numbers that read back as the very same ones: the shortest digits that do, with a point, since YAML 1.1 takes 1e-7 for
- * a word and readers in C++ take 1 for an integer. JSON, YAML, C++ and Python all read what comes out.
+ * Numbers that read back unchanged: the fewest digits for which this holds, with a decimal point, since YAML 1.1 reads 1e-7 as a word and
+ * readers in C++ read 1 as an integer. JSON, YAML, C++ and Python can all read the result.
  */
 export function real(value: number): string {
   const text = String(value);

@@ -4,20 +4,20 @@ import { fault } from "./built.js";
 import { real } from "./numbers.js";
 import { type Rig, type RigContext, rows } from "./rig.js";
 
-/** Four rows of four numbers and nothing else, which `numpy.loadtxt` and everything else read. */
+/** Four rows of four numbers and nothing else, which `numpy.loadtxt` and most programs can read. */
 export const matrixText = (rig: Rig): string =>
   rows(rig)
     .map((values) => `${values.map(real).join(" ")}\n`)
     .join("");
 
 /**
- * The unit quaternion x y z w of a rotation, w not negative (Shepperd 1978): divided by the largest of the four, so that
- * half turns keep their digits as well.
+ * The unit quaternion x y z w of a rotation, w not negative (Shepperd 1978). Dividing by the largest of the four keeps the digits of half
+ * turns as well.
  */
 export function quaternion(r: readonly number[]): [x: number, y: number, z: number, w: number] {
   const [xx = NaN, xy = NaN, xz = NaN, yx = NaN, yy = NaN, yz = NaN, zx = NaN, zy = NaN, zz = NaN] = r;
   const squares = [1 + xx - yy - zz, 1 - xx + yy - zz, 1 - xx - yy + zz, 1 + xx + yy + zz];
-  // Four times the products of x, y, z and w, row by row, with each of them.
+  // Four times the products of x, y, z and w with each of them, row by row.
   const products = [
     [squares[0], xy + yx, xz + zx, zy - yz],
     [xy + yx, squares[1], yz + zy, xz - zx],
@@ -30,7 +30,7 @@ export function quaternion(r: readonly number[]): [x: number, y: number, z: numb
   return [x / length, y / length, z / length, w / length];
 }
 
-/** Names that a shell passes on as they are, and that tf2 takes: without a slash at the front. */
+/** Names that a shell passes on unchanged and that tf2 accepts, without a slash at the front. */
 const FRAME = /^[A-Za-z0-9_][A-Za-z0-9_/.-]*$/;
 
 function frame(name: string, field: string): string {
@@ -38,7 +38,7 @@ function frame(name: string, field: string): string {
   throw fault("range", field, 'is not a name of a ROS frame, which has letters, digits, "_", "/", "." and "-"');
 }
 
-/** tf2 holds the pose of the child in the parent: P_parent = R P_child + t, so that the colour camera is the parent. */
+/** tf2 stores the pose of the child in the parent, P_parent = R P_child + t, so the colour camera is the parent. */
 export function ros2Line(rig: Rig, { frames }: RigContext): string {
   const parent = frame(frames?.colour ?? "camera_color_optical_frame", "context.frames.colour");
   const isLidar = frames?.depth === undefined && isOfScan(rig);

@@ -43,14 +43,14 @@ export const poseFormats: readonly PoseFormat[] = Object.freeze(Object.keys(FORM
 
 const ESTIMATE = "An estimate that no check has confirmed: check it with other frames before use.";
 
-/** The text with a comment, where the format may have one. */
+/** The text with a comment, if the format permits one. */
 function commented(text: string, format: PoseFormat): string {
   if (format === "open3d" || format === "realsense") return text.replace("{\n", `{\n  "comment": "${ESTIMATE}",\n`);
   if (format === "opencv") return text.replace("---\n", `---\n# ${ESTIMATE}\n`);
   return `# ${ESTIMATE}\n${text}`;
 }
 
-/** One pose of a rig as a file; `context` fills in what the format can hold beside it. */
+/** Writes one pose of a rig as a file; `context` supplies what else the format can hold. */
 export function writePose(pose: PoseInput, format: PoseFormat, context: RigContext = {}): WrittenPose {
   oneOf(poseFormats, format, "format");
   const { name, write } = FORMATS[format];

@@ -1,5 +1,6 @@
 /**
- * Checks the input of the writers of extrinsics: the reader of a file would trust an invalid number, a sheared rotation or a scale in it.
+ * Checks the input of the writers of extrinsics, because the reader of a file would trust an invalid number, a sheared rotation or a scale
+ * in it.
  */
 import { cameraOf, determinant, poseOf } from "../../matrices.js";
 import type { Pinhole, PinholeInput, Pose, PoseInput } from "../../types/index.js";
@@ -8,7 +9,7 @@ import { fault, like, oneOf } from "./built.js";
 /** Width and height in pixels. */
 export type Size = readonly [width: number, height: number];
 
-/** What is known of the rig besides the pose; it is written if the format has a place for it. */
+/** What is known about the rig besides the pose; it is written if the format has a place for it. */
 export interface RigContext {
   /** The colour camera. */
   colour?: PinholeInput | undefined;
@@ -23,7 +24,7 @@ export interface RigContext {
         depth?: Size | undefined;
       }
     | undefined;
-  /** Whether the pose is an estimate that no check has confirmed, which name and content then say. Default false. */
+  /** Whether the pose is an estimate that no check has confirmed; name and content of the file then say so. Default false. */
   isEstimate?: boolean | undefined;
   /** ROS names of both cameras' optical frames; by default those of the RealSense driver. */
   frames?:
@@ -36,7 +37,7 @@ export interface RigContext {
     | undefined;
 }
 
-/** A camera with its distortion as OpenCV has it: none at all, or 4, 5 or 8 numbers; fisheye always 4. */
+/** A camera with its distortion in OpenCV's form: none, or 4, 5 or 8 numbers; always 4 for a fisheye. */
 export interface Camera {
   model: "brown" | "fisheye";
   fx: number;
@@ -47,7 +48,7 @@ export interface Camera {
   size: Size | undefined;
 }
 
-/** A rig whose numbers are sound: P_colour = rotation P_depth + translation, metres, row-major. */
+/** A rig whose numbers have been checked: P_colour = rotation P_depth + translation, metres, row-major. */
 export interface Rig {
   rotation: number[];
   translation: number[];
@@ -56,7 +57,7 @@ export interface Rig {
 }
 
 const LENGTHS = { brown: [0, 4, 5, 8], fisheye: [4] } as const;
-/** Most that an entry of R Rᵀ may differ from the identity's: what sixteen printed digits lose is far less, a shear or a file in single precision about as much. */
+/** Largest difference of an entry of R Rᵀ from the identity's: sixteen printed digits lose far less, single precision about as much. */
 const MOST_SHEAR = 1e-6;
 
 function numbers(values: ArrayLike<number>, lengths: readonly number[], field: string): number[] {
@@ -115,7 +116,7 @@ function camera(
   return { model, fx, fy, cx, cy, distortion, size: known };
 }
 
-/** The rig that a pose and what is known beside it make. */
+/** The rig that consists of a pose and what else is known. */
 export function rigOf(given: PoseInput, context: RigContext): Rig {
   const pose = poseOf(given, "pose") as Pose;
   like({}, pose, "pose");
@@ -143,10 +144,10 @@ export const row = ({ rotation, translation }: Rig, i: number): number[] => [
 /** The four rows of the 4x4 matrix that carries points of the depth camera into the colour camera's frame. */
 export const rows = (rig: Rig): number[][] => [...[0, 1, 2].map((i) => row(rig, i)), [0, 0, 0, 1]];
 
-/** Whether any number is not zero from the given one on. */
+/** Whether any number from this index on differs from zero. */
 export const reaches = (distortion: readonly number[], from: number): boolean =>
   distortion.slice(from).some((value) => value !== 0);
 
-/** So many numbers of a distortion, zeros where it has fewer. */
+/** This many numbers of a distortion, padded with zeros. */
 export const padded = (distortion: readonly number[], length: number): number[] =>
   Array.from({ length }, (_, k) => distortion[k] ?? 0);

@@ -1,4 +1,4 @@
-/** Extrinsics as OpenCV's FileStorage and Kalibr's chain of cameras have them, both YAML. */
+/** Extrinsics in the formats of OpenCV's FileStorage and Kalibr's chain of cameras, both YAML. */
 import { list } from "./numbers.js";
 import { type Camera, type Rig, padded, reaches, rows } from "./rig.js";
 
@@ -14,7 +14,7 @@ function matrix(name: string, height: number, width: number, values: readonly nu
   ];
 }
 
-/** By the names of OpenCV's calibration sample; the words for the model, which it leaves out, are those of ROS. */
+/** The names are those of OpenCV's calibration sample; the words for the model, which OpenCV omits, are those of ROS. */
 function opencvCamera(camera: Camera | undefined, name: string): string[] {
   if (camera === undefined) return [];
   const { fx, fy, cx, cy, distortion, model, size } = camera;
@@ -28,12 +28,12 @@ function opencvCamera(camera: Camera | undefined, name: string): string[] {
   return [`${name}:`, ...lines.map((line) => `   ${line}`)];
 }
 
-/** As `cv::stereoCalibrate` has it for a first and a second camera: R and T carry points of the first one into the second one's frame. */
+/** The form of `cv::stereoCalibrate` for a first and a second camera: R and T map points of the first one into the second one's frame. */
 export function opencvYaml(rig: Rig): string {
   return [
     "%YAML:1.0",
     "---",
-    `# ${SAYS} To cv::stereoCalibrate the depth camera is the first, the colour camera the second.`,
+    `# ${SAYS} For cv::stereoCalibrate, the depth camera is the first camera and the colour camera the second.`,
     ...matrix("R", 3, 3, rig.rotation),
     ...matrix("T", 3, 1, rig.translation),
     ...opencvCamera(rig.depth, "depth"),
@@ -42,14 +42,14 @@ export function opencvYaml(rig: Rig): string {
   ].join("\n");
 }
 
-/** Kalibr's words for a distortion, and its numbers; nothing where Kalibr has no such model. */
+/** Kalibr's words for a distortion, and its numbers; undefined if Kalibr has no such model. */
 function kalibrDistortion({ model, distortion }: Camera): { word: string; coefficients: number[] } | undefined {
   if (model === "fisheye") return { word: "equidistant", coefficients: distortion };
   if (reaches(distortion, 4)) return undefined;
   return { word: "radtan", coefficients: padded(distortion, 4) };
 }
 
-/** Intrinsics without their distortion would be read as a camera that has none: both or neither. */
+/** Intrinsics without their distortion would be read as a camera without distortion, so both are written or neither. */
 function kalibrCamera(camera: Camera | undefined, name: string, notes: string[]): string[] {
   const leftOut = (why: string): string[] => {
     notes.push(why);
@@ -72,7 +72,7 @@ function kalibrCamera(camera: Camera | undefined, name: string, notes: string[])
   ];
 }
 
-/** T_cn_cnm1 of the second camera carries points of the first one into its frame. */
+/** T_cn_cnm1 of the second camera maps points of the first one into its frame. */
 export function kalibrYaml(rig: Rig, notes: string[]): string {
   return [
     `# ${SAYS} cam0 is the depth camera, cam1 the colour camera, and T_cn_cnm1 is (R t).`,

@@ -227,8 +227,8 @@ impl Candidates {
         self.next >= self.search.candidates().len() || enough
     }
 
-    /// Makes the choice once the whole report of the best optimum is here: a worker returns only what distinguishes
-    /// optima.
+    /// Chooses once the full report of the best optimum is here. A worker returns only the figures by which optima are
+    /// compared.
     fn conclude(&mut self, pair: &ViewPair, colours: &mut ColourRegistration, chosen: Ranking) -> Option<Choice> {
         let Ranking { best, rivals } = chosen;
         let Some(mut best) = best else { return Some(Choice::default()) };

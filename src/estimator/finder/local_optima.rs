@@ -33,7 +33,7 @@ const ENOUGH_SUPPORT: u32 = 2;
 const CATCHMENT: f64 = 15.0;
 /// Largest noise of a rival, as a multiple of the winner's.
 const RIVAL_NOISE: f64 = 1.25;
-/// Visible points of a rival, at least, as a share of the winner's.
+/// Fewest visible points of a rival, as a share of the winner's.
 const RIVAL_VISIBLE: f64 = 0.5;
 /// Most rivals in a report.
 const MOST_RIVALS: usize = 5;
@@ -120,7 +120,7 @@ impl LocalOptima {
         Residuals { noise: optimum.registered.noise, ..self.image }
     }
 
-    /// Enters the end of a registration; of two at the same optimum, the better one stays.
+    /// Enters the end of a registration; if two end at the same optimum, the better one stays.
     pub fn enter(&mut self, origin: Origin, registered: RegisteredCandidate) {
         let gain = registered.visible.powf(THIRD) * (self.image.spread / registered.noise).ln();
         if !gain.is_finite() {

@@ -38,7 +38,7 @@ pub struct RefinementStage {
     position: [Vec<f32>; 2],
     /// Whether a worker has made the next refinement.
     made_by_worker: bool,
-    /// Number of refined shapes so far, including those taken back.
+    /// Number of refined shapes so far, including rejected ones.
     shapes: u32,
 }
 

@@ -121,8 +121,8 @@ const ENOUGH_ANNEALED: usize = 5000;
 /// Options of a registration: its reach and its cost.
 #[derive(Clone, Copy, Debug)]
 pub struct PhotometricOptions {
-    /// First level, 0 to 3, limited to those that a problem has: the coarsest from afar, 0 from a pose that is right to
-    /// a degree.
+    /// First level, 0 to 3, limited to those that a problem has: the coarsest from afar, 0 from a pose with an error of
+    /// about a degree.
     pub first_level: usize,
     /// Cap on the rounds.
     pub most_rounds: usize,

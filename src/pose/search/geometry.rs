@@ -1,7 +1,7 @@
-//! From hypotheses on the grid to poses. A colour camera without intrinsics sees parallel rays, and the centre of a
-//! pose moves in the image plane at z = 0. With intrinsics the centre moves in the plane of its initial distance: that
-//! from the depth camera, or the one at which the silhouettes have the same area. Scale and distance then cannot be
-//! distinguished, so the scale is held and the distance varies.
+//! Converts hypotheses on the grid to poses. Without intrinsics, the colour camera sees parallel rays, and the centre
+//! of a pose moves in the image plane at z = 0. With intrinsics, the centre moves in a plane of constant distance. This
+//! is the distance from the depth camera, or the one at which both silhouettes have the same area. Scale and distance
+//! then cannot be distinguished, so the scale is held and the distance varies.
 
 use nalgebra::Vector3;
 
@@ -43,7 +43,7 @@ impl Geometry {
         self.distance = self.distance.map(|_| told.apply(cloud.centre).z);
     }
 
-    /// Whether the distance varies instead of the scale, which is so behind a pinhole.
+    /// Whether the distance varies instead of the scale, as it does behind a pinhole.
     pub const fn has_distance(&self) -> bool {
         self.distance.is_some()
     }

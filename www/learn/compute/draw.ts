@@ -35,7 +35,7 @@ const panel = (words: Words, { width, height }: Grid, image: ImageData, marks: M
   marks,
 });
 
-/** Linear colours, those of the grid's mask alone; `white` is the brightest. */
+/** Linear colours of the pixels in the grid's mask; `white` is the brightest. */
 export function pictureOf(
   words: Words,
   grid: Grid,

@@ -1,4 +1,4 @@
-/** When it fails: symmetry, little overlap, texture, a quarter turn; and what the program reports then. */
+/** When the method fails: symmetry, little overlap, texture, a quarter turn; and what the program then reports. */
 
 import type { Relief, Sample } from "../../../pkg/index.js";
 import { LARGEST_TURN, LEAST_OVERLAP, type Drawing, type Values } from "../protocol";
@@ -28,7 +28,7 @@ function disc(nose: number): Relief {
   return { width: DISC, height: DISC, heights };
 }
 
-/** Each case with its amount of trouble from 0 to 100 percent. */
+/** Each case, with its difficulty from 0 to 100 percent. */
 function sceneOf(what: string, amount: number): { made: Sample; pair: Pick<Sample, "image" | "depth"> } {
   const base = { surface: "bust", light: "colourful", size: SIZE, noise: 0.01, angles: { beta: 20 } };
   const share = amount / 100;
@@ -84,7 +84,7 @@ export function* failure(values: Values): Generator<Drawing> {
             key: "depth",
             title: "The depth map",
             alt: "The depth map from the other viewpoint.",
-            legend: "dark near, bright far; hatched: none",
+            legend: "dark near, bright far; hatched: no depth",
           },
           made.depth,
           depth,

@@ -31,7 +31,7 @@ function plate(height: number, light: Float64Array): Sample {
 /** The lamp of this lesson stands on the left and a little above; its light is grey. */
 const lamp = (): Float64Array => saturated(lightNamed("window"), 0);
 
-/** Heights above the edge of the plate, which both have. */
+/** Heights above the edge of the plate, which both surfaces share. */
 function level({ truth, image }: Sample): Float32Array {
   const row = Math.floor(image.height / 2) * image.width;
   const rim = truth.imageDepth.subarray(row, row + image.width).find(Number.isFinite) ?? 0;

@@ -7,12 +7,12 @@ import { onDisc, scalarOf } from "./draw";
 const SIDE = 128;
 /** Distance in log colour up to which a normal counts as an explanation: two percent of brightness, the noise of a good camera. */
 export const NOISE = 0.02;
-/** Distance at which the picture's colours end. */
+/** Distance at which the picture's colour scale ends. */
 const MOST_SHOWN = 1;
 
 export interface Landscape {
   panel: ImagePanel;
-  /** Share of the hemisphere's picture whose colour is the pixel's up to noise, percent. */
+  /** Share of the hemisphere whose predicted colour equals the pixel's up to noise, percent. */
   explained: number;
   /** Difference of the lowest minimum's colour from the pixel's, percent of brightness (rms of the three). */
   off: number;
@@ -37,7 +37,8 @@ export function landscapeOf(
   const reach = NOISE * Math.sqrt(3);
   const minima = minimaOf(found);
   const best = minima[0]?.objective ?? NaN;
-  // A minimum that explains the pixel between two samples of the picture fills one of them, so that zero means that no normal does.
+  // If a minimum between two samples of the picture explains the pixel, one sample is coloured for it, so that zero means that no normal
+  // explains it.
   const places = Math.max(inside.filter((value) => value < reach).length, Math.sqrt(best) < reach ? 1 : 0);
   const explained = (100 * places) / inside.length;
   const end = found.path.subarray(-3);

@@ -21,7 +21,7 @@ export const normalDegrees = degrees as (
 ) => number;
 /** Depth error, root mean square, up to a constant. */
 export const depthRmse = rmse as (found: Float32Array, truth: Float32Array) => number;
-/** The same pixels come first for every share. */
+/** The pixels of a smaller share are also in every larger share. */
 export const chosenPixels = chosen as (mask: Uint8Array, share: number, seed: number) => Uint8Array;
 export const degreesBetween = rotationBetween as (found: readonly number[], truth: readonly number[]) => number;
 export const angleBetween = between as (a: ArrayLike<number>, b: ArrayLike<number>) => number;
@@ -53,7 +53,7 @@ export function meanOf(values: ArrayLike<number>, counts: (index: number) => boo
   return sum / number;
 }
 
-/** Share of the truth's differences that is found: the slope of the line that fits best. */
+/** The share of the true differences that is recovered: the slope of the best-fitting line. */
 export function slopeOf(found: ArrayLike<number>, truth: ArrayLike<number>): number {
   const both = (index: number) => Number.isFinite(found[index]) && Number.isFinite(truth[index]);
   const [f, t] = [meanOf(found, both), meanOf(truth, both)];

@@ -1,4 +1,4 @@
-/** Shadows, paint, and how the model handles them. */
+/** Shadows, albedo, and how the model handles them. */
 
 import type { Sample } from "../../../pkg/index.js";
 import type { Drawing, Values } from "../protocol";
@@ -7,7 +7,7 @@ import { correlation, meanOf, normalDegrees } from "./measure";
 import { numberOf, running, scene } from "./scenes";
 
 const SIZE = 96;
-/** Log colours of the paints at full strength, and the side of a square of paint, pixels. */
+/** Log albedos of the pattern at full strength, and the side of a square of it, pixels. */
 const PAINTS = [
   [0, -0.7, -0.9],
   [-0.8, -0.2, -0.1],
@@ -21,7 +21,7 @@ const BAND = [0.42, 0.58] as const;
 
 interface Painted {
   pair: Pick<Sample, "image" | "depth">;
-  /** The true log albedo, less its mean, as the module has it. */
+  /** The true log albedo, less its mean, as the module defines it. */
   paint: Float32Array;
   shadow: Uint8Array;
 }
@@ -45,7 +45,7 @@ function painted(made: Sample, strength: number, darkness: number): Painted {
   return { pair: { image: { ...made.image, data: colours }, depth: made.depth }, paint, shadow };
 }
 
-/** How much darker the albedo is where the shadow falls, less the paint's part, as a logarithm. */
+/** How much darker the estimated albedo is in the shadow, corrected for the true albedo, as a logarithm. */
 function contrast(albedo: Float32Array, paint: Float32Array, isShadow: (index: number) => boolean): number {
   const less = albedo.map((value, at) => value - (paint[at] ?? NaN));
   const side = (wanted: boolean) => meanOf(less, (at) => isShadow(Math.floor(at / 3)) === wanted);

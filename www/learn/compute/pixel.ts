@@ -27,7 +27,7 @@ export function* pixel(values: Values): Generator<Drawing> {
   const log = [...shadeNormals(light, one)].map((value) => value + albedo);
   const colour = Float32Array.from(log, (value) => Math.exp(value));
   const ball = predicted(light, normals, albedo);
-  // One white for all positions of the sliders: a darker albedo has to look darker.
+  // The white level is the same for all positions of the sliders, so that a darker albedo looks darker.
   const white = 1;
   const reach = Math.sqrt(Math.max(0.01, 0.96 - normal[1] ** 2));
   const across = Array.from({ length: SECTION }, (_, i) => reach * ((2 * i) / (SECTION - 1) - 1));

@@ -13,7 +13,7 @@ const SIZE = 64;
 const BETA = 20;
 const OFFSETS = [-40, -30, -20, -14, -8, -4, 0, 4, 8, 14, 20, 30, 40];
 const ENDS = [Math.min(...OFFSETS), Math.max(...OFFSETS)] as const;
-/** Where the axis of the residual ends: above the whole curve under each light, so that it stands still while the curve is computed. */
+/** The upper end of the residual's axis: above the whole curve under each light, so that it does not move while the curve is computed. */
 const MOST_RESIDUAL: Readonly<Record<string, number>> = { colourful: 0.7, window: 0.5, overcast: 0.2 };
 /** Stages of an iteration up to the light, whose fit leaves the residual, and up to the image's surface. */
 const [TO_LIGHT, TO_SURFACE] = [1, 3];

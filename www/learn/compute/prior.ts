@@ -7,7 +7,7 @@ import { chosenPixels, depthRmse, meanOf, normalDegrees } from "./measure";
 import { after, numberOf, scene } from "./scenes";
 
 const SIZE = 64;
-/** Beyond any distance in a view: a prior counts where it is given, however wrong the surface still is. */
+/** Larger than any distance in a view, so that a given prior counts however wrong the surface still is. */
 const ANYWHERE = 1e6;
 const SHARES = [0, 5, 10, 20, 35, 50, 75, 100];
 
@@ -20,7 +20,7 @@ function solved(values: Values, share: number) {
     noise: 0.02,
     seed: 5,
   });
-  // A depth map without a pixel is refused: for none of them the prior weighs nothing.
+  // A depth map without a pixel is refused, so for no given pixels the weight of the prior is zero.
   const none = share === 0;
   const mask = none
     ? (made.depth.mask ?? new Uint8Array())
@@ -68,7 +68,7 @@ export function* prior(values: Values): Generator<Drawing> {
           key: "given",
           title: "Normals from the depth map",
           alt: `The prior: ${share} percent of the pixels are given a normal.`,
-          legend: "hatched: none given",
+          legend: "hatched: no normal given",
         },
         grid,
         given,

@@ -3,7 +3,7 @@
 import { Estimator, sample, type Options, type Sample, type SampleRequest } from "../../../pkg/index.js";
 import type { Values } from "../protocol";
 
-/** The last few scenes: dragging a control that is not part of the scene must not render it again. */
+/** The last few scenes, so that dragging a control that does not affect the scene does not render it again. */
 const MOST_KEPT = 8;
 const kept = new Map<string, Sample>();
 
@@ -59,7 +59,7 @@ export function ofOrder(light: Float64Array, order: 0 | 1 | 2): Float64Array {
   return light.map((value, index) => (index % ORDERS >= first && index % ORDERS < end ? value : 0));
 }
 
-/** The normal that a visitor points at; one beyond the edge is drawn back to it. */
+/** The normal at the pointer; beyond the edge, the nearest one on it. */
 export function normalAt(x: number, y: number): [number, number, number] {
   const length = Math.hypot(x, y);
   const shrink = length > 0.98 ? 0.98 / length : 1;

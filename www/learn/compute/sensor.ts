@@ -1,4 +1,4 @@
-/** Refining the sensor: the picture's shading takes the noise out of the depth map. */
+/** Refining the sensor: the shading in the image removes the noise from the depth map. */
 
 import type { Drawing, Values } from "../protocol";
 import { alongRow, normalsOf, plot } from "./draw";
@@ -11,7 +11,7 @@ const STEPS = 6;
 
 const options = (made: Sample) => ({ light: made.light, start: made.pose, scale: 1, registration: "fixed" }) as const;
 
-/** Normals as the sensor's depth has them, before anything was refined. */
+/** Normals of the sensor's depth before the refinement. */
 function rawNormals(made: Sample): Float32Array {
   const estimator = new Estimator(made.image, made.depth, options(made));
   try {

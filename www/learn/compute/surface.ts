@@ -39,8 +39,8 @@ function relief(step: number, through: boolean, part: Part): Relief {
 }
 
 /**
- * The scene, its colours taken from its two parts. In a picture of the whole, the pixels beside the wall would have the normals of
- * differences across it, and so would reveal the step.
+ * The scene, with its colours taken from its two parts. In a rendering of the whole, the normals beside the wall would be computed across
+ * it, so that the colours would reveal the step.
  */
 function seamless(step: number, through: boolean, noise: number): Sample {
   const part = (name: Part): Sample => {

@@ -13,7 +13,7 @@ export function lessonNamed(name: string | null): Lesson | undefined {
   return lessons.find(({ id }) => id === name);
 }
 
-/** A lesson follows another one in a circle that ends at both ends. */
+/** The neighbour of a lesson; the first and the last have only one. */
 export function beside(id: LessonId, by: 1 | -1): Lesson | undefined {
   return lessons[lessons.findIndex((lesson) => lesson.id === id) + by];
 }

@@ -74,7 +74,7 @@ export const failure: Lesson = {
   tasks: [
     "Symmetry: remove the nose of the disc. At 100 % the rotation cannot be determined, and the report names the axis.",
     "Overlap: narrow the depth map and find the width at which the status stops being converged.",
-    "Texture: with the print at 100 %, more of the colour stays unexplained than with none, and the rotation is so uncertain that the status is lost. It names the axis.",
+    "Texture: with the print at 100 %, more of the colour stays unexplained than with none, and the rotation is so uncertain that the status is lost. The report names the axis.",
     "A large turn: at 90° and with a narrow depth map, little remains to compare.",
   ],
   controls: [

@@ -36,7 +36,7 @@ const RECONSTRUCTIONS: readonly Row[] = [
     sample: "colmap-images",
     reads: "poses",
     warnings: ["camera-to-world"],
-    taken: "The place of each image in a world of unknown scale; not used as extrinsics.",
+    taken: "The pose of each image in a world of unknown scale; not used as extrinsics.",
     guessed: NOTHING,
     exported: "As above.",
   },
@@ -88,7 +88,7 @@ const VEHICLES: readonly Row[] = [
     reads: "cameras",
     warnings: [],
     taken:
-      "The camera that the folder's name selects (`image_2`); the pose of the LiDAR in the frame of that camera, rectification and baseline included.",
+      "The camera that the folder's name selects (`image_2`); the pose of the LiDAR in the frame of that camera, with rectification and baseline.",
     guessed: NOTHING,
     exported: DOWNLOAD,
   },
@@ -213,9 +213,9 @@ const INDOOR: readonly Row[] = [
     sample: "bop",
     reads: "cameras",
     warnings: [],
-    taken: "The camera of both pictures, of each image if it changes; `depth_scale` in millimetres.",
+    taken: "The camera of both pictures, or of each image if it changes; `depth_scale` in millimetres.",
     guessed:
-      "A `depth_scale` that cannot be in millimetres is read as metres per unit or as units to the metre, because other programs write those.",
+      "A `depth_scale` that cannot be in millimetres is read as metres per unit or as units per metre, which other programs write.",
     exported: DOWNLOAD,
   },
   {

@@ -7,7 +7,7 @@ const UNIT = "The unit, if no file of the folder gives it.";
 export const FOLDERS: readonly Row[] = [
   {
     product: "Any program",
-    file: "pairs by similar names, by time stamps as names, or by order",
+    file: "pairs by similar names, by names that are time stamps, or by order",
     modules: [],
     reader: "folder",
     sample: "pairs",
@@ -27,8 +27,8 @@ export const FOLDERS: readonly Row[] = [
     sample: "tum",
     reads: "folder",
     warnings: [],
-    taken: "Pairs by the lists' time stamps; 5000 units to the metre, unless a text says otherwise.",
-    guessed: "TUM's unit where the values are not those of TUM's sensor, with a warning.",
+    taken: "Pairs by the lists' time stamps; 5000 units per metre, unless a text says otherwise.",
+    guessed: "TUM's unit, with a warning if the values are not those of TUM's sensor.",
     exported: DOWNLOAD,
   },
   {

@@ -3,7 +3,7 @@ import type { Container } from "../../recordings/kinds.js";
 import type { ReaderCode } from "../../warnings.js";
 import type { RasterKind } from "../headerless.js";
 
-/** What a file is read as; "refused" where the error names the way out. */
+/** What a file is read as; "refused" if the error says what to do instead. */
 export type Reads = "colour" | "depth" | "mask" | "cameras" | "poses" | "folder" | "recording" | "robot" | "refused";
 
 export interface Row {
@@ -11,7 +11,7 @@ export interface Row {
   product: string;
   /** The file's name and format. */
   file: string;
-  /** The modules of js/rig that read what the product alone writes, by their names without ending. */
+  /** The modules of js/rig that read only this product's files, by their names without ending. */
   modules: readonly string[];
   /** The kind of pixels or points, the container of a recording, or the words with which readings of such a text begin. */
   reader: RasterKind | Container | (string & {});
@@ -34,7 +34,7 @@ export interface Group {
   rows: readonly Row[];
 }
 
-/** Where no command or menu of the product could be verified. */
+/** Used if no command or menu of the product could be verified. */
 export const SEE_PRODUCT = "See the product's documentation.";
-/** What is guessed where nothing is. */
+/** The text of the column if nothing is guessed. */
 export const NOTHING = "Nothing.";

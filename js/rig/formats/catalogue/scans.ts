@@ -91,6 +91,18 @@ export const SCANS: readonly Row[] = [
     exported: SEE_PRODUCT,
   },
   {
+    product: "VeloView, LidarView, Livox Viewer",
+    file: "points as `.csv` with names of columns",
+    modules: ["point-list"],
+    reader: "a list of points",
+    sample: "scan-columns",
+    reads: "depth",
+    warnings: ["points-sorted", "point-times"],
+    taken: 'Points by the columns "x", "X [mm]", "Points_m_XYZ:0" and the like; intensities, lasers and times.',
+    guessed: "Metres or millimetres from the distances, where the columns do not name the unit.",
+    exported: SEE_PRODUCT,
+  },
+  {
     product: "NumPy",
     file: "a list of points (N x 3 to N x 8) as `.npy`",
     modules: ["npy"],

@@ -102,6 +102,19 @@ const CALIBRATORS: readonly Row[] = [
     exported: "`cv::FileStorage`, or OpenCV's calibration sample",
   },
   {
+    product: "OpenCV in Python",
+    file: "`.npz` of `mtx`, `dist` and other matrices by their names",
+    modules: ["npy-matrix", "zip"],
+    reader: "JSON",
+    sample: "opencv-npz",
+    reads: "cameras",
+    warnings: [],
+    taken:
+      "Cameras and poses by the names of their arrays. A lens may also be in a separate file, as `D_color.txt` beside `K_color.txt`.",
+    guessed: NOTHING,
+    exported: '`numpy.savez("calibration.npz", mtx=mtx, dist=dist)`',
+  },
+  {
     product: "Open3D",
     file: "`camera_intrinsic.json`, camera parameters, trajectories (`.json`)",
     modules: [],
@@ -116,13 +129,14 @@ const CALIBRATORS: readonly Row[] = [
   {
     product: "multical",
     file: "`calibration.json`",
-    modules: [],
-    reader: "JSON",
+    modules: ["multical"],
+    reader: "a calibration of multical",
     sample: "multical",
     reads: "cameras",
-    warnings: ["pose-left-out"],
+    warnings: ["pose-left-out", "pose-assumed"],
     taken: "Cameras; poses relative to the first camera, which has the identity and is left out.",
-    guessed: NOTHING,
+    guessed:
+      "That a pose leads the way its name says, with a warning, because multical's exporter writes the opposite direction.",
     exported: "`multical calibrate` writes it",
   },
   {
@@ -300,7 +314,7 @@ const ANY: readonly Row[] = [
     taken:
       "Cameras and poses by the names of their members (`camera_matrix`, `K`, `fx`, `intrinsics`, `R` and `T`, `T_a_b`, `depth_to_color`).",
     guessed:
-      "If a rotation can be read in two ways, the way that makes a rig, with a warning. Unused lenses, sizes and poses have a warning as well.",
+      "If a rotation can be read in two ways, the way in which both cameras look in the same direction, with a warning. Unused lenses, sizes and poses have a warning as well.",
     exported: "-",
   },
   {

@@ -15,7 +15,7 @@ const AXES: readonly { axis: Axis; title: string; unit: string }[] = [
   { axis: "tz", title: "Shift along z", unit: "mm" },
 ];
 
-/** Sigmas that a panel shows: offsets further away are ruled out, whatever their height. */
+/** Sigmas that a panel shows: offsets farther away are excluded, whatever their height. */
 export const MOST_SIGMAS = 8;
 
 /** Line styles that the style sheet distinguishes. */
@@ -38,7 +38,7 @@ function ticks(from: number, to: number): number[] {
   return Array.from({ length: Math.max(0, count) }, (_, k) => (first + k) * by);
 }
 
-/** Lengths of a panel in its units, named where they are used: a list is shorter to download. */
+/** Lengths of a panel in its units, named where they are used, because a list is shorter to download. */
 const PANEL = [320, 200, 26, 10, 10, 40, 5, 3, 32] as const;
 
 const at = (value: number): string => value.toFixed(2);
@@ -49,7 +49,7 @@ interface Line {
   curve: Curve;
 }
 
-/** The part of a line that a panel shows, cut where it leaves it; one stroke as long as it stays, so that dashes run on. */
+/** The part of a line within the panel, cut at its border; one continuous stroke per visit, so that dashes continue. */
 function path({ points }: Curve, x: (offset: number) => string, y: (height: number) => string): string {
   type Point = (typeof points)[number];
   const place = ({ offset, height }: Point) => `${x(offset)} ${y(height)}`;
@@ -67,7 +67,7 @@ function path({ points }: Curve, x: (offset: number) => string, y: (height: numb
   return strokes.join("");
 }
 
-/** Best offset and 95 % interval in words, as far as the curve's range tells. */
+/** Best offset and 95 % interval in words, as far as the curve's range shows them. */
 function says({ points, best, from, to }: Curve, unit: string): string {
   const [first = NaN, last = NaN] = [points[0]?.offset, points.at(-1)?.offset];
   if (from === undefined && to === undefined)
@@ -92,7 +92,7 @@ ${ticks(first, last).map((tick) => html`<path class="grid" d="M${x(tick)} ${top}
 ${lines.map(({ series, curve: found }) => html`<path class="series s${series}" d="${path(found, x, y)}"/>`)}
 ${lines.map(({ series, curve: { best, from, to } }) => {
   if (from === undefined && to === undefined) return undefined;
-  // One below the other, under the axis, so that none hides another.
+  // The marks are below each other under the axis, so that none hides another.
   const level = Number(y(0)) + 2 + between * series;
   return html`<path class="width s${series}" d="M${x(from ?? first)} ${level}H${x(to ?? last)}"/><path class="best s${series}" d="M${x(best)} ${y(0)}l-${mark} -${2 * mark}h${2 * mark}z"/>`;
 })}
@@ -100,7 +100,7 @@ ${lines.map(({ series, curve: { best, from, to } }) => {
 <ul class="says">${words.map(({ cue, series, text }) => html`<li><svg class="key" viewBox="0 0 24 8" aria-hidden="true"><path class="series s${series}" d="M0 4H24"/></svg> ${cue}: ${text}</li>`)}</ul></figure>`;
 }
 
-/** One panel for each axis that has curves, one line for each cue; a cue has the same line in all of them. */
+/** One panel for each axis that has curves, one line for each cue; a cue has the same line style in all of them. */
 export function sensitivities(sensitivity: CheckReport["sensitivity"]): Markup[] {
   const cues = [...new Set(sensitivity.map(({ cue }) => cue))];
   return AXES.flatMap(({ axis, title, unit }) => {

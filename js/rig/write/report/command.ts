@@ -1,28 +1,28 @@
 /** The command that repeats a check in a shell. */
 
-/** What the command is given; further members than the first two only where they differ from its defaults. */
+/** The arguments of the command; after the first two, only those that differ from the defaults. */
 export interface ShellCheck {
   /** The folder of the frames. */
   folder: string;
   /** The files of the calibrations, the one in question first. */
   calibrations: readonly string[];
-  /** Files of intrinsics that are named. */
+  /** Files of intrinsics that the command names. */
   cameras?: readonly string[] | undefined;
-  /** Whether the calibrations carry colour to depth. */
+  /** Whether the calibrations map colour to depth. */
   isInverted?: boolean | undefined;
-  /** Metres for each stored number. */
+  /** Metres per stored number. */
   unit?: number | undefined;
-  /** At most so many pairs. */
+  /** Most pairs. */
   frames?: number | undefined;
   /** The cues to use. */
   cues?: readonly string[] | undefined;
   /** Threads. */
   workers?: number | undefined;
-  /** Files that are written first, because there are none of this content. */
+  /** Files that must be written first, because no file with this content exists. */
   written?: readonly { name: string; text: string }[] | undefined;
 }
 
-/** A word for a POSIX shell. A leading dash would be an option. */
+/** Quotes a word for a POSIX shell. A leading dash would be an option. */
 const quoted = (word: string): string => {
   const path = word.startsWith("-") ? `./${word}` : word;
   return /^[\w./,:@%+=-]+$/.test(path) ? path : `'${path.replaceAll("'", `'\\''`)}'`;

@@ -1,4 +1,4 @@
-/** The contents of a report: the result of the check, and what the caller adds. */
+/** The contents of a report: the result of the check, and the caller's additions. */
 import type { CheckReport, Pose, Warning } from "../../../types/index.js";
 
 /** The result of a check; its warnings may include messages of the caller. */
@@ -15,7 +15,7 @@ export interface Picture {
   dataUrl: string;
 }
 
-/** A frame with its depth edges, which `projectFrame` gives for a pose. */
+/** A frame with its depth edges under a pose, as `projectFrame` returns them. */
 export interface Overlay {
   /** Name of the frame. */
   frame: string;
@@ -25,9 +25,9 @@ export interface Overlay {
   height: number;
   /** The image, at any size: `data:image/jpeg;base64,..`, or PNG, WebP, AVIF or GIF. */
   picture: string;
-  /** Column, row of each point of a depth edge, with the calibration in question; none if there is only an estimate. */
+  /** Column and row of each point of a depth edge, with the calibration in question; absent if there is only an estimate. */
   before?: ArrayLike<number> | undefined;
-  /** The same with the best fit. */
+  /** The same points with the best fit. */
   after: ArrayLike<number>;
 }
 
@@ -39,33 +39,33 @@ export interface ReportInput {
   says?: string | undefined;
   /** Its size, bytes. */
   bytes?: number | undefined;
-  /** The codes of its warnings, guesses among them. */
+  /** The codes of its warnings, including guesses. */
   notes?: readonly string[] | undefined;
-  /** Of its bytes, in hexadecimal. */
+  /** SHA-256 of its bytes, in hexadecimal. */
   sha256?: string | undefined;
 }
 
-/** A name and a value, as the reader should see them. */
+/** A name and a value, in the form in which the report shows them. */
 export type ReportEntry = readonly [name: string, value: string];
 
-/** What a report states besides the result. */
+/** The contents of a report besides the result. */
 export interface ReportOptions {
-  /** "Check of a calibration" without it. */
+  /** The title. Default "Check of a calibration". */
   title?: string | undefined;
-  /** When it was made; no date without it. */
+  /** When it was made; without it the report has no date. */
   made?: Date | undefined;
   /** The files that were read. */
   inputs?: readonly ReportInput[] | undefined;
-  /** Whether no calibration was in question: the candidate only stands in for one. */
+  /** Whether no calibration was in question, so that the candidate is only a placeholder. */
   isEstimate?: boolean | undefined;
-  /** The extrinsics that were checked, by the names of the report's candidates. */
+  /** The extrinsics that were checked, under the names of the report's candidates. */
   calibrations?: Readonly<Record<string, Pick<Pose, "rotation" | "translation" | "angles">>> | undefined;
   /** Frames with their depth edges, the most important first. */
   overlays?: readonly Overlay[] | undefined;
-  /** The command that repeats the check in a shell, and what it cannot repeat. */
+  /** The command that repeats the check in a shell, and its limits. */
   shell?:
     | {
-        /** The command, of one line or more; none if no command can repeat it. */
+        /** The command, of one or more lines; absent if no command can repeat it. */
         command?: string | undefined;
         /** Where to type it, and how its result differs. */
         note?: string | undefined;

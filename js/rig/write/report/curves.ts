@@ -1,24 +1,24 @@
 /**
- * What a sensitivity curve says: where it is best, and how far one may move from there before the likelihood excludes it. Heights are
- * sigmas, the square root of twice the fall of the log likelihood: straight flanks where noise is Gaussian, and the same
- * scale for all cues and axes.
+ * The meaning of a sensitivity curve: its best offset, and the offsets that the likelihood does not exclude. Heights are in sigmas, the
+ * square root of twice the fall of the log likelihood; flanks are straight if the noise is Gaussian, and all cues and axes have the same
+ * scale.
  */
 
 /** Sigmas within which 95 % of a Gaussian lie. */
 export const SIGMAS_95 = 1.959964;
 
 export interface Curve {
-  /** By rising offset; height in sigmas, zero at the best one. */
+  /** In order of increasing offset; height in sigmas, zero at the best offset. */
   points: { offset: number; height: number }[];
   best: number;
-  /** Ends of the 95 % interval about the best offset; undefined where the curve's range ends before. */
+  /** Ends of the 95 % interval about the best offset; undefined if the curve's range ends before. */
   from: number | undefined;
   to: number | undefined;
 }
 
 type Points = Curve["points"];
 
-/** Where the height first passes 95 % on the way through these points, the best one first. */
+/** The place where the height first exceeds the 95 % level along these points, beginning with the best one. */
 function crossing(points: Points): number | undefined {
   const after = points.findIndex(({ height }) => height > SIGMAS_95);
   const [a, b] = [points[after - 1], points[after]];
@@ -26,7 +26,7 @@ function crossing(points: Points): number | undefined {
   return a.offset + ((SIGMAS_95 - a.height) / (b.height - a.height)) * (b.offset - a.offset);
 }
 
-/** Nothing where fewer than two values are numbers. */
+/** Undefined if fewer than two values are numbers. */
 export function curve(offsets: readonly number[], values: readonly number[]): Curve | undefined {
   const known = offsets
     .map((offset, index) => ({ offset, value: values[index] ?? NaN }))
@@ -34,7 +34,7 @@ export function curve(offsets: readonly number[], values: readonly number[]): Cu
     .sort((a, b) => a.offset - b.offset);
   if (known.length < 2) return undefined;
   const peak = known.reduce((most, { value }) => Math.max(most, value), -Infinity);
-  // Of several equal ones that which is nearest to the estimate.
+  // If several are equal, the one that is nearest to the estimate.
   const best = known.reduce(
     (found, { offset, value }) => (value === peak && Math.abs(offset) < Math.abs(found) ? offset : found),
     Infinity,

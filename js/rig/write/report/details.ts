@@ -1,4 +1,4 @@
-/** What the report holds beyond its first page: tables and curves for those who open them. */
+/** The parts of the report beyond its first page: tables and curves in sections that can be opened. */
 import type { CandidateReport } from "../../../types/index.js";
 import { bar, sensitivities } from "./charts.js";
 import type { Checked } from "./contents.js";
@@ -93,7 +93,7 @@ where its curve is below the dashed line.</p><div class="panels">${panels}</div>
   );
 }
 
-/** Closed, so that a printed report has one page. */
+/** Closed by default, so that a printed report has one page. */
 export const details = (report: Checked, more: Markup | undefined): Markup =>
   html`<details><summary>Details: calibrations, cues, frames, sensitivity, covariance</summary>${[
     ...[candidateTable(report), more, cueTable(report), frameTable(report)],

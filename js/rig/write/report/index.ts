@@ -1,5 +1,5 @@
 /**
- * The report of a check of a rig as one self-contained HTML file that can be kept, mailed and printed on one page. It contains no script,
+ * The report of a check of a rig as one self-contained HTML file that can be stored, mailed and printed on one page. It contains no script,
  * its content security policy allows none, and text from files is escaped.
  */
 import { type Example, like } from "../built.js";
@@ -36,10 +36,10 @@ const OPTIONS: Example = {
 
 const LEGEND = html`<p class="soft"><svg class="key" viewBox="0 0 24 8" aria-hidden="true"><path class="edge" d="M0 4H24"/></svg> depth edges; they should coincide with the silhouettes in the image</p>`;
 
-/** Lines of the lists of a printed page up to which its pictures may be large. */
+/** Most lines in the lists of a printed page at which its pictures may be large. */
 const FEW_LINES = 14;
 
-/** Lines that the lists take, each cut at what a full page holds. */
+/** Lines that the lists take, each limited to what a full page holds. */
 function linesOf({ warnings, candidates }: Checked, { inputs = [], shell }: ReportOptions): number {
   const command = String(shell?.command ?? "").split("\n");
   return (

@@ -1,6 +1,6 @@
 /**
- * HTML from templates in which whatever is put in is escaped, in text and in attributes alike: names come from files of
- * others. Only markup that such a template made passes as it is.
+ * HTML from templates that escape all inserted values, in text and in attributes alike, because names come from other people's files. Only
+ * markup made by such a template is inserted unchanged.
  */
 export class Markup {
   readonly #text: string;

@@ -4,7 +4,7 @@ const NONE = "not known";
 const [MOST_PLAIN, LEAST_PLAIN] = [1e5, 1e-3];
 const SPACE = "\u202f";
 
-/** So many digits, without an exponent where a few zeros do. */
+/** This many digits, without an exponent if a few zeros suffice. */
 export function digits(value: number, count = 3): string {
   if (!Number.isFinite(value)) return NONE;
   const size = Math.abs(value);
@@ -14,16 +14,16 @@ export function digits(value: number, count = 3): string {
   return value.toFixed(decimals).replace("-", "\u2212");
 }
 
-/** A round number, as at an axis. */
+/** A round number for an axis. */
 export const brief = (value: number): string => digits(value, 2).replace(/\.0$/, "");
 
-/** With its unit; degrees stand close to their sign. */
+/** A number with its unit; the degree sign follows without a space. */
 export function measure(value: number, unit: string, count = 3): string {
   const text = digits(value, count);
   return text === NONE ? text : unit === "°" ? `${text}°` : `${text}${SPACE}${unit}`;
 }
 
-/** From .. to, with the unit once. */
+/** A range "from .. to", with the unit once. */
 export function span([from, to]: readonly [number, number], unit: string): string {
   return Number.isFinite(from) && Number.isFinite(to) ? `${digits(from)} to ${measure(to, unit)}` : NONE;
 }
@@ -38,7 +38,7 @@ export function probability(value: number): string {
   return value < LEAST_PROBABILITY ? `below ${LEAST_PROBABILITY}` : value.toFixed(3);
 }
 
-/** So many decimals, so that a column lines up. */
+/** A fixed number of decimals, so that a column is aligned. */
 export function fixed(value: number, decimals: number): string {
   if (!Number.isFinite(value)) return NONE;
   const text = value.toFixed(decimals);

@@ -4,9 +4,9 @@ import type { Overlay } from "./contents.js";
 import { type Markup, html } from "./markup.js";
 import { isPicture } from "./parts.js";
 
-/** Columns of the grid that edges are drawn on: finer ones could not be seen on a printed page. */
+/** Columns of the grid on which edges are drawn; finer ones would not be visible on a printed page. */
 const COLUMNS = 640;
-/** Most points that are drawn: those of a picture of 12 megapixels are fewer. */
+/** Most points that are drawn; a picture of 12 megapixels has fewer. */
 const MOST_POINTS = 1_000_000;
 
 /** Points as runs along the rows of a grid. */

@@ -1,4 +1,4 @@
-/** The page that every report is put into: it has no script, and its policy allows none. */
+/** The page around every report: it has no script, and its policy allows none. */
 import { fault } from "../built.js";
 import { Markup, type Part, html } from "./markup.js";
 import { STYLE, STYLE_SHA256 } from "./style.js";

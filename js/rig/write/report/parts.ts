@@ -19,16 +19,16 @@ export const section = (title: string, ...parts: Part[]): Markup => html`<sectio
 export const fact = (name: string, value: string, more?: string): Markup =>
   html`<div><dt>${name}</dt><dd>${value}${more === undefined ? undefined : html` <span class="soft">${more}</span>`}</dd></div>`;
 
-/** A cell that states its column itself, for narrow screens where the table's head is hidden. */
+/** A cell that states its column itself, for narrow screens on which the table's head is hidden. */
 export const cell = (column: string, value: Part): Markup => html`<td data-column="${column}">${value}</td>`;
 
 export const table = (kind: string, columns: readonly string[], rows: Part): Markup =>
   html`<table class="${kind}"><thead><tr>${columns.map((column) => html`<th scope="col">${column}</th>`)}</tr></thead><tbody>${rows}</tbody></table>`;
 
-/** Text of any length, of which a printed page shows the first lines. */
+/** Text of any length, of which a printed page shows only the first lines. */
 export const clamped = (text: Part): Markup => html`<div class="clamp">${text}</div>`;
 
-/** Pixels in the file itself; SVG may load other files. */
+/** Only pictures embedded in the file are accepted; SVG may load other files. */
 export const isPicture = (dataUrl: unknown): boolean =>
   /^data:image\/(?:png|jpeg|webp|avif|gif);base64,[A-Za-z0-9+/]+={0,2}$/.test(String(dataUrl));
 
@@ -53,7 +53,10 @@ export function firstOf<T>(
   return all.length > most ? [...shown, rest(`and ${all.length - most} more, in the JSON`)] : shown;
 }
 
-/** Files that fit on the first page of a printed report with two lines each, and with one; more are on a second page, which holds so many. */
+/**
+ * Files that fit on the first page of a printed report with two lines each, and with one line each; if there are more, a second page lists
+ * this many.
+ */
 const [FEW, BESIDE, ON_A_PAGE] = [5, 10, 60];
 
 function inputRow({ name, says, bytes, notes = [], sha256 }: ReportInput): Markup {

@@ -8,12 +8,12 @@ import { sigmasOf, valuesOf } from "./unknowns.js";
 import { SIGMAS_95 } from "./curves.js";
 import { placeInWords, verdictOf, verdictReason, verdictWords, wordOf } from "./words.js";
 
-/** What the first page has room for. */
+/** What fits on the first page. */
 const [MOST_WARNINGS, MOST_OTHERS] = [3, 2];
 
 const within = (interval: readonly [number, number]): string => `95\u202f%: ${span(interval, "px")}`;
 
-/** The verdict with its number, first of all. */
+/** The verdict with its number, which comes first. */
 export function verdictHeader(report: Checked, title: string, date: string | undefined, isEstimate = false): Markup {
   const verdict = isEstimate ? "undecided" : verdictOf(report.verdict);
   const [[name, candidate] = []] = Object.entries(report.candidates);
@@ -37,11 +37,11 @@ const CUES: Readonly<Record<string, string>> = {
 };
 export const cueName = (cue: string): string => (Object.hasOwn(CUES, cue) ? CUES[cue] : undefined) ?? cue;
 
-/** A pose that is not known is nowhere. */
+/** A pose that is not known has no place. */
 const isKnown = ({ rotation, translation }: Placed): boolean =>
   rotation.length === 9 && translation.length === 3 && [...rotation, ...translation].every(Number.isFinite);
 
-/** Where the poses put the depth camera: the calibration in question, and the best fit. */
+/** Where the poses put the depth camera, for the calibration in question and for the best fit. */
 function places({ estimate }: Checked, given: Calibration | undefined): Markup[] {
   const all = [["The calibration in question", given] as const, ["The best fit", estimate] as const];
   return all.flatMap(([name, pose]) => (pose && isKnown(pose) ? [html`<p>${name}: ${placeInWords(pose)}</p>`] : []));
@@ -108,7 +108,7 @@ const COLUMNS = ["Unknown", "Candidate", "Found", "Difference", "95\u202f% inter
 /** The shorter way around. */
 const around = (degrees: number): number => degrees - 360 * Math.round(degrees / 360);
 
-/** Candidate, found and difference, with the interval of what was found. */
+/** Candidate, found value and difference, with the interval of the found value. */
 function unknownTable(report: Checked, given: Calibration | undefined): Markup {
   const found = valuesOf(report.estimate);
   const sigmas = sigmasOf(report);
@@ -132,7 +132,7 @@ function unknownTable(report: Checked, given: Calibration | undefined): Markup {
   return table("unknowns stacks", COLUMNS, rows);
 }
 
-/** Nanometres and nanoradians: whoever copies a matrix loses nothing that a calibration knows. */
+/** Nanometres and nanoradians, so that a copied matrix keeps the precision of the calibration. */
 const COPIED = 9;
 
 /** Four rows that programs read. */
@@ -146,7 +146,7 @@ export function extrinsicsSection(report: Checked, options: ReportOptions): Mark
   const given = inQuestion(report, options);
   return section(
     "Extrinsics",
-    html`<div class="extrinsics"><div>${unknownTable(report, given)}<p class="soft">Rotation: R = Rx Ry Rz. Interval: of what was found. Bold: the candidate lies outside it.</p></div>
+    html`<div class="extrinsics"><div>${unknownTable(report, given)}<p class="soft">Rotation: R = Rx Ry Rz. Interval: that of the value found. Bold: the candidate lies outside it.</p></div>
 <div>${given && html`<h3>Candidate</h3>${matrix(given)}`}<h3>Found</h3>${matrix(report.estimate)}<p class="soft">P_colour = R P_depth + t, metres; x right, y down, z forward.</p></div></div>`,
   );
 }

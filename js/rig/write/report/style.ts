@@ -1,4 +1,4 @@
-/** The report's style sheet, and the hash of it by which the report's own policy allows it and no other. */
+/** The report's style sheet and its hash; the report's policy allows only the style sheet with this hash. */
 
 const LIGHT =
   "--page:#f5f6f7;--card:#fff;--sunk:#eceef0;--line:#d8dcdf;--ink:#1a1e22;--soft:#565e66;--good:#1c7240;--wrong:#b3261e;--open:#8a5a00;--c1:#c7641a;--c2:#7a4fb0;--c3:#0b62b8;--c4:#1c7240";
@@ -86,5 +86,5 @@ section:has(.apart){break-before:page}details:not([open]),footer{display:none}
 }
 `;
 
-/** Hash of STYLE, base64; a test checks it and prints the right one. */
+/** Hash of STYLE, base64; a test checks it and prints the correct one. */
 export const STYLE_SHA256 = "SUqUAdltWLq4XFhI4Pv7wSjHk4HoMZV/nDM7GaZr13g=";

@@ -1,6 +1,6 @@
 /**
  * The six unknowns of the extrinsics with their sigmas. The check's covariance is that of a rotation vector about the scene's centre and of
- * the centre's shift; a file states angles and the translation at the camera, so the covariance is carried there.
+ * the centre's shift; a file states angles and the translation at the camera, so the covariance is converted.
  */
 import type { CheckReport } from "../../../types/index.js";
 

@@ -3,16 +3,16 @@ import type { CheckReport, CheckVerdict } from "../../../types/index.js";
 import { degreesOf, isOfScan } from "../../formats/poses.js";
 import type { Checked } from "./contents.js";
 
-import { isBackwards } from "../../formats/frames.js";
+import { isBackwards, isOfCarrier } from "../../formats/frames.js";
 
-export { isBackwards, isOfScan };
+export { isBackwards, isOfCarrier, isOfScan };
 
 const WORDS: Readonly<Record<CheckVerdict, string>> = { consistent: "Consistent", off: "Off", undecided: "Undecided" };
 
 export const verdictOf = (verdict: CheckVerdict): CheckVerdict =>
   Object.hasOwn(WORDS, verdict) ? verdict : "undecided";
 
-/** Of one candidate, whatever the warnings. */
+/** The verdict of one candidate, regardless of warnings. */
 export const wordOf = (verdict: CheckVerdict): string => WORDS[verdictOf(verdict)];
 
 const firstOf = ({ candidates }: Pick<Checked, "candidates">) => Object.values(candidates)[0];
@@ -28,7 +28,9 @@ export function verdictWords(report: Checked, isEstimate = false): string {
   return wordOf(report.verdict) + (report.verdict === "off" && report.warnings.length > 0 ? ", see warnings" : "");
 }
 
-/** Why, in a sentence. A verdict that is capped by warnings has the candidate's own: the warnings stand beside it. */
+/**
+ * The reason in a sentence. If warnings cap the verdict, the candidate's own reason is given, because the warnings are listed beside it.
+ */
 export const verdictReason = (report: Checked): string =>
   (isCapped(report) ? firstOf(report)?.reason : undefined) ?? report.reason;
 
@@ -37,12 +39,12 @@ const SIDES = [
   ["below", "above"],
   ["in front of", "behind"],
 ] as const;
-/** Millimetres and degrees that are shown as zero. */
+/** Millimetres and degrees below which zero is shown. */
 const [LEAST_SHIFT, LEAST_TURN] = [0.05, 0.005];
 
 type Motion = Pick<CheckReport["estimate"], "rotation" | "translation">;
 
-/** Rotations of cameras that look along an axis of a LiDAR whose z points up. */
+/** Rotations of cameras that look along an axis of a LiDAR with z up. */
 const AHEAD: readonly [axis: string, rotation: readonly number[]][] = [
   ["x", [0, -1, 0, 0, 0, -1, 1, 0, 0]],
   ["y", [1, 0, 0, 0, 0, -1, 0, 1, 0]],
@@ -56,7 +58,7 @@ function heading({ rotation }: Motion): string {
   const traces = AHEAD.map(([axis, ahead]) => [axis, trace(ahead)] as const);
   const [axis, most] = traces.reduce((a, b) => (a[1] >= b[1] ? a : b));
   const degrees = (180 / Math.PI) * Math.acos(Math.min(1, Math.max(-1, (most - 1) / 2)));
-  return `which is turned by ${degrees.toFixed(2)}° from looking along the LiDAR's ${axis} axis, z up`;
+  return `which looks along the LiDAR's ${axis} axis with z up, except for a rotation by ${degrees.toFixed(2)}°`;
 }
 
 /** Where the depth camera or LiDAR sits relative to the colour camera, so that one can compare it with the rig. */

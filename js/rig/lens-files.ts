@@ -1,0 +1,50 @@
+/** Lenses in separate files: "D_color.txt" beside "K_color.txt", "dist.npy" beside "mtx.npy", as users of OpenCV save them. */
+import { type Numbers, numberOf } from "./formats/numbers.js";
+import { lensArray } from "./formats/npy-matrix.js";
+import type { NamedFile } from "./types.js";
+import { type ReaderWarning, ofFile, warning } from "./warnings.js";
+
+export interface LensFile {
+  file: string;
+  values: Numbers;
+}
+
+/** Names of files of a lens's coefficients alone. */
+const LENS_FILE = /(?:^|[_.-])(?:d|(?:camera[_-]?)?dist(?:ortion)?(?:[_-]?coeff?\w*)?|coeffs?)(?=[_.-])/i;
+const isLensFile = (path: string): boolean => LENS_FILE.test(path.replace(/^.*[/\\]/, ""));
+
+/** How many coefficients OpenCV's lenses have. */
+const COUNTS = [4, 5, 8, 12, 14];
+const LONGEST = 4000;
+
+/** The numbers of a text of numbers alone, with or without a name before them, or of the one matrix of OpenCV's YAML. */
+function written(text: string): Numbers | undefined {
+  const [only, ...others] = [...text.matchAll(/\bdata:\s*\[([^\]]*)\]/g)];
+  if (others.length > 0) return undefined;
+  const plain = text.replace(/(?:#|%).*$/gm, "").replace(/^[\s{"']*[A-Za-z]\w*["']?\s*[:=]/, "");
+  const parts = (only?.[1] ?? plain).split(/[\s,;[\](){}]+/).filter((part) => part !== "");
+  const values = parts.map(numberOf);
+  return values.every((value) => value !== undefined) ? values : undefined;
+}
+
+/** The coefficients in a file that has nothing else, by its name and content. */
+export function lensOf({ name, bytes }: NamedFile): LensFile | undefined {
+  if (!isLensFile(name) || bytes.length > LONGEST) return undefined;
+  const values = lensArray(bytes) ?? written(new TextDecoder().decode(bytes));
+  return values !== undefined && COUNTS.includes(values.length) ? { file: name, values } : undefined;
+}
+
+export const unused = (file: string): ReaderWarning =>
+  ofFile(
+    file,
+    warning(
+      "distortion-unused",
+      "By its name it holds the distortion of a lens, which was not used. Write the camera's intrinsics and distortion into one file.",
+    ),
+  );
+
+/** The lens of a file that could not be read is missing from its camera. */
+export function doubtLenses(warnings: ReaderWarning[]): void {
+  for (const { code, file } of [...warnings])
+    if (code === "file-left-out" && file !== undefined && isLensFile(file)) warnings.push(unused(file));
+}

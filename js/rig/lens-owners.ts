@@ -1,0 +1,46 @@
+/** Which camera a lens in a separate file belongs to: the one whose file is called like it. Loaded where a folder has such files. */
+import { cameraOf } from "./formats/cameras.js";
+import { isIntrinsics, isLens, wordsOf } from "./formats/names.js";
+import { type LensFile, unused } from "./lens-files.js";
+import { folderOf, stem } from "./names.js";
+import type { TextOfFrame } from "./perframe.js";
+import type { NamedCamera } from "./types.js";
+import { type ReaderWarning, ofFile } from "./warnings.js";
+
+/** Words that say no more than that a file is a camera's. */
+const PLAIN = new Set(["camera", "cam", "calib", "calibration", "params", "parameters", "matrix"]);
+
+/** The folder of a file and which camera its name says that it is of, without the words for intrinsics and lenses. */
+function owner(path: string): string {
+  const name = stem(path);
+  const words = wordsOf(isLens(name) ?? isIntrinsics(name) ?? name).filter((word) => !PLAIN.has(word));
+  return `${folderOf(path)}${words.join(" ")}`;
+}
+
+/** Gives each lens to the one camera without distortion whose file is called like it; what was done is said of each file. */
+export function giveLenses(
+  lenses: readonly LensFile[],
+  texts: readonly TextOfFrame[],
+  warnings: ReaderWarning[],
+): { name: string; says: string; warnings: ReaderWarning[] }[] {
+  return lenses.flatMap((lens) => {
+    const own = texts.filter(({ file, cameras }) => cameras.length > 0 && owner(file) === owner(lens.file));
+    const [camera, ...others] = own.flatMap(({ cameras }) => cameras);
+    if (camera === undefined || others.length > 0 || camera.camera.distortion !== undefined) {
+      warnings.push(unused(lens.file));
+      return [];
+    }
+    const said = bend(camera, lens);
+    warnings.push(...said.map((each) => ofFile(lens.file, each)));
+    return [{ name: lens.file, says: `the distortion of the camera "${camera.name ?? ""}"`, warnings: said }];
+  });
+}
+
+/** Puts the lens into the camera; returns the warnings about it. */
+function bend(camera: NamedCamera, { values }: LensFile): ReaderWarning[] {
+  const said: ReaderWarning[] = [];
+  const { fx, fy, cx, cy } = camera.camera;
+  camera.camera = cameraOf({ name: camera.name, focal: [fx, fy], centre: [cx, cy], distortion: values }, said).camera;
+  // Of the intrinsics the camera's file has warned.
+  return said.filter(({ code }) => code === "distortion-guessed");
+}
