@@ -333,7 +333,7 @@ const hidden = [
       ? "small"
       : "large",
   ),
-  claim(HIDDEN, "The reported sigma and the alternative poses that fit as well [do|do not].", () => {
+  claim(HIDDEN, "The reported sigma and the alternative poses [do|do not] warn.", () => {
     const [good, round] = [figure("failure&case=symmetry"), figure("failure&case=symmetry&amount=100")];
     return round.sigma > 20 * good.sigma && good.rivals === 0 && round.rivals > 0 ? "do" : "do not";
   }),

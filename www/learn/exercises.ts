@@ -72,7 +72,7 @@ export const exercises: readonly Exercise[] = [
     question:
       "What does the report say about the round disc, and which of its numbers would have warned you if the truth were unknown? In the Lab, find the smallest overlap at which the pose is still within a degree and the status is converged.",
     answer: [
-      "The status is lost, because the rotation about z is not observable: rotating the disc about its axis changes no colour. The residual is as small as for a good pose, so it gives no warning. The warning comes from the reported sigma and from the alternative poses that fit as well.",
+      "The status is lost, because the rotation about z is not observable: rotating the disc about its axis changes no colour. The residual is as small as for a good pose, so it does not warn. The reported sigma and the alternative poses do warn.",
       "With decreasing overlap the sigma grows before the error does. The status becomes ambiguous once sigma exceeds 1.5°, and lost a little later. In this scene the pose is still within a degree and converged at an overlap of 0.2, ambiguous at 0.16 and lost at 0.125. Where this happens depends on light, noise and size; vary them.",
     ],
   },
