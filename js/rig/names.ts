@@ -29,7 +29,7 @@ export function key(name: string): string {
  * camera's, so that "left" is the colour image's and "right" is not.
  */
 const LOOSE = new Set(
-  "raw frame frames photo picture pic map maps groundtruth gt velodyne lidar cloud points scan sparse dense filtered z16 png distance to plane linear z cam camera ir infra infrared tof undistorted rectified rect vis left".split(
+  "raw frame frames photo picture pic map maps groundtruth gt velodyne lidar cloud points scan sparse dense filtered z16 png distance to plane linear z cam camera ir infra infrared tof undistorted rectified rect vis left meter metre".split(
     " ",
   ),
 );

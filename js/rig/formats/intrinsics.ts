@@ -1,6 +1,7 @@
 /** The intrinsics and the size of a camera among the members of an object, by the names and shapes that programs write. */
 import { badFile } from "../../errors.js";
 import { type ReaderWarning, warning } from "../warnings.js";
+import { intrinsicsOf4x4 } from "./blocks.js";
 import { type RawCamera, ofMatrix } from "./cameras.js";
 import { member } from "./names.js";
 import { type Matrix, type Node, type Numbers, matrixOf, numberOf, textOf, transposed } from "./numbers.js";
@@ -18,7 +19,7 @@ const isLike = (value: number | undefined, to: number): boolean => value !== und
 
 /** Nine numbers as a matrix of intrinsics, row by row; they may be stored by rows or by columns. */
 function intrinsics(matrix: Matrix | undefined): Numbers | undefined {
-  const values = matrix?.values;
+  const values = (matrix && intrinsicsOf4x4(matrix.values)) ?? matrix?.values;
   if (values?.length !== 9 || !isLike(values[8], 1)) return undefined;
   const isTriangle = (m: Numbers) => isLike(m[3], 0) && isLike(m[6], 0) && isLike(m[7], 0) && !isLike(m[0], 0);
   if (isTriangle(values))

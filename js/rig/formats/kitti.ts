@@ -5,9 +5,10 @@
  * so K^-1 P_i R0_rect Tr carries points of the LiDAR into the frame of image i. Depth maps of the benchmarks are in the frame of camera 2.
  */
 import { ofMatrix } from "./cameras.js";
+import { named } from "./ends.js";
 import { Findings } from "./findings.js";
 import { type Numbers, numbersByName } from "./numbers.js";
-import { chained, identity, poseOf, poseOfMatrix, rotationOf } from "./poses.js";
+import { chained, identity, inverseOf, poseOf, poseOfMatrix, rotationOf } from "./poses.js";
 import type { Pose } from "../types.js";
 
 /** Rounding of the published digits. */
@@ -89,13 +90,47 @@ function raw(found: Findings, lines: Lines, key: string, k: Numbers): void {
 }
 
 const poseAt = (lines: Lines, ...keys: string[]): Pose | undefined => {
-  const m = keys.map((key) => lines.get(key)).find((values) => values?.length === 12);
+  const m = keys.map((key) => lines.get(key)).find(isMatrix);
   return m && poseOfMatrix(m);
 };
+const isMatrix = (values: Numbers | undefined): values is Numbers => values?.length === 12 || values?.length === 16;
+
+const LIDAR = /velo|lidar|laser/i;
+/** Names of KITTI's numbers. */
+const USED =
+  /^(?:P(?:_rect_)?\d{1,2}|Tr(?:_velo_(?:to_)?cam(?:_\d)?)?|R0_rect|R_rect(?:_\d\d)?|[KDRTS]_(?:rect_)?\d\d)$/;
+
+/**
+ * The LiDAR's pose in camera 0 by a name that KITTI does not have, as converters from other datasets write it: "lidar2cam0",
+ * "Tr_cam_to_velo", "T_cam_lidar", or R and T apart.
+ */
+function converted(found: Findings, lines: Lines): Pose | undefined {
+  const others = [...lines].filter(([key]) => !USED.test(key) && !/imu/i.test(key));
+  const [key, matrix] = others.find(([, values]) => isMatrix(values)) ?? [];
+  const [rotation, label] =
+    others.flatMap(([name, values]) =>
+      values.length === 9 && /^R_[a-z]/i.test(name) ? [[values, name.slice(2)] as const] : [],
+    )[0] ?? [];
+  const shift = label === undefined ? undefined : (lines.get(`T_${label}`) ?? lines.get(`t_${label}`));
+  const pose = matrix
+    ? poseOfMatrix(matrix)
+    : rotation && shift?.length === 3
+      ? poseOf(rotationOf(rotation, found.warnings), shift)
+      : undefined;
+  if (pose === undefined) return undefined;
+  const name = key ?? label ?? "";
+  const { from = "", to = "" } = named(name.replace(/^Tr_/, ""), {});
+  if (LIDAR.test(from) === LIDAR.test(to))
+    found.warn(
+      "pose-assumed",
+      `"${name}" does not state which way it leads. It was read as the pose from the LiDAR to camera 0; name it Tr_velo_to_cam if that is right.`,
+    );
+  return LIDAR.test(to) && !LIDAR.test(from) ? inverseOf(pose) : pose;
+}
 
 /** The poses from the LiDAR into the frames of the rectified images. */
 function lidar(found: Findings, lines: Lines, projections: { number: string; way: Pose | undefined }[]): void {
-  const velo = poseAt(lines, "Tr_velo_to_cam", "Tr_velo_cam", "Tr_velo_to_cam_0", "Tr");
+  const velo = poseAt(lines, "Tr_velo_to_cam", "Tr_velo_cam", "Tr_velo_to_cam_0", "Tr") ?? converted(found, lines);
   const r = lines.get("R0_rect") ?? lines.get("R_rect") ?? lines.get("R_rect_00");
   const rect = r?.length === 9 ? poseOf(rotationOf(r, found.warnings), [0, 0, 0]) : identity();
   for (const { number, way } of projections) {

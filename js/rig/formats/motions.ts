@@ -13,7 +13,7 @@ import {
   rotationName,
   translationOf,
 } from "./names.js";
-import { PROJECTION, forColumns, isProjection } from "./blocks.js";
+import { PROJECTION, forColumns, intrinsicsOf4x4, isProjection } from "./blocks.js";
 import type { Context } from "./context.js";
 import { isOfGroup } from "./groups.js";
 import { checkLength } from "./lengths.js";
@@ -221,6 +221,7 @@ export class Motions {
     const length = matrix?.values.length;
     if (matrix !== undefined && length === 7) return this.#seven(matrix.values, key, context);
     if (matrix === undefined || (length !== 16 && length !== 12) || isLens(key) === "") return false;
+    if (intrinsicsOf4x4(matrix.values) !== undefined) return false;
     if (length === 12 && matrix.rows !== 3)
       return matrix.rows === undefined && this.#twelve(matrix.values, key, context);
     const isLast = [matrix.values.slice(12), [3, 7, 11, 15].map((index) => at(matrix.values, index))].map(isLastRow);

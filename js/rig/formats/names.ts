@@ -24,6 +24,8 @@ const INTRINSICS = [
   ["camera", "mat"],
   ["cameramat"],
   ["cameramatrix"],
+  // mmdetection3d's "cam2img".
+  ["cam", "2img"],
   ["intrinsics"],
   ["intrinsic"],
   ["mtx"],

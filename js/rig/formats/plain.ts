@@ -2,10 +2,10 @@
 import { badFile } from "../../errors.js";
 import type { NamedPose } from "../types.js";
 import { cameraOf, ofMatrix } from "./cameras.js";
-import { PROJECTION, forColumns, isProjection } from "./blocks.js";
+import { PROJECTION, forColumns, intrinsicsOf4x4, isProjection } from "./blocks.js";
 import { checkLength, unitInComments } from "./lengths.js";
 import { type Numbers, numberOf } from "./numbers.js";
-import { motion, motionOfMatrix, parted } from "./poses.js";
+import { motion, motionOfMatrix } from "./poses.js";
 import type { Calibration } from "./tree.js";
 import { ofFour } from "./turns.js";
 import { type ReaderWarning, distinct } from "../warnings.js";
@@ -58,14 +58,6 @@ function nine(values: Numbers, size: Numbers): Found {
   throw badFile(
     "its nine numbers are not a matrix of intrinsics (fx 0 cx / 0 fy cy / 0 0 1), and a rotation needs its translation",
   );
-}
-
-/** The matrix of intrinsics in the upper left of a 4x4 matrix, as in ScanNet. */
-function intrinsicsOf4x4(values: Numbers): Numbers | undefined {
-  if (values.length !== 16) return undefined;
-  const zeros = [3, 4, 7, 8, 9, 11, 12, 13, 14].every((index) => near(values[index], 0));
-  const isK = zeros && near(values[10], 1) && near(values[15], 1) && (values[0] ?? 0) > 2 && (values[5] ?? 0) > 2;
-  return isK ? parted(values)[0] : undefined;
 }
 
 /** Numbers of distortion that OpenCV writes. */
@@ -178,6 +170,8 @@ export function readNumbers(text: string): Found | undefined {
   const size = rows[0]?.length === 2 && values.length === 11 ? values.slice(0, 2) : [];
   const isLine = rows.length === 1 && !near(values[8], 1);
   if (values.length - size.length === 9 && !isLine) return nine(values.slice(size.length), size);
+  // FoundationStereo's K.txt has the baseline in its second line.
+  if (rows.length === 2 && rows[0]?.length === 9 && rows[1]?.length === 1) return nine(values.slice(0, 9), []);
   const k = intrinsicsOf4x4(values);
   if (k !== undefined) return camera(k, []);
   if (isPincam(rows)) {

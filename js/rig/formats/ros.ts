@@ -32,6 +32,9 @@ function mentions(text: string): string[] {
     return (
       /\bargs\s*=\s*"([^"]*)"/.exec(inside)?.[1] ??
       /\barguments\s*=\s*\[([^\]]*)\]/.exec(inside)?.[1] ??
+      /\barguments\s*=\s*(["'])([^"']*)\1\s*\.split\b/.exec(inside)?.[2] ??
+      // The rest of a list that the name is in, as ExecuteProcess's cmd.
+      /^["']\s*,([^\]]*)\]/.exec(inside)?.[1] ??
       inside.split(/\r?\n/).find((line) => /\d/.test(line)) ??
       ""
     );

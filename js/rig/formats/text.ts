@@ -164,9 +164,21 @@ export async function readText(text: string, file: string): Promise<Read> {
   const { isBare = false, ...found } = await ofContent(text);
   asFisheye(found.cameras, found.warnings, `${file.replace(/^.*[/\\]/, "")}\n${text}`);
   const { poses, isPlace = false, isOneEnd = false } = withEnds(found.poses, file, isBare);
-  const said = [...(isPlace ? [placeOfName()] : []), ...(isOneEnd ? [oneEndNamed()] : [])];
+  const isEchoed = found.format === ECHO && found.poses[0]?.from === undefined && poses[0]?.from !== undefined;
+  const said = [
+    ...(isPlace ? [placeOfName()] : []),
+    ...(isOneEnd ? [oneEndNamed()] : []),
+    ...(isEchoed ? [echoNamed()] : []),
+  ];
   return { ...found, poses, warnings: [...found.warnings, ...said] };
 }
+
+const ECHO = "a transform of ROS";
+const echoNamed = (): ReaderWarning =>
+  warning(
+    "pose-assumed",
+    'tf2_echo does not print the frames of its transform, and "tf2_echo A B" prints the pose from B to A. The direction was taken from the file\'s name, as in depth_to_color.txt; check that the name states the direction and not the order of the command.',
+  );
 
 const oneEndNamed = (): ReaderWarning =>
   warning(
@@ -185,7 +197,7 @@ async function ofContent(text: string): Promise<Read> {
   const trimmed = text.replace(/^\ufeff/, "").trim();
   if (trimmed === "") throw badFile("it is empty or has only spaces");
   if (isPublisher(trimmed)) return { ...readPublishers(trimmed), format: "a static transform of ROS" };
-  if (isEcho(trimmed)) return { ...readEcho(trimmed), format: "a transform of ROS" };
+  if (isEcho(trimmed)) return { ...readEcho(trimmed), format: ECHO };
   const { isPythonTree, productOfText } = await products();
   const product = productOfText(trimmed);
   if (product !== undefined) return product;
