@@ -34,12 +34,13 @@ export function lensOf({ name, bytes }: NamedFile): LensFile | undefined {
   return values !== undefined && COUNTS.includes(values.length) ? { file: name, values } : undefined;
 }
 
-export const unused = (file: string): ReaderWarning =>
+/** The warning of a lens that was not used, with the reason if there is one beside its name. */
+export const unused = (file: string, reason = ""): ReaderWarning =>
   ofFile(
     file,
     warning(
       "distortion-unused",
-      "By its name it holds the distortion of a lens, which was not used. Write the camera's intrinsics and distortion into one file.",
+      `Its name says that it holds the distortion of a lens, which was not used${reason}. Write the camera's intrinsics and distortion into one file.`,
     ),
   );
 

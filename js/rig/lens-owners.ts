@@ -1,4 +1,5 @@
-/** Which camera a lens in a separate file belongs to: the one whose file is called like it. Loaded where a folder has such files. */
+/** Which camera a lens in a separate file belongs to: the one whose file has a name like it. Loaded where a folder has such files. */
+import { BimodalError } from "../errors.js";
 import { cameraOf } from "./formats/cameras.js";
 import { isIntrinsics, isLens, wordsOf } from "./formats/names.js";
 import { type LensFile, unused } from "./lens-files.js";
@@ -17,7 +18,7 @@ function owner(path: string): string {
   return `${folderOf(path)}${words.join(" ")}`;
 }
 
-/** Gives each lens to the one camera without distortion whose file is called like it; what was done is said of each file. */
+/** Gives each lens to the one camera without distortion whose file has a name like it, and returns what was read from each file. */
 export function giveLenses(
   lenses: readonly LensFile[],
   texts: readonly TextOfFrame[],
@@ -31,16 +32,25 @@ export function giveLenses(
       return [];
     }
     const said = bend(camera, lens);
+    if (said instanceof BimodalError) {
+      warnings.push(unused(lens.file, `, because ${said.message}`));
+      return [];
+    }
     warnings.push(...said.map((each) => ofFile(lens.file, each)));
     return [{ name: lens.file, says: `the distortion of the camera "${camera.name ?? ""}"`, warnings: said }];
   });
 }
 
-/** Puts the lens into the camera; returns the warnings about it. */
-function bend(camera: NamedCamera, { values }: LensFile): ReaderWarning[] {
+/** Puts the lens into the camera; returns the warnings about it, or why it cannot be used. */
+function bend(camera: NamedCamera, { values }: LensFile): ReaderWarning[] | BimodalError {
   const said: ReaderWarning[] = [];
   const { fx, fy, cx, cy } = camera.camera;
-  camera.camera = cameraOf({ name: camera.name, focal: [fx, fy], centre: [cx, cy], distortion: values }, said).camera;
+  try {
+    camera.camera = cameraOf({ name: camera.name, focal: [fx, fy], centre: [cx, cy], distortion: values }, said).camera;
+  } catch (error) {
+    if (error instanceof BimodalError) return error;
+    throw error;
+  }
   // Of the intrinsics the camera's file has warned.
   return said.filter(({ code }) => code === "distortion-guessed");
 }

@@ -142,6 +142,7 @@ describe("a lens in a separate file", () => {
       [K, file("depth_dist.txt", D)],
       [K, file("color_dist.txt", "no numbers")],
       [K, file("color_camera_matrix.txt", matrix(610)), file("color_dist.txt", D)],
+      [K, file("color_dist.txt", "0.1 0 0 0 0 0 0 0 0.2 0 0 0\n")],
     ]) {
       const { warnings } = await readRigFolder(files);
       assert.ok(codes(warnings).includes("distortion-unused"), files.map(({ name }) => name).join(" "));

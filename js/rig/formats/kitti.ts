@@ -100,25 +100,24 @@ const LIDAR = /velo|lidar|laser/i;
 const USED =
   /^(?:P(?:_rect_)?\d{1,2}|Tr(?:_velo_(?:to_)?cam(?:_\d)?)?|R0_rect|R_rect(?:_\d\d)?|[KDRTS]_(?:rect_)?\d\d)$/;
 
-/**
- * The LiDAR's pose in camera 0 by a name that KITTI does not have, as converters from other datasets write it: "lidar2cam0",
- * "Tr_cam_to_velo", "T_cam_lidar", or R and T apart.
- */
-function converted(found: Findings, lines: Lines): Pose | undefined {
+/** A pose by a name that KITTI does not have: a matrix, or R and T apart. */
+function otherPose(found: Findings, lines: Lines): { name: string; pose: Pose } | undefined {
   const others = [...lines].filter(([key]) => !USED.test(key) && !/imu/i.test(key));
-  const [key, matrix] = others.find(([, values]) => isMatrix(values)) ?? [];
-  const [rotation, label] =
-    others.flatMap(([name, values]) =>
-      values.length === 9 && /^R_[a-z]/i.test(name) ? [[values, name.slice(2)] as const] : [],
-    )[0] ?? [];
-  const shift = label === undefined ? undefined : (lines.get(`T_${label}`) ?? lines.get(`t_${label}`));
-  const pose = matrix
-    ? poseOfMatrix(matrix)
-    : rotation && shift?.length === 3
-      ? poseOf(rotationOf(rotation, found.warnings), shift)
-      : undefined;
-  if (pose === undefined) return undefined;
-  const name = key ?? label ?? "";
+  for (const [name, values] of others) {
+    const [, label = ""] = /^R_(\w*[a-z]\w*)$/i.exec(name) ?? [];
+    const shift = lines.get(`T_${label}`) ?? lines.get(`t_${label}`);
+    if (label !== "" && values.length === 9 && shift?.length === 3)
+      return { name: label, pose: poseOf(rotationOf(values, found.warnings), shift) };
+    if (isMatrix(values)) return { name, pose: poseOfMatrix(values) };
+  }
+  return undefined;
+}
+
+/** The LiDAR's pose in camera 0 as converters from other datasets write it: "lidar2cam0", "Tr_cam_to_velo", "T_cam_lidar". */
+function converted(found: Findings, lines: Lines): Pose | undefined {
+  const other = otherPose(found, lines);
+  if (other === undefined) return undefined;
+  const { name, pose } = other;
   const { from = "", to = "" } = named(name.replace(/^Tr_/, ""), {});
   if (LIDAR.test(from) === LIDAR.test(to))
     found.warn(
