@@ -17,7 +17,7 @@ import { npyPicture, npzPicture } from "./formats/npy.js";
 import type { Cloud, Picture, Points } from "./formats/picture.js";
 import { pngPicture } from "./formats/png.js";
 import { readPfm, readPnm } from "./formats/pnm.js";
-import { isRawName, pointsRefused, rawRefused, readColmapMap, readRaw } from "./formats/raw.js";
+import { isRawName, pointsRefused, rawRefused, readColmapMap, readRaw, sizeInName } from "./formats/raw.js";
 import { readTable } from "./formats/table.js";
 import { textOf } from "./formats/decode.js";
 import { kindOfPicture, nameWarnings, unitOfName } from "./recognise.js";
@@ -105,7 +105,8 @@ async function ofOthers({ name, bytes }: NamedFile, isPoints: boolean, options: 
   const written = writtenOf(bytes);
   const container = written === undefined ? knownContainer(name, bytes) : undefined;
   if (container !== undefined) throw container;
-  if (options.size !== undefined && isRawName(name)) return ofPicture(name, readRaw(bytes, options.size), options);
+  const size = options.size ?? sizeInName(name, bytes);
+  if (size !== undefined && isRawName(name)) return ofPicture(name, readRaw(bytes, size), options);
   if (written !== undefined) return ofText(name, written, options);
   const text = textOf(bytes);
   const scan = isPoints || (text === undefined && /\.bin$/i.test(name)) ? (await clouds()).readBin(bytes) : undefined;

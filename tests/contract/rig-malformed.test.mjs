@@ -226,7 +226,7 @@ const FILES = [
   [
     "omni.yaml",
     text("cam0:\n  camera_model: omni\n  intrinsics: [1, 2, 3, 4, 5]\n  distortion_model: radtan\n"),
-    /Kalibr's model "omni"/,
+    /the model "omni"/,
   ],
   ["four.yaml", text("cam0:\n  camera_model: pinhole\n  intrinsics: [1, 2, 3]\n"), /3 intrinsics/],
   [

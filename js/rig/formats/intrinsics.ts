@@ -89,8 +89,8 @@ export function fourOf(node: Node, name: string | undefined): Intrinsics | undef
   const four = matrixOf(member(node, "intrinsics", "cameramatrix"))?.values;
   if (four === undefined) return undefined;
   if (kalibr !== undefined && four.length !== 9 && four.length !== 12) {
-    if (kalibr !== "pinhole")
-      throw badFile(`${cameraNamed(name)} has Kalibr's model "${kalibr.slice(0, 40)}"; only pinhole is supported`);
+    // The cameras of other models are left out by their names.
+    if (kalibr !== "pinhole") return undefined;
     if (four.length !== 4) throw badFile(`${cameraNamed(name)} has ${four.length} intrinsics; fu fv pu pv are needed`);
   } else {
     const [fx = 0, fy = 0] = four;

@@ -46,12 +46,18 @@ function hasDepths(data: Pixels): boolean {
   return most > 0 && !WHITES.includes(most);
 }
 
+/** Rows of coordinates, as the devkit of nuScenes has its points, as rows of points. */
+const transposed = (data: Pixels, rows: number, columns: number): Pixels =>
+  data.map((_, at) => data[(at % rows) * columns + Math.floor(at / rows)] ?? NaN);
+
 /** `check` refuses a size. */
 export function npyPicture(bytes: Uint8Array, check = checkSize): Picture {
   const { type, ...raster } = readNpy(bytes);
   const { width, height, channels } = raster;
   const isList = channels === 1 && width >= FEWEST_COLUMNS && width <= MOST_COLUMNS && height >= TALL * width;
   if (isList) return ofList(raster.data, height, width);
+  const isTurned = channels === 1 && height >= FEWEST_COLUMNS && height <= MOST_COLUMNS && width >= TALL * height;
+  if (isTurned) return ofList(transposed(raster.data, height, width), width, height);
   check(width, height);
   if (channels === 4 && !(raster.data instanceof Uint8Array) && hasDepths(raster.data))
     throw badFile(

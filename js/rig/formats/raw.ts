@@ -105,6 +105,13 @@ export function readRaw(bytes: Uint8Array, [width, height]: Size): Picture {
   );
 }
 
+/** The size in the name of raw pixels of two or four bytes, as "depth_640x480.raw", if the file has as many. */
+export function sizeInName(name: string, { length }: Uint8Array): Size | undefined {
+  const [, width, height] = /(?<!\d)(\d{2,5})x(\d{2,5})(?!\d)[^/]*$/.exec(name) ?? [];
+  const size: Size = [Number(width), Number(height)];
+  return [2, 4].includes(length / (size[0] * size[1])) ? size : undefined;
+}
+
 /** The error about a file of an unknown format, with the sizes that would fit if it holds raw pixels. */
 export function rawRefused(bytes: Uint8Array) {
   const fitting = ([2, 4] as const).flatMap((each) =>

@@ -17,7 +17,7 @@ const HEAD = 40;
 /** Most characters of these lines. */
 const HEAD_CHARACTERS = 2 ** 19;
 
-const isComment = (line: string): boolean => /^\s*(?:[#%]|\/\/|$)/.test(line);
+export const isComment = (line: string): boolean => /^\s*(?:[#%]|\/\/|$)/.test(line);
 const isHole = (word: string): boolean => /^[-+]?(?:nan|inf|infinity|none|null|na)?$/i.test(word);
 
 /** The separator of the words of a line; if semicolons separate them, a comma is decimal. */

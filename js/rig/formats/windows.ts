@@ -22,7 +22,8 @@ export function readOrbbecPrint(text: string): Findings {
   const found = new Findings();
   const parts = new Map<string, Map<string, number>>();
   for (const [, who = "", what = "", body = ""] of text.matchAll(PART)) {
-    const pairs = [...body.matchAll(/\b(\w{1,8})\s*=\s*([^\s,>]+)/g)];
+    // The SDK prints no space before "fy": "fx=504.6fy = 504.7".
+    const pairs = [...body.matchAll(/([a-z]\w{0,7})\s*=\s*(-?\d+(?:\.\d*)?(?:e[-+]?\d+)?)/gi)];
     const camera = who.toLowerCase() === "depth" ? "depth" : "color";
     parts.set(
       `${camera} ${what.toLowerCase()}`,

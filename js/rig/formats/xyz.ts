@@ -4,7 +4,7 @@ import { FEWEST_POINTS, channelOf, roomFor } from "./channels.js";
 import { checkPoints } from "./grid.js";
 import type { Points } from "./picture.js";
 import { type PointColumns, pointColumns } from "./point-list.js";
-import { headOf, isNumbers, wordsOf } from "./table.js";
+import { headOf, isComment, isNumbers, wordsOf } from "./table.js";
 
 /** What the columns of a text without names hold. */
 const unnamed = (count: number): PointColumns => ({
@@ -24,7 +24,7 @@ export function readXyz(bytes: Uint8Array): Points | undefined {
   const lines = new TextDecoder("latin1")
     .decode(bytes)
     .split(/\r?\n/)
-    .filter((line) => line.trim() !== "" && !/^\s*[#%]/.test(line));
+    .filter((line) => !isComment(line));
   if (isCounted || names) lines.shift();
   if (lines.length < FEWEST_POINTS) return undefined;
   checkPoints(lines.length);
