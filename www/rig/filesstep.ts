@@ -131,7 +131,7 @@ export class FilesStep {
         ? ""
         : reading > 0
           ? `Reading ${reading} of ${files.length} files`
-          : `${files.length} ${files.length === 1 ? "file" : "files"} read${failed > 0 ? `, ${failed} not understood` : ""}`;
+          : `${files.length - failed} of ${files.length} ${files.length === 1 ? "file" : "files"} read`;
     this.#missing.textContent = missing.length === 0 ? "" : `Still missing: ${missing.join("; ")}.`;
     this.#next.disabled = missing.length > 0;
   }
