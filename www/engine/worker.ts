@@ -202,7 +202,11 @@ async function advance({ by, milliseconds, look }: Calls["advance"]["request"]):
   const { estimator } = current;
   const began = performance.now();
   const reports: StepReport[] = [];
-  const isSearch = () => reports.at(-1)?.stage === "search";
+  // The end of the search ends a frame, so that a stage ends there and its pose is seen.
+  const isSearch = () => {
+    const last = reports.at(-1);
+    return last?.stage === "search" && last.reason?.code !== "search-done";
+  };
   // A slice of the search shows too little progress, so that several slices make a frame, which has the report of the last one. If drawing
   // is slow, the search takes as much time as the page, and so at least half of all the time.
   const searching = Math.min(Math.max(began - answered, SEARCHING[0]), SEARCHING[1]);
