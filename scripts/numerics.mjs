@@ -1,5 +1,5 @@
 // The .wasm files: compiled, bound and optimised. They are rebuilt only if their sources have changed.
-import { existsSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { homedir } from "node:os";
 import { WASM, tool } from "./setup.mjs";
 import { Failure, inRoot, must, stamp } from "./shell.mjs";
@@ -24,7 +24,7 @@ const MODULE = "bimodal_stereo";
  */
 const REFERENCES = "reference-types";
 /**
- * The facade is bundled with the first one's glue. Each has its own target folder, so that neither build discards the other's crates.
+ * The facade is bundled with the first one's glue. Builds with equal flags share compiled crates (`crates`), which are two thirds of a build.
  * Cargo appends these flags to those of .cargo/config.toml; of two opposite features, the later one counts.
  */
 const FLAVOURS = [
@@ -39,6 +39,7 @@ const FLAVOURS = [
 const CHECK = {
   file: `${MODULE}_check_bg.wasm`,
   target: "target/check",
+  crates: "target/scalar",
   flags: ["-C", `target-feature=-${REFERENCES},-simd128`],
   features: ["--features", "bindings-check"],
   name: `${MODULE}_check`,
@@ -59,19 +60,25 @@ export const GLUE = ALL.map(({ target, name = MODULE }) => `${target}/wasm-bindg
 
 export const node = (module, ...args) => must(process.execPath, [inRoot("node_modules", module), ...args]);
 
-async function numerics({ file, target, flags, features = ["--features", "bindings"], name = MODULE, sources = "." }) {
+/** Compiles the crate and keeps the module in `target`, before a build of other features replaces it. */
+async function compile({ target, crates = target, flags, features = ["--features", "bindings"], sources = "." }) {
   // Panic messages name files; this strips their location on the building machine.
   const registry = `${process.env.CARGO_HOME ?? `${homedir()}/.cargo`}/registry/src/`;
   const config = `target.${WASM}.rustflags=${JSON.stringify([...flags, `--remap-path-prefix=${registry}=`])}`;
   // Level 3 would unroll and inline: a tenth faster and a sixth larger; see .cargo/config.toml.
   const crate = ["--manifest-path", `${sources}/Cargo.toml`, "-p", "bimodal-stereo", "--lib", ...features];
-  await must("cargo", ["build", "--release", ...crate, "--target", WASM, "--target-dir", target, "--config", config], {
+  await must("cargo", ["build", "--release", ...crate, "--target", WASM, "--target-dir", crates, "--config", config], {
     env: { CARGO_PROFILE_RELEASE_OPT_LEVEL: "2" },
   });
   // The standard library was compiled with references, so the linker declares the feature for the whole module.
+  const compiled = readFileSync(inRoot(`${crates}/${WASM}/release/${MODULE}.wasm`));
+  mkdirSync(inRoot(target), { recursive: true });
+  writeFileSync(inRoot(`${target}/${MODULE}.wasm`), withoutFeature(compiled, REFERENCES));
+}
+
+/** Binds and optimises the compiled module. */
+async function finish({ file, target, name = MODULE }) {
   const linked = inRoot(`${target}/${MODULE}.wasm`);
-  const compiled = readFileSync(inRoot(`${target}/${WASM}/release/${MODULE}.wasm`));
-  writeFileSync(linked, withoutFeature(compiled, REFERENCES));
   await must(tool("wasm-bindgen"), [
     ...["--target", "web", "--omit-default-module-path", "--out-dir", `${target}/wasm-bindgen`, "--out-name", name],
     linked,
@@ -106,15 +113,28 @@ export async function allNumerics() {
   const isMade = [NUMERICS_MARK, ...made].every((path) => existsSync(inRoot(path)));
   if (isMade && readFileSync(inRoot(NUMERICS_MARK), "utf8") === wanted) return;
   rmSync(inRoot(NUMERICS_MARK), { force: true });
-  // In parallel: the last and longest crate of each build keeps one processor busy.
-  await Promise.all(ALL.map(numerics));
+  // Builds that share crates run one after the other; the others, and what follows a compilation, run beside them.
+  const cratesOf = ({ target, crates = target }) => crates;
+  const groups = [...new Set(ALL.map(cratesOf))].map((folder) => ALL.filter((each) => cratesOf(each) === folder));
+  await Promise.all(
+    groups.map(async (group) => {
+      const finished = [];
+      for (const flavour of group) {
+        await compile(flavour);
+        finished.push(finish(flavour));
+      }
+      await Promise.all(finished);
+    }),
+  );
   checkGlue();
   writeFileSync(inRoot(NUMERICS_MARK), wanted);
 }
 
 /** The .wasm with SIMD from other `sources`, as `target/{file}`; the package's own glue must be able to load it. */
 export async function numericsOf({ sources, target, file }) {
-  await numerics({ ...FLAVOURS[0], sources, target, file });
+  const flavour = { ...FLAVOURS[0], sources, target, file };
+  await compile(flavour);
+  await finish(flavour);
   checkGlue([FLAVOURS[0], { target }]);
 }
 
