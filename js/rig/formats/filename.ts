@@ -5,7 +5,7 @@
  */
 import type { NamedPose } from "../types.js";
 import { type Frames, isOfWorld, named, worldFrames } from "./ends.js";
-import { inverseOf } from "./poses.js";
+import { inverseOf, isMoved } from "./poses.js";
 
 const SENSOR =
   /cam|rgb|colou?r|depth|dpt|infra|(?:^|[_-])ir(?:[_-]|$)|tof|lidar|velo|laser|ouster|livox|radar|imu|base|hand|gripper|left|right|tag|marker|board|target|pattern|object|table/i;
@@ -16,8 +16,6 @@ const AROUND =
 const HAND_EYE = /(?:^|[_-])(?:hand[_-]?eye|eye[_-]?(?:in|on|to)[_-]?(?:hand|base))(?![a-z])/i;
 const FIXED_EYE = /eye[_-]?(?:to|on[_-]?base)/i;
 const LONGEST = 100;
-/** Numbers of a pose that differ less from the identity's are its rounding. */
-const STILL = 1e-6;
 
 /** The frames in the name of a file; undefined if it names none. */
 export function endsOf(path: string): { from: string; to: string } | undefined {
@@ -66,9 +64,8 @@ function ofWorldName(path: string): Frames | undefined {
 const ONE_END =
   /^(?:extrinsics?[_-](?:colou?r|rgb|depth|ir|cam(?:era)?)\d*|(?:colou?r|rgb|depth|ir|cam(?:era)?)\d*[_-]extrinsics?)$/i;
 /** Whether a bare pose is called so and moves anything. */
-const namesOneEnd = (path: string, { pose: { rotation: r, translation: t } }: NamedPose): boolean =>
-  ONE_END.test(path.replace(/^.*[/\\]/, "").replace(/\.[a-z]{1,5}$/i, "")) &&
-  Math.hypot(...t, (r[0] ?? 0) - 1, (r[4] ?? 0) - 1, (r[8] ?? 0) - 1) > STILL;
+const namesOneEnd = (path: string, { pose }: NamedPose): boolean =>
+  ONE_END.test(path.replace(/^.*[/\\]/, "").replace(/\.[a-z]{1,5}$/i, "")) && isMoved(pose);
 
 /** Whether a pose leads from the depth camera to the colour camera, which is also assumed for a pose without named frames. */
 const isUsual = ({ from, to }: { from: string; to: string }): boolean =>

@@ -1,8 +1,8 @@
 /**
  * multical's calibration.json: cameras, and poses relative to one of them, which are called "CAMERA_to_REFERENCE".
  *
- * Its documentation and its code disagree on the direction: by the name points of the camera are carried to the reference, while its exporter
- * writes the pose that carries points of the reference to the camera.
+ * Its names and its code disagree on the direction. The name says that points of the camera are carried to the reference; its exporter writes
+ * the pose that carries points of the reference to the camera.
  */
 import { Findings } from "./findings.js";
 import { type Node, isNode } from "./numbers.js";

@@ -251,3 +251,10 @@ export function motionOfMatrix(
 /** Whether a pose is for points in a LiDAR's axes: two cameras that see the same scene look nearly along the same axis z. */
 export const isOfScan = ({ rotation }: { readonly rotation: ArrayLike<number> }): boolean =>
   (rotation[8] ?? 1) < Math.SQRT1_2;
+
+/** Numbers of a pose that differ less from the identity's are its rounding. */
+const STILL = 1e-6;
+
+/** Whether a pose is not the identity. */
+export const isMoved = ({ rotation: r, translation: t }: Pose): boolean =>
+  Math.hypot(...t, (r[0] ?? 0) - 1, (r[4] ?? 0) - 1, (r[8] ?? 0) - 1) > STILL;

@@ -2,7 +2,7 @@
 import { ofMatrix } from "./cameras.js";
 import { Findings } from "./findings.js";
 import { type Numbers, numbersByName } from "./numbers.js";
-import { chained, inverseOf, poseOfMatrix } from "./poses.js";
+import { chained, inverseOf, isMoved, poseOfMatrix } from "./poses.js";
 import type { Pose } from "../types.js";
 
 const SENSOR = /^[ \t]*m_calibration(?:Color|Depth)Intrinsic[ \t]*=/m;
@@ -44,8 +44,6 @@ function posesOf(found: Findings, entries: Map<string, Numbers>): void {
   const [colour, depth] = [poseAt(entries, "calibrationColorExtrinsic"), poseAt(entries, "calibrationDepthExtrinsic")];
   if (colour === undefined || depth === undefined) return;
   found.poses.push({ ...names, pose: chained(inverseOf(colour), depth) });
-  const isMoved = ({ rotation: r, translation: t }: Pose) =>
-    Math.hypot(...t, (r[0] ?? 0) - 1, (r[4] ?? 0) - 1, (r[8] ?? 0) - 1) > 1e-6;
   if (isMoved(colour) || isMoved(depth))
     found.warn(
       "pose-assumed",
