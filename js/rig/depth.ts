@@ -39,7 +39,7 @@ type Depth = Unnamed<DepthReading>;
 const MANY_HOLES = 0.4;
 /** Share of the depths that may be out of range without a warning: a few stray depths are no evidence against the unit. */
 const STRAY = 0.01;
-/** Share of SUN RGB-D's values that are multiples of 8; depths beyond 8.19 m wrap into the low bits. */
+/** Least share of multiples of 8 by which SUN RGB-D's values are recognised: depths beyond 8.19 m wrap into the low bits. */
 const MOSTLY = 0.9;
 /** A 16-bit sensor's value for a pixel without a measurement. */
 const SATURATED = 0xffff;

@@ -17,12 +17,12 @@ const LIMBS = [
 export const PARTS = [
   {
     name: "instruments",
-    what: "the last rounds by the gradient of the predicted shading, where contrast decides",
+    what: "the last rounds of local contrast, which use the gradient of the predicted shading",
     changes: [{ file: `${CONTRAST}/registration.rs`, from: "if effort.instrument_rounds > 0 {", to: "if false {" }],
   },
   {
     name: "paint",
-    what: "paint taken out at edges before contrast is compared",
+    what: "the removal of albedo at edges before local contrast is compared",
     changes: [
       {
         file: PAINTED,
@@ -33,19 +33,19 @@ export const PARTS = [
   },
   {
     name: "following",
-    what: "the pose of a painted object following the paint that is found under it",
+    what: "the rounds in which pose and albedo are improved in turn",
     changes: [
       { file: "src/estimator/stages/contrasted.rs", from: "const ROUNDS: usize = 3;", to: "const ROUNDS: usize = 0;" },
     ],
   },
   {
     name: "contrast",
-    what: "the whole way of painted objects: colours of one albedo decide",
+    what: "registration by local contrast (photometric registration with a single albedo decides)",
     changes: [{ file: PAINTED, from: "pair.options.registration == Registration::Joint", to: "false" }],
   },
   {
     name: "outline",
-    what: "limbs on the outline and points inside it",
+    what: "the terms that keep occluding contours on the silhouette and points inside it",
     changes: [
       ...LIMBS,
       {
@@ -55,10 +55,10 @@ export const PARTS = [
       },
     ],
   },
-  { name: "limbs", what: "limbs on the outline", changes: LIMBS },
+  { name: "limbs", what: "the term that keeps occluding contours on the silhouette", changes: LIMBS },
   {
     name: "size",
-    what: "the prior on the apparent size, within a registration and among poses",
+    what: "the prior on the apparent size, in a registration and in the ranking",
     changes: [
       objective("const SIZE_WEIGHT: f64 = 5.0;", "const SIZE_WEIGHT: f64 = 0.0;"),
       objective("const UNIT_WEIGHT: f64 = 1.0;", "const UNIT_WEIGHT: f64 = 0.0;"),
@@ -66,12 +66,12 @@ export const PARTS = [
   },
   {
     name: "shares",
-    what: "ranking poses by the share of contrast that is left, in place of its sum",
+    what: "the ranking of poses by the share of contrast that is left (its sum ranks them)",
     changes: [objective("if all > 0.0 { value - left + left / all } else { f64::INFINITY }", "value")],
   },
   {
     name: "noise",
-    what: "the noise of depth: told of the map, its smoothing, windows of normals chosen by it",
+    what: "the noise of depth (its estimate, the smoothing, and the windows of normals that depend on it)",
     changes: [
       { file: "src/view/cubic_normals.rs", from: "const NOISY: f32 = 0.06;", to: "const NOISY: f32 = f32::INFINITY;" },
       { file: "src/view/depth_noise.rs", from: "if first <= SURFACE_GROWTH * second {", to: "if true {" },
@@ -80,7 +80,7 @@ export const PARTS = [
   {
     name: "means",
     // A window of three quarters of an object leaves the mean over the whole object, which is the exposure.
-    what: "local means: those over the whole object are taken off instead",
+    what: "local means (the mean over the whole object is subtracted)",
     changes: [
       {
         file: `${CONTRAST}/registration.rs`,
@@ -91,19 +91,19 @@ export const PARTS = [
   },
   {
     name: "softness",
-    what: "ranking contrast as softly as noisy depth tells it: on the sharp image instead",
+    what: "the blur that fits the image to noisy depth (poses are ranked on the sharp image)",
     changes: [
       { file: "src/view/depth_noise.rs", from: "self.smoothing().sqrt().sqrt()", to: "0.0 * self.smoothing()" },
     ],
   },
   {
     name: "lift",
-    what: "the tenth of the median that is added to intensities, so that shadows are no deep valleys of log S",
+    what: "the tenth of the median that is added to intensities, which limits the contrast of shadows",
     changes: [{ file: `${CONTRAST}/registration.rs`, from: "const LIFT: f32 = 0.1;", to: "const LIFT: f32 = 0.0;" }],
   },
   {
     name: "blurred",
-    what: "instrumental variables of the registration by colours: the sharp image's own gradient instead of the blurred one's",
+    what: "the blurred image in photometric registration's instrumental variables (the sharp image gives the gradient)",
     changes: [
       {
         file: "src/pose/photometric/solver.rs",
@@ -114,24 +114,24 @@ export const PARTS = [
   },
   {
     name: "cubics",
-    what: "normals of third order with their errors: central differences, all believed alike",
+    what: "normals of third order with their errors (central differences, all with equal weight)",
     changes: [{ file: "src/estimator/stages/colours.rs", from: "if !depth.normals_given {", to: "if false {" }],
   },
   {
     name: "confirmed",
-    what: "the colours' word after contrast's: contrast's end is the end",
+    what: "photometric confirmation of the pose by local contrast",
     changes: [{ file: PAINTED, from: "is_plain(pair, plain, &contrast)", to: "false" }],
   },
   {
     name: "sizes",
-    what: "starts at three sizes: one, that of the units",
+    what: "initial poses of three sizes (only the size that follows from the units)",
     changes: [
       { file: PAINTED, from: "const SIZES: [f64; 3] = [0.84, 1.0, 1.19];", to: "const SIZES: [f64; 1] = [1.0];" },
     ],
   },
   {
     name: "hues",
-    what: "sharpening hues that JPEG has blurred",
+    what: "the sharpening of chromaticity that JPEG has blurred",
     changes: [
       { file: PAINTED, from: "let sharp = pair.image.with_sharp_hues();", to: "let sharp: Option<ColourView> = None;" },
     ],

@@ -20,8 +20,8 @@ const FARTHEST: f64 = 1e6;
 /// Another reading of a candidate fits clearly better if the candidate's error is at least this multiple of the error of
 /// the reading.
 const CLEARLY: f64 = 3.0;
-/// Least share of the depth points that the estimate puts onto the image if it is to judge a candidate. The rest is not
-/// compared with anything, and a wrong pose can always fit a small part.
+/// Smallest share of the depth points that the estimate has to put onto the image before it may judge a candidate. The
+/// other points are not compared with anything, and a wrong pose can always fit a small part.
 const LEAST_OVERLAP: f64 = 0.15;
 
 impl CalibrationCheck {
@@ -59,8 +59,8 @@ impl CalibrationCheck {
         }
     }
 
-    /// The best optimum and those that the frames do not exclude. A candidate that is consistent hardly met the best optimum
-    /// by chance, so only optima that fit about as well count then.
+    /// The best optimum and those that the frames do not exclude. A candidate hardly ever agrees with the best optimum by
+    /// chance. If one agrees, only optima that fit about as well count.
     fn possible<'a>(&self, optima: &'a [Optimum], first: &Judge) -> Vec<&'a Optimum> {
         let state = optima[0].round.state;
         let agrees = |(name, candidate): &(String, State)| {

@@ -12,7 +12,7 @@ use crate::numeric::random::Random;
 /// Number of draws. Their quantiles have an error of about a twentieth of their sigma.
 const DRAWS: usize = 2000;
 const SEED: u64 = 1;
-/// Degrees of freedom, the only number here that was fitted (docs/lab/thresholds.md). Errors that a whole silhouette
+/// Degrees of freedom of Student's t; no other number of the distribution was fitted (docs/lab/thresholds.md). Errors that a whole silhouette
 /// shares move its tiles alike, so their scatter is only an estimate of the error's size, in some scenes far too small.
 /// Three is the smallest whole number with a finite covariance.
 pub(super) const DEGREES: f64 = 3.0;

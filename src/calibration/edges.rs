@@ -33,7 +33,7 @@ const EVEN: f64 = 3.464_101_615_137_754_6;
 const WINDOW: f64 = 3.0;
 /// Maximum number of edges in a profile; the strongest are kept.
 const MOST_EDGES: usize = 12;
-/// Weaker edges are noise: differences of encoded intensities, norm over the channels.
+/// Edges below this strength are noise. The strength is the norm over the channels of differences of encoded intensities.
 const FAINTEST: f32 = 0.012;
 /// Least factor of the bound's curvature: the factor varies from round to round, and a small one would make steps
 /// diverge.

@@ -15,7 +15,7 @@ const HIDDEN_SHARE: f64 = 0.02;
 /// of a near object.
 const HIDDEN_LEAST: f64 = 0.015;
 
-/// Least distance behind a point, in sigmas of the map's own noise, from which another one counts as behind it. This is
+/// A point counts as behind another one from this distance on, in sigmas of the map's own noise. This is
 /// about three standard deviations: a depth discontinuity compares a depth with one that is extrapolated from two others,
 /// and the difference has 1.9 times the sigma of a depth. With five sigmas a receding floor has discontinuities all over.
 const NOISE_SIGMAS: f64 = 6.0;

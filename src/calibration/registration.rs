@@ -30,12 +30,12 @@ const MOST_RIMS_OF_STARTS: usize = 1200;
 pub(super) const ROUNDS: usize = 3;
 /// Maximum number of rounds with all cues.
 pub(super) const MOST_SETTLING: usize = 8;
-/// Spacing of the states from which the scene is seen, pixels of an image 640 wide.
+/// Spacing of the lattice of states at which visibility is computed, pixels of an image 640 wide.
 const SPACING: f64 = 1.0;
 /// Maximum number of times that a step with all cues is halved.
 const MOST_HALVINGS: usize = 5;
-/// Decrease of the log posterior that does not make a step too long: the objective is rough on the scale of a pixel, and a
-/// ratio of less than e says nothing.
+/// Decrease of the log posterior up to which a step is accepted: the objective is rough on the scale of a pixel, and a
+/// likelihood ratio of less than e is no evidence.
 const ROUGHNESS: f64 = 1.0;
 /// A step that moves the scene by less than this has converged, pixels.
 pub(super) const ARRIVED: f64 = 0.02;
@@ -362,7 +362,7 @@ impl Scene {
     }
 }
 
-/// Factor of the weight of cues over surfaces. Shadows, half-occluded strips and varying albedo move the maxima of all
+/// Factor on the weight of the cues that compare surfaces. Shadows, half-occluded strips and varying albedo move the maxima of all
 /// tiles alike, so that the scatter of tiles does not show these errors. In scenes without edges the remaining weight
 /// still determines the pose.
 const SURFACE_TRUST: f64 = 0.25;

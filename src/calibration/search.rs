@@ -17,7 +17,8 @@ use super::rims::Rim;
 use super::unknowns::{Matrix, State, UNKNOWNS, Units, Vector, add_square, spectral};
 use crate::numeric::eigen::symmetric_eigen;
 
-/// Pace of the lattice, pixels of an image 640 wide: root mean square motion of the depth discontinuities.
+/// Distance between neighbouring poses of the lattice: the root mean square motion of the depth discontinuities, in pixels
+/// of an image 640 wide.
 const PACE: f64 = 4.0;
 /// Half width of the lattice, sigmas of the prior.
 const REACH: f64 = 1.5;

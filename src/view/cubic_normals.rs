@@ -26,13 +26,13 @@ const SIGMA: f64 = 0.75;
 /// Median error of the normals above which windows wider than the first two are tried, radians: views without noise
 /// stay below it (data not recorded).
 const NOISY: f32 = 0.06;
-/// Largest mean square by which a wider window may move the normals of noisy views, relative to the decrease of their
-/// squared errors as the fits claim them. Noise alone gives 0.62, the share of noise in the claimed square; the rest is squared bias
-/// of the wider window. Up to 1.24, the sum of bias and noise falls. The limit is a little lower, because a
+/// In noisy views a wider window is used if the mean square motion of its normals is below this multiple of the decrease of
+/// their squared errors, which the fits estimate. Noise alone gives 0.62, its share of the estimated square. The rest is the
+/// squared bias of the wider window. Up to 1.24, the sum of bias and noise falls. The limit is a little lower, because a
 /// registration averages noise over its points, but not bias.
 const MOST_MOVED: f64 = 1.1;
-/// Half width of the squares over which that move is summed, in half widths of the window: overlapping windows share their
-/// noise.
+/// Half width of the squares over which the motion of the normals is summed, in half widths of the window: overlapping
+/// windows share their noise.
 const REACH: usize = 2;
 /// Largest |w| of a neighbour: half the distance along the plane plus 0.3 pixel lengths. Beyond it lies another part of
 /// the object.

@@ -20,7 +20,8 @@ use crate::view::Size;
 const SPANS: [usize; 3] = [2, 3, 4];
 /// Spans whose growth distinguishes noise from a surface.
 const GROWTH_SPANS: [usize; 2] = [1, 2];
-/// var D_1 / var D_2 of a wandering slope: smoother surfaces have less, noise has more.
+/// Largest ratio var D_1 / var D_2 of a surface, that of a wandering slope: smoother surfaces have a smaller ratio, noise has a
+/// larger one.
 const SURFACE_GROWTH: f64 = 1.0 / 6.0;
 /// Second differences beyond this quantile are excluded as depth discontinuities and creases. The factor corrects the
 /// variance of the others if they are normal: 1 - 2 q phi(q) / 0.8 with q = 1.2816.

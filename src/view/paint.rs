@@ -16,11 +16,11 @@ use std::cmp::Reverse;
 use super::ColourView;
 use crate::numeric::quantile;
 
-/// An edge of albedo lies between neighbours whose log colours differ in chromaticity (deviation from the channels'
-/// mean) by more than this and four sigmas of the noise together, log units: no shading of a smooth surface reaches it.
+/// Neighbours have an edge of albedo between them if their chromaticities (log colours less the channels' mean) differ by
+/// more than this plus four sigmas of the noise, log units: no shading of a smooth surface reaches it.
 /// Not varied.
 const HUE_STEP: f32 = 0.06;
-/// The same for brightness (the channels' mean), log units. Not varied.
+/// The same step for brightness (the channels' mean), log units. Not varied.
 const LOG_STEP: f32 = 0.22;
 /// Fewest pixels of a region.
 const SMALLEST_REGION: usize = 6;
@@ -35,11 +35,11 @@ const LEAST_PAINT: f64 = 0.03;
 /// Weight that ties each region to the mean, in pairs of pixels: it matters only for regions without borders.
 const LOOSE_TIE: f64 = 1e-3;
 
-/// Regions share one albedo if they differ by less than this in chromaticity (deviation from the channels' mean), log
-/// units, and by less than [`ONE_BRIGHTNESS`].
+/// Regions share one albedo if their chromaticities (log colours less the channels' mean) differ by less than this, log
+/// units, and their brightness by less than [`ONE_BRIGHTNESS`].
 const ONE_HUE: f64 = 0.1;
-/// The same for brightness (the channels' mean), log units: edges of the relief between regions shift brightness, but
-/// hardly chromaticity.
+/// The same bound for brightness (the channels' mean), log units: edges of the relief between regions shift brightness,
+/// but hardly chromaticity.
 const ONE_BRIGHTNESS: f64 = 0.4;
 /// Number of times that albedos are joined and compared again, over all borders between two of them together.
 const PALETTE_ROUNDS: usize = 2;

@@ -13,7 +13,8 @@ use super::colour::{self, ColourImage, ColourSamples, ColourView};
 use super::{Camera, DepthMap, DepthSamples, Normals, Pinhole, Size};
 use crate::error::Result;
 
-/// Resolutions are matched if their ratio is at least this: areas of masks, and of two views of one object, are inexact.
+/// Smallest ratio of resolutions at which the finer view is reduced: areas of masks, and of two views of one object, do not
+/// determine smaller ratios.
 const UNLIKE: f64 = 1.25;
 /// Smallest share of a working pixel that usable image pixels must cover.
 const COVERED: f64 = 0.5;

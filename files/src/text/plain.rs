@@ -136,7 +136,7 @@ fn of_rows(rows: &[Vec<f64>]) -> Result<Calibration, Reason> {
         return camera(&[fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0], None, lens);
     }
     Err(format!(
-        "it has {} numbers in {} rows; 3x3 of intrinsics, 3x4 or 4x4 of a transform, or rows of a trajectory are needed",
+        "it has {} numbers in {} rows; it needs 3x3 numbers of intrinsics, 3x4 or 4x4 of a transform, or the rows of a trajectory",
         values.len(),
         rows.len()
     ))

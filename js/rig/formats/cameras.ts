@@ -66,7 +66,7 @@ function sizeOf(raw: RawCamera): { width: number; height: number } | undefined {
   if (width === 0 && height === 0) return undefined;
   if (width === undefined || height === undefined)
     throw badFile(
-      `its camera gives only the ${width === undefined ? "height" : "width"} of its images, ${width ?? height}`,
+      `its camera has only a ${width === undefined ? "height" : "width"} for its images, ${width ?? height}; it needs both`,
     );
   if (!isSide(width) || !isSide(height)) throw badFile(`its camera has the invalid image size ${width}x${height}`);
   return { width, height };

@@ -186,6 +186,6 @@ export function readNumbers(text: string): Found | undefined {
   if (rows.length === 1 && [4, 9, 12].includes(values.length) && fx > 10 && fy > 10)
     return camera(cameraMatrix(values), [], lens);
   throw badFile(
-    `it has ${values.length} numbers in ${rows.length} rows; 3x3 of intrinsics, 3x4 or 4x4 of a transform, or rows of a trajectory are needed`,
+    `it has ${values.length} numbers in ${rows.length} rows; it needs 3x3 numbers of intrinsics, 3x4 or 4x4 of a transform, or the rows of a trajectory`,
   );
 }

@@ -21,7 +21,7 @@ pub enum Origin {
     Candidate(usize),
 }
 
-/// Exponent of the number of visible points. `powf` serves, because a separate `cbrt` would add 1 kB to the download.
+/// Exponent of the number of visible points in the gain. `powf` serves, because a separate `cbrt` would add 1 kB to the download.
 const THIRD: f64 = 1.0 / 3.0;
 /// A local optimum is convincing if every other one that sees as much has at least this many times its noise.
 const CONVINCING_NOISE: f64 = 2.0;

@@ -8,8 +8,8 @@ use crate::pose::increment::{PoseMatrix, PoseVector};
 use crate::pose::jackknife::{SECTORS, covariance, sectors};
 use crate::pose::similarity::Similarity;
 
-/// Number of steps without a sector, from the end: more than for photometric registration, because the local means
-/// converge slowly.
+/// Number of steps that start from the final pose and leave out a sector: more than for photometric registration, because
+/// the local means converge slowly.
 const STEPS: usize = 8;
 /// Factor on the weight of samples that are left out. With only zero weights around it, a sample would have no local
 /// mean.

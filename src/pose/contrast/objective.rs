@@ -20,12 +20,12 @@ use crate::pose::spline_image::SplineImage;
 
 /// Robust scale of points off the mask, pixels.
 const BESIDE_SCALE: f64 = 3.0;
-/// Weight of the occluding contour off the silhouette.
+/// Weight of the distance between occluding contour and silhouette.
 const LIMB_WEIGHT: f64 = 1.0;
-/// Robust scale of the occluding contour off the silhouette, pixels. It is tighter than [`BESIDE_SCALE`], because
+/// Robust scale of the distance between occluding contour and silhouette, pixels. It is tighter than [`BESIDE_SCALE`], because
 /// contours inside the mask, where one part of the object hides another, do not belong to the silhouette.
 const LIMB_SCALE: f64 = 1.5;
-/// Weight of the occluding contour during the instrumental rounds. Silhouettes bring the pose close, but their bias of part of a pixel would
+/// Weight of the same distance during the instrumental rounds. Silhouettes bring the pose close, but their bias of part of a pixel would
 /// then pull it off (docs/lab/thresholds.md).
 const SETTLING_LIMB_WEIGHT: f64 = 0.1;
 /// Weight of ln^2 of the apparent size relative to the initial one: 20 % more costs about a sixth of the contrast.

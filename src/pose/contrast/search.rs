@@ -42,7 +42,7 @@ const LAST: Stage = Stage {
 /// Noise, in log units, whose robust scale ranks the ends: below what photographs leave, so that details decide, and
 /// far above that of renders.
 const RANKING_NOISE: f64 = 0.05;
-/// An end whose rank is larger by less than this is a rival (docs/lab/thresholds.md).
+/// An end whose rank exceeds the lowest one by less than this is a rival (docs/lab/thresholds.md).
 const RIVAL_MARGIN: f64 = 0.1;
 /// Smallest distance of a rival, degrees.
 const RIVAL_APART: f64 = 3.0;

@@ -16,11 +16,11 @@ use crate::pose::sums::Sums;
 use crate::pose::uncertainty::{Direction, describe};
 use crate::view::extent;
 
-/// Weight of depth discontinuities off the silhouette.
+/// Weight of the distance between depth discontinuities and silhouette.
 const RIM: f64 = 1.0;
-/// Weight of uncovered silhouette.
+/// Weight of silhouette pixels without a depth point.
 const BARE: f64 = 0.3;
-/// Weight of depth discontinuities against edges of the image, which may be print (docs/lab/thresholds.md).
+/// Weight of the distance between depth discontinuities and edges of the image, which may be print (docs/lab/thresholds.md).
 const EDGE: f64 = 0.4;
 /// Weight of the prior.
 const PRIOR: f64 = 0.1;

@@ -25,11 +25,11 @@ const TILE: usize = 8;
 /// Factor on the sigma from tiles where the residuals are model errors instead of noise; set on photographs under one
 /// lamp (docs/lab/thresholds.md).
 const MODEL_SIGMA_INFLATION: f64 = 2.0;
-/// k: covariance of the gradients of white noise of variance one, by the image's spline and by that of the slightly
-/// blurred image, averaged over the positions in a cell (by quadrature over both splines' responses to one pixel).
+/// k: covariance of two gradients of white noise of variance one, that of the image's spline and that of the slightly
+/// blurred image's spline, averaged over the positions in a cell (by quadrature over both splines' responses to one pixel).
 const GRADIENT_COVARIANCE: f64 = 0.144;
-/// Smallest lambda - 1. By chance lambda is 0.85 to 1.15 on a ball, and a sigma enlarged a thousandfold counts as
-/// unknown.
+/// Smallest lambda - 1, at which a sigma grows a thousandfold and its unknown counts as not determined. On a ball, lambda
+/// is 0.85 to 1.15 by chance.
 const LEAST_SIGNAL: f64 = 1e-3;
 /// Standard deviations per channel, log units.
 #[derive(Clone, Copy)]
@@ -90,8 +90,8 @@ impl Tiles {
         scores.covariance(gain.as_ref(), noise.sigma_inflation() * growth, &held)
     }
 
-    /// Spatial covariance of the residuals by the last sums, as a root mean within tiles, log units: errors of the
-    /// model extend over neighbours, white noise does not.
+    /// Spatial covariance of the residuals from the last sums, as the root of its mean within tiles, log units. Errors of
+    /// the model extend over neighbours, white noise does not.
     pub const fn structure(&self) -> f64 {
         self.structure
     }

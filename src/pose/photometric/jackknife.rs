@@ -10,7 +10,8 @@ use crate::pose::jackknife::{SECTORS, covariance, sectors};
 
 /// Maximum number of points, evenly spread; model errors do not average out over more of them.
 const MOST_POINTS: usize = 20_000;
-/// Number of Gauss-Newton steps without a sector, from the end; set on random scenes (docs/lab/thresholds.md).
+/// Number of Gauss-Newton steps that start from the final pose and leave out a sector; set on random scenes
+/// (docs/lab/thresholds.md).
 const STEPS: usize = 3;
 
 impl Photometric {
