@@ -111,7 +111,7 @@ export function checkSample(value: unknown): void {
 }
 
 export const checkLightIsKnown = (value: unknown): void => flag(value, "lightIsKnown");
-/** Of a light to turn or to shade with: a name, or 27 numbers. */
+/** The check of a light to turn or to shade with: a name, or 27 numbers. */
 export const checkLight = (value: unknown): void => nameOr(numbers(27))(value, "light");
 export const checkAngles = (value: unknown): void => checkOf(POSE.angles)(value, "angles");
 /** Whole normals. */

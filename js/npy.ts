@@ -87,7 +87,7 @@ function inRows<T extends Pixels | number[]>(data: T, height: number, width: num
   return rows;
 }
 
-/** Channels before rows and columns, as PyTorch has them, behind them. */
+/** Moves channels behind rows and columns; PyTorch has them in front. */
 function channelsLast<T extends Pixels>(data: T, channels: number): T {
   const last = data.slice() as T;
   const pixels = data.length / channels;
@@ -166,7 +166,7 @@ function headerOf(bytes: Uint8Array): Header {
   return { type, kind, isBigEndian: order === ">", byColumns: columns === "True", axes, end };
 }
 
-/** So many elements in the order in which they are stored. */
+/** This many elements, in the order in which they are stored. */
 function elementsOf(bytes: Uint8Array, { kind, isBigEndian, end }: Header, count: number): Stored {
   // A copy, because typed arrays need aligned memory; the slice of a Node Buffer would be only a view.
   const body = new Uint8Array(bytes.subarray(end));
@@ -176,7 +176,9 @@ function elementsOf(bytes: Uint8Array, { kind, isBigEndian, end }: Header, count
   return kind.read(body.buffer, count);
 }
 
-/** An array of at most two axes and so many numbers, as those of a calibration, row by row; undefined for others, of which `axes` tells. */
+/**
+ * The axes of an array and, if it has at most two of them and at most this many numbers, as in a calibration, its values, row by row.
+ */
 export function readSmall(bytes: Uint8Array, most: number): { axes: number[]; values?: number[] } {
   const header = headerOf(bytes);
   const axes = header.axes.filter((length, at, all) => length > 1 || all.length <= 2 || at < 1);

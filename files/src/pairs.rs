@@ -293,7 +293,7 @@ fn by_names(folder: &Path, files: &[PathBuf], warnings: &mut Warnings) -> Vec<Pa
                 );
             } else {
                 warnings.push(
-                    Warning::new("file-alone", "its name matches no other file, or several; it was left out.")
+                    Warning::new("file-alone", "its name matches no other file or more than one; it was left out.")
                         .of_file(&name),
                 );
             }

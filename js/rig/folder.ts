@@ -279,7 +279,7 @@ export function withoutCarriers<T extends NamedPose>(poses: T[], warnings: Reade
   return poses.filter((pose) => !isOfCarrier(pose));
 }
 
-/** The poses of a file that are not poses in the world; a camera without a name is named after its file in them, too. */
+/** The poses of a file, without poses in the world. A camera without a name has the name of its file, also in these poses. */
 export function ofRig(text: Extract<RigReading, { poses: NamedPose[] }>, file: string): NamedPose[] {
   const isUnnamed = text.kind === "cameras" && text.cameras.length === 1 && text.cameras[0]?.name === undefined;
   const called = (end: string | undefined) => (isUnnamed && end === "camera" ? file : end);

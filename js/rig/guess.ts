@@ -29,7 +29,7 @@ const NAMED: [number, string][] = [
   [0.01, "centimetres"],
   [FIFTHS, "fifths of a millimetre, 5000 to the metre"],
   [0.0001, "tenths of a millimetre"],
-  [1 / 256, "256 to the metre, as KITTI has it"],
+  [1 / 256, "256 to the metre, as in KITTI"],
 ];
 export const nameOf = (metres: number): string =>
   NAMED.find(([unit]) => Math.abs(metres / unit - 1) < 1e-6)?.[1] ??

@@ -11,7 +11,7 @@ import { type ReaderWarning, ofFile } from "./warnings.js";
 /** Words that say no more than that a file is a camera's. */
 const PLAIN = new Set(["camera", "cam", "calib", "calibration", "params", "parameters", "matrix"]);
 
-/** The folder of a file and which camera its name says that it is of, without the words for intrinsics and lenses. */
+/** The folder of a file and the camera that its name refers to, without the words for intrinsics and lenses. */
 function owner(path: string): string {
   const name = stem(path);
   const words = wordsOf(isLens(name) ?? isIntrinsics(name) ?? name).filter((word) => !PLAIN.has(word));
@@ -51,6 +51,6 @@ function bend(camera: NamedCamera, { values }: LensFile): ReaderWarning[] | Bimo
     if (error instanceof BimodalError) return error;
     throw error;
   }
-  // Of the intrinsics the camera's file has warned.
+  // The camera's file has already caused the warnings about its intrinsics.
   return said.filter(({ code }) => code === "distortion-guessed");
 }

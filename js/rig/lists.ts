@@ -51,7 +51,7 @@ const listed = (file: NamedFile): Stamp[] =>
     return { time: Number(time), path };
   });
 
-/** Pairs items of two lists that are nearest in time: both, and the time of the first. */
+/** Pairs the items of two lists that are nearest in time. Returns both items and the time of the first. */
 export function byTime(colours: Stamp[], depths: Stamp[], apart = APART): [string, string, number][] {
   const order = [...depths].sort((a, b) => a.time - b.time);
   const found: [string, string, number][] = [];

@@ -92,7 +92,7 @@ function shared(one: string, other: string): number {
   return at < 0 ? ours.length : at;
 }
 
-/** Reduces colour images of one frame in several folders to the depth map's: by role, number and side. */
+/** Selects, from a frame's colour images in several folders, those that belong to the depth map: by role, number and side. */
 function nearest(depth: NamedFile, colours: NamedFile[]): NamedFile[] {
   const lowest = Math.min(...colours.map(({ name }) => Number(numberOfFolder(name) ?? Infinity)));
   const rules = [
@@ -110,7 +110,7 @@ function nearest(depth: NamedFile, colours: NamedFile[]): NamedFile[] {
   }, colours);
 }
 
-/** Colour images that may belong to several depth maps of the same name, reduced by folder to those of this depth map. */
+/** Selects, from colour images that may belong to several depth maps of one name, those of this depth map, by folder. */
 function ownOf(depth: NamedFile, others: NamedFile[], colours: NamedFile[]): NamedFile[] {
   if (others.length === 0) return colours;
   const like = colours.filter(({ name }) => commonPath(name) === commonPath(depth.name));
@@ -129,7 +129,7 @@ function ownOf(depth: NamedFile, others: NamedFile[], colours: NamedFile[]): Nam
 const SECONDARY =
   /(?<![a-z])(?:raw|velodyne|sparse|noisy|aligned|registered|transformed|filtered|filled|inpainted|completed?|pred|predicted|estimated|mono)(?![a-z])/i;
 
-/** If a frame has several depth maps in sibling folders, the plain one if there is one. */
+/** Of several depth maps of a frame in sibling folders, keeps only the plain one, if there is one. */
 function plainOf(groups: NamedFile[][], warnings: ReaderWarning[]): NamedFile[][] {
   const parents = new Set(groups.map(([file]) => folderOf(folderOf(file?.name ?? "").slice(0, -1))));
   const length = ([file]: NamedFile[]) => file?.name.length ?? 0;
@@ -202,7 +202,7 @@ function byNames({ colours, depths, masks }: Sorted, warnings: ReaderWarning[], 
     for (const { name } of [...depths, ...colours])
       if (!said.has(name))
         warnings.push(
-          ofFile(name, warning("file-alone", "its name matches no other file, or several; it was left out.")),
+          ofFile(name, warning("file-alone", "its name matches no other file or more than one; it was left out.")),
         );
   return pairs;
 }

@@ -16,8 +16,8 @@ const HOW: Record<RangeImage["how"], string> = {
 };
 
 /**
- * Largest spread of distances, as a share of their median, at which points count as coordinates of a map, if this median, in units of the
- * file, is exceeded.
+ * Points count as coordinates of a map if the median of their distances exceeds the first number, in units of the file, and the spread of
+ * the distances is below the second one, as a share of this median.
  */
 const [FAR_OFF, NARROWLY] = [10_000, 0.05];
 

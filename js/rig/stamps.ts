@@ -2,7 +2,7 @@
  * Time stamps in names that have other numbers as well: counters, sizes, dates.
  *
  * All names of a set must have the same words and the same form of stamp. The stamps say which frames belong together only where they are
- * finer than half the distance of two frames.
+ * finer than half the time between two frames.
  */
 import { folderOf, stem, timeOf } from "./names.js";
 
@@ -53,7 +53,7 @@ export interface Times {
   isAlone: boolean;
 }
 
-/** Half the distance in time of two frames, the median one, in the set whose frames are closer to each other. */
+/** Half the median time between two frames, in the set whose frames are closer together. */
 export function halfFrame(...sets: number[][]): number {
   const medians = sets.map((times) => {
     const order = [...times].sort((a, b) => a - b);

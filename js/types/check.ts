@@ -118,7 +118,7 @@ export interface CheckReport {
   cues: Record<
     string,
     {
-      /** Share of the answer, 0 to 1. */
+      /** Share of the evidence, 0 to 1. */
       share: number;
       /** One over its sigma, per pixel. */
       sharpness: number;
@@ -128,7 +128,7 @@ export interface CheckReport {
   frames: {
     /** As given, or "frame 1" and so on. */
     name: string;
-    /** Share of the answer, 0 to 1. */
+    /** Share of the evidence, 0 to 1. */
     share: number;
     /** What is wrong with it, if anything. */
     note?: string;

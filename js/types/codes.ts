@@ -57,5 +57,5 @@ export type WarningCode =
   | "fits-inverted"
   | "lens-left-out";
 
-/** Codes for what an estimator does without. */
+/** Codes for what the environment lacks and an estimator does without. */
 export type EstimatorWarningCode = "workers-unavailable";

@@ -8,7 +8,7 @@ export type Stage = "search" | "light" | "shading" | "surface" | "registration" 
 /** The status of a run. Only "converged" means that the pose can be trusted; "ambiguous" comes with `rivals`, "lost" with a reason. */
 export type Status = "running" | "converged" | "max-iterations" | "ambiguous" | "lost";
 
-/** One sigma of the pose: the truth is (a small turn) times the estimate, about the axes of the colour view. */
+/** One sigma of the pose. The true rotation is a small rotation, about the axes of the colour view, times the estimated one. */
 export interface Uncertainty {
   /** About x, y and z of the colour view, degrees. */
   rotationDegrees: number[];

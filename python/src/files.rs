@@ -116,8 +116,8 @@ pub fn read_image(py: Python<'_>, path: PathBuf) -> Dict<'_> {
     Ok(dict)
 }
 
-/// A depth map or an organised cloud. If `is_metric`, its unit is the metre and is guessed unless given; otherwise it
-/// is the pixel.
+/// A depth map or an organised cloud. If `is_metric`, it is in metres, and the metres per stored unit are guessed unless
+/// given; otherwise its unit is the pixel.
 #[pyfunction]
 pub fn read_depth(py: Python<'_>, path: PathBuf, unit: Option<f64>, is_metric: bool) -> Dict<'_> {
     let raster = raster(py, &path)?;

@@ -257,8 +257,8 @@ impl Estimator {
         Ok(())
     }
 
-    /// Finds the albedo once the pose has settled, or if it follows the albedo, unless it is already known for this
-    /// pose.
+    /// Finds the albedo once the pose has settled, or if pose and albedo are found in turn, unless it is already known for
+    /// this pose.
     fn find_paint(&mut self) {
         let Solution { pose, .. } = &self.solution;
         if self.stages.registration.asks_for_paint(&self.pair, pose) && !self.stages.paint.knows(&self.pair, pose) {

@@ -112,20 +112,20 @@ export const CALIBRATIONS = [
   ["waymo-transform.txt", waymo(` extrinsic {\n${" transform: 1\n".repeat(15)}}\n`), /Waymo's dataset, but its camera/],
   ["waymo-open.txt", text("camera_calibrations {\n".repeat(20_000)), /nested deeper/],
   ["waymo-number.txt", waymo(` intrinsic: ${"9".repeat(400)}\n`), /Waymo's dataset, but its camera/],
-  ["urdf-origin.urdf", urdf(joint("a", "b", '<origin xyz="0 0" rpy="0 0 0"/>')), /expand it by xacro/],
+  ["urdf-origin.urdf", urdf(joint("a", "b", '<origin xyz="0 0" rpy="0 0 0"/>')), /expand it with xacro/],
   [
     "xacro-circle.xacro",
     urdf(
       `<xacro:property name="a" value="${xacro("b")}"/><xacro:property name="b" value="${xacro("a")}"/>${joint("a", "b", origin(xacro("a")))}`,
     ),
-    /expand it by xacro/,
+    /expand it with xacro/,
   ],
   [
     "xacro-deep.xacro",
     urdf(joint("a", "b", origin(xacro(`${"(".repeat(3000)}1${")".repeat(3000)}`)))),
     /more than 4096 characters/,
   ],
-  ["xacro-zero.xacro", urdf(joint("a", "b", origin(xacro("1/0")))), /expand it by xacro/],
+  ["xacro-zero.xacro", urdf(joint("a", "b", origin(xacro("1/0")))), /expand it with xacro/],
   ["mrcal-open.cameramodel", text("{ 'lensmodel': 'LENSMODEL_OPENCV4', 'intrinsics': [ 500,500,"), /as YAML/],
   [
     "mrcal-few.cameramodel",

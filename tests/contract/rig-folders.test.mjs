@@ -214,7 +214,13 @@ describe("pairs by similar names", () => {
     const alone = found.warnings.filter(({ code }) => code === "file-alone");
     assert.deepEqual(
       alone.map(({ isDoubt, files, message }) => [isDoubt, files, message]),
-      [[false, 2, "depth_3.png: its name matches no other file, or several; it was left out. (and 1 more like it)"]],
+      [
+        [
+          false,
+          2,
+          "depth_3.png: its name matches no other file or more than one; it was left out. (and 1 more like it)",
+        ],
+      ],
     );
   });
 

@@ -147,7 +147,7 @@ describe("units", () => {
     const reading = await read("2011_09_26/proj_depth/groundtruth/image_02/0000000005.png", scattered);
     assert.equal(reading.depth.unit, 1 / 256);
     assert.ok(!reading.warnings.some(({ code }) => code === "unit-guessed"));
-    await says("unit-guessed", /guessed to be.*in 256 to the metre, as KITTI has it/, "depth.png", scattered);
+    await says("unit-guessed", /guessed to be.*in 256 to the metre, as in KITTI/, "depth.png", scattered);
   });
 
   test("other units are offered where the values would do for several", async () => {

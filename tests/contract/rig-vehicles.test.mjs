@@ -254,7 +254,7 @@ describe("robots", () => {
         `<robot name="rig">${joint("a", "b", `<origin xyz="${xacro("x")} 0 0" rpy="0 0 0"/>`)}</robot>`,
       ),
       "rig.xacro",
-      /expand it by xacro/,
+      /expand it with xacro/,
     );
   });
 

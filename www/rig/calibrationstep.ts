@@ -30,7 +30,7 @@ export class CalibrationStep {
     "p",
     { class: "rig-none" },
     make("strong", {}, "No calibration given. "),
-    "The check only estimates one; add yours to have it checked. Depth maps that are already registered to the images, as phones and many drivers save them, have the identity. ",
+    "Without a calibration the check only estimates one; add yours to have it checked. If the depth maps are already registered to the images, as phones and many drivers save them, the calibration is the identity. ",
     press("Add the identity", () => this.#rig.addPose({ name: "identity", pose: identity }, "the identity")),
   );
   /** Shown once for all candidates. */

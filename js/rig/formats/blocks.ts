@@ -25,7 +25,7 @@ export function intrinsicsOf4x4(values: Numbers): Numbers | undefined {
 }
 
 export const PROJECTION =
-  "is a projection K [R | t] into pixels, which is no motion; give K as a camera, and [R | t] as a pose";
+  "is a projection K [R | t] into pixels, not a motion; give K as a camera, and [R | t] as a pose";
 
 /** A 4x4 matrix for columns; one with its translation in the last row is for row vectors (MATLAB's rigid3d) or is a list of columns (ARKit). */
 export function forColumns(values: Numbers, name: string, warnings: ReaderWarning[]): Numbers {

@@ -161,7 +161,7 @@ function lensOf(raw: RawCamera, label: string, warnings: ReaderWarning[]): Lens 
     warnings.push(
       warning(
         "distortion-guessed",
-        `${label} has the lens model "${written.slice(0, 40)}", which is not known, and was read without distortion.`,
+        `${label} has the unknown lens model "${written.slice(0, 40)}" and was read without distortion.`,
         { model: written.slice(0, 40) },
       ),
     );

@@ -25,7 +25,7 @@ const FIRST: Row[] = [
   [/^Rar!/, "a RAR archive; unpack it first"],
   [
     /^bvx[12n$-]/,
-    "compressed by LZFSE, as Record3D's depth maps and confidences are; unpack it by liblzfse and save it as .npy or .exr",
+    "compressed by LZFSE, as Record3D's depth maps and confidences are; unpack it with liblzfse and save it as .npy or .exr",
   ],
   [/^\x89HDF/, "HDF5; save the array as .npy"],
   [/^CDF[\x01\x02\x05]/, "netCDF; save the array as .npy"],
@@ -52,10 +52,10 @@ const FIRST: Row[] = [
   [/^BLENDER/, "a scene of Blender; render its depth as EXR"],
   [/^ARROW1/, "a table in Arrow; export its images first"],
   [/^RRF2/, `a recording of Rerun (.rrd); ${EXPORT}`],
-  [/^\x80[\x02-\x05]/, "a pickle of Python, which may run code; save the array by numpy.save"],
+  [/^\x80[\x02-\x05]/, "a pickle of Python, which may run code; save the array with numpy.save"],
   [/^\xff\x4f\xff\x51|^.{4}jP {2}/s, "JPEG 2000; save it as PNG", true],
   [/^PIEH/, "Sintel's .dpt or .flo; save the depth as .npy"],
-  [/^livox_tech/, "a recording of Livox (.lvx); save a scan of it as PCD or LAS by Livox Viewer"],
+  [/^livox_tech/, "a recording of Livox (.lvx); save a scan of it as PCD or LAS with Livox Viewer"],
   [
     /^.{4}OSF!/s,
     "a recording of Ouster (.osf); `ouster-cli source in.osf save out.bag` makes a bag of it, which is read as a recording",
@@ -78,7 +78,7 @@ const NAMED: Row[] = [
   [/\.(?:xef|rssdk|xed)$/i, `a recording of a Kinect or RealSense in its manufacturer's format; ${EXPORT}`],
   [/\.r3d$/i, `a recording of Record3D (.r3d), which is a ZIP archive; ${EXPORT}`],
   [/\.stl$/i, "a mesh (STL); render a depth map from it"],
-  [/\.(?:pt|pth|ckpt)$/i, "a file of PyTorch; save the array by numpy.save"],
+  [/\.(?:pt|pth|ckpt)$/i, "a file of PyTorch; save the array with numpy.save"],
   [/\.(?:tfrecords?|tfrec)(?:-|$)/i, "records of TensorFlow; export their images first"],
   [/\.(?:dng|cr[23w]|nef|arw|orf|rw2|raf|pef)$/i, "a raw photograph of a camera; develop it into a 16-bit TIFF or PNG"],
   [/\.(?:tar|lz4)$/i, "an archive; unpack it first"],
@@ -90,7 +90,7 @@ const NAMED: Row[] = [
 const TEXTS: Row[] = [
   [
     /^#\s*Rig calib list|^(?:#[^\n]*\n)*#\s*RIG_ID/,
-    "the rigs of COLMAP (rigs.txt), whose sensors have numbers alone; write the pose of the second camera as a 4x4 matrix, and take the cameras from cameras.txt",
+    "the rigs of COLMAP (rigs.txt), whose sensors have only numbers; write the pose of the second camera as a 4x4 matrix, and take the cameras from cameras.txt",
   ],
   [
     /^\s*(?:(?:Pinhole|RadTan|EquiDistant|KannalaBrandt|FOV|ATAN)\s+)?(?:[-\d.eE+]+\s+){4,8}[-\d.eE+]+\s*\n\s*\d+\s+\d+\s*\n\s*(?:crop|full|none|[-\d.eE+\s]{9,})\s*\n\s*\d+\s+\d+\s*$/i,

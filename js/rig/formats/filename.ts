@@ -40,10 +40,10 @@ export function endsOf(path: string): { from: string; to: string } | undefined {
 const PLACE =
   /^(?:(?:frame|image|img|rgb|colou?r|depth|camera|cam|gt|abs(?:olute)?|obj(?:ect)?|tag|marker|board|target)?[_.-]*\d*[_.-]*){0,3}poses?[_.-]*\d*$/i;
 
-/** Names of what turns a scene upright or rectifies images, as ScanNet's "axis_alignment.txt". */
+/** Names of rotations that turn a scene upright or rectify images, such as ScanNet's "axis_alignment.txt". */
 const ALIGNMENT = /(?:^|[_-])(?:axis[_-]?align\w*|gravity\w*|rectif\w*)/i;
 
-/** The frames of a file called as a pose of the camera in the world, or whose folder is: "c2w/0.txt", "T_world_camera.txt". */
+/** The frames of a file whose name or folder is that of a pose of the camera in the world: "c2w/0.txt", "T_world_camera.txt". */
 function ofWorldName(path: string): Frames | undefined {
   const [stem = "", folder = ""] = path.split(/[/\\]/).reverse();
   const name = stem.replace(/\.(?:txt|npy|csv|dat|mat|tfm)$/i, "").slice(0, LONGEST);
@@ -60,10 +60,10 @@ function ofWorldName(path: string): Frames | undefined {
   return undefined;
 }
 
-/** Names of extrinsics of a single camera, as ScanNet's "extrinsic_color": they name one end and no direction. */
+/** Names of extrinsics of a single camera, such as ScanNet's "extrinsic_color": they name one end and no direction. */
 const ONE_END =
   /^(?:extrinsics?[_-](?:colou?r|rgb|depth|ir|cam(?:era)?)\d*|(?:colou?r|rgb|depth|ir|cam(?:era)?)\d*[_-]extrinsics?)$/i;
-/** Whether a bare pose is called so and moves anything. */
+/** Whether a bare pose has such a name and is not the identity. */
 const namesOneEnd = (path: string, { pose }: NamedPose): boolean =>
   ONE_END.test(path.replace(/^.*[/\\]/, "").replace(/\.[a-z]{1,5}$/i, "")) && isMoved(pose);
 

@@ -52,7 +52,7 @@ function places(poses: readonly NamedPose[]): Map<string, Placed> {
 const bodyAxes = (frames: readonly string[]): ReaderWarning =>
   warning(
     "pose-assumed",
-    `The frame ${frames.join(" and ")} is not an optical frame by its name and was read as looking along x with z up, as in ROS.`,
+    `The frame ${frames.join(" and ")} does not have the name of an optical frame and was read as looking along x with z up, as in ROS.`,
   );
 
 /** The first optical frame that fits, or else the first one. */

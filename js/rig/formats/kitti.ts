@@ -157,7 +157,7 @@ function lidar(found: Findings, lines: Lines, projections: { number: string; way
 /** Poses in a file without projections lead into camera 0 before rectification. */
 function alone(found: Findings, lines: Lines): void {
   const [r, t] = [lines.get("R"), lines.get("T")];
-  // The LiDAR's file has delta_f and delta_c, the inertial unit's has not.
+  // The LiDAR's file has delta_f and delta_c, the inertial unit's does not.
   const isLidar = lines.has("delta_f") || lines.has("delta_c");
   const [from, to] = isLidar ? ["velodyne", "cam00"] : ["imu", "velodyne"];
   if (r?.length === 9 && t?.length === 3) found.pose(r, t, { name: `${to} from ${from}`, from, to });

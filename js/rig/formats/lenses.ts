@@ -30,7 +30,7 @@ const OTHERS: [pattern: string, meaning: string][] = [
   ["(?:pinhole)?fov|fieldofview|atan|fovpinhole", "field of view"],
   ["f?theta|fthetacamera|fthetawindshield", "F-theta"],
   ["scaramuzza|ocam|ocamcalib|polynomialomni", "Scaramuzza's polynomial"],
-  ["fisheyeradtanthinprism|fisheye62\\d?", "Aria's Fisheye624: make linear pictures by projectaria_tools"],
+  ["fisheyeradtanthinprism|fisheye62\\d?", "Aria's Fisheye624: make linear pictures with projectaria_tools"],
   ["thinprismfisheye|radtanthinprismfisheye|(?:simple)?radialfisheye|kb\\d+|kannalabrandt\\d+", "another fisheye"],
   ["division|simpledivision", "division"],
   ["equirectangular|spherical|panorama|panoramic|erp|latlong|cubemap", "a panorama"],

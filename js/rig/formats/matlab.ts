@@ -51,7 +51,7 @@ export function readMatlab(whole: Node): Findings {
   const root = inner(whole);
   if ("MappingCoefficients" in root)
     throw badFile(
-      "it is a fisheye of MATLAB (MappingCoefficients, Scaramuzza's model), which is not supported; undistort the images by undistortFisheyeImage and give their intrinsics",
+      "it is a fisheye of MATLAB (MappingCoefficients, Scaramuzza's model), which is not supported; undistort the images with undistortFisheyeImage and give their intrinsics",
     );
   if (!isStereo(root)) {
     camera(found, root, "camera");

@@ -14,7 +14,7 @@ export function readMrcal(root: Node): Findings {
   const count = model === "PINHOLE" ? 0 : /^OPENCV(4|5|8|12)$/.exec(model)?.[1];
   if (count === undefined)
     throw badFile(
-      `it is mrcal's cameramodel of the lens ${String(root.lensmodel).slice(0, 60)}, which is not supported; fit LENSMODEL_OPENCV8 to it by mrcal-convert-lensmodel`,
+      `it is mrcal's cameramodel of the lens ${String(root.lensmodel).slice(0, 60)}, which is not supported; fit LENSMODEL_OPENCV8 to it with mrcal-convert-lensmodel`,
     );
   const values = root.intrinsics as Numbers;
   if (values.length !== 4 + Number(count) || !values.every((value) => typeof value === "number"))

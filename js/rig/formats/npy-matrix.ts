@@ -63,8 +63,8 @@ function listed(bytes: Uint8Array): number[] | number[][] | undefined {
 }
 
 /**
- * The arrays of an archive by their names, as JSON, where one is a matrix of a calibration, as OpenCV's users save it.
- * Arrays too large for that, as those of the board's corners, are left out.
+ * The arrays of an archive by their names, as JSON, if one of them is a matrix of a calibration, as users of OpenCV save it.
+ * Larger arrays, such as the corners of a board, are left out.
  */
 export function archiveText(bytes: Uint8Array): string | undefined {
   if (bytes.length > MOST_ARCHIVE || !IS_ZIP.every((byte, at) => bytes[at] === byte)) return undefined;
@@ -77,7 +77,7 @@ export function archiveText(bytes: Uint8Array): string | undefined {
     const isCalibration = found.some(([, rows]) => Array.isArray(rows?.[0]) && isMatrix(rows as number[][]));
     return isCalibration ? JSON.stringify(Object.fromEntries(found)) : undefined;
   } catch (error) {
-    // What reads it as an image says what is wrong with it.
+    // The reader of images reports what is wrong with it.
     if (error instanceof BimodalError || error instanceof RangeError) return undefined;
     throw error;
   }

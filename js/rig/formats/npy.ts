@@ -39,14 +39,14 @@ function ofList(data: Pixels, count: number, columns: number): Picture {
 /** White and full opacity, for numbers from 0 to 1 and of 8 and 16 bits. */
 const WHITES = [1, 0xff, MOST_LEVEL];
 
-/** Whether the fourth of four channels is no alpha, which is opaque somewhere, but, for instance, the depths of an RGB-D image. */
+/** Whether the fourth of four channels holds, for instance, depths of an RGB-D image. An alpha channel is opaque somewhere. */
 function hasDepths(data: Pixels): boolean {
   let most = 0;
   for (let at = 3; at < data.length; at += 4) most = Math.max(most, data[at] ?? 0);
   return most > 0 && !WHITES.includes(most);
 }
 
-/** Rows of coordinates, as the devkit of nuScenes has its points, as rows of points. */
+/** Converts rows of coordinates, which the devkit of nuScenes uses, to rows of points. */
 const transposed = (data: Pixels, rows: number, columns: number): Pixels =>
   data.map((_, at) => data[(at % rows) * columns + Math.floor(at / rows)] ?? NaN);
 
@@ -61,7 +61,7 @@ export function npyPicture(bytes: Uint8Array, check = checkSize): Picture {
   check(width, height);
   if (channels === 4 && !(raster.data instanceof Uint8Array) && hasDepths(raster.data))
     throw badFile(
-      "its pixels have four channels, the last of which is nowhere opaque, so that it is no alpha but, for instance, depth; save colours and depths as two files",
+      "its pixels have four channels, the last of which is opaque nowhere, so it is not alpha but perhaps depth; save colours and depths as two files",
     );
   const data = /^[iu]/.test(type) && channels === 1 ? asLevels(raster.data) : raster.data;
   const bits = 8 * (type === "f2" ? 2 : data.BYTES_PER_ELEMENT);

@@ -71,7 +71,7 @@ export function arePoints(bytes: Uint8Array): boolean {
 /** The error about such points if they are not a scan. */
 export const pointsRefused = () =>
   badFile(
-    "it looks like a LiDAR's points without rows and columns (unorganised; a velodyne .bin of KITTI or nuScenes), which are too few or too scattered for a range image; save them as an organised cloud or as a depth map",
+    "it looks like a LiDAR's points without rows and columns (unorganised, such as a velodyne .bin of KITTI or nuScenes). They are too few or too scattered for a range image; save them as an organised cloud or as a depth map",
   );
 
 const EXTENSION = /\.(?:raw|bin|dat|depth|z16|data|yuv)$/i;

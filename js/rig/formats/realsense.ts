@@ -76,7 +76,7 @@ class Enumeration {
     if (devices > 1)
       this.found.warn(
         "pose-assumed",
-        `The file lists ${devices} devices, and only the first one was read. Print one device by rs-enumerate-devices -c -s SERIAL.`,
+        `The file lists ${devices} devices, and only the first one was read. Print one device with rs-enumerate-devices -c -s SERIAL.`,
       );
     if (this.#missing.size > 0) {
       const [first] = this.#missing;

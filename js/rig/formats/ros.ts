@@ -146,7 +146,7 @@ const QUATERNION = /Quaternion\s*(?:\(xyzw\)\s*)?\[([^\]\n]{1,200})\]/;
 export const isEcho = (text: string): boolean =>
   TRIPLE.test(text.slice(0, REACH)) && QUATERNION.test(text.slice(0, REACH));
 
-/** tf2_echo, while it waits for the pose of its second frame in its first one, prints both names. */
+/** While tf2_echo waits for the pose of its second frame in its first one, it prints both names. */
 const WAITS = /Waiting for transform (\S{1,80}) -> +(\S{1,80}?):? /;
 
 /** The first transform in the output of tf_echo, which names the frames only while it waits. */

@@ -183,7 +183,7 @@ const echoNamed = (): ReaderWarning =>
 const oneEndNamed = (): ReaderWarning =>
   warning(
     "pose-assumed",
-    "Its name says which camera the pose belongs to, but not which way it leads and from or to what. It was taken to lead from the depth camera to the colour camera; if it does, name the file depth_to_color.txt.",
+    "Its name says which camera the pose belongs to, but neither its direction nor the other frame. It was taken to lead from the depth camera to the colour camera; if it does, name the file depth_to_color.txt.",
   );
 
 const placeOfName = (): ReaderWarning =>

@@ -78,12 +78,12 @@ export function readUrdf(root: Element): Findings {
   if (missing.length > 0)
     found.warn(
       "pose-left-out",
-      `The origin of ${missing.length === 1 ? "the joint" : `${missing.length} joints, such as`} "${missing[0]?.slice(0, 60)}" depends on a macro's parameters and was left out. Expand the file by xacro first.`,
+      `The origin of ${missing.length === 1 ? "the joint" : `${missing.length} joints, such as`} "${missing[0]?.slice(0, 60)}" depends on a macro's parameters and was left out. Expand the file with xacro first.`,
     );
   if (found.poses.length === 0)
     throw badFile(
       missing.length > 0
-        ? "it is a robot description (URDF), and the origins of its joints depend on a macro's parameters; expand it by xacro first"
+        ? "it is a robot description (URDF), and the origins of its joints depend on a macro's parameters; expand it with xacro first"
         : "it is a robot description (URDF) without a joint",
     );
   const links = found.poses.slice();

@@ -124,7 +124,7 @@ export function readCommandWindow(text: string): Findings {
     });
     found.warn(
       "principal-point",
-      `MATLAB counts pixels from 1, so that the principal point of "${each.name}" was made one pixel smaller; if the matrix came from another program, add 1 to it again.`,
+      `MATLAB counts pixels from 1, so 1 was subtracted from both coordinates of the principal point of "${each.name}"; if the matrix came from another program, add 1 to them again.`,
     );
   }
   const others = all.filter((each) => each.rows.length > 2 && intrinsicsOf(each) === undefined);
@@ -135,7 +135,7 @@ export function readCommandWindow(text: string): Findings {
     );
   if (found.cameras.length === 0)
     throw badFile(
-      "it is a print of MATLAB's command window without intrinsics; save the variables by jsonencode, or write poses as rows of 4x4 with the names of their frames",
+      "it is a print of MATLAB's command window without intrinsics; save the variables with jsonencode, or write poses as rows of 4x4 with the names of their frames",
     );
   return found;
 }

@@ -71,7 +71,7 @@ export function readZed(text: string): Findings {
   if (all.has("STEREO"))
     found.warn(
       "pose-assumed",
-      "A ZED's depth maps belong to its left camera, so no pose is between them. The intrinsics are those of images that are not rectified.",
+      "A ZED's depth maps belong to its left camera, so there is no pose between depth maps and colour images. The intrinsics are those of images that are not rectified.",
     );
   return found;
 }

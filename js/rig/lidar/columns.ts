@@ -24,8 +24,8 @@ const FINEST = 0.2;
 const USUAL_PACE = 0.2 * DEGREE;
 
 /**
- * Columns over the pace: finer columns leave room for pulses that come early. Set on one frame of KITTI, where 0.95 to 0.98 keep all
- * points.
+ * Width of a column as a share of the pace: finer columns leave room for pulses that come early. Set on one frame of KITTI, where 0.95 to
+ * 0.98 keep all points.
  */
 const SLACK = 0.98;
 

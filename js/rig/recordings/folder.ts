@@ -114,14 +114,14 @@ function attach(folder: RigFolder): void {
     folder.warnings.push(
       warning(
         "colour-camera-missing",
-        "There are no intrinsics for the colour images: neither a camera_info beside them or with their frame nor an attached calibration. Their focal length has to be estimated.",
+        "There are no intrinsics for the colour images: no camera_info beside them or with their frame, and no attached calibration. Their focal length has to be estimated.",
       ),
     );
   if (depth)
     folder.warnings.push(
       warning(
         "depth-camera-missing",
-        "There are no intrinsics for the depth maps: neither a camera_info beside them or with their frame nor an attached calibration. Without them depths cannot be turned into points.",
+        "There are no intrinsics for the depth maps: no camera_info beside them or with their frame, and no attached calibration. Without them depths cannot be turned into points.",
       ),
     );
   for (const { name, camera } of folder.cameras)

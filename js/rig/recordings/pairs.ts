@@ -92,7 +92,7 @@ export async function decoded(pair: Pair, unit?: number, turn?: Turn): Promise<M
   const image = await pair.colour.read({ as: "colour" });
   const map = await pair.depth.read({ as: "depth", ...(unit !== undefined && { unit }), ...(turn && { turn }) });
   if (image.kind !== "colour" || map.kind !== "depth")
-    throw new Error("A shot was decoded as another kind than requested.");
+    throw new Error("A shot was decoded as a kind that was not requested.");
   return { pair, image, map, ...(turn && { turn }) };
 }
 

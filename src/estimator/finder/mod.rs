@@ -205,7 +205,7 @@ impl Finder {
     /// Runs one slice.
     ///
     /// # Errors
-    /// The errors of the search near an initial pose, if the views allow none. Then there is nothing more to find.
+    /// The errors of the search near an initial pose, if the views do not allow it. Nothing more can be found then.
     pub fn advance(&mut self, pair: &ViewPair, memory: &mut Memory) -> Result<Advance> {
         let next = match std::mem::replace(&mut self.phase, Phase::Done) {
             Phase::Nearby(nearby) => self.look_nearby(pair, memory, nearby)?,
@@ -304,7 +304,7 @@ impl Finder {
         self.decide(pair, memory, conclusion)
     }
 
-    /// A slice of the registrations by silhouettes from everywhere.
+    /// A slice of the registrations by silhouettes without an initial pose.
     fn compare_silhouettes(&mut self, pair: &ViewPair, memory: &mut Memory, mut anywhere: Box<Anywhere>) -> Next {
         if anywhere.advance(pair, ColourRegistration::prepared(memory, pair).normals()) {
             return Next::Decision(everywhere_by(anywhere.best(), std::mem::take(&mut self.chosen)));

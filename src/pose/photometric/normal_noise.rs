@@ -1,5 +1,6 @@
-//! Contribution of white noise of the normals to sums of products of functions of them: sum w var (f_a g_a + f_b g_b),
-//! where f_a and f_b are the slopes of f along two tangents of a normal (docs/method/registration.md).
+//! What white noise of the normals adds to sums of products f g of two functions of the normals:
+//! sum w var (f_a g_a + f_b g_b), where f_a and f_b are the slopes of f along two tangents of a normal
+//! (docs/method/registration.md).
 //!
 //! Residuals and derivatives depend on the normals through linear functions of the harmonics. One matrix therefore
 //! suffices: the same sum over the harmonics alone.
@@ -13,12 +14,12 @@ use crate::numeric::{Doubles, Real, dot};
 pub(super) struct NormalNoise([[Doubles; HARMONICS]; HARMONICS]);
 
 impl NormalNoise {
-    /// Sums before any normals.
+    /// Sums over no normals yet.
     pub fn new() -> Self {
         Self([[Doubles::splat(0.0); HARMONICS]; HARMONICS])
     }
 
-    /// Adds normals side by side; `weight` includes their variance along each tangent.
+    /// Adds several normals at once; `weight` includes their variance along each tangent.
     // Not inlined, because it would be unrolled into the loop over the points.
     #[inline(never)]
     pub fn add(&mut self, normals: [Doubles; 3], weight: Doubles) {

@@ -100,7 +100,8 @@ const VEHICLES: readonly Row[] = [
     sample: "kitti-raw",
     reads: "poses",
     warnings: [],
-    taken: "The pose, into camera 0 before rectification; chained with `calib_cam_to_cam.txt` of the same folder.",
+    taken:
+      "The pose of the sensor in camera 0 before rectification. It is chained with `calib_cam_to_cam.txt` of the same folder.",
     guessed: NOTHING,
     exported: DOWNLOAD,
   },

@@ -39,7 +39,7 @@ export const DEPTHS: readonly Row[] = [
     reads: "depth",
     warnings: ["unit-guessed"],
     taken: "Depths of 24 bits, or of a high and a low byte.",
-    guessed: "The order of the bytes; 24 bits are CARLA's 1000 m.",
+    guessed: "The order of the bytes. The full range of 24 bits is 1000 m, as in CARLA.",
     exported: SEE_PRODUCT,
   },
   {
@@ -80,7 +80,7 @@ export const DEPTHS: readonly Row[] = [
   },
   {
     product: "Blender, renderers",
-    file: "OpenEXR in scan lines: none, RLE, ZIP, ZIPS",
+    file: "OpenEXR in scan lines: uncompressed, RLE, ZIP or ZIPS",
     modules: ["exr", "exr-header"],
     reader: "exr",
     sample: "depth-exr",
@@ -135,7 +135,7 @@ export const DEPTHS: readonly Row[] = [
     reads: "depth",
     warnings: ["unit-guessed"],
     taken: "Depths; holes are zero, empty or NaN.",
-    guessed: "The unit; whether the first row and column number the pixels.",
+    guessed: "The unit. Whether the first row and the first column are numbers of pixels.",
     exported: '`numpy.savetxt("depth.csv", depth, delimiter=",")`, `writematrix(depth, "depth.csv")`',
   },
   {
