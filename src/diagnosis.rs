@@ -29,7 +29,7 @@ pub const MIXED_NOISE: f64 = 2.0 * PURE_NOISE;
 const PURE_SHARE: f64 = 0.15;
 /// Largest spatial covariance of residuals (as a standard deviation, log units) for which a single albedo is an adequate model.
 const MODEL_COVARIANCE: f64 = 0.007;
-/// [`MODEL_COVARIANCE`] behind a pinhole, where dark print spreads the colours so far that the noise counts for little.
+/// [`MODEL_COVARIANCE`] behind a pinhole, where dark print makes the spread of the colours large in comparison with the noise.
 const PINHOLE_COVARIANCE: f64 = 0.03;
 /// `MODEL_COVARIANCE` for another unit of depth: up to this value, no other unit is tried.
 pub const UNIT_COVARIANCE: f64 = 0.0015;

@@ -341,7 +341,7 @@ await nextTask();
 keepPlaying({
   isPlaying: () => player.playing,
   play: (hash) => {
-    // Different from the present address, from which "play" is taken out as soon as it plays.
+    // This address has to differ from the present one, from which "play" is removed as soon as the run plays.
     location.hash = placeOf(hash) === "lab" && !asksToPlay(hash) ? [hash || "#", "play"].join("&") : hash;
   },
 });

@@ -46,8 +46,8 @@ impl Progress {
     }
 }
 
-/// Progress of the run, 0 to 1, and its current activity. The search reports its percentage; for the iterations, only
-/// their largest number is known, of which most runs need few.
+/// Progress of the run, 0 to 1, and its current activity. The search reports its percentage. Of the iterations,
+/// only the largest number is known, and most runs need far fewer.
 fn share(report: &StepReport, most_iterations: u32) -> (f64, String) {
     if report.stage == Stage::Search {
         return match report.reason {

@@ -231,7 +231,7 @@ function byStamps({ colours, depths }: Sorted, warnings: ReaderWarning[]): Pairs
   const [ours, theirs] = [stamps(colours, times.colours), stamps(depths, times.depths)];
   const apart = apartOf(times);
   const found = byTime(ours, theirs, apart);
-  // Beside a counter, stamps count only where they agree.
+  // If the names also have a counter, stamps are used only if most of them agree.
   if (!times.isAlone && 2 * found.length <= fewer) return undefined;
   if (found.length === 0)
     throw badFile(

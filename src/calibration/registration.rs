@@ -76,7 +76,8 @@ pub(super) struct Scene {
     pub scale: f64,
 }
 
-/// A state, the initial state that the prior is about, the sigma of edges, and what determines the weights of the cues.
+/// A round of the registration: a state, the initial state on which the prior is centred, the sigma of edges, and the sums
+/// that determine the weights of the cues.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Round {
     pub state: State,
@@ -187,9 +188,9 @@ impl Scene {
         rows.transpose() * rows
     }
 
-    /// Moves the state from which a round sees the scene if its own state went farther from it than the spacing, and returns
-    /// whether it did. What is hidden depends on the pose by leaps. It changes little within a pixel, so it is taken from
-    /// the nearest state on a lattice about the initial state, which rounding does not move.
+    /// Moves `seen_from` if the round's state is farther from it than the spacing of the lattice; returns whether it did. With
+    /// the pose, visibility changes in leaps, but little within a pixel. It is therefore computed at the nearest state on a
+    /// lattice about the initial state, which rounding does not move.
     pub fn look(&self, round: &mut Round) -> bool {
         let spacing = SPACING * self.scale;
         let units = self.units(&round.initial);

@@ -30,8 +30,8 @@ const TILE: f64 = 64.0;
 const MOST_TILES: f64 = 125.0;
 /// Unknowns of one more albedo: its offset in three channels, and its share.
 const UNKNOWNS: f64 = 4.0;
-/// Share of the lightness beyond a region's albedo that counts as albedo and not as shading, with an unlimited palette;
-/// set on ten photographs (docs/lab/thresholds.md).
+/// Share of the remaining lightness, after subtraction of a region's albedo, that counts as albedo and not as shading; set on
+/// ten photographs (docs/lab/thresholds.md).
 const LIGHTNESS_SHARE: f64 = 0.5;
 
 /// A light and the albedos under it.

@@ -55,7 +55,7 @@ impl Default for RansacOptions {
 pub struct RansacReport {
     /// The similarity fitted to its own inliers.
     pub pose: Similarity,
-    /// A of Eq. 14 on the inliers of the linear model; [`Similarity::nearest`] extracts scale and rotation from it.
+    /// A of Eq. 14, fitted to the inliers of the linear model; [`Similarity::nearest`] extracts scale and rotation from it.
     pub matrix: Matrix3<f64>,
     /// Indices of the pairs within the threshold of the similarity, ascending.
     pub inliers: Vec<u32>,

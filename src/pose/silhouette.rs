@@ -31,7 +31,7 @@ impl Silhouette {
         Self { size, outside, signed }
     }
 
-    /// Number of pixels of the mask next to a pixel off it.
+    /// Number of mask pixels that have a neighbour off the mask.
     pub fn border(&self) -> usize {
         self.signed.iter().filter(|&&signed| signed == -0.5).count()
     }

@@ -31,7 +31,7 @@ const DISCRETISATION: f64 = 0.065;
 /// Bounds of the weight of an anchor, squared log residual per squared pixel of height: whatever its noise, depth
 /// neither loses all weight nor overrides the colours.
 const ANCHOR_WEIGHTS: [f64; 2] = [1e-3, 10.0];
-/// Share of the bending that yields to colours which determine the surface better than its roughness does. Set on
+/// Share of the resistance to bending that yields to colours if these determine the surface better than its roughness does. Set on
 /// Mozart at 64x64 under four lights and on photographs with quantised depth, which need all of the bending
 /// (docs/lab/thresholds.md).
 const GIVEN_WAY: f64 = 0.75;

@@ -27,7 +27,7 @@ const NOTHING: Range = { min: 0, max: 1 };
 const isError = (scale: ScaleName): boolean => scale === "residual" || scale.endsWith("Error");
 const mapOf = (scale: ScaleName): MapName => (isError(scale) ? "magma" : "viridis");
 
-/** Never without a width. */
+/** The range, widened if it has no width. */
 const wide = ({ min, max }: Range): Range => (max > min ? { min, max } : { min: min - 0.5, max: min + 0.5 });
 
 /** The picture that colours each surface. */

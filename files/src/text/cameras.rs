@@ -74,7 +74,7 @@ fn size_of(raw: &RawCamera) -> Result<Option<[usize; 2]>, Reason> {
         }
         (width, height) => {
             let (what, side) = (if width.is_none() { "height" } else { "width" }, width.or(height).unwrap_or(0.0));
-            Err(format!("its camera has only a {what} for its images, {}; it needs both", shown(side)))
+            Err(format!("its camera states only the {what} of its images, {}; both are needed", shown(side)))
         }
     }
 }

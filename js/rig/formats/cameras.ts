@@ -66,7 +66,7 @@ function sizeOf(raw: RawCamera): { width: number; height: number } | undefined {
   if (width === 0 && height === 0) return undefined;
   if (width === undefined || height === undefined)
     throw badFile(
-      `its camera has only a ${width === undefined ? "height" : "width"} for its images, ${width ?? height}; it needs both`,
+      `its camera states only the ${width === undefined ? "height" : "width"} of its images, ${width ?? height}; both are needed`,
     );
   if (!isSide(width) || !isSide(height)) throw badFile(`its camera has the invalid image size ${width}x${height}`);
   return { width, height };
@@ -126,7 +126,7 @@ export function cameraOf(raw: RawCamera, warnings: ReaderWarning[]): NamedCamera
 
 type Lens = { model?: "fisheye"; distortion?: Numbers };
 
-/** Coefficients by Brown's names that are those of a fisheye: k1 to k4. */
+/** Places of k1 to k4, a fisheye's coefficients, in a list by Brown's names. */
 const FISHEYE_OF_BROWN = [0, 1, 4, 5];
 
 function fisheye({ distortion, isByName = false }: RawCamera, label: string, warnings: ReaderWarning[]): Lens {

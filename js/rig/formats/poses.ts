@@ -149,7 +149,7 @@ export function poseOfMatrix(m: Numbers): Pose {
   return poseOf(rotationOf(rotation, []), translation);
 }
 
-/** The motion back. */
+/** The inverse motion. */
 export function inverseOf({ rotation: r, translation: t }: Pose): Pose {
   const back = [0, 3, 6, 1, 4, 7, 2, 5, 8].map((index) => at(r, index));
   return poseOf(

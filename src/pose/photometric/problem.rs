@@ -163,7 +163,7 @@ pub enum PhotometricTermination {
     /// The last rounds, with instrumental variables, would have raised the objective, so the pose of least squares was
     /// kept. It is usable but has the bias of the noise.
     Annealed,
-    /// The cap on the rounds came first.
+    /// The cap on the rounds was reached.
     MostRounds,
 }
 
@@ -181,7 +181,7 @@ pub struct PhotometricReport {
     /// Robust standard deviation of a channel's residuals, log units.
     pub noise: f64,
     /// Spatial covariance of the residuals: root mean covariance within tiles of the depth map, log units. Shadows,
-    /// varying albedo and light from other parts of the object cause some, white noise of any size none.
+    /// varying albedo and light from other parts of the object raise it, but white noise of any size does not.
     pub structure: f64,
     /// Number of visible points.
     pub visible: usize,

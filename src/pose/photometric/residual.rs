@@ -141,7 +141,7 @@ impl<'a> ColourModel<'a> {
     }
 }
 
-/// Values and gradients of the image at points side by side, zero where they are not shown.
+/// Values and gradients of the image at one point for each lane, zero for points that the image does not show.
 #[derive(Default)]
 struct SampledGradients {
     shown: [f64; DOUBLE_LANES],
@@ -167,7 +167,7 @@ fn pixel_derivatives(points: [Doubles; 3], sampled: &SampledGradients, frame: &F
     [by(0), by(1)]
 }
 
-/// d r / d unknowns of one channel: by its pixel, minus that by its rotated normal.
+/// d r / d unknowns of one channel: the part that follows from the pixel minus the part that follows from the rotated normal.
 #[inline(always)]
 fn row(pixel: &[Derivative; 2], gradient: &[[f64; DOUBLE_LANES]; 2], by_rotation: [Doubles; 3]) -> Derivative {
     let [by_column, by_row] = [Doubles::from(gradient[0]), Doubles::from(gradient[1])];

@@ -12,8 +12,8 @@ const LARGEST_WIDENING: f64 = 2.0;
 /// degrees.
 const PRIOR_DEGREES_OF_FREEDOM: f64 = 5.0;
 
-/// Number of residuals that count as one independent error if the albedo varies; it weighs other terms against sums
-/// over residuals. Set on pairs of a statue (docs/lab/thresholds.md).
+/// Number of residuals that count as one independent error if the albedo varies: it sets the weight of other terms
+/// relative to sums over residuals. Set on pairs of a statue (docs/lab/thresholds.md).
 pub(super) const CORRELATED: f64 = 640.0;
 
 /// Weights of residuals and prior.

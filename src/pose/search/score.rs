@@ -15,8 +15,8 @@ use super::target::Target;
 use super::template::{PADDED, PRODUCTS, Products, Sums, Template, row_start};
 use crate::light::{HARMONICS, Light, basis};
 
-/// Variance e added to the balanced colours, whose first axis has variance one: at best, a tilt by half the spacing of
-/// the rotations leaves this much unexplained (docs/lab/thresholds.md).
+/// Variance e added to the balanced colours, whose first axis has variance one. A tilt by half the spacing of the rotations
+/// leaves at least this much unexplained (docs/lab/thresholds.md).
 const UNEXPLAINED: f64 = 1e-3;
 /// Shares added to the diagonal of the harmonics' Gram matrix: of the entry itself, and of the weight. They prevent
 /// large coefficients of harmonics that hardly vary over the overlap.

@@ -6,7 +6,7 @@ use super::rotations;
 
 /// Distance between neighbouring rotations in degrees; set on 160 scenes with unknown light (docs/lab/thresholds.md).
 const SPACING: f64 = 16.0;
-/// Scales relative to s0 if the scale is free, one cell apart at the ends of the object. The ascent reaches 0.7 and 1.4
+/// Scales relative to s0 if the scale is free. Neighbouring ones move the ends of the object by one cell. The ascent reaches 0.7 and 1.4
 /// and closes the gaps (docs/lab/thresholds.md).
 const FREE_SCALES: [f64; 4] = [0.74, 0.90, 1.09, 1.32];
 /// Apparent sizes behind a pinhole with a held scale, where the distance is known only roughly.

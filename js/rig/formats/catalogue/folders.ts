@@ -16,7 +16,7 @@ export const FOLDERS: readonly Row[] = [
     taken:
       "Pairs of a colour image and a depth map, masks, cameras and poses beside them. A third folder is named and left out.",
     guessed:
-      "Which pictures are depths, from names, or else from content; cameras from names, sizes and order, with a warning.",
+      "Names, or else the content, decide which pictures are depths. Names, sizes and order decide which camera is which, with a warning.",
     exported: "-",
   },
   {
@@ -76,7 +76,7 @@ export const FOLDERS: readonly Row[] = [
     sample: "bop-folder",
     reads: "folder",
     warnings: [],
-    taken: "Pairs with the camera of both and its unit of depth.",
+    taken: "Pairs, with the common camera of both pictures and the unit of depth.",
     guessed: NOTHING,
     exported: DOWNLOAD,
   },
