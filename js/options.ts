@@ -149,7 +149,7 @@ export const OPTIONS: RowsOf<PlainOptions> = {
       hint: "A run whose rotation is less certain than this (one sigma) ends as ambiguous.",
     },
   },
-  /** More are taken for a typing error. */
+  /** A larger number is probably a typing error. */
   maxIterations: {
     kind: "whole",
     min: 1,

@@ -195,7 +195,7 @@ function pixelsOf(found: Parts, head: Header, bytes: Uint8Array): Raster<Uint8Ar
   const { width, height, bits, channels, type } = head;
   const data = samples(bytes, head);
   if (type === INDEXED) return { width, height, ...ofPalette(data, found) };
-  // Full white is 1, 3 or 15 of fewer than 8 bits.
+  // With fewer than 8 bits, full white is 1, 3 or 15.
   const scale = bits < 8 ? 255 / (2 ** bits - 1) : 1;
   return { width, height, channels, data: scale === 1 ? data : data.map((level) => level * scale) };
 }

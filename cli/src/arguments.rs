@@ -185,7 +185,7 @@ fn camera(text: &str) -> std::result::Result<Pinhole, String> {
     let numbers = numbers(text)?;
     let (&[fx, fy, cx, cy], lens) = numbers.split_first_chunk().ok_or("needs fx,fy,cx,cy")?;
     if !matches!(lens.len(), 0..=5 | 8) {
-        return Err("needs up to k1,k2,p1,p2,k3, or all of k1,k2,p1,p2,k3,k4,k5,k6, after fx,fy,cx,cy".into());
+        return Err("needs fx,fy,cx,cy, and after them up to k1,k2,p1,p2,k3, or all of k1,k2,p1,p2,k3,k4,k5,k6".into());
     }
     let mut coefficients = [0.0; 8];
     coefficients[..lens.len()].copy_from_slice(lens);

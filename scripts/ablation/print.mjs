@@ -99,7 +99,7 @@ export function markdown(sets, variants) {
     ...[line(head), `|---|${variants.map(() => "---").join("|")}|`, ...[...lines, sizes].map(line)],
     ...[
       "",
-      `Cells that end better and worse with a part than without it, by over ${MATTERS} degrees (without -> with):`,
+      `Cells that a part makes better or worse by over ${MATTERS} degrees (without the part -> with it):`,
       "",
       ...lists,
     ],

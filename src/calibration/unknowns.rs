@@ -2,7 +2,7 @@
 //!
 //! P -> c + exp([w]) (P - c) + v about the scene's centre c, in the colour camera's frame; the edge bias d in pixels (a
 //! depth camera removes or adds a strip of constant width at depth discontinuities, one number for a device); and ln f of
-//! the colour camera if it is unknown. The unit of each moves the scene's pixels by one pixel, root mean square. All
+//! the colour camera if it is unknown. One unit of any of them moves the scene's pixels by one pixel, root mean square. All
 //! unknowns are then comparable, and steps, derivatives and tolerances have one size.
 
 use nalgebra::{Rotation3, SMatrix, SVector, Vector3};

@@ -41,7 +41,8 @@ const ONE_HUE: f64 = 0.1;
 /// The same bound for brightness (the channels' mean), log units: edges of the relief between regions shift brightness,
 /// but hardly chromaticity.
 const ONE_BRIGHTNESS: f64 = 0.4;
-/// Number of times that albedos are joined and compared again, over all borders between two of them together.
+/// Number of rounds in which albedos are joined and compared again. A comparison takes all borders between two albedos
+/// together.
 const PALETTE_ROUNDS: usize = 2;
 
 /// Most sweeps over the borders, and the change of a log offset that ends them.
@@ -104,7 +105,7 @@ struct Border {
     step: [f64; 3],
 }
 
-/// Regions of one albedo each, connected ones at first.
+/// Regions, each with one albedo. At first they are connected.
 struct Regions {
     of_pixel: Vec<u32>,
     /// Pixel count of each, largest first.

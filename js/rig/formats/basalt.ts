@@ -38,7 +38,7 @@ export function readBasalt(root: Node): Findings {
     found.camera({
       ...{ name: `cam${index}`, focal: numbersAt(numbers, ["fx", "fy"]), centre: numbersAt(numbers, ["cx", "cy"]) },
       ...{ width, height },
-      // With a coefficient, a camera of an unsupported model is refused by name.
+      // Cameras of an unsupported model get a coefficient, so that they are refused by name.
       ...{
         model: known?.model ?? type,
         distortion: known ? known.lens.map((key) => numberOf(numbers[key]) ?? 0) : [1],

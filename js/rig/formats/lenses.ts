@@ -17,8 +17,8 @@ const FISHEYE = [
   "(?:pinhole|opencv)?(?:fisheye4?|fisheyeopencv|equi|equid4?|equidistant4?|equidistantdistortedpinhole|kb[48]?|kannalabrandt[48]?)",
 ];
 /**
- * librealsense projects with both as with Brown's model, except for products of terms (its older versions used the inverse direction for
- * the second).
+ * librealsense projects with either of these two as with Brown's model, except for products of terms (its older versions used the inverse
+ * direction for the second).
  */
 const REALSENSE = ["modifiedbrownconrady|inversebrownconrady"];
 /** Models that are not supported, with what they stand for. */

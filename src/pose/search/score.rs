@@ -1,9 +1,9 @@
 //! Exact score of a template at one translation: how well it explains the colours under it.
 //!
 //! score = N (N / V) (1/3) ln( det(T + e) / det(E + e) ), with N cells of overlap out of V visible ones, the covariance
-//! T of the balanced colours y in the overlap, and the covariance E of their residuals. Under an unknown light E
-//! belongs to a linear fit of the nine harmonics in each channel, under a known one to y - W B(n) L without a common
-//! exposure. The score is the gain of log likelihood over a constant colour, so exposure and white balance cancel. N /
+//! T of the balanced colours y in the overlap, and the covariance E of their residuals. Under an unknown light
+//! these are the residuals of a linear fit of the nine harmonics in each channel, under a known one y - W B(n) L without
+//! a common exposure. The score is the gain of log likelihood over a constant colour, so exposure and white balance cancel. N /
 //! V is the share of the visible cells that lie on the mask: points that should be visible but lie off the object count
 //! against the pose.
 //!
@@ -18,7 +18,7 @@ use crate::light::{HARMONICS, Light, basis};
 /// Variance e added to the balanced colours, whose first axis has variance one. A tilt by half the spacing of the rotations
 /// leaves at least this much unexplained (docs/lab/thresholds.md).
 const UNEXPLAINED: f64 = 1e-3;
-/// Shares added to the diagonal of the harmonics' Gram matrix: of the entry itself, and of the weight. They prevent
+/// Added to the diagonal of the harmonics' Gram matrix, as shares of the entry itself and of the weight. They prevent
 /// large coefficients of harmonics that hardly vary over the overlap.
 const RIDGE: f64 = 1e-3;
 const RIDGE_OF_WEIGHT: f64 = 1e-4;

@@ -25,7 +25,7 @@ impl<T> TaskResults<T> {
     }
 
     /// The task for this thread: the first open one, otherwise the last one that a worker has not returned. Workers
-    /// take the first tasks first, so the last is the least likely to be in progress, and no worker is waited for.
+    /// take the first tasks first, so the last is the least likely to be in progress. This thread never waits for a worker.
     pub fn next(&self, is_wanted: impl Fn(usize) -> bool) -> Option<usize> {
         self.first_open(&is_wanted).or_else(|| {
             let is_taken = |state: &TaskState<T>| matches!(state, TaskState::Taken);

@@ -62,7 +62,7 @@ export const SCANS: readonly Row[] = [
     sample: "scan-kitti",
     reads: "depth",
     warnings: ["points-sorted"],
-    taken: "Points in metres and intensities; rows by the turns in the order of the points.",
+    taken: "Points in metres and intensities. The points are stored turn by turn, and each turn is a row.",
     guessed: "The number of floats per point.",
     exported: "Comes with the dataset",
   },
