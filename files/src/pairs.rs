@@ -310,7 +310,7 @@ fn by_names(folder: &Path, files: &[PathBuf], warnings: &mut Warnings) -> Vec<Pa
 }
 
 /// The colour image of each depth map: the one with a similar name or, if several names differ only in case and signs,
-/// the one whose whole path agrees except for the parts that say which file of a frame it is.
+/// the one whose whole path is the same, except for the parts that tell the files of one frame apart.
 fn partners(colours: &[(String, PathBuf)], depths: &[(String, PathBuf)]) -> Vec<Option<usize>> {
     let mut alike: HashMap<String, (Vec<usize>, usize)> = HashMap::new();
     for (index, (name, _)) in colours.iter().enumerate() {

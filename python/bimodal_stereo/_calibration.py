@@ -84,11 +84,12 @@ class Sensitivity(NamedTuple):
 class CheckReport:
     """The result of a check. ``verdict`` and ``reason`` are those of the first candidate, which is the one being checked.
 
-    ``code`` names the reason for programs. ``warnings``: what was guessed or looks wrong, each a ``code``, a ``message``, the ``field`` and its
-    numbers. ``estimate``: the extrinsics that fit best, P_colour = rotation @ P_depth + translation,
-    metres. ``overlap``: share of the depth points that the estimate puts onto the image, 0 .. 1. ``middle``: (3,), the scene's, in the colour frame, metres. ``covariance``: (6, 6), of a rotation vector in rad about the middle,
-    then a translation in m. ``focal``: factor of the assumed focal length and the logarithm's sigma, where the colour camera was
-    not given. ``pixels``, ``interval``: expected reprojection error of the estimate, and its 95 % interval.
+    ``code`` names the reason for programs. ``warnings``: what was guessed or looks wrong, each a ``code``, a ``message``, the ``field`` and
+    its numbers. ``estimate``: the extrinsics that fit best, P_colour = rotation @ P_depth + translation, metres. ``overlap``: share of the
+    depth points that the estimate puts onto the image, 0 .. 1. ``middle``: (3,), the centre of the scene in the colour frame, metres.
+    ``covariance``: (6, 6), of a rotation vector in rad about the middle, then a translation in m. ``focal``: factor to the assumed focal
+    length, and the sigma of its logarithm, if no colour camera was given. ``pixels``, ``interval``: expected reprojection error of the
+    estimate, and its 95 % interval.
     """
 
     verdict: str
