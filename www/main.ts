@@ -97,7 +97,7 @@ button("export", () => {
   saves.addEventListener("saved", note, { once: true });
   if (place === "lab") lab.download();
   else others[place]?.download();
-  // A check says itself what it lacks, and first reads its files.
+  // A check reports by itself what it lacks, and reads its files first.
   if (isSaved || place === "rig") return;
   saves.removeEventListener("saved", note);
   say("export", "Nothing to export");
@@ -116,7 +116,7 @@ pace.append(...paces.map(({ label }, i) => make("option", { value: i }, label)))
 pace.value = String(player.pace);
 pace.addEventListener("change", () => (player.pace = Number(pace.value)));
 
-/** Shows on a button for a moment what came of it. */
+/** Shows for a moment, on the button that was pressed, how the action ended. */
 function say(id: string, words: string): void {
   const target = byId(id, HTMLButtonElement);
   target.dataset.words ??= target.textContent;
@@ -228,7 +228,7 @@ async function arrive(): Promise<void> {
   if (!asksToPlay(hash)) {
     const entered = opensFirst ? start(settings) : lab.enter(settings);
     showLooks(hash);
-    // What the address has beside settings, or a setting that there is not, was not followed.
+    // Parts of the address that are not settings, or name an unknown setting, were ignored.
     if (hash !== "") writeAddress(store.settings);
     return entered;
   }

@@ -99,7 +99,7 @@ export const VIEWS = {
 export type ViewName = keyof typeof VIEWS;
 export type Side = (typeof VIEWS)[ViewName];
 
-/** Ranges of colours; the given depth shares that of the refined one. */
+/** Ranges of colours. The given depth has the range of the refined depth. */
 export const SCALES = [
   "imageDepth",
   "refinedDepth",

@@ -104,7 +104,8 @@ const OTHERS: readonly Row[] = [
     sample: "depthai",
     reads: "cameras",
     warnings: ["pose-assumed"],
-    taken: "Cameras by socket. Poses in centimetres are converted, and chained through other cameras to the colour camera.",
+    taken:
+      "Cameras by socket. Poses in centimetres are converted, and chained through other cameras to the colour camera.",
     guessed: "The camera of the depth map: the rectified right or left one, or the colour camera.",
     exported: '`device.readCalibration().eepromToJsonFile("calib.json")`, or `eepromToJson()`',
   },
