@@ -229,7 +229,8 @@ impl Segmentation {
 fn check(size: Size, colours: &[u8], marks: &[u8]) -> Result<()> {
     for (field, found, each) in [("image.data", colours.len(), 4), ("marks", marks.len(), 1)] {
         if size.len() == 0 || found != each * size.len() {
-            let message = format!("{}x{} pixels need {} values, not {found}", size.width, size.height, each * size.len());
+            let message =
+                format!("{}x{} pixels need {} values, not {found}", size.width, size.height, each * size.len());
             return Err(Error::new(ErrorKind::Size, field, message));
         }
     }
