@@ -134,7 +134,7 @@ export function stepsOf(
   onShown: () => void,
 ): { bodies: Record<StepName, HTMLElement>; show(step: StepName): void } {
   const lent = () => make("div", { class: "lent" });
-  const places = { picture: lent(), depth: lent(), masks: lent(), go: lent() };
+  const places = { picture: lent(), depth: lent(), masks: lent() };
   const range = make("p", { class: "range", role: "status" });
   const doubts = make("ul", { class: "expect" });
   const drawColour = press("Draw on the picture", () => hooks.draw("colour"));
@@ -166,15 +166,16 @@ export function stepsOf(
       places.masks,
       make("p", { class: "row" }, drawColour, drawDepth),
     ),
-    go: make("section", { "aria-label": "Go" }, make("h3", {}, "What to expect"), doubts, places.go),
+    go: make("section", { "aria-label": "Go" }, make("h3", {}, "What to expect"), doubts),
   };
   const show = (step: StepName): void => {
-    const lend = (element: HTMLElement | null | undefined) => borrowed.show(element, places[step]);
+    const lend = (element: HTMLElement | null | undefined) => step !== "go" && borrowed.show(element, places[step]);
     if (step === "picture") [hooks.placeOf("colour"), field("transfer"), camera("colour")].forEach(lend);
     if (step === "depth")
       [hooks.placeOf("depth"), field("unit"), field("meaning"), field("numerator"), camera("depth")].forEach(lend);
     if (step === "masks") [hooks.placeOf("colourMask"), hooks.placeOf("depthMask")].forEach(lend);
-    lend(hooks.notes());
+    // What the last step expects already says what the notes do.
+    if (step !== "go") borrowed.show(hooks.notes(), bodies[step]);
     refresh();
   };
   /** Only the newest answer is shown. */

@@ -95,7 +95,10 @@ async function seen(file: File, number: number, how: Reading): Promise<Look> {
   };
 }
 
-const storedOf = ({ range: [near, far], valid }: NonNullable<Summary["measured"]>, unit = 1): Look["measured"] => ({
+const storedOf = (
+  { range: [near, far], valid }: NonNullable<Summary["measured"]>,
+  unit = 1,
+): NonNullable<Look["measured"]> => ({
   range: [near / unit, far / unit],
   valid,
 });
@@ -193,7 +196,7 @@ export const depthWithin = (file: File, ask: Omit<Calls["within"]["ask"], "file"
   session.call("within", { file: numberOf(file), ...ask });
 
 /** A pair of the gallery. */
-export const renderedPair = (kind: PairKind): Promise<PairSample> => session.call("rendered", { kind });
+export const renderedPair = (kind: PairKind): Promise<PairSample> => session.call("rendered", { pair: kind });
 
 /** Assigns cameras to pictures. */
 export const camerasFor = (ask: Calls["cameras"]["ask"]): Promise<Calls["cameras"]["answer"]> =>

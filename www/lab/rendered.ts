@@ -76,6 +76,9 @@ function draw(canvas: HTMLCanvasElement, { image: { width, height, data } }: Pai
   canvas.getContext("2d")?.putImageData(pixels, 0, 0);
 }
 
+const reasonOf = (error: unknown): string =>
+  `It could not be rendered: ${error instanceof Error ? error.message : String(error)}`;
+
 /** The cards; pictures appear as they are rendered. */
 export async function showGallery(parent: HTMLElement, take: (files: File[]) => void): Promise<void> {
   const shown = GALLERY.map((card) => {
@@ -98,10 +101,10 @@ export async function showGallery(parent: HTMLElement, take: (files: File[]) => 
     return { card, canvas, button };
   });
   parent.replaceChildren(...shown.map(({ button }) => button));
-  for (const { card, canvas } of shown) {
+  for (const { card, canvas, button } of shown) {
     await pairOf(card.kind).then(
       (pair) => draw(canvas, pair),
-      () => {},
+      (error: unknown) => button.append(make("span", { class: "ends", role: "alert" }, reasonOf(error))),
     );
   }
 }

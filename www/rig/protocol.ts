@@ -159,7 +159,7 @@ export interface Calls {
   /** The part of a depth map within a range in metres, and where `paint`, of any size, is not zero. */
   within: { ask: { file: number; range?: [number, number]; paint?: Mask }; answer: Mask };
   /** A pair of the gallery. */
-  rendered: { ask: { kind: PairKind }; answer: PairSample };
+  rendered: { ask: { pair: PairKind }; answer: PairSample };
   /** The frames to which the following requests refer. */
   frames: { ask: { frames: FramePlan[] }; answer: null };
   check: { ask: { candidates: Record<string, Pose>; cues: CheckCue[] }; answer: CheckReport };

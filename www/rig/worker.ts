@@ -238,8 +238,8 @@ const handlers: Handlers = {
   async within({ file, range, paint }) {
     return maskWithin(readingOf(file, "depth").depth, range, paint);
   },
-  async rendered({ kind }) {
-    return samplePair(kind);
+  async rendered({ pair }) {
+    return samplePair(pair);
   },
   async frames({ frames: plans }) {
     frames = plans.map(frameOf);
