@@ -3,6 +3,7 @@
 mod camera;
 mod chroma;
 mod colour;
+mod couplings;
 mod cubic_moments;
 pub mod cubic_normals;
 mod depth;

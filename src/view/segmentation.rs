@@ -17,23 +17,19 @@
 
 use std::ops::Range;
 
+use super::couplings::{Couplings, MARKED, REACH};
 use super::mask::{FEWEST_PIXELS, components};
 use crate::error::{Error, ErrorKind, Result};
-use crate::numeric::conjugate_gradient::{Limits, System, Vectors, solve};
+use crate::numeric::conjugate_gradient::{Limits, Vectors, solve};
 use crate::view::Size;
 
 /// Longest side in pixels at which colours are compared: a mask's edge is then at most two pixels off at 12 megapixels,
 /// less than a brush can draw.
 const LONGEST: usize = 512;
-/// Distance in pixels over which neighbours of equal colour share their evidence. It is the width of the details that a
-/// mask keeps.
-const REACH: f32 = 5.0;
-/// Bins along each colour channel. 16 of them tell shades apart and fill with the pixels of a small object.
+/// Bins along each colour channel. 16 of them distinguish shades and fill with the pixels of a small object.
 const BINS: usize = 16;
 /// Share of both histograms that is spread over all colours, so that a colour that neither has seen decides nothing.
 const UNSEEN: f32 = 0.01;
-/// Weight of a mark relative to that of a colour: a marked pixel keeps its mark.
-const MARKED: f32 = 1e4;
 /// Largest number of rounds, as in GrabCut, whose energy mostly rests after five to ten.
 const ROUNDS: u32 = 12;
 /// Share of the pixels that may still change in a round that counts as the last.
@@ -139,7 +135,7 @@ impl Segmentation {
             return self.report();
         }
         let suggested = self.suggestions();
-        self.couplings.weigh(&self.marks);
+        self.couplings.weigh(|index| self.marks[index].is_certain());
         let [residual, direction, product] = &mut self.scratch;
         self.couplings.apply(&self.shares, residual);
         for (index, value) in residual.iter_mut().enumerate() {
@@ -177,7 +173,7 @@ impl Segmentation {
     }
 
     /// The mask of the picture: 255 on the object, 0 elsewhere, without islands and holes below a hundredth of the
-    /// object that no mark asks for.
+    /// object that no mark requires.
     #[must_use]
     pub fn mask(&self) -> Vec<u8> {
         let mut shares = self.shares.clone();
@@ -289,73 +285,6 @@ fn density(mut counts: Vec<f32>) -> Vec<f32> {
     counts.into_iter().map(|count| (1.0 - UNSEEN) * count / total + rest).collect()
 }
 
-/// The matrix of the quadratic sum.
-struct Couplings {
-    size: Size,
-    /// Weights of each pixel's links to the right and downwards; 0 at the border.
-    links: [Vec<f32>; 2],
-    /// Weight of each pixel's own evidence.
-    own: Vec<f32>,
-    diagonal: Vec<f32>,
-}
-
-impl Couplings {
-    fn new(size: Size, colours: &[[f32; 3]]) -> Self {
-        let square = |a: usize, b: usize| (0..3).map(|k| (colours[a][k] - colours[b][k]).powi(2)).sum::<f32>();
-        let ahead = |index: usize| {
-            let (column, row) = size.position(index);
-            [(column + 1 < size.width).then(|| index + 1), (row + 1 < size.height).then(|| index + size.width)]
-        };
-        let (mut sum, mut count) = (0.0, 0_usize);
-        for (index, next) in (0..size.len()).flat_map(|index| ahead(index).map(|next| (index, next))) {
-            if let Some(next) = next {
-                sum += f64::from(square(index, next));
-                count += 1;
-            }
-        }
-        // A picture of one colour has no differences; all its links are then one.
-        let mean = (sum / count.max(1) as f64).max(f64::from(f32::MIN_POSITIVE)) as f32;
-        let link = |axis: usize| {
-            (0..size.len())
-                .map(|index| ahead(index)[axis].map_or(0.0, |next| (-square(index, next) / (2.0 * mean)).exp()))
-                .collect()
-        };
-        Self { size, links: [link(0), link(1)], own: vec![0.0; size.len()], diagonal: vec![0.0; size.len()] }
-    }
-
-    /// Sets the weight of each pixel's own evidence.
-    fn weigh(&mut self, marks: &[Mark]) {
-        let [right, down] = &self.links;
-        for (index, mark) in marks.iter().enumerate() {
-            self.own[index] = if mark.is_certain() { MARKED } else { 1.0 } / (REACH * REACH);
-            let left = index.checked_sub(1).map_or(0.0, |near| right[near]);
-            let up = index.checked_sub(self.size.width).map_or(0.0, |near| down[near]);
-            self.diagonal[index] = self.own[index] + left + up + right[index] + down[index];
-        }
-    }
-}
-
-impl System for Couplings {
-    fn apply(&mut self, direction: &[f32], product: &mut [f32]) {
-        for ((product, diagonal), direction) in product.iter_mut().zip(&self.diagonal).zip(direction) {
-            *product = diagonal * direction;
-        }
-        for (links, stride) in self.links.iter().zip([1, self.size.width]) {
-            for index in 0..direction.len().saturating_sub(stride) {
-                let next = index + stride;
-                product[index] -= links[index] * direction[next];
-                product[next] -= links[index] * direction[index];
-            }
-        }
-    }
-
-    fn precondition(&mut self, residual: &[f32], solution: &mut [f32]) {
-        for ((solution, residual), diagonal) in solution.iter_mut().zip(residual).zip(&self.diagonal) {
-            *solution = residual / diagonal;
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -445,34 +374,6 @@ mod tests {
         let (colours, truth) = disc(size, 25.0);
         let (mask, _) = run(size, &colours, &inside(size, 0.06));
         assert!(agreement(&mask, &truth) > 0.98);
-    }
-
-    /// The share x of a one-dimensional picture without differences falls off as exp(-distance / REACH).
-    #[test]
-    fn evidence_reaches_as_far_as_its_constant_says() {
-        let size = Size { width: 101, height: 1 };
-        let mut couplings = Couplings::new(size, &[[50.0; 3]; 101]);
-        let mut marks = [Mark::ProbablyBackground; 101];
-        marks[50] = Mark::Object;
-        couplings.weigh(&marks);
-        let mut residual = [0.0; 101];
-        residual[50] = MARKED / (REACH * REACH);
-        let (mut shares, mut direction, mut product) = ([0.0; 101], [0.0; 101], [0.0; 101]);
-        let limits = Limits { relative_error: 1e-12, iterations: 1000, ..SOLVE };
-        let vectors = Vectors {
-            solution: &mut shares,
-            residual: &mut residual,
-            direction: &mut direction,
-            product: &mut product,
-        };
-        solve(&mut couplings, limits, vectors);
-        // x_(k-1) - (2 + 1 / REACH^2) x_k + x_(k+1) = 0
-        let half = 0.5 / (REACH * REACH);
-        let ratio = 1.0 + half - (half * (2.0 + half)).sqrt();
-        for step in 0..12 {
-            let found = shares[51 + step] / shares[50 + step];
-            assert!((found - ratio).abs() < 1e-3, "{step}: {found} {ratio}");
-        }
     }
 
     #[test]

@@ -63,7 +63,7 @@ test("it can be left and resumed, and what was given in the slots is there", asy
   await expect(step(page, "Depth")).toContainText("there");
 });
 
-test("a mask is drawn by the outline that the page finds, and can be undone", async ({ lab, page }) => {
+test("a mask is drawn by the silhouette that the page finds, and can be undone", async ({ lab, page }) => {
   await lab.open("size=32");
   await openPath(page);
   await drop(page, "dialog.first-run", [roomPng(), depthPng()]);
@@ -72,7 +72,7 @@ test("a mask is drawn by the outline that the page finds, and can be undone", as
   await press(page, "Draw on the picture");
   const tool = page.getByRole("dialog", { name: /The object in room/ });
   await expect(tool).toBeVisible();
-  await tool.getByRole("button", { name: "Find the outline" }).click();
+  await tool.getByRole("button", { name: "Find the silhouette" }).click();
   await expect(tool.getByText(/Draw a rectangle around the object/)).toBeVisible();
   const board = await tool.locator(".rig-mask-layer").boundingBox();
   if (!board) throw new Error("the picture is seen");
@@ -83,7 +83,7 @@ test("a mask is drawn by the outline that the page finds, and can be undone", as
   await page.mouse.up();
   const share = tool.getByText(/% of the image is used/);
   const drawn = await share.textContent();
-  await tool.getByRole("button", { name: "Find the outline" }).click();
+  await tool.getByRole("button", { name: "Find the silhouette" }).click();
   await expect(tool.getByText("Draw over what is wrong")).toBeVisible();
   await expect(share).not.toHaveText(drawn ?? "");
   await tool.getByRole("button", { name: "Undo stroke" }).click();

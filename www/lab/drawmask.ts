@@ -38,8 +38,8 @@ function pixelsOf(bitmap: ImageBitmap): ImageData {
   return context.getImageData(0, 0, bitmap.width, bitmap.height);
 }
 
-/** Finds outlines on the picture that `open` has shown last. */
-function outlines(): { shown(bitmap: ImageBitmap): ImageBitmap; suggest(marks: Uint8Array): Promise<Uint8Array> } {
+/** Finds silhouettes on the picture that `open` has shown last. */
+function silhouettes(): { shown(bitmap: ImageBitmap): ImageBitmap; suggest(marks: Uint8Array): Promise<Uint8Array> } {
   let pixels: ImageData | undefined;
   return {
     shown(bitmap) {
@@ -57,7 +57,7 @@ function outlines(): { shown(bitmap: ImageBitmap): ImageBitmap; suggest(marks: U
 /** Opens the tool; `take` receives the mask, or undefined if the whole image is used. */
 export async function drawMask(image: File, take: (mask: File | undefined) => void): Promise<void> {
   tool ??= new MaskTool();
-  const { shown, suggest } = outlines();
+  const { shown, suggest } = silhouettes();
   await tool.open({
     title: `The object in ${image.name}`,
     advice: "Draw over the object. What stays dark is background and is left out.",
@@ -73,7 +73,7 @@ export async function drawMask(image: File, take: (mask: File | undefined) => vo
 /** The same for a depth map, of which a range of depths can be used. */
 export async function drawDepthMask(depth: File, take: (mask: File | undefined) => void): Promise<void> {
   tool ??= new MaskTool();
-  const { shown, suggest } = outlines();
+  const { shown, suggest } = silhouettes();
   await tool.open({
     title: `The object in ${depth.name}`,
     advice: "Restrict the depths to those of the object, or draw over it. What stays dark or grey is left out.",

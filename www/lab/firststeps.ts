@@ -128,45 +128,50 @@ function press(label: string, action: () => void): HTMLButtonElement {
   return button;
 }
 
-export function stepsOf(
-  hooks: Hooks,
-  borrowed: Borrowed,
-  onShown: () => void,
-): { bodies: Record<StepName, HTMLElement>; show(step: StepName): void } {
+/** The parts of the steps that the path makes itself. */
+function partsOf(hooks: Hooks) {
   const lent = () => make("div", { class: "lent" });
   const places = { picture: lent(), depth: lent(), masks: lent() };
   const range = make("p", { class: "range", role: "status" });
   const doubts = make("ul", { class: "expect" });
   const drawColour = press("Draw on the picture", () => hooks.draw("colour"));
   const drawDepth = press("Draw on the depth map, or restrict its depths", () => hooks.draw("depth"));
+  const section = (label: string, ...parts: Node[]) => make("section", { "aria-label": label }, ...parts);
   const bodies = {
-    picture: make(
-      "section",
-      { "aria-label": "Picture" },
-      soft(
-        "One colour picture of one object. Drop it anywhere, with everything else that you have, or choose it. Nothing leaves your device.",
-      ),
-      places.picture,
-      several(hooks),
-      gallery(hooks),
-    ),
-    depth: make(
-      "section",
-      { "aria-label": "Depth" },
-      soft("A depth map of the same object, best from another viewpoint 10 to 40 degrees away."),
-      places.depth,
-      range,
-    ),
-    masks: make(
-      "section",
-      { "aria-label": "Masks" },
-      soft(
-        "Which pixels show the object. Without masks, black counts as background in the picture, and the largest connected piece of the depth map as the object.",
-      ),
-      places.masks,
-      make("p", { class: "row" }, drawColour, drawDepth),
-    ),
-    go: make("section", { "aria-label": "Go" }, make("h3", {}, "What to expect"), doubts),
+    picture: section("Picture", soft(PICTURE), places.picture, several(hooks), gallery(hooks)),
+    depth: section("Depth", soft(DEPTH), places.depth, range),
+    masks: section("Masks", soft(MASKS), places.masks, make("p", { class: "row" }, drawColour, drawDepth)),
+    go: section("Go", make("h3", {}, "What to expect"), doubts),
+  };
+  return { bodies, places, range, doubts, drawColour, drawDepth };
+}
+
+const PICTURE =
+  "One colour picture of one object. Drop it anywhere, with everything else that you have, or choose it. Nothing leaves your device.";
+const DEPTH = "A depth map of the same object, best from another viewpoint 10 to 40 degrees away.";
+const MASKS =
+  "Which pixels show the object. Without masks, black counts as background in the picture, and the largest connected piece of the depth map as the object.";
+
+export function stepsOf(
+  hooks: Hooks,
+  borrowed: Borrowed,
+  onShown: () => void,
+): { bodies: Record<StepName, HTMLElement>; show(step: StepName): void } {
+  const { bodies, places, range, doubts, drawColour, drawDepth } = partsOf(hooks);
+  /** Only the newest answer is shown. */
+  let turn = 0;
+  const refresh = async (): Promise<void> => {
+    const now = ++turn;
+    const [files, settings] = [hooks.files(), hooks.settings()];
+    drawColour.disabled = !files.colour;
+    drawDepth.disabled = !files.depth;
+    const [words, found] = await Promise.all([rangeInWords(files, settings), expected(files, settings)]);
+    if (now !== turn) return;
+    range.textContent = words;
+    doubts.replaceChildren(
+      ...found.map(({ words: each, isDoubt }) => make("li", isDoubt ? { class: "doubt" } : {}, each)),
+    );
+    onShown();
   };
   const show = (step: StepName): void => {
     const lend = (element: HTMLElement | null | undefined) => step !== "go" && borrowed.show(element, places[step]);
@@ -176,26 +181,8 @@ export function stepsOf(
     if (step === "masks") [hooks.placeOf("colourMask"), hooks.placeOf("depthMask")].forEach(lend);
     // What the last step expects already says what the notes do.
     if (step !== "go") borrowed.show(hooks.notes(), bodies[step]);
-    refresh();
+    void refresh();
   };
-  /** Only the newest answer is shown. */
-  let turn = 0;
-  const refresh = (): void => {
-    const now = ++turn;
-    const { colour, depth } = hooks.files();
-    drawColour.disabled = !colour;
-    drawDepth.disabled = !depth;
-    void Promise.all([rangeInWords(hooks.files(), hooks.settings()), expected(hooks.files(), hooks.settings())]).then(
-      ([words, found]) => {
-        if (now !== turn) return;
-        range.textContent = words;
-        doubts.replaceChildren(
-          ...found.map(({ words: each, isDoubt }) => make("li", isDoubt ? { class: "doubt" } : {}, each)),
-        );
-        onShown();
-      },
-    );
-  };
-  hooks.listen(refresh);
+  hooks.listen(() => void refresh());
   return { bodies, show };
 }

@@ -21,7 +21,7 @@ export interface Subject {
   range?: Depths | undefined;
   /** The depth map whose range can be restricted. */
   depth?: ((range: Depths | undefined) => Promise<ImageBitmap>) | undefined;
-  /** Finds the object's outline from the marks. */
+  /** Finds the object's silhouette from the marks. */
   suggest?: ((marks: Uint8Array) => Promise<Uint8Array>) | undefined;
   done(paint: Paint, range: Depths | undefined): void;
 }
@@ -32,7 +32,7 @@ type Tool = "rectangle" | "brush";
 const MOST_STROKES = 30;
 const MOST_BYTES = 128e6;
 
-const FINDING = "Draw a rectangle around the object, or strokes on it and beside it; then its outline can be found.";
+const FINDING = "Draw a rectangle around the object, or strokes on it and beside it; then its silhouette can be found.";
 const FOUND = "Draw over what is wrong, and find it again; Undo stroke takes it back.";
 
 export class MaskTool {
@@ -64,7 +64,7 @@ export class MaskTool {
   #range: Depths = [NaN, NaN];
   #paint = new Paint(1, 1);
   #past: Pick<Paint, "data" | "marks">[] = [];
-  readonly #suggest = press("Find the outline", () => void this.#find());
+  readonly #suggest = press("Find the silhouette", () => void this.#find());
   readonly #found = make("p", { class: "soft", role: "status" });
   readonly #finding: HTMLElement;
   readonly #undo = press("Undo stroke", () => this.#back(), { disabled: true });
@@ -81,7 +81,7 @@ export class MaskTool {
       make("div", { class: "rig-row" }, this.#near.element, this.#far.element),
       this.#depth,
     );
-    this.#finding = make("fieldset", {}, make("legend", {}, "Outline"), this.#suggest, this.#found);
+    this.#finding = make("fieldset", {}, make("legend", {}, "Silhouette"), this.#suggest, this.#found);
     const board = make(
       "div",
       // A picture that is taller than the window scrolls.
@@ -250,13 +250,13 @@ export class MaskTool {
     this.#layer.addEventListener("pointercancel", end);
   }
 
-  /** Replaces the mask by the outline that the marks suggest, as one more step that can be undone. */
+  /** Replaces the mask by the silhouette that the marks suggest, as one more step that can be undone. */
   async #find(): Promise<void> {
     const [subject, paint] = [this.#subject, this.#paint];
     if (!subject?.suggest) return;
     if (!paint.marks) return void (this.#found.textContent = FINDING);
     this.#suggest.disabled = true;
-    this.#found.textContent = "Looking for the outline";
+    this.#found.textContent = "Looking for the silhouette";
     const found = await subject
       .suggest(paint.marks)
       .catch((error: unknown) => String(error instanceof Error ? error.message : error));

@@ -250,7 +250,7 @@ fn knot() -> Solid {
     })
 }
 
-/// A bowl with a rim.
+/// A bowl with a rounded edge.
 fn bowl() -> Solid {
     let outside = |t: f64| {
         let angle = 0.25 * TAU * t;
@@ -270,7 +270,6 @@ fn bowl() -> Solid {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{ColourImage, ColourSamples, DepthMap, DepthSamples, Estimator, Options, Status};
 
     /// Share of the measured points of the object that the true pose puts on the object in the image.
     fn landing(pair: &RenderedPair, pose: &Similarity) -> f64 {
@@ -320,47 +319,5 @@ mod tests {
         assert_eq!(render_pair(PairKind::Bowl).unwrap().depth, again.depth);
         let all: Vec<Vec<u8>> = PairKind::ALL.iter().map(|&kind| render_pair(kind).unwrap().colour).collect();
         assert!((1..6).all(|at| !all[..at].contains(&all[at])));
-    }
-
-    #[test]
-    #[ignore = "prints how each pair ends"]
-    fn probe() {
-        for kind in PairKind::ALL {
-            if std::env::var("KIND").is_ok_and(|name| name != kind.name()) {
-                continue;
-            }
-            let pair = render_pair(kind).unwrap();
-            let image = ColourImage {
-                width: pair.colour_size.width,
-                height: pair.colour_size.height,
-                samples: ColourSamples::Rgba8(pair.colour.clone()),
-                transfer: None,
-                mask: Some(pair.colour_mask.iter().map(|&b| u8::from(b)).collect()),
-                camera: Some(pair.colour_camera),
-            };
-            let depth = DepthMap {
-                width: pair.depth_size.width,
-                height: pair.depth_size.height,
-                samples: DepthSamples::Integer(pair.depth.clone()),
-                unit: Some(0.001),
-                mask: Some(pair.depth_mask.iter().map(|&b| u8::from(b)).collect()),
-                camera: Some(pair.depth_camera),
-                normals: None,
-            };
-            let mut estimator = Estimator::new(image, &depth, Options::default()).unwrap();
-            while estimator.report().status == Status::Running {
-                estimator.step();
-            }
-            let report = estimator.report();
-            let off = (report.pose.translation - pair.pose.translation).norm();
-            println!(
-                "{}: {} {:?}, {:.2} degrees, {:.1} mm",
-                kind.name(),
-                report.status.name(),
-                report.reason,
-                report.pose.degrees_to(&pair.pose),
-                1000.0 * off
-            );
-        }
     }
 }
