@@ -20,11 +20,11 @@ use std::ops::Range;
 use super::couplings::{Couplings, MARKED, REACH};
 use super::mask::{FEWEST_PIXELS, components};
 use crate::error::{Error, ErrorKind, Result};
-use crate::numeric::conjugate_gradient::{Limits, Vectors, solve};
+use crate::numeric::conjugate_gradient::{Limits, System, Vectors, solve};
 use crate::view::Size;
 
-/// Longest side in pixels at which colours are compared: a mask's edge is then at most two pixels off at 12 megapixels,
-/// less than a brush can draw.
+/// Longest side in pixels at which colours are compared. Beyond it a pixel stands for a block: eight pixels wide at 12
+/// megapixels, narrower than a brush.
 const LONGEST: usize = 512;
 /// Bins along each colour channel. 16 of them distinguish shades and fill with the pixels of a small object.
 const BINS: usize = 16;
