@@ -3,7 +3,7 @@ import { load } from "./engine.js";
 import type { WasmSource } from "./types/index.js";
 import { wasmUrl } from "./wasm.js";
 
-export { checkCalibration, projectFrame, sampleRig } from "./calibration/index.js";
+export { checkCalibration, projectFrame, samplePair, sampleRig, suggestMask } from "./calibration/index.js";
 export { BimodalError, type ErrorCode, type ErrorDetails } from "./errors.js";
 export { Estimator, type Given } from "./estimator.js";
 export { integrateNormals, pixelLandscape } from "./lessons.js";

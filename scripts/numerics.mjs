@@ -44,7 +44,7 @@ const CHECK = {
   features: ["--features", "bindings-check"],
   name: `${MODULE}_check`,
 };
-/** The rendered rigs of the check's tests and of the page's example; nobody else downloads them. */
+/** Rendered rigs and pairs, and the suggestion of masks: for tests, the page's examples and its mask tool; nobody else downloads them. */
 const RIGS = {
   ...CHECK,
   file: `${MODULE}_rigs_bg.wasm`,

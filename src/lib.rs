@@ -178,6 +178,6 @@ pub use shape::{
     first_exposure, gradients, surface_of_normals,
 };
 pub use view::{
-    Camera, ColourImage, ColourSamples, ColourView, DepthMap, DepthNoise, DepthSamples, DepthView, Lens, Normals,
-    Pinhole, Points, Size, Transfer, cubic_normals, normals,
+    Camera, ColourImage, ColourSamples, ColourView, DepthMap, DepthNoise, DepthSamples, DepthView, Lens, Mark, Normals,
+    Pinhole, Points, Segmentation, SegmentationReport, Size, Transfer, cubic_normals, normals,
 };

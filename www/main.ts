@@ -293,9 +293,15 @@ document.addEventListener("drop", (event) => {
   event.preventDefault();
   const files = [...(event.dataTransfer?.files ?? [])];
   if (files.length === 0 || placeOf(location.hash) !== "lab") return;
-  drawer.open = true;
+  // The short path shows what has arrived itself.
+  if (!document.querySelector("dialog.first-run[open]")) drawer.open = true;
   if (isSample()) choose("files");
-  void lab.drop(files);
+  void lab.own.drop(files);
+});
+button("own-pictures", () => {
+  if (isSample()) choose("files");
+  const playing = { play: () => player.playing || player.toggle(), isSample, choose: () => choose("files") };
+  void import("./lab/ownpath").then(({ openPath }) => openPath(lab.own, store, playing));
 });
 
 for (const each of document.querySelectorAll<HTMLButtonElement>("#takeaway button")) {

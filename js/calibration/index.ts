@@ -1,12 +1,17 @@
-/** The check of a calibration and the rigs that it is tested on: a separate .wasm file for each, loaded with the first call. */
+/** The check of a calibration, rendered rigs and pairs, and suggested masks: a separate .wasm file for each, loaded with the first call. */
 import type {
   CheckFrameInput,
   CheckOptions,
   CheckReport,
   FrameOverlay,
+  ColorImage,
+  MaskSuggestion,
+  PairKind,
+  PairSample,
   PoseInput,
   RigRequest,
   RigSample,
+  SuggestOptions,
 } from "../types/index.js";
 
 /**
@@ -32,4 +37,23 @@ export async function projectFrame(frame: CheckFrameInput, pose: PoseInput): Pro
 export async function sampleRig(request: RigRequest): Promise<RigSample> {
   const { render } = await import("./rigs.js");
   return render(request);
+}
+
+/** A pair of the gallery: an object rendered for a colour camera and a depth sensor, whose pose is known. */
+export async function samplePair(kind: PairKind): Promise<PairSample> {
+  const { pair } = await import("./rigs.js");
+  return pair(kind);
+}
+
+/**
+ * Suggests the mask of an object in an 8-bit RGBA image. `marks` says of each pixel, in OpenCV's order: 0 background, 1 object, 2 probably
+ * background, 3 probably object. Does not need `init()`, and runs in slices.
+ */
+export async function suggestMask(
+  image: Pick<ColorImage, "width" | "height" | "data">,
+  marks: Uint8Array,
+  options: SuggestOptions = {},
+): Promise<MaskSuggestion> {
+  const { suggest } = await import("./rigs.js");
+  return suggest(image, marks, options);
 }

@@ -1,8 +1,17 @@
-/** Rendered rigs with a known answer, in a separate .wasm file that a check does not load. */
-import start, { sampleRig } from "../../target/rigs/wasm-bindgen/bimodal_stereo_rigs.js";
+/** Rendered rigs and pairs with a known answer, and suggested masks, in a separate .wasm file that neither a run nor a check loads. */
+import start, { Segmentation, samplePair, sampleRig } from "../../target/rigs/wasm-bindgen/bimodal_stereo_rigs.js";
 import { across, compile, lazily } from "../border.js";
-import { object, ranged, word } from "../check.js";
-import type { RigRequest, RigSample } from "../types/index.js";
+import { breathe } from "../breathe.js";
+import { array, callback, object, ranged, signal as abortSignal, side, word } from "../check.js";
+import type {
+  ColorImage,
+  MaskSuggestion,
+  PairKind,
+  PairSample,
+  RigRequest,
+  RigSample,
+  SuggestOptions,
+} from "../types/index.js";
 
 // Written as one expression, because bundlers look for exactly this form to include the file.
 const load = lazily("sampleRig", async () =>
@@ -24,4 +33,50 @@ export async function render(request: RigRequest): Promise<RigSample> {
   await load();
   const { kind, seed = 0, frame = 0, noise } = request;
   return across(() => sampleRig(kind, seed, frame, noise));
+}
+
+const pairKind = word("bust", "knot", "marble", "relief", "cut", "bowl");
+
+export async function pair(kind: PairKind): Promise<PairSample> {
+  pairKind(kind, "kind");
+  await load();
+  return across(() => samplePair(kind));
+}
+
+const picture = object({ width: side, height: side, data: array(Uint8Array, Uint8ClampedArray) }, [
+  "width",
+  "height",
+  "data",
+]);
+const options = object({ signal: abortSignal, onProgress: callback });
+
+/** Between rounds events can happen, of which one may be the end. */
+async function rounds(found: Segmentation, { signal, onProgress }: SuggestOptions): Promise<MaskSuggestion> {
+  for (;;) {
+    signal?.throwIfAborted();
+    const [round = 0, changed = 0, share = 0, isLast] = across(() => found.step());
+    onProgress?.(changed, round);
+    if (isLast) return { mask: across(() => found.mask()), share, rounds: round, changed };
+    await breathe();
+  }
+}
+
+export async function suggest(
+  { width, height, data }: Pick<ColorImage, "width" | "height" | "data">,
+  marks: Uint8Array,
+  given: SuggestOptions,
+): Promise<MaskSuggestion> {
+  picture({ width, height, data }, "image");
+  array(Uint8Array)(marks, "marks");
+  options(given, "options");
+  await load();
+  const bytes = data as Uint8Array;
+  const found = across(
+    () => new Segmentation(width, height, new Uint8Array(bytes.buffer, bytes.byteOffset, bytes.length), marks),
+  );
+  try {
+    return await rounds(found, given);
+  } finally {
+    found.free();
+  }
 }

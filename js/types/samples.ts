@@ -138,3 +138,38 @@ export interface RigSample extends CheckFrame {
   /** The true extrinsics. */
   pose: Pose;
 }
+
+/** A pair of the gallery: one object, rendered for a colour camera and for a depth sensor elsewhere. */
+export type PairKind = "bust" | "knot" | "marble" | "relief" | "cut" | "bowl";
+
+/** A rendered pair of the gallery, with masks, cameras and the answer. */
+export interface PairSample {
+  /** Its kind. */
+  name: string;
+  /** 8-bit sRGB, with the mask of the object. */
+  image: ColorImage;
+  /** Millimetres with the noise, steps, holes and shadows of a sensor, with the mask of the object. */
+  depth: DepthMap;
+  /** The true pose. */
+  pose: Pose;
+}
+
+/** How a mask is suggested. */
+export interface SuggestOptions {
+  /** Ends it; the promise is rejected with its reason. */
+  signal?: AbortSignal;
+  /** Called after each of at most twelve rounds with the share of pixels that it changed. */
+  onProgress?: (changed: number, round: number) => void;
+}
+
+/** A suggested mask of the object. */
+export interface MaskSuggestion {
+  /** 255 on the object, 0 elsewhere. */
+  mask: Uint8Array;
+  /** Share of the image that is the object, from 0 to 1. */
+  share: number;
+  /** Number of rounds that it took. */
+  rounds: number;
+  /** Share of the pixels that the last round changed, from 0 to 1; below 0.001 unless all twelve rounds were needed. */
+  changed: number;
+}

@@ -42,7 +42,7 @@ import type { CheckFrame, CheckReport, ColorImage, DepthMap, Options } from "../
 #[cfg(feature = "bindings-rigs")]
 #[wasm_bindgen(typescript_custom_section)]
 const TYPES: &str = r#"
-import type { RigSample } from "../../../js/types/index.js";
+import type { PairSample, RigSample } from "../../../js/types/index.js";
 "#;
 
 /// Runs once after the module has loaded: a panic then shows its location in the console.

@@ -16,7 +16,7 @@ test("on a phone the input is folded and the views can be swiped", async ({ lab,
   await page.setViewportSize({ width: 390, height: 844 });
   await lab.open();
   await expect(page.getByLabel("Surface", { exact: true })).toBeHidden();
-  await page.getByText("Settings and own files", { exact: true }).click();
+  await page.getByText("Settings", { exact: true }).click();
   await expect(page.getByLabel("Surface", { exact: true })).toBeVisible();
   const swiped = await page.locator("#image-views").evaluate((row) => row.scrollWidth > row.clientWidth);
   expect(swiped).toBe(true);

@@ -11,6 +11,8 @@ export interface Pair {
   notes: Record<string, string>;
   /** The unit of depth that was found where none was given. */
   unit?: number;
+  /** The true pose, of a rendered pair. */
+  truth?: Pose;
 }
 
 /** Files as dropped or picked, with the information that only their owner has. */
@@ -27,6 +29,8 @@ export interface OwnFiles {
   inverse?: { numerator?: number };
   /** If absent, it is guessed from the bit depth. */
   transfer?: "srgb" | "linear";
+  /** The true pose, of a rendered pair. */
+  truth?: Pose;
 }
 
 /** A sample's light may be turned, degrees about the colour view's x and y. */

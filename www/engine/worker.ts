@@ -139,7 +139,7 @@ function prepared(
   source: Exclude<Source, { kind: "saved" }>,
   options: LabOptions,
 ): Prepared & { estimator: Estimator } {
-  const input = source.kind === "sample" ? fromSample(source) : { ...source.pair, truth: null };
+  const input = source.kind === "sample" ? fromSample(source) : { ...source.pair, truth: source.pair.truth ?? null };
   return { ...input, estimator: new Estimator(input.image, input.depth, resolve(options, input)) };
 }
 

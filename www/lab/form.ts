@@ -106,7 +106,7 @@ export class Form {
     const built = build(field, id, change);
     const remark = make("p", { class: "note" });
     const heading = make("span", { class: "heading" }, make("label", { for: id }, field.label));
-    const row = make("div", { class: `field ${field.kind}` }, heading, ...built.inputs);
+    const row = make("div", { class: `field ${field.kind}`, "data-key": field.key }, heading, ...built.inputs);
     if (field.kind === "number" && field.unit) row.append(make("span", { class: "unit" }, field.unit));
     for (const input of built.inputs) input.setAttribute("aria-describedby", note.id);
     if (field.hint) {

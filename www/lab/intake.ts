@@ -95,6 +95,14 @@ export class Intake {
     return this.#files;
   }
 
+  /** The place of a file, and what is said about all of them; the short path through the files borrows them. */
+  placeOf(slot: Slot): HTMLElement | null | undefined {
+    return this.#entries.get(slot)?.zone.parentElement;
+  }
+  get notes(): HTMLElement | null {
+    return this.#remarks.parentElement;
+  }
+
   /** The files with their readings. */
   get said(): { file: File; says: string }[] {
     return slots.flatMap(({ slot, label }) => {

@@ -196,9 +196,9 @@ export class Lab {
     void this.#start(this.#saved);
   }
 
-  /** Puts files that were dropped anywhere into the slots that match their content. */
-  drop(files: readonly File[]): Promise<void> {
-    return this.#own.drop(files);
+  /** The visitor's files. */
+  get own(): OwnFiles {
+    return this.#own;
   }
 
   /** Pictures and true values of the previous pair are removed from the screen. */

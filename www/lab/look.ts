@@ -3,10 +3,10 @@
  * the pixels; a pair of them becomes the input of a run. Loaded with the first file.
  */
 
-import type { ErrorDetails } from "../../pkg/index.js";
+import type { ErrorDetails, PairKind, PairSample } from "../../pkg/index.js";
 import { EngineError } from "../engine/engine";
 import type { OwnFiles, Pair } from "../engine/protocol";
-import type { Calls, PartName, Summary } from "../rig/protocol";
+import type { Calls, Mask, PartName, Summary } from "../rig/protocol";
 import { RigError, Session } from "../rig/session";
 import { sniffed } from "./kind";
 import type { Files, Slot } from "./storage";
@@ -30,6 +30,8 @@ export interface Look {
   /** Metres per stored unit that a file of cameras gives for the depth maps beside it. */
   unit?: number;
   picture?: ImageBitmap;
+  /** Of a depth map: the stored numbers that nearly all pixels lie between, and the share of pixels that have one. */
+  measured?: { range: [number, number]; valid: number };
 }
 
 /** Warnings that the Lab shows beside its fields, and the warning about holes: an object without a background has holes all around. */
@@ -89,8 +91,17 @@ async function seen(file: File, number: number, how: Reading): Promise<Look> {
     ...(width && height ? { width, height } : {}),
     ...(kind === "cameras" && unit !== undefined ? { unit } : {}),
     ...(picture ? { picture } : {}),
+    ...(read.measured ? { measured: storedOf(read.measured, read.unit) } : {}),
   };
 }
+
+const storedOf = (
+  { range: [near, far], valid }: NonNullable<Summary["measured"]>,
+  unit = 1,
+): NonNullable<Look["measured"]> => ({
+  range: [near / unit, far / unit],
+  valid,
+});
 
 /** Looks at a file without keeping its pixels. */
 async function glance(file: File, how: Reading): Promise<Look> {
@@ -175,19 +186,33 @@ async function unread(
   return { ...none, kind: "colour", says: `${width}x${height}, read by the browser`, width, height, picture };
 }
 
+/** The mask of the object that marks on a picture suggest. */
+export const suggested = (ask: Calls["suggest"]["ask"]): Promise<Uint8Array> => session.call("suggest", ask);
+
+/** A depth map in which depths outside a range in metres are grey, and the mask of that range and of what was drawn. */
+export const depthPicture = (file: File, range: [number, number] | undefined, width: number): Promise<ImageBitmap> =>
+  session.call("picture", { file: numberOf(file), width, ...(range ? { range } : {}) });
+export const depthWithin = (file: File, ask: Omit<Calls["within"]["ask"], "file">): Promise<Mask> =>
+  session.call("within", { file: numberOf(file), ...ask });
+
+/** A pair of the gallery. */
+export const renderedPair = (kind: PairKind): Promise<PairSample> => session.call("rendered", { pair: kind });
+
 /** Assigns cameras to pictures. */
 export const camerasFor = (ask: Calls["cameras"]["ask"]): Promise<Calls["cameras"]["answer"]> =>
   session.call("cameras", ask);
 
 /** The files as the input of a run. Errors name the slot; `say` reports at once how a large picture is reduced. */
 export async function pairFrom(files: OwnFiles, say: (words: string) => void): Promise<Pair> {
-  const { colour, depth, colourMask, depthMask, ...given } = files;
+  const { colour, depth, colourMask, depthMask, truth, ...given } = files;
   const slots = Object.entries({ colour, depth, colourMask, depthMask }) as [PartName, File | undefined][];
   const parts = slots.flatMap(([slot, file]) =>
     file ? [[slot, { file: numberOf(file), name: file.name, blob: file }] as const] : [],
   );
   try {
-    return await session.call("pair", { ...given, parts: Object.fromEntries(parts) }, (_, words) => say(words));
+    const ask = { ...given, parts: Object.fromEntries(parts) };
+    const pair = await session.call("pair", ask, (_, words) => say(words));
+    return truth ? { ...pair, truth } : pair;
   } catch (error) {
     if (!(error instanceof RigError)) throw error;
     throw new EngineError({ ...error.fault, fatal: false });

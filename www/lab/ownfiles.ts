@@ -23,6 +23,8 @@ export interface OwnFilesHooks {
 }
 
 export class OwnFiles {
+  /** Called after a change of the files. */
+  onFiles = (): void => {};
   readonly intake = new Intake({ onChange: () => this.#changed(), onForget: () => void this.#forget() });
   readonly #hooks: OwnFilesHooks;
   /** Whether the stored files have been requested. */
@@ -85,6 +87,14 @@ export class OwnFiles {
     await drawMask(colour, (mask) => this.intake.files.colour === colour && this.intake.put("colourMask", mask));
   }
 
+  /** The same for the depth map, of which a range of depths can be used. */
+  async drawDepthMask(): Promise<void> {
+    const { depth } = this.intake.files;
+    if (!depth) return;
+    const { drawDepthMask } = await import("./drawmask");
+    await drawDepthMask(depth, (mask) => this.intake.files.depth === depth && this.intake.put("depthMask", mask));
+  }
+
   /** Fills the cameras' numbers for these pictures and shows remarks about them. */
   async #assign(files: Files): Promise<Record<string, Value>> {
     const assigned = await this.#cameras?.assign(files, this.#hooks.settings());
@@ -106,6 +116,7 @@ export class OwnFiles {
     this.#restored = true;
     this.#hands++;
     this.#hooks.onChange();
+    this.onFiles();
     void this.#look();
     void this.#keep();
   }

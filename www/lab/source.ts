@@ -2,6 +2,7 @@
 
 import type { Input, OwnFiles, SampleSource, Source } from "../engine/protocol";
 import { sizeInWords } from "./intake";
+import { truthOf } from "./truths";
 import type { Slot } from "./storage";
 import { camera, isGuessed, sampleRequest, turnOf, type Origin, type Settings } from "./settings";
 
@@ -92,5 +93,6 @@ export function sourceOf(
     files.inverse = files.depthCamera && typeof numerator === "number" ? { numerator } : {};
   }
   if (settings.transfer === "srgb" || settings.transfer === "linear") files.transfer = settings.transfer;
-  return { kind: "files", files };
+  const truth = truthOf(colour, depth);
+  return { kind: "files", files: truth ? { ...files, truth } : files };
 }

@@ -21,6 +21,8 @@ export interface Subject {
   range?: Depths | undefined;
   /** The depth map whose range can be restricted. */
   depth?: ((range: Depths | undefined) => Promise<ImageBitmap>) | undefined;
+  /** Finds the object's silhouette from the marks. */
+  suggest?: ((marks: Uint8Array) => Promise<Uint8Array>) | undefined;
   done(paint: Paint, range: Depths | undefined): void;
 }
 
@@ -29,6 +31,9 @@ type Tool = "rectangle" | "brush";
 /** The number of strokes that can be undone, and their memory limit, bytes. */
 const MOST_STROKES = 30;
 const MOST_BYTES = 128e6;
+
+const FINDING = "Draw a rectangle around the object, or strokes on it and beside it; then its silhouette can be found.";
+const FOUND = "Draw over what is wrong, and find it again; Undo stroke takes it back.";
 
 export class MaskTool {
   readonly element = make("dialog", { class: "rig-mask", "aria-labelledby": "rig-mask-title" });
@@ -58,7 +63,10 @@ export class MaskTool {
   #box: Box = { left: 0, top: 0, width: 0, height: 0 };
   #range: Depths = [NaN, NaN];
   #paint = new Paint(1, 1);
-  #past: (Uint8Array | undefined)[] = [];
+  #past: Pick<Paint, "data" | "marks">[] = [];
+  readonly #suggest = press("Find the silhouette", () => void this.#find());
+  readonly #found = make("p", { class: "soft", role: "status" });
+  readonly #finding: HTMLElement;
   readonly #undo = press("Undo stroke", () => this.#back(), { disabled: true });
   #subject: Subject | undefined;
   #late = 0;
@@ -73,6 +81,7 @@ export class MaskTool {
       make("div", { class: "rig-row" }, this.#near.element, this.#far.element),
       this.#depth,
     );
+    this.#finding = make("fieldset", {}, make("legend", {}, "Silhouette"), this.#suggest, this.#found);
     const board = make(
       "div",
       // A picture that is taller than the window scrolls.
@@ -82,7 +91,15 @@ export class MaskTool {
     this.element.append(
       make("div", { class: "rig-mask-head" }, this.#title, this.#advice),
       board,
-      make("div", { class: "rig-mask-side" }, this.#tools(), this.#typed(), this.#growing(), this.#depths),
+      make(
+        "div",
+        { class: "rig-mask-side" },
+        this.#tools(),
+        this.#finding,
+        this.#typed(),
+        this.#growing(),
+        this.#depths,
+      ),
       make(
         "div",
         { class: "rig-row rig-mask-foot" },
@@ -103,6 +120,9 @@ export class MaskTool {
     this.#paint = new Paint(picture.width, picture.height, subject.paint);
     this.#past = [];
     this.#undo.disabled = true;
+    this.#finding.hidden = subject.suggest === undefined;
+    this.#found.textContent = FINDING;
+    this.#suggest.disabled = false;
     this.#range = subject.range ? [...subject.range] : [NaN, NaN];
     this.#title.textContent = subject.title;
     this.#advice.textContent = subject.advice;
@@ -230,17 +250,38 @@ export class MaskTool {
     this.#layer.addEventListener("pointercancel", end);
   }
 
+  /** Replaces the mask by the silhouette that the marks suggest, as one more step that can be undone. */
+  async #find(): Promise<void> {
+    const [subject, paint] = [this.#subject, this.#paint];
+    if (!subject?.suggest) return;
+    if (!paint.marks) return void (this.#found.textContent = FINDING);
+    this.#suggest.disabled = true;
+    this.#found.textContent = "Looking for the silhouette";
+    const found = await subject
+      .suggest(paint.marks)
+      .catch((error: unknown) => String(error instanceof Error ? error.message : error));
+    // The dialog may have been closed, or opened for another picture.
+    if (paint !== this.#paint || !this.element.open) return;
+    this.#suggest.disabled = false;
+    this.#found.textContent = typeof found === "string" ? found : FOUND;
+    if (typeof found === "string") return;
+    this.#keep();
+    paint.data = found;
+    this.#showAll();
+  }
+
   /** Before each stroke. */
   #keep(): void {
-    const { data, width, height } = this.#paint;
-    this.#past.push(data?.slice());
-    while (this.#past.length > Math.min(MOST_STROKES, Math.max(1, MOST_BYTES / (width * height)))) this.#past.shift();
+    const { data, marks, width, height } = this.#paint;
+    this.#past.push({ data: data?.slice(), marks: marks?.slice() });
+    const most = Math.min(MOST_STROKES, Math.max(1, MOST_BYTES / (2 * width * height)));
+    while (this.#past.length > most) this.#past.shift();
     this.#undo.disabled = false;
   }
 
   #back(): void {
     if (this.#past.length === 0) return;
-    this.#paint.data = this.#past.pop();
+    Object.assign(this.#paint, this.#past.pop());
     this.#undo.disabled = this.#past.length === 0;
     this.#showAll();
   }
@@ -311,6 +352,7 @@ export class MaskTool {
   #reset(): void {
     this.#keep();
     this.#paint.data = undefined;
+    this.#paint.marks = undefined;
     this.#range = [NaN, NaN];
     this.#near.input.value = "";
     this.#far.input.value = "";

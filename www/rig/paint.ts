@@ -1,5 +1,7 @@
 /** Drawing a mask: pixels that are used are 255, others 0. */
 
+const [BACKGROUND, OBJECT, PROBABLY_BACKGROUND, PROBABLY_OBJECT] = [0, 1, 2, 3];
+
 export interface Box {
   left: number;
   top: number;
@@ -12,6 +14,8 @@ export class Paint {
   readonly height: number;
   /** Absent as long as the whole image is used. */
   data: Uint8Array | undefined;
+  /** What was said of each pixel since the last suggestion: 0 background, 1 object, 2 and 3 the same as long as nothing else is known. */
+  marks: Uint8Array | undefined;
 
   constructor(width: number, height: number, data?: Uint8Array) {
     this.width = width;
@@ -31,14 +35,19 @@ export class Paint {
   rectangle(box: Box, use: boolean): Box {
     const data = this.#start(use);
     const inside = this.#within(box);
+    // The object lies somewhere in a rectangle, and nowhere outside the first one.
+    this.marks ??= new Uint8Array(this.width * this.height).fill(use ? BACKGROUND : PROBABLY_OBJECT);
     for (let row = inside.top; row < inside.top + inside.height; row++) {
-      data.fill(use ? 255 : 0, row * this.width + inside.left, row * this.width + inside.left + inside.width);
+      const from = row * this.width + inside.left;
+      data.fill(use ? 255 : 0, from, from + inside.width);
+      this.marks.fill(use ? PROBABLY_OBJECT : BACKGROUND, from, from + inside.width);
     }
     return inside;
   }
 
   disc(column: number, row: number, radius: number, use: boolean): Box {
     const data = this.#start(use);
+    this.marks ??= Uint8Array.from(data, (value) => (value && !use ? PROBABLY_OBJECT : PROBABLY_BACKGROUND));
     const box = this.#within({
       left: Math.floor(column - radius),
       top: Math.floor(row - radius),
@@ -47,7 +56,9 @@ export class Paint {
     });
     for (let y = box.top; y < box.top + box.height; y++) {
       for (let x = box.left; x < box.left + box.width; x++) {
-        if ((x - column) ** 2 + (y - row) ** 2 <= radius ** 2) data[y * this.width + x] = use ? 255 : 0;
+        if ((x - column) ** 2 + (y - row) ** 2 > radius ** 2) continue;
+        data[y * this.width + x] = use ? 255 : 0;
+        this.marks[y * this.width + x] = use ? OBJECT : BACKGROUND;
       }
     }
     return box;

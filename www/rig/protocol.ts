@@ -1,6 +1,6 @@
 /** The messages between the page and its worker. The worker keeps all pixels; only summaries, pictures and numbers are exchanged. */
 
-import type { CheckCue, CheckReport, Pinhole, Pose, Warning } from "../../pkg/index.js";
+import type { CheckCue, CheckReport, PairKind, PairSample, Pinhole, Pose, Warning } from "../../pkg/index.js";
 import type { Fault, Pair } from "../engine/protocol";
 import type { InverseDepth, NamedPose, ReaderWarning, Reading, RigReading } from "./files";
 import type { ReportInput } from "../../pkg/rig/write/report/index.js";
@@ -9,6 +9,12 @@ import type { Topic } from "./recordings";
 /** The result of the check, with the page's guesses among its warnings. */
 export interface WholeReport extends Omit<CheckReport, "warnings"> {
   warnings: (string | Pick<Warning, "message">)[];
+}
+
+export interface Mask {
+  width: number;
+  height: number;
+  data: Uint8Array;
 }
 
 export type Kind = RigReading["kind"];
@@ -148,6 +154,12 @@ export interface Calls {
   forget: { ask: { file: number }; answer: null };
   /** The picture at full size, or scaled to a maximum width; depths outside the range are grey. */
   picture: { ask: { file: number; range?: [number, number]; width?: number }; answer: ImageBitmap };
+  /** The mask of an object in an RGBA picture, from marks in the order of the library. */
+  suggest: { ask: { width: number; height: number; data: Uint8ClampedArray; marks: Uint8Array }; answer: Uint8Array };
+  /** The part of a depth map within a range in metres, and where `paint`, of any size, is not zero. */
+  within: { ask: { file: number; range?: [number, number]; paint?: Mask }; answer: Mask };
+  /** A pair of the gallery. */
+  rendered: { ask: { pair: PairKind }; answer: PairSample };
   /** The frames to which the following requests refer. */
   frames: { ask: { frames: FramePlan[] }; answer: null };
   check: { ask: { candidates: Record<string, Pose>; cues: CheckCue[] }; answer: CheckReport };

@@ -1,6 +1,7 @@
 /** The part of a frame that is used: the combined masks of the colour image, and a range of depths. */
 
 import type { CheckFrame } from "../../pkg/index.js";
+import type { Mask } from "./protocol";
 
 export function restrictImage(
   image: CheckFrame["image"],
@@ -34,4 +35,21 @@ export function restrictDepth(
   const { mask } = depth;
   const metres = metresOf(depth);
   return { ...depth, mask: Uint8Array.from(metres, (z, i) => (z >= near && z <= far && mask?.[i] !== 0 ? 255 : 0)) };
+}
+
+/** The pixels of a depth map within a range of depths, and where a mask drawn at another size is not zero. */
+export function maskWithin(
+  depth: CheckFrame["depth"],
+  range: readonly [number, number] | undefined,
+  paint: Mask | undefined,
+): Mask {
+  const { width, height } = depth;
+  const inside = restrictDepth(depth, range).mask ?? new Uint8Array(width * height).fill(255);
+  if (!paint) return { width, height, data: inside.slice() };
+  const at = (place: number, side: number, painted: number) => Math.floor((place * painted) / side);
+  const data = inside.map((value, i) => {
+    const row = at(Math.floor(i / width), height, paint.height);
+    return paint.data[row * paint.width + at(i % width, width, paint.width)] ? value : 0;
+  });
+  return { width, height, data };
 }

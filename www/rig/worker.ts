@@ -1,9 +1,9 @@
 /** The thread that reads files and runs the check. It keeps all pixels; the page gets summaries, pictures and numbers. */
 
 import "../engine/hold";
-import { checkCalibration, projectFrame, type CheckFrame } from "../../pkg/index.js";
+import { checkCalibration, projectFrame, samplePair, suggestMask, type CheckFrame } from "../../pkg/index.js";
 import { faultOf } from "../engine/fault";
-import { restrictDepth, restrictImage } from "./restrict";
+import { maskWithin, restrictDepth, restrictImage } from "./restrict";
 import { loadExample } from "./example";
 import { isRecording, readRigFile, readRigFolder, type RigReading } from "./files";
 import { picture } from "./pictures";
@@ -26,6 +26,7 @@ const HEAD = 16;
 /** The frames that were checked last; the overlay and the exported files refer to these. */
 let frames: CheckFrame[] = [];
 let running: AbortController | undefined;
+let suggesting: AbortController | undefined;
 /** The items that came from folders, and their files, for the report. */
 const folders: ReadFolder[] = [];
 
@@ -230,6 +231,16 @@ const handlers: Handlers = {
   async picture({ file, range, width }) {
     return picture(read(file), range, width);
   },
+  async suggest({ marks, ...image }) {
+    suggesting = new AbortController();
+    return (await suggestMask(image, marks, { signal: suggesting.signal })).mask;
+  },
+  async within({ file, range, paint }) {
+    return maskWithin(readingOf(file, "depth").depth, range, paint);
+  },
+  async rendered({ pair }) {
+    return samplePair(pair);
+  },
   async frames({ frames: plans }) {
     frames = plans.map(frameOf);
     return null;
@@ -296,7 +307,10 @@ function transferable(answer: unknown): Transferable[] {
 let reads: Promise<unknown> = Promise.resolve();
 
 self.onmessage = async ({ data }: MessageEvent<Request>) => {
-  if (data.kind === "cancel") return running?.abort();
+  if (data.kind === "cancel") {
+    suggesting?.abort();
+    return running?.abort();
+  }
   const { id, kind } = data;
   const isRead = kind === "read" || kind === "folder" || kind === "example" || kind === "take";
   const handle = () => (handlers[kind] as (ask: unknown, id: number) => Promise<Calls[CallKind]["answer"]>)(data, id);

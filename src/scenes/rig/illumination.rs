@@ -55,6 +55,12 @@ impl Illumination {
         Self { sky, turn, sky_share, lamps }
     }
 
+    /// A natural light as it is, or as half of the light of a stage that a lamp lights as well.
+    pub fn given(sky: Light, has_lamp: bool, stage: &Stage, target: Vector3<f64>, chance: &mut Chance) -> Self {
+        let lamps: Vec<Lamp> = has_lamp.then(|| Lamp::random(stage, target, chance)).into_iter().collect();
+        Self { sky, turn: Matrix3::identity(), sky_share: if has_lamp { 0.5 } else { 1.0 }, lamps }
+    }
+
     /// Light of the sky on a surface with this normal.
     pub fn sky(&self, normal: Vector3<f64>) -> [f64; 3] {
         self.sky.shade((self.turn * normal).into()).map(|log| self.sky_share * log.exp())

@@ -11,6 +11,7 @@ mod frame;
 mod illumination;
 mod layout;
 mod paint;
+mod pair;
 mod raster;
 mod sheet;
 mod solids;
@@ -18,3 +19,4 @@ mod stage;
 
 pub use frame::{RigFrame, RigRequest, render};
 pub use layout::RigKind;
+pub use pair::{PairKind, RenderedPair, render_pair};

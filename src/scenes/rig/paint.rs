@@ -16,8 +16,9 @@ const FINEST: f64 = 0.012;
 /// Number of octaves of the noise from which prints are cut.
 const OCTAVES: usize = 3;
 
+/// A pattern of albedos.
 #[derive(Clone, Copy, Debug)]
-enum Pattern {
+pub enum Pattern {
     Plain,
     Checks,
     Stripes,
@@ -52,7 +53,8 @@ impl Paint {
         Self::with(Pattern::Plain, 1.0, placement, chance)
     }
 
-    fn with(pattern: Pattern, size: f64, placement: &Similarity, chance: &mut Chance) -> Self {
+    /// An albedo with this pattern.
+    pub fn with(pattern: Pattern, size: f64, placement: &Similarity, chance: &mut Chance) -> Self {
         let cell = (size * chance.between(DETAIL)).max(FINEST);
         // Patterns are aligned with their thing; the shift keeps its faces off the borders between cells.
         let shift = Vector3::from_fn(|_, _| chance.between([0.0, 64.0]) + 64.0);
