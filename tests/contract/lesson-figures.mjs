@@ -14,6 +14,9 @@ const ENTRY = [
   'export { lessons } from "./www/learn/lessons/index.ts";',
   'export { exercises } from "./www/learn/exercises.ts";',
   'export { computed, valuesFrom } from "./www/learn/lesson.ts";',
+  'export { READ, SAME_UNITS, nameOf, placeOf, wordsOf } from "./www/learn/translation.ts";',
+  'export { SYMBOLS } from "./www/learn/maths.ts";',
+  'export { STATUSES } from "./www/learn/compute/status.ts";',
   'export { runOptions, sampleRequest, fromLink } from "./www/lab/settings.ts";',
 ].join("\n");
 

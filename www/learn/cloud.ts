@@ -1,6 +1,7 @@
 /** Points of both surfaces, seen from an angle set by a slider. */
 
 import { freshId, ink, make } from "../dom";
+import { phrase } from "../words";
 import type { CloudPanel, Panel } from "./protocol";
 
 const SIDE = 320;
@@ -21,7 +22,12 @@ export class Cloud {
     const id = freshId("learn-turn");
     this.#turn = make("input", { id, type: "range", min: -90, max: 90, step: 5, value: FIRST_TURN });
     this.#turn.addEventListener("input", () => this.#draw());
-    const turn = make("div", { class: "learn-turn" }, make("label", { for: id }, "Rotate the view"), this.#turn);
+    const turn = make(
+      "div",
+      { class: "learn-turn" },
+      make("label", { for: id }, phrase("rotate", "Rotate the view")),
+      this.#turn,
+    );
     this.element = make(
       "figure",
       { class: "learn-panel" },

@@ -1,7 +1,7 @@
 /** The parts of a lesson. */
 
 import { make } from "../dom";
-import { decimals } from "../draw/numbers";
+import { decimals, withUnit } from "./numbers";
 import type { Ink, LessonId, Values } from "./protocol";
 import type { References } from "./references";
 
@@ -98,9 +98,7 @@ export function shown(control: SliderControl, value: number, values: Values): st
       ? 0
       : Math.max(0, 2 - Math.floor(Math.log10(number)))
     : Math.max(0, -Math.floor(Math.log10(control.step) + 1e-9));
-  const unit =
-    control.unit === undefined ? "" : control.unit === "°" || control.unit === "%" ? control.unit : ` ${control.unit}`;
-  return `${decimals(number, digits)}${unit}`;
+  return withUnit(decimals(number, digits), control.unit);
 }
 
 /** Takes the values from an address that are valid for their controls. */

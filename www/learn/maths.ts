@@ -1,6 +1,7 @@
 /** Formulas in MathML whose symbols have the colours of the figure, and sentences with such symbols in them. */
 
 import { make } from "../dom";
+import { phrase } from "../words";
 import type { Ink } from "./protocol";
 
 const SPACE = "http://www.w3.org/1998/Math/MathML";
@@ -41,7 +42,7 @@ const bold = (letter: string) => math("mi", { mathvariant: "bold", class: "learn
 const tilde = (base: Element) => math("mover", { accent: "true" }, base, mo("~"));
 
 /** Every symbol of the lessons, once. */
-const SYMBOLS = {
+export const SYMBOLS = {
   n: { make: () => bold("n"), ink: "normal", name: "unit normal of the surface" },
   // It has no hat, which would mean a unit vector: its length is the square root of two.
   N: { make: () => tilde(bold("n")), ink: "normal", name: "unit normal with a fourth component 1" },
@@ -67,7 +68,7 @@ export type SymbolName = keyof typeof SYMBOLS;
 /** A symbol in the colour that it has in the figure. */
 export function symbol(name: SymbolName): Element {
   const { make: draw, ink, name: words } = SYMBOLS[name];
-  return math("mrow", { class: `learn-ink-${ink}`, title: words }, draw());
+  return math("mrow", { class: `learn-ink-${ink}`, title: phrase(`symbol.${name}`, words) }, draw());
 }
 
 /** The shading of the model: the extended normal on both sides of the light's matrix. */

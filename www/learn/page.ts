@@ -7,10 +7,12 @@ import "../style/learn-print.css";
 import "../style/learn-slides.css";
 import { make } from "../dom";
 import { saveJson } from "../save";
+import { phrase } from "../words";
 import { Controls } from "./controls";
 import { Embed } from "./embed";
 import { exerciseList } from "./exercises";
 import { Figure } from "./figure";
+import { languageInAddress } from "./language";
 import { computed, list, valuesFrom, initialValues, type Lesson } from "./lesson";
 import { beside, lessonNamed, lessons } from "./lessons";
 import { sentence } from "./maths";
@@ -19,8 +21,7 @@ import { Readouts } from "./readouts";
 import { referencesOf } from "./references";
 import { Session } from "./session";
 import { Slides, type Slide } from "./slides";
-
-const first = lessons[0] as Lesson;
+import { drawingIn } from "./translation";
 
 /** A lesson on the page; its values stay when another one is opened. */
 interface Shown {
@@ -40,19 +41,21 @@ export class LearnPage {
     onDrawing: (drawing, done) => this.#draw(drawing, done),
     onFault: ({ message }) => this.#complain(message),
   });
-  readonly #kept = new Map<LessonId, Values>();
+  readonly #kept: Map<LessonId, Values>;
   readonly #links = new Map<LessonId, HTMLAnchorElement>();
   readonly #contents = make("ol", {});
   readonly #main = make("div", { class: "learn-main" });
   readonly #exercises = exerciseList();
-  readonly #exerciseLink = make("a", { href: "#learn&at=exercises" }, "Exercises");
+  readonly #exerciseLink = make("a", { href: "#learn&at=exercises" }, phrase("exercises", "Exercises"));
   readonly #slides: Slides;
   #shown: Shown | undefined;
   #isOpen = false;
   /** The figure alone, in a frame of another page. */
   #isEmbedded = false;
 
-  constructor(parent: HTMLElement) {
+  /** `tools` stand below the contents. */
+  constructor(parent: HTMLElement, { kept, tools }: { kept: Map<LessonId, Values>; tools: HTMLElement[] }) {
+    this.#kept = kept;
     for (const { id, title } of lessons) {
       const link = make("a", { href: `#learn&at=${id}` }, title);
       this.#links.set(id, link);
@@ -60,9 +63,10 @@ export class LearnPage {
     }
     const nav = make(
       "nav",
-      { class: "learn-contents", "aria-label": "Lessons" },
+      { class: "learn-contents", "aria-label": phrase("lessons", "Lessons") },
       this.#contents,
       make("p", {}, this.#exerciseLink),
+      ...tools,
     );
     this.#slides = new Slides(
       (by) => this.#go(by),
@@ -77,7 +81,7 @@ export class LearnPage {
     const asked = new URLSearchParams(hash.replace(/^#/, ""));
     this.#isEmbedded = asked.has("embed");
     if (asked.get("at") === "exercises") return this.#showExercises();
-    const lesson = lessonNamed(asked.get("at")) ?? this.#shown?.lesson ?? first;
+    const lesson = lessonNamed(asked.get("at")) ?? this.#shown?.lesson ?? (lessons[0] as Lesson);
     const isTold = lesson.controls.some(({ key }) => asked.has(key));
     const values = isTold ? valuesFrom(lesson, asked) : (this.#kept.get(lesson.id) ?? initialValues(lesson));
     this.#show(lesson, values);
@@ -96,7 +100,8 @@ export class LearnPage {
   }
 
   recolour(): void {
-    if (this.#shown?.drawing) this.#shown.figure.show(this.#shown.drawing);
+    const shown = this.#shown;
+    if (shown?.drawing) shown.figure.show(drawingIn(shown.lesson.id, shown.drawing));
   }
 
   /** The numbers of the figure, with the values of its controls. */
@@ -159,7 +164,7 @@ export class LearnPage {
     );
     const box = make(
       "section",
-      { class: "card learn-figure", "aria-label": "Figure", "aria-busy": "true" },
+      { class: "card learn-figure", "aria-label": phrase("figure", "Figure"), "aria-busy": "true" },
       alert,
       controls.element,
       readouts.element,
@@ -167,7 +172,7 @@ export class LearnPage {
     );
     const embed = new Embed(`${number}. ${lesson.title}`);
     box.append(embed.source);
-    const slides = make("button", { type: "button", class: "learn-slides-button" }, "Slides");
+    const slides = make("button", { type: "button", class: "learn-slides-button" }, phrase("slides", "Slides"));
     slides.addEventListener("click", () => {
       this.#startSlides();
       this.#writeAddress("another");
@@ -189,9 +194,9 @@ export class LearnPage {
         make("p", { class: "learn-gist" }, lesson.gist),
         formula,
         ...lesson.text.map((words) => make("p", {}, ...sentence(words))),
-        make("h3", {}, "Try"),
+        make("h3", {}, phrase("try", "Try")),
         list("ul", lesson.tasks.map(sentence)),
-        make("h3", {}, "More"),
+        make("h3", {}, phrase("more", "More")),
         referencesOf(lesson.more),
         this.#ends(lesson),
       ),
@@ -208,7 +213,7 @@ export class LearnPage {
       ...(before ? [make("a", { href: `#learn&at=${before.id}` }, `← ${before.title}`)] : []),
       after
         ? make("a", { href: `#learn&at=${after.id}` }, `${after.title} →`)
-        : make("a", { href: "#learn&at=exercises" }, "Exercises →"),
+        : make("a", { href: "#learn&at=exercises" }, `${phrase("exercises", "Exercises")} →`),
     );
   }
 
@@ -240,8 +245,9 @@ export class LearnPage {
     if (!shown) return;
     shown.drawing = drawing;
     shown.alert.hidden = true;
-    shown.figure.show(drawing);
-    shown.readouts.show(drawing);
+    const inWords = drawingIn(shown.lesson.id, drawing);
+    shown.figure.show(inWords);
+    shown.readouts.show(inWords);
     shown.embed.fit(drawing.panels.some(({ kind }) => kind === "plot"));
     shown.box.setAttribute("aria-busy", String(!done));
   }
@@ -249,7 +255,7 @@ export class LearnPage {
   #complain(message: string): void {
     const shown = this.#shown;
     if (!shown) return;
-    const again = make("button", { type: "button" }, "Recompute");
+    const again = make("button", { type: "button" }, phrase("recompute", "Recompute"));
     again.addEventListener("click", () => this.#ask());
     shown.alert.replaceChildren(message, " ", again);
     shown.alert.hidden = false;
@@ -287,6 +293,7 @@ export class LearnPage {
     const state = new URLSearchParams({
       at: shown.lesson.id,
       ...Object.fromEntries(changed.map(([key, value]) => [key, String(value)])),
+      ...languageInAddress(),
     });
     shown.embed.show(`#learn&${state}`);
     const address = `#learn&${state}${this.#slides.isOpen ? "&slides" : ""}${this.#isEmbedded ? "&embed" : ""}`;

@@ -1,6 +1,7 @@
 /** The messages between the lessons and their worker. Both sides import this file and nothing else of each other. */
 
 import type { Fault } from "../engine/protocol";
+import type { Details } from "../words";
 
 /** The controls of a lesson by name; a box that is ticked is 1. */
 export type Values = Readonly<Record<string, number | string>>;
@@ -44,6 +45,10 @@ interface Common {
   title: string;
   /** A description for screen readers. */
   alt: string;
+  /** What stands in the place of {names} in its words. */
+  details?: Details;
+  /** Distinguishes the words of a panel whose words depend on the controls. */
+  state?: string;
 }
 
 export interface ImagePanel extends Common {
@@ -90,6 +95,14 @@ export interface Drawing {
   numbers: Record<string, number>;
   /** Numbers that are words, such as the status of a run. */
   words?: Record<string, string>;
+  /** The same for other languages: the parts of these words, to be joined by colons. */
+  said?: Record<string, Said[]>;
+}
+
+/** Words by their path in a catalogue, with the numbers in them. */
+export interface Said {
+  id: string;
+  details: Details;
 }
 
 export interface Request {

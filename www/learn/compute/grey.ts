@@ -70,7 +70,8 @@ export function* grey(values: Values): Generator<Drawing> {
         {
           key: "dent",
           title: "A dent, lamp turned",
-          alt: `A round dent in a plate, the lamp turned by ${numberOf(values, "turn")} degrees about the line of sight.`,
+          alt: "A round dent in a plate, the lamp turned by {turn} degrees about the line of sight.",
+          details: { turn: numberOf(values, "turn") },
         },
         grid,
         colours[1],

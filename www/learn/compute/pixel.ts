@@ -52,7 +52,8 @@ export function* pixel(values: Values): Generator<Drawing> {
         {
           key: "patch",
           title: "The predicted colour",
-          alt: `The colour of the pixel: ${log.map((value) => Math.exp(value).toFixed(2)).join(", ")} in linear red, green and blue.`,
+          alt: "The colour of the pixel: {red:2}, {green:2}, {blue:2} in linear red, green and blue.",
+          details: { red: colour[0] ?? NaN, green: colour[1] ?? NaN, blue: colour[2] ?? NaN },
         },
         { width: 1, height: 1 },
         colour,

@@ -1,13 +1,21 @@
 /** All lessons in their order. */
 
 import type { Lesson } from "../lesson";
+import { translated } from "../translation";
 import type { LessonId } from "../protocol";
 import { colours, grey, pixel } from "./light";
 import { failure, paint } from "./limits";
 import { pose, sensor } from "./pose";
 import { prior, surface } from "./shape";
 
-export const lessons: readonly Lesson[] = [pixel, grey, colours, surface, prior, pose, sensor, paint, failure];
+const english: readonly Lesson[] = [pixel, grey, colours, surface, prior, pose, sensor, paint, failure];
+/** In the language of the page. */
+export let lessons = english;
+
+/** Takes the words of the catalogue in use. */
+export function retell(): void {
+  lessons = english.map((lesson) => translated(lesson, ["lessons", lesson.id]));
+}
 
 export function lessonNamed(name: string | null): Lesson | undefined {
   return lessons.find(({ id }) => id === name);

@@ -2,6 +2,8 @@
 
 import type { Lesson } from "../lesson";
 import { LIGHTS } from "../lesson";
+import { phrase } from "../../words";
+import { decimals, withUnit } from "../numbers";
 import { LARGEST_TURN, LEAST_OVERLAP } from "../protocol";
 import { block, frac, log, mi, mn, mo, row, shading, sub, sup, symbol } from "../maths";
 
@@ -44,13 +46,16 @@ export const paint: Lesson = {
   },
 };
 
-const percent = (value: number): string => `${Math.round(value)}%`;
+const percent = (value: number): string => withUnit(decimals(value, 0), "%");
 /** The meaning of the slider in each case, as the figure computes with it. */
 const AMOUNTS: Readonly<Record<string, { label: string; reads(value: number): string }>> = {
   symmetry: { label: "Part of the nose removed", reads: percent },
   overlap: { label: "Width of the depth map", reads: (value) => percent(100 - (1 - LEAST_OVERLAP) * value) },
   texture: { label: "Strength of the print", reads: percent },
-  turn: { label: "Rotation between the views", reads: (value) => `${((LARGEST_TURN * value) / 100).toFixed(1)}°` },
+  turn: {
+    label: "Rotation between the views",
+    reads: (value) => withUnit(decimals((LARGEST_TURN * value) / 100, 1), "°"),
+  },
 };
 
 export const failure: Lesson = {
@@ -61,7 +66,7 @@ export const failure: Lesson = {
     block(
       sup(sub(mi("σ"), symbol("R")), mn("2")),
       mo("≈"),
-      frac(sup(mi("σ"), mn("2")), row(mi("information"), mo("("), symbol("R"), mo(")"))),
+      frac(sup(mi("σ"), mn("2")), row(mi(phrase("information", "information")), mo("("), symbol("R"), mo(")"))),
     ),
   formulaWords:
     "The variance of the rotation is about the variance of the noise divided by the information that the scene contains about the rotation.",
@@ -94,7 +99,7 @@ export const failure: Lesson = {
       kind: "slider",
       key: "amount",
       label: ({ case: what }) => AMOUNTS[String(what)]?.label ?? "Amount",
-      reads: (value, { case: what }) => AMOUNTS[String(what)]?.reads(value) ?? `${value}%`,
+      reads: (value, { case: what }) => AMOUNTS[String(what)]?.reads(value) ?? percent(value),
       min: 0,
       max: 100,
       step: 5,
