@@ -28,7 +28,7 @@ function textsOf(part, lesson, field) {
   if (Array.isArray(part))
     return full(
       part.map((item, at) => {
-        const isPair = Array.isArray(item) && item.length === 2 && READ.has(field);
+        const isPair = Array.isArray(item) && READ.has(field);
         return [nameOf(item, at), textsOf(isPair ? item[1] : item, lesson, field)];
       }),
     );

@@ -14,14 +14,13 @@ export const SAME_UNITS: readonly string[] = ["°", "%", "px"];
 type Plain = Readonly<Record<string, unknown>>;
 const isPlain = (value: unknown): value is Plain =>
   typeof value === "object" && value !== null && !Array.isArray(value);
-/** A value or an address with its words, unlike two paragraphs of a text. */
-const isPair = (value: unknown): value is readonly [string, string] =>
-  Array.isArray(value) && value.length === 2 && /^(?:#\S+|[\w-]+)$/.test(String(value[0]));
+/** Fields with pairs: a value or an address with its words. */
+const PAIRS = new Set(["choices", "links"]);
 const isName = (text: unknown): text is string => typeof text === "string" && /^[\w-]+$/.test(text);
 
 /** The name of an item of a list: its key if it has one, so that other items can be put before it. */
 export function nameOf(item: unknown, index: number): string {
-  const named = isPair(item) ? item[0] : isPlain(item) ? (item.key ?? item.id) : undefined;
+  const named = Array.isArray(item) ? item[0] : isPlain(item) ? (item.key ?? item.id) : undefined;
   return isName(named) ? named : String(index);
 }
 
@@ -30,15 +29,19 @@ export function translated<T>(texts: T, path: readonly string[]): T {
   return over(texts, wordsAt(path)) as T;
 }
 
-function over(texts: unknown, words: unknown): unknown {
+/** `field` is the name of the field that holds these texts. */
+function over(texts: unknown, words: unknown, field = ""): unknown {
   if (words === undefined) return texts;
   if (typeof texts === "string") return typeof words === "string" ? words : texts;
   if (typeof texts === "function") return isPlain(words) && typeof words.by === "string" ? choosing(words) : texts;
-  if (isPair(texts)) return [texts[0], over(texts[1], words)];
   const named = words as Plain;
-  if (Array.isArray(texts)) return texts.map((item, index) => over(item, named[nameOf(item, index)]));
+  if (Array.isArray(texts))
+    return texts.map((item, index) => {
+      const own = named[nameOf(item, index)];
+      return PAIRS.has(field) ? [item[0], over(item[1], own)] : over(item, own);
+    });
   if (!isPlain(texts)) return texts;
-  return Object.fromEntries(Object.entries(texts).map(([key, text]) => [key, over(text, named[key])]));
+  return Object.fromEntries(Object.entries(texts).map(([key, text]) => [key, over(text, named[key], key)]));
 }
 
 /** Words that follow another control: `by` names it, and each of its choices has words. */
