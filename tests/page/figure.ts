@@ -26,6 +26,8 @@ export async function open(page: Page, state = ""): Promise<void> {
   await settled(page);
 }
 
+export const control = (page: Page, name: string): Locator => page.locator(`.learn-controls [name="${name}"]`);
+
 /** Waits until the drawing shows the present values. */
 export async function settled(page: Page): Promise<void> {
   await expect(figure(page)).toHaveAttribute("aria-busy", "false");
