@@ -73,7 +73,7 @@ export class Learn {
   #choice(): HTMLElement {
     const select = make(
       "select",
-      { class: "learn-language", "aria-label": phrase("language", "Language") },
+      { class: "learn-language" },
       ...LANGUAGES.map(([code, name]) =>
         make("option", { value: code, lang: code, selected: code === shownLanguage() }, name),
       ),
@@ -86,6 +86,6 @@ export class Learn {
       // The select is made anew with the rest.
       void this.#load(language).then(() => this.#parent.querySelector<HTMLElement>(".learn-language")?.focus());
     });
-    return select;
+    return make("label", {}, make("span", { class: "visually-hidden" }, phrase("language", "Language")), select);
   }
 }
