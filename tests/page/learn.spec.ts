@@ -165,7 +165,7 @@ test("the Lab alone loads nothing of Learn, and Learn leaves the Lab alone", asy
   await lab.open();
   const before = asked.filter((path) => /\.(js|css)$/.test(path)).length;
   await page.getByRole("link", { name: "Learn", exact: true }).click();
-  await expect(page.getByRole("heading", { name: "1. What a pixel shows" })).toBeVisible();
+  await expect(page.getByRole("heading", { name: "1. What a normal is" })).toBeVisible();
   await settled(page);
   expect(asked.filter((path) => /\.(js|css)$/.test(path)).length).toBeGreaterThan(before);
   await expect(page.getByRole("button", { name: "Play" })).toBeHidden();
@@ -173,7 +173,7 @@ test("the Lab alone loads nothing of Learn, and Learn leaves the Lab alone", asy
   await lab.reaches("ready");
 });
 
-test("1: the light and the albedo change the predicted colour, and a drag chooses the normal", async ({
+test("6: the light and the albedo change the predicted colour, and a drag chooses the normal", async ({
   lab,
   page,
 }) => {
@@ -185,13 +185,6 @@ test("1: the light and the albedo change the predicted colour, and a drag choose
   await slide(page, "beta", 60);
   await settled(page);
   expect(await fingerprint(page, "bust")).not.toBe(bust);
-  // The orders add up to the whole except for the albedo, and each is labelled with its number.
-  await expect(page.locator(".learn-numbers dt").filter({ hasText: /order \d$/ })).toHaveText(
-    [0, 1, 2].map((order) => `log S, green: order ${order}`),
-  );
-  const parts = (await number(page, "order0")) + (await number(page, "order1")) + (await number(page, "order2"));
-  expect(parts + Math.log(0.5)).toBeCloseTo(await number(page, "green"), 4);
-
   const ball = await page.locator('[data-panel="ball"] .learn-canvas').boundingBox();
   if (!ball) throw new Error("There is no ball.");
   await page.mouse.move(ball.x + ball.width / 2, ball.y + ball.height / 2);
@@ -202,7 +195,7 @@ test("1: the light and the albedo change the predicted colour, and a drag choose
   expect(lab.complaints).toEqual([]);
 });
 
-test("2: a dent under the turned lamp is the bump's picture", async ({ lab, page }) => {
+test("7: a dent under the turned lamp is the bump's picture", async ({ lab, page }) => {
   await open(page, "at=grey&turn=60");
   const apart = await number(page, "difference");
   expect(apart).toBeGreaterThan(0.05);
@@ -214,7 +207,7 @@ test("2: a dent under the turned lamp is the bump's picture", async ({ lab, page
   expect(lab.complaints).toEqual([]);
 });
 
-test("3: colour makes the curve short and the normals right; noise does not", async ({ lab, page }) => {
+test("8: colour makes the curve short and the normals right; noise does not", async ({ lab, page }) => {
   await open(page, "at=colours&colour=0&noise=0.01");
   const [grey, curve] = [await number(page, "degrees"), await number(page, "explained")];
   await slide(page, "colour", 1);
@@ -229,7 +222,7 @@ test("3: colour makes the curve short and the normals right; noise does not", as
   expect(lab.complaints).toEqual([]);
 });
 
-test("4: a step leaves no trace, robust weights bring it back where a way leads around it", async ({ lab, page }) => {
+test("9: a step leaves no trace, robust weights bring it back where a way leads around it", async ({ lab, page }) => {
   await open(page, "at=surface&step=0");
   expect(await number(page, "error")).toBeLessThan(0.2);
   await slide(page, "step", 8);
@@ -244,7 +237,7 @@ test("4: a step leaves no trace, robust weights bring it back where a way leads 
   expect(lab.complaints).toEqual([]);
 });
 
-test("5: more prior, better normals; none at all where its weight is zero", LONG, async ({ lab, page }) => {
+test("10: more prior, better normals; none at all where its weight is zero", LONG, async ({ lab, page }) => {
   await open(page, "at=prior&share=0");
   const none = await number(page, "degrees");
   await slide(page, "share", 50);
@@ -260,7 +253,7 @@ test("5: more prior, better normals; none at all where its weight is zero", LONG
   expect(lab.complaints).toEqual([]);
 });
 
-test("6: a wrong pose leaves a residual, valleys merge, and registration comes home", LONG, async ({ lab, page }) => {
+test("11: a wrong pose leaves a residual, valleys merge, and registration comes home", LONG, async ({ lab, page }) => {
   await open(page, "at=pose&offset=0");
   const right = await number(page, "residual");
   const valleys = await number(page, "minima");
@@ -285,7 +278,7 @@ test("6: a wrong pose leaves a residual, valleys merge, and registration comes h
   expect(lab.complaints).toEqual([]);
 });
 
-test("5, 6: a curve's axes stand still from its first drawing to its last", LONG, async ({ page }) => {
+test("10, 11: a curve's axes stand still from its first drawing to its last", LONG, async ({ page }) => {
   // Records every text of the plots as it is drawn.
   await page.addInitScript(() => {
     const seen = new Set<string>();
@@ -313,7 +306,7 @@ test("5, 6: a curve's axes stand still from its first drawing to its last", LONG
   }
 });
 
-test("7: the refined depth is better than the measured one, as far as the picture is good", async ({ lab, page }) => {
+test("12: the refined depth is better than the measured one, as far as the picture is good", async ({ lab, page }) => {
   await open(page, "at=sensor&noise=0.3&holes=10");
   const before = await number(page, "before");
   expect(await number(page, "after")).toBeLessThan(0.7 * before);
@@ -328,7 +321,7 @@ test("7: the refined depth is better than the measured one, as far as the pictur
   expect(lab.complaints).toEqual([]);
 });
 
-test("8: paint goes into the albedo, a shadow into what is left over", async ({ lab, page }) => {
+test("13: paint goes into the albedo, a shadow into what is left over", async ({ lab, page }) => {
   await open(page, "at=paint&paint=0.8");
   expect(await number(page, "likeness")).toBeGreaterThan(0.7);
   const lit = await number(page, "lit");
@@ -339,7 +332,7 @@ test("8: paint goes into the albedo, a shadow into what is left over", async ({ 
   expect(lab.complaints).toEqual([]);
 });
 
-test("9: what can't be seen is said", LONG, async ({ lab, page }) => {
+test("14: what can't be seen is said", LONG, async ({ lab, page }) => {
   await open(page, "at=failure&case=overlap&amount=0");
   await expect(page.locator('[data-number="status"]')).toHaveText("converged");
   expect(await number(page, "error")).toBeLessThan(1);
@@ -390,7 +383,7 @@ test("an address brings a lesson back, and what is no value of a control is pass
   await expect(page.locator('.learn-controls input[name="colour"]')).toHaveValue("0.5");
   // Another lesson and back: the settings are kept.
   await page.getByRole("navigation", { name: "Lessons" }).getByRole("link", { name: "Refining the sensor" }).click();
-  await expect(page.getByRole("heading", { name: "7. Refining the sensor" })).toBeVisible();
+  await expect(page.getByRole("heading", { name: "12. Refining the sensor" })).toBeVisible();
   await page.getByRole("navigation", { name: "Lessons" }).getByRole("link", { name: "Three colours" }).click();
   await expect(page.locator('.learn-controls input[name="colour"]')).toHaveValue("0.5");
   expect(lab.complaints).toEqual([]);
@@ -414,10 +407,10 @@ test("slides turn by keys, leave the sliders theirs, and end by escape", async (
   await page.getByRole("button", { name: "Slides" }).press("Enter");
   const slides = page.locator("dialog.learn-slides");
   await expect(slides).toBeVisible();
-  await expect(slides.getByRole("heading", { name: "2. One grey light is not enough" })).toBeVisible();
+  await expect(slides.getByRole("heading", { name: "7. One grey light is not enough" })).toBeVisible();
   await expect(slides.getByText("A normal has two degrees of freedom")).toBeHidden();
   await page.keyboard.press("ArrowRight");
-  await expect(slides.getByRole("heading", { name: "3. Three colours" })).toBeVisible();
+  await expect(slides.getByRole("heading", { name: "8. Three colours" })).toBeVisible();
   await expect(page).toHaveURL(/at=colours.*&slides$/);
   // Arrow keys on a slider move the slider.
   const slider = slides.locator('input[name="colour"]');
@@ -425,13 +418,13 @@ test("slides turn by keys, leave the sliders theirs, and end by escape", async (
   await page.keyboard.press("ArrowRight");
   await expect(slider).toHaveValue("0.32");
   await page.keyboard.press("PageUp");
-  await expect(slides.getByRole("heading", { name: "2. One grey light is not enough" })).toBeVisible();
+  await expect(slides.getByRole("heading", { name: "7. One grey light is not enough" })).toBeVisible();
   await page.keyboard.press("ArrowLeft");
   await page.keyboard.press("ArrowLeft");
-  await expect(slides.getByRole("heading", { name: "1. What a pixel shows" })).toBeVisible();
+  await expect(slides.getByRole("heading", { name: "6. What a pixel shows" })).toBeVisible();
   await page.keyboard.press("Escape");
   await expect(slides).toBeHidden();
-  await expect(page.getByRole("heading", { name: "1. What a pixel shows" })).toBeVisible();
+  await expect(page.getByRole("heading", { name: "6. What a pixel shows" })).toBeVisible();
   await expect(page.getByText("A matte surface under one distant lamp")).toBeVisible();
   await expect(page).not.toHaveURL(/slides/);
   expect(lab.complaints).toEqual([]);

@@ -26,18 +26,18 @@ test("each slide fits its screen, whatever its figure has to say", LONG, async (
 });
 
 test("before the first slide and after the last there is none, and the buttons say so", async ({ page }) => {
-  await page.goto("./#learn&at=pixel&slides");
+  await page.goto("./#learn&at=normal&slides");
   const previous = page.getByRole("button", { name: "Previous lesson" });
   const next = page.getByRole("button", { name: "Next lesson" });
-  await expect(page.getByRole("heading", { name: "1. What a pixel shows" })).toBeVisible();
+  await expect(page.getByRole("heading", { name: "1. What a normal is" })).toBeVisible();
   await expect(previous).toBeDisabled();
   await next.click();
-  await expect(page.getByRole("heading", { name: "2. One grey light is not enough" })).toBeVisible();
+  await expect(page.getByRole("heading", { name: "2. Light and angle" })).toBeVisible();
   await expect(previous).toBeEnabled();
   await page.goto("./#learn&at=paint&slides");
-  await expect(page.getByRole("heading", { name: "8. Shadows and paint" })).toBeVisible();
+  await expect(page.getByRole("heading", { name: "13. Shadows and paint" })).toBeVisible();
   await next.click();
-  await expect(page.getByRole("heading", { name: "9. When it fails" })).toBeVisible();
+  await expect(page.getByRole("heading", { name: "14. When it fails" })).toBeVisible();
   await expect(next).toBeDisabled();
 });
 
@@ -49,30 +49,30 @@ test("the browser's Back turns a slide back, then leads to the lesson, and Forwa
   await page.getByRole("button", { name: "Slides" }).click();
   await expect(slides).toBeVisible();
   await page.keyboard.press("ArrowRight");
-  await expect(heading("2. One grey light is not enough")).toBeVisible();
+  await expect(heading("7. One grey light is not enough")).toBeVisible();
   // A changed setting adds no entry to the history.
   await slides.locator('input[name="turn"]').fill("90");
   await expect(page).toHaveURL(/at=grey&turn=90&slides$/);
   await page.keyboard.press("PageDown");
-  await expect(heading("3. Three colours")).toBeVisible();
+  await expect(heading("8. Three colours")).toBeVisible();
   await page.goBack();
-  await expect(heading("2. One grey light is not enough")).toBeVisible();
+  await expect(heading("7. One grey light is not enough")).toBeVisible();
   await expect(slides.locator('input[name="turn"]')).toHaveValue("90");
   await page.goBack();
-  await expect(heading("1. What a pixel shows")).toBeVisible();
+  await expect(heading("6. What a pixel shows")).toBeVisible();
   await expect(slides).toBeVisible();
   await page.goBack();
   await expect(slides).toBeHidden();
-  await expect(heading("1. What a pixel shows")).toBeVisible();
+  await expect(heading("6. What a pixel shows")).toBeVisible();
   await expect(page).toHaveURL(/at=pixel$/);
   await page.goForward();
   await expect(slides).toBeVisible();
-  await expect(heading("1. What a pixel shows")).toBeVisible();
+  await expect(heading("6. What a pixel shows")).toBeVisible();
   // From the slides to the Lab, and back to the lesson itself.
   await page.goto("./#size=32");
   await lab.reaches("ready");
   await page.getByRole("link", { name: "Learn", exact: true }).click();
   await expect(slides).toBeHidden();
-  await expect(page.locator(".learn-main").getByRole("heading", { name: "1. What a pixel shows" })).toBeVisible();
+  await expect(page.locator(".learn-main").getByRole("heading", { name: "6. What a pixel shows" })).toBeVisible();
   expect(lab.complaints).toEqual([]);
 });

@@ -26,13 +26,19 @@ const SIDES: readonly (readonly number[])[] = [
  */
 export function contour(values: ArrayLike<number>, width: number, height: number, level: number): number[] {
   const points: number[] = [];
+  const corners: [number, number, number, number] = [0, 0, 0, 0];
   for (let row = 0; row + 1 < height; row++)
     for (let column = 0; column + 1 < width; column++) {
       const at = row * width + column;
       // Around the cell from its first pixel: to the right, down, to the left.
-      const corners = [at, at + 1, at + width + 1, at + width].map((index) => (values[index] ?? NaN) - level);
-      if (corners.some(Number.isNaN)) continue;
-      const form = corners.reduce((sum, value, corner) => sum + (value > 0 ? 2 ** corner : 0), 0);
+      corners[0] = (values[at] ?? NaN) - level;
+      corners[1] = (values[at + 1] ?? NaN) - level;
+      corners[2] = (values[at + width + 1] ?? NaN) - level;
+      corners[3] = (values[at + width] ?? NaN) - level;
+      const [a, b, c, d] = corners;
+      if (Number.isNaN(a + b + c + d)) continue;
+      const form = (a > 0 ? 1 : 0) + (b > 0 ? 2 : 0) + (c > 0 ? 4 : 0) + (d > 0 ? 8 : 0);
+      if (form === 0 || form === 15) continue;
       (SIDES[form] ?? []).forEach((side, end) => {
         const [x, y] = crossing(corners, side);
         points.push((column + x + 0.5) / width, (row + y + 0.5) / height);

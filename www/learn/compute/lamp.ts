@@ -8,7 +8,7 @@ import { pictureOf } from "./draw";
 import { normalAt, numberOf, scene } from "./scenes";
 
 /** Side of the pictures of these lessons, px. */
-export const SIDE = 192;
+export const SIDE = 256;
 
 export interface Shape {
   width: number;

@@ -4,7 +4,7 @@ import { shadeLamp } from "../../../pkg/index.js";
 import { normalColour } from "../../draw/colours";
 import type { Drawing, Mark, Values } from "../protocol";
 import { atPixel, normalsOf } from "./draw";
-import { BALL, SIDE, degreesOf, onBall, shaded, shapeNamed, type Shape } from "./lamp";
+import { SIDE, degreesOf, onBall, shaded, shapeNamed, type Shape } from "./lamp";
 import { numberOf, pixelAt, scene, vectorAt } from "./scenes";
 
 /** Above the left shoulder of the camera, so that all visible forms are lit. */
@@ -84,8 +84,6 @@ export function* normal(values: Values): Generator<Drawing> {
       red: colour[0],
       green: colour[1],
       blue: colour[2],
-      edge: BALL,
     },
-    words: { colour: colour.join(", ") },
   };
 }

@@ -7,7 +7,7 @@ import { onDisc, pictureOf, plot } from "./draw";
 import { rms } from "./measure";
 import { lightNamed, normalAt, numberOf, ofOrder } from "./scenes";
 
-const SIDE = 160;
+const SIDE = 192;
 const GRID = { width: SIDE, height: SIDE };
 const normals = ballNormals(SIDE);
 const TITLES = ["Order 0", "Order 1", "Order 2"] as const;

@@ -79,23 +79,30 @@ function middleOf(values: number[]): number {
   return known[Math.floor(known.length / 2)] ?? NaN;
 }
 
-const sampled = (values: Float32Array, [x = NaN, y = NaN]: number[]): number =>
-  values[Math.round(y) * SIDE + Math.round(x)] ?? NaN;
+/** Bilinear interpolation, NaN outside the object. */
+function sampled(values: Float32Array, [x = NaN, y = NaN]: number[]): number {
+  const at = Math.floor(y) * SIDE + Math.floor(x);
+  const [u, v] = [x - Math.floor(x), y - Math.floor(y)];
+  const [a = NaN, b = NaN, c = NaN, d = NaN] = [0, 1, SIDE, SIDE + 1].map((step) => values[at + step] ?? NaN);
+  return (1 - v) * ((1 - u) * a + u * b) + v * ((1 - u) * c + u * d);
+}
 
-/** Heights along the strip that goes farthest, found and true, from the spot. */
+/** Heights along the strip in the middle of all by its error, found and true, from the spot. */
 function profile(strips: number[][][], heightAt: (point: number[]) => number): PlotPanel["series"] {
-  const longest = strips.reduce((best, strip) => (strip.length > best.length ? strip : best), [] as number[][]);
-  const [start] = longest;
+  const errorOf = (strip: number[][]) => middleOf(strip.map((point) => Math.abs(-(point[2] ?? NaN) - heightAt(point))));
+  const sorted = strips.map((strip) => ({ strip, error: errorOf(strip) })).sort((a, b) => a.error - b.error);
+  const chosen = sorted[Math.floor(sorted.length / 2)]?.strip ?? [];
+  const [start] = chosen;
   if (!start) return [];
   let way = 0;
-  const along = longest.map((point, i) => {
-    const before = longest[i - 1] ?? point;
+  const along = chosen.map((point, i) => {
+    const before = chosen[i - 1] ?? point;
     way += Math.hypot((point[0] ?? 0) - (before[0] ?? 0), (point[1] ?? 0) - (before[1] ?? 0));
     return way;
   });
   return [
-    { name: "true", ink: "truth", points: longest.flatMap((point, i) => [along[i] ?? NaN, heightAt(point)]) },
-    { name: "strip", ink: "path", points: longest.flatMap((point, i) => [along[i] ?? NaN, -(point[2] ?? NaN)]) },
+    { name: "true", ink: "truth", points: chosen.flatMap((point, i) => [along[i] ?? NaN, heightAt(point)]) },
+    { name: "strip", ink: "normal", points: chosen.flatMap((point, i) => [along[i] ?? NaN, -(point[2] ?? NaN)]) },
   ];
 }
 
@@ -139,6 +146,7 @@ export function* strips(values: Values): Generator<Drawing> {
     NaN,
   ]);
   const brightness = intensity[pixel] ?? NaN;
+  const truth = vectorAt(shape.normals, pixel);
   yield {
     panels: [
       shaded(
@@ -146,17 +154,17 @@ export function* strips(values: Values): Generator<Drawing> {
           key: "picture",
           title: "The bust under one lamp",
           alt: "A bust under one lamp, with strips that run outward from a bright spot.",
-          legend: "drag to choose the pixel; lines: strips",
+          legend: found ? "drag to choose the pixel; lines: strips" : "no surface near this spot faces the lamp",
         },
         shape,
         intensity,
         [
-          { ink: "path", shape: "line", points: lines, isFine: true },
-          { ink: "path", shape: "dot", points: atPixel(spot, shape), size: 1.6 },
+          { ink: "normal", shape: "line", points: lines, isFine: true },
+          { ink: "normal", shape: "dot", points: atPixel(spot, shape), size: 1.6 },
           { ink: "pixel", shape: "ring", points: atPixel(pixel, shape), size: 3 },
         ],
       ),
-      reflectanceMap([...lamp], brightness, vectorAt(shape.normals, pixel)),
+      reflectanceMap([...lamp], brightness, truth),
       {
         kind: "cloud",
         key: "cloud",
@@ -164,11 +172,11 @@ export function* strips(values: Values): Generator<Drawing> {
         alt: "The strips as points in space beside the points of the true surface.",
         sets: [
           { name: "true surface", ink: "truth", points: surfacePoints(shape, origin) },
-          { name: "strips", ink: "path", points: Float32Array.from(points.flat()) },
+          { name: "strips", ink: "normal", points: Float32Array.from(points.flat()) },
         ],
       },
       plot(
-        { key: "along", title: "Along the longest strip", alt: "Heights along one strip: true and found." },
+        { key: "along", title: "Along one strip", alt: "Heights along one strip: true and found." },
         "way, px",
         "height, px",
         profile(all, heightAt),
@@ -176,10 +184,13 @@ export function* strips(values: Values): Generator<Drawing> {
     ],
     numbers: {
       intensity: brightness,
+      strips: all.length,
+      // How far the intensity of the pixel's true slopes is off, and the pieces of its isophote in the map.
+      off: Math.abs((shadeLamp(lamp, Float32Array.from(truth))[0] ?? NaN) - brightness),
+      curve: contour(shadeLamp(lamp, slopes), SIDE, SIDE, brightness).length / 6,
       near: middleOf(all.flatMap((strip) => strip.filter((point) => wayOf(point, spot) <= BESIDE).map(errorOf))),
       far: middleOf(all.flatMap((strip) => strip.filter((point) => wayOf(point, spot) > BESIDE).map(errorOf))),
     },
-    words: { status: found ? `${all.length} strips` : "no surface near this spot faces the lamp" },
   };
 }
 

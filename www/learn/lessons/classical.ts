@@ -109,9 +109,8 @@ export const strips: Lesson = {
         row(mo("("), dot("x"), mo(","), dot("y"), mo(")"), mo("="), mo("∇"), mi("R")),
         comma(),
         row(mo("("), dot("p"), mo(","), dot("q"), mo(")"), mo("="), mo("∇"), symbol("E")),
-        comma(),
-        row(dot("z"), mo("="), mi("p"), sub(mi("R"), mi("p")), mo("+"), mi("q"), sub(mi("R"), mi("q"))),
       ),
+      block(row(dot("z"), mo("="), mi("p"), sub(mi("R"), mi("p")), mo("+"), mi("q"), sub(mi("R"), mi("q")))),
     ),
   formulaWords:
     "The intensity of the picture is the reflectance map of the slopes. A strip moves in the picture along the gradient of the map, and its slopes change along the gradient of the picture.",
@@ -123,7 +122,7 @@ export const strips: Lesson = {
   ],
   tasks: [
     "Take the spot for a dent. The same picture now gives a wrong surface, and the error near the spot rises.",
-    "Start from the nose. Within the first 10 px the strips follow the surface; farther away they go astray.",
+    "Start from the chin. Within the first 10 px the strips follow the surface; farther away they go astray.",
     "Drag the pixel across the face. Its isophote in the reflectance map always runs through the cross, its true slopes.",
   ],
   tries: [
@@ -154,7 +153,7 @@ export const strips: Lesson = {
     { key: "near", label: "Error of the height, first 10 px", unit: "px", digits: 2, ink: "error" },
     { key: "far", label: "Farther away", unit: "px", digits: 2, ink: "error" },
     { key: "intensity", label: "Intensity of the pixel", digits: 2, ink: "light" },
-    { key: "status", label: "Strips" },
+    { key: "strips", label: "Strips", digits: 0, ink: "normal" },
   ],
   drags: { picture: { x: "px", y: "py" } },
   more: {

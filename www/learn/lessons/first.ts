@@ -33,7 +33,7 @@ export const normal: Lesson = {
   formulaWords: "The normal has three components, whose squares add up to 1.",
   text: [
     "Put a pencil upright on a surface: it points along the normal {n}. The normal says which way the surface faces at that point, and nothing about where the point is. Its length is 1, so of its three components only two are free.",
-    "This page measures x to the right, y down and z away from the camera. A surface that the camera can see faces the camera, so its n_z is negative. Straight toward the camera the normal is (0, 0, −1), and the arrow in the figure shrinks to a dot. At the outline of a ball the normal is perpendicular to the line of sight.",
+    "This page measures x to the right, y down and z away from the camera. A surface that the camera can see faces the camera, so its {n_z} is negative. Straight toward the camera the normal is (0, 0, −1), and the arrow in the figure shrinks to a dot. At the outline of a ball the normal is perpendicular to the line of sight.",
     "A normal map turns the three components into red, green and blue: the farther a normal points to the right, the more red; up, the more green; toward the camera, the more blue. A surface that faces the camera is light blue. The ball in the figure shows every visible normal once, so it is the key to all such maps.",
     "Turn the surface, and its normals turn with it. Point at the nose before and after: it is the same point of the bust, but its normal has another colour. Brightness plays no part in a normal map. The next lessons ask how much of it brightness reveals.",
   ],
@@ -75,9 +75,9 @@ export const normal: Lesson = {
     { kind: "slider", key: "py", label: "Point, down", min: 0, max: 1, step: 0.01, initial: 0.3 },
   ],
   readouts: [
-    { key: "nx", label: "n_x, to the right", digits: 2, ink: "normal" },
-    { key: "ny", label: "n_y, down", digits: 2, ink: "normal" },
-    { key: "nz", label: "n_z, away", digits: 2, ink: "normal" },
+    { key: "nx", label: "To the right (x)", digits: 2, ink: "normal" },
+    { key: "ny", label: "Down (y)", digits: 2, ink: "normal" },
+    { key: "nz", label: "Away (z)", digits: 2, ink: "normal" },
     { key: "tilt", label: "Angle to the line of sight", unit: "°", digits: 0, ink: "normal" },
     { key: "red", label: "Red", digits: 0, ink: "red" },
     { key: "green", label: "Green", digits: 0, ink: "green" },

@@ -107,7 +107,8 @@ export const failure: Lesson = {
       choices: ["Converged, with a small sigma", "Lost, and which rotation cannot be seen", "A wrong pose, converged"],
       right: 1,
       reveal: { set: { amount: 100 } },
-      answer: "Lost, and the rotation about z is not observable. The residual is small, so it would not have warned.",
+      answer:
+        "Lost, and which rotation cannot be seen: that about z. The residual is small, so it would not have warned.",
     },
   ],
   can: "You can judge from status, sigma and alternative poses whether a result can be trusted.",
