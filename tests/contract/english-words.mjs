@@ -3,7 +3,7 @@ import { readFileSync, readdirSync } from "node:fs";
 import { inRoot } from "../../scripts/shell.mjs";
 import { exercises, learn, lessons } from "./lesson-figures.mjs";
 
-const { READ, SAME_UNITS, STATUSES, SYMBOLS, nameOf, placeOf, wordsOf } = learn;
+const { READ, SAME_UNITS, STATUSES, SYMBOLS, chapters, nameOf, placeOf, wordsOf } = learn;
 
 /** Not empty, or undefined. */
 const full = (entries) => {
@@ -23,7 +23,7 @@ function labelsOf(label, { controls }) {
 /** The texts within a part of a lesson; `field` is the nearest field's name. */
 function textsOf(part, lesson, field) {
   if (typeof part === "string")
-    return READ.has(field) && !(field === "unit" && SAME_UNITS.includes(part)) ? part : undefined;
+    return READ.has(field) && !(field === "unit" && SAME_UNITS.includes(part.trim())) ? part : undefined;
   if (typeof part === "function") return field === "label" ? labelsOf(part, lesson) : undefined;
   if (Array.isArray(part))
     return full(
@@ -97,6 +97,7 @@ const DIRECTIONS = [
 export function english() {
   const { runs } = JSON.parse(readFileSync(inRoot("src/codes.json"), "utf8"));
   return {
+    chapters: Object.fromEntries(chapters.map(({ id, title }) => [id, title])),
     lessons: Object.fromEntries(lessons.map((lesson) => [lesson.id, textsOf(lesson, lesson)])),
     exercises: textsOf(exercises),
     figures: figuresOf(),

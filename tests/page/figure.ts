@@ -2,7 +2,10 @@
 
 import { expect, type Locator, type Page } from "@playwright/test";
 
-export const LESSONS = ["pixel", "grey", "colours", "surface", "prior", "pose", "sensor", "paint", "failure"];
+export const LESSONS = [
+  ...["normal", "lambert", "relief", "strips", "orders", "pixel", "grey", "colours"],
+  ...["surface", "prior", "pose", "sensor", "paint", "failure"],
+];
 
 export const figure = (page: Page): Locator => page.locator(".learn-figure");
 

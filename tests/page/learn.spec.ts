@@ -165,7 +165,7 @@ test("the Lab alone loads nothing of Learn, and Learn leaves the Lab alone", asy
   await lab.open();
   const before = asked.filter((path) => /\.(js|css)$/.test(path)).length;
   await page.locator("#to-learn").click();
-  await expect(page.getByRole("heading", { name: say("lessons.pixel.title", "What a pixel shows") })).toBeVisible();
+  await expect(page.getByRole("heading", { name: say("lessons.normal.title", "What a normal is") })).toBeVisible();
   await settled(page);
   expect(asked.filter((path) => /\.(js|css)$/.test(path)).length).toBeGreaterThan(before);
   await expect(page.getByRole("button", { name: "Play" })).toBeHidden();
@@ -173,10 +173,9 @@ test("the Lab alone loads nothing of Learn, and Learn leaves the Lab alone", asy
   await lab.reaches("ready");
 });
 
-test("1: the light and the albedo change the predicted colour, and a drag chooses the normal", async ({
+test("6: the light and the albedo change the predicted colour, and a drag chooses the normal", async ({
   lab,
   page,
-  say,
 }) => {
   await open(page, "at=pixel");
   const red = await number(page, "red");
@@ -186,13 +185,6 @@ test("1: the light and the albedo change the predicted colour, and a drag choose
   await slide(page, "beta", 60);
   await settled(page);
   expect(await fingerprint(page, "bust")).not.toBe(bust);
-  // The orders add up to the whole except for the albedo, and each is labelled with its number.
-  await expect(page.locator(".learn-numbers dt").filter({ hasText: / \d$/ })).toHaveText(
-    [0, 1, 2].map((order) => say(`lessons.pixel.readouts.order${order}.label`, `log S, green: order ${order}`)),
-  );
-  const parts = (await number(page, "order0")) + (await number(page, "order1")) + (await number(page, "order2"));
-  expect(parts + Math.log(0.5)).toBeCloseTo(await number(page, "green"), 4);
-
   const ball = await page.locator('[data-panel="ball"] .learn-canvas').boundingBox();
   if (!ball) throw new Error("There is no ball.");
   await page.mouse.move(ball.x + ball.width / 2, ball.y + ball.height / 2);
@@ -203,7 +195,7 @@ test("1: the light and the albedo change the predicted colour, and a drag choose
   expect(lab.complaints).toEqual([]);
 });
 
-test("2: a dent under the turned lamp is the bump's picture", async ({ lab, page }) => {
+test("7: a dent under the turned lamp is the bump's picture", async ({ lab, page }) => {
   await open(page, "at=grey&turn=60");
   const apart = await number(page, "difference");
   expect(apart).toBeGreaterThan(0.05);
@@ -215,7 +207,7 @@ test("2: a dent under the turned lamp is the bump's picture", async ({ lab, page
   expect(lab.complaints).toEqual([]);
 });
 
-test("3: colour makes the curve short and the normals right; noise does not", async ({ lab, page }) => {
+test("8: colour makes the curve short and the normals right; noise does not", async ({ lab, page }) => {
   await open(page, "at=colours&colour=0&noise=0.01");
   const [grey, curve] = [await number(page, "degrees"), await number(page, "explained")];
   await slide(page, "colour", 1);
@@ -230,7 +222,7 @@ test("3: colour makes the curve short and the normals right; noise does not", as
   expect(lab.complaints).toEqual([]);
 });
 
-test("4: a step leaves no trace, robust weights bring it back where a way leads around it", async ({ lab, page }) => {
+test("9: a step leaves no trace, robust weights bring it back where a way leads around it", async ({ lab, page }) => {
   await open(page, "at=surface&step=0");
   expect(await number(page, "error")).toBeLessThan(0.2);
   await slide(page, "step", 8);
@@ -245,7 +237,7 @@ test("4: a step leaves no trace, robust weights bring it back where a way leads 
   expect(lab.complaints).toEqual([]);
 });
 
-test("5: more prior, better normals; none at all where its weight is zero", LONG, async ({ lab, page }) => {
+test("10: more prior, better normals; none at all where its weight is zero", LONG, async ({ lab, page }) => {
   await open(page, "at=prior&share=0");
   const none = await number(page, "degrees");
   await slide(page, "share", 50);
@@ -262,7 +254,7 @@ test("5: more prior, better normals; none at all where its weight is zero", LONG
 });
 
 test(
-  "6: a wrong pose leaves a residual, valleys merge, and registration comes home",
+  "11: a wrong pose leaves a residual, valleys merge, and registration comes home",
   LONG,
   async ({ lab, page, say }) => {
     await open(page, "at=pose&offset=0");
@@ -292,7 +284,7 @@ test(
   },
 );
 
-test("5, 6: a curve's axes stand still from its first drawing to its last", LONG, async ({ page }) => {
+test("10, 11: a curve's axes stand still from its first drawing to its last", LONG, async ({ page }) => {
   // Records every text of the plots as it is drawn.
   await page.addInitScript(() => {
     const seen = new Set<string>();
@@ -320,7 +312,7 @@ test("5, 6: a curve's axes stand still from its first drawing to its last", LONG
   }
 });
 
-test("7: the refined depth is better than the measured one, as far as the picture is good", async ({ lab, page }) => {
+test("12: the refined depth is better than the measured one, as far as the picture is good", async ({ lab, page }) => {
   await open(page, "at=sensor&noise=0.3&holes=10");
   const before = await number(page, "before");
   expect(await number(page, "after")).toBeLessThan(0.7 * before);
@@ -335,7 +327,7 @@ test("7: the refined depth is better than the measured one, as far as the pictur
   expect(lab.complaints).toEqual([]);
 });
 
-test("8: paint goes into the albedo, a shadow into what is left over", async ({ lab, page }) => {
+test("13: paint goes into the albedo, a shadow into what is left over", async ({ lab, page }) => {
   await open(page, "at=paint&paint=0.8");
   expect(await number(page, "likeness")).toBeGreaterThan(0.7);
   const lit = await number(page, "lit");
@@ -346,7 +338,7 @@ test("8: paint goes into the albedo, a shadow into what is left over", async ({ 
   expect(lab.complaints).toEqual([]);
 });
 
-test("9: what can't be seen is said", LONG, async ({ lab, page, say }) => {
+test("14: what can't be seen is said", LONG, async ({ lab, page, say }) => {
   await open(page, "at=failure&case=overlap&amount=0");
   await expect(page.locator('[data-number="status"]')).toHaveText(say("statuses.converged", "converged"));
   expect(await number(page, "error")).toBeLessThan(1);

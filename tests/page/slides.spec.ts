@@ -26,15 +26,13 @@ test("each slide fits its screen, whatever its figure has to say", LONG, async (
 });
 
 test("before the first slide and after the last there is none, and the buttons say so", async ({ page, say }) => {
-  await page.goto("./#learn&at=pixel&slides");
+  await page.goto("./#learn&at=normal&slides");
   const previous = page.getByRole("button", { name: say("interface.slides.previous", "Previous lesson") });
   const next = page.getByRole("button", { name: say("interface.slides.next", "Next lesson") });
-  await expect(page.getByRole("heading", { name: say("lessons.pixel.title", "What a pixel shows") })).toBeVisible();
+  await expect(page.getByRole("heading", { name: say("lessons.normal.title", "What a normal is") })).toBeVisible();
   await expect(previous).toBeDisabled();
   await next.click();
-  await expect(
-    page.getByRole("heading", { name: say("lessons.grey.title", "One grey light is not enough") }),
-  ).toBeVisible();
+  await expect(page.getByRole("heading", { name: say("lessons.lambert.title", "Light and angle") })).toBeVisible();
   await expect(previous).toBeEnabled();
   await page.goto("./#learn&at=paint&slides");
   await expect(page.getByRole("heading", { name: say("lessons.paint.title", "Shadows and paint") })).toBeVisible();

@@ -1,6 +1,5 @@
 /** The parts of a lesson. */
 
-import { make } from "../dom";
 import { decimals, withUnit } from "./numbers";
 import type { Ink, LessonId, Values } from "./protocol";
 import type { References } from "./references";
@@ -45,6 +44,27 @@ export interface Readout {
   hint?: string;
 }
 
+/** What a button does: it sets controls at once, and then moves one slider slowly, so that the change can be watched. */
+export interface Try {
+  set?: Values;
+  sweep?: { key: string; to: number };
+}
+
+/** A question before a surprise, which is answered by a choice or a number and then compared with the figure. */
+export interface Guess {
+  question: string;
+  /** The state of the figure that the question is about. */
+  at: Values;
+  choices?: readonly string[];
+  /** Which of the choices is right. */
+  right?: number;
+  /** The number of the figure that is asked for, and how near counts as right. */
+  number?: { key: string; unit?: string; digits: number; within: number };
+  /** What reveals the answer. */
+  reveal: Try;
+  answer: string;
+}
+
 export interface Lesson {
   id: LessonId;
   title: string;
@@ -54,12 +74,18 @@ export interface Lesson {
   /** The formula in words. */
   formulaWords: string;
   text: readonly string[];
-  /** Things to try with the figure. */
+  /** Things to try with the figure: the first sentence says what its button does, the rest what to look for. */
   tasks: readonly string[];
+  /** What the buttons of the tasks do, in the same order. */
+  tries: readonly Try[];
+  /** Questions to be answered before the figure reveals it. */
+  guesses: readonly Guess[];
+  /** What one can do after the lesson, in one sentence. */
+  can: string;
   controls: readonly Control[];
   readouts: readonly Readout[];
-  /** Panels on which a drag sets two sliders. */
-  drags: Readonly<Record<string, { x: string; y: string }>>;
+  /** Panels on which a drag sets two sliders; those that follow need no button. */
+  drags: Readonly<Record<string, { x: string; y: string; follows?: boolean }>>;
   /** Where the method is written down. */
   more: References;
 }
@@ -117,6 +143,3 @@ export function valuesFrom(lesson: Lesson, asked: URLSearchParams): Values {
   }
   return values;
 }
-
-export const list = (kind: "ul" | "ol", items: readonly (Node | string)[][]): HTMLElement =>
-  make(kind, {}, ...items.map((item) => make("li", {}, ...item)));

@@ -1,4 +1,4 @@
-/** Learn: nine lessons, each a short text beside a live figure, with exercises and slides. */
+/** Learn: lessons in three chapters, each a short text beside a live figure, with exercises and slides. */
 
 import "../style/learn.css";
 import "../style/embed.css";
@@ -12,16 +12,20 @@ import { Controls } from "./controls";
 import { Embed } from "./embed";
 import { exerciseList } from "./exercises";
 import { Figure } from "./figure";
+import { Guesses } from "./guesses";
 import { languageInAddress } from "./language";
-import { computed, list, valuesFrom, initialValues, type Lesson } from "./lesson";
-import { beside, lessonNamed, lessons } from "./lessons";
+import { computed, valuesFrom, initialValues, type Lesson } from "./lesson";
+import { beside, chapters, lessonNamed, lessons } from "./lessons";
+import { lightTogether } from "./lit";
 import { sentence } from "./maths";
+import { Player } from "./player";
 import type { Drawing, LessonId, Values } from "./protocol";
 import { Readouts } from "./readouts";
 import { referencesOf } from "./references";
 import { Session } from "./session";
 import { Slides, type Slide } from "./slides";
 import { drawingIn } from "./translation";
+import { tryList } from "./tries";
 
 /** A lesson on the page; its values stay when another one is opened. */
 interface Shown {
@@ -30,6 +34,8 @@ interface Shown {
   figure: Figure;
   controls: Controls;
   readouts: Readouts;
+  player: Player;
+  guesses: Guesses;
   box: HTMLElement;
   alert: HTMLElement;
   embed: Embed;
@@ -43,7 +49,7 @@ export class LearnPage {
   });
   readonly #kept: Map<LessonId, Values>;
   readonly #links = new Map<LessonId, HTMLAnchorElement>();
-  readonly #contents = make("ol", {});
+  readonly #contents = make("div", { class: "learn-chapters" });
   readonly #main = make("div", { class: "learn-main" });
   readonly #exercises = exerciseList();
   readonly #exerciseLink = make("a", { href: "#learn&at=exercises" }, phrase("exercises", "Exercises"));
@@ -56,10 +62,14 @@ export class LearnPage {
   /** `tools` stand below the contents. */
   constructor(parent: HTMLElement, { kept, tools }: { kept: Map<LessonId, Values>; tools: HTMLElement[] }) {
     this.#kept = kept;
-    for (const { id, title } of lessons) {
-      const link = make("a", { href: `#learn&at=${id}` }, title);
-      this.#links.set(id, link);
-      this.#contents.append(make("li", {}, link));
+    for (const chapter of chapters) {
+      const list = make("ol", { "aria-label": chapter.title });
+      for (const { id, title } of chapter.lessons) {
+        const link = make("a", { href: `#learn&at=${id}` }, title);
+        this.#links.set(id, link);
+        list.append(make("li", {}, link));
+      }
+      this.#contents.append(make("p", { class: "learn-chapter" }, chapter.title), list);
     }
     const nav = make(
       "nav",
@@ -95,6 +105,7 @@ export class LearnPage {
   leave(): void {
     if (!this.#isOpen) return;
     this.#isOpen = false;
+    this.#shown?.player.stop();
     this.#session.end();
     this.#slides.close();
   }
@@ -125,6 +136,7 @@ export class LearnPage {
       if (!this.#slides.isOpen && this.#shown.article.parentElement !== this.#main)
         this.#main.replaceChildren(this.#shown.article);
     } else {
+      this.#shown?.player.stop();
       this.#shown = this.#make(lesson, values);
       if (this.#slides.isOpen) this.#slides.take(slideOf(this.#shown));
       else this.#main.replaceChildren(this.#shown.article);
@@ -152,57 +164,78 @@ export class LearnPage {
   }
 
   #make(lesson: Lesson, values: Values): Shown {
-    const figure = new Figure(new Set(Object.keys(lesson.drags)), (key, x, y) => this.#drag(key, x, y));
+    const followed = Object.keys(lesson.drags).filter((key) => lesson.drags[key]?.follows);
+    const figure = new Figure(new Set(Object.keys(lesson.drags)), new Set(followed), (key, x, y) =>
+      this.#drag(key, x, y),
+    );
     const controls = new Controls(lesson, values, () => this.#ask());
+    const player = new Player(lesson, controls);
     const readouts = new Readouts(lesson.readouts);
     const alert = make("p", { class: "alert", role: "alert", hidden: true });
-    const number = lessons.indexOf(lesson) + 1;
-    const formula = make(
-      "div",
-      { class: "learn-formula", role: "group", tabindex: "0", "aria-label": lesson.formulaWords },
-      lesson.formula(),
-    );
+    const look = make("p", { class: "learn-look", role: "status" });
     const box = make(
       "section",
       { class: "card learn-figure", "aria-label": phrase("figure", "Figure"), "aria-busy": "true" },
       alert,
       controls.element,
+      look,
       readouts.element,
       figure.element,
     );
-    const embed = new Embed(`${number}. ${lesson.title}`);
+    const embed = new Embed(titleOf(lesson));
     box.append(embed.source);
+    const guesses = new Guesses(lesson, {
+      set: (at) => controls.set(at),
+      reveal: (what, done) => {
+        showFigure(box);
+        player.play(what, done);
+      },
+    });
+    const tries = tryList(lesson, (what, task) => {
+      look.replaceChildren(
+        ...(task.look ? [make("strong", {}, phrase("look", "Look for this:")), " ", ...sentence(task.look)] : []),
+      );
+      showFigure(box);
+      player.play(what);
+    });
+    const article = make(
+      "article",
+      { class: "learn-lesson", "data-lesson": lesson.id },
+      this.#text(lesson, embed, guesses.elements, tries),
+      box,
+    );
+    lightTogether(article);
+    return { lesson, article, figure, controls, readouts, player, guesses, box, alert, embed, drawing: undefined };
+  }
+
+  #text(lesson: Lesson, embed: Embed, guesses: readonly HTMLElement[], tries: HTMLElement): HTMLElement {
+    const formula = make(
+      "div",
+      { class: "learn-formula", role: "group", tabindex: "0", "aria-label": lesson.formulaWords },
+      lesson.formula(),
+    );
     const slides = make("button", { type: "button", class: "learn-slides-button" }, phrase("slides", "Slides"));
     slides.addEventListener("click", () => {
       this.#startSlides();
       this.#writeAddress("another");
     });
-    const article = make(
-      "article",
-      { class: "learn-lesson", "data-lesson": lesson.id },
-      make(
-        "div",
-        { class: "learn-text" },
-        make(
-          "div",
-          { class: "learn-head" },
-          make("h2", { tabindex: "-1" }, `${number}. ${lesson.title}`),
-          embed.button,
-          slides,
-        ),
-        embed.element,
-        make("p", { class: "learn-gist" }, lesson.gist),
-        formula,
-        ...lesson.text.map((words) => make("p", {}, ...sentence(words))),
-        make("h3", {}, phrase("try", "Try")),
-        list("ul", lesson.tasks.map(sentence)),
-        make("h3", {}, phrase("more", "More")),
-        referencesOf(lesson.more),
-        this.#ends(lesson),
-      ),
-      box,
+    return make(
+      "div",
+      { class: "learn-text" },
+      make("div", { class: "learn-head" }, make("h2", { tabindex: "-1" }, titleOf(lesson)), embed.button, slides),
+      embed.element,
+      make("p", { class: "learn-gist" }, lesson.gist),
+      formula,
+      ...lesson.text.map((words) => make("p", {}, ...sentence(words))),
+      make("h3", {}, phrase("guess", "Predict, then look")),
+      ...guesses,
+      make("h3", {}, phrase("try", "Try")),
+      tries,
+      make("p", { class: "learn-can" }, make("strong", {}, `${phrase("can", "Now")}: `), lesson.can),
+      make("h3", {}, phrase("more", "More")),
+      referencesOf(lesson.more),
+      this.#ends(lesson),
     );
-    return { lesson, article, figure, controls, readouts, box, alert, embed, drawing: undefined };
   }
 
   #ends({ id }: Lesson): HTMLElement {
@@ -248,6 +281,7 @@ export class LearnPage {
     const inWords = drawingIn(shown.lesson.id, drawing);
     shown.figure.show(inWords);
     shown.readouts.show(inWords);
+    if (done && !shown.player.isPlaying) shown.guesses.drawn(drawing, shown.controls.values);
     shown.embed.fit(drawing.panels.some(({ kind }) => kind === "plot"));
     shown.box.setAttribute("aria-busy", String(!done));
   }
@@ -300,6 +334,14 @@ export class LearnPage {
     if (entry === "same") history.replaceState(null, "", address);
     else history.pushState(null, "", address);
   }
+}
+
+const titleOf = (lesson: Lesson): string => `${lessons.indexOf(lesson) + 1}. ${lesson.title}`;
+
+/** On a phone the figure may be out of view when a button below it is pressed. */
+function showFigure(box: HTMLElement): void {
+  const { top, height } = box.getBoundingClientRect();
+  if (top < 0 || top + Math.min(height, innerHeight / 2) > innerHeight) box.scrollIntoView({ block: "start" });
 }
 
 const slideOf = ({ article, lesson: { id, title } }: Shown): Slide => ({

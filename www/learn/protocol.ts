@@ -6,10 +6,25 @@ import type { Details } from "../words";
 /** The controls of a lesson by name; a box that is ticked is 1. */
 export type Values = Readonly<Record<string, number | string>>;
 
-export const LESSONS = ["pixel", "grey", "colours", "surface", "prior", "pose", "sensor", "paint", "failure"] as const;
+export const LESSONS = [
+  "normal",
+  "lambert",
+  "relief",
+  "strips",
+  "orders",
+  "pixel",
+  "grey",
+  "colours",
+  "surface",
+  "prior",
+  "pose",
+  "sensor",
+  "paint",
+  "failure",
+] as const;
 export type LessonId = (typeof LESSONS)[number];
 
-/** Ends of the slider of lesson 9: the narrowest depth map as a share of its width, and the largest rotation in degrees. */
+/** Ends of the slider of the last lesson: the narrowest depth map as a share of its width, and the largest rotation in degrees. */
 export const [LEAST_OVERLAP, LARGEST_TURN] = [0.08, 90];
 
 /** Marks on a picture; the style sheet gives each its colour, the same as that of its symbol in the text. */
@@ -28,15 +43,18 @@ export type Ink =
   | "red"
   | "green"
   | "blue"
-  | "pixel";
+  | "pixel"
+  | "isophote";
 
-/** Points of a picture, x and y in turn, from 0 at the left and the top to 1. */
+/** Points of a picture, x and y in turn, from 0 at the left and the top to 1; NaN leaves a gap in a line. */
 export interface Mark {
   ink: Ink;
   shape: "dot" | "ring" | "cross" | "line";
   points: number[];
   /** Radius of dots and rings in hundredths of the picture. */
   size?: number;
+  /** A thin line without a dark edge, for lines that lie close to each other. */
+  isFine?: boolean;
 }
 
 interface Common {

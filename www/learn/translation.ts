@@ -6,7 +6,7 @@ import type { Drawing, Panel, Said } from "./protocol";
 /** Fields whose strings are read by people; a choice, a pair of strings, is read by its second one. */
 export const READ = new Set([
   ...["title", "gist", "formulaWords", "text", "tasks", "label", "hint", "unit", "choices", "paper"],
-  ...["links", "question", "answer"],
+  ...["can", "links", "question", "answer"],
 ]);
 /** Units that are the same in all languages. */
 export const SAME_UNITS: readonly string[] = ["°", "%", "px"];
@@ -38,7 +38,7 @@ function over(texts: unknown, words: unknown, field = ""): unknown {
   if (Array.isArray(texts))
     return texts.map((item, index) => {
       const own = named[nameOf(item, index)];
-      return PAIRS.has(field) ? [item[0], over(item[1], own)] : over(item, own);
+      return PAIRS.has(field) && Array.isArray(item) ? [item[0], over(item[1], own)] : over(item, own);
     });
   if (!isPlain(texts)) return texts;
   return Object.fromEntries(Object.entries(texts).map(([key, text]) => [key, over(text, named[key], key)]));

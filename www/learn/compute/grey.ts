@@ -8,7 +8,7 @@ import { rms } from "./measure";
 import { lightNamed, logAt, numberOf, pixelAt, saturated, scene, vectorAt } from "./scenes";
 
 const SIDE = 96;
-const SIZE = 96;
+const SIZE = 160;
 /** Heights of the plate's middle and of the bump, pixels of the relief. */
 const PLATE = 40;
 const BUMP = 22;
