@@ -10,7 +10,7 @@ const names = readdirSync(inRoot(FOLDER));
 
 /** Words that are the same in English, by language. */
 const SAME = {
-  de: ["Albedo", "B", "G", "Link", "R", "Status", "log S", "nx"],
+  de: ["Albedo", "B", "G", "Link", "Orange", "R", "Status", "log S", "nx"],
 };
 /** The sign before decimals. */
 const DECIMAL_SIGN = { de: "," };

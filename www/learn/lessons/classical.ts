@@ -2,6 +2,7 @@
 
 import type { Lesson } from "../lesson";
 import { block, comma, lines, mi, mo, row, sub, sup, symbol } from "../maths";
+import { decimals } from "../numbers";
 import { stretchOf } from "../stretch";
 import { lampSliders } from "./first";
 
@@ -74,7 +75,7 @@ export const relief: Lesson = {
       max: 1.5,
       step: 0.1,
       initial: 0.5,
-      reads: (value) => `${stretchOf(value).toFixed(1).replace("-", "−")} ×`,
+      reads: (value) => `${decimals(stretchOf(value), 1)} ×`,
     },
     { kind: "slider", key: "slope", label: "Added tilt", min: -0.5, max: 0.5, step: 0.05, initial: 0 },
     { kind: "box", key: "lamp", label: "Move its lamp to match", initial: 1 },
