@@ -36,7 +36,7 @@ export const normal = [
     const [left, right] = [-60, 60].map((turn) => figure(`normal&surface=ball&px=0.4&py=0.4&turn=${turn}`));
     return ["red", "green", "blue"].every((key) => left[key] === right[key]) ? "stays the same" : "turns with it";
   }),
-  claim("normal", "At the outline of a ball the normal is [perpendicular|parallel] to the line of sight", () =>
+  claim("normal", "At the silhouette of a ball the normal is [perpendicular|parallel] to the line of sight", () =>
     numberOf(state(0.02), "tilt") > 80 ? "perpendicular" : "parallel",
   ),
   claim("normal", "in the normal map?\n[Turquoise|Orange|Purple].", () =>

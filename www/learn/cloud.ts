@@ -20,8 +20,9 @@ export class Cloud {
 
   constructor() {
     const id = freshId("learn-turn");
-    this.#turn = make("input", { id, type: "range", min: -90, max: 90, step: 5, value: FIRST_TURN });
+    this.#turn = make("input", { id, type: "range", min: -90, max: 90, step: 1, value: FIRST_TURN });
     this.#turn.addEventListener("input", () => this.#draw());
+    this.#byHand();
     const turn = make(
       "div",
       { class: "learn-turn" },
@@ -32,7 +33,7 @@ export class Cloud {
       "figure",
       { class: "learn-panel" },
       this.#title,
-      make("div", { class: "learn-canvas plain" }, this.#canvas),
+      make("div", { class: "learn-canvas plain learn-turned" }, this.#canvas),
       make("div", { class: "learn-notes" }, turn, this.#legend),
     );
   }
@@ -47,6 +48,18 @@ export class Cloud {
       ...panel.sets.map(({ name, ink }) => make("span", { class: `learn-key learn-ink-${ink}` }, name)),
     );
     this.#draw();
+  }
+
+  /** A drag across the whole picture is the whole range of the slider. */
+  #byHand(): void {
+    this.#canvas.addEventListener("pointerdown", (event) => {
+      if (event.button === 0) this.#canvas.setPointerCapture(event.pointerId);
+    });
+    this.#canvas.addEventListener("pointermove", ({ pointerId, movementX }) => {
+      if (!this.#canvas.hasPointerCapture(pointerId)) return;
+      this.#turn.valueAsNumber += (180 * movementX) / this.#canvas.clientWidth;
+      this.#draw();
+    });
   }
 
   #draw(): void {

@@ -4,7 +4,7 @@ import { freshId, make } from "../dom";
 import { inFigures, phrase } from "../words";
 import type { Guess, Lesson, Try } from "./lesson";
 import { sentence } from "./maths";
-import { decimals, withUnit } from "./numbers";
+import { decimals, withUnit } from "./digits";
 import type { Drawing, Values } from "./protocol";
 
 interface Hooks {

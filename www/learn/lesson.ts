@@ -1,6 +1,6 @@
 /** The parts of a lesson. */
 
-import { decimals, withUnit } from "./numbers";
+import { decimals, withUnit } from "./digits";
 import type { Ink, LessonId, Values } from "./protocol";
 import type { References } from "./references";
 

@@ -86,12 +86,21 @@ export const block = (...children: Element[]): Element => math("math", { display
 /** Formulas below each other, because one line would be wider than the text of a small window. */
 export const lines = (...blocks: Element[]): Element => make("div", {}, ...blocks);
 
-/** A sentence in which {n} is the symbol n, {−n_x} its negative component along x, and {link|address} a link. */
+/**
+ * A sentence in which {n} is the symbol n, {−n_x} its negative component along x, {link|address} a link, and {=key} the value of the control
+ * with that key, which can be dragged.
+ */
 export function sentence(words: string): (Node | string)[] {
   return words.split(/(\{[^}]+\})/).map((part) => {
     // A number and its sign stay on one line.
     if (!part.startsWith("{")) return part.replace(/(\d) %/g, "$1\u00a0%");
     const inside = part.slice(1, -1);
+    if (inside.startsWith("="))
+      return make("span", {
+        class: "learn-number",
+        "data-control": inside.slice(1),
+        title: phrase("drag", "Drag to the left or to the right"),
+      });
     const [label = "", address] = inside.split("|");
     if (address !== undefined) return make("a", { href: address }, label);
     const [, minus, name = "", index] = /^(−?)([^_]+)(?:_(.+))?$/.exec(inside) ?? [];

@@ -1,15 +1,43 @@
-/** Numbers as the language of the page writes them. */
+/** Numbers in a text that show the value of a control and can be dragged sideways. Keyboards can use the control itself. */
 
-import { decimals as plainDecimals, short as plainShort } from "../draw/numbers";
-import { inFigures, phrase } from "../words";
+import type { Controls } from "./controls";
+import { shown, type Lesson, type SliderControl } from "./lesson";
+import type { Values } from "./protocol";
 
-export const decimals = (value: number | null | undefined, count: number): string =>
-  inFigures(plainDecimals(value, count));
-export const short = (value: number): string => inFigures(plainShort(value));
+/** Pixels of a drag over the whole range of a slider. */
+const RANGE = 300;
 
-/** A number before its unit; only degrees and, in some languages, percent follow without a space. */
-export function withUnit(number: string, unit: string | undefined): string {
-  if (unit === undefined) return number;
-  if (unit === "%") return phrase("percent", "{number}%", { number });
-  return unit === "°" ? `${number}°` : `${number} ${unit}`;
+export class TextNumbers {
+  readonly #shown: readonly { element: HTMLElement; slider: SliderControl }[];
+
+  /** Takes the numbers that the text has for sliders of the lesson. */
+  constructor(text: HTMLElement, { controls }: Lesson, set: Controls) {
+    this.#shown = [...text.querySelectorAll<HTMLElement>("[data-control]")].flatMap((element) => {
+      const slider = controls.find(({ key }) => key === element.dataset.control);
+      if (slider?.kind !== "slider") return [];
+      draggable(element, slider, set);
+      return [{ element, slider }];
+    });
+  }
+
+  show(values: Values): void {
+    for (const { element, slider } of this.#shown)
+      element.textContent = shown(slider, Number(values[slider.key] ?? slider.initial), values);
+  }
+}
+
+function draggable(element: HTMLElement, { key, min, max, step }: SliderControl, controls: Controls): void {
+  let [from, start] = [0, 0];
+  element.addEventListener("pointerdown", (event) => {
+    if (event.button !== 0) return;
+    event.preventDefault();
+    element.setPointerCapture(event.pointerId);
+    [from, start] = [event.clientX, Number(controls.values[key])];
+  });
+  element.addEventListener("pointermove", (event) => {
+    if (!element.hasPointerCapture(event.pointerId)) return;
+    const value = start + ((event.clientX - from) / RANGE) * (max - min);
+    const whole = min + Math.round((Math.min(max, Math.max(min, value)) - min) / step) * step;
+    controls.set({ [key]: Number(whole.toFixed(6)) });
+  });
 }

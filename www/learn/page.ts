@@ -18,6 +18,7 @@ import { computed, valuesFrom, initialValues, type Lesson } from "./lesson";
 import { beside, chapters, lessonNamed, lessons } from "./lessons";
 import { lightTogether } from "./lit";
 import { sentence } from "./maths";
+import { TextNumbers } from "./numbers";
 import { Player } from "./player";
 import type { Drawing, LessonId, Values } from "./protocol";
 import { Readouts } from "./readouts";
@@ -36,6 +37,7 @@ interface Shown {
   readouts: Readouts;
   player: Player;
   guesses: Guesses;
+  numbers: TextNumbers;
   box: HTMLElement;
   alert: HTMLElement;
   embed: Embed;
@@ -198,14 +200,12 @@ export class LearnPage {
       showFigure(box);
       player.play(what);
     });
-    const article = make(
-      "article",
-      { class: "learn-lesson", "data-lesson": lesson.id },
-      this.#text(lesson, embed, guesses.elements, tries),
-      box,
-    );
+    const text = this.#text(lesson, embed, guesses.elements, tries);
+    const numbers = new TextNumbers(text, lesson, controls);
+    const article = make("article", { class: "learn-lesson", "data-lesson": lesson.id }, text, box);
     lightTogether(article);
-    return { lesson, article, figure, controls, readouts, player, guesses, box, alert, embed, drawing: undefined };
+    const parts = { figure, controls, readouts, player, guesses, numbers, embed };
+    return { ...parts, lesson, article, box, alert, drawing: undefined };
   }
 
   #text(lesson: Lesson, embed: Embed, guesses: readonly HTMLElement[], tries: HTMLElement): HTMLElement {
@@ -268,6 +268,7 @@ export class LearnPage {
     const shown = this.#shown;
     if (!shown) return;
     this.#kept.set(shown.lesson.id, shown.controls.values);
+    shown.numbers.show(shown.controls.values);
     shown.box.setAttribute("aria-busy", "true");
     this.#session.ask(shown.lesson.id, computed(shown.lesson, shown.controls.values));
     this.#writeAddress();

@@ -1,7 +1,7 @@
 /** Curves in a box with two axes, drawn as SVG so that they take the page's colours. */
 
 import { make } from "../dom";
-import { short } from "./numbers";
+import { short } from "./digits";
 import type { Panel, PlotPanel } from "./protocol";
 import { svg } from "./svg";
 

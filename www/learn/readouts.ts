@@ -2,7 +2,7 @@
 
 import { make } from "../dom";
 import type { Readout } from "./lesson";
-import { decimals, withUnit } from "./numbers";
+import { decimals, withUnit } from "./digits";
 import type { Drawing } from "./protocol";
 
 export class Readouts {

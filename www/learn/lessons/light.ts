@@ -15,8 +15,8 @@ export const pixel: Lesson = {
     "The logarithm of the intensity of colour j is the log albedo plus a quadratic form of the normal, whose matrix is the light of that colour.",
   text: [
     "A matte surface under one distant lamp follows Lambert's law: its intensity is the albedo times {n}·l, the cosine of the angle between the unit normal {n} and the direction l of the lamp. Light from many directions adds up. So a pixel's intensity {S} in red, green and blue depends on its normal, on the albedo (how much light the surface reflects; {a} is its logarithm) and on the light {L}. It does not depend on the position of the pixel in the picture.",
-    "Each colour has its own light {M}. A lamp that is red on one side and blue on the other gives each direction a colour of its own, and so the colour of a pixel says more about its normal than its brightness does. The ball shows the colour of every normal that the camera can see. In the section, each curve is one colour.",
-    "Under this model a darker surface is the same surface with a smaller {a}: all three logarithms fall by the same number. In a picture, a dark surface in bright light and a bright one in dim light are therefore the same. The model leaves out cast shadows, highlights and light that other parts of the object reflect.",
+    "Each colour has its own light {M}. A lamp that is red on one side and blue on the other gives each direction another colour, and so the colour of a pixel says more about its normal than its brightness does. The ball shows the colour of every normal that the camera can see. In the section, each curve is one colour.",
+    "Under this model a darker surface is the same surface with a smaller {a}: all three logarithms fall by the same number. Here the albedo is {=albedo}. In a picture, a dark surface in bright light and a bright one in dim light are therefore the same. The model leaves out cast shadows, highlights and light that other parts of the object reflect.",
   ],
   tasks: [
     "Walk across the ball from left to right. The patch shows the colour of each normal.",
@@ -80,7 +80,7 @@ export const grey: Lesson = {
   text: [
     "From here to lesson 12 the whole object has one albedo. Its logarithm is then a constant, which {M} includes.",
     "A normal has two degrees of freedom; grey light gives one equation. The normals that explain one pixel therefore form a curve, the dark line in the cost map. The pixel alone does not determine where on that line the true normal lies.",
-    "The picture as a whole is ambiguous, too. Rotate every normal by half a turn about the line of sight, and a bump becomes a dent. Rotate the lamp by the same angle, and every pixel keeps its brightness. This is why craters in photographs sometimes look like hills.",
+    "The picture as a whole is ambiguous, too. Rotate every normal by half a turn about the line of sight, and a bump becomes a dent. Rotate the lamp by the same angle (now {=turn}), and every pixel keeps its brightness. This is why craters in photographs sometimes look like hills.",
     "The reason is that rotating a second-order light gives another second-order light. If the light is unknown, colour does not resolve the ambiguity. A known light does, and so does a depth map. Cast shadows, occluding contours and the assumption that light comes from above help as well.",
   ],
   tasks: [
@@ -146,7 +146,7 @@ export const colours: Lesson = {
   text: [
     "Let the light be red from one side, green from another and blue from a third. Each colour leaves a different curve of normals. Where the three curves meet, all colours are explained. The cost of a normal is the squared distance between measured and predicted log colours; the solver looks for its global minimum.",
     "A quadratic form in three colours can still have several minima. The solver therefore first compares 600 directions all over the hemisphere and then descends from the best one. White dots mark the local minima; the larger the dot, the more starting points end there.",
-    "Natural light is nearly white. Its three curves almost coincide, and the valley becomes long and flat: a little noise moves the lowest point by tens of degrees. A single pixel then determines almost nothing. Noise may also give the pixel a colour that no normal has. Then no normal explains it within 2 %, and the lowest minimum is merely the closest match.",
+    "Natural light is nearly white. Its three curves almost coincide, and the valley becomes long and flat: a little noise moves the lowest point by tens of degrees. The picture now has a noise of {=noise}. A single pixel then determines almost nothing. Noise may also give the pixel a colour that no normal has. Then no normal explains it within 2 %, and the lowest minimum is merely the closest match.",
   ],
   tasks: [
     "Raise the colour of the light from 0 to 1. The dark curve shrinks to a few spots, and the error of the normals falls.",

@@ -3,7 +3,7 @@
 import type { Lesson } from "../lesson";
 import { LIGHTS } from "../lesson";
 import { phrase } from "../../words";
-import { decimals, withUnit } from "../numbers";
+import { decimals, withUnit } from "../digits";
 import { LARGEST_TURN, LEAST_OVERLAP } from "../protocol";
 import { block, frac, log, mi, mn, mo, row, shading, sub, sup, symbol } from "../maths";
 
@@ -40,7 +40,7 @@ export const paint: Lesson = {
       answer: "Dark paint. A shadow that darkens all colours alike has the effect of a smaller albedo.",
     },
   ],
-  can: "You can say how paint is told from shading, and why a shadow is not.",
+  can: "You can say how paint is separated from shading, and why a shadow is not.",
   controls: [
     { kind: "slider", key: "paint", label: "Strength of the paint", min: 0, max: 1, step: 0.05, initial: 0.8 },
     { kind: "slider", key: "shadow", label: "Depth of the shadow", min: 0, max: 0.95, step: 0.05, initial: 0 },

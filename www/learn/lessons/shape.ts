@@ -26,7 +26,7 @@ export const surface: Lesson = {
   formulaWords: "The slope of the depth z along x is minus n x over n z, and along y minus n y over n z.",
   text: [
     "A normal {n} fixes the slope of the depth {z} in both directions. Integration finds the surface whose differences from pixel to pixel fit these slopes best in the least-squares sense. The absolute depth stays undetermined: adding a constant changes no slope.",
-    "Discontinuities: at a step the depth jumps between two pixels. The normals of both are unaffected by it. If the step ends somewhere, a path around it gives its height, and the path across contradicts that. Least squares spreads the contradiction over the neighbours; robust weights identify the few pairs of pixels that do not fit and ignore them. If the step cuts the object in two, no path leads around it, and its height is undetermined.",
+    "Discontinuities: at a step, here of {=step}, the depth jumps between two pixels. The normals of both are unaffected by it. If the step ends somewhere, a path around it gives its height, and the path across contradicts that. Least squares spreads the contradiction over the neighbours; robust weights identify the few pairs of pixels that do not fit and ignore them. If the step cuts the object in two, no path leads around it, and its height is undetermined.",
     "Bias: noise tilts normals at random, but the result is not only noisy. A slope is the tangent of a tilt, so a normal tilted too far adds more slope than a normal tilted too little removes. The errors do not cancel: steep flanks come out too steep, and the dome has more than 100 % of its true relief. Normals that would face away from the camera are clipped, which offsets part of the bias.",
   ],
   tasks: [
