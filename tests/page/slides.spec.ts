@@ -85,3 +85,52 @@ test("the browser's Back turns a slide back, then leads to the lesson, and Forwa
   ).toBeVisible();
   expect(lab.complaints).toEqual([]);
 });
+
+test("a slide uses a beamer's screen, and no figure is below its edge", async ({ lab, page }) => {
+  await page.setViewportSize({ width: 1920, height: 1080 });
+  await page.goto("./#learn&at=pose&slides");
+  const slide = page.locator(".learn-slide");
+  await expect(slide.locator(".learn-panel").first()).toBeVisible();
+  expect((await slide.locator(".learn-figure").boundingBox())?.width).toBeGreaterThan(0.9 * 1920);
+  expect(
+    await slide.locator("h2").evaluate((title) => Number.parseFloat(getComputedStyle(title).fontSize)),
+  ).toBeGreaterThan(48);
+  expect(await slide.evaluate(({ scrollHeight, clientHeight }) => scrollHeight - clientHeight)).toBeLessThanOrEqual(0);
+  expect(lab.complaints).toEqual([]);
+});
+
+test("slides turn by keys, leave the sliders theirs, and end by escape", async ({ lab, page, say }) => {
+  await open(page, "at=grey");
+  await page.getByRole("button", { name: say("interface.slides", "Slides") }).press("Enter");
+  const slides = page.locator("dialog.learn-slides");
+  await expect(slides).toBeVisible();
+  await expect(
+    slides.getByRole("heading", { name: say("lessons.grey.title", "One grey light is not enough") }),
+  ).toBeVisible();
+  await expect(
+    slides.getByText(say("lessons.grey.text.1", "A normal has two degrees of freedom").slice(0, 35)),
+  ).toBeHidden();
+  await page.keyboard.press("ArrowRight");
+  await expect(slides.getByRole("heading", { name: say("lessons.colours.title", "Three colours") })).toBeVisible();
+  await expect(page).toHaveURL(/at=colours.*&slides$/);
+  // Arrow keys on a slider move the slider.
+  const slider = slides.locator('input[name="colour"]');
+  await slider.focus();
+  await page.keyboard.press("ArrowRight");
+  await expect(slider).toHaveValue("0.32");
+  await page.keyboard.press("PageUp");
+  await expect(
+    slides.getByRole("heading", { name: say("lessons.grey.title", "One grey light is not enough") }),
+  ).toBeVisible();
+  await page.keyboard.press("ArrowLeft");
+  await page.keyboard.press("ArrowLeft");
+  await expect(slides.getByRole("heading", { name: say("lessons.pixel.title", "What a pixel shows") })).toBeVisible();
+  await page.keyboard.press("Escape");
+  await expect(slides).toBeHidden();
+  await expect(page.getByRole("heading", { name: say("lessons.pixel.title", "What a pixel shows") })).toBeVisible();
+  await expect(
+    page.getByText(say("lessons.pixel.text.0", "A matte surface under one distant lamp").slice(0, 38)),
+  ).toBeVisible();
+  await expect(page).not.toHaveURL(/slides/);
+  expect(lab.complaints).toEqual([]);
+});
