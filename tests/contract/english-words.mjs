@@ -36,12 +36,15 @@ function textsOf(part, lesson, field) {
   return full(Object.entries(part).map(([name, each]) => [name, textsOf(each, lesson, name)]));
 }
 
-/** The first drawing of a figure for each value of its choices and boxes: later drawings have the same words. */
+/** States with other words that no choice alone brings about. */
+const OTHERS = { strips: [{ lx: 0.6, ly: 0.6, sx: 0.1, sy: 0.1 }] };
+
+/** The first drawing of a figure for each value of its choices and boxes, and in other states: later drawings have the same words. */
 function panelsOf(lesson) {
   const values = (control) =>
     control.kind === "choice" ? control.choices.map(([value]) => value) : control.kind === "box" ? [0, 1] : [];
   const states = lesson.controls.flatMap((control) => values(control).map((value) => ({ [control.key]: value })));
-  return [{}, ...states].flatMap((state) => {
+  return [{}, ...states, ...(OTHERS[lesson.id] ?? [])].flatMap((state) => {
     const asked = learn.computed(lesson, { ...learn.valuesFrom(lesson, new URLSearchParams()), ...state });
     const drawings = learn[lesson.id](asked);
     const { panels } = drawings.next().value;
@@ -52,6 +55,7 @@ function panelsOf(lesson) {
 
 function figuresOf() {
   const all = {};
+  const known = new Map();
   for (const lesson of lessons)
     for (const panel of panelsOf(lesson)) {
       const path = placeOf(lesson.id, panel).slice(1);
@@ -60,9 +64,22 @@ function figuresOf() {
       const words = Object.fromEntries(
         Object.entries(wordsOf(panel)).map(([key, text]) => [key, Array.isArray(text) ? { ...text } : text]),
       );
-      if (place[last] && JSON.stringify(place[last]) !== JSON.stringify(words))
-        throw new Error(`${[...path, last].join(".")} has other words in another state: give the panel a "state"`);
-      place[last] = words;
+      for (const [field, text] of Object.entries(words)) {
+        const name = [...path, last, field].join(".");
+        const before = known.get(name);
+        // Curves without points are left out.
+        const isSame =
+          typeof text === "string"
+            ? before === text
+            : Object.keys(text).every((at) => (before?.[at] ?? text[at]) === text[at]);
+        if (before !== undefined && !isSame)
+          throw new Error(`${name} has other words in another state: give the panel a "state"`);
+        known.set(name, typeof text === "string" ? text : { ...before, ...text });
+      }
+      // Within the words of the panel may be those of one of its states.
+      const { names, ...rest } = words;
+      const there = Object.assign((place[last] ??= {}), rest);
+      if (names) there.names = { ...there.names, ...names };
     }
   return all;
 }

@@ -8,6 +8,7 @@ import type { Pose } from "../../pkg/index.js";
 import { bridge } from "../contract/bridge.mjs";
 import { smallFrames } from "../contract/recorded-messages.mjs";
 import { driver } from "../contract/recordings.mjs";
+import { LESSONS } from "./figure";
 import { LONG, expect, test, type Lab } from "./lab";
 import { LANGUAGES } from "./language";
 import { Messages } from "./messages";
@@ -115,7 +116,7 @@ async function learn(page: Page): Promise<void> {
   const links = await page
     .locator(".learn-contents a")
     .evaluateAll((all) => all.map((link) => link.getAttribute("href") ?? ""));
-  expect(links).toHaveLength(10);
+  expect(links).toHaveLength(LESSONS.length + 1);
   for (const link of links) {
     await page.goto(`./${link}`);
     if (!link.endsWith("exercises")) await settled(page);

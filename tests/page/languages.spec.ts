@@ -84,6 +84,23 @@ test("a catalogue that can't be loaded leaves the page in English", async ({ pag
   await expect(page.locator("html")).toHaveAttribute("lang", "en");
 });
 
+test("a guess is compared in the language of the page, with its numbers as that writes them", async ({ page }) => {
+  await open(page, "at=relief&lang=de");
+  const guess = page.locator(".learn-guess").first();
+  await guess.getByLabel(say("lessons.relief.guesses.0.choices.0", "")).check();
+  await guess.getByRole("button", { name: say("interface.guess.compare", "") }).click();
+  const chose = say("interface.guess.chose", "").replace("{guess}", say("lessons.relief.guesses.0.choices.0", ""));
+  await expect(guess.getByRole("status")).toContainText(chose);
+  await expect(guess.getByRole("status")).toContainText(say("lessons.relief.guesses.0.answer", ""));
+  await open(page, "at=surface");
+  const number = page.locator(".learn-guess").first();
+  await number.getByLabel(say("interface.guess.yours", "")).fill("8");
+  await number.getByRole("button", { name: say("interface.guess.compare", "") }).click();
+  await expect(number.getByRole("status")).toContainText(
+    say("interface.guess.shows", "").replace("{number}", "0,0 px"),
+  );
+});
+
 /** All that is read out or seen of Learn, without what is marked as English: titles of papers, headings of documents. */
 const read = (page: Page): Promise<string[]> =>
   page.evaluate(() => {

@@ -155,6 +155,7 @@ export function* strips(values: Values): Generator<Drawing> {
           title: "The bust under one lamp",
           alt: "A bust under one lamp, with strips that run outward from a bright spot.",
           legend: found ? "drag to choose the pixel; lines: strips" : "no surface near this spot faces the lamp",
+          ...(found ? {} : { state: "none" }),
         },
         shape,
         intensity,
