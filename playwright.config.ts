@@ -7,6 +7,9 @@ const PORT = Number(process.env.PAGE_PORT ?? 4199);
 /** The built page, as a host may have it: below some folder of its own. */
 const FOLDER = "/some/folder/";
 
+/** Learn has catalogues of other languages, and the page in these passes the same tests. */
+const LEARN = /\/(?:learn|learn-layout|slides)\.spec\.ts$/;
+
 /** Playwright's own browsers come from elsewhere; the system's serves as well. */
 const chromium =
   process.env.CHROMIUM ??
@@ -38,6 +41,7 @@ export default defineConfig({
       ],
     },
   },
+  projects: [{ name: "en" }, { name: "de", testMatch: LEARN, use: { locale: "de-DE" } }],
   webServer: {
     command: `node scripts/site/serve.mjs ${PORT} ${FOLDER}`,
     url: `http://127.0.0.1:${PORT}${FOLDER}`,

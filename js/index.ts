@@ -6,7 +6,14 @@ import { wasmUrl } from "./wasm.js";
 export { checkCalibration, projectFrame, samplePair, sampleRig, suggestMask } from "./calibration/index.js";
 export { BimodalError, type ErrorCode, type ErrorDetails } from "./errors.js";
 export { Estimator, type Given } from "./estimator.js";
-export { integrateNormals, pixelLandscape } from "./lessons.js";
+export {
+  basRelief,
+  characteristicStrips,
+  integrateNormals,
+  pixelLandscape,
+  secondOrder,
+  shadeLamp,
+} from "./lessons.js";
 export { sample, sampleBound, sampleLights, sampleSurfaces, shadeNormals, turnLight } from "./samples.js";
 export type * from "./types/index.js";
 export { wasmUrl } from "./wasm.js";

@@ -2,7 +2,9 @@
 import { type Check, array, flag, numbers, object, ranged } from "./check.js";
 import { across } from "./border.js";
 import { bindings } from "./engine.js";
-import type { PixelLandscape, PixelLandscapeRequest } from "./types/index.js";
+import { BimodalError } from "./errors.js";
+import { checkNormals } from "./inputs.js";
+import type { BasRelief, PixelLandscape, PixelLandscapeRequest, StripsRequest } from "./types/index.js";
 
 const light = numbers(27);
 /** The largest logarithm of a colour or coordinate of a normal; the squares of larger numbers carry no information. */
@@ -25,6 +27,22 @@ const landscape = object(
     side: ranged({ kind: "side", min: 0, max: 512 }),
   },
   ["log", "light"],
+);
+
+/** Slopes and stretches of a depth beyond these leave no shape to be seen. */
+const factor = ranged({ kind: "number", min: -1e3, max: 1e3 });
+const values = array(Float32Array);
+const strips = object(
+  {
+    intensity: values,
+    width: side,
+    height: side,
+    lamp: three,
+    centre: numbers(2),
+    dent: flag,
+    count: ranged({ kind: "side", min: 0, max: 360 }),
+  },
+  ["intensity", "width", "height", "lamp", "centre"],
 );
 
 /** From x, y, z of each normal to all x, then all y, then all z, which is the order of the numerics. */
@@ -62,4 +80,55 @@ export function pixelLandscape(request: PixelLandscapeRequest): PixelLandscape {
     bindings().pixelLandscape(Float64Array.from(request.light), row, robust, side),
   );
   return { objective, minima, path };
+}
+
+/**
+ * Intensity of a matte surface of albedo 1 for each unit normal (x, y, z in turn) under one distant lamp: the cosine between the normal and
+ * the direction to the lamp times the length of `lamp`, zero where the surface faces away. Toward the camera is -z.
+ */
+export function shadeLamp(lamp: ArrayLike<number>, unitNormals: Float32Array): Float32Array {
+  three(lamp, "lamp");
+  checkNormals(unitNormals);
+  return across(() => bindings().shadeLamp(Float64Array.from(lamp), unitNormals));
+}
+
+/**
+ * The generalised bas-relief transformation: the depth z becomes `stretch` z + `right` x + `down` y. Returns the new normals, the factor of
+ * each albedo and the lamp with which the new surface has the intensity of the old one.
+ */
+export function basRelief(
+  unitNormals: Float32Array,
+  lamp: ArrayLike<number>,
+  stretch: number,
+  right = 0,
+  down = 0,
+): BasRelief {
+  checkNormals(unitNormals);
+  three(lamp, "lamp");
+  for (const [name, value] of Object.entries({ stretch, right, down })) factor(value, name);
+  if (stretch === 0) throw new BimodalError("range", "stretch: must not be zero, which leaves no shape", "stretch");
+  const [normals, albedo, moved] = across(() =>
+    bindings().basRelief(stretch, right, down, Float64Array.from(lamp), unitNormals),
+  );
+  return { normals, albedo, lamp: moved };
+}
+
+/**
+ * The approximation by harmonics of orders 0 to 2 of an intensity that depends on one component of the normal only, by least squares over
+ * the sphere. Values and result belong to the middles of equal intervals of that component from -1 to 1.
+ */
+export function secondOrder(intensity: Float32Array): Float32Array {
+  values(intensity, "intensity");
+  return across(() => bindings().secondOrder(intensity));
+}
+
+/**
+ * Characteristic strips of a picture of albedo 1 under one lamp of length 1 (Horn 1970), from a bright spot outward: column, row and depth of
+ * each point in pixels, with three NaN after each strip.
+ */
+export function characteristicStrips(request: StripsRequest): Float32Array {
+  strips(request, "strips");
+  const { intensity, width, height, lamp, centre, dent = false, count = 24 } = request;
+  const [toward, spot] = [lamp, centre].map((numbers) => Float64Array.from(numbers)) as [Float64Array, Float64Array];
+  return across(() => bindings().characteristicStrips(intensity, width, height, toward, spot, dent, count));
 }

@@ -159,7 +159,10 @@ pub use estimator::{Estimator, Finding, RefinementTask, Surface, Task, Worker};
 /// The pictures from which this crate's views can be made.
 #[cfg(feature = "image")]
 pub use image;
-pub use light::{COEFFICIENTS, CoefficientMatrix, Light, LightFit, LightFitter, LightGaussian, LightPrior};
+pub use light::{
+    BasRelief, COEFFICIENTS, CoefficientMatrix, Lamp, Light, LightFit, LightFitter, LightGaussian, LightPrior,
+    second_order,
+};
 /// The linear algebra of this crate's public types, in the version that they use.
 pub use nalgebra;
 pub use options::{LightSource, Options, Registration, Shading, Start, StartTolerance, Weights};
@@ -173,9 +176,9 @@ pub use pose::{
 pub use reason::{Activity, FoundBy, Reason};
 pub use report::{Objective, Stage, Status, StepReport};
 pub use shape::{
-    AnchorWeight, Anchors, IntegrationOptions, IntegrationReport, IntegrationTermination, Integrator, Minimum,
-    PixelLandscape, Robustness, ShadingProblem, ShadingReport, ShadingSolver, ShadingWeights, exposure_step,
-    first_exposure, gradients, surface_of_normals,
+    AnchorWeight, Anchors, Form, IntegrationOptions, IntegrationReport, IntegrationTermination, Integrator, Minimum,
+    PixelLandscape, Robustness, ShadedImage, ShadingProblem, ShadingReport, ShadingSolver, ShadingWeights,
+    characteristic_strips, exposure_step, first_exposure, gradients, surface_of_normals,
 };
 pub use view::{
     Camera, ColourImage, ColourSamples, ColourView, DepthMap, DepthNoise, DepthSamples, DepthView, Lens, Mark, Normals,

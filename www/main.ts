@@ -13,12 +13,14 @@ import { kinds } from "./lab/kinds";
 import { defaults, fromLink, type Origin, type Settings } from "./lab/settings";
 import { linkTo, onLook, showLooks, writeAddress } from "./lab/share";
 import { wasOwn } from "./lab/source";
+import { reword } from "./reword";
 import { saves } from "./save";
 import { Store } from "./lab/store";
 import { asksToPlay, isEmbedded, placeOf, type Place } from "./place";
 
 import { keepForOffline } from "./offline/offline";
 import { themeToggle, wearTheme } from "./theme";
+import { phrase } from "./words";
 
 const button = (id: string, action: () => void): void => byId(id, HTMLButtonElement).addEventListener("click", action);
 
@@ -50,7 +52,7 @@ type OtherPlace = Exclude<Place, "lab">;
 
 /** Loaded on first use. */
 const loaders: Record<OtherPlace, () => Promise<new (main: HTMLElement) => Elsewhere>> = {
-  learn: async () => (await import("./learn/page")).LearnPage,
+  learn: async () => (await import("./learn/learn")).Learn,
   tables: async () => (await import("./tables/page")).TablesPage,
   rig: async () => (await import("./rig/page")).RigPage,
 };
@@ -92,7 +94,7 @@ button("export", () => {
   let isSaved = false;
   const note = () => {
     isSaved = true;
-    say("export", "Saved");
+    say("export", phrase("saved", "Saved"));
   };
   saves.addEventListener("saved", note, { once: true });
   if (place === "lab") lab.download();
@@ -100,7 +102,7 @@ button("export", () => {
   // A check reports by itself what it lacks, and reads its files first.
   if (isSaved || place === "rig") return;
   saves.removeEventListener("saved", note);
-  say("export", "Nothing to export");
+  say("export", phrase("export.nothing", "Nothing to export"));
 });
 button("help-button", openHelp);
 button("link", () => void copyLink());
@@ -119,9 +121,9 @@ pace.addEventListener("change", () => (player.pace = Number(pace.value)));
 /** Shows for a moment, on the button that was pressed, how the action ended. */
 function say(id: string, words: string): void {
   const target = byId(id, HTMLButtonElement);
-  target.dataset.words ??= target.textContent;
+  reword(target);
   target.textContent = words;
-  setTimeout(() => (target.textContent = target.dataset.words ?? ""), 2000);
+  setTimeout(() => reword(target), 2000);
 }
 
 function choose(origin: Origin): void {
@@ -163,9 +165,10 @@ button("origin-files", () => choose("files"));
 async function copyLink(): Promise<void> {
   try {
     await navigator.clipboard.writeText(location.href);
-    say("link", placeOf(location.hash) === "lab" && !isSample() ? "Copied without files" : "Copied");
+    const isBare = placeOf(location.hash) === "lab" && !isSample();
+    say("link", isBare ? "Copied without files" : phrase("copied", "Copied"));
   } catch {
-    say("link", "Copy the address bar");
+    say("link", phrase("copy.address", "Copy the address bar"));
   }
 }
 

@@ -1,6 +1,7 @@
 /** Dark or light: the system's choice until the visitor makes one. */
 
 import { forgetInks } from "./dom";
+import { language, phrase } from "./words";
 
 const KEY = "bimodal-stereo.theme";
 
@@ -31,13 +32,19 @@ export function themeToggle(button: HTMLButtonElement, onChange: () => void): vo
   const dark = matchMedia("(prefers-color-scheme: dark)");
   const current = () => document.documentElement.dataset.theme ?? (dark.matches ? "dark" : "light");
   const label = () =>
-    button.setAttribute("aria-label", `Switch to the ${current() === "dark" ? "light" : "dark"} theme`);
+    button.setAttribute(
+      "aria-label",
+      current() === "dark"
+        ? phrase("theme.light", "Switch to the light theme")
+        : phrase("theme.dark", "Switch to the dark theme"),
+    );
   const change = () => {
     label();
     forgetInks();
     onChange();
   };
   label();
+  language.addEventListener("changed", label);
   button.addEventListener("click", () => {
     const next = current() === "dark" ? "light" : "dark";
     document.documentElement.dataset.theme = next;

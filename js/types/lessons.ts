@@ -27,3 +27,31 @@ export interface PixelLandscape {
   /** Normals from step to step of one descent, three numbers each. */
   path: Float32Array;
 }
+
+/** A surface that looks like another one, with its lamp. */
+export interface BasRelief {
+  /** Its unit normals, three numbers each. */
+  normals: Float32Array;
+  /** The factor of each albedo. */
+  albedo: Float32Array;
+  /** Direction to its lamp times the lamp's strength. */
+  lamp: Float64Array;
+}
+
+/** A picture of a matte surface of albedo 1 under one lamp, and the bright spot from which its strips start. */
+export interface StripsRequest {
+  /** Width * height intensities, row by row, NaN outside the object. */
+  intensity: Float32Array;
+  /** Columns, 1 .. 4096. */
+  width: number;
+  /** Rows, 1 .. 4096. */
+  height: number;
+  /** Unit vector to the lamp; toward the camera is -z. */
+  lamp: ArrayLike<number>;
+  /** Column and row of a spot at which the surface faces the lamp. */
+  centre: ArrayLike<number>;
+  /** Whether the surface there is taken for a dent. Default false: a bump. */
+  dent?: boolean;
+  /** Strips, 0 .. 360. Default 24. */
+  count?: number;
+}

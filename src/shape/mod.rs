@@ -25,6 +25,7 @@
 //! | starts and the choice among local optima | `heights/starts`, coarse to fine in `heights/image_surface` |
 //! | normals and surface of the colour view, one after the other | `image_shape` |
 //! | Eq. 19, anchors and their weights | `refinement` |
+//! | characteristic strips of a picture with one lamp, for lessons | `strips` |
 //!
 //! Data flows one way: `pixels` and `integration` are independent, `heights` takes edges and anchors from
 //! `integration`, `image_shape` and `refinement` use all three. Rasters that live for one stage only belong to a
@@ -35,6 +36,7 @@ mod image_shape;
 mod integration;
 mod pixels;
 mod refinement;
+mod strips;
 
 pub use heights::{HeightDomain, STARTS, Scratch};
 pub use image_shape::{ImageShapeProblem, ImageShapeSolver};
@@ -47,3 +49,4 @@ pub use pixels::{
     first_exposure,
 };
 pub use refinement::{RefinementProblem, RefinementTerms, Refiner};
+pub use strips::{Form, ShadedImage, characteristic_strips};

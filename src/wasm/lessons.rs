@@ -1,13 +1,15 @@
-//! Functions for the lessons: the objective of one pixel, and a surface from given normals. Numbers arrive in plain
+//! Functions for the lessons: one lamp and its strips, the objective of one pixel, a surface from given normals. Numbers arrive in plain
 //! rows, checked and ordered by the facade, because objects would add to the download.
 
-use js_sys::{Array, Float32Array};
+use js_sys::{Array, Float32Array, Float64Array};
 use wasm_bindgen::JsCast;
 use wasm_bindgen::prelude::wasm_bindgen;
 
 use super::error::Thrown;
-use crate::light::Light;
-use crate::shape::{Minimum, PixelLandscape, ShadingWeights, surface_of_normals};
+use crate::light::{BasRelief, Lamp, Light, second_order};
+use crate::shape::{
+    Form, Minimum, PixelLandscape, ShadedImage, ShadingWeights, characteristic_strips, surface_of_normals,
+};
 use crate::view::{Normals, Size};
 
 type Result<T> = std::result::Result<T, Thrown>;
@@ -17,6 +19,67 @@ extern "C" {
     /// Objective, minima and path.
     #[wasm_bindgen(typescript_type = "[Float32Array, Float32Array, Float32Array]")]
     pub type JsLandscape;
+    /// Normals, albedo, lamp.
+    #[wasm_bindgen(typescript_type = "[Float32Array, Float32Array, Float64Array]")]
+    pub type JsRelieved;
+}
+
+/// A lamp from three numbers; NaN where one is missing.
+#[inline(never)]
+fn lamp(numbers: &[f64]) -> Lamp {
+    Lamp([0, 1, 2].map(|axis| numbers.get(axis).copied().unwrap_or(f64::NAN)).into())
+}
+
+/// Intensity of each normal, three numbers each, under one lamp.
+#[wasm_bindgen(js_name = "shadeLamp")]
+#[must_use]
+pub fn shade_lamp(toward: &[f64], normals: &[f32]) -> Float32Array {
+    let lamp = lamp(toward);
+    let shaded: Vec<f32> = normals.as_chunks().0.iter().map(|&normal| lamp.shade(normal)).collect();
+    Float32Array::from(shaded.as_slice())
+}
+
+/// What looks the same from the front: normals, albedo and lamp.
+#[wasm_bindgen(js_name = "basRelief")]
+#[must_use]
+pub fn bas_relief(stretch: f64, right: f64, down: f64, toward: &[f64], normals: &[f32]) -> JsRelieved {
+    let relief = BasRelief { stretch, slopes: [right, down] };
+    let (changed, albedo): (Vec<[f32; 3]>, Vec<f32>) =
+        normals.as_chunks().0.iter().map(|&normal| relief.normal(normal)).unzip();
+    let Lamp(moved) = relief.lamp(lamp(toward));
+    let [changed, albedo] = [changed.as_flattened(), albedo.as_slice()].map(Float32Array::from);
+    Array::of3(&changed, &albedo, &Float64Array::from(moved.as_slice())).unchecked_into()
+}
+
+/// The approximation of second order of an intensity that depends on one component of the normal.
+#[wasm_bindgen(js_name = "secondOrder")]
+#[must_use]
+pub fn second_order_of(values: &[f32]) -> Float32Array {
+    Float32Array::from(second_order(values).as_slice())
+}
+
+/// Strips from a bright spot, three numbers each point, with a point of NaN after each strip.
+#[wasm_bindgen(js_name = "characteristicStrips")]
+pub fn strips(
+    values: &[f32],
+    width: u32,
+    height: u32,
+    toward: &[f64],
+    centre: &[f64],
+    dent: bool,
+    count: u32,
+) -> Result<Float32Array> {
+    let size = Size { width: width as usize, height: height as usize };
+    let form = if dent { Form::Dent } else { Form::Bump };
+    let centre = [0, 1].map(|axis| centre.get(axis).copied().unwrap_or(f64::NAN));
+    let image = ShadedImage { size, values, lamp: lamp(toward) };
+    let found = characteristic_strips(image, centre, form, count as usize)?;
+    let mut points = Vec::new();
+    for strip in found {
+        points.extend(strip);
+        points.push([f32::NAN; 3]);
+    }
+    Ok(Float32Array::from(points.as_flattened()))
 }
 
 #[inline(never)]

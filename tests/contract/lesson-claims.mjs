@@ -4,6 +4,7 @@
 // figure which word or number is right.
 import { normalDegrees } from "../../protocols/measure-shapes.mjs";
 import { figure, labRun } from "./lesson-figures.mjs";
+import { lambert, normal, relief, strips } from "./lesson-first-claims.mjs";
 import { Estimator, init, sample, shadeNormals } from "./support.mjs";
 
 await init();
@@ -22,13 +23,13 @@ const CHANNELS = [0, 9, 18];
 const SECOND = 4;
 const NORMAL = [0.3, -0.4, -Math.sqrt(0.75)];
 
-const pixel = [
+const orders = [
   claim(
-    "pixel",
+    "orders",
     "nine coefficients for each colour, [#] in all",
     () => sample({ surface: "bust", light: "window", size: 16 }).light.length,
   ),
-  claim("pixel", "Second-order terms have the [same value|opposite value] on opposite sides", () => {
+  claim("orders", "Second-order terms have the [same value|opposite value] on opposite sides", () => {
     const { light } = sample({ surface: "bust", light: "colourful", size: 16 });
     const second = light.map((value, at) =>
       CHANNELS.some((from) => at >= from + SECOND && at < from + 9) ? value : 0,
@@ -41,6 +42,38 @@ const pixel = [
     );
     return here.every((value, at) => Math.abs(value - there[at]) < 1e-6) ? "same value" : "opposite value";
   }),
+  claim("orders", "their sum [stays the same|changes]", () =>
+    [-0.6, 0.6].every((constant) => numberOf(`orders&constant=${constant}`, "change") < 1e-6)
+      ? "stays the same"
+      : "changes",
+  ),
+  claim("orders", "[Two balls change|One ball changes], and their sum", () => {
+    const [none, much] = [0, 0.6].map((constant) => figure(`orders&constant=${constant}`));
+    const changed = ["order0", "order1", "order2"].filter((key) => Math.abs(none[key] - much[key]) > 0.1);
+    return changed.length === 2 ? "Two balls change" : "One ball changes";
+  }),
+  claim("orders", "The curve for the intensity falls [below|above] zero in the shadow", () =>
+    numberOf("orders&around=0.02", "least") < 0 ? "below" : "above",
+  ),
+  claim("orders", "the curve for the logarithm stays [above|below] it", () =>
+    numberOf("orders&around=0.02", "leastLog") > 0 ? "above" : "below",
+  ),
+  claim("orders", "The error of the nine numbers for the logarithm [falls|rises]", () =>
+    change(numberOf("orders&around=0.02", "byLog"), numberOf("orders&around=0.5", "byLog"), ["rises", "falls"]),
+  ),
+  claim("orders", "under a single lamp in the dark its error is [larger|smaller]", () =>
+    change(numberOf("orders&around=0.02", "direct"), numberOf("orders&around=0.02", "byLog"), ["larger", "smaller"]),
+  ),
+  claim("orders", "How many of them can a picture determine?\n[Nine|Ten|Four]", () =>
+    ["order0", "order2"].every(
+      (key) => Math.abs(numberOf("orders&constant=0.6", key) - numberOf("orders", key)) > 0.1,
+    ) && numberOf("orders&constant=0.6", "change") < 1e-6
+      ? "Nine"
+      : "Ten",
+  ),
+];
+
+const pixel = [
   claim("pixel", "The same normal now has a [different|brighter red] colour", () =>
     ["red", "green", "blue"].some((key) => Math.abs(numberOf("pixel&beta=60", key) - numberOf("pixel", key)) > 0.1)
       ? "different"
@@ -77,7 +110,7 @@ const colours = [
   claim("colours", "and the error of the normals [falls|rises]", () =>
     change(numberOf("colours&colour=0", "degrees"), numberOf("colours&colour=1", "degrees"), ["rises", "falls"]),
   ),
-  claim("colours", "window light at full colour: the curve stays [long|short]", () =>
+  claim("colours", "window light at full colour. There the curve stays [long|short]", () =>
     numberOf("colours&colour=1&light=window", "explained") > 10 * numberOf("colours&colour=1", "explained")
       ? "long"
       : "short",
@@ -113,7 +146,7 @@ const surface = [
     const shares = [3, 6, 12].map((step) => numberOf(`surface&step=${step}&robust=0`, "jump") / step);
     return shares.every((share) => share < 0.5) ? "falls short of" : "exceeds";
   }),
-  claim("surface", "at a step of 6 px: the error of the depth [falls|rises]", () =>
+  claim("surface", "at a step of 6 px. There the error of the depth [falls|rises]", () =>
     change(numberOf("surface&step=6&robust=0", "error"), numberOf("surface&step=6", "error"), ["rises", "falls"]),
   ),
   claim("surface", "robust or not, its height is [wrong|right]", () =>
@@ -143,7 +176,7 @@ const prior = [
     const [none, all] = [0, 100].map((share) => numberOf(`prior&share=${share}&light=colourful`, "degrees"));
     return none - all < 0.1 * none ? "hardly" : "always";
   }),
-  claim("prior", "the error is about [as large as|half of that] without a prior", () =>
+  claim("prior", "The error is about [as large as|half of that] without a prior", () =>
     Math.abs(numberOf("prior&weight=-4", "degrees") / numberOf("prior&share=0", "degrees") - 1) < 0.1
       ? "as large as"
       : "half of that",
@@ -154,7 +187,7 @@ const prior = [
 ];
 
 const pose = [
-  claim("pose", "Move the pose away from 0° and watch the residual [rise|fall]", () => {
+  claim("pose", "Move the pose away from 0°. Watch the residual [rise|fall]", () => {
     const away = [-30, -14, 0, 14, 30].map((offset) => numberOf(`pose&offset=${offset}`, "residual"));
     const isValley = away[0] > away[1] && away[1] > away[2] && away[2] < away[3] && away[3] < away[4];
     return isValley ? "rise" : "fall";
@@ -167,7 +200,7 @@ const pose = [
   claim("pose", "With a larger one they [merge into one|split]", () =>
     [0, 20].every((offset) => numberOf(`pose&offset=${offset}&weight=0`, "minima") === 1) ? "merge into one" : "split",
   ),
-  claim("pose", "until the minima of the pixel have [merged|split]", () =>
+  claim("pose", "Raise λ until the minima of the pixel have [merged|split]", () =>
     [0, 20].every((offset) => numberOf(`pose&offset=${offset}&weight=0`, "minima") === 1) ? "merged" : "split",
   ),
   claim("pose", "If the pose is right, the prior is [near|far from] the true normal", () =>
@@ -184,20 +217,16 @@ const pose = [
       ? "ignored"
       : "followed",
   ),
-  claim("pose", "so the given pose is [kept|left] and the status is ambiguous.", () =>
+  claim("pose", "the tolerance, so the given pose is [kept|left] and the status is ambiguous.", () =>
     Math.abs(numberOf("pose&offset=40&run=register", "error") - 40) < 0.01 ? "kept" : "left",
   ),
   claim("pose", "so the given pose is kept and the status is [ambiguous|converged|lost].", () =>
     wordOf("pose&offset=40&run=register"),
   ),
-  claim(
-    "pose",
-    "Let it register from 20° away, then from 40°: the true pose lies [beyond|within] the tolerance",
-    () => {
-      const isNear = [20, -20].every((offset) => numberOf(`pose&offset=${offset}&run=register`, "error") < 1);
-      return isNear && numberOf("pose&offset=40&run=register", "error") > 30 ? "beyond" : "within";
-    },
-  ),
+  claim("pose", "Here the true pose lies [beyond|within] the tolerance", () => {
+    const isNear = [20, -20].every((offset) => numberOf(`pose&offset=${offset}&run=register`, "error") < 1);
+    return isNear && numberOf("pose&offset=40&run=register", "error") > 30 ? "beyond" : "within";
+  }),
 ];
 
 /** Mean error of the normals of a depth map without noise, whose side has this many pixels. */
@@ -275,7 +304,7 @@ const failure = [
   claim("failure", "the rotation is so uncertain that the status is [lost|ambiguous|converged]", () =>
     wordOf("failure&case=texture&amount=100"),
   ),
-  claim("failure", "at 90° and with a narrow depth map, [little|much] remains to compare", () =>
+  claim("failure", "Here at 90° and with a narrow depth map, [little|much] remains to compare", () =>
     numberOf("failure&case=turn&amount=100", "sigma") > 5 * numberOf("failure&case=turn", "sigma") ? "little" : "much",
   ),
   // A rotation counts as found within 3 degrees.
@@ -354,7 +383,56 @@ function isGood(overlap) {
 
 const bump = [claim("Bump or dent", "At [#]°. A dent has", () => grey[0].holds())];
 
+const HOME = ["pose&offset=20&run=register", "error"];
+/** The answers of the guesses, each after the end of its question. */
+const guessed = [
+  claim("pixel", "curves of log S?\nAll fall by log 2, about [#]", () => -Math.log(0.5)),
+  claim("grey", "both make the same picture?\nBy [#]°", () => grey[0].holds()),
+  claim("colours", "normals of single pixels better?\nUnder the [coloured lamps|window].", () =>
+    numberOf("colours&colour=1", "degrees") < numberOf("colours&colour=1&light=window", "degrees")
+      ? "coloured lamps"
+      : "window",
+  ),
+  claim("colours", "almost coincide, and the error is many times [larger|smaller]", () =>
+    numberOf("colours&colour=1&light=window", "degrees") > 3 * numberOf("colours&colour=1", "degrees")
+      ? "larger"
+      : "smaller",
+  ),
+  claim("surface", "does integration find?\n[None|All].", () =>
+    Math.abs(numberOf("surface&step=8&through=1", "jump")) < 0.1 ? "None" : "All",
+  ),
+  claim("prior", "error of the normals fall?\nBy [more|less] than that", () => {
+    const [none, some, all] = [0, 20, 100].map((share) => numberOf(`prior&share=${share}`, "degrees"));
+    return change(0.2 * (none - all), none - some, ["more", "less"]);
+  }),
+  claim("prior", "The error of the normals [falls|rises] to its least", () => {
+    const [some, all] = [20, 100].map((share) => numberOf(`prior&share=${share}`, "degrees"));
+    return change(some, all, ["rises", "falls"]);
+  }),
+  claim("pose", "What will it report?\nThe given pose, [ambiguous|converged|lost].", () =>
+    wordOf("pose&offset=40&run=register"),
+  ),
+  claim("pose", "Let it register from 20° away. The pose [comes home|stays away]", () =>
+    numberOf(...HOME) < 1 ? "comes home" : "stays away",
+  ),
+  claim("sensor", "the refined normals?\nThey [hardly|greatly] change", () =>
+    numberOf("sensor&noise=1", "normalsAfter") < 1.2 * numberOf("sensor", "normalsAfter") ? "hardly" : "greatly",
+  ),
+  claim("paint", "does the program take it?\n[Dark paint|Shading].", () =>
+    numberOf("paint&paint=0&shadow=0.9", "taken") > 90 ? "Dark paint" : "Shading",
+  ),
+  claim(
+    "failure",
+    "report say about its pose?\n[Lost|Converged], and which rotation cannot be seen: that about z",
+    () =>
+      /^lost: .*rotation about z is not observable/.test(statusOf("failure&case=symmetry&amount=100"))
+        ? "Lost"
+        : "Converged",
+  ),
+];
+
 export const claims = [
+  ...[normal, lambert, relief, strips, orders],
   ...[pixel, grey, colours, surface, prior, pose, sensor, paint, failure],
-  ...[bump, step, merging, hidden],
+  ...[guessed, bump, step, merging, hidden],
 ].flat();

@@ -2,12 +2,15 @@
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import { claims } from "./lesson-claims.mjs";
-import { exercises, lessons } from "./lesson-figures.mjs";
+import { chapters, exercises, learn, lessons, taskOf } from "./lesson-figures.mjs";
 import { LONG } from "./long.mjs";
 
 /** All sentences of a lesson, or of an exercise, under the name that a claim gives it. */
 const texts = new Map([
-  ...lessons.map(({ id, gist, text, tasks }) => [id, [gist, ...text, ...tasks].join("\n")]),
+  ...lessons.map(({ id, gist, text, tasks, guesses }) => [
+    id,
+    [gist, ...text, ...tasks, ...guesses.flatMap(({ question, answer }) => [question, answer])].join("\n"),
+  ]),
   ...exercises.map(({ title, question, answer }) => [title, [question, ...answer].join("\n")]),
 ]);
 
@@ -63,9 +66,8 @@ describe("what the text says, the figure shows", () => {
 
 /** Tasks that only say what to do. */
 const INSTRUCTIONS = [
-  "Drag on the ball.",
-  "Drag the pixel on the bump and watch",
-  "Move the share from 0",
+  "Walk across the ball from left to right.",
+  "Move the pixel across the bump.",
   "Cut holes into the depth map",
   "Let it search from scratch.",
 ];
@@ -86,5 +88,54 @@ test("each answer with a measured number has a claim", () => {
     const numbers = answer.join(" ").match(/\d+\.\d+(?=°| of| px)/g) ?? [];
     const own = claims.filter(({ where }) => where === title);
     assert.ok(numbers.length === 0 || own.length >= numbers.length, title);
+  }
+});
+
+test("there are at most fifteen lessons in three chapters, each with a summary and what one can do after it", () => {
+  assert.deepEqual(
+    chapters.map(({ title }) => title),
+    ["One pixel", "A surface", "Two views"],
+  );
+  assert.ok(lessons.length <= 15 && lessons.length === chapters.flatMap((chapter) => chapter.lessons).length);
+  for (const { id, gist, can } of lessons) assert.ok(/[.]$/.test(gist) && /^You can .+[.]$/.test(can), id);
+});
+
+/** Whether an action names controls of its lesson and values that they can have. */
+function checkAction(lesson, { set = {}, sweep }) {
+  const values = { ...set, ...(sweep ? { [sweep.key]: sweep.to } : {}) };
+  const asked = new URLSearchParams(Object.entries(values).map(([key, value]) => [key, String(value)]));
+  const taken = learn.valuesFrom(lesson, asked);
+  for (const [key, value] of Object.entries(values)) assert.equal(taken[key], value, `${lesson.id}: ${key}`);
+  if (sweep) assert.equal(lesson.controls.find(({ key }) => key === sweep.key).kind, "slider");
+}
+
+test("each task has a button that sets the figure, and says what to look for", () => {
+  for (const lesson of lessons) {
+    assert.equal(lesson.tries.length, lesson.tasks.length, lesson.id);
+    for (const [index, task] of lesson.tasks.entries()) {
+      const { action, look } = taskOf(task);
+      assert.ok(action.length > 10 && look.length > 10, `${lesson.id}: ${task}`);
+      checkAction(lesson, lesson.tries[index]);
+    }
+  }
+});
+
+test("each lesson has a guess before its surprise, which the figure answers", () => {
+  for (const lesson of lessons) {
+    assert.ok(lesson.guesses.length > 0, lesson.id);
+    for (const { at, choices, right, number, reveal, answer } of lesson.guesses) {
+      checkAction(lesson, { set: at });
+      checkAction(lesson, reveal);
+      assert.ok((choices === undefined) !== (number === undefined), lesson.id);
+      // The answer repeats the beginning of the right choice, and of no other.
+      const begins = (words) => answer.startsWith(words.split(" ").slice(0, 3).join(" ").replace(/,$/, ""));
+      if (choices)
+        assert.deepEqual(
+          choices.map(begins),
+          choices.map((_, index) => index === right),
+          answer,
+        );
+      assert.ok(answer.length > 20);
+    }
   }
 });

@@ -8,12 +8,20 @@ import { Estimator, init, sample } from "./support.mjs";
 const root = fileURLToPath(new URL("../../", import.meta.url));
 const file = (path) => fileURLToPath(new URL(`../../${path}`, import.meta.url));
 
-const NAMES = ["pixel", "grey", "colours", "surface", "prior", "pose", "sensor", "paint", "failure"];
+const NAMES = [
+  ...["normal", "lambert", "relief", "strips", "orders", "pixel", "grey", "colours"],
+  ...["surface", "prior", "pose", "sensor", "paint", "failure"],
+];
 const ENTRY = [
   ...NAMES.map((name) => `export { ${name} } from "./www/learn/compute/${name}.ts";`),
-  'export { lessons } from "./www/learn/lessons/index.ts";',
+  'export { chapters, lessons } from "./www/learn/lessons/index.ts";',
+  'export { normalColour } from "./www/draw/colours.ts";',
+  'export { taskOf } from "./www/learn/tries.ts";',
   'export { exercises } from "./www/learn/exercises.ts";',
   'export { computed, valuesFrom } from "./www/learn/lesson.ts";',
+  'export { READ, SAME_UNITS, nameOf, placeOf, wordsOf } from "./www/learn/translation.ts";',
+  'export { SYMBOLS } from "./www/learn/maths.ts";',
+  'export { STATUSES } from "./www/learn/compute/status.ts";',
   'export { runOptions, sampleRequest, fromLink } from "./www/lab/settings.ts";',
 ].join("\n");
 
@@ -51,12 +59,12 @@ async function load() {
 
 await init();
 export const learn = await load();
-export const { lessons, exercises } = learn;
+export const { chapters, lessons, exercises, normalColour, taskOf } = learn;
 
 const kept = new Map();
 
 /**
- * The numbers and words of a figure in the state that an address names, such as "surface&step=8&robust=0". The curves of lessons 5 and 6
+ * The numbers and words of a figure in the state that an address names, such as "surface&step=8&robust=0". The curves of "prior" and "pose"
  * cost ten times as much as their numbers, which the first drawing has already.
  */
 export function figure(state) {

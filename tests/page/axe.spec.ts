@@ -8,7 +8,9 @@ import type { Pose } from "../../pkg/index.js";
 import { bridge } from "../contract/bridge.mjs";
 import { smallFrames } from "../contract/recorded-messages.mjs";
 import { driver } from "../contract/recordings.mjs";
+import { LESSONS } from "./figure";
 import { LONG, expect, test, type Lab } from "./lab";
+import { LANGUAGES } from "./language";
 import { Messages } from "./messages";
 import { answerChecks } from "./rig";
 import { cameraJson, depthPng, drop, roomPng } from "./uploads";
@@ -114,7 +116,7 @@ async function learn(page: Page): Promise<void> {
   const links = await page
     .locator(".learn-contents a")
     .evaluateAll((all) => all.map((link) => link.getAttribute("href") ?? ""));
-  expect(links).toHaveLength(10);
+  expect(links).toHaveLength(LESSONS.length + 1);
   for (const link of links) {
     await page.goto(`./${link}`);
     if (!link.endsWith("exercises")) await settled(page);
@@ -183,7 +185,11 @@ test("the Lab before, while and after a run, with its settings and help", LONG, 
 );
 test("a Lab whose pose is lost", ({ lab: opened, page }) => poseLost(opened, page));
 test("a Lab whose pose has a rival", LONG, ({ lab: opened, page }) => rivals(opened, page));
-test("every lesson, the exercises and a slide", LONG, ({ page }) => learn(page));
+for (const locale of ["en-US", ...LANGUAGES])
+  test.describe(() => {
+    test.use({ locale });
+    test(`every lesson, the exercises and a slide, ${locale}`, LONG, ({ page }) => learn(page));
+  });
 test("the Tables, and a cell of theirs", LONG, ({ page }) => tables(page));
 test("the three steps of Check a rig", LONG, ({ page }) => rig(page));
 test("a recording and a robot in Check a rig", LONG, ({ page }) => recordings(page));

@@ -44,7 +44,7 @@ test.describe("by touch", () => {
     await page.locator("#input > summary").tap();
     await page.getByRole("button", { name: "Play", exact: true }).tap();
     await expect(page.getByRole("button", { name: "Close settings" }), "over what plays").toBeHidden();
-    for (const id of ["pixel", "pose", "paint", "exercises"]) {
+    for (const id of ["normal", "strips", "pixel", "pose", "paint", "exercises"]) {
       await page.goto(`./#learn&at=${id}`);
       await expect(page.locator(id === "exercises" ? ".learn-exercises" : `[data-lesson="${id}"]`)).toBeVisible();
       expect(await small(page), id).toEqual([]);

@@ -2,7 +2,10 @@
 
 import { expect, type Locator, type Page } from "@playwright/test";
 
-export const LESSONS = ["pixel", "grey", "colours", "surface", "prior", "pose", "sensor", "paint", "failure"];
+export const LESSONS = [
+  ...["normal", "lambert", "relief", "strips", "orders", "pixel", "grey", "colours"],
+  ...["surface", "prior", "pose", "sensor", "paint", "failure"],
+];
 
 export const figure = (page: Page): Locator => page.locator(".learn-figure");
 
@@ -25,6 +28,8 @@ export async function open(page: Page, state = ""): Promise<void> {
   if ((await link.count()) > 0) await expect(link).toHaveAttribute("aria-current", "true");
   await settled(page);
 }
+
+export const control = (page: Page, name: string): Locator => page.locator(`.learn-controls [name="${name}"]`);
 
 /** Waits until the drawing shows the present values. */
 export async function settled(page: Page): Promise<void> {

@@ -1,6 +1,7 @@
 /** Shared by all tests of the page: an open Lab, and a record of errors in the console. */
 
 import { test as base, expect, type Locator, type Page } from "@playwright/test";
+import { sayIn, type Say } from "./language";
 
 export { expect };
 
@@ -61,7 +62,8 @@ export class Lab {
 }
 
 /** Fails on any error in the console, besides the test's own assertions. */
-export const test = base.extend<{ lab: Lab }>({
+export const test = base.extend<{ lab: Lab; say: Say }>({
+  say: async ({ locale }, use) => use(sayIn(locale)),
   lab: async ({ page }, use) => {
     const lab = new Lab(page);
     await use(lab);

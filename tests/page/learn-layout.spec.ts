@@ -67,13 +67,17 @@ test("an embedded figure fits the frame that its line of HTML gives", LONG, asyn
   }
 });
 
-test("a printed lesson takes two pages at most, with its figure and without its buttons", LONG, async ({ page }) => {
-  for (const id of LESSONS) {
-    await open(page, `at=${id}`);
-    const pdf = (await page.pdf({ format: "A4" })).toString("latin1");
-    expect(pdf.match(/\/Type\s*\/Page\b/g)?.length, id).toBeLessThanOrEqual(2);
-  }
-  await page.emulateMedia({ media: "print" });
-  await expect(figure(page)).toBeVisible();
-  await expect(page.getByRole("button", { name: "Slides" })).toBeHidden();
-});
+test(
+  "a printed lesson takes two pages at most, with its figure and without its buttons",
+  LONG,
+  async ({ page, say }) => {
+    for (const id of LESSONS) {
+      await open(page, `at=${id}`);
+      const pdf = (await page.pdf({ format: "A4" })).toString("latin1");
+      expect(pdf.match(/\/Type\s*\/Page\b/g)?.length, id).toBeLessThanOrEqual(2);
+    }
+    await page.emulateMedia({ media: "print" });
+    await expect(figure(page)).toBeVisible();
+    await expect(page.getByRole("button", { name: say("interface.slides", "Slides") })).toBeHidden();
+  },
+);

@@ -19,7 +19,7 @@ const status = (page: Page) => page.locator('[data-number="status"]');
 const source = (path: string) => readFile(new URL(`../../${path}`, import.meta.url), "utf8");
 
 test(
-  "9: the line between ambiguous and lost is where the text says, and the figures keep to it",
+  "14: the line between ambiguous and lost is where the text says, and the figures keep to it",
   LONG,
   async ({ page }) => {
     const verdict = await source("src/estimator/verdict.rs");

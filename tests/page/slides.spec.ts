@@ -25,54 +25,112 @@ test("each slide fits its screen, whatever its figure has to say", LONG, async (
   expect(lab.complaints).toEqual([]);
 });
 
-test("before the first slide and after the last there is none, and the buttons say so", async ({ page }) => {
-  await page.goto("./#learn&at=pixel&slides");
-  const previous = page.getByRole("button", { name: "Previous lesson" });
-  const next = page.getByRole("button", { name: "Next lesson" });
-  await expect(page.getByRole("heading", { name: "1. What a pixel shows" })).toBeVisible();
+test("before the first slide and after the last there is none, and the buttons say so", async ({ page, say }) => {
+  await page.goto("./#learn&at=normal&slides");
+  const previous = page.getByRole("button", { name: say("interface.slides.previous", "Previous lesson") });
+  const next = page.getByRole("button", { name: say("interface.slides.next", "Next lesson") });
+  await expect(page.getByRole("heading", { name: say("lessons.normal.title", "What a normal is") })).toBeVisible();
   await expect(previous).toBeDisabled();
   await next.click();
-  await expect(page.getByRole("heading", { name: "2. One grey light is not enough" })).toBeVisible();
+  await expect(page.getByRole("heading", { name: say("lessons.lambert.title", "Light and angle") })).toBeVisible();
   await expect(previous).toBeEnabled();
   await page.goto("./#learn&at=paint&slides");
-  await expect(page.getByRole("heading", { name: "8. Shadows and paint" })).toBeVisible();
+  await expect(page.getByRole("heading", { name: say("lessons.paint.title", "Shadows and paint") })).toBeVisible();
   await next.click();
-  await expect(page.getByRole("heading", { name: "9. When it fails" })).toBeVisible();
+  await expect(page.getByRole("heading", { name: say("lessons.failure.title", "When it fails") })).toBeVisible();
   await expect(next).toBeDisabled();
 });
 
-test("the browser's Back turns a slide back, then leads to the lesson, and Forward again", async ({ lab, page }) => {
+test("the browser's Back turns a slide back, then leads to the lesson, and Forward again", async ({
+  lab,
+  page,
+  say,
+}) => {
   await page.goto("./#learn&at=pose");
-  await page.getByRole("navigation", { name: "Lessons" }).getByRole("link", { name: "What a pixel shows" }).click();
+  await page
+    .getByRole("navigation", { name: say("interface.lessons", "Lessons") })
+    .getByRole("link", { name: say("lessons.pixel.title", "What a pixel shows") })
+    .click();
   const heading = (title: string) => page.getByRole("heading", { name: title });
   const slides = page.locator("dialog.learn-slides");
-  await page.getByRole("button", { name: "Slides" }).click();
+  await page.getByRole("button", { name: say("interface.slides", "Slides") }).click();
   await expect(slides).toBeVisible();
   await page.keyboard.press("ArrowRight");
-  await expect(heading("2. One grey light is not enough")).toBeVisible();
+  await expect(heading(say("lessons.grey.title", "One grey light is not enough"))).toBeVisible();
   // A changed setting adds no entry to the history.
   await slides.locator('input[name="turn"]').fill("90");
-  await expect(page).toHaveURL(/at=grey&turn=90&slides$/);
+  await expect(page).toHaveURL(/at=grey&turn=90(&lang=\w+)?&slides$/);
   await page.keyboard.press("PageDown");
-  await expect(heading("3. Three colours")).toBeVisible();
+  await expect(heading(say("lessons.colours.title", "Three colours"))).toBeVisible();
   await page.goBack();
-  await expect(heading("2. One grey light is not enough")).toBeVisible();
+  await expect(heading(say("lessons.grey.title", "One grey light is not enough"))).toBeVisible();
   await expect(slides.locator('input[name="turn"]')).toHaveValue("90");
   await page.goBack();
-  await expect(heading("1. What a pixel shows")).toBeVisible();
+  await expect(heading(say("lessons.pixel.title", "What a pixel shows"))).toBeVisible();
   await expect(slides).toBeVisible();
   await page.goBack();
   await expect(slides).toBeHidden();
-  await expect(heading("1. What a pixel shows")).toBeVisible();
-  await expect(page).toHaveURL(/at=pixel$/);
+  await expect(heading(say("lessons.pixel.title", "What a pixel shows"))).toBeVisible();
+  await expect(page).toHaveURL(/at=pixel(&lang=\w+)?$/);
   await page.goForward();
   await expect(slides).toBeVisible();
-  await expect(heading("1. What a pixel shows")).toBeVisible();
+  await expect(heading(say("lessons.pixel.title", "What a pixel shows"))).toBeVisible();
   // From the slides to the Lab, and back to the lesson itself.
   await page.goto("./#size=32");
   await lab.reaches("ready");
-  await page.getByRole("link", { name: "Learn", exact: true }).click();
+  await page.locator("#to-learn").click();
   await expect(slides).toBeHidden();
-  await expect(page.locator(".learn-main").getByRole("heading", { name: "1. What a pixel shows" })).toBeVisible();
+  await expect(
+    page.locator(".learn-main").getByRole("heading", { name: say("lessons.pixel.title", "What a pixel shows") }),
+  ).toBeVisible();
+  expect(lab.complaints).toEqual([]);
+});
+
+test("a slide uses a beamer's screen, and no figure is below its edge", async ({ lab, page }) => {
+  await page.setViewportSize({ width: 1920, height: 1080 });
+  await page.goto("./#learn&at=pose&slides");
+  const slide = page.locator(".learn-slide");
+  await expect(slide.locator(".learn-panel").first()).toBeVisible();
+  expect((await slide.locator(".learn-figure").boundingBox())?.width).toBeGreaterThan(0.9 * 1920);
+  expect(
+    await slide.locator("h2").evaluate((title) => Number.parseFloat(getComputedStyle(title).fontSize)),
+  ).toBeGreaterThan(48);
+  expect(await slide.evaluate(({ scrollHeight, clientHeight }) => scrollHeight - clientHeight)).toBeLessThanOrEqual(0);
+  expect(lab.complaints).toEqual([]);
+});
+
+test("slides turn by keys, leave the sliders theirs, and end by escape", async ({ lab, page, say }) => {
+  await open(page, "at=grey");
+  await page.getByRole("button", { name: say("interface.slides", "Slides") }).press("Enter");
+  const slides = page.locator("dialog.learn-slides");
+  await expect(slides).toBeVisible();
+  await expect(
+    slides.getByRole("heading", { name: say("lessons.grey.title", "One grey light is not enough") }),
+  ).toBeVisible();
+  await expect(
+    slides.getByText(say("lessons.grey.text.1", "A normal has two degrees of freedom").slice(0, 35)),
+  ).toBeHidden();
+  await page.keyboard.press("ArrowRight");
+  await expect(slides.getByRole("heading", { name: say("lessons.colours.title", "Three colours") })).toBeVisible();
+  await expect(page).toHaveURL(/at=colours.*&slides$/);
+  // Arrow keys on a slider move the slider.
+  const slider = slides.locator('input[name="colour"]');
+  await slider.focus();
+  await page.keyboard.press("ArrowRight");
+  await expect(slider).toHaveValue("0.32");
+  await page.keyboard.press("PageUp");
+  await expect(
+    slides.getByRole("heading", { name: say("lessons.grey.title", "One grey light is not enough") }),
+  ).toBeVisible();
+  await page.keyboard.press("ArrowLeft");
+  await page.keyboard.press("ArrowLeft");
+  await expect(slides.getByRole("heading", { name: say("lessons.pixel.title", "What a pixel shows") })).toBeVisible();
+  await page.keyboard.press("Escape");
+  await expect(slides).toBeHidden();
+  await expect(page.getByRole("heading", { name: say("lessons.pixel.title", "What a pixel shows") })).toBeVisible();
+  await expect(
+    page.getByText(say("lessons.pixel.text.0", "A matte surface under one distant lamp").slice(0, 38)),
+  ).toBeVisible();
+  await expect(page).not.toHaveURL(/slides/);
   expect(lab.complaints).toEqual([]);
 });

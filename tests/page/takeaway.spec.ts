@@ -251,7 +251,7 @@ test("a line puts one figure, as it is set, into another page", async ({ page, c
   await page.getByRole("button", { name: "Embed" }).click();
   const line = await page.getByLabel("HTML that shows the figure").inputValue();
   expect(line).toMatch(
-    /^<iframe src="[^"<>]+" title="1\. What a pixel shows" width="\d+" height="\d+" loading="lazy"><\/iframe>$/,
+    /^<iframe src="[^"<>]+" title="6\. What a pixel shows" width="\d+" height="\d+" loading="lazy"><\/iframe>$/,
   );
   await page.locator('.learn-controls input[name="beta"]').fill("55");
   await expect(page.getByLabel("HTML that shows the figure")).toHaveValue(/beta=55/);

@@ -1,6 +1,7 @@
 /** Points of both surfaces, seen from an angle set by a slider. */
 
 import { freshId, ink, make } from "../dom";
+import { phrase } from "../words";
 import type { CloudPanel, Panel } from "./protocol";
 
 const SIDE = 320;
@@ -19,14 +20,20 @@ export class Cloud {
 
   constructor() {
     const id = freshId("learn-turn");
-    this.#turn = make("input", { id, type: "range", min: -90, max: 90, step: 5, value: FIRST_TURN });
+    this.#turn = make("input", { id, type: "range", min: -90, max: 90, step: 1, value: FIRST_TURN });
     this.#turn.addEventListener("input", () => this.#draw());
-    const turn = make("div", { class: "learn-turn" }, make("label", { for: id }, "Rotate the view"), this.#turn);
+    this.#byHand();
+    const turn = make(
+      "div",
+      { class: "learn-turn" },
+      make("label", { for: id }, phrase("rotate", "Rotate the view")),
+      this.#turn,
+    );
     this.element = make(
       "figure",
       { class: "learn-panel" },
       this.#title,
-      make("div", { class: "learn-canvas plain" }, this.#canvas),
+      make("div", { class: "learn-canvas plain learn-turned" }, this.#canvas),
       make("div", { class: "learn-notes" }, turn, this.#legend),
     );
   }
@@ -41,6 +48,18 @@ export class Cloud {
       ...panel.sets.map(({ name, ink }) => make("span", { class: `learn-key learn-ink-${ink}` }, name)),
     );
     this.#draw();
+  }
+
+  /** A drag across the whole picture is the whole range of the slider. */
+  #byHand(): void {
+    this.#canvas.addEventListener("pointerdown", (event) => {
+      if (event.button === 0) this.#canvas.setPointerCapture(event.pointerId);
+    });
+    this.#canvas.addEventListener("pointermove", ({ pointerId, movementX }) => {
+      if (!this.#canvas.hasPointerCapture(pointerId)) return;
+      this.#turn.valueAsNumber += (180 * movementX) / this.#canvas.clientWidth;
+      this.#draw();
+    });
   }
 
   #draw(): void {

@@ -1,6 +1,7 @@
 /** The controls of a lesson: native inputs with their values beside them. */
 
 import { freshId, make } from "../dom";
+import { phrase } from "../words";
 import { labelOf, shown, type Control, type Lesson } from "./lesson";
 import type { Values } from "./protocol";
 
@@ -22,7 +23,7 @@ export class Controls {
     this.#fields = lesson.controls.map((control) => this.#field(control));
     this.element = make(
       "div",
-      { class: "learn-controls", role: "group", "aria-label": "Controls of the figure" },
+      { class: "learn-controls", role: "group", "aria-label": phrase("controls", "Controls of the figure") },
       ...this.#fields.map(({ element }) => element),
     );
     this.show(values);

@@ -1,13 +1,18 @@
 /** The HTML that shows a lesson's figure with its present settings in another page. Such a frame has a link to the lesson. */
 
 import { make } from "../dom";
+import { phrase } from "../words";
 
 /** Pixels of the frame, in which each lesson fits: tests/page/learn-layout.spec.ts. */
 const WIDTH = 800;
 const HEIGHT = { withPlot: 1060, withoutPlot: 760 };
 
 export class Embed {
-  readonly button = make("button", { type: "button", class: "learn-embed-button", "aria-expanded": "false" }, "Embed");
+  readonly button = make(
+    "button",
+    { type: "button", class: "learn-embed-button", "aria-expanded": "false" },
+    phrase("embed", "Embed"),
+  );
   readonly element: HTMLElement;
   readonly source: HTMLElement;
   readonly #line = make("input", { type: "text", readonly: true });
@@ -17,14 +22,19 @@ export class Embed {
 
   constructor(title: string) {
     this.#frame = make("iframe", { src: "", title, width: WIDTH, height: HEIGHT.withPlot, loading: "lazy" });
-    const copy = make("button", { type: "button" }, "Copy");
+    const copy = make("button", { type: "button" }, phrase("copy", "Copy"));
     copy.addEventListener("click", () => void this.#copy(copy));
-    this.#link.append(`${title}: text and exercises`);
+    this.#link.append(phrase("embed.source", "{title}: text and exercises", { title }));
     this.source = make("p", { class: "learn-source" }, this.#link);
     this.element = make(
       "div",
       { class: "learn-embed", hidden: true },
-      make("label", {}, "HTML that shows the figure with its present settings in another page", this.#line),
+      make(
+        "label",
+        {},
+        phrase("embed.line", "HTML that shows the figure with its present settings in another page"),
+        this.#line,
+      ),
       copy,
     );
     this.button.addEventListener("click", () => {
@@ -57,11 +67,11 @@ export class Embed {
   async #copy(button: HTMLButtonElement): Promise<void> {
     try {
       await navigator.clipboard.writeText(this.#line.value);
-      button.textContent = "Copied";
+      button.textContent = phrase("copied", "Copied");
     } catch {
       this.#line.select();
-      button.textContent = "Press Ctrl+C";
+      button.textContent = phrase("copy.keys", "Press Ctrl+C");
     }
-    setTimeout(() => (button.textContent = "Copy"), 2000);
+    setTimeout(() => (button.textContent = phrase("copy", "Copy")), 2000);
   }
 }

@@ -2,7 +2,9 @@
 
 import { OPTIONS } from "../../pkg/options.js";
 import { make } from "../dom";
+import { phrase } from "../words";
 import { sentence } from "./maths";
+import { translated } from "./translation";
 
 interface Exercise {
   title: string;
@@ -82,16 +84,19 @@ export function exerciseList(): HTMLElement {
   return make(
     "section",
     { class: "learn-exercises", id: "learn-exercises", "aria-labelledby": "learn-exercises-title" },
-    make("h2", { id: "learn-exercises-title", tabindex: "-1" }, "Exercises for a course"),
+    make("h2", { id: "learn-exercises-title", tabindex: "-1" }, phrase("exercises.title", "Exercises for a course")),
     make(
       "p",
       { class: "soft" },
-      "Each link opens the figure in the state the exercise refers to. To make your own exercise, set a figure and use the Link button at the top of the page: the address holds the lesson and all control settings.",
+      phrase(
+        "exercises.use",
+        "Each link opens the figure in the state the exercise refers to. To make your own exercise, set a figure and use the Link button at the top of the page: the address holds the lesson and all control settings.",
+      ),
     ),
     make(
       "ol",
       {},
-      ...exercises.map(({ title, links, question, answer }) =>
+      ...translated(exercises, ["exercises"]).map(({ title, links, question, answer }) =>
         make(
           "li",
           {},
@@ -101,7 +106,7 @@ export function exerciseList(): HTMLElement {
           make(
             "details",
             {},
-            make("summary", {}, "Answer"),
+            make("summary", {}, phrase("answer", "Answer")),
             ...answer.map((words) => make("p", {}, ...sentence(words))),
           ),
         ),

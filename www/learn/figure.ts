@@ -18,10 +18,13 @@ export class Figure {
   readonly element = make("div", { class: "learn-panels" });
   readonly #widgets = new Map<string, Widget>();
   readonly #drags: ReadonlySet<string>;
+  readonly #followed: ReadonlySet<string>;
   readonly #onDrag: OnDrag;
 
-  constructor(drags: ReadonlySet<string>, onDrag: OnDrag) {
+  /** Panels that can be dragged on; those that are followed also report a mouse that only hovers. */
+  constructor(drags: ReadonlySet<string>, followed: ReadonlySet<string>, onDrag: OnDrag) {
     this.#drags = drags;
+    this.#followed = followed;
     this.#onDrag = onDrag;
   }
 
@@ -46,7 +49,11 @@ export class Figure {
   #make(panel: Panel): Widget {
     switch (panel.kind) {
       case "image":
-        return new Picture(panel.key, this.#drags.has(panel.key) ? this.#onDrag : undefined);
+        return new Picture(
+          panel.key,
+          this.#drags.has(panel.key) ? this.#onDrag : undefined,
+          this.#followed.has(panel.key),
+        );
       case "plot":
         return new Plot();
       case "cloud":
@@ -63,9 +70,9 @@ class Picture implements Widget {
   readonly #title = make("figcaption", {});
   readonly #legend = make("p", { class: "soft learn-legend" });
 
-  constructor(key: string, onDrag: OnDrag | undefined) {
+  constructor(key: string, onDrag: OnDrag | undefined, follows: boolean) {
     const box = make("div", { class: "learn-canvas" }, this.#canvas, this.#marks);
-    if (onDrag) draggable(box, (x, y) => onDrag(key, x, y));
+    if (onDrag) draggable(box, (x, y) => onDrag(key, x, y), follows);
     this.element = make("figure", { class: "learn-panel", "data-panel": key }, this.#title, box, this.#legend);
   }
 
@@ -87,17 +94,30 @@ class Picture implements Widget {
   }
 }
 
-function drawn({ ink, shape, points, size = 2 }: Mark): SVGElement[] {
+/** A line through points, with gaps where they are not known. */
+function pathOf(points: readonly number[]): string {
+  let isDown = false;
+  let path = "";
+  for (let i = 0; i + 1 < points.length; i += 2) {
+    const [x, y] = [100 * (points[i] ?? NaN), 100 * (points[i + 1] ?? NaN)];
+    const isKnown = Number.isFinite(x + y);
+    if (isKnown) path += `${isDown ? "L" : "M"}${x.toFixed(2)} ${y.toFixed(2)}`;
+    isDown = isKnown;
+  }
+  return path;
+}
+
+function drawn({ ink, shape, points, size = 2, isFine = false }: Mark): SVGElement[] {
   const at = (i: number): [number, number] => [100 * (points[2 * i] ?? NaN), 100 * (points[2 * i + 1] ?? NaN)];
   const all = Array.from({ length: points.length / 2 }, (_, i) => at(i)).filter(
     ([x, y]) => Number.isFinite(x) && Number.isFinite(y),
   );
   const name = `learn-mark learn-ink-${ink}`;
-  if (shape === "line")
-    return [
-      svg("polyline", { class: `${name} halo`, points: all.join(" ") }),
-      svg("polyline", { class: name, points: all.join(" ") }),
-    ];
+  if (shape === "line") {
+    const d = pathOf(points);
+    if (isFine) return [svg("path", { class: `${name} fine`, d })];
+    return [svg("path", { class: `${name} halo`, d }), svg("path", { class: name, d })];
+  }
   return all.flatMap(([x, y]) => {
     if (shape === "dot") return [svg("circle", { class: `${name} filled`, cx: x, cy: y, r: size })];
     const form = (kind: string) =>
@@ -112,7 +132,7 @@ function drawn({ ink, shape, points, size = 2 }: Mark): SVGElement[] {
 }
 
 /** Reports the pointer's position in an element while it is held down. Keyboards can use the sliders. */
-function draggable(box: HTMLElement, onMove: (x: number, y: number) => void): void {
+function draggable(box: HTMLElement, onMove: (x: number, y: number) => void, follows: boolean): void {
   box.classList.add("learn-draggable");
   const tell = (event: PointerEvent) => {
     const { left, top, width, height } = box.getBoundingClientRect();
@@ -126,6 +146,7 @@ function draggable(box: HTMLElement, onMove: (x: number, y: number) => void): vo
     tell(event);
   });
   box.addEventListener("pointermove", (event) => {
-    if (box.hasPointerCapture(event.pointerId)) tell(event);
+    const hovers = follows && event.pointerType === "mouse" && event.buttons === 0;
+    if (hovers || box.hasPointerCapture(event.pointerId)) tell(event);
   });
 }

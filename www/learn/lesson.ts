@@ -1,7 +1,6 @@
 /** The parts of a lesson. */
 
-import { make } from "../dom";
-import { decimals } from "../draw/numbers";
+import { decimals, withUnit } from "./digits";
 import type { Ink, LessonId, Values } from "./protocol";
 import type { References } from "./references";
 
@@ -45,6 +44,27 @@ export interface Readout {
   hint?: string;
 }
 
+/** What a button does: it sets controls at once, and then moves one slider slowly, so that the change can be watched. */
+export interface Try {
+  set?: Values;
+  sweep?: { key: string; to: number };
+}
+
+/** A question before a surprise, which is answered by a choice or a number and then compared with the figure. */
+export interface Guess {
+  question: string;
+  /** The state of the figure that the question is about. */
+  at: Values;
+  choices?: readonly string[];
+  /** Which of the choices is right. */
+  right?: number;
+  /** The number of the figure that is asked for, and how near counts as right. */
+  number?: { key: string; unit?: string; digits: number; within: number };
+  /** What reveals the answer. */
+  reveal: Try;
+  answer: string;
+}
+
 export interface Lesson {
   id: LessonId;
   title: string;
@@ -54,12 +74,18 @@ export interface Lesson {
   /** The formula in words. */
   formulaWords: string;
   text: readonly string[];
-  /** Things to try with the figure. */
+  /** Things to try with the figure: the first sentence says what its button does, the rest what to look for. */
   tasks: readonly string[];
+  /** What the buttons of the tasks do, in the same order. */
+  tries: readonly Try[];
+  /** Questions to be answered before the figure reveals it. */
+  guesses: readonly Guess[];
+  /** What one can do after the lesson, in one sentence. */
+  can: string;
   controls: readonly Control[];
   readouts: readonly Readout[];
-  /** Panels on which a drag sets two sliders. */
-  drags: Readonly<Record<string, { x: string; y: string }>>;
+  /** Panels on which a drag sets two sliders; those that follow need no button. */
+  drags: Readonly<Record<string, { x: string; y: string; follows?: boolean }>>;
   /** Where the method is written down. */
   more: References;
 }
@@ -98,9 +124,7 @@ export function shown(control: SliderControl, value: number, values: Values): st
       ? 0
       : Math.max(0, 2 - Math.floor(Math.log10(number)))
     : Math.max(0, -Math.floor(Math.log10(control.step) + 1e-9));
-  const unit =
-    control.unit === undefined ? "" : control.unit === "°" || control.unit === "%" ? control.unit : ` ${control.unit}`;
-  return `${decimals(number, digits)}${unit}`;
+  return withUnit(decimals(number, digits), control.unit);
 }
 
 /** Takes the values from an address that are valid for their controls. */
@@ -119,6 +143,3 @@ export function valuesFrom(lesson: Lesson, asked: URLSearchParams): Values {
   }
   return values;
 }
-
-export const list = (kind: "ul" | "ol", items: readonly (Node | string)[][]): HTMLElement =>
-  make(kind, {}, ...items.map((item) => make("li", {}, ...item)));

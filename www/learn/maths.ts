@@ -1,6 +1,7 @@
 /** Formulas in MathML whose symbols have the colours of the figure, and sentences with such symbols in them. */
 
 import { make } from "../dom";
+import { phrase } from "../words";
 import type { Ink } from "./protocol";
 
 const SPACE = "http://www.w3.org/1998/Math/MathML";
@@ -41,12 +42,15 @@ const bold = (letter: string) => math("mi", { mathvariant: "bold", class: "learn
 const tilde = (base: Element) => math("mover", { accent: "true" }, base, mo("~"));
 
 /** Every symbol of the lessons, once. */
-const SYMBOLS = {
+export const SYMBOLS = {
   n: { make: () => bold("n"), ink: "normal", name: "unit normal of the surface" },
   // It has no hat, which would mean a unit vector: its length is the square root of two.
   N: { make: () => tilde(bold("n")), ink: "normal", name: "unit normal with a fourth component 1" },
   m: { make: () => bold("m"), ink: "prior", name: "normal of the depth map at that point" },
   M: { make: () => sub(bold("M"), mi("j")), ink: "light", name: "light of colour j, a 4 by 4 matrix of 9 numbers" },
+  l: { make: () => bold("l"), ink: "light", name: "unit vector to the lamp" },
+  E: { make: () => mi("E"), ink: "colour", name: "intensity of the pixel" },
+  rho: { make: () => mi("ρ"), ink: "albedo", name: "albedo" },
   L: { make: () => mi("L"), ink: "light", name: "light, 27 numbers" },
   a: { make: () => mi("a"), ink: "albedo", name: "logarithm of the albedo" },
   aj: { make: () => sub(mi("a"), mi("j")), ink: "albedo", name: "logarithm of the albedo in colour j" },
@@ -67,7 +71,7 @@ export type SymbolName = keyof typeof SYMBOLS;
 /** A symbol in the colour that it has in the figure. */
 export function symbol(name: SymbolName): Element {
   const { make: draw, ink, name: words } = SYMBOLS[name];
-  return math("mrow", { class: `learn-ink-${ink}`, title: words }, draw());
+  return math("mrow", { class: `learn-ink-${ink}`, title: phrase(`symbol.${name}`, words) }, draw());
 }
 
 /** The shading of the model: the extended normal on both sides of the light's matrix. */
@@ -82,12 +86,21 @@ export const block = (...children: Element[]): Element => math("math", { display
 /** Formulas below each other, because one line would be wider than the text of a small window. */
 export const lines = (...blocks: Element[]): Element => make("div", {}, ...blocks);
 
-/** A sentence in which {n} is the symbol n, {−n_x} its negative component along x, and {link|address} a link. */
+/**
+ * A sentence in which {n} is the symbol n, {−n_x} its negative component along x, {link|address} a link, and {=key} the value of the control
+ * with that key, which can be dragged.
+ */
 export function sentence(words: string): (Node | string)[] {
   return words.split(/(\{[^}]+\})/).map((part) => {
     // A number and its sign stay on one line.
     if (!part.startsWith("{")) return part.replace(/(\d) %/g, "$1\u00a0%");
     const inside = part.slice(1, -1);
+    if (inside.startsWith("="))
+      return make("span", {
+        class: "learn-number",
+        "data-control": inside.slice(1),
+        title: phrase("drag", "Drag to the left or to the right"),
+      });
     const [label = "", address] = inside.split("|");
     if (address !== undefined) return make("a", { href: address }, label);
     const [, minus, name = "", index] = /^(−?)([^_]+)(?:_(.+))?$/.exec(inside) ?? [];

@@ -1,4 +1,4 @@
-/** Learn: nine lessons, each a short text beside a live figure, with exercises and slides. */
+/** Learn: lessons in three chapters, each a short text beside a live figure, with exercises and slides. */
 
 import "../style/learn.css";
 import "../style/embed.css";
@@ -7,20 +7,26 @@ import "../style/learn-print.css";
 import "../style/learn-slides.css";
 import { make } from "../dom";
 import { saveJson } from "../save";
+import { phrase } from "../words";
 import { Controls } from "./controls";
 import { Embed } from "./embed";
 import { exerciseList } from "./exercises";
 import { Figure } from "./figure";
-import { computed, list, valuesFrom, initialValues, type Lesson } from "./lesson";
-import { beside, lessonNamed, lessons } from "./lessons";
+import { Guesses } from "./guesses";
+import { languageInAddress } from "./language";
+import { computed, valuesFrom, initialValues, type Lesson } from "./lesson";
+import { beside, chapters, lessonNamed, lessons } from "./lessons";
+import { lightTogether } from "./lit";
 import { sentence } from "./maths";
+import { TextNumbers } from "./numbers";
+import { Player } from "./player";
 import type { Drawing, LessonId, Values } from "./protocol";
 import { Readouts } from "./readouts";
 import { referencesOf } from "./references";
 import { Session } from "./session";
 import { Slides, type Slide } from "./slides";
-
-const first = lessons[0] as Lesson;
+import { drawingIn } from "./translation";
+import { tryList } from "./tries";
 
 /** A lesson on the page; its values stay when another one is opened. */
 interface Shown {
@@ -29,6 +35,9 @@ interface Shown {
   figure: Figure;
   controls: Controls;
   readouts: Readouts;
+  player: Player;
+  guesses: Guesses;
+  numbers: TextNumbers;
   box: HTMLElement;
   alert: HTMLElement;
   embed: Embed;
@@ -40,29 +49,36 @@ export class LearnPage {
     onDrawing: (drawing, done) => this.#draw(drawing, done),
     onFault: ({ message }) => this.#complain(message),
   });
-  readonly #kept = new Map<LessonId, Values>();
+  readonly #kept: Map<LessonId, Values>;
   readonly #links = new Map<LessonId, HTMLAnchorElement>();
-  readonly #contents = make("ol", {});
+  readonly #contents = make("div", { class: "learn-chapters" });
   readonly #main = make("div", { class: "learn-main" });
   readonly #exercises = exerciseList();
-  readonly #exerciseLink = make("a", { href: "#learn&at=exercises" }, "Exercises");
+  readonly #exerciseLink = make("a", { href: "#learn&at=exercises" }, phrase("exercises", "Exercises"));
   readonly #slides: Slides;
   #shown: Shown | undefined;
   #isOpen = false;
   /** The figure alone, in a frame of another page. */
   #isEmbedded = false;
 
-  constructor(parent: HTMLElement) {
-    for (const { id, title } of lessons) {
-      const link = make("a", { href: `#learn&at=${id}` }, title);
-      this.#links.set(id, link);
-      this.#contents.append(make("li", {}, link));
+  /** `tools` stand below the contents. */
+  constructor(parent: HTMLElement, { kept, tools }: { kept: Map<LessonId, Values>; tools: HTMLElement[] }) {
+    this.#kept = kept;
+    for (const chapter of chapters) {
+      const list = make("ol", { "aria-label": chapter.title });
+      for (const { id, title } of chapter.lessons) {
+        const link = make("a", { href: `#learn&at=${id}` }, title);
+        this.#links.set(id, link);
+        list.append(make("li", {}, link));
+      }
+      this.#contents.append(make("p", { class: "learn-chapter" }, chapter.title), list);
     }
     const nav = make(
       "nav",
-      { class: "learn-contents", "aria-label": "Lessons" },
+      { class: "learn-contents", "aria-label": phrase("lessons", "Lessons") },
       this.#contents,
       make("p", {}, this.#exerciseLink),
+      ...tools,
     );
     this.#slides = new Slides(
       (by) => this.#go(by),
@@ -77,7 +93,7 @@ export class LearnPage {
     const asked = new URLSearchParams(hash.replace(/^#/, ""));
     this.#isEmbedded = asked.has("embed");
     if (asked.get("at") === "exercises") return this.#showExercises();
-    const lesson = lessonNamed(asked.get("at")) ?? this.#shown?.lesson ?? first;
+    const lesson = lessonNamed(asked.get("at")) ?? this.#shown?.lesson ?? (lessons[0] as Lesson);
     const isTold = lesson.controls.some(({ key }) => asked.has(key));
     const values = isTold ? valuesFrom(lesson, asked) : (this.#kept.get(lesson.id) ?? initialValues(lesson));
     this.#show(lesson, values);
@@ -91,12 +107,14 @@ export class LearnPage {
   leave(): void {
     if (!this.#isOpen) return;
     this.#isOpen = false;
+    this.#shown?.player.stop();
     this.#session.end();
     this.#slides.close();
   }
 
   recolour(): void {
-    if (this.#shown?.drawing) this.#shown.figure.show(this.#shown.drawing);
+    const shown = this.#shown;
+    if (shown?.drawing) shown.figure.show(drawingIn(shown.lesson.id, shown.drawing));
   }
 
   /** The numbers of the figure, with the values of its controls. */
@@ -120,6 +138,7 @@ export class LearnPage {
       if (!this.#slides.isOpen && this.#shown.article.parentElement !== this.#main)
         this.#main.replaceChildren(this.#shown.article);
     } else {
+      this.#shown?.player.stop();
       this.#shown = this.#make(lesson, values);
       if (this.#slides.isOpen) this.#slides.take(slideOf(this.#shown));
       else this.#main.replaceChildren(this.#shown.article);
@@ -147,57 +166,76 @@ export class LearnPage {
   }
 
   #make(lesson: Lesson, values: Values): Shown {
-    const figure = new Figure(new Set(Object.keys(lesson.drags)), (key, x, y) => this.#drag(key, x, y));
+    const followed = Object.keys(lesson.drags).filter((key) => lesson.drags[key]?.follows);
+    const figure = new Figure(new Set(Object.keys(lesson.drags)), new Set(followed), (key, x, y) =>
+      this.#drag(key, x, y),
+    );
     const controls = new Controls(lesson, values, () => this.#ask());
+    const player = new Player(lesson, controls);
     const readouts = new Readouts(lesson.readouts);
     const alert = make("p", { class: "alert", role: "alert", hidden: true });
-    const number = lessons.indexOf(lesson) + 1;
+    const look = make("p", { class: "learn-look", role: "status" });
+    const box = make(
+      "section",
+      { class: "card learn-figure", "aria-label": phrase("figure", "Figure"), "aria-busy": "true" },
+      alert,
+      controls.element,
+      look,
+      readouts.element,
+      figure.element,
+    );
+    const embed = new Embed(titleOf(lesson));
+    box.append(embed.source);
+    const guesses = new Guesses(lesson, {
+      set: (at) => controls.set(at),
+      reveal: (what, done) => {
+        showFigure(box);
+        player.play(what, done);
+      },
+    });
+    const tries = tryList(lesson, (what, task) => {
+      look.replaceChildren(
+        ...(task.look ? [make("strong", {}, phrase("look", "Look for this:")), " ", ...sentence(task.look)] : []),
+      );
+      showFigure(box);
+      player.play(what);
+    });
+    const text = this.#text(lesson, embed, guesses.elements, tries);
+    const numbers = new TextNumbers(text, lesson, controls);
+    const article = make("article", { class: "learn-lesson", "data-lesson": lesson.id }, text, box);
+    lightTogether(article);
+    const parts = { figure, controls, readouts, player, guesses, numbers, embed };
+    return { ...parts, lesson, article, box, alert, drawing: undefined };
+  }
+
+  #text(lesson: Lesson, embed: Embed, guesses: readonly HTMLElement[], tries: HTMLElement): HTMLElement {
     const formula = make(
       "div",
       { class: "learn-formula", role: "group", tabindex: "0", "aria-label": lesson.formulaWords },
       lesson.formula(),
     );
-    const box = make(
-      "section",
-      { class: "card learn-figure", "aria-label": "Figure", "aria-busy": "true" },
-      alert,
-      controls.element,
-      readouts.element,
-      figure.element,
-    );
-    const embed = new Embed(`${number}. ${lesson.title}`);
-    box.append(embed.source);
-    const slides = make("button", { type: "button", class: "learn-slides-button" }, "Slides");
+    const slides = make("button", { type: "button", class: "learn-slides-button" }, phrase("slides", "Slides"));
     slides.addEventListener("click", () => {
       this.#startSlides();
       this.#writeAddress("another");
     });
-    const article = make(
-      "article",
-      { class: "learn-lesson", "data-lesson": lesson.id },
-      make(
-        "div",
-        { class: "learn-text" },
-        make(
-          "div",
-          { class: "learn-head" },
-          make("h2", { tabindex: "-1" }, `${number}. ${lesson.title}`),
-          embed.button,
-          slides,
-        ),
-        embed.element,
-        make("p", { class: "learn-gist" }, lesson.gist),
-        formula,
-        ...lesson.text.map((words) => make("p", {}, ...sentence(words))),
-        make("h3", {}, "Try"),
-        list("ul", lesson.tasks.map(sentence)),
-        make("h3", {}, "More"),
-        referencesOf(lesson.more),
-        this.#ends(lesson),
-      ),
-      box,
+    return make(
+      "div",
+      { class: "learn-text" },
+      make("div", { class: "learn-head" }, make("h2", { tabindex: "-1" }, titleOf(lesson)), embed.button, slides),
+      embed.element,
+      make("p", { class: "learn-gist" }, lesson.gist),
+      formula,
+      ...lesson.text.map((words) => make("p", {}, ...sentence(words))),
+      make("h3", {}, phrase("guess", "Predict, then look")),
+      ...guesses,
+      make("h3", {}, phrase("try", "Try")),
+      tries,
+      make("p", { class: "learn-can" }, make("strong", {}, `${phrase("can", "Now")}: `), lesson.can),
+      make("h3", {}, phrase("more", "More")),
+      referencesOf(lesson.more),
+      this.#ends(lesson),
     );
-    return { lesson, article, figure, controls, readouts, box, alert, embed, drawing: undefined };
   }
 
   #ends({ id }: Lesson): HTMLElement {
@@ -208,7 +246,7 @@ export class LearnPage {
       ...(before ? [make("a", { href: `#learn&at=${before.id}` }, `← ${before.title}`)] : []),
       after
         ? make("a", { href: `#learn&at=${after.id}` }, `${after.title} →`)
-        : make("a", { href: "#learn&at=exercises" }, "Exercises →"),
+        : make("a", { href: "#learn&at=exercises" }, `${phrase("exercises", "Exercises")} →`),
     );
   }
 
@@ -230,6 +268,7 @@ export class LearnPage {
     const shown = this.#shown;
     if (!shown) return;
     this.#kept.set(shown.lesson.id, shown.controls.values);
+    shown.numbers.show(shown.controls.values);
     shown.box.setAttribute("aria-busy", "true");
     this.#session.ask(shown.lesson.id, computed(shown.lesson, shown.controls.values));
     this.#writeAddress();
@@ -240,8 +279,10 @@ export class LearnPage {
     if (!shown) return;
     shown.drawing = drawing;
     shown.alert.hidden = true;
-    shown.figure.show(drawing);
-    shown.readouts.show(drawing);
+    const inWords = drawingIn(shown.lesson.id, drawing);
+    shown.figure.show(inWords);
+    shown.readouts.show(inWords);
+    if (done && !shown.player.isPlaying) shown.guesses.drawn(drawing, shown.controls.values);
     shown.embed.fit(drawing.panels.some(({ kind }) => kind === "plot"));
     shown.box.setAttribute("aria-busy", String(!done));
   }
@@ -249,7 +290,7 @@ export class LearnPage {
   #complain(message: string): void {
     const shown = this.#shown;
     if (!shown) return;
-    const again = make("button", { type: "button" }, "Recompute");
+    const again = make("button", { type: "button" }, phrase("recompute", "Recompute"));
     again.addEventListener("click", () => this.#ask());
     shown.alert.replaceChildren(message, " ", again);
     shown.alert.hidden = false;
@@ -287,12 +328,21 @@ export class LearnPage {
     const state = new URLSearchParams({
       at: shown.lesson.id,
       ...Object.fromEntries(changed.map(([key, value]) => [key, String(value)])),
+      ...languageInAddress(),
     });
     shown.embed.show(`#learn&${state}`);
     const address = `#learn&${state}${this.#slides.isOpen ? "&slides" : ""}${this.#isEmbedded ? "&embed" : ""}`;
     if (entry === "same") history.replaceState(null, "", address);
     else history.pushState(null, "", address);
   }
+}
+
+const titleOf = (lesson: Lesson): string => `${lessons.indexOf(lesson) + 1}. ${lesson.title}`;
+
+/** On a phone the figure may be out of view when a button below it is pressed. */
+function showFigure(box: HTMLElement): void {
+  const { top, height } = box.getBoundingClientRect();
+  if (top < 0 || top + Math.min(height, innerHeight / 2) > innerHeight) box.scrollIntoView({ block: "start" });
 }
 
 const slideOf = ({ article, lesson: { id, title } }: Shown): Slide => ({

@@ -1,14 +1,15 @@
 /** Curves in a box with two axes, drawn as SVG so that they take the page's colours. */
 
 import { make } from "../dom";
-import { short } from "../draw/numbers";
+import { short } from "./digits";
 import type { Panel, PlotPanel } from "./protocol";
 import { svg } from "./svg";
 
 /** The size of the drawing, which is as wide as its place: scaling it would make its type too small in a narrow place. */
 const WIDTH = 320;
 /** Landscape format if there is room, not too low to be legible and not higher than a screen. */
-const heightOf = (width: number): number => Math.round(Math.max(Math.min(width, 200), Math.min(0.5 * width, 280)));
+const heightOf = (width: number): number =>
+  Math.round(Math.max(Math.min(width, 200), Math.min(0.5 * width, 280, 0.28 * innerHeight)));
 /** Margins between the axes and the edges. */
 const MARGIN = { left: 40, top: 8, right: 14, bottom: 36 };
 /** Height of the type for which the margins are set, px; with larger type, on slides, everything is enlarged. */

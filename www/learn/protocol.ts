@@ -1,14 +1,30 @@
 /** The messages between the lessons and their worker. Both sides import this file and nothing else of each other. */
 
 import type { Fault } from "../engine/protocol";
+import type { Details } from "../words";
 
 /** The controls of a lesson by name; a box that is ticked is 1. */
 export type Values = Readonly<Record<string, number | string>>;
 
-export const LESSONS = ["pixel", "grey", "colours", "surface", "prior", "pose", "sensor", "paint", "failure"] as const;
+export const LESSONS = [
+  "normal",
+  "lambert",
+  "relief",
+  "strips",
+  "orders",
+  "pixel",
+  "grey",
+  "colours",
+  "surface",
+  "prior",
+  "pose",
+  "sensor",
+  "paint",
+  "failure",
+] as const;
 export type LessonId = (typeof LESSONS)[number];
 
-/** Ends of the slider of lesson 9: the narrowest depth map as a share of its width, and the largest rotation in degrees. */
+/** Ends of the slider of the last lesson: the narrowest depth map as a share of its width, and the largest rotation in degrees. */
 export const [LEAST_OVERLAP, LARGEST_TURN] = [0.08, 90];
 
 /** Marks on a picture; the style sheet gives each its colour, the same as that of its symbol in the text. */
@@ -27,15 +43,18 @@ export type Ink =
   | "red"
   | "green"
   | "blue"
-  | "pixel";
+  | "pixel"
+  | "isophote";
 
-/** Points of a picture, x and y in turn, from 0 at the left and the top to 1. */
+/** Points of a picture, x and y in turn, from 0 at the left and the top to 1; NaN leaves a gap in a line. */
 export interface Mark {
   ink: Ink;
   shape: "dot" | "ring" | "cross" | "line";
   points: number[];
   /** Radius of dots and rings in hundredths of the picture. */
   size?: number;
+  /** A thin line without a dark edge, for lines that lie close to each other. */
+  isFine?: boolean;
 }
 
 interface Common {
@@ -44,6 +63,10 @@ interface Common {
   title: string;
   /** A description for screen readers. */
   alt: string;
+  /** What stands in the place of {names} in its words. */
+  details?: Details;
+  /** Distinguishes the words of a panel whose words depend on the controls. */
+  state?: string;
 }
 
 export interface ImagePanel extends Common {
@@ -90,6 +113,14 @@ export interface Drawing {
   numbers: Record<string, number>;
   /** Numbers that are words, such as the status of a run. */
   words?: Record<string, string>;
+  /** The same for other languages: the parts of these words, to be joined by colons. */
+  said?: Record<string, Said[]>;
+}
+
+/** Words by their path in a catalogue, with the numbers in them. */
+export interface Said {
+  id: string;
+  details: Details;
 }
 
 export interface Request {

@@ -1,8 +1,8 @@
 /** The numbers of a figure, each in the colour of what it measures. */
 
 import { make } from "../dom";
-import { decimals } from "../draw/numbers";
 import type { Readout } from "./lesson";
+import { decimals, withUnit } from "./digits";
 import type { Drawing } from "./protocol";
 
 export class Readouts {
@@ -29,9 +29,8 @@ export class Readouts {
     for (const { readout, value } of this.#rows) {
       const word = words[readout.key];
       const number = numbers[readout.key];
-      const unit = readout.unit === undefined ? "" : /^[°%]$/.test(readout.unit) ? readout.unit : ` ${readout.unit}`;
       const known = number !== undefined && Number.isFinite(number);
-      value.textContent = word ?? (known ? `${decimals(number, readout.digits ?? 2)}${unit}` : "–");
+      value.textContent = word ?? (known ? withUnit(decimals(number, readout.digits ?? 2), readout.unit) : "–");
       value.classList.toggle("words", word !== undefined);
       if (known) value.dataset.value = String(number);
       else delete value.dataset.value;

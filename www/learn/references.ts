@@ -1,6 +1,7 @@
 /** The sources of a lesson's method, as links to other sites: nothing is requested before a click. */
 
 import { make } from "../dom";
+import { phrase } from "../words";
 
 /** The paper, at an address that everybody can read. */
 const PAPER = "https://arxiv.org/abs/1905.06499";
@@ -37,12 +38,21 @@ const anchor = (heading: string): string =>
 
 export function referencesOf({ sections, paper, others = [] }: References): HTMLElement {
   const links = [
-    ...(paper ? [make("a", { href: PAPER }, `The paper, ${paper}`)] : []),
+    ...(paper
+      ? [make("a", { href: PAPER }, phrase("references.paper", "The paper, {places}", { places: paper }))]
+      : []),
     ...sections.map((name) => {
       const [file, heading] = SECTIONS[name];
-      return make("a", { href: `${DOCS}/${file}#${anchor(heading)}` }, `The method: ${heading}`);
+      const words = make("span", { lang: "en" }, heading);
+      return make(
+        "a",
+        { href: `${DOCS}/${file}#${anchor(heading)}` },
+        phrase("references.method", "The method:"),
+        " ",
+        words,
+      );
     }),
-    ...others.map(([doi, words]) => make("a", { href: `https://doi.org/${doi}` }, words)),
+    ...others.map(([doi, words]) => make("a", { href: `https://doi.org/${doi}`, lang: "en" }, words)),
   ];
   return make("ul", { class: "soft learn-more" }, ...links.map((link) => make("li", {}, link)));
 }

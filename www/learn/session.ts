@@ -1,7 +1,8 @@
 /** The page's side of the worker: only the newest request counts, and a worker that has ended is replaced. */
 
-import { GONE, onGone } from "../engine/alive";
+import { onGone } from "../engine/alive";
 import type { Fault } from "../engine/protocol";
+import { phrase } from "../words";
 import type { Answer, Drawing, LessonId, Request, Values } from "./protocol";
 
 export interface Hooks {
@@ -33,7 +34,15 @@ export class Session {
   #spawn(): Worker {
     const worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
     onGone(worker, () => {
-      if (worker === this.#worker) this.#fail({ code: "lost", message: `This figure stopped: ${GONE}.`, fatal: true });
+      if (worker === this.#worker)
+        this.#fail({
+          code: "lost",
+          message: phrase(
+            "figure.stopped",
+            "This figure stopped: the browser ended the computing thread, probably because memory ran short.",
+          ),
+          fatal: true,
+        });
     });
     worker.onmessage = (event: MessageEvent<Answer>) => {
       // Earlier requests are obsolete.
@@ -42,7 +51,11 @@ export class Session {
     worker.onerror = (event) => {
       event.preventDefault();
       if (worker === this.#worker)
-        this.#fail({ code: "panic", message: event.message || "The worker could not be loaded.", fatal: true });
+        this.#fail({
+          code: "panic",
+          message: event.message || phrase("figure.none", "The worker could not be loaded."),
+          fatal: true,
+        });
     };
     return worker;
   }

@@ -1,6 +1,7 @@
 /** One figure at a time in large type for presenting to a class; the arrow keys change slides. */
 
 import { make } from "../dom";
+import { phrase } from "../words";
 
 /** Elements that use the arrow keys themselves. */
 const MOVED_BY_ARROWS = "input, select, textarea";
@@ -22,17 +23,21 @@ export class Slides {
     this.#onTurn = onTurn;
     this.#turns = (
       [
-        ["Previous lesson", -1, "←"],
-        ["Next lesson", 1, "→"],
+        [phrase("slides.previous", "Previous lesson"), -1, "←"],
+        [phrase("slides.next", "Next lesson"), 1, "→"],
       ] as const
     ).map(([words, by, sign]) => {
       const button = make("button", { type: "button", "aria-label": words }, sign);
       button.addEventListener("click", () => this.#onTurn(by));
       return { by, button };
     });
-    const close = make("button", { type: "button" }, "Close (Esc)");
+    const close = make("button", { type: "button" }, phrase("slides.close", "Close (Esc)"));
     close.addEventListener("click", () => this.close());
-    const whole = make("button", { type: "button", hidden: !document.fullscreenEnabled }, "Full screen (F)");
+    const whole = make(
+      "button",
+      { type: "button", hidden: !document.fullscreenEnabled },
+      phrase("slides.fill", "Full screen (F)"),
+    );
     whole.addEventListener("click", () => this.#fill());
     this.element = make(
       "dialog",
@@ -57,7 +62,7 @@ export class Slides {
   }
 
   take({ article, title, hasBeside }: Slide): void {
-    this.element.setAttribute("aria-label", `Slide: ${title}`);
+    this.element.setAttribute("aria-label", phrase("slides.slide", "Slide: {title}", { title }));
     for (const { by, button } of this.#turns) button.disabled = !hasBeside(by);
     this.#holder.replaceChildren(article);
     this.#holder.scrollTop = 0;

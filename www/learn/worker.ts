@@ -6,16 +6,36 @@ import { faultOf } from "../engine/fault";
 import { colours } from "./compute/colours";
 import { failure } from "./compute/failure";
 import { grey } from "./compute/grey";
+import { lambert } from "./compute/lambert";
+import { normal } from "./compute/normal";
+import { orders } from "./compute/orders";
 import { paint } from "./compute/paint";
 import { pixel } from "./compute/pixel";
 import { pose } from "./compute/pose";
 import { prior } from "./compute/prior";
+import { relief } from "./compute/relief";
 import { sensor } from "./compute/sensor";
+import { strips } from "./compute/strips";
 import { surface } from "./compute/surface";
 import type { Answer, Drawing, LessonId, Request, Values } from "./protocol";
 
 type Compute = (values: Values) => Generator<Drawing>;
-const lessons: Record<LessonId, Compute> = { pixel, grey, colours, surface, prior, pose, sensor, paint, failure };
+const lessons: Record<LessonId, Compute> = {
+  normal,
+  lambert,
+  relief,
+  strips,
+  orders,
+  pixel,
+  grey,
+  colours,
+  surface,
+  prior,
+  pose,
+  sensor,
+  paint,
+  failure,
+};
 
 let isLoaded = false;
 const ready = init().then(() => (isLoaded = true));

@@ -4,12 +4,7 @@ import { paintNormals, paintPicture, paintScalar, type MapName } from "../../dra
 import type { Range } from "../../engine/protocol";
 import type { ImagePanel, Mark, PlotPanel } from "../protocol";
 
-interface Words {
-  key: string;
-  title: string;
-  alt: string;
-  legend?: string;
-}
+type Words = Pick<ImagePanel, "key" | "title" | "alt" | "legend" | "details" | "state">;
 
 interface Grid {
   width: number;

@@ -6,6 +6,7 @@ import { cloudsOf } from "./clouds";
 import { pictureOf, scalarOf } from "./draw";
 import { chosenPixels, degreesBetween, meanOf } from "./measure";
 import { numberOf, scene, watched } from "./scenes";
+import { wordsOf } from "./status";
 
 const SIZE = 64;
 /** Side of the disc's grid of heights. */
@@ -110,7 +111,7 @@ export function* failure(values: Values): Generator<Drawing> {
         rivals: done ? (report.rivals?.length ?? 0) : NaN,
         residual: done ? report.residual : NaN,
       },
-      words: { status },
+      ...wordsOf(status),
     };
   }
 }

@@ -8,7 +8,7 @@ import { rms } from "./measure";
 import { lightNamed, logAt, numberOf, pixelAt, saturated, scene, vectorAt } from "./scenes";
 
 const SIDE = 96;
-const SIZE = 96;
+const SIZE = 160;
 /** Heights of the plate's middle and of the bump, pixels of the relief. */
 const PLATE = 40;
 const BUMP = 22;
@@ -70,7 +70,8 @@ export function* grey(values: Values): Generator<Drawing> {
         {
           key: "dent",
           title: "A dent, lamp turned",
-          alt: `A round dent in a plate, the lamp turned by ${numberOf(values, "turn")} degrees about the line of sight.`,
+          alt: "A round dent in a plate, the lamp turned by {turn} degrees about the line of sight.",
+          details: { turn: numberOf(values, "turn") },
         },
         grid,
         colours[1],

@@ -46,7 +46,8 @@ export function landscapeOf(
     {
       key: words.key ?? "landscape",
       title: words.title ?? "Cost of every normal at that pixel",
-      alt: `The hemisphere of all visible normals seen from the front; dark means a low cost. It has ${minima.length} minima.`,
+      alt: "The hemisphere of all visible normals seen from the front; dark means a low cost. It has {minima} minima.",
+      details: { minima: minima.length },
       legend: "dark: explains the pixel; dots: minima; cross: truth; line: solver",
     },
     { width: SIDE, height: SIDE },

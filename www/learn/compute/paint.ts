@@ -5,6 +5,7 @@ import type { Drawing, Values } from "../protocol";
 import { brightest, pictureOf, scalarOf } from "./draw";
 import { correlation, meanOf, normalDegrees } from "./measure";
 import { numberOf, running, scene } from "./scenes";
+import { statusIn, wordsOf } from "./status";
 
 const SIZE = 96;
 /** Log albedos of the pattern at full strength, and the side of a square of it, pixels. */
@@ -115,12 +116,7 @@ export function* paint(values: Values): Generator<Drawing> {
         taken: darkness > 0 ? (100 * contrast(albedo, paint, isShadow)) / Math.log(1 - darkness) : NaN,
         degrees: normalDegrees(estimator.imageNormals(), made.truth.imageNormals),
       },
-      words: {
-        status:
-          report.status === "running"
-            ? `iteration ${report.iteration}`
-            : [report.status, report.message].filter(Boolean).join(": "),
-      },
+      ...wordsOf(statusIn(report)),
     };
   }
 }

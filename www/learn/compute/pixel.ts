@@ -4,9 +4,9 @@ import { shadeNormals, turnLight } from "../../../pkg/index.js";
 import type { Drawing, Ink, Values } from "../protocol";
 import { onDisc, pictureOf, plot } from "./draw";
 import { ballNormals, predicted } from "../../engine/ball";
-import { lightNamed, normalAt, numberOf, ofOrder, scene } from "./scenes";
+import { lightNamed, normalAt, numberOf, scene } from "./scenes";
 
-const BALL = { width: 96, height: 96 };
+const BALL = { width: 192, height: 192 };
 const normals = ballNormals(BALL.width);
 const CHANNELS = [
   ["red", "R"],
@@ -32,8 +32,7 @@ export function* pixel(values: Values): Generator<Drawing> {
   const reach = Math.sqrt(Math.max(0.01, 0.96 - normal[1] ** 2));
   const across = Array.from({ length: SECTION }, (_, i) => reach * ((2 * i) / (SECTION - 1) - 1));
   const section = shadeNormals(light, Float32Array.from(across.flatMap((x) => normalAt(x, normal[1]))));
-  const bust = scene({ surface: "bust", light: "colourful", size: 96, angles: { beta: 0 } });
-  const orders = ([0, 1, 2] as const).map((order) => shadeNormals(ofOrder(light, order), one)[1] ?? NaN);
+  const bust = scene({ surface: "bust", light: "colourful", size: 192, angles: { beta: 0 } });
   yield {
     panels: [
       pictureOf(
@@ -52,7 +51,8 @@ export function* pixel(values: Values): Generator<Drawing> {
         {
           key: "patch",
           title: "The predicted colour",
-          alt: `The colour of the pixel: ${log.map((value) => Math.exp(value).toFixed(2)).join(", ")} in linear red, green and blue.`,
+          alt: "The colour of the pixel: {red:2}, {green:2}, {blue:2} in linear red, green and blue.",
+          details: { red: colour[0] ?? NaN, green: colour[1] ?? NaN, blue: colour[2] ?? NaN },
         },
         { width: 1, height: 1 },
         colour,
@@ -92,9 +92,6 @@ export function* pixel(values: Values): Generator<Drawing> {
       green: log[1] ?? NaN,
       blue: log[2] ?? NaN,
       nz: normal[2],
-      order0: orders[0] ?? NaN,
-      order1: orders[1] ?? NaN,
-      order2: orders[2] ?? NaN,
     },
   };
 }

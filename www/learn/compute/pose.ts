@@ -7,6 +7,7 @@ import { cloudsOf } from "./clouds";
 import { landscapeOf } from "./landscape";
 import { aboutY, angleBetween, degreesBetween, meanOf, product, turned } from "./measure";
 import { afterStages, isOn, logAt, numberOf, pixelAt, scene, vectorAt, watched } from "./scenes";
+import { statusOf, wordsOf, type Status } from "./status";
 
 const SIZE = 64;
 /** The true pose. */
@@ -59,10 +60,10 @@ interface State {
   correspondence: Int32Array;
   normals: Float32Array;
   explained: number;
-  status: string;
+  status: Status;
 }
 
-const stateOf = (estimator: Estimator, status = ""): State => {
+const stateOf = (estimator: Estimator, status: Status): State => {
   const residual = estimator.residual();
   return {
     panel: cloudsOf(estimator),
@@ -80,7 +81,7 @@ export function* pose(values: Values): Generator<Drawing> {
   const offset = numberOf(values, "offset");
   const curve: number[] = [];
   let state = afterStages(made, told(made, offset, "fixed"), TO_SURFACE, (estimator) =>
-    stateOf(estimator, "fixed where you set it"),
+    stateOf(estimator, statusOf("held")),
   );
   const draw = (): Drawing => drawing(values, made, state, curve);
   yield draw();
@@ -175,6 +176,6 @@ function drawing(values: Values, made: Sample, state: State, curve: number[]): D
       off: known ? angleBetween(known, truth) : NaN,
       end: angleBetween(landscape.end, truth),
     },
-    words: { status: state.status },
+    ...wordsOf(state.status),
   };
 }

@@ -67,7 +67,8 @@ export function* prior(values: Values): Generator<Drawing> {
         {
           key: "given",
           title: "Normals from the depth map",
-          alt: `The prior: ${share} percent of the pixels are given a normal.`,
+          alt: "The prior: {share} percent of the pixels are given a normal.",
+          details: { share },
           legend: "hatched: no normal given",
         },
         grid,

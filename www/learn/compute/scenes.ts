@@ -2,6 +2,7 @@
 
 import { Estimator, sample, type Options, type Sample, type SampleRequest } from "../../../pkg/index.js";
 import type { Values } from "../protocol";
+import { statusIn, type Status } from "./status";
 
 /** The last few scenes, so that dragging a control that does not affect the scene does not render it again. */
 const MOST_KEPT = 8;
@@ -146,22 +147,17 @@ const MOST_STEPS = 12_000;
 export function* watched(
   made: Pick<Sample, "image" | "depth">,
   options: Options,
-): Generator<{ estimator: Estimator; status: string; done: boolean }> {
+): Generator<{ estimator: Estimator; status: Status; done: boolean }> {
   const estimator = new Estimator(made.image, made.depth, options);
   try {
     let shown = -Infinity;
     for (let step = 0; step < MOST_STEPS && estimator.report.status === "running"; step++) {
-      const { stage, message, iteration } = estimator.step();
+      const report = estimator.step();
       if (performance.now() - shown < PICTURE_EVERY) continue;
-      yield {
-        estimator,
-        status: stage === "search" ? `search, ${message ?? ""}` : `iteration ${iteration}`,
-        done: false,
-      };
+      yield { estimator, status: statusIn(report), done: false };
       shown = performance.now();
     }
-    const { status, message } = estimator.report;
-    yield { estimator, status: [status, message].filter(Boolean).join(": "), done: true };
+    yield { estimator, status: statusIn(estimator.report), done: true };
   } finally {
     estimator.free();
   }

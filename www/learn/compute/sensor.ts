@@ -5,6 +5,7 @@ import { alongRow, normalsOf, plot } from "./draw";
 import { meanOf, normalDegrees, rms } from "./measure";
 import { Estimator, type Sample } from "../../../pkg/index.js";
 import { numberOf, running, scene } from "./scenes";
+import { statusOf, wordsOf } from "./status";
 
 const SIZE = 64;
 const STEPS = 6;
@@ -93,7 +94,7 @@ export function* sensor(values: Values): Generator<Drawing> {
         normalsAfter: normalDegrees(normals, made.truth.depthNormals),
         filled: all === 0 ? NaN : (100 * filled) / all,
       },
-      words: { status: `iteration ${estimator.report.iteration}` },
+      ...wordsOf(statusOf("iteration", { iteration: estimator.report.iteration })),
     };
   }
 }

@@ -1,13 +1,42 @@
-/** All lessons in their order. */
+/** All lessons in their order, and their chapters. */
 
 import type { Lesson } from "../lesson";
+import { translated } from "../translation";
 import type { LessonId } from "../protocol";
+import { relief, strips } from "./classical";
+import { lambert, normal } from "./first";
 import { colours, grey, pixel } from "./light";
 import { failure, paint } from "./limits";
+import { orders } from "./orders";
 import { pose, sensor } from "./pose";
 import { prior, surface } from "./shape";
 
-export const lessons: readonly Lesson[] = [pixel, grey, colours, surface, prior, pose, sensor, paint, failure];
+interface Chapter {
+  /** A name for its words in other languages. */
+  id: string;
+  title: string;
+  lessons: readonly Lesson[];
+}
+
+const english: readonly Chapter[] = [
+  { id: "pixel", title: "One pixel", lessons: [normal, lambert, relief, strips, orders, pixel, grey, colours] },
+  { id: "surface", title: "A surface", lessons: [surface, prior] },
+  { id: "views", title: "Two views", lessons: [pose, sensor, paint, failure] },
+];
+
+/** In the language of the page. */
+export let chapters = english;
+export let lessons: readonly Lesson[] = english.flatMap((chapter) => chapter.lessons);
+
+/** Takes the words of the catalogue in use. */
+export function retell(): void {
+  chapters = english.map(({ id, title, lessons }) => ({
+    id,
+    title: translated(title, ["chapters", id]),
+    lessons: lessons.map((lesson) => translated(lesson, ["lessons", lesson.id])),
+  }));
+  lessons = chapters.flatMap((chapter) => chapter.lessons);
+}
 
 export function lessonNamed(name: string | null): Lesson | undefined {
   return lessons.find(({ id }) => id === name);

@@ -1,4 +1,4 @@
-/** Lessons 1 to 3: what the colours of a pixel reveal about its normal. */
+/** Lessons 6 to 8: what the colours of a pixel reveal about its normal. */
 
 import type { Lesson } from "../lesson";
 import { LIGHTS } from "../lesson";
@@ -15,15 +15,30 @@ export const pixel: Lesson = {
     "The logarithm of the intensity of colour j is the log albedo plus a quadratic form of the normal, whose matrix is the light of that colour.",
   text: [
     "A matte surface under one distant lamp follows Lambert's law: its intensity is the albedo times {n}·l, the cosine of the angle between the unit normal {n} and the direction l of the lamp. Light from many directions adds up. So a pixel's intensity {S} in red, green and blue depends on its normal, on the albedo (how much light the surface reflects; {a} is its logarithm) and on the light {L}. It does not depend on the position of the pixel in the picture.",
-    "Nine numbers for each colour describe the intensity of a matte surface under any distant light, with a mean error of about 1 % (Ramamoorthi and Hanrahan). This page follows Barron and Malik and uses nine numbers for the logarithm of the intensity instead. That is a choice, not a theorem: the albedo becomes a term that is added, and no predicted intensity is negative.",
-    "The logarithm is a polynomial of degree 2 in the normal, with nine coefficients for each colour, 27 in all. The matrices {M} collect them, and {N} is the normal with a fourth component 1, so that one product contains all orders. A symmetric 4 by 4 matrix has ten numbers. But the squares of the normal's components add up to 1, so a constant can be moved from the zeroth order to the squares without any effect, and nine numbers remain.",
-    "The zeroth-order term is the same for every normal. First-order terms brighten one side. Second-order terms have the same value on opposite sides. The ball shows their sum for every normal that the camera can see, so it shows the whole model. The model leaves out cast shadows, highlights and light that other parts of the object reflect.",
+    "Each colour has its own light {M}. A lamp that is red on one side and blue on the other gives each direction another colour, and so the colour of a pixel says more about its normal than its brightness does. The ball shows the colour of every normal that the camera can see. In the section, each curve is one colour.",
+    "Under this model a darker surface is the same surface with a smaller {a}: all three logarithms fall by the same number. Here the albedo is {=albedo}. In a picture, a dark surface in bright light and a bright one in dim light are therefore the same. The model leaves out cast shadows, highlights and light that other parts of the object reflect.",
   ],
   tasks: [
-    "Drag on the ball. The patch shows the colour of that normal.",
-    "Drag on the bust to rotate the light. The same normal now has a different colour.",
+    "Walk across the ball from left to right. The patch shows the colour of each normal.",
+    "Rotate the light. The same normal now has a different colour.",
     "Lower the albedo. All three curves move down by the same amount: in the logarithm, the albedo is an additive constant.",
   ],
+  tries: [
+    { set: { nx: -0.9 }, sweep: { key: "nx", to: 0.9 } },
+    { set: { beta: 0 }, sweep: { key: "beta", to: 60 } },
+    { set: { albedo: 1 }, sweep: { key: "albedo", to: 0.3 } },
+  ],
+  guesses: [
+    {
+      question: "The albedo falls to a half. What happens to the three curves of log S?",
+      at: { albedo: 1 },
+      choices: ["The highest falls most", "All fall by the same amount", "They become flatter"],
+      right: 1,
+      reveal: { sweep: { key: "albedo", to: 0.5 } },
+      answer: "All fall by log 2, about 0.69. Half the light is one and the same step in a logarithm.",
+    },
+  ],
+  can: "You can say what the colour of a pixel depends on, and what the model leaves out.",
   controls: [
     { kind: "slider", key: "nx", label: "Normal, to the right", min: -0.95, max: 0.95, step: 0.01, initial: 0.45 },
     { kind: "slider", key: "ny", label: "Normal, down", min: -0.95, max: 0.95, step: 0.01, initial: -0.3 },
@@ -45,19 +60,12 @@ export const pixel: Lesson = {
     { key: "red", label: "log S, red", digits: 3, ink: "red" },
     { key: "green", label: "log S, green", digits: 3, ink: "green" },
     { key: "blue", label: "log S, blue", digits: 3, ink: "blue" },
-    { key: "order0", label: "log S, green: order 0", digits: 3, ink: "light" },
-    { key: "order1", label: "log S, green: order 1", digits: 3, ink: "light" },
-    { key: "order2", label: "log S, green: order 2", digits: 3, ink: "light" },
   ],
   drags: { ball: { x: "nx", y: "ny" }, bust: { x: "beta", y: "alpha" } },
   more: {
     paper: "Eq. 3 and 5",
     sections: ["imageModel"],
     others: [
-      [
-        "10.1145/383259.383317",
-        "Ramamoorthi and Hanrahan, An efficient representation for irradiance environment maps, 2001",
-      ],
       ["10.1109/TPAMI.2014.2377712", "Barron and Malik, Shape, illumination, and reflectance from shading, 2015"],
     ],
   },
@@ -70,16 +78,32 @@ export const grey: Lesson = {
   formula: () => block(logS(), mo("="), shading(), comma(), mi("j"), mo("="), mn("1")),
   formulaWords: "One colour gives one equation. The unit normal has two unknowns.",
   text: [
-    "From here to lesson 7 the whole object has one albedo. Its logarithm is then a constant, which {M} includes.",
+    "From here to lesson 12 the whole object has one albedo. Its logarithm is then a constant, which {M} includes.",
     "A normal has two degrees of freedom; grey light gives one equation. The normals that explain one pixel therefore form a curve, the dark line in the cost map. The pixel alone does not determine where on that line the true normal lies.",
-    "The picture as a whole is ambiguous, too. Rotate every normal by half a turn about the line of sight, and a bump becomes a dent. Rotate the lamp by the same angle, and every pixel keeps its brightness. This is why craters in photographs sometimes look like hills.",
+    "The picture as a whole is ambiguous, too. Rotate every normal by half a turn about the line of sight, and a bump becomes a dent. Rotate the lamp by the same angle (now {=turn}), and every pixel keeps its brightness. This is why craters in photographs sometimes look like hills.",
     "The reason is that rotating a second-order light gives another second-order light. If the light is unknown, colour does not resolve the ambiguity. A known light does, and so does a depth map. Cast shadows, occluding contours and the assumption that light comes from above help as well.",
   ],
   tasks: [
     "Move the lamp of the dent from 0° to 180°. At 180° the two pictures are the same, and the difference falls to zero.",
     "Flatten the bump. Then the two pictures cannot differ.",
-    "Drag the pixel on the bump and watch how the dark curve moves.",
+    "Move the pixel across the bump. The dark curve of its normals moves, but it stays a curve.",
   ],
+  tries: [
+    { set: { height: 0.8, turn: 0 }, sweep: { key: "turn", to: 180 } },
+    { set: { turn: 60 }, sweep: { key: "height", to: 0 } },
+    { set: { height: 0.8, py: 0.42, px: 0.25 }, sweep: { key: "px", to: 0.75 } },
+  ],
+  guesses: [
+    {
+      question:
+        "A dent lies beside a bump. By which angle must its lamp be rotated so that both make the same picture?",
+      at: { turn: 0, height: 0.8 },
+      number: { key: "turn", unit: "°", digits: 0, within: 10 },
+      reveal: { sweep: { key: "turn", to: 180 } },
+      answer: "By 180°. A dent has the normals of the bump, rotated by half a turn about the line of sight.",
+    },
+  ],
+  can: "You can show why one grey picture leaves a curve of normals, and when a bump looks like a dent.",
   controls: [
     {
       kind: "slider",
@@ -122,13 +146,31 @@ export const colours: Lesson = {
   text: [
     "Let the light be red from one side, green from another and blue from a third. Each colour leaves a different curve of normals. Where the three curves meet, all colours are explained. The cost of a normal is the squared distance between measured and predicted log colours; the solver looks for its global minimum.",
     "A quadratic form in three colours can still have several minima. The solver therefore first compares 600 directions all over the hemisphere and then descends from the best one. White dots mark the local minima; the larger the dot, the more starting points end there.",
-    "Natural light is nearly white. Its three curves almost coincide, and the valley becomes long and flat: a little noise moves the lowest point by tens of degrees. A single pixel then determines almost nothing. Noise may also give the pixel a colour that no normal has. Then no normal explains it within 2 %, and the lowest minimum is merely the closest match.",
+    "Natural light is nearly white. Its three curves almost coincide, and the valley becomes long and flat: a little noise moves the lowest point by tens of degrees. The picture now has a noise of {=noise}. A single pixel then determines almost nothing. Noise may also give the pixel a colour that no normal has. Then no normal explains it within 2 %, and the lowest minimum is merely the closest match.",
   ],
   tasks: [
-    "Drag the colour from 0 to 1. The dark curve shrinks to a few spots, and the error of the normals falls.",
-    "Choose the window light at full colour: the curve stays long.",
-    "Add noise and compare how much the error grows under each light.",
+    "Raise the colour of the light from 0 to 1. The dark curve shrinks to a few spots, and the error of the normals falls.",
+    "Choose the window light at full colour. There the curve stays long.",
+    "Add noise under the coloured lamps. Then compare how much the error grows under each light.",
   ],
+  tries: [
+    { set: { light: "colourful", noise: 0.01, colour: 0 }, sweep: { key: "colour", to: 1 } },
+    { set: { light: "window", colour: 1, noise: 0.01 } },
+    { set: { light: "colourful", colour: 1, noise: 0 }, sweep: { key: "noise", to: 0.05 } },
+  ],
+  guesses: [
+    {
+      question:
+        "Both lights at full colour, a noise of 1 %. Under which light are the normals of single pixels better?",
+      at: { light: "colourful", colour: 1, noise: 0.01 },
+      choices: ["Under the coloured lamps", "Under the window, which is more natural", "Under both alike"],
+      right: 0,
+      reveal: { set: { light: "window" } },
+      answer:
+        "Under the coloured lamps. Light from a window is nearly white, its three curves almost coincide, and the error is many times larger.",
+    },
+  ],
+  can: "You can explain why three coloured lights determine a normal, and why natural light hardly does.",
   controls: [
     {
       kind: "slider",

@@ -1,7 +1,9 @@
-/** Lessons 8 and 9: what the image model ignores, and when the method fails. */
+/** Lessons 13 and 14: what the image model ignores, and when the method fails. */
 
 import type { Lesson } from "../lesson";
 import { LIGHTS } from "../lesson";
+import { phrase } from "../../words";
+import { decimals, withUnit } from "../digits";
 import { LARGEST_TURN, LEAST_OVERLAP } from "../protocol";
 import { block, frac, log, mi, mn, mo, row, shading, sub, sup, symbol } from "../maths";
 
@@ -20,8 +22,25 @@ export const paint: Lesson = {
     "Raise the strength of the paint. It appears in the albedo and disappears from the shading.",
     "Remove the paint and deepen the shadow. Nearly all of it appears in the albedo, and its edge in the remainder.",
     "Deepen the shadow with the paint at 0.8. The correlation of albedo and paint falls, but the status is still converged.",
-    "Choose the coloured lamps: chromaticity is now less informative, and the normals get worse.",
+    "Choose the coloured lamps. There chromaticity is now less informative, and the normals get worse.",
   ],
+  tries: [
+    { set: { light: "window", shadow: 0, paint: 1 } },
+    { set: { light: "window", paint: 0, shadow: 0.9 } },
+    { set: { light: "window", paint: 0.8, shadow: 0.9 } },
+    { set: { light: "colourful", paint: 0.8, shadow: 0 } },
+  ],
+  guesses: [
+    {
+      question: "A deep shadow falls on a surface without paint. For what does the program take it?",
+      at: { light: "window", paint: 0, shadow: 0 },
+      choices: ["Shading, so the normals bend", "Dark paint", "A remainder that nothing explains"],
+      right: 1,
+      reveal: { set: { shadow: 0.9 } },
+      answer: "Dark paint. A shadow that darkens all colours alike has the effect of a smaller albedo.",
+    },
+  ],
+  can: "You can say how paint is separated from shading, and why a shadow is not.",
   controls: [
     { kind: "slider", key: "paint", label: "Strength of the paint", min: 0, max: 1, step: 0.05, initial: 0.8 },
     { kind: "slider", key: "shadow", label: "Depth of the shadow", min: 0, max: 0.95, step: 0.05, initial: 0 },
@@ -44,13 +63,16 @@ export const paint: Lesson = {
   },
 };
 
-const percent = (value: number): string => `${Math.round(value)}%`;
+const percent = (value: number): string => withUnit(decimals(value, 0), "%");
 /** The meaning of the slider in each case, as the figure computes with it. */
 const AMOUNTS: Readonly<Record<string, { label: string; reads(value: number): string }>> = {
   symmetry: { label: "Part of the nose removed", reads: percent },
   overlap: { label: "Width of the depth map", reads: (value) => percent(100 - (1 - LEAST_OVERLAP) * value) },
   texture: { label: "Strength of the print", reads: percent },
-  turn: { label: "Rotation between the views", reads: (value) => `${((LARGEST_TURN * value) / 100).toFixed(1)}°` },
+  turn: {
+    label: "Rotation between the views",
+    reads: (value) => withUnit(decimals((LARGEST_TURN * value) / 100, 1), "°"),
+  },
 };
 
 export const failure: Lesson = {
@@ -61,7 +83,7 @@ export const failure: Lesson = {
     block(
       sup(sub(mi("σ"), symbol("R")), mn("2")),
       mo("≈"),
-      frac(sup(mi("σ"), mn("2")), row(mi("information"), mo("("), symbol("R"), mo(")"))),
+      frac(sup(mi("σ"), mn("2")), row(mi(phrase("information", "information")), mo("("), symbol("R"), mo(")"))),
     ),
   formulaWords:
     "The variance of the rotation is about the variance of the noise divided by the information that the scene contains about the rotation.",
@@ -72,11 +94,29 @@ export const failure: Lesson = {
     "The reported sigma is that of the rotation about its least certain axis; the degrees quoted in a status are also one sigma. Above 1.5° the status is ambiguous, because two sigmas then exceed the 3° within which a pose counts as found. Above 5° it is lost: a rotation this uncertain is useless. Above 25° the rotation counts as not observable. A status can have other reasons: it is ambiguous if other poses fit the image equally well, and lost if too much of the colours remains unexplained.",
   ],
   tasks: [
-    "Symmetry: remove the nose of the disc. At 100 % the rotation cannot be determined, and the report names the axis.",
-    "Overlap: narrow the depth map and find the width at which the status stops being converged.",
-    "Texture: with the print at 100 %, more of the colour stays unexplained than with none, and the rotation is so uncertain that the status is lost. The report names the axis.",
-    "A large turn: at 90° and with a narrow depth map, little remains to compare.",
+    "Remove the nose of the disc. At 100 % the rotation cannot be determined, and the report names the axis.",
+    "Narrow the depth map to the least. Then find the width at which the status stops being converged.",
+    "Print texture on the object. Now, with the print at 100 %, more of the colour stays unexplained than with none, and the rotation is so uncertain that the status is lost. The report names the axis.",
+    "Turn the views apart. Here at 90° and with a narrow depth map, little remains to compare.",
   ],
+  tries: [
+    { set: { case: "symmetry", amount: 100 } },
+    { set: { case: "overlap", amount: 100 } },
+    { set: { case: "texture", amount: 100 } },
+    { set: { case: "turn", amount: 100 } },
+  ],
+  guesses: [
+    {
+      question: "The disc loses its nose and is round. What will the report say about its pose?",
+      at: { case: "symmetry", amount: 0 },
+      choices: ["Converged, with a small sigma", "Lost, and which rotation cannot be seen", "A wrong pose, converged"],
+      right: 1,
+      reveal: { set: { amount: 100 } },
+      answer:
+        "Lost, and which rotation cannot be seen: that about z. The residual is small, so it would not have warned.",
+    },
+  ],
+  can: "You can judge from status, sigma and alternative poses whether a result can be trusted.",
   controls: [
     {
       kind: "choice",
@@ -94,7 +134,7 @@ export const failure: Lesson = {
       kind: "slider",
       key: "amount",
       label: ({ case: what }) => AMOUNTS[String(what)]?.label ?? "Amount",
-      reads: (value, { case: what }) => AMOUNTS[String(what)]?.reads(value) ?? `${value}%`,
+      reads: (value, { case: what }) => AMOUNTS[String(what)]?.reads(value) ?? percent(value),
       min: 0,
       max: 100,
       step: 5,

@@ -1,4 +1,4 @@
-/** Lessons 6 and 7: the pose between the cameras, and the refinement of the sensor's depth. */
+/** Lessons 11 and 12: the pose between the cameras, and the refinement of the sensor's depth. */
 
 import type { Lesson } from "../lesson";
 import { LIGHTS } from "../lesson";
@@ -13,17 +13,36 @@ export const pose: Lesson = {
   formulaWords:
     "The cost of the colours plus lambda times the squared distance between the normal and the depth map's normal rotated by the pose.",
   text: [
-    "A photograph and a depth map look nothing alike, so there are no features to match. The image model links them: the depth map's normals {m}, rotated by the pose's rotation {R}, must explain the colours. Under a wrong pose they do not, and a residual remains. The curve shows the residual for errors about the vertical axis.",
+    "A photograph and a depth map look nothing alike, so there are no features to match. The image model links them: the depth map's normals {m}, rotated by the pose's rotation {R}, must explain the colours. Under a wrong pose they do not, and a residual remains. Here the pose is off by {=offset}. The curve shows the residual for errors about the vertical axis.",
     "Joint registration minimises this residual; if the light is unknown, light and pose are estimated together. It needs an initial pose within some 20 to 30 degrees. If nothing is known, a search comes first: it scores a coarse grid over all rotations and passes the best ones to the registration.",
     "“Register from there” gives the registration an initial pose. The given pose is trusted within a tolerance: the result has to lie within 30° of it and may move the centre of the object by about the object's width. If no pose within the tolerance explains the colours better, the given pose is kept and the status is ambiguous.",
     "The last map shows the cost of one pixel over all normals, with the prior that the depth map gives under the present pose. The ring marks the prior, the dots mark the minima, and the line shows the solver's steps from the prior. A small {lambda} leaves several minima. With a larger one they merge into one near the prior. If the pose is right, the prior is near the true normal, and so is that minimum. If the pose is wrong, the minimum moves away from the true normal. The robust prior is a compromise: a prior that is far off is ignored.",
   ],
   tasks: [
-    "Move the pose away from 0° and watch the residual rise and the two surfaces separate.",
-    "Drag λ to the right until the minima of the pixel have merged. Repeat with the pose 20° off.",
-    "Let it register from 20° away, then from 40°: the true pose lies beyond the tolerance, so the given pose is kept and the status is ambiguous.",
-    "Let it search from scratch.",
+    "Move the pose away from 0°. Watch the residual rise and the two surfaces separate.",
+    "Raise λ until the minima of the pixel have merged. Repeat with the pose 20° off.",
+    "Let it register from 20° away. The pose comes home.",
+    "Let it register from 40° away. Here the true pose lies beyond the tolerance, so the given pose is kept and the status is ambiguous.",
+    "Let it search from scratch. It needs no initial pose, and takes longer.",
   ],
+  tries: [
+    { set: { run: "hold", offset: 0 }, sweep: { key: "offset", to: 30 } },
+    { set: { run: "hold", offset: 0, robust: 0, weight: -3 }, sweep: { key: "weight", to: 0 } },
+    { set: { offset: 20, run: "register" } },
+    { set: { offset: 40, run: "register" } },
+    { set: { run: "search" } },
+  ],
+  guesses: [
+    {
+      question: "The given pose is 40° off. Registration from there may move it by up to 30°. What will it report?",
+      at: { offset: 40, run: "hold" },
+      choices: ["The true pose, converged", "A pose 10° off, converged", "The given pose, ambiguous"],
+      right: 2,
+      reveal: { set: { run: "register" } },
+      answer: "The given pose, ambiguous. No pose within the tolerance explains the colours better, and it says so.",
+    },
+  ],
+  can: "You can describe how colours and normals fix a pose, and what a wrong pose does to the estimate.",
   controls: [
     {
       kind: "slider",
@@ -106,9 +125,25 @@ export const sensor: Lesson = {
   ],
   tasks: [
     "Raise the noise of the sensor. The measured normals become rough; the refined ones stay smooth.",
-    "Cut holes into the depth map and watch what share is filled.",
-    "Raise the noise of the picture: it is less informative, and the refined depth gets worse.",
+    "Cut holes into the depth map. Watch what share of them is filled.",
+    "Raise the noise of the picture. Now it is less informative, and the refined depth gets worse.",
   ],
+  tries: [
+    { set: { picture: 0.005, noise: 0.02 }, sweep: { key: "noise", to: 1 } },
+    { set: { noise: 0.4, holes: 40 } },
+    { set: { noise: 0.4, picture: 0.2 } },
+  ],
+  guesses: [
+    {
+      question: "The noise of the sensor grows from 0.4 to 1 px. What happens to the refined normals?",
+      at: { noise: 0.4, holes: 5, picture: 0.005 },
+      choices: ["They get as rough as the measured ones", "They hardly change", "They get better"],
+      right: 1,
+      reveal: { set: { noise: 1 } },
+      answer: "They hardly change. Fine shape comes from the picture, and the sensor gives the large forms.",
+    },
+  ],
+  can: "You can say what picture and sensor each contribute to a refined depth map, and where it stays as measured.",
   controls: [
     {
       kind: "slider",

@@ -1,4 +1,4 @@
-/** Lessons 4 and 5: from normals to a surface, and what a depth map from elsewhere adds. */
+/** Lessons 9 and 10: from normals to a surface, and what a depth map from elsewhere adds. */
 
 import type { Lesson } from "../lesson";
 import { LIGHTS } from "../lesson";
@@ -26,15 +26,32 @@ export const surface: Lesson = {
   formulaWords: "The slope of the depth z along x is minus n x over n z, and along y minus n y over n z.",
   text: [
     "A normal {n} fixes the slope of the depth {z} in both directions. Integration finds the surface whose differences from pixel to pixel fit these slopes best in the least-squares sense. The absolute depth stays undetermined: adding a constant changes no slope.",
-    "Discontinuities: at a step the depth jumps between two pixels. The normals of both are unaffected by it. If the step ends somewhere, a path around it gives its height, and the path across contradicts that. Least squares spreads the contradiction over the neighbours; robust weights identify the few pairs of pixels that do not fit and ignore them. If the step cuts the object in two, no path leads around it, and its height is undetermined.",
+    "Discontinuities: at a step, here of {=step}, the depth jumps between two pixels. The normals of both are unaffected by it. If the step ends somewhere, a path around it gives its height, and the path across contradicts that. Least squares spreads the contradiction over the neighbours; robust weights identify the few pairs of pixels that do not fit and ignore them. If the step cuts the object in two, no path leads around it, and its height is undetermined.",
     "Bias: noise tilts normals at random, but the result is not only noisy. A slope is the tangent of a tilt, so a normal tilted too far adds more slope than a normal tilted too little removes. The errors do not cancel: steep flanks come out too steep, and the dome has more than 100 % of its true relief. Normals that would face away from the camera are clipped, which offsets part of the bias.",
   ],
   tasks: [
     "Switch the robust weights off and raise the step. The estimated height falls short of the true one by more than half.",
-    "Switch the robust weights on at a step of 6 px: the error of the depth falls.",
-    "Let the step cut the plate in two: robust or not, its height is wrong, because nothing in the slopes determines it.",
-    "Set the step to 0 and raise the noise: the dome comes out too high.",
+    "Switch the robust weights on at a step of 6 px. There the error of the depth falls.",
+    "Let the step cut the plate in two. Then, robust or not, its height is wrong, because nothing in the slopes determines it.",
+    "Set the step to 0 and raise the noise. Now the dome comes out too high.",
   ],
+  tries: [
+    { set: { robust: 0, through: 0, noise: 0, step: 0 }, sweep: { key: "step", to: 10 } },
+    { set: { robust: 1, through: 0, noise: 0, step: 6 } },
+    { set: { robust: 1, through: 1, noise: 0, step: 8 } },
+    { set: { step: 0, through: 0, noise: 0 }, sweep: { key: "noise", to: 0.2 } },
+  ],
+  guesses: [
+    {
+      question: "A step of 8 px cuts the plate in two. How many of the 8 px does integration find?",
+      at: { step: 0, through: 1, robust: 1, noise: 0 },
+      number: { key: "jump", unit: " px", digits: 1, within: 0.5 },
+      reveal: { sweep: { key: "step", to: 8 } },
+      answer:
+        "None. The normals on both sides are those of a plate without a step, so the slopes say nothing about it.",
+    },
+  ],
+  can: "You can integrate normals, and say which errors integration cannot notice.",
   controls: [
     { kind: "slider", key: "step", label: "Height of the step", min: 0, max: 12, step: 0.5, initial: 6, unit: "px" },
     { kind: "box", key: "robust", label: "Robust weights", initial: 1 },
@@ -72,10 +89,26 @@ export const prior: Lesson = {
     "With too small a weight the prior is ignored; with a very large one the result copies the depth map and ignores the picture. Here the prior is perfect, so a large weight does no harm. A real depth map is noisy and lacks fine detail.",
   ],
   tasks: [
-    "Move the share from 0 to 100 % and watch the curve being computed.",
-    "Choose the coloured lamps: the prior is hardly needed.",
-    "Set λ to its minimum, 0: the error is about as large as without a prior.",
+    "Give every pixel a prior. The error of the normals falls to its least.",
+    "Choose the coloured lamps. There the prior is hardly needed.",
+    "Set λ to its minimum, 0. The error is about as large as without a prior.",
   ],
+  tries: [
+    { set: { share: 100, weight: -1.3, light: "window" } },
+    { set: { light: "colourful", share: 20, weight: -1.3 } },
+    { set: { weight: -4, share: 20, light: "window" } },
+  ],
+  guesses: [
+    {
+      question: "A fifth of the pixels is given a prior. By how much does the mean error of the normals fall?",
+      at: { share: 0, weight: -1.3, light: "window" },
+      choices: ["By a fifth of what all priors achieve", "By less than that", "By more than that"],
+      right: 2,
+      reveal: { set: { share: 20 } },
+      answer: "By more than that. Pixels without a prior gain, too, because all pixels share one exposure.",
+    },
+  ],
+  can: "You can explain how a depth map enters the estimate as a prior, and what its weight does.",
   controls: [
     { kind: "slider", key: "share", label: "Pixels with a prior", min: 0, max: 100, step: 1, initial: 20, unit: "%" },
     {

@@ -1,0 +1,126 @@
+// Statements of the first four lessons that their figures must confirm; lesson-claims.mjs says how a claim is written.
+import { normalColour } from "./lesson-figures.mjs";
+import { figure } from "./lesson-figures.mjs";
+
+const change = (from, to, [more, less]) => (to > from ? more : less);
+const claim = (where, words, holds) => ({ where, words, holds });
+const numberOf = (state, key) => figure(state)[key];
+
+/** The colour of a direction in the map, as the word for its strongest and weakest parts. */
+function colourOf(state) {
+  const { red, green, blue } = figure(state);
+  if (Math.min(green, blue) > 1.5 * red) return "Turquoise";
+  return green > blue ? "Orange" : "Purple";
+}
+
+export const normal = [
+  claim("normal", "Straight toward the camera the normal is (0, 0, [−1|1])", () => {
+    const { nx, ny, nz } = figure("normal&surface=ball&px=0.5&py=0.5");
+    return Math.hypot(nx, ny) < 0.02 && nz < -0.99 ? "−1" : "1";
+  }),
+  claim("normal", "A surface that faces the camera is [light blue|dark blue|grey]", () => {
+    const [red, green, blue] = normalColour(0, 0, -1);
+    return blue === 255 && Math.round(red) === 128 && Math.round(green) === 128 ? "light blue" : "grey";
+  }),
+  claim("normal", "The left cheek turns toward the camera, and its map becomes [bluer|less blue]", () =>
+    change(numberOf("normal&px=0.36&py=0.56&turn=-40", "blue"), numberOf("normal&px=0.36&py=0.56&turn=40", "blue"), [
+      "bluer",
+      "less blue",
+    ]),
+  ),
+  claim("normal", "The arrow [shrinks to a dot|grows] in the middle and is longest at the edge", () => {
+    const lengths = [0.06, 0.25, 0.5].map((px) => Math.sin((numberOf(state(px), "tilt") * Math.PI) / 180));
+    return lengths[0] > lengths[1] && lengths[1] > lengths[2] && lengths[2] < 0.03 ? "shrinks to a dot" : "grows";
+  }),
+  claim("normal", "Its map [stays the same|turns with it]", () => {
+    const [left, right] = [-60, 60].map((turn) => figure(`normal&surface=ball&px=0.4&py=0.4&turn=${turn}`));
+    return ["red", "green", "blue"].every((key) => left[key] === right[key]) ? "stays the same" : "turns with it";
+  }),
+  claim("normal", "At the silhouette of a ball the normal is [perpendicular|parallel] to the line of sight", () =>
+    numberOf(state(0.02), "tilt") > 80 ? "perpendicular" : "parallel",
+  ),
+  claim("normal", "in the normal map?\n[Turquoise|Orange|Purple].", () =>
+    colourOf("normal&surface=ball&px=0.22&py=0.25"),
+  ),
+];
+
+function state(px) {
+  return `normal&surface=ball&py=0.5&px=${px}`;
+}
+
+const angleAt = (level) => numberOf(`lambert&level=${level}`, "angle");
+export const lambert = [
+  claim("lambert", "At [#]° half of the intensity is left", () => angleAt(0.5)),
+  claim("lambert", "The cosine is [flat|steep] near 0°", () =>
+    angleAt(0.9) > 4 * (angleAt(0.05) - angleAt(0.1)) ? "flat" : "steep",
+  ),
+  claim("lambert", "fallen to one half?\nAt [#]°, because", () => angleAt(0.5)),
+  claim("lambert", "At 45° the intensity is still [#].", () => Math.cos(Math.PI / 4)),
+  claim("lambert", "Nothing that the camera sees of the ball is in [shadow|light]", () =>
+    numberOf("lambert&lx=0&ly=0", "shadow") === 0 ? "shadow" : "light",
+  ),
+  claim("lambert", "the shadow [grows|shrinks] on the other side", () =>
+    change(numberOf("lambert&lx=0&ly=-0.2", "shadow"), numberOf("lambert&lx=0.8&ly=-0.2", "shadow"), [
+      "grows",
+      "shrinks",
+    ]),
+  ),
+  claim("lambert", "The line [shrinks|grows] toward the bright spots", () =>
+    change(angleAt(0.9), angleAt(0.1), ["shrinks", "grows"]),
+  ),
+];
+
+const ZERO = 1e-4;
+const reliefs = [-1.5, -1, -0.5, 0.2, 0.5, 1.5];
+export const relief = [
+  claim("relief", "can make [exactly|roughly] the same picture", () =>
+    reliefs.every((s) => numberOf(`relief&stretch=${s}&slope=0.3`, "difference") < ZERO) ? "exactly" : "roughly",
+  ),
+  claim("relief", "the same picture, under another lamp and with [another|the same] albedo", () =>
+    numberOf("relief&stretch=0.5", "paint") > 1.2 ? "another" : "the same",
+  ),
+  claim("relief", "The two pictures [stay the same|differ], while the section collapses", () =>
+    numberOf("relief&stretch=0.2", "difference") < ZERO ? "stay the same" : "differ",
+  ),
+  claim("relief", "The pictures now [differ|agree]: the lamp has to move", () =>
+    numberOf("relief&stretch=0.4&lamp=0", "difference") > 1 ? "differ" : "agree",
+  ),
+  claim("relief", "The pictures now [differ|agree]: only its own albedo", () =>
+    numberOf("relief&stretch=0.4&paint=0", "difference") > 1 ? "differ" : "agree",
+  ),
+  claim("relief", "The pictures are [the same|different] again, and the albedo is white everywhere", () =>
+    numberOf("relief&stretch=-1", "difference") < ZERO ? "the same" : "different",
+  ),
+  claim("relief", "the albedo is [white|darker] everywhere", () =>
+    Math.abs(numberOf("relief&stretch=-1", "paint") - 1) < ZERO ? "white" : "darker",
+  ),
+  claim("relief", "It needs [no other|another] albedo, only a lamp", () =>
+    numberOf("relief&stretch=-1&paint=0", "difference") < ZERO ? "no other" : "another",
+  ),
+  claim("relief", "do the two pictures differ?\n[Not at all|By a lot].", () =>
+    numberOf("relief&stretch=0.5", "difference") < ZERO ? "Not at all" : "By a lot",
+  ),
+];
+
+const SPOT = "strips&lx=0.3&ly=-0.3&sx=0.56&sy=0.2";
+const CHIN = "strips&lx=0&ly=0&sx=0.47&sy=0.71";
+export const strips = [
+  claim("strips", "now gives a [wrong|right] surface", () =>
+    numberOf(`${SPOT}&dent=1`, "near") > 10 * numberOf(SPOT, "near") ? "wrong" : "right",
+  ),
+  claim("strips", "the error near the spot [rises|falls]", () =>
+    change(numberOf(SPOT, "near"), numberOf(`${SPOT}&dent=1`, "near"), ["rises", "falls"]),
+  ),
+  claim("strips", "Within the first 10 px the strips [follow|leave] the surface", () =>
+    numberOf(CHIN, "near") < 0.5 ? "follow" : "leave",
+  ),
+  claim("strips", "farther away they [go astray|stay on it]", () =>
+    numberOf(CHIN, "far") > 10 * numberOf(CHIN, "near") ? "go astray" : "stay on it",
+  ),
+  claim("strips", "Its isophote in the reflectance map [always|rarely] runs through the cross", () =>
+    [0.25, 0.4, 0.55, 0.75].every((px) => numberOf(`strips&py=0.45&px=${px}`, "off") < 1e-3) ? "always" : "rarely",
+  ),
+  claim("strips", "explain it?\nA whole [curve|point]", () =>
+    numberOf("strips&px=0.4&py=0.45", "curve") > 20 ? "curve" : "point",
+  ),
+];

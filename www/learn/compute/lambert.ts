@@ -1,0 +1,63 @@
+/** Lambert's law on a ball, a vase and a face, with lines of equal intensity. */
+
+import { shadeLamp } from "../../../pkg/index.js";
+import type { Drawing, Mark, Values } from "../protocol";
+import { plot } from "./draw";
+import { degreesOf, intensities, isophotes, lampOf, onBall, shaded, shapeNamed } from "./lamp";
+import { isOn, numberOf } from "./scenes";
+
+const SHAPES = [
+  ["ball", "A ball"],
+  ["vase", "A vase"],
+  ["bust", "A face"],
+] as const;
+const LEVELS = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
+const FRONT = [0, 0, -1];
+/** Angles of the curve, degrees. */
+const ANGLES = Array.from({ length: 61 }, (_, i) => 3 * i);
+
+/** Intensity at an angle from the lamp. */
+const law = (): number[] => {
+  const directions = ANGLES.map((angle) => (angle * Math.PI) / 180).flatMap((a) => [Math.sin(a), 0, -Math.cos(a)]);
+  const intensity = shadeLamp(FRONT, Float32Array.from(directions));
+  return ANGLES.flatMap((angle, i) => [angle, intensity[i] ?? NaN]);
+};
+
+export function* lambert(values: Values): Generator<Drawing> {
+  const lamp = lampOf(values);
+  const level = numberOf(values, "level");
+  const levels = isOn(values, "lines") ? LEVELS : [];
+  const shapes = SHAPES.map(([name, title]) => ({ name, title, shape: shapeNamed(name) }));
+  const pictures = shapes.map(({ name, title, shape }) => {
+    const intensity = intensities(lamp, shape);
+    const spot: Mark[] = name === "ball" ? [{ ink: "light", shape: "cross", points: onBall(lamp), size: 3 }] : [];
+    const words = {
+      key: name,
+      title,
+      alt: `${title} under one lamp, with lines of equal intensity.`,
+      legend: name === "ball" ? "drag: the cross faces the lamp" : "drag to move the lamp",
+    };
+    return {
+      panel: shaded(words, shape, intensity, [...isophotes(intensity, shape, levels, level), ...spot]),
+      intensity,
+    };
+  });
+  const seen = (pictures[0]?.intensity ?? new Float32Array()).filter(Number.isFinite);
+  yield {
+    panels: [
+      ...pictures.map(({ panel }) => panel),
+      plot(
+        { key: "law", title: "Lambert's law", alt: "Intensity against the angle between normal and lamp: a cosine." },
+        "angle between normal and lamp, °",
+        "intensity",
+        [{ name: "intensity", ink: "light", points: law() }],
+        { at: degreesOf(level), range: [0, 1] },
+      ),
+    ],
+    numbers: {
+      angle: degreesOf(level),
+      lamp: degreesOf(-lamp[2]),
+      shadow: (100 * seen.filter((value) => value === 0).length) / seen.length,
+    },
+  };
+}

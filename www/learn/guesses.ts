@@ -1,0 +1,132 @@
+/** Questions before a surprise: a guess is chosen or typed, then the figure shows the answer. */
+
+import { freshId, make } from "../dom";
+import { inFigures, phrase } from "../words";
+import type { Guess, Lesson, Try } from "./lesson";
+import { sentence } from "./maths";
+import { decimals, withUnit } from "./digits";
+import type { Drawing, Values } from "./protocol";
+
+interface Hooks {
+  /** Sets the state that a question is about. */
+  set(values: Values): void;
+  /** Reveals the answer; `done` is called once the figure is on its way to the last state. */
+  reveal(what: Try, done: () => void): void;
+}
+
+export class Guesses {
+  readonly elements: readonly HTMLElement[];
+  readonly #hooks: Hooks;
+  /** What waits for the last drawing. */
+  #waiting: ((drawing: Drawing, values: Values) => void) | undefined;
+
+  constructor({ guesses }: Lesson, hooks: Hooks) {
+    this.#hooks = hooks;
+    this.elements = guesses.map((guess) => this.#form(guess));
+  }
+
+  /** Takes the drawing of the present values. */
+  drawn(drawing: Drawing, values: Values): void {
+    this.#waiting?.(drawing, values);
+    this.#waiting = undefined;
+  }
+
+  #form(guess: Guess): HTMLElement {
+    const answer = make("p", { class: "learn-answer", role: "status" });
+    const compare = make("button", { type: "submit", disabled: true }, phrase("guess.compare", "Compare"));
+    const field = guess.choices ? choicesOf(guess.choices) : numberOf(guess);
+    const form = make(
+      "form",
+      { class: "learn-guess" },
+      make("fieldset", {}, make("legend", {}, ...sentence(guess.question)), field.element),
+      compare,
+      answer,
+    );
+    let isAsked = false;
+    form.addEventListener("input", () => {
+      compare.disabled = field.value() === undefined;
+      // Once, so that a guess can be changed while the figure shows something else.
+      if (!isAsked) this.#hooks.set(guess.at);
+      isAsked = true;
+    });
+    form.addEventListener("submit", (event) => {
+      event.preventDefault();
+      const given = field.value();
+      if (given === undefined) return;
+      answer.replaceChildren();
+      // From the state of the question, whatever has been moved since.
+      this.#hooks.set(guess.at);
+      this.#hooks.reveal(guess.reveal, () => {
+        this.#waiting = (drawing, values) => {
+          answer.dataset.right = String(isRight(guess, given, drawing, values));
+          answer.replaceChildren(...verdict(guess, given, drawing, values));
+        };
+      });
+    });
+    return form;
+  }
+}
+
+interface Field {
+  element: HTMLElement;
+  value(): number | undefined;
+}
+
+function choicesOf(choices: readonly string[]): Field {
+  const name = freshId("learn-guess");
+  const inputs = choices.map((_, index) => make("input", { type: "radio", name, value: index }));
+  return {
+    element: make(
+      "div",
+      { class: "learn-choices" },
+      ...choices.map((words, index) => make("label", {}, inputs[index] as Node, ...sentence(words))),
+    ),
+    value: () => {
+      const at = inputs.findIndex(({ checked }) => checked);
+      return at < 0 ? undefined : at;
+    },
+  };
+}
+
+function numberOf({ number }: Guess): Field {
+  const input = make("input", { type: "number", step: "any", inputmode: "decimal" });
+  return {
+    element: make(
+      "label",
+      { class: "learn-typed" },
+      phrase("guess.yours", "Your guess"),
+      input,
+      number?.unit?.trim() ?? "",
+    ),
+    value: () => (Number.isFinite(input.valueAsNumber) ? input.valueAsNumber : undefined),
+  };
+}
+
+const numberShown = ({ number }: Guess, { numbers }: Drawing, values: Values): number =>
+  number ? (numbers[number.key] ?? Number(values[number.key])) : NaN;
+
+function isRight(guess: Guess, given: number, drawing: Drawing, values: Values): boolean {
+  if (guess.choices) return given === guess.right;
+  return Math.abs(given - numberShown(guess, drawing, values)) <= (guess.number?.within ?? 0);
+}
+
+function verdict(guess: Guess, given: number, drawing: Drawing, values: Values): (Node | string)[] {
+  const good = isRight(guess, given, drawing, values);
+  const shows = numberShown(guess, drawing, values);
+  const { digits = 0, unit } = guess.number ?? {};
+  const said = guess.choices?.[given] ?? withUnit(inFigures(String(given)), unit?.trim());
+  const head = good
+    ? guess.choices || given === shows
+      ? phrase("guess.right", "Right.")
+      : phrase("guess.near", "Close.")
+    : phrase("guess.wrong", "Not quite.");
+  const near = Math.abs(shows) < 10 ** -digits / 2 ? 0 : shows;
+  const figure = guess.number
+    ? ` ${phrase("guess.shows", "The figure shows {number}.", { number: withUnit(decimals(near, digits), unit?.trim()) })}`
+    : "";
+  return [
+    make("strong", {}, head),
+    ` ${phrase("guess.chose", "You guessed: {guess}.", { guess: said })}${figure} `,
+    ...sentence(guess.answer),
+  ];
+}

@@ -1,0 +1,167 @@
+/** Lessons 3 and 4: what one picture leaves open, and how one lamp was followed into shape. */
+
+import type { Lesson } from "../lesson";
+import { block, comma, lines, mi, mo, row, sub, sup, symbol } from "../maths";
+import { decimals } from "../digits";
+import { stretchOf } from "../stretch";
+import { lampSliders } from "./first";
+
+const prime = (base: Element) => sup(base, mo("′"));
+const dot = (name: string) => prime(mi(name));
+
+export const relief: Lesson = {
+  id: "relief",
+  title: "One picture, many shapes",
+  gist: "A flattened or an inverted surface can make exactly the same picture, under another lamp and with another albedo.",
+  formula: () =>
+    block(
+      prime(symbol("z")),
+      mo("="),
+      mi("s"),
+      symbol("z"),
+      mo("+"),
+      mi("t"),
+      mi("x"),
+      comma(),
+      prime(symbol("E")),
+      mo("="),
+      symbol("E"),
+    ),
+  formulaWords: "The new depth is s times the depth plus t times x, and the new intensity is the old one.",
+  text: [
+    "Sculptors of coins and medals have always known it: a portrait a few millimetres deep looks like a whole head. Multiply all depths by a factor s, here {=stretch}. Every normal changes, and yet a lamp in another place, together with another albedo, restores the picture pixel by pixel. This is the bas-relief ambiguity. It holds for any factor s and any added tilt t, for one picture or a hundred under different lamps.",
+    "The reason is a matrix. Scale each normal by its albedo and call the result b, so that the intensity is b·l. For any invertible matrix A, the vectors A b and A⁻ᵀ l have the same product. Most such matrices turn the normals into vectors that belong to no surface. Those that flatten, tilt or invert depth are the ones that leave a surface.",
+    "The most famous case is s = −1: near and far are exchanged, and a face becomes its mould. It needs no other albedo, only a lamp on the opposite side. People see the mould of a face as a face, because they expect faces, and light from above.",
+    "So a single picture does not determine a shape. Something else has to be known: the lamp, the albedo, the silhouette, a second lamp, or a depth map. From lesson 10 on, this page uses the depth map.",
+  ],
+  tasks: [
+    "Flatten the bust to a fifth of its depth. The two pictures stay the same, while the section collapses.",
+    "Leave the lamp where it was. The pictures now differ: the lamp has to move with the relief.",
+    "Use one albedo for the flat relief. The pictures now differ: only its own albedo hides the flattening.",
+    "Turn the surface inside out. The pictures are the same again, and the albedo is white everywhere.",
+  ],
+  tries: [
+    { set: { lamp: 1, paint: 1, slope: 0, stretch: 1 }, sweep: { key: "stretch", to: 0.2 } },
+    { set: { stretch: 0.4, slope: 0, paint: 1, lamp: 0 } },
+    { set: { stretch: 0.4, slope: 0, lamp: 1, paint: 0 } },
+    { set: { slope: 0, lamp: 1, paint: 1, stretch: -1 } },
+  ],
+  guesses: [
+    {
+      question:
+        "A bust and a relief of half its depth, each under its own lamp and with its own albedo. How much do the two pictures differ?",
+      at: { stretch: 1, slope: 0, lamp: 1, paint: 1 },
+      choices: ["By a lot", "A little, where the surface is steep", "Not at all"],
+      right: 2,
+      reveal: { sweep: { key: "stretch", to: 0.5 } },
+      answer: "Not at all. The difference is zero for every depth: the ambiguity is exact.",
+    },
+    {
+      question: "The bust is turned inside out and the lamp moves to match. Which albedo makes the picture the same?",
+      at: { stretch: 1, slope: 0, lamp: 1, paint: 1 },
+      choices: ["The albedo of the bust, one value everywhere", "A darker albedo on the nose", "No albedo can"],
+      right: 0,
+      reveal: { set: { stretch: -1 } },
+      answer: "The albedo of the bust. Inverting the depth leaves the length of every normal as it is.",
+    },
+  ],
+  can: "You can name shapes that share one picture, and say which extra knowledge distinguishes them.",
+  controls: [
+    {
+      kind: "slider",
+      key: "stretch",
+      label: "Depth of the other surface",
+      min: -1.5,
+      max: 1.5,
+      step: 0.1,
+      initial: 0.5,
+      reads: (value) => `${decimals(stretchOf(value), 1)} ×`,
+    },
+    { kind: "slider", key: "slope", label: "Added tilt", min: -0.5, max: 0.5, step: 0.05, initial: 0 },
+    { kind: "box", key: "lamp", label: "Move its lamp to match", initial: 1 },
+    { kind: "box", key: "paint", label: "Choose its albedo to match", initial: 1 },
+  ],
+  readouts: [
+    { key: "difference", label: "Difference of the pictures (rms)", unit: "%", digits: 2, ink: "error" },
+    { key: "lamp", label: "Angle between the lamps", unit: "°", digits: 0, ink: "light" },
+    { key: "paint", label: "Albedo, brightest over darkest", digits: 2, ink: "albedo" },
+  ],
+  drags: {},
+  more: {
+    sections: ["imageModel"],
+    others: [["10.1023/A:1008154927611", "Belhumeur, Kriegman and Yuille, The bas-relief ambiguity, 1999"]],
+  },
+};
+
+export const strips: Lesson = {
+  id: "strips",
+  title: "Shape from shading, the classical way",
+  gist: "With one known lamp and one albedo, the shape can be followed along strips that start at a bright spot.",
+  formula: () =>
+    lines(
+      block(
+        symbol("E"),
+        row(mo("("), mi("x"), mo(","), mi("y"), mo(")")),
+        mo("="),
+        mi("R"),
+        row(mo("("), mi("p"), mo(","), mi("q"), mo(")")),
+      ),
+      block(
+        row(mo("("), dot("x"), mo(","), dot("y"), mo(")"), mo("="), mo("∇"), mi("R")),
+        comma(),
+        row(mo("("), dot("p"), mo(","), dot("q"), mo(")"), mo("="), mo("∇"), symbol("E")),
+      ),
+      block(row(dot("z"), mo("="), mi("p"), sub(mi("R"), mi("p")), mo("+"), mi("q"), sub(mi("R"), mi("q")))),
+    ),
+  formulaWords:
+    "The intensity of the picture is the reflectance map of the slopes. A strip moves in the picture along the gradient of the map, and its slopes change along the gradient of the picture.",
+  text: [
+    "Write the surface as a depth z(x, y) with slopes p and q along x and y. Under a known lamp, Lambert's law gives each pair of slopes an intensity: the reflectance map R(p, q). A pixel of intensity {E} has its slopes somewhere on one isophote of that map. One equation, two unknowns.",
+    "But neighbours have to fit together. Suppose the slopes at one point are known. Step in the picture along the gradient of R: then the change of the slopes is the gradient of {E}, which the picture shows. So position, slopes and height can be carried on, step by step, along a characteristic strip. At a bright spot the surface faces the lamp, so its slopes are known, and the curvature of the picture gives that of the surface, except for its sign.",
+    "Horn invented this in his thesis in 1970, the first computed shape from shading. Strips drift with noise and leave gaps, so later methods solve for all heights at once: his paper of 1989 computes heights and slopes together. Tests of such methods used the bust of Mozart; here, the built-in bust stands in for it.",
+    "The method needs one lamp, known exactly, one albedo, and somebody who says whether the spot is a bump. It fails where strips cross a saddle: the picture cannot say on which side of it the surface goes on.",
+  ],
+  tasks: [
+    "Take the spot for a dent. The same picture now gives a wrong surface, and the error near the spot rises.",
+    "Start from the chin. Within the first 10 px the strips follow the surface; farther away they go astray.",
+    "Drag the pixel across the face. Its isophote in the reflectance map always runs through the cross, its true slopes.",
+  ],
+  tries: [
+    { set: { lx: 0.3, ly: -0.3, sx: 0.56, sy: 0.2, dent: 1 } },
+    { set: { lx: 0, ly: 0, dent: 0, sx: 0.47, sy: 0.71 } },
+    { set: { py: 0.45, px: 0.25 }, sweep: { key: "px", to: 0.75 } },
+  ],
+  guesses: [
+    {
+      question: "A pixel has the intensity 0.7. How many pairs of slopes p, q explain it?",
+      at: { px: 0.4, py: 0.45 },
+      choices: ["One", "Two", "A whole curve of them"],
+      right: 2,
+      reveal: { sweep: { key: "px", to: 0.55 } },
+      answer: "A whole curve: an isophote of the reflectance map. Only one point of it, the cross, is the true pair.",
+    },
+  ],
+  can: "You can read a reflectance map, explain why a strip can be followed, and name what classical shape from shading has to know.",
+  controls: [
+    ...lampSliders(0.3, -0.3, 0.6),
+    { kind: "box", key: "dent", label: "Take the spot for a dent", initial: 0 },
+    { kind: "slider", key: "sx", label: "Bright spot, across", min: 0, max: 1, step: 0.01, initial: 0.56 },
+    { kind: "slider", key: "sy", label: "Bright spot, down", min: 0, max: 1, step: 0.01, initial: 0.2 },
+    { kind: "slider", key: "px", label: "Pixel, across", min: 0, max: 1, step: 0.01, initial: 0.4 },
+    { kind: "slider", key: "py", label: "Pixel, down", min: 0, max: 1, step: 0.01, initial: 0.45 },
+  ],
+  readouts: [
+    { key: "near", label: "Error of the height, first 10 px", unit: "px", digits: 2, ink: "error" },
+    { key: "far", label: "Farther away", unit: "px", digits: 2, ink: "error" },
+    { key: "intensity", label: "Intensity of the pixel", digits: 2, ink: "light" },
+    { key: "strips", label: "Strips", digits: 0, ink: "normal" },
+  ],
+  drags: { picture: { x: "px", y: "py" } },
+  more: {
+    sections: ["integration"],
+    others: [
+      ["10.1007/BF00056771", "Horn, Height and gradient from shading, 1990 (a memo of 1989)"],
+      ["10.1109/34.784284", "Zhang, Tsai, Cryer and Shah, Shape from shading: a survey, 1999"],
+    ],
+  },
+};

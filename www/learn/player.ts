@@ -1,0 +1,54 @@
+/** Sets the controls of a lesson for a task or an answer, and moves one of them slowly enough to be watched. */
+
+import type { Controls } from "./controls";
+import type { Lesson, Try } from "./lesson";
+
+/** Steps of a slow move and the milliseconds between them: browsers refuse more than some 100 changes of an address in half a minute. */
+const STEPS = 20;
+const EVERY = 100;
+
+export class Player {
+  readonly #lesson: Lesson;
+  readonly #controls: Controls;
+  #timer = 0;
+
+  constructor(lesson: Lesson, controls: Controls) {
+    this.#lesson = lesson;
+    this.#controls = controls;
+    // Whoever takes a control in hand ends the move.
+    for (const kind of ["pointerdown", "keydown"]) controls.element.addEventListener(kind, () => this.stop());
+  }
+
+  get isPlaying(): boolean {
+    return this.#timer !== 0;
+  }
+
+  /** Visitors who prefer no motion see its end at once. */
+  play({ set = {}, sweep }: Try, done: () => void = () => {}): void {
+    this.stop();
+    const isSlow = sweep && !matchMedia("(prefers-reduced-motion: reduce)").matches;
+    const end = sweep ? { [sweep.key]: sweep.to } : {};
+    if (!sweep || !isSlow) {
+      this.#controls.set({ ...set, ...end });
+      return done();
+    }
+    this.#controls.set(set);
+    const slider = this.#lesson.controls.find(({ key }) => key === sweep.key);
+    if (slider?.kind !== "slider") return done();
+    const from = Number(this.#controls.values[sweep.key]);
+    let step = 0;
+    this.#timer = window.setInterval(() => {
+      step++;
+      const value = from + (step / STEPS) * (sweep.to - from);
+      const whole = step === STEPS ? sweep.to : Math.round(value / slider.step) * slider.step;
+      if (step === STEPS) this.stop();
+      this.#controls.set({ [sweep.key]: Number(whole.toFixed(6)) });
+      if (step === STEPS) done();
+    }, EVERY);
+  }
+
+  stop(): void {
+    clearInterval(this.#timer);
+    this.#timer = 0;
+  }
+}
