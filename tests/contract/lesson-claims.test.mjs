@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import { claims } from "./lesson-claims.mjs";
-import { chapters, exercises, learn, lessons, taskOf } from "./lesson-figures.mjs";
+import { chapters, contour, exercises, learn, lessons, taskOf } from "./lesson-figures.mjs";
 import { LONG } from "./long.mjs";
 
 /** All sentences of a lesson, or of an exercise, under the name that a claim gives it. */
@@ -138,4 +138,24 @@ test("each lesson has a guess before its surprise, which the figure answers", ()
       assert.ok(answer.length > 20);
     }
   }
+});
+
+test("a line of equal value lies where the value is, and leaves out what is not known", () => {
+  const side = 64;
+  const distance = Float32Array.from({ length: side * side }, (_, at) =>
+    Math.hypot(((at % side) + 0.5) / side - 0.5, (Math.floor(at / side) + 0.5) / side - 0.5),
+  );
+  const points = contour(distance, side, side, 0.3);
+  let length = 0;
+  for (let at = 0; at < points.length; at += 6) {
+    for (const from of [at, at + 2])
+      assert.ok(Math.abs(Math.hypot(points[from] - 0.5, points[from + 1] - 0.5) - 0.3) < 1e-3);
+    assert.ok(Number.isNaN(points[at + 4]) && Number.isNaN(points[at + 5]));
+    length += Math.hypot(points[at + 2] - points[at], points[at + 3] - points[at + 1]);
+  }
+  assert.ok(Math.abs(length - 2 * Math.PI * 0.3) < 0.01, `${length}`);
+  const half = distance.map((value, at) => (at % side < side / 2 ? value : NaN));
+  const left = contour(half, side, side, 0.3);
+  assert.ok(left.length > 0 && left.every((value, at) => at % 2 === 1 || !(value > 0.5)));
+  assert.deepEqual(contour(distance, side, side, 2), []);
 });

@@ -15,6 +15,7 @@ const NAMES = [
 const ENTRY = [
   ...NAMES.map((name) => `export { ${name} } from "./www/learn/compute/${name}.ts";`),
   'export { chapters, lessons } from "./www/learn/lessons/index.ts";',
+  'export { contour } from "./www/draw/contours.ts";',
   'export { normalColour } from "./www/draw/colours.ts";',
   'export { taskOf } from "./www/learn/tries.ts";',
   'export { exercises } from "./www/learn/exercises.ts";',
@@ -59,7 +60,7 @@ async function load() {
 
 await init();
 export const learn = await load();
-export const { chapters, lessons, exercises, normalColour, taskOf } = learn;
+export const { chapters, contour, lessons, exercises, normalColour, taskOf } = learn;
 
 const kept = new Map();
 

@@ -1,6 +1,5 @@
 // Statements of the first four lessons that their figures must confirm; lesson-claims.mjs says how a claim is written.
-import { normalColour } from "./lesson-figures.mjs";
-import { figure } from "./lesson-figures.mjs";
+import { figure, normalColour } from "./lesson-figures.mjs";
 
 const change = (from, to, [more, less]) => (to > from ? more : less);
 const claim = (where, words, holds) => ({ where, words, holds });

@@ -5,6 +5,7 @@ import * as package_ from "../../pkg/index.js";
 import { init, refused, sample } from "./support.mjs";
 
 const { integrateNormals, pixelLandscape, shadeNormals, turnLight } = package_;
+const { basRelief, characteristicStrips, secondOrder, shadeLamp } = package_;
 const NORMAL = [0.36, -0.48, -0.8];
 
 let light;
@@ -45,6 +46,69 @@ describe("predicted colours", () => {
     const there = shadeNormals(turned, Float32Array.of(0.48, 0.36, -0.8));
     shade(NORMAL, light).forEach((value, at) => assert.ok(Math.abs(there[at] - value) < 1e-6));
     turnLight(light, {}).forEach((value, at) => assert.ok(Math.abs(value - light[at]) < 1e-12));
+  });
+});
+
+describe("one lamp", () => {
+  const LAMP = [0.6, 0, -0.8];
+  const close = (found, wanted, within = 1e-6) =>
+    wanted.forEach((value, at) => assert.ok(Math.abs(found[at] - value) < within, `${found[at]} ${value}`));
+
+  test("lights a matte surface by the cosine", () => {
+    const normals = Float32Array.of(...NORMAL, 0.6, 0, -0.8, -0.8, 0, -0.6);
+    close(shadeLamp(LAMP, normals), [0.856, 1, 0]);
+    refused(() => shadeLamp([0, NaN, 1], normals), "range", "lamp[1]");
+    refused(() => shadeLamp(LAMP, new Float32Array(4)), "size", "normals");
+  });
+
+  test("lights a bas-relief as it lit the surface", () => {
+    const normals = Float32Array.of(...NORMAL, 0, 0, -1);
+    for (const [stretch, right, down] of [
+      [0.5, 0, 0],
+      [-1, 0, 0],
+      [1.3, 0.2, -0.4],
+    ]) {
+      const found = basRelief(normals, LAMP, stretch, right, down);
+      const seen = shadeLamp(found.lamp, found.normals).map((value, at) => value * found.albedo[at]);
+      close(seen, [...shadeLamp(LAMP, normals)]);
+      // The slope p = -n_x / n_z.
+      close([-found.normals[0] / found.normals[2]], [stretch * (NORMAL[0] / 0.8) + right], 1e-5);
+    }
+    refused(() => basRelief(normals, LAMP, 0), "range", "stretch");
+  });
+
+  test("is approximated by three Legendre polynomials", () => {
+    const count = 1000;
+    const middles = Array.from({ length: count }, (_, at) => (2 * at + 1) / count - 1);
+    const found = secondOrder(Float32Array.from(middles, (c) => Math.max(0, c)));
+    close(
+      found,
+      middles.map((c) => 1 / 4 + c / 2 + (5 / 32) * (3 * c * c - 1)),
+      1e-4,
+    );
+  });
+
+  test("is followed along strips of a ball", () => {
+    const [side, radius, middle] = [97, 44, 48];
+    const normals = new Float32Array(3 * side * side).fill(NaN);
+    for (let at = 0; at < side * side; at++) {
+      const [x, y] = [((at % side) - middle) / radius, (Math.floor(at / side) - middle) / radius];
+      if (x * x + y * y < 0.99) normals.set([x, y, -Math.sqrt(1 - x * x - y * y)], 3 * at);
+    }
+    const request = { width: side, height: side, lamp: [0, 0, -1], centre: [middle, middle], count: 8 };
+    const points = characteristicStrips({ ...request, intensity: shadeLamp([0, 0, -1], normals) });
+    const ends = points.reduce((all, value, at) => (at % 3 === 0 && Number.isNaN(value) ? [...all, at] : all), []);
+    assert.equal(ends.length, 8);
+    for (let at = 0; at < points.length; at += 3) {
+      const far = Math.hypot(points[at] - middle, points[at + 1] - middle);
+      if (!(far < 0.9 * radius)) continue;
+      const depth = radius - Math.sqrt(radius * radius - far * far);
+      assert.ok(Math.abs(points[at + 2] - depth) < 0.02 * radius, `${far}: ${points[at + 2]} ${depth}`);
+    }
+    const flat = new Float32Array(side * side).fill(1);
+    refused(() => characteristicStrips({ ...request, intensity: flat }), "range", "centre");
+    refused(() => characteristicStrips({ ...request, intensity: flat.subarray(1) }), "size", "values");
+    refused(() => characteristicStrips({ ...request, intensity: flat, count: 361 }), "size", "strips.count");
   });
 });
 

@@ -148,6 +148,7 @@ export class LearnPage {
   }
 
   #showExercises(): void {
+    this.#shown?.player.stop();
     this.#session.end();
     this.#slides.close();
     this.#main.replaceChildren(this.#exercises);
