@@ -56,8 +56,13 @@ const PRIOR_METRES: f64 = 0.05;
 /// Share of the scene's points on the image below which a pose cannot be judged; fields of view that hardly overlap have
 /// more.
 const LEAST_SEEN: f64 = 0.02;
-/// Sigma of each component of the edge bias, pixels: one width everywhere, and its change from side to side.
-const PRIOR_BIAS: [f64; SIDES] = [1.0, 0.5, 0.5];
+/// Sigma of the edge bias that all sides share, pixels.
+const PRIOR_BIAS: f64 = 1.0;
+/// Sigma of its change from side to side, pixels, if the maker may have registered the depth map: the registration shifts
+/// the depth edges, which no pose that is estimated from them can undo.
+const PRIOR_SIDES: f64 = 0.5;
+/// Information that holds an unknown in place.
+const HELD: f64 = 1e6;
 /// Sigma of ln f if the focal length is unknown.
 const PRIOR_FOCAL: f64 = 0.15;
 
@@ -179,9 +184,10 @@ impl Scene {
             rows[(3 + k, 3 + k)] = 1.0 / PRIOR_METRES;
             (0..3).for_each(|j| rows[(3 + k, j)] = cross[(k, j)] / PRIOR_METRES);
         }
-        PRIOR_BIAS.iter().enumerate().for_each(|(k, sigma)| rows[(BIAS + k, BIAS + k)] = 1.0 / sigma);
-        // A known focal length is held with a sigma of a millionth.
-        rows[(FOCAL, FOCAL)] = if self.focal_is_free { 1.0 / PRIOR_FOCAL } else { 1e6 };
+        rows[(BIAS, BIAS)] = 1.0 / PRIOR_BIAS;
+        let may_be_registered = self.frames.iter().any(|frame| frame.may_be_registered);
+        (1..SIDES).for_each(|k| rows[(BIAS + k, BIAS + k)] = if may_be_registered { 1.0 / PRIOR_SIDES } else { HELD });
+        rows[(FOCAL, FOCAL)] = if self.focal_is_free { 1.0 / PRIOR_FOCAL } else { HELD };
         let rows = rows * Matrix::from_diagonal(&units.of);
         rows.transpose() * rows
     }
