@@ -12,7 +12,7 @@ use super::readings::Reading;
 use super::reason::{CheckReason, Margin, Warning, WarningKind};
 use super::registration::Findings;
 use super::report::{CheckReport, CueReport, FrameReport};
-use super::unknowns::{Matrix, POSE, State, Vector, add_square};
+use super::unknowns::{FOCAL, Matrix, POSE, State, Vector, add_square};
 use super::verdict::{CandidateReport, CheckVerdict, Judge};
 
 /// Variance if nothing at all is known, squared pixels.
@@ -50,7 +50,7 @@ impl CalibrationCheck {
             overlap: self.scene.overlap(&state),
             middle: units.middle.into(),
             covariance: metric.fixed_view::<POSE, POSE>(0, 0).into(),
-            focal: self.scene.focal_is_free.then(|| [state.focal, metric[(7, 7)].sqrt()]),
+            focal: self.scene.focal_is_free.then(|| [state.focal, metric[(FOCAL, FOCAL)].sqrt()]),
             health,
             candidates,
             cues: CueReport::all(findings, frame.pixel),

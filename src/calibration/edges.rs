@@ -3,7 +3,7 @@
 //!
 //! Along the normal of each depth discontinuity the image has edges at offsets u_k with strengths a_k. One of them
 //! belongs to the discontinuity, except with probability e. Each is chosen in proportion to its strength, and its
-//! position deviates by the edge bias d and by normal noise s:
+//! position deviates by the edge bias d of its side and by normal noise s:
 //!
 //! l = sum over discontinuities of log(e / 2 L + (1 - e) sum_k p_k N(u + d - u_k; s)),
 //! p_k = a_k / sum a, s^2 = sigma^2 + g^2 / 12,
@@ -19,7 +19,7 @@ use super::frame::{Frame, Projection};
 use super::patches::Sight;
 use super::planes::Planes;
 use super::rims::{self, Rim};
-use super::unknowns::{LOSS, State, Units, Vector, add_square};
+use super::unknowns::{BIAS, SIDES, State, Units, Vector, add_square};
 use crate::numeric::quantile;
 use crate::view::Size;
 
@@ -101,8 +101,9 @@ impl EdgeField {
             let point = state.pose.apply(frame.point(rim.index)?);
             let (_, rows) = units.rows(&point, &camera)?;
             let mut row = rows[0] * rim.normal[0] + rows[1] * rim.normal[1];
-            row[LOSS] = 1.0;
-            let start = [0, 1].map(|k| rim.pixel[k] + state.loss * rim.normal[k]);
+            row.fixed_rows_mut::<SIDES>(BIAS).copy_from_slice(&State::sides(rim.normal));
+            let bias = state.bias_along(rim.normal);
+            let start = [0, 1].map(|k| rim.pixel[k] + bias * rim.normal[k]);
             // The variance of a uniform distribution over the gap adds to that of the edges.
             let of_gap = rim.gap / EVEN;
             let sigma = sigma.hypot(of_gap);

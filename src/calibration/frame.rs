@@ -39,6 +39,8 @@ pub(super) struct Frame {
     /// Intensity of each sample, in the scanner's own unit, if it is known.
     pub intensity: Option<Vec<f32>>,
     pub has_depth_mask: bool,
+    /// Whether the maker may have resampled the depth map onto the image's raster.
+    pub may_be_registered: bool,
     /// Width of a pixel of `planes` in pixels of the image as given.
     pub pixel: f64,
     /// Standard deviation of 1 / z, 1 / m. It is about the same at all depths for cameras that measure disparities.
@@ -67,6 +69,7 @@ impl Frame {
             points,
             intensity: None,
             has_depth_mask: false,
+            may_be_registered: false,
             pixel: 1.0,
             noise,
         }

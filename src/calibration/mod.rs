@@ -16,7 +16,7 @@
 //! | `intensity` | intensities of a scanner's returns as levels of equal count |
 //! | `information`, `shading`, `silhouette`, `differences` | cues over samples, finite differences |
 //! | `unknowns`, `evidence` | the unknowns in pixels; log likelihoods by tiles, weights, covariance |
-//! | `search`, `registration` | initial poses, rounds of the registration |
+//! | `search`, `registration`, `lattice` | initial poses, rounds of the registration, states that rounding does not move |
 //! | `optima` | the optima and their ranking |
 //! | `readings`, `rereading` | other conventions of a candidate, and the search over them |
 //! | `distortion`, `guessed` | whether a lens was left out; the uncertainty of a guessed camera |
@@ -40,6 +40,7 @@ mod health;
 mod information;
 mod input;
 mod intensity;
+mod lattice;
 mod optima;
 mod overlay;
 mod patches;

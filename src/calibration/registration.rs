@@ -17,7 +17,7 @@ use super::planes::Planes;
 use super::rims::Rim;
 use super::surface::{self, Sample};
 use super::surfaces::{LogLikelihood, log_likelihood};
-use super::unknowns::{FOCAL, LOSS, Matrix, POSE, State, UNKNOWNS, Units, Vector, solve};
+use super::unknowns::{BIAS, FOCAL, Matrix, SIDES, State, Units, Vector, solve};
 
 /// Sigma of edges at each level, pixels of an image 640 wide: from the error that the coarse search leaves of a few
 /// degrees to the resolution of an image. It halves every two levels.
@@ -28,10 +28,8 @@ pub(super) const SURVIVORS: [usize; 4] = [10, 6, 4, 3];
 const MOST_RIMS_OF_STARTS: usize = 1200;
 /// Rounds at each level.
 pub(super) const ROUNDS: usize = 3;
-/// Maximum number of rounds with all cues.
+/// Maximum number of rounds with all cues. The objective is rough: more rounds would not settle, but wander.
 pub(super) const MOST_SETTLING: usize = 8;
-/// Spacing of the lattice of states at which visibility is computed, pixels of an image 640 wide.
-const SPACING: f64 = 1.0;
 /// Maximum number of times that a step with all cues is halved.
 const MOST_HALVINGS: usize = 5;
 /// Decrease of the log posterior up to which a step is accepted: the objective is rough on the scale of a pixel, and a
@@ -58,8 +56,14 @@ const PRIOR_METRES: f64 = 0.05;
 /// Share of the scene's points on the image below which a pose cannot be judged; fields of view that hardly overlap have
 /// more.
 const LEAST_SEEN: f64 = 0.02;
-/// Sigma of the edge bias, pixels, and of ln f if the focal length is unknown.
-const PRIOR_LOSS: f64 = 1.0;
+/// Sigma of the edge bias that all sides share, pixels.
+const PRIOR_BIAS: f64 = 1.0;
+/// Sigma of its change from side to side, pixels, if the maker may have registered the depth map: the registration shifts
+/// the depth edges, which no pose that is estimated from them can undo.
+const PRIOR_SIDES: f64 = 0.5;
+/// Information that holds an unknown in place.
+const HELD: f64 = 1e6;
+/// Sigma of ln f if the focal length is unknown.
 const PRIOR_FOCAL: f64 = 0.15;
 
 /// All frames, and the quantities that do not depend on the state.
@@ -181,27 +185,12 @@ impl Scene {
             rows[(3 + k, 3 + k)] = 1.0 / PRIOR_METRES;
             (0..3).for_each(|j| rows[(3 + k, j)] = cross[(k, j)] / PRIOR_METRES);
         }
-        rows[(LOSS, LOSS)] = 1.0 / PRIOR_LOSS;
-        // A known focal length is held with a sigma of a millionth.
-        rows[(FOCAL, FOCAL)] = if self.focal_is_free { 1.0 / PRIOR_FOCAL } else { 1e6 };
+        rows[(BIAS, BIAS)] = 1.0 / PRIOR_BIAS;
+        let may_be_registered = self.frames.iter().any(|frame| frame.may_be_registered);
+        (1..SIDES).for_each(|k| rows[(BIAS + k, BIAS + k)] = if may_be_registered { 1.0 / PRIOR_SIDES } else { HELD });
+        rows[(FOCAL, FOCAL)] = if self.focal_is_free { 1.0 / PRIOR_FOCAL } else { HELD };
         let rows = rows * Matrix::from_diagonal(&units.of);
         rows.transpose() * rows
-    }
-
-    /// Moves `seen_from` if the round's state is farther from it than the spacing of the lattice; returns whether it did. With
-    /// the pose, visibility changes in leaps, but little within a pixel. It is therefore computed at the nearest state on a
-    /// lattice about the initial state, which rounding does not move.
-    pub fn look(&self, round: &mut Round) -> bool {
-        let spacing = SPACING * self.scale;
-        let units = self.units(&round.initial);
-        let [from, to] = [round.seen_from, round.state].map(|state| units.between(&round.initial, &state));
-        let moves = |k: &usize| *k < POSE || *k == FOCAL;
-        if (0..UNKNOWNS).filter(moves).all(|k| (to[k] - from[k]).abs() <= spacing) {
-            return false;
-        }
-        let place = |k: usize, _| if moves(&k) { (to[k] / spacing).round() * spacing } else { 0.0 };
-        round.seen_from = units.step(&round.initial, &Vector::from_fn(place));
-        true
     }
 
     fn seen(&self, state: &State) -> Seen {
@@ -310,7 +299,8 @@ impl Scene {
             let back = units.between(&start.round.initial, &state);
             let prior = self.prior(&units);
             start.score = mean - 0.5 * SCORE_PRIOR * back.dot(&(prior * back));
-            start.round.state = units.step(&state, &step(&total, &prior, &back));
+            let next = units.step(&state, &step(&total, &prior, &back));
+            start.round.state = self.on_lattice(&start.round.initial, &next);
         }
     }
 

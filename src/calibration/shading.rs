@@ -1,4 +1,4 @@
-//! Shading: log colours within a patch follow the nine harmonics of the normal (Eq. 3).
+//! Shading: log colours within a patch follow the harmonics of the normal up to degree 2 (Eq. 3).
 //!
 //! Under light of order 2, log S is a quadratic of the normal, whatever the pose; the light is unknown and fitted. Albedo
 //! and shadow are assumed constant on a patch, so the means over patches are removed from colours and harmonics alike.
@@ -10,12 +10,13 @@ use nalgebra::{SMatrix, SVector, Vector3};
 use super::patches::{PATCHES, Patches, Sight};
 use super::unknowns::State;
 
-const HARMONICS: usize = 9;
+/// Harmonics of degree 1 and 2; that of degree 0 is the mean of a patch.
+const HARMONICS: usize = 8;
 type Harmonics = SVector<f64, HARMONICS>;
 
 /// Added to intensities before the logarithm: the noise of a dark pixel of 8 bits.
 const DARKEST: f32 = 0.02;
-/// Ridge of the fit of the light, as a share of its largest term, because a few planes do not determine the light.
+/// Ridge of the fit of the light, as a share of its mean term, because a few planes do not determine the light.
 const RIDGE: f64 = 1e-3;
 /// Least scale of the residuals, log units. The scale is their median, as for Cauchy's density.
 const LEAST_SCALE: f64 = 0.005;
@@ -65,7 +66,7 @@ impl<'a> Shading<'a> {
             }
             sums += harmonics * logs[index].transpose();
         }
-        let ridge = RIDGE * matrix.diagonal().max() + f64::MIN_POSITIVE;
+        let ridge = RIDGE * matrix.trace() / HARMONICS as f64 + f64::MIN_POSITIVE;
         (0..HARMONICS).for_each(|k| matrix[(k, k)] += ridge);
         let light = matrix.cholesky().map_or(SMatrix::zeros(), |c| c.solve(&sums));
         let residual = |index: usize| known[index].map(|_| logs[index] - light.transpose() * self.harmonics[index]);
@@ -73,9 +74,20 @@ impl<'a> Shading<'a> {
     }
 }
 
-/// The linear and quadratic terms of a normal, and 1.
+/// Harmonics of a normal. The squares of each degree add to one, so that a rotation of the depth camera's axes rotates their
+/// coefficients: the ridge prefers no axis, and the fit does not depend on the axes.
 fn basis(n: &Vector3<f64>) -> Harmonics {
-    Harmonics::from([n.x, n.y, n.z, n.x * n.x, n.y * n.y, n.x * n.y, n.x * n.z, n.y * n.z, 1.0])
+    let root = 3.0_f64.sqrt();
+    Harmonics::from([
+        n.x,
+        n.y,
+        n.z,
+        root * n.x * n.y,
+        root * n.x * n.z,
+        root * n.y * n.z,
+        0.5 * root * (n.x * n.x - n.y * n.y),
+        1.5 * n.z * n.z - 0.5,
+    ])
 }
 
 /// Subtracts from each value the mean over its patch.
@@ -89,5 +101,27 @@ fn remove_means<const N: usize>(patches: &[u8], values: &mut [SVector<f64, N>], 
     for (value, &patch) in values.iter_mut().zip(patches) {
         let (sum, count) = &sums[patch as usize];
         *value -= sum / f64::max(*count, 1.0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Rotation3;
+
+    /// The fit with a ridge depends on the normals by the products of their harmonics alone.
+    #[test]
+    fn products_of_harmonics_do_not_depend_on_the_axes() {
+        let normals = [[0.0, 0.0, -1.0], [0.6, 0.0, -0.8], [-0.2, 0.9, -0.4], [0.5, -0.5, 0.7]].map(Vector3::from);
+        let normals = normals.map(|normal| normal.normalize());
+        // Axes swapped, and turned by any angle.
+        let quarter = std::f64::consts::FRAC_PI_2;
+        for turn in [[quarter, 0.0, 0.0], [0.0, quarter, 0.0], [0.3, -1.1, 0.8]] {
+            let turn = Rotation3::new(Vector3::from(turn));
+            for (one, other) in normals.iter().flat_map(|one| normals.iter().map(move |other| (one, other))) {
+                let off = basis(&(turn * one)).dot(&basis(&(turn * other))) - basis(one).dot(&basis(other));
+                assert!(off.abs() < 1e-12, "{one:?} {other:?}: {off}");
+            }
+        }
     }
 }

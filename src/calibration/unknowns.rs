@@ -1,9 +1,11 @@
 //! The unknowns of a check, and the derivatives of pixels with respect to them.
 //!
-//! P -> c + exp([w]) (P - c) + v about the scene's centre c, in the colour camera's frame; the edge bias d in pixels (a
-//! depth camera removes or adds a strip of constant width at depth discontinuities, one number for a device); and ln f of
-//! the colour camera if it is unknown. One unit of any of them moves the scene's pixels by one pixel, root mean square. All
-//! unknowns are then comparable, and steps, derivatives and tolerances have one size.
+//! P -> c + exp([w]) (P - c) + v about the scene's centre c, in the colour camera's frame; the edge bias, d_0 + d_x n_x +
+//! d_y n_y pixels at a depth discontinuity with the normal n; and ln f of the colour camera if it is unknown. A depth camera
+//! removes or adds a strip at depth discontinuities: of one width everywhere, and of another at each side, since the
+//! shadow of a stereo pair lies to one side and a maker's registration may be off. The unit of each unknown moves the
+//! scene's pixels by one pixel, root mean square. All unknowns are then comparable, and steps, derivatives and tolerances
+//! have one size.
 
 use nalgebra::{Rotation3, SMatrix, SVector, Vector3};
 
@@ -11,12 +13,14 @@ use crate::numeric::eigen::Eigen;
 use crate::pose::{Similarity, rotation_vector};
 use crate::view::Pinhole;
 
-/// w (3), v (3), d, ln f.
-pub(super) const UNKNOWNS: usize = 8;
+/// w (3), v (3), d (3), ln f.
+pub(super) const UNKNOWNS: usize = 10;
 /// Number of unknowns of the pose, which come first.
 pub(super) const POSE: usize = 6;
-pub(super) const LOSS: usize = 6;
-pub(super) const FOCAL: usize = 7;
+/// Number of components of the edge bias, and the index of the first.
+pub(super) const SIDES: usize = 3;
+pub(super) const BIAS: usize = 6;
+pub(super) const FOCAL: usize = 9;
 
 pub(super) type Vector = SVector<f64, UNKNOWNS>;
 pub(super) type Matrix = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
@@ -51,15 +55,25 @@ const LEAST_MOTION: f64 = 1e-6;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct State {
     pub pose: Similarity,
-    /// Edge bias d in pixels of the colour image.
-    pub loss: f64,
+    /// Edge bias d_0, d_x, d_y in pixels of the colour image.
+    pub bias: [f64; SIDES],
     /// Factor of the colour camera's focal length.
     pub focal: f64,
 }
 
 impl State {
     pub fn at(pose: Similarity) -> Self {
-        Self { pose, loss: 0.0, focal: 1.0 }
+        Self { pose, bias: [0.0; SIDES], focal: 1.0 }
+    }
+
+    /// Derivatives of the edge bias at a discontinuity with this normal with respect to its components.
+    pub fn sides(normal: [f64; 2]) -> [f64; SIDES] {
+        [1.0, normal[0], normal[1]]
+    }
+
+    /// Edge bias at a discontinuity with this normal, pixels along the normal.
+    pub fn bias_along(&self, normal: [f64; 2]) -> f64 {
+        self.bias.iter().zip(Self::sides(normal)).map(|(bias, side)| bias * side).sum()
     }
 
     pub fn camera(&self, camera: &Pinhole) -> Pinhole {
@@ -92,7 +106,7 @@ impl Units {
                 count += 1.0;
             }
         }
-        for k in (0..UNKNOWNS).filter(|&k| k != LOSS) {
+        for k in (0..UNKNOWNS).filter(|k| !(BIAS..BIAS + SIDES).contains(k)) {
             units.of[k] = 1.0 / (squares[k] / f64::max(count, 1.0)).sqrt().max(LEAST_MOTION);
         }
         units
@@ -107,8 +121,19 @@ impl Units {
         let rows = [0, 1].map(|axis| {
             let direction = Vector3::from(gradient[axis]);
             let turn = arm.cross(&direction);
-            Vector::from([turn.x, turn.y, turn.z, direction.x, direction.y, direction.z, 0.0, from_centre[axis]])
-                .component_mul(&self.of)
+            Vector::from([
+                turn.x,
+                turn.y,
+                turn.z,
+                direction.x,
+                direction.y,
+                direction.z,
+                0.0,
+                0.0,
+                0.0,
+                from_centre[axis],
+            ])
+            .component_mul(&self.of)
         });
         Some((pixel, rows))
     }
@@ -121,7 +146,7 @@ impl Units {
         let translation = self.middle + shift - rotation * self.middle;
         State {
             pose: Similarity { scale: 1.0, rotation, translation }.after(&state.pose).orthonormal(),
-            loss: state.loss + step[LOSS],
+            bias: std::array::from_fn(|k| state.bias[k] + step[BIAS + k]),
             focal: state.focal * step[FOCAL].exp(),
         }
     }
@@ -137,9 +162,34 @@ impl Units {
             moved.x,
             moved.y,
             moved.z,
-            to.loss - from.loss,
+            to.bias[0] - from.bias[0],
+            to.bias[1] - from.bias[1],
+            to.bias[2] - from.bias[2],
             (to.focal / from.focal).ln(),
         ])
         .component_div(&self.of)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::view::Lens;
+
+    #[test]
+    fn a_step_and_the_difference_of_states_are_inverse_and_each_side_has_its_own_bias() {
+        let camera = Pinhole { fx: 500.0, fy: 500.0, cx: 320.0, cy: 240.0, lens: Lens::None };
+        let cloud = [[-0.3, -0.2, 1.0], [0.3, -0.2, 1.2], [0.0, 0.3, 0.9]].map(Vector3::from);
+        let units = Units::new(&cloud, &camera);
+        let start = State::at(Similarity::identity());
+        let step = Vector::from_fn(|k, _| 0.3 * k as f64 - 1.1);
+        let state = units.step(&start, &step);
+        assert!((units.between(&start, &state) - step).norm() < 1e-6, "{}", units.between(&start, &state));
+        let [whole, across, down] = state.bias;
+        let sides = [([1.0, 0.0], whole + across), ([-1.0, 0.0], whole - across), ([0.0, 1.0], whole + down)];
+        for (normal, bias) in sides {
+            assert!((state.bias_along(normal) - bias).abs() < 1e-12, "{normal:?}");
+        }
+        assert_eq!([BIAS, BIAS + SIDES], [POSE, FOCAL]);
     }
 }

@@ -1,0 +1,99 @@
+//! Lattices of states about the initial one, on which rounding decides nothing.
+//!
+//! The objective is rough: a depth discontinuity or a sample is seen or not, and an image edge appears or vanishes. Where a
+//! direction is hardly determined, a round multiplies a small difference of states by ten. So states are taken from a fine
+//! lattice after each round, and what they see of the scene from a coarse one. Limit: a candidate that differs by more than
+//! rounding shifts both lattices, and the estimate may end elsewhere within its covariance.
+
+use super::registration::{Round, Scene};
+use super::unknowns::{FOCAL, POSE, State, UNKNOWNS, Vector};
+
+/// Spacing of the lattice of states at which visibility is computed, pixels of an image 640 wide.
+const SPACING: f64 = 1.0;
+/// Spacing of the states at which rounds end: less than a step that has converged, and an odd part of `SPACING`, so that none
+/// lies halfway between two states from which the scene is seen.
+const RESOLUTION: f64 = SPACING / 127.0;
+
+impl Scene {
+    /// Moves the state from which a round sees the scene if its own state went farther from it than the spacing, and returns
+    /// whether it did. What is hidden depends on the pose by leaps. It changes little within a pixel, so it is taken from
+    /// the nearest state on a lattice about the initial state, which rounding does not move.
+    pub fn look(&self, round: &mut Round) -> bool {
+        let spacing = SPACING * self.scale;
+        let units = self.units(&round.initial);
+        let [from, to] = [round.seen_from, round.state].map(|state| units.between(&round.initial, &state));
+        let moves = |k: &usize| *k < POSE || *k == FOCAL;
+        // Between two states of the lattice of rounds, so that rounding does not decide.
+        let farthest = spacing + 0.5 * RESOLUTION * self.scale;
+        if (0..UNKNOWNS).filter(moves).all(|k| (to[k] - from[k]).abs() <= farthest) {
+            return false;
+        }
+        let place = |k: usize, _| if moves(&k) { (to[k] / spacing).round() * spacing } else { 0.0 };
+        round.seen_from = units.step(&round.initial, &Vector::from_fn(place));
+        true
+    }
+
+    /// The nearest of closely spaced states about the initial one. Sums in another order, other axes of the cloud and another
+    /// processor change a step by rounding. The states of the lattice are equal again after each round, so that the rounding
+    /// of one round does not grow in the next.
+    pub fn on_lattice(&self, initial: &State, state: &State) -> State {
+        let units = self.units(initial);
+        let spacing = RESOLUTION * self.scale;
+        let place = units.between(initial, state).map(|value| (value / spacing).round() * spacing);
+        units.step(initial, &place)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::calibration::cue::Cue;
+    use crate::calibration::frame::Frame;
+    use crate::calibration::planes::Planes;
+    use crate::pose::Similarity;
+    use crate::view::{Lens, Pinhole, Size};
+
+    fn scene() -> Scene {
+        let camera = Pinhole { fx: 60.0, fy: 60.0, cx: 31.5, cy: 23.5, lens: Lens::None };
+        let size = Size { width: 64, height: 48 };
+        let point = |index: usize| {
+            let (column, row) = size.position(index);
+            let z = if column < 32 { 1.0 } else { 2.0 };
+            [(column as f64 - camera.cx) / camera.fx * z, (row as f64 - camera.cy) / camera.fy * z, z].map(|v| v as f32)
+        };
+        let planes = Planes { size, pixels: vec![[0.5; 3]; size.len()] };
+        let frame = Frame::new(String::new(), planes, camera, size, (0..size.len()).map(point).collect());
+        Scene::new(vec![frame], Cue::ALL.to_vec(), false)
+    }
+
+    #[test]
+    fn rounds_that_differ_by_rounding_end_at_one_state() {
+        let (scene, initial) = (scene(), State::at(Similarity::identity()));
+        let units = scene.units(&initial);
+        // None lies halfway between two states.
+        let step = Vector::from_fn(|k, _| 0.73 * k as f64 - 2.83);
+        let [one, other] = [0.0, 1e-6].map(|error| {
+            let state = units.step(&initial, &step.add_scalar(error));
+            units.between(&initial, &scene.on_lattice(&initial, &state))
+        });
+        assert!((one - other).amax() < 1e-9, "{}", one - other);
+        assert!((one - step).amax() < 0.5 * RESOLUTION + 1e-6, "{}", one - step);
+    }
+
+    /// A state that a round reaches, moved by rounding, is seen from the same state.
+    #[test]
+    fn rounding_does_not_choose_the_state_from_which_the_scene_is_seen() {
+        let (scene, initial) = (scene(), State::at(Similarity::identity()));
+        let units = scene.units(&initial);
+        let at = |place: f64| units.step(&initial, &Vector::from_fn(|k, _| if k == 3 { place } else { 0.0 }));
+        for node in 0..5 * 127 {
+            let place = f64::from(node) * RESOLUTION;
+            let seen = [-1e-9, 1e-9].map(|error| {
+                let mut round = Round::from(at(place + error), initial);
+                scene.look(&mut round);
+                units.between(&initial, &round.seen_from)[3]
+            });
+            assert!((seen[0] - seen[1]).abs() < 1e-6, "{place}: {seen:?}");
+        }
+    }
+}
