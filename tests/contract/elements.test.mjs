@@ -11,7 +11,9 @@ import { LONG } from "./long.mjs";
 
 const project = freshProject();
 const MAP = `<script type="importmap">{ "imports": { "bimodal-stereo/elements": "./node_modules/bimodal-stereo/elements.js" } }</script>`;
-const SMALL = { surface: "bust", light: "colourful", size: 32, angles: { beta: 20 } };
+/** A pair and options with which a run takes few steps. */
+const SCENE = { light: "colourful", size: 48, angles: { beta: 20 } };
+const OPTIONS = { start: "identity" };
 
 /** A page of the project, and the errors that it did not catch. */
 async function opened(name, head) {
@@ -54,7 +56,7 @@ const types = (seen) => [...new Set(seen.map(({ type }) => type))].sort();
 describe("<bimodal-stereo> in plain HTML", LONG, () => {
   test("runs a sample to a status, and frees its worker then", async () => {
     const { page, errors } = await opened("sample.html", MAP);
-    const members = { sample: "bust", scene: { size: 32, light: "colourful", angles: { beta: 20 } } };
+    const members = { sample: "bust", scene: SCENE, options: OPTIONS };
     const seen = await until(page, "bimodal-stereo", members, "done");
     assert.deepEqual(types(seen), ["done", "status", "step"]);
     assert.equal(seen.at(-1).status, "converged");
@@ -72,13 +74,14 @@ describe("<bimodal-stereo> in plain HTML", LONG, () => {
   });
 
   test("reads files at the addresses of its attributes", async () => {
-    const { colour, depth } = await pairFiles({ angles: { beta: 20 }, size: 48 });
+    const { colour, depth } = await pairFiles({ ...SCENE, surface: "bust" });
     const { bytes, step } = await depthPng(decodeDepth(depth), "px");
     write(project, { "image.png": colour, "depth.png": bytes });
     const { page, errors } = await opened(
       "files.html",
       `${MAP}<script type="module">import "bimodal-stereo/elements";</script>
-       <bimodal-stereo image="image.png" depth="depth.png" unit="${step}"></bimodal-stereo>`,
+       <bimodal-stereo image="image.png" depth="depth.png" unit="${step}"></bimodal-stereo>
+       <script>document.querySelector("bimodal-stereo").options = ${JSON.stringify(OPTIONS)};</script>`,
     );
     await page.waitForFunction(() => {
       const { report, error } = document.querySelector("bimodal-stereo");
@@ -211,7 +214,8 @@ declare module "react" {
   }
 }
 
-const SCENE = ${JSON.stringify({ size: SMALL.size, light: SMALL.light, angles: SMALL.angles })};
+const SCENE = ${JSON.stringify(SCENE)} as const;
+const OPTIONS = ${JSON.stringify(OPTIONS)} as const;
 
 function App() {
   const [status, setStatus] = useState("none");
@@ -223,7 +227,7 @@ function App() {
     <main>
       <p id="told">{status} {done} {String(drawn)}</p>
       <button type="button" onClick={() => setShown(false)}>Remove</button>
-      {isShown && <bimodal-stereo sample="bust" scene={SCENE} onstatus={({ detail }) => setStatus(detail.status)} ondone={onDone} />}
+      {isShown && <bimodal-stereo sample="bust" scene={SCENE} options={OPTIONS} onstatus={({ detail }) => setStatus(detail.status)} ondone={onDone} />}
       {isShown && <bimodal-figure lesson="pixel" ondone={() => setDrawn(true)} />}
     </main>
   );
