@@ -60,15 +60,15 @@ export interface FigureEvents {
 
 /** `<bimodal-stereo>`: finds the pose between an image and a depth map, one iteration per frame, and shows it. */
 export interface BimodalStereoElement extends HTMLElement {
-  /** Address of the colour image; "" if there is none. Reflects the attribute, as do all strings here. */
+  /** Address of the colour image; empty without one. It reflects the attribute, as do all strings here. */
   image: string;
-  /** Address of the depth map, PNG or .npy; "" if there is none. */
+  /** Address of the depth map, PNG or .npy; empty without one. */
   depth: string;
-  /** Address of the depth map's mask; "" for none. */
+  /** Address of the depth map's mask; empty for none. */
   mask: string;
   /** Pixels (or metres) per stored number of the depth map; `undefined` for the default. */
   unit: number | undefined;
-  /** A rendered surface to use instead of files, such as "bust"; "" for none. */
+  /** A rendered surface to use instead of files, such as "bust"; empty for none. */
   sample: string;
   /** Whether the run waits for `play()` or `step()`. */
   paused: boolean;

@@ -6,7 +6,7 @@ import { build } from "vite";
 import { depthPng } from "../../pkg/write.js";
 import { decodeDepth } from "../../pkg/files.js";
 import { inRoot } from "../../scripts/shell.mjs";
-import { chrome, freshProject, html, pairFiles, run, served, write } from "./fresh.mjs";
+import { chrome, examples, freshProject, html, pairFiles, run, served, write } from "./fresh.mjs";
 import { LONG } from "./long.mjs";
 
 const project = freshProject();
@@ -148,6 +148,19 @@ describe("<bimodal-stereo> in plain HTML", LONG, () => {
     assert.deepEqual(errors, []);
     await page.close();
   });
+});
+
+test("the guide's page works as it is written", LONG, async () => {
+  const [guide] = examples(inRoot("docs/guide/elsewhere.md"), "html");
+  // A search takes long; the options leave everything else as it is.
+  write(project, {
+    "guide.html": `${guide}<script>Object.assign(document.querySelector("bimodal-stereo"), ${JSON.stringify({ scene: SCENE, options: OPTIONS })});</script>`,
+  });
+  const { page, errors } = await opened("guide.html");
+  await page.getByText(/^converged: beta 20\.\d$/).waitFor();
+  await page.locator("bimodal-figure").getByRole("region").waitFor();
+  assert.deepEqual(errors, []);
+  await page.close();
 });
 
 describe("<bimodal-figure> in plain HTML", LONG, () => {

@@ -1,4 +1,4 @@
-/** The thread of `<bimodal-stereo>`: reads the pair, and computes and draws a step whenever the element asks for one. */
+/** The thread of `<bimodal-stereo>`: reads the pair, and computes and draws a step for each request of the element. */
 
 import "../engine/hold";
 import init, { type ColorImage, type DepthMap, Estimator, sample, shadeNormals } from "../../pkg/index.js";
