@@ -191,15 +191,29 @@ describe("<bimodal-figure> in plain HTML", LONG, () => {
       ["lesson", "state"],
       ["state", "lesson"],
     ]) {
+      await page.evaluate(() =>
+        Object.assign(document.querySelector("bimodal-figure"), { lesson: "pixel", state: "" }),
+      );
+      await page.waitForFunction(() => {
+        const { shadowRoot, result } = document.querySelector("bimodal-figure");
+        return result && !shadowRoot.querySelector("[name=holes]");
+      });
       await page.evaluate((names) => {
-        const given = { lesson: "sensor", state: "light=window" };
+        const given = { lesson: "sensor", state: "holes=20" };
         const element = document.querySelector("bimodal-figure");
-        element.lesson = "pixel";
         for (const name of names) element[name] = given[name];
       }, order);
       await page.locator("bimodal-figure").getByRole("region").waitFor();
       await workersAre(page, 1);
-      assert.equal(await page.locator("bimodal-figure").getAttribute("lesson"), "sensor");
+      // The first lesson has no holes, and would have dropped them.
+      await page.waitForFunction(
+        () => document.querySelector("bimodal-figure").shadowRoot.querySelector("[name=holes]")?.value === "20",
+      );
+      assert.equal(await page.locator("bimodal-figure").getAttribute("state"), "holes=20");
+      await page.evaluate(() => document.querySelector("bimodal-figure").setAttribute("state", "holes=7"));
+      await page.waitForFunction(
+        () => document.querySelector("bimodal-figure").shadowRoot.querySelector("[name=holes]")?.value === "7",
+      );
     }
     await page.evaluate(() => document.querySelector("bimodal-figure").remove());
     await workersAre(page, 0);
