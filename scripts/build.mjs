@@ -12,6 +12,7 @@ import {
 } from "node:fs";
 import { dirname, join } from "node:path";
 import { deflateSync, gzipSync } from "node:zlib";
+import { bundleElements } from "./elements.mjs";
 import { collector } from "./notices/bundled.mjs";
 import { NOTICES, section } from "./notices/text.mjs";
 import { ALL, GLUE, NUMERICS, allNumerics, node } from "./numerics.mjs";
@@ -27,9 +28,12 @@ const SOURCES = [
   "js",
   "package-lock.json",
   "scripts/build.mjs",
+  "scripts/elements.mjs",
+  ...["elements", "learn", "draw", "engine", "style", "dom.ts"].map((part) => `www/${part}`),
   "scripts/imports.mjs",
   "scripts/notices",
 ];
+const THREADS = ["thread.js", "elements-thread.js", "figure-thread.js"];
 const MARK = "pkg/.stamp";
 /** Entries for programs, for files of images and depth maps, for a rig's files (reading, recordings, writing, the report of its check, its words), for writing a run's files, for the page's fields and its visitor's files, for the threads of workers, and for shells. */
 const ENTRIES = {
@@ -64,7 +68,8 @@ function manifest() {
     bugs: { url: `${repository}/issues` },
     type: "module",
     engines: { node: "^20.19.0 || >=22.12.0" },
-    sideEffects: false,
+    // Importing the elements defines them.
+    sideEffects: ["./elements.js"],
     exports: {
       ".": { types: "./index.d.ts", default: "./index.js" },
       "./files": { types: "./files.d.ts", default: "./files.js" },
@@ -72,8 +77,9 @@ function manifest() {
       "./rig-recordings": { types: "./rig/recordings/index.d.ts", default: "./rig-recordings.js" },
       "./write": { types: "./write/index.d.ts", default: "./write.js" },
       "./rig-write": { types: "./rig/write/index.d.ts", default: "./rig-write.js" },
+      "./elements": { types: "./elements.d.ts", default: "./elements.js" },
       // By path, for bundlers that need to know these files.
-      ...Object.fromEntries(["thread.js", ...ALL.map(({ file }) => file)].map((file) => [`./${file}`, `./${file}`])),
+      ...Object.fromEntries([...THREADS, ...ALL.map(({ file }) => file)].map((file) => [`./${file}`, `./${file}`])),
       "./package.json": "./package.json",
     },
     types: "./index.d.ts",
@@ -153,6 +159,7 @@ async function facade() {
   };
   await bundle.write({ dir: inRoot("pkg"), format: "esm", chunkFileNames: "[name].js", codeSplitting });
   await bundle.close();
+  await bundleElements(npm.plugin);
   chmodSync(inRoot("pkg/cli.js"), 0o755);
   writeFileSync(inRoot("pkg", NOTICES), notices(npm.entries()));
   await declarations();
@@ -165,7 +172,9 @@ async function declarations() {
   const all = inRoot("target/declarations");
   rmSync(all, { recursive: true, force: true });
   await node("typescript/bin/tsc", "-p", "js/tsconfig.json", "--outDir", all);
-  const typed = Object.values(ENTRIES).filter((source) => source !== ENTRIES.thread && source !== ENTRIES.cli);
+  const programs = Object.values(ENTRIES).filter((source) => source !== ENTRIES.thread && source !== ENTRIES.cli);
+  // The elements' code is the page's, their types are the package's.
+  const typed = [...programs, "elements"];
   for (const name of reachable(
     all,
     typed.map((source) => `${source}.d.ts`),

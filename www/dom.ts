@@ -41,6 +41,13 @@ export function ink(token: string): string {
   return color;
 }
 
+/** Takes the colours from a shadow root, which has its own tokens. */
+export function dipInto(root: ShadowRoot): void {
+  if (inkwell.getRootNode() === root) return;
+  root.append(inkwell);
+  inks.clear();
+}
+
 /** Call it when the theme changes, before anything is drawn in the new colours. */
 export const forgetInks = (): void => inks.clear();
 

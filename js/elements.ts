@@ -1,0 +1,178 @@
+/** The types of the custom elements. Their code is in www/elements, which is bundled after this package. */
+import type { ErrorDetails } from "./errors.js";
+import type { Options, SampleRequest, StepReport } from "./types/index.js";
+
+/** A failure: `code` is that of a `BimodalError`, or "lost" if the browser ended the worker. */
+export interface ElementError {
+  /** Stable, for programs. */
+  readonly code: string;
+  /** The attribute or the input at fault. */
+  readonly field?: string;
+  /** In words, which may change. */
+  readonly message: string;
+  /** More for programs, as of a `BimodalError`. */
+  readonly details?: ErrorDetails;
+}
+
+/** The numbers under a lesson's figure, and those that are words. */
+export interface FigureResult {
+  /** By the names of the lesson's readouts. */
+  readonly numbers: Readonly<Record<string, number>>;
+  /** Those that are words, such as the status of a run. */
+  readonly words: Readonly<Record<string, string>>;
+}
+
+/** What a `status` event of `<bimodal-stereo>` tells. */
+export interface StatusDetail {
+  /** The new status. */
+  readonly status: StepReport["status"];
+}
+
+/** What a `status` event of `<bimodal-figure>` tells. */
+export interface StateDetail {
+  /** The new state, as the attribute has it. */
+  readonly state: string;
+}
+
+/** The events of `<bimodal-stereo>`; none of them bubbles. */
+export interface StereoEvents {
+  /** After each iteration and each slice of the search. */
+  step: CustomEvent<StepReport>;
+  /** The status has changed. */
+  status: CustomEvent<StatusDetail>;
+  /** The run has ended. */
+  done: CustomEvent<StepReport>;
+  /** Nothing more is to be expected of this run. */
+  error: CustomEvent<ElementError>;
+}
+
+/** The events of `<bimodal-figure>`; none of them bubbles. */
+export interface FigureEvents {
+  /** A drawing has arrived; some lessons draw several on the way to the last. */
+  step: CustomEvent<FigureResult>;
+  /** The state has changed, by an attribute or by the visitor. */
+  status: CustomEvent<StateDetail>;
+  /** The last drawing has arrived. */
+  done: CustomEvent<FigureResult>;
+  /** Nothing more is to be expected of this run. */
+  error: CustomEvent<ElementError>;
+}
+
+/** `<bimodal-stereo>`: finds the pose between an image and a depth map, one iteration per frame, and shows it. */
+export interface BimodalStereoElement extends HTMLElement {
+  /** Address of the colour image; empty without one. It reflects the attribute, as do all strings here. */
+  image: string;
+  /** Address of the depth map, PNG or .npy; empty without one. */
+  depth: string;
+  /** Address of the depth map's mask; empty for none. */
+  mask: string;
+  /** Pixels (or metres) per stored number of the depth map; `undefined` for the default. */
+  unit: number | undefined;
+  /** A rendered surface to use instead of files, such as "bust"; empty for none. */
+  sample: string;
+  /** Whether the run waits for `play()` or `step()`. */
+  paused: boolean;
+  /** Options of the estimator; setting them restarts the run. */
+  options: Options;
+  /** The scene of `sample`, beside its surface; setting it restarts the run. */
+  scene: Partial<SampleRequest>;
+  /** The report of the last step; `undefined` before the first. */
+  readonly report: StepReport | undefined;
+  /** The last failure of this run. */
+  readonly error: ElementError | undefined;
+  /** Continues, one step per frame. */
+  play(): void;
+  /** Waits before the next step. */
+  pause(): void;
+  /** One step; the run is paused then. */
+  step(): void;
+  /** Takes listeners of this element's events by their names. */
+  addEventListener<K extends keyof StereoEvents>(
+    type: K,
+    listener: (event: StereoEvents[K]) => void,
+    options?: boolean | AddEventListenerOptions,
+  ): void;
+  /** Takes listeners of all other events. */
+  addEventListener(
+    type: string,
+    listener: EventListenerOrEventListenerObject,
+    options?: boolean | AddEventListenerOptions,
+  ): void;
+}
+
+/** `<bimodal-figure>`: the live figure of a lesson. */
+export interface BimodalFigureElement extends HTMLElement {
+  /** The lesson's name, such as "pixel". */
+  lesson: string;
+  /** Its controls as in an address, such as "noise=2&light=window"; follows the visitor's changes. */
+  state: string;
+  /** The numbers of the last drawing. */
+  readonly result: FigureResult | undefined;
+  /** The last failure since the last drawing. */
+  readonly error: ElementError | undefined;
+  /** Takes listeners of this element's events by their names. */
+  addEventListener<K extends keyof FigureEvents>(
+    type: K,
+    listener: (event: FigureEvents[K]) => void,
+    options?: boolean | AddEventListenerOptions,
+  ): void;
+  /** Takes listeners of all other events. */
+  addEventListener(
+    type: string,
+    listener: EventListenerOrEventListenerObject,
+    options?: boolean | AddEventListenerOptions,
+  ): void;
+}
+
+/**
+ * Both elements for JSX; `Common` is what every element of the framework takes. For React 19:
+ * `declare module "react" { namespace JSX { interface IntrinsicElements extends ElementsInJsx<React.HTMLAttributes<HTMLElement>> {} } }`
+ */
+export interface ElementsInJsx<Common = unknown> {
+  /** The run, with its attributes, its properties and its events. */
+  "bimodal-stereo": Omit<Common, "onerror"> &
+    Partial<Pick<BimodalStereoElement, "image" | "depth" | "mask" | "sample" | "options" | "scene" | "paused">> & {
+      /** Pixels (or metres) per stored number. */
+      unit?: number;
+      /** React's key. */
+      key?: string | number;
+      /** A reference to the element. */
+      ref?: unknown;
+      /** Listens to `step`. */
+      onstep?: (event: StereoEvents["step"]) => void;
+      /** Listens to `status`. */
+      onstatus?: (event: StereoEvents["status"]) => void;
+      /** Listens to `done`. */
+      ondone?: (event: StereoEvents["done"]) => void;
+      /** Listens to `error`. */
+      onerror?: (event: StereoEvents["error"]) => void;
+    };
+  /** The figure, with its attributes and its events. */
+  "bimodal-figure": Omit<Common, "onerror"> & {
+    /** The lesson's name. */
+    lesson: string;
+    /** Its controls as in an address. */
+    state?: string;
+    /** React's key. */
+    key?: string | number;
+    /** A reference to the element. */
+    ref?: unknown;
+    /** Listens to `step`. */
+    onstep?: (event: FigureEvents["step"]) => void;
+    /** Listens to `status`. */
+    onstatus?: (event: FigureEvents["status"]) => void;
+    /** Listens to `done`. */
+    ondone?: (event: FigureEvents["done"]) => void;
+    /** Listens to `error`. */
+    onerror?: (event: FigureEvents["error"]) => void;
+  };
+}
+
+declare global {
+  interface HTMLElementTagNameMap {
+    /** Finds the pose between an image and a depth map. */
+    "bimodal-stereo": BimodalStereoElement;
+    /** The live figure of a lesson. */
+    "bimodal-figure": BimodalFigureElement;
+  }
+}

@@ -1,0 +1,10 @@
+/** Defines both custom elements. Where there is no document, importing it does nothing. */
+
+import { BimodalFigure } from "./figure";
+import { BimodalStereo } from "./stereo";
+
+if (typeof customElements !== "undefined") {
+  // Two copies of the package on one page are no error.
+  if (!customElements.get("bimodal-stereo")) customElements.define("bimodal-stereo", BimodalStereo);
+  if (!customElements.get("bimodal-figure")) customElements.define("bimodal-figure", BimodalFigure);
+}

@@ -1,0 +1,123 @@
+/** The figure of a lesson in a shadow root, made of the parts of the page's lessons. */
+
+import type { ElementError, FigureResult } from "../../pkg/elements.js";
+import { dipInto, make } from "../dom";
+import { Controls } from "../learn/controls";
+import { Figure } from "../learn/figure";
+import { type Lesson, computed, initialValues, valuesFrom } from "../learn/lesson";
+import { lessonNamed, lessons } from "../learn/lessons";
+import type { Values } from "../learn/protocol";
+import { Readouts } from "../learn/readouts";
+import { Session } from "../learn/session";
+import words from "../style/learn.css?inline";
+import parts from "../style/learn-figure.css?inline";
+import tokens from "../style/tokens.css?inline";
+import own from "./figure.css?inline";
+
+interface Hooks {
+  onResult(result: FigureResult, done: boolean): void;
+  onState(state: string): void;
+  onError(error: ElementError): void;
+}
+
+export interface Shown {
+  set(state: string): void;
+  end(): void;
+}
+
+/** The page's rules about its root are about the element here. */
+const inShadow = (text: string): string =>
+  text.replaceAll(/:root\[([^\]]+)\]/g, ":host([$1])").replaceAll(":root", ":host");
+
+let sheet: CSSStyleSheet | undefined;
+function styled(root: ShadowRoot): void {
+  if (!sheet) {
+    sheet = new CSSStyleSheet();
+    sheet.replaceSync([tokens, words, parts, own].map(inShadow).join("\n"));
+  }
+  root.adoptedStyleSheets = [sheet];
+}
+
+/** The values that differ from the lesson's own, as in the page's addresses. */
+function stateOf(lesson: Lesson, values: Values): string {
+  const start = initialValues(lesson);
+  const changed = Object.entries(values).filter(([key, value]) => value !== start[key]);
+  return new URLSearchParams(changed.map(([key, value]) => [key, String(value)])).toString();
+}
+
+export function show(root: ShadowRoot, name: string, state: string, hooks: Hooks): Shown {
+  styled(root);
+  const alert = make("p", { class: "alert", role: "alert", hidden: true });
+  root.replaceChildren(alert);
+  const complain = (error: ElementError) => {
+    alert.textContent = error.message;
+    alert.hidden = false;
+    hooks.onError(error);
+  };
+  const lesson = lessonNamed(name);
+  if (!lesson) {
+    const known = lessons.map(({ id }) => id).join(", ");
+    complain({ code: "option", field: "lesson", message: `lesson: "${name}" is none of ${known}` });
+    return { set: () => {}, end: () => {} };
+  }
+  return live(root, lesson, valuesFrom(lesson, new URLSearchParams(state)), alert, { ...hooks, onError: complain });
+}
+
+function live(root: ShadowRoot, lesson: Lesson, values: Values, alert: HTMLElement, hooks: Hooks): Shown {
+  const session = new Session({
+    onDrawing: (drawing, done) => {
+      dipInto(root);
+      alert.hidden = true;
+      figure.show(drawing);
+      readouts.show(drawing);
+      box.setAttribute("aria-busy", String(!done));
+      hooks.onResult({ numbers: drawing.numbers, words: drawing.words ?? {} }, done);
+    },
+    onFault: ({ code, field, message, details }) => {
+      box.setAttribute("aria-busy", "false");
+      hooks.onError({ code, message, ...(field === undefined ? {} : { field }), ...(details && { details }) });
+    },
+  });
+  const ask = () => {
+    box.setAttribute("aria-busy", "true");
+    session.ask(lesson.id, computed(lesson, controls.values));
+  };
+  const changed = () => {
+    hooks.onState(stateOf(lesson, controls.values));
+    ask();
+  };
+  const figure = new Figure(new Set(Object.keys(lesson.drags)), (key, x, y) =>
+    controls.set(dragged(lesson, key, x, y)),
+  );
+  const controls = new Controls(lesson, values, changed);
+  const readouts = new Readouts(lesson.readouts);
+  const box = make(
+    "section",
+    { class: "learn-figure", "aria-label": lesson.title, "aria-busy": "true", part: "figure" },
+    controls.element,
+    readouts.element,
+    figure.element,
+  );
+  root.append(box);
+  ask();
+  return {
+    set: (state) => {
+      controls.show(valuesFrom(lesson, new URLSearchParams(state)));
+      changed();
+    },
+    end: () => session.end(),
+  };
+}
+
+/** The two sliders of a panel's axes from a place on it, given as shares of its sides. */
+function dragged(lesson: Lesson, key: string, x: number, y: number): Values {
+  const axes = lesson.drags[key];
+  if (!axes) return {};
+  const along = (name: string, share: number): [string, number][] => {
+    const control = lesson.controls.find((each) => each.key === name);
+    if (control?.kind !== "slider") return [];
+    const value = control.min + share * (control.max - control.min);
+    return [[name, Number((Math.round(value / control.step) * control.step).toFixed(6))]];
+  };
+  return Object.fromEntries([...along(axes.x, x), ...along(axes.y, y)]);
+}

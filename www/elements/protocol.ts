@@ -1,0 +1,25 @@
+/** The messages between `<bimodal-stereo>` and its thread. Both sides import this file and nothing else of each other. */
+
+import type { Options, SampleRequest, StepReport } from "../../pkg/index.js";
+import type { Fault } from "../engine/protocol";
+
+/** Addresses are absolute, because a thread resolves relative ones by its own. */
+export interface Input {
+  image: string;
+  depth: string;
+  mask: string;
+  unit: number | undefined;
+  sample: SampleRequest | undefined;
+}
+
+export type Order = { kind: "open"; input: Input; options: Options } | { kind: "step" };
+
+/** What is shown; the image is sent once, with the first answer. */
+export const PICTURES = ["image", "surface", "light"] as const;
+export type PictureName = (typeof PICTURES)[number];
+export type Pictures = Partial<Record<PictureName, ImageBitmap>>;
+
+export type Answer =
+  | { kind: "opened"; pictures: Pictures }
+  | { kind: "stepped"; report: StepReport; pictures: Pictures }
+  | { kind: "fault"; fault: Fault };
