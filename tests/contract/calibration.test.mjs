@@ -108,7 +108,7 @@ describe("a rig before boxes", () => {
   test("the convention of a candidate that was misread is named in the verdict", LONG, async () => {
     const millimetres = { ...truth, translation: truth.translation.map((value) => 1000 * value) };
     const told = await checkCalibration([frame], { told: millimetres });
-    assert.deepEqual([told.verdict, told.code], ["off", "misread"]);
+    assert.deepEqual([told.verdict, told.code, told.reading], ["off", "misread", "millimetres"]);
     assert.match(told.reason, /^Off as given, but it fits if read with its translation in millimetres/);
     assert.ok(degreesBetween(told.estimate, truth) < 0.5, `${degreesBetween(told.estimate, truth)}`);
   });
