@@ -6,9 +6,18 @@
 // --keep S     share of the depths that are kept at random (default 1), as in a sparse map
 // --rings N    rows of the depth map that are kept, evenly spaced, as the rings of a LiDAR
 // --json FILE  one row for each check
+// --confusions instead: whether the first sentence of a check names what people confuse, on rigs of all kinds in turn and on
+//              nyu_raw_pair if there is other people's data
+// --only A,B   of the confusions, by name
+// --right N    number of right rigs of which a check should name no mistake (default 40), seeds from --from
+// --off N      number of rigs whose candidates are merely off, not misread (default 40), seeds from --from
+// --step N     distance of the seeds of --confusions (default 2: odd seeds test what was chosen on even ones)
 import { writeFileSync } from "node:fs";
 import { parseArgs } from "node:util";
 import { build } from "./build.mjs";
+import { nyuRig } from "./captures/read.mjs";
+import { hasData } from "./real-pairs.mjs";
+import { CONFUSIONS, confused, merelyOff, printConfused, printOff, printRight, right } from "./rigs/confusions.mjs";
 import { chance, offset, percent, quantile, sizes, thinned, wrong } from "./rigs/draws.mjs";
 import { Failure, inRoot, say, script, seconds } from "./shell.mjs";
 
@@ -80,6 +89,39 @@ function print(rows) {
   }
 }
 
+/** Rigs of all kinds in turn, one frame each. */
+async function rendered(sampleRig, count, { from, step }) {
+  const rigs = [];
+  for (let k = 0; k < count; k++) {
+    const [kind, seed] = [KINDS[k % KINDS.length], from + step * k];
+    const { pose, ...frame } = await sampleRig({ kind, seed });
+    rigs.push({ name: `${kind} ${seed}`, frames: [frame], pose });
+  }
+  return rigs;
+}
+
+async function confusions({ checkCalibration: check, sampleRig }, { names, counts, seeds, json }) {
+  const start = performance.now();
+  const options = { check, progress: (name) => say(`${name} (${seconds(start)})`) };
+  const own = hasData() ? [nyuRig(await import(inRoot("pkg/files.js")))] : [];
+  const rows = await confused([...(await rendered(sampleRig, counts.rigs, seeds)), ...own], names, options);
+  printConfused(rows);
+  const told = await right(await rendered(sampleRig, counts.right, seeds), options);
+  printRight(told);
+  const off = await merelyOff(await rendered(sampleRig, counts.off, seeds), options);
+  printOff(off);
+  if (json) writeFileSync(json, `${JSON.stringify([...rows, ...told, ...off], null, 1)}\n`);
+}
+
+/** The names of the confusions that the option `only` selects. */
+function selected(only) {
+  const names = only?.split(",") ?? Object.keys(CONFUSIONS);
+  const unclear = names.find((name) => !(name in CONFUSIONS));
+  if (unclear !== undefined)
+    throw new Failure(`There is no confusion "${unclear}"; there are ${Object.keys(CONFUSIONS).join(", ")}.`);
+  return names;
+}
+
 await script(async () => {
   const { values } = parseArgs({
     options: {
@@ -90,6 +132,11 @@ await script(async () => {
       keep: { type: "string", default: "1" },
       rings: { type: "string" },
       json: { type: "string" },
+      confusions: { type: "boolean", default: false },
+      only: { type: "string" },
+      right: { type: "string", default: "40" },
+      off: { type: "string", default: "40" },
+      step: { type: "string", default: "2" },
     },
   });
   const [rigs, from] = [values.rigs, values.from].map(Number);
@@ -102,8 +149,14 @@ await script(async () => {
     throw new Failure("--keep takes a share up to 1, --rings a number from 2.");
   const unknown = kinds.find((kind) => !KINDS.includes(kind));
   if (unknown !== undefined) throw new Failure(`There is no kind "${unknown}"; there are ${KINDS.join(", ")}.`);
+  const names = selected(values.only);
   await build();
   const { checkCalibration, sampleRig } = await import(inRoot("pkg/index.js"));
+  if (values.confusions) {
+    const named = { rigs, right: Number(values.right), off: Number(values.off) };
+    const seeds = { from, step: Number(values.step) };
+    return confusions({ checkCalibration, sampleRig }, { names, counts: named, seeds, json: values.json });
+  }
   const start = performance.now();
   const rows = [];
   for (const kind of kinds) {

@@ -63,6 +63,23 @@ export interface Warning {
   [detail: string]: unknown;
 }
 
+/** A convention in which calibrations are commonly misread. */
+export type CheckReading =
+  | "inverse"
+  | "transposed-rotation"
+  | "camera-centre"
+  | "scalar-first"
+  | "scalar-last"
+  | "body-frames"
+  | "body-depth"
+  | "body-colour"
+  | "millimetres"
+  | "radians"
+  | "registered"
+  | "quarter-turn"
+  | "half-turn"
+  | "quarter-back";
+
 /** The result for one candidate. */
 export interface CandidateReport {
   /** Of this candidate. */
@@ -71,6 +88,8 @@ export interface CandidateReport {
   code: CheckCode;
   /** The verdict in a sentence with its numbers. */
   reason: string;
+  /** With the code "misread", the convention in which the candidate fits. */
+  reading?: CheckReading;
   /** Angle between the candidate's rotation and the estimate's, degrees. */
   offDegrees: number;
   /** Shift of the scene's centre between the candidate and the estimate, millimetres. */
@@ -93,6 +112,8 @@ export interface CheckReport {
   code: CheckCode;
   /** The verdict in a sentence with its numbers. */
   reason: string;
+  /** With the code "misread", the convention in which the candidate fits. */
+  reading?: CheckReading;
   /** What was guessed or looks wrong. With any of them the verdict is not "consistent". */
   warnings: Warning[];
   /** The extrinsics that fit best, scale 1: P_colour = R P_depth + t, metres. */

@@ -30,13 +30,19 @@ function middle(points, truth, isAsked = () => true) {
   return axes.map((values) => quantile(values, 0.5));
 }
 
-export function nyu({ decodeColour, decodeDepth }) {
+/** The frame as it was taken. */
+export function nyuRig({ decodeColour, decodeDepth }) {
   const read = (name) => bytes("nyu_raw_pair", name);
   const calib = JSON.parse(read("calib.json").toString());
   const camera = ({ fx, fy, cx, cy, dist_k1k2p1p2k3: distortion }) => ({ fx, fy, cx, cy, distortion });
   const image = { ...decodeColour(read("color_raw.png")), camera: camera(calib.rgb) };
   const depth = { ...decodeDepth(read("depth_raw_mm.png")), camera: camera(calib.depth), unit: MILLIMETRE };
-  return sight("nyu_raw_pair", { image, depth }, poseOf(calib.R.flat(), calib.t));
+  return { name: "nyu_raw_pair", frames: [{ image, depth }], pose: poseOf(calib.R.flat(), calib.t) };
+}
+
+export function nyu(files) {
+  const { name, frames, pose } = nyuRig(files);
+  return sight(name, frames[0], pose);
 }
 
 /** Camera and depth of frame `from`, colours of frame `to`; the pose follows from the camera's two poses in the room. */

@@ -280,12 +280,12 @@ impl CalibrationCheck {
 
     /// Adopts the best reading if it fits clearly better than every pose found near the candidate.
     fn adopt(&mut self, search: Rereading, planes: Vec<Planes>) -> Stage {
-        let mut optima = search.end(&self.scene, &planes);
-        let is_clear = optima.iter().all(|other| other.reading.is_some() || !other.is_possible());
+        let optima = search.end(&self.scene, &planes);
+        let is_reading = optima.first().is_some_and(|best| best.reading.is_some());
         let lens = self.lens;
-        if optima[0].reading.is_some() && is_clear {
+        if is_reading && !optima[1..].iter().any(Optimum::is_equal) {
             self.lens = distortion::left_out(&mut self.scene, &optima[0].round);
-            let report = self.conclude(&optima, &planes);
+            let report = self.conclude(&optima[..1], &planes);
             if names_reading(&report) {
                 self.best = optima[0].round;
                 self.report = Some(report);
@@ -294,10 +294,8 @@ impl CalibrationCheck {
         }
         // The first report stands, and the curves are those of its pose.
         self.lens = lens;
-        let is_best = |optimum: &Optimum| optimum.round.state.pose == self.best.state.pose;
-        let best = optima.iter().position(is_best).unwrap_or(0);
-        optima.swap(0, best);
-        curves_of(optima, planes)
+        let findings = Box::new(self.scene.findings(&self.best, &planes));
+        Stage::Curves { planes, findings, done: 0 }
     }
 
     /// Refines one of the poses by one round with all cues. After the last pose, the candidates are judged.

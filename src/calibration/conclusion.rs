@@ -3,23 +3,25 @@
 use nalgebra::Vector3;
 
 use super::check::CalibrationCheck;
-use super::distribution::{Distribution, Part, VARIANCE};
+use super::distribution::{Distribution, Part, PoseMatrix, PoseVector, VARIANCE};
 use super::guessed;
 use super::health::Health;
 use super::optima::Optimum;
 use super::planes::Planes;
 use super::readings::Reading;
 use super::reason::{CheckReason, Margin, Warning, WarningKind};
-use super::registration::Findings;
+use super::registration::{Findings, Round};
 use super::report::{CheckReport, CueReport, FrameReport};
 use super::unknowns::{FOCAL, Matrix, POSE, State, Vector, add_square};
 use super::verdict::{CandidateReport, CheckVerdict, Judge};
 
 /// Variance if nothing at all is known, squared pixels.
 const FARTHEST: f64 = 1e6;
-/// Another reading of a candidate fits clearly better if the candidate's error is at least this multiple of the error of
-/// the reading.
+/// The inverse fits clearly better if the candidate's error is at least this multiple of the error of the inverse.
 const CLEARLY: f64 = 3.0;
+/// A candidate was misread if this reading of it is so many times more likely under the distribution of the estimate than
+/// the candidate is under the prior about the estimate: twenty for each of the fourteen readings.
+const MISREAD: f64 = 280.0;
 /// Smallest share of the depth points that the estimate has to put onto the image before it may judge a candidate. The
 /// other points are not compared with anything, and a wrong pose can always fit a small part.
 const LEAST_OVERLAP: f64 = 0.15;
@@ -36,7 +38,7 @@ impl CalibrationCheck {
         let (judge, covariance) = of_all.as_ref().unwrap_or(&first);
         let mut candidates = self.candidate_reports(judge, optima[0], covariance);
         self.hear_other_optima(&mut candidates, &optima, &first.0, planes);
-        self.name_reading(&mut candidates, judge, state);
+        self.name_reading(&mut candidates, judge, optima[0]);
         let warnings = self.all_warnings(judge, &state);
         let health = if self.scene.is_seen(&state) { judge.estimate() } else { Judge::blind(self.width) };
         let (verdict, reason) = first_verdict(&candidates, &warnings, health);
@@ -88,7 +90,9 @@ impl CalibrationCheck {
             let is_contradicted = match report.verdict {
                 CheckVerdict::Off => {
                     judges.iter().zip(others).any(|(judge, other)| verdict(judge, other) != CheckVerdict::Off)
-                        || self.scene.is_seen(candidate) && !best.excludes(&self.scene, *candidate, planes)
+                        || best.reading.is_none()
+                            && self.scene.is_seen(candidate)
+                            && !best.excludes(&self.scene, *candidate, planes)
                 }
                 CheckVerdict::Consistent => false,
                 CheckVerdict::Undecided => is_open(&report.reason) && verdict(first, best) != CheckVerdict::Undecided,
@@ -100,19 +104,24 @@ impl CalibrationCheck {
     }
 
     /// If the first candidate is off and fits in another reading, names that reading as the reason.
-    fn name_reading(&self, reports: &mut [CandidateReport], judge: &Judge, best: State) {
+    fn name_reading(&self, reports: &mut [CandidateReport], judge: &Judge, best: &Optimum) {
         let (Some(report), Some((name, candidate))) = (reports.first_mut(), self.candidates.first()) else { return };
         if report.verdict != CheckVerdict::Off {
             return;
         }
-        let error = |reading: Reading| {
-            let state = State::at(reading.of(&candidate.pose)?);
-            let own = judge.judge(name, &best, &state, None);
-            let fits = own.verdict != CheckVerdict::Off;
-            (fits && CLEARLY * own.health.pixels < report.health.pixels).then_some((own.health, reading))
+        let Optimum { findings: Findings { units, prior, .. }, round: Round { state, .. }, .. } = best;
+        let from_best = |to: &State| units.between(state, to).fixed_rows::<POSE>(0).into_owned();
+        let scale = prior.fixed_view::<POSE, POSE>(0, 0).try_inverse().unwrap_or_else(PoseMatrix::zeros);
+        let of_prior = Distribution::new(vec![Part { weight: 1.0, middle: PoseVector::zeros(), scale }]);
+        let least = MISREAD * of_prior.density(&from_best(candidate));
+        let likely = |reading: Reading| {
+            let read = State::at(reading.of(&candidate.pose)?);
+            let density = judge.density(&from_best(&read));
+            let own = judge.judge(name, state, &read, None);
+            (own.verdict != CheckVerdict::Off && density > least).then_some((density, own.health, reading))
         };
-        let fitting = Reading::ALL.into_iter().filter_map(error);
-        if let Some((health, reading)) = fitting.min_by(|a, b| a.0.pixels.total_cmp(&b.0.pixels)) {
+        let fitting = Reading::ALL.into_iter().filter_map(likely);
+        if let Some((_, health, reading)) = fitting.max_by(|a, b| a.0.total_cmp(&b.0)) {
             report.reason = CheckReason::Misread { reading, margin: Margin { health, tolerance: judge.tolerance() } };
         }
     }

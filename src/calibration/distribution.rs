@@ -39,6 +39,8 @@ pub(super) struct Distribution {
 }
 
 impl Distribution {
+    /// Not inlined: each copy would add a kilobyte to the .wasm file.
+    #[inline(never)]
     pub fn new(parts: Vec<Part>) -> Self {
         let total: f64 = parts.iter().map(|part| part.weight).sum();
         let mut random = Random::new(SEED, 0);
@@ -63,8 +65,8 @@ impl Distribution {
         distribution
     }
 
-    /// Up to a factor.
-    fn density(&self, at: &PoseVector) -> f64 {
+    /// Up to a factor that all distributions share.
+    pub fn density(&self, at: &PoseVector) -> f64 {
         let part = |(part, inverse, height): &(Part, PoseMatrix, f64)| {
             let off = at - part.middle;
             height * (1.0 + off.dot(&(inverse * off)) / DEGREES).powf(-0.5 * (DEGREES + POSE as f64))

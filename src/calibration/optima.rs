@@ -43,11 +43,7 @@ pub(super) fn ranked(scene: &Scene, rounds: &[Round], planes: &[Planes]) -> Vec<
 /// Adds an optimum unless another one is at the same place. If several rounds end at one place, the first one stays, so
 /// that rounding decides nothing.
 pub(super) fn add(optima: &mut Vec<Optimum>, scene: &Scene, optimum: Optimum) {
-    let is_same = |other: &Optimum| {
-        let apart = other.findings.units.between(&other.round.state, &optimum.round.state);
-        apart.fixed_rows::<POSE>(0).norm() <= SAME_START * scene.scale
-    };
-    if !optima.iter().any(is_same) {
+    if !optima.iter().any(|other| other.is_same(&optimum, scene)) {
         optima.push(optimum);
     }
 }
@@ -55,6 +51,12 @@ pub(super) fn add(optima: &mut Vec<Optimum>, scene: &Scene, optimum: Optimum) {
 impl Optimum {
     pub fn at(scene: &Scene, round: Round, reading: Option<Reading>, planes: &[Planes]) -> Self {
         Self { round, findings: scene.findings(&round, planes), reading, behind: 0.0, scatter: 0.0 }
+    }
+
+    /// Whether another optimum is at the same place.
+    pub fn is_same(&self, other: &Self, scene: &Scene) -> bool {
+        let apart = self.findings.units.between(&self.round.state, &other.round.state);
+        apart.fixed_rows::<POSE>(0).norm() <= SAME_START * scene.scale
     }
 
     /// Whether this optimum fits about as well as the best one.

@@ -12,7 +12,8 @@ use crate::pose::{Similarity, rotation_vector};
 const OPTICAL_OF_BODY: Matrix3<f64> = Matrix3::new(0.0, -1.0, 0.0, 0.0, 0.0, -1.0, 1.0, 0.0, 0.0);
 
 /// A convention that a candidate may follow.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::IntoStaticStr)]
+#[strum(serialize_all = "kebab-case")]
 pub enum Reading {
     /// P_depth = R P_colour + t.
     Inverse,
@@ -45,6 +46,12 @@ pub enum Reading {
 }
 
 impl Reading {
+    /// Stable name for programs.
+    #[must_use]
+    pub fn code(self) -> &'static str {
+        self.into()
+    }
+
     /// All conventions that are tried.
     pub(super) const ALL: [Self; 14] = [
         Self::Inverse,

@@ -26,7 +26,9 @@ pub(super) struct Rereading {
 
 impl Rereading {
     /// The readings of a candidate that put points onto the image.
-    pub fn new(scene: &Scene, candidate: &State, optima: Vec<Optimum>) -> Self {
+    pub fn new(scene: &Scene, candidate: &State, mut optima: Vec<Optimum>) -> Self {
+        // A pose that shows nothing fits no worse than one that shows much.
+        optima.retain(|optimum| scene.is_seen(&optimum.round.state));
         let start = |reading: Reading| {
             let state = State::at(reading.of(&candidate.pose)?);
             let round = Round::from(state, state);
@@ -72,7 +74,10 @@ impl Rereading {
     pub fn end(self, scene: &Scene, planes: &[Planes]) -> Vec<Optimum> {
         let Self { mut optima, starts, .. } = self;
         for (reading, start) in starts {
-            optima::add(&mut optima, scene, Optimum::at(scene, start.round, Some(reading), planes));
+            // The prior of a reading is about its own pose, so it stands for the optimum that it ends at.
+            let found = Optimum::at(scene, start.round, Some(reading), planes);
+            optima.retain(|other| !other.is_same(&found, scene));
+            optima.push(found);
         }
         optima::rank(&mut optima);
         optima

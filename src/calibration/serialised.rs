@@ -13,8 +13,11 @@ pub(super) fn coded<S: Serializer>(reason: &CheckReason, serializer: S) -> Resul
     struct Explained {
         code: &'static str,
         reason: String,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        reading: Option<&'static str>,
     }
-    Explained { code: reason.code(), reason: reason.to_string() }.serialize(serializer)
+    let reading = if let CheckReason::Misread { reading, .. } = reason { Some(reading.code()) } else { None };
+    Explained { code: reason.code(), reason: reason.to_string(), reading }.serialize(serializer)
 }
 
 pub(super) fn rows<S: Serializer>(matrix: &SMatrix<f64, POSE, POSE>, serializer: S) -> Result<S::Ok, S::Error> {

@@ -174,6 +174,11 @@ impl Judge {
         (worst(k) > 1.0).then_some(ORDER[k])
     }
 
+    /// Density of the estimate's distribution at an offset from the estimate, up to a factor that all distributions share.
+    pub fn density(&self, offset: &PoseVector) -> f64 {
+        self.distribution.density(offset)
+    }
+
     /// Largest reprojection error that passes, pixels of the image as given.
     pub const fn tolerance(&self) -> f64 {
         self.tolerance

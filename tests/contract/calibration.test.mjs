@@ -108,7 +108,7 @@ describe("a rig before boxes", () => {
   test("the convention of a candidate that was misread is named in the verdict", LONG, async () => {
     const millimetres = { ...truth, translation: truth.translation.map((value) => 1000 * value) };
     const told = await checkCalibration([frame], { told: millimetres });
-    assert.deepEqual([told.verdict, told.code], ["off", "misread"]);
+    assert.deepEqual([told.verdict, told.code, told.reading], ["off", "misread", "millimetres"]);
     assert.match(told.reason, /^Off as given, but it fits if read with its translation in millimetres/);
     assert.ok(degreesBetween(told.estimate, truth) < 0.5, `${degreesBetween(told.estimate, truth)}`);
   });
@@ -335,7 +335,7 @@ test("one frame is found where wide windows lead elsewhere", LONG, async () => {
 });
 
 const RAW_KINECT = longUnless(!existsSync(NYU) && "other people's data are not here");
-test("a raw Kinect: calibrations that are off are off, and the estimate is near its makers'", RAW_KINECT, async () => {
+function rawKinect() {
   const read = (name) => readFileSync(new URL(name, NYU));
   const calib = JSON.parse(read("calib.json").toString());
   const camera = ({ fx, fy, cx, cy, dist_k1k2p1p2k3: distortion }) => ({ fx, fy, cx, cy, distortion });
@@ -344,6 +344,11 @@ test("a raw Kinect: calibrations that are off are off, and the estimate is near 
     depth: { ...decodeDepth(read("depth_raw_mm.png")), camera: camera(calib.depth), unit: 0.001 },
   };
   const truth = { scale: 1, rotation: calib.R.flat(), translation: calib.t, angles: { alpha: 0, beta: 0, gamma: 0 } };
+  return { frame, truth };
+}
+
+test("a raw Kinect: calibrations that are off are off, and the estimate is near its makers'", RAW_KINECT, async () => {
+  const { frame, truth } = rawKinect();
   const report = await checkCalibration([frame], {
     told: wrong(truth, [1, 2, -1], 2, [0.02, -0.02, 0]),
     makers: truth,
@@ -352,4 +357,12 @@ test("a raw Kinect: calibrations that are off are off, and the estimate is near 
   assert.equal(report.candidates.makers.verdict, "consistent", report.candidates.makers.reason);
   assert.ok(degreesBetween(report.estimate, truth) < 0.5);
   assert.ok(millimetresBetween(report.estimate, truth, [0, 0, 2.5]) < 40);
+});
+
+test("a raw Kinect: a misreading that moves the scene by 9 px is named", RAW_KINECT, async () => {
+  const { frame, truth } = rawKinect();
+  // The interval of the right calibration's own error reaches 8 px.
+  const told = { ...truth, rotation: transpose(truth.rotation) };
+  const { verdict, reading, reason } = await checkCalibration([frame], { told });
+  assert.deepEqual([verdict, reading], ["off", "transposed-rotation"], reason);
 });
