@@ -113,6 +113,7 @@ test("by keyboard alone: from the button to the run", async ({ lab, page }) => {
   await lab.open("size=32");
   await page.getByRole("button", { name: "Your own pictures" }).focus();
   await page.keyboard.press("Enter");
+  await expect(path(page)).toBeVisible();
   await page.getByLabel("Colour image", { exact: true }).setInputFiles(colourPng());
   for (const _ of [1, 2, 3]) {
     await path(page).getByRole("button", { name: /^Next/ }).focus();

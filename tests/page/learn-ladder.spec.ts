@@ -154,7 +154,7 @@ test("a symbol under the pointer lights its part of the figure, and the other wa
   await expect(page.locator('[data-number="angle"]')).toHaveClass(/learn-lit/);
   await page.locator('[data-number="angle"]').hover();
   await expect(page.locator(".learn-formula .learn-ink-light")).toHaveClass(/learn-lit/);
-  await page.locator("h2").first().hover();
+  await page.locator(".learn-main h2").first().hover();
   await expect(page.locator(".learn-lit")).toHaveCount(0);
 });
 

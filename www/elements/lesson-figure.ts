@@ -4,7 +4,7 @@ import type { ElementError, FigureResult } from "../../pkg/elements.js";
 import { dipInto, make } from "../dom";
 import { Controls } from "../learn/controls";
 import { Figure } from "../learn/figure";
-import { type Lesson, computed, initialValues, valuesFrom } from "../learn/lesson";
+import { type Lesson, computed, followedIn, initialValues, valuesFrom } from "../learn/lesson";
 import { lessonNamed, lessons } from "../learn/lessons";
 import type { Values } from "../learn/protocol";
 import { Readouts } from "../learn/readouts";
@@ -86,7 +86,7 @@ function live(root: ShadowRoot, lesson: Lesson, values: Values, alert: HTMLEleme
     hooks.onState(stateOf(lesson, controls.values));
     ask();
   };
-  const figure = new Figure(new Set(Object.keys(lesson.drags)), (key, x, y) =>
+  const figure = new Figure(new Set(Object.keys(lesson.drags)), followedIn(lesson), (key, x, y) =>
     controls.set(dragged(lesson, key, x, y)),
   );
   const controls = new Controls(lesson, values, changed);

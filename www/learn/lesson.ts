@@ -96,6 +96,10 @@ export const LIGHTS = [
   ["overcast", "cloudy yard"],
 ] as const;
 
+/** The panels that follow a mouse that only hovers over them. */
+export const followedIn = ({ drags }: Lesson): ReadonlySet<string> =>
+  new Set(Object.keys(drags).filter((key) => drags[key]?.follows));
+
 export const initialValues = ({ controls }: Lesson): Values =>
   Object.fromEntries(controls.map(({ key, initial }) => [key, initial]));
 

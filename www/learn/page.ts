@@ -14,7 +14,7 @@ import { exerciseList } from "./exercises";
 import { Figure } from "./figure";
 import { Guesses } from "./guesses";
 import { languageInAddress } from "./language";
-import { computed, valuesFrom, initialValues, type Lesson } from "./lesson";
+import { type Lesson, computed, followedIn, initialValues, valuesFrom } from "./lesson";
 import { beside, chapters, lessonNamed, lessons } from "./lessons";
 import { lightTogether } from "./lit";
 import { sentence } from "./maths";
@@ -167,8 +167,7 @@ export class LearnPage {
   }
 
   #make(lesson: Lesson, values: Values): Shown {
-    const followed = Object.keys(lesson.drags).filter((key) => lesson.drags[key]?.follows);
-    const figure = new Figure(new Set(Object.keys(lesson.drags)), new Set(followed), (key, x, y) =>
+    const figure = new Figure(new Set(Object.keys(lesson.drags)), followedIn(lesson), (key, x, y) =>
       this.#drag(key, x, y),
     );
     const controls = new Controls(lesson, values, () => this.#ask());
