@@ -123,7 +123,6 @@ test("slides turn by keys, leave the sliders theirs, and end by escape", async (
     slides.getByRole("heading", { name: say("lessons.grey.title", "One grey light is not enough") }),
   ).toBeVisible();
   await page.keyboard.press("ArrowLeft");
-  await page.keyboard.press("ArrowLeft");
   await expect(slides.getByRole("heading", { name: say("lessons.pixel.title", "What a pixel shows") })).toBeVisible();
   await page.keyboard.press("Escape");
   await expect(slides).toBeHidden();

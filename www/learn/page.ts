@@ -138,10 +138,13 @@ export class LearnPage {
       if (!this.#slides.isOpen && this.#shown.article.parentElement !== this.#main)
         this.#main.replaceChildren(this.#shown.article);
     } else {
-      this.#shown?.player.stop();
+      const before = this.#shown;
+      before?.player.stop();
       this.#shown = this.#make(lesson, values);
       if (this.#slides.isOpen) this.#slides.take(slideOf(this.#shown));
       else this.#main.replaceChildren(this.#shown.article);
+      // The link to it stands at the end of the one before.
+      if (before) scrollTo(0, 0);
     }
     this.#mark(lesson.id);
     this.#ask();
