@@ -20,8 +20,10 @@ from ._estimator import Estimator
 from ._files import Calibration, NamedCamera, NamedPose, ReaderWarning, RigFolder
 from ._files import read_calibration, read_depth, read_image, read_rig_folder
 from ._inputs import LightGaussian, Options, StartTolerance, Weights
-from ._lessons import PixelLandscape, integrate_normals, pixel_landscape, shade_normals, turn_light
+from ._lessons import BasRelief, PixelLandscape, bas_relief, characteristic_strips, integrate_normals, pixel_landscape, second_order
+from ._lessons import shade_lamp, shade_normals, turn_light
 from ._native import VERSION as __version__
+from ._pairs import MaskSuggestion, PairSample, sample_pair, suggest_mask
 from ._samples import Sample, Truth, sample, sample_bound, sample_lights, sample_surfaces
 from ._types import Angles, ColorImage, DepthMap, Energy, Pinhole, Pose, StepReport, Uncertainty
 from ._write import write_cloud, write_depth, write_pose, write_results
@@ -29,6 +31,7 @@ from ._write import write_cloud, write_depth, write_pose, write_results
 __all__ = [
     "Angles",
     "CODES",
+    "BasRelief",
     "BimodalError",
     "BimodalWarning",
     "Calibration",
@@ -43,9 +46,11 @@ __all__ = [
     "FrameOverlay",
     "FrameReport",
     "LightGaussian",
+    "MaskSuggestion",
     "NamedCamera",
     "NamedPose",
     "Options",
+    "PairSample",
     "PixelLandscape",
     "Pinhole",
     "Pose",
@@ -60,6 +65,8 @@ __all__ = [
     "Uncertainty",
     "Weights",
     "__version__",
+    "bas_relief",
+    "characteristic_strips",
     "check_calibration",
     "integrate_normals",
     "pixel_landscape",
@@ -71,9 +78,13 @@ __all__ = [
     "sample",
     "sample_bound",
     "sample_lights",
+    "sample_pair",
     "sample_rig",
     "sample_surfaces",
+    "second_order",
+    "shade_lamp",
     "shade_normals",
+    "suggest_mask",
     "turn_light",
     "write_cloud",
     "write_depth",

@@ -42,12 +42,13 @@ class CandidateReport:
     ``off_degrees``, ``off_millimetres``: rotation from the estimate, and shift at the centre of the scene.
     ``off_axes``: the same by axis, from the estimate to the candidate: degrees about x, y, z, then millimetres along them. ``pixels``, ``interval``:
     expected reprojection error at the scene's depth, pixels of the colour image, and its 95 % interval. ``probability``: of a distance at least this large if it
-    were right.
+    were right. ``reading``: how it was misread, such as "inverse"; ``None`` if it was not.
     """
 
     verdict: str
     code: str
     reason: str
+    reading: Optional[str]
     off_degrees: float
     off_millimetres: float
     off_axes: tuple[float, ...]
@@ -89,12 +90,13 @@ class CheckReport:
     depth points that the estimate puts onto the image, 0 .. 1. ``middle``: (3,), the centre of the scene in the colour frame, metres.
     ``covariance``: (6, 6), of a rotation vector in rad about the middle, then a translation in m. ``focal``: factor to the assumed focal
     length, and the sigma of its logarithm, if no colour camera was given. ``pixels``, ``interval``: expected reprojection error of the
-    estimate, and its 95 % interval.
+    estimate, and its 95 % interval. ``reading``: how the first candidate was misread, or ``None``.
     """
 
     verdict: str
     code: str
     reason: str
+    reading: Optional[str]
     warnings: Sequence[Mapping[str, Any]]
     estimate: Pose
     overlap: float

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 # The largest logarithm of a colour or coordinate of a normal; the squares of larger numbers carry no information.
 FARTHEST = 1e6
 LARGEST_SIDE = 512
+# Slopes and stretches of a depth beyond this leave no shape to be seen.
+STEEPEST = 1e3
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,10 +62,8 @@ def shade_normals(light: Union[str, ArrayLike], normals: ArrayLike) -> Singles:
 
     light: a name of ``sample_lights()``, or 27 coefficients, (3, 9) or flat.
     """
-    made = array(normals, "normals", "float32")
-    if made.ndim == 0 or made.shape[-1] != 3:
-        raise BimodalError("size", f"normals: must have the shape (.., 3), not {made.shape}", "normals")
-    shaded: Singles = _native.shade_normals({"light": light_of(light), "normals": _inputs.singles(made)})
+    made = directions(normals)
+    shaded: Singles = _native.shade_normals({"light": light_of(light), "normals": made})
     return shaded.reshape(made.shape)
 
 
@@ -93,8 +93,73 @@ def pixel_landscape(
     return PixelLandscape(**_native.pixel_landscape(given))
 
 
-def three(value: ArrayLike, field: str) -> Any:
+@dataclass(frozen=True, eq=False)
+class BasRelief:
+    """A surface that looks the same from the front under its own lamp: ``normals`` in the shape of those given, the factor of each ``albedo``,
+    both float32, and the ``lamp``, (3,): its direction times its strength."""
+
+    normals: Singles
+    albedo: Singles
+    lamp: Floats
+
+
+def shade_lamp(lamp: ArrayLike, normals: ArrayLike) -> Singles:
+    """Intensity, float32, of a matte surface of albedo 1 for each unit normal (.., 3) under one distant lamp.
+
+    lamp: (3,), the direction to it times its strength; toward the camera is -z. The intensity is zero where the surface faces away.
+    """
+    made = directions(normals)
+    shaded: Singles = _native.shade_lamp({"lamp": three(lamp, "lamp", 3), "normals": made})
+    return shaded.reshape(made.shape[:-1])
+
+
+def bas_relief(normals: ArrayLike, lamp: ArrayLike, stretch: float, *, right: float = 0.0, down: float = 0.0) -> BasRelief:
+    """The generalised bas-relief transformation (Belhumeur, Kriegman and Yuille 1999): depth z becomes stretch z + right x + down y.
+
+    normals: (.., 3), unit normals. lamp: (3,), the direction to it times its strength. stretch: not zero.
+    """
+    given = {"stretch": stretch, "right": right, "down": down}
+    for name, value in given.items():
+        if not abs(value) <= STEEPEST or name == "stretch" and value == 0:
+            raise BimodalError("range", f"{name}: must be a number from -1000 to 1000, and stretch not zero (got {value})", name)
+    made = directions(normals)
+    raw = _native.bas_relief({**given, "lamp": three(lamp, "lamp", 3), "normals": made})
+    return BasRelief(raw["normals"].reshape(made.shape), raw["albedo"].reshape(made.shape[:-1]), raw["lamp"])
+
+
+def second_order(intensity: ArrayLike) -> Singles:
+    """The least-squares approximation, by harmonics of orders 0 to 2, of an intensity that depends on one component of the normal only.
+
+    intensity: (n,). Values and result, float32, belong to the middles of equal intervals of that component from -1 to 1.
+    """
+    return _native.second_order({"intensity": _inputs.singles(array(intensity, "intensity", "float32").ravel())})
+
+
+def characteristic_strips(
+    intensity: ArrayLike, lamp: ArrayLike, centre: ArrayLike, *, dent: bool = False, count: int = 24
+) -> list[Singles]:
+    """Characteristic strips (Horn 1970) of a picture of albedo 1 under one lamp of strength 1, from a bright spot outward.
+
+    intensity: (h, w), NaN outside the object. lamp: (3,), the direction to it. centre: column and row of the bright spot. dent: whether the
+    spot is taken for a dent. count: strips, 0 .. 360. Each strip is (n, 3), float32: column, row and depth in pixels.
+    """
+    made = _inputs.shaped(array(intensity, "intensity", "float32"), "intensity", (None, None))
+    given = {"lamp": three(lamp, "lamp", 3), "centre": three(centre, "centre", 2), "dent": dent, "count": _inputs.whole(count, "count", 0)}
+    size = {"height": made.shape[0], "width": made.shape[1]}
+    return _native.characteristic_strips({**given, **size, "intensity": _inputs.singles(made)})
+
+
+def directions(normals: ArrayLike) -> Singles:
+    made = array(normals, "normals", "float32")
+    if made.ndim == 0 or made.shape[-1] != 3:
+        raise BimodalError("size", f"normals: must have the shape (.., 3), not {made.shape}", "normals")
+    return _inputs.singles(made)
+
+
+def three(value: ArrayLike, field: str, count: Optional[int] = None) -> Any:
     made = flat(value, field)
+    if count is not None and made.size != count:
+        raise BimodalError("size", f"{field}: must have {count} numbers, not {made.size}", field)
     wrong = ~(np.abs(made) <= FARTHEST)
     if wrong.any():
         raise BimodalError("range", f"{field}: must be numbers from -1e6 to 1e6 (got {made[wrong][0]})", field, int(wrong.argmax()))

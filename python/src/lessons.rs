@@ -1,11 +1,14 @@
 //! Single parts of the method, for lessons.
 
 use bimodal_stereo::scenes::lights;
-use bimodal_stereo::{Light, Minimum, Normals, PixelLandscape, ShadingWeights, Size, surface_of_normals};
+use bimodal_stereo::{
+    BasRelief, Form, Lamp, Light, Minimum, Normals, PixelLandscape, ShadedImage, ShadingWeights, Size,
+    characteristic_strips as strips, second_order as approximation, surface_of_normals,
+};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyList};
 
-use crate::arrays::array;
+use crate::arrays::{array, triples};
 use crate::error::{outcome, refused, unbroken};
 use crate::guard::guarded;
 use crate::input::angles;
@@ -84,4 +87,63 @@ pub fn pixel_landscape<'py>(py: Python<'py>, keywords: &Bound<'py, PyAny>) -> Py
     dict.set_item("minima", array(py, minima, [found.minima.len(), 5])?)?;
     dict.set_item("path", array(py, path, [found.path.len(), 3])?)?;
     Ok(dict)
+}
+
+fn lamp(given: &Members<'_>) -> PyResult<Lamp> {
+    Ok(Lamp(given.needed("lamp", given.numbers::<3>("lamp")?)?.into()))
+}
+
+/// Intensity of each normal under one lamp.
+#[pyfunction]
+pub fn shade_lamp<'py>(py: Python<'py>, keywords: &Bound<'py, PyAny>) -> Array<'py> {
+    let given = Members::new(keywords, "", &["lamp", "normals"])?;
+    let lamp = lamp(&given)?;
+    let normals: Vec<f32> = given.needed("normals", given.array("normals")?)?;
+    let shaded: Vec<f32> = normals.as_chunks().0.iter().map(|&normal| lamp.shade(normal)).collect();
+    let count = shaded.len();
+    array(py, shaded, [count])
+}
+
+/// Normals, albedo and lamp of what looks the same from the front.
+#[pyfunction]
+pub fn bas_relief<'py>(py: Python<'py>, keywords: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyDict>> {
+    let given = Members::new(keywords, "", &["normals", "lamp", "stretch", "right", "down"])?;
+    let number = |name| given.needed(name, given.number(name)?);
+    let relief = BasRelief { stretch: number("stretch")?, slopes: [number("right")?, number("down")?] };
+    let Lamp(moved) = relief.lamp(lamp(&given)?);
+    let normals: Vec<f32> = given.needed("normals", given.array("normals")?)?;
+    let (changed, albedo): (Vec<[f32; 3]>, Vec<f32>) =
+        normals.as_chunks().0.iter().map(|&normal| relief.normal(normal)).unzip();
+    let dict = PyDict::new(py);
+    dict.set_item("normals", triples(py, changed.into_flattened())?)?;
+    let count = albedo.len();
+    dict.set_item("albedo", array(py, albedo, [count])?)?;
+    dict.set_item("lamp", array(py, moved.as_slice().to_vec(), [3])?)?;
+    Ok(dict)
+}
+
+/// The approximation of second order of an intensity that depends on one component of the normal.
+#[pyfunction]
+pub fn second_order<'py>(py: Python<'py>, keywords: &Bound<'py, PyAny>) -> Array<'py> {
+    let given = Members::new(keywords, "", &["intensity"])?;
+    let values = approximation(&given.needed("intensity", given.array::<f32>("intensity")?)?);
+    let count = values.len();
+    array(py, values, [count])
+}
+
+/// Points of each strip: column, row, depth.
+#[pyfunction]
+pub fn characteristic_strips<'py>(py: Python<'py>, keywords: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyList>> {
+    let names = ["intensity", "height", "width", "lamp", "centre", "dent", "count"];
+    let given = Members::new(keywords, "", &names)?;
+    let values: Vec<f32> = given.needed("intensity", given.array("intensity")?)?;
+    let side = |name| given.needed(name, given.whole::<usize>(name)?);
+    let size = Size { width: side("width")?, height: side("height")? };
+    let centre = given.needed("centre", given.numbers::<2>("centre")?)?;
+    let form = if given.flag("dent")?.unwrap_or(false) { Form::Dent } else { Form::Bump };
+    let (lamp, count) = (lamp(&given)?, side("count")?);
+    let found =
+        outcome(py.detach(|| guarded(|| strips(ShadedImage { size, values: &values, lamp }, centre, form, count))))?;
+    let points = found.into_iter().map(|strip| triples(py, strip.into_flattened()));
+    PyList::new(py, points.collect::<PyResult<Vec<_>>>()?)
 }

@@ -15,6 +15,7 @@ mod input;
 mod lessons;
 mod members;
 mod options;
+mod pairs;
 mod report;
 mod samples;
 mod write;
@@ -30,7 +31,12 @@ mod _native {
     #[pymodule_export]
     use super::files::{check_command, read_calibration, read_depth, read_image, read_mask, read_rig_folder};
     #[pymodule_export]
-    use super::lessons::{integrate_normals, pixel_landscape, shade_normals, turn_light};
+    use super::lessons::{
+        bas_relief, characteristic_strips, integrate_normals, pixel_landscape, second_order, shade_lamp, shade_normals,
+        turn_light,
+    };
+    #[pymodule_export]
+    use super::pairs::{sample_pair, suggest_mask};
     #[pymodule_export]
     use super::samples::{sample, sample_bound, sample_lights, sample_surfaces};
     #[pymodule_export]

@@ -63,3 +63,38 @@ def test_requests_for_a_landscape_are_checked():
     refused(lambda: bimodal.pixel_landscape(log, "window", weight=-1), "range", "weight")
     refused(lambda: bimodal.pixel_landscape(log, [0] * 26), "size", "light")
     refused(lambda: bimodal.pixel_landscape(log, "window", prior=[1e9, 0, 0]), "range", "prior")
+
+
+def test_bas_relief_keeps_the_intensity_under_its_own_lamp(rng):
+    normals = rng.normal(size=(6, 5, 3))
+    normals[..., 2] = -np.abs(normals[..., 2]) - 1
+    normals /= np.linalg.norm(normals, axis=2, keepdims=True)
+    lamp = [0.3, -0.2, -0.9]
+    np.testing.assert_allclose(bimodal.shade_lamp(lamp, normals), np.maximum(normals @ lamp, 0), atol=1e-6)
+    other = bimodal.bas_relief(normals, lamp, 0.5, right=0.2, down=-0.1)
+    assert (other.normals.shape, other.albedo.shape) == ((6, 5, 3), (6, 5))
+    np.testing.assert_allclose(other.albedo * (other.normals @ other.lamp), normals @ lamp, atol=1e-6)
+    refused(lambda: bimodal.bas_relief(normals, lamp, 0), "range", "stretch")
+    refused(lambda: bimodal.shade_lamp([1, 2], normals), "size", "lamp")
+
+
+def test_strips_of_a_ball_lie_on_it():
+    radius, middle = 40.0, 47.5
+    rows, columns = np.indices((96, 96)) - middle
+    inside = columns**2 + rows**2 < (radius - 1) ** 2
+    height = np.sqrt(np.where(inside, radius**2 - columns**2 - rows**2, 1))
+    # Under a lamp at the camera the intensity is -n_z.
+    intensity = np.where(inside, height / radius, np.nan)
+    strips = bimodal.characteristic_strips(intensity, [0, 0, -1], [48, 48], count=8)
+    assert len(strips) == 8 and all(strip.shape[1] == 3 for strip in strips)
+    for strip in strips:
+        column, row, depth = strip[len(strip) // 2]
+        expected = radius - np.sqrt(radius**2 - (column - middle) ** 2 - (row - middle) ** 2)
+        assert abs(depth - expected) < 1
+    refused(lambda: bimodal.characteristic_strips(intensity, [0, 0, -1], [1000, 48]), "range", "centre")
+
+
+def test_harmonics_of_second_order_are_their_own_approximation():
+    along = (np.arange(200) + 0.5) / 100 - 1
+    polynomial = 0.2 + 0.5 * along - 0.3 * along**2
+    np.testing.assert_allclose(bimodal.second_order(polynomial), polynomial, atol=1e-3)
