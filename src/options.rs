@@ -41,7 +41,8 @@ pub enum Start {
     Pose {
         /// R.
         rotation: Matrix3<f64>,
-        /// s; `None`: the ratio of the units of both views. Not used behind a pinhole, where s is [`Options::scale`] or 1.
+        /// s; `None`: the ratio of the units of both views. Not used if [`Options::scale`] is given, nor behind a pinhole,
+        /// where s is that scale or 1.
         scale: Option<f64>,
         /// t; `None`: the centroid of the depth points projects onto the centre of the image's mask.
         translation: Option<Vector3<f64>>,
@@ -54,7 +55,8 @@ pub enum Start {
 pub struct StartTolerance {
     /// Rotation in degrees.
     pub degrees: f64,
-    /// Distance of the object's centre in units of the colour view; `None`: about the object's own width.
+    /// Distance of the object's centre in units of the colour view; `None`: about the object's own width. Any distance
+    /// is allowed if no translation was given.
     pub distance: Option<f64>,
 }
 

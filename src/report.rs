@@ -7,7 +7,7 @@ use crate::reason::Reason;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
 pub enum Stage {
-    /// A slice of the search over all poses, before the first iteration.
+    /// A slice of the finder: over all poses before the first iteration, or around an initial pose within it.
     Search,
     /// Fit of an unknown light (Eq. 2).
     Light,
@@ -121,7 +121,7 @@ pub struct StepReport {
     pub objective: Objective,
     /// Share of the valid depth pixels that have a correspondence.
     pub overlap: f64,
-    /// Share of the correspondences within the robust scale.
+    /// Share of the correspondences whose surfaces are within three medians of each other.
     pub inliers: f64,
     /// Robust mean of the log-colour residual.
     pub residual: f64,

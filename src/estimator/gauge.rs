@@ -18,7 +18,7 @@ use crate::view::{Camera, ColourView, DepthView, Points};
 const LEAST_OVERLAP: f64 = 0.5;
 /// Growth of the apparent size beyond which, or below whose inverse, a registration has collapsed: a cloud that shrinks
 /// onto a few pixels fits easily. The search covers 0.7 to 1.4.
-const LARGEST_GROWTH: f64 = 2.0;
+const LARGEST_SIZE_RATIO: f64 = 2.0;
 
 /// s0: length of one unit of the depth view in the colour view.
 pub fn unit_scale(pair: &ViewPair) -> f64 {
@@ -50,9 +50,9 @@ pub fn growth(pair: &ViewPair, pose: &Similarity, other: &Similarity) -> f64 {
     if growth.is_finite() { growth } else { f64::INFINITY }
 }
 
-/// Whether the apparent size stays within [`LARGEST_GROWTH`] of the other pose's.
+/// Whether the apparent size stays within [`LARGEST_SIZE_RATIO`] of the other pose's.
 pub fn keeps_size(pair: &ViewPair, pose: &Similarity, other: &Similarity) -> bool {
-    growth(pair, pose, other) <= LARGEST_GROWTH.ln()
+    growth(pair, pose, other) <= LARGEST_SIZE_RATIO.ln()
 }
 
 /// Length of an image pixel at the object under the solution's pose, in units of the colour view.

@@ -10,28 +10,21 @@
 //! never takes back a pose that it moved.
 //!
 //! Each stage owns its memory, and its signature shows what it reads and writes ([`stages`]). This file holds the order
-//! in which they run, [`acceptance`] the end of an iteration, and [`verdict`] the status at the end.
+//! in which they run, [`ending`] the end of an iteration and of the run, [`reporting`] what it reports.
 
-mod acceptance;
-mod checks;
-mod evidence;
+mod ending;
 mod finder;
 mod gauge;
-mod measurement;
 mod memory;
 mod objective;
-mod outputs;
 mod pair;
-mod reported;
+mod reporting;
 mod run;
 mod searching;
-mod settling;
 mod solution;
 mod stages;
 #[cfg(feature = "rayon")]
 mod threads;
-mod units;
-mod verdict;
 mod workers;
 
 use crate::error::{Error, ErrorKind, Result};
@@ -41,20 +34,20 @@ use crate::reason::Reason;
 use crate::report::{Stage, Status, StepReport};
 use crate::shape::Scratch;
 use crate::view::{ColourImage, DepthMap};
+use ending::settling::{self, Settling};
 use finder::Opening;
-use measurement::PixelResiduals;
-pub use outputs::Surface;
+pub use finder::task::{Finding, Task};
 use pair::ViewPair;
-use reported::Reported;
+use reporting::measurement::PixelResiduals;
+pub use reporting::outputs::Surface;
+use reporting::reported::Reported;
 use run::{History, Run};
-use settling::Settling;
 use solution::{Accepted, Solution};
 pub use stages::RefinementTask;
 use stages::{
     Inputs, LightStage, PaintStage, RefinementStage, Registered, Registering, RegistrationStage, ShapeStage, Stages,
 };
 pub use workers::Worker;
-pub use workers::task::{Finding, Task};
 
 /// The loop with all its memory. An estimator works on one pair of views.
 ///
@@ -223,11 +216,10 @@ impl Estimator {
         self.report.stage = stage;
         self.run = Run::Iterating(stage.next());
         match stage {
-            Stage::Search => {}
             Stage::Light if !self.settling.keeps_all() => self.fit_light()?,
             Stage::Shading if !self.settling.keeps_image() => self.find_normals(),
             Stage::Surface if !self.settling.keeps_image() => self.find_surface()?,
-            Stage::Light | Stage::Shading | Stage::Surface => {}
+            Stage::Search | Stage::Light | Stage::Shading | Stage::Surface => {}
             Stage::Registration => self.register()?,
             Stage::Refinement => {
                 if !self.settling.keeps_depth() {

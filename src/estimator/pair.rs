@@ -1,6 +1,7 @@
 //! The constant input of a run: both views, the options, the prior over lights.
 
-use super::{memory, units};
+use super::memory;
+use super::reporting::units;
 use crate::diagnosis::Residuals;
 use crate::error::Result;
 use crate::light::{Light, LightPrior};

@@ -4,7 +4,7 @@
 use nalgebra::Matrix3;
 
 use super::Estimator;
-use super::checks;
+use super::ending::checks;
 use super::finder::{Advance, Decision, Finder, Opening};
 use super::run::Run;
 use crate::error::Result;

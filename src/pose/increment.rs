@@ -8,6 +8,7 @@
 use nalgebra::{Matrix3, Rotation3, SMatrix, SVector, UnitQuaternion, Vector3};
 
 use super::similarity::Similarity;
+use crate::view::Camera;
 
 /// Largest rotation of one step in radians; beyond it the linear model of a rotation is off by more than 2 %.
 const LARGEST_ROTATION: f64 = 0.2;
@@ -58,6 +59,17 @@ impl Frame {
 /// which rounding raises above three for the identity, and the angle is then NaN.
 pub(crate) fn rotation_vector(rotation: &Matrix3<f64>) -> Vector3<f64> {
     UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(*rotation)).scaled_axis()
+}
+
+/// Unknowns that keep their values: t_z of an orthographic image, which is a gauge, and a held scale, which includes
+/// that of every pinhole image.
+pub(super) fn held_unknowns(camera: &Camera, scale_is_held: bool) -> [bool; UNKNOWNS] {
+    let is_gauge = camera.is_orthographic();
+    std::array::from_fn(|k| match k {
+        TRANSLATION_Z => is_gauge,
+        SCALE => scale_is_held || !is_gauge,
+        _ => false,
+    })
 }
 
 /// Sets rows and columns of the unknowns that are `held` to zero.

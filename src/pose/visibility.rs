@@ -13,7 +13,7 @@ use crate::view::{Camera, ColourView, Normals, Points, Size};
 /// between neighbours, and less than a nose stands out from a cheek.
 pub(super) const HIDDEN_BEHIND: f64 = 3.0;
 /// Smallest cosine between normal and ray of a visible point; at a more grazing angle no pixel is reliable.
-const RIM: f32 = 0.05;
+pub(super) const LEAST_FACING: f64 = 0.05;
 
 /// A cloud in front of a colour camera. Points and normals are NaN where missing.
 #[derive(Clone, Copy)]
@@ -181,11 +181,11 @@ impl Rays {
         match self {
             Self::Along([x, y, z]) => {
                 let along = [Lanes::splat(*x), Lanes::splat(*y), Lanes::splat(*z)];
-                Lanes::splat(-RIM).less(dot(normal, along))
+                Lanes::splat(-LEAST_FACING as f32).less(dot(normal, along))
             }
             Self::From([x, y, z]) => {
                 let ray = [point[0] - Lanes::splat(*x), point[1] - Lanes::splat(*y), point[2] - Lanes::splat(*z)];
-                (Lanes::splat(-RIM) * dot(ray, ray).sqrt()).less(dot(normal, ray))
+                (Lanes::splat(-LEAST_FACING as f32) * dot(ray, ray).sqrt()).less(dot(normal, ray))
             }
         }
     }

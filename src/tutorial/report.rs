@@ -13,11 +13,12 @@
 //! | [`Lost`](crate::Status::Lost) | the answer cannot be trusted; `reason` says why |
 //! | [`MaxIterations`](crate::Status::MaxIterations) | the loop ended before it settled |
 //!
-//! `uncertainty` holds one sigma of each number, from the curvature of the objective and the noise of the residuals,
+//! `uncertainty` holds one sigma of each number. It adds two parts: a sandwich over tiles of the image,
 //!
-//! > Σ_pose ≈ σ² (JᵀJ)⁻¹
+//! > Σ_pose ≈ (JᵀJ)⁻¹ (Σ_tiles g gᵀ) (JᵀJ)⁻¹
 //!
-//! It covers noise, not errors of the model. An undetermined number has no sigma: t_z of an orthographic image is
+//! with the gradient g of a tile, so that neighbouring residuals may be correlated, and a jackknife over sectors of the
+//! object, which covers errors of the model that differ from sector to sector. An undetermined number has no sigma: t_z of an orthographic image is
 //! `None`.
 //!
 //! ```

@@ -74,20 +74,14 @@ impl House {
 
     /// One circle for each set of files that depend on each other.
     pub fn circles(&self) -> Vec<String> {
-        let mut next: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
-        for (from, to) in self.looks() {
-            next.entry(from).or_default().push(to);
-        }
-        let mut known = BTreeSet::new();
-        let mut circles = Vec::new();
-        for &start in next.keys() {
-            if let Some(circle) = shortest_circle(start, &next)
-                && known.insert(circle.iter().copied().collect::<BTreeSet<_>>())
-            {
-                circles.push(format!("{} -> {start}", circle.join(" -> ")));
-            }
-        }
-        circles
+        circles(self.looks())
+    }
+
+    /// One circle for each set of folders that depend on each other. A folder and one inside it count as one.
+    pub fn folder_circles(&self) -> Vec<String> {
+        let folder = |path: &'_ str| path.rfind('/').map_or(0, |end| end + 1);
+        let between = self.looks().into_iter().map(|(from, to)| (&from[..folder(from)], &to[..folder(to)]));
+        circles(between.filter(|(from, to)| !from.starts_with(to) && !to.starts_with(from)).collect())
     }
 
     /// Files outside the layer `wasm`, including tests, that name one of these crates.
@@ -139,7 +133,25 @@ impl House {
     }
 }
 
-/// The shortest chain of dependencies from a file back to itself.
+/// One circle for each set of names that depend on each other.
+fn circles(looks: BTreeSet<(&str, &str)>) -> Vec<String> {
+    let mut next: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for (from, to) in looks {
+        next.entry(from).or_default().push(to);
+    }
+    let mut known = BTreeSet::new();
+    let mut circles = Vec::new();
+    for &start in next.keys() {
+        if let Some(circle) = shortest_circle(start, &next)
+            && known.insert(circle.iter().copied().collect::<BTreeSet<_>>())
+        {
+            circles.push(format!("{} -> {start}", circle.join(" -> ")));
+        }
+    }
+    circles
+}
+
+/// The shortest chain of dependencies from a name back to itself.
 fn shortest_circle<'a>(start: &'a str, next: &BTreeMap<&'a str, Vec<&'a str>>) -> Option<Vec<&'a str>> {
     let mut ways = VecDeque::from([vec![start]]);
     let mut seen = BTreeSet::new();

@@ -70,6 +70,12 @@ fn no_two_files_of_a_room_import_each_other() {
     assert!(circles.is_empty(), "{} circles:\n{}", circles.len(), circles.join("\n"));
 }
 
+#[test]
+fn no_two_folders_of_a_room_import_each_other() {
+    let circles = House::read(&source()).folder_circles();
+    assert!(circles.is_empty(), "{} circles:\n{}", circles.len(), circles.join("\n"));
+}
+
 /// The package of the library does not contain the crates of files and of the command line.
 #[test]
 fn no_two_files_beside_the_library_import_each_other() {
@@ -164,6 +170,22 @@ mod checker {
         // An alias of the module leads to its file as well.
         let a = ("pose/a.rs", "use super as room; pub struct A(room::b::B);");
         assert_eq!(circles(&[library, rooms, a, two, c]).len(), 1);
+    }
+
+    #[test]
+    fn folders_that_import_each_other_are_found_though_no_two_files_do() {
+        let library = ("lib.rs", "mod pose;");
+        let modules = ("pose/mod.rs", "mod a; mod b; pub struct Pose;");
+        let [a, b] = [("pose/a/mod.rs", "mod x; mod y;"), ("pose/b/mod.rs", "mod z;")];
+        let y = ("pose/a/y.rs", "use crate::pose::Pose; pub struct Y;");
+        let z = ("pose/b/z.rs", "use crate::pose::a::y::Y; pub struct Z;");
+        let folder_circles = |x| {
+            let files = [library, modules, a, b, y, z, ("pose/a/x.rs", x)];
+            assert!(circles(&files).is_empty());
+            House::of(files).folder_circles()
+        };
+        assert_eq!(folder_circles("use crate::pose::b::z::Z; fn f() {}"), ["pose/a/ -> pose/b/ -> pose/a/"]);
+        assert!(folder_circles("use crate::pose::Pose; fn f() {}").is_empty());
     }
 
     #[test]

@@ -22,9 +22,9 @@ test(
   "14: the line between ambiguous and lost is where the text says, and the figures keep to it",
   LONG,
   async ({ page }) => {
-    const verdict = await source("src/estimator/verdict.rs");
+    const verdict = await source("src/estimator/ending/verdict.rs");
     const doubtful = Number(/^ {12}tolerance: ([\d.]+),$/m.exec(await source("src/options.rs"))?.[1]);
-    const [largest, unobservable] = ["LARGEST_SIGMA", "UNOBSERVABLE"].map((name) =>
+    const [largest, unobservable] = ["LOST_SIGMA", "UNOBSERVABLE"].map((name) =>
       Number(new RegExp(`const ${name}: f64 = ([\\d.]+);`).exec(verdict)?.[1]),
     ) as [number, number];
     for (const state of ["overlap&amount=0", "overlap&amount=100", "texture&amount=50"]) {

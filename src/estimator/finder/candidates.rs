@@ -8,12 +8,12 @@ use nalgebra::Matrix3;
 use crate::error::Result;
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
-use crate::estimator::stages::{Attempt, ColourRegistration};
-use crate::estimator::workers::task::{Finding, Found, Task, Work};
 use crate::pose::{ImageGrid, Search, SearchProblem, Similarity, TaskResults};
 use crate::reason::Activity;
 
 use super::local_optima::{Choice, LocalOptima, Origin, Ranking, RegisteredCandidate};
+use super::photometric::{Attempt, PhotometricRegistration};
+use super::task::{Finding, Found, Task, Work};
 use super::trust_region::TrustRegion;
 
 /// Numbers of candidates to register.
@@ -41,7 +41,7 @@ const MORE_SHARE: f64 = 0.15;
 /// # Errors
 /// The errors of [`Search`], if the views allow no search.
 #[inline(never)]
-pub fn search(pair: &ViewPair, grid: ImageGrid, colours: &ColourRegistration) -> Result<Search> {
+pub fn search(pair: &ViewPair, grid: ImageGrid, colours: &PhotometricRegistration) -> Result<Search> {
     let region = TrustRegion::of(pair);
     let problem = SearchProblem {
         image: &pair.image,
@@ -148,7 +148,7 @@ impl Candidates {
     pub fn advance(
         &mut self,
         pair: &ViewPair,
-        colours: &mut ColourRegistration,
+        colours: &mut PhotometricRegistration,
         is_allowed: impl Fn(&Similarity) -> bool,
     ) -> Option<Choice> {
         if self.is_searching() {
@@ -178,7 +178,7 @@ impl Candidates {
     }
 
     /// Advances the registration in progress here by a step, or begins the next one.
-    fn register(&mut self, pair: &ViewPair, colours: &mut ColourRegistration) {
+    fn register(&mut self, pair: &ViewPair, colours: &mut PhotometricRegistration) {
         let candidates = self.search.candidates();
         let is_wanted = |index: usize| index >= self.next && !self.optima.is_known(&candidates[index].pose);
         let begun = self.begun.filter(|&index| is_wanted(index) && self.registrations.get(index).is_none());
@@ -189,7 +189,7 @@ impl Candidates {
     }
 
     /// One step of a registration. Drops another one in progress here.
-    fn step_candidate(&mut self, pair: &ViewPair, colours: &mut ColourRegistration, candidate: usize) -> Attempt {
+    fn step_candidate(&mut self, pair: &ViewPair, colours: &mut PhotometricRegistration, candidate: usize) -> Attempt {
         let start = self.search.candidates()[candidate].pose;
         let progress = colours.step_candidate(pair, &start, self.begun != Some(candidate));
         self.begun = matches!(progress, Attempt::Ongoing).then_some(candidate);
@@ -229,7 +229,7 @@ impl Candidates {
 
     /// Chooses once the full report of the best optimum is here. A worker returns only the figures by which optima are
     /// compared.
-    fn conclude(&mut self, pair: &ViewPair, colours: &mut ColourRegistration, chosen: Ranking) -> Option<Choice> {
+    fn conclude(&mut self, pair: &ViewPair, colours: &mut PhotometricRegistration, chosen: Ranking) -> Option<Choice> {
         let Ranking { best, rivals } = chosen;
         let Some(mut best) = best else { return Some(Choice::default()) };
         if let (Origin::Candidate(candidate), None) = (best.origin, &best.registered.report) {

@@ -13,7 +13,7 @@ pub struct Decision {
 /// What the pose rests on.
 pub enum Method {
     /// A single albedo explains the image.
-    Image(Box<PhotometricReport>),
+    Photometric(Box<PhotometricReport>),
     /// The albedo varies: the pose is from local contrast.
     Contrast(Box<ContrastReport>),
     /// The albedo varies: the pose is from silhouettes.
@@ -39,7 +39,7 @@ impl Method {
         match self {
             Self::Silhouettes(_) => FoundBy::Silhouettes,
             Self::Contrast(_) => FoundBy::Contrast,
-            Self::Image(_) | Self::Initial(_) | Self::Nothing => FoundBy::Image,
+            Self::Photometric(_) | Self::Initial(_) | Self::Nothing => FoundBy::Image,
         }
     }
 }
@@ -47,5 +47,15 @@ impl Method {
 impl Decision {
     pub const fn of(by: Method) -> Self {
         Self { by, rivals: None }
+    }
+
+    /// The pose, if it was registered.
+    pub const fn pose(&self) -> Option<&Similarity> {
+        match &self.by {
+            Method::Photometric(found) => Some(&found.pose),
+            Method::Contrast(found) => Some(&found.pose),
+            Method::Silhouettes(found) => Some(&found.pose),
+            Method::Initial(_) | Method::Nothing => None,
+        }
     }
 }

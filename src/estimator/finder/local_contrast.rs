@@ -3,12 +3,13 @@
 
 use nalgebra::{Rotation3, Vector3};
 
+use super::decision::{Decision, Method};
+use super::photometric::PhotometricRegistration;
 use crate::diagnosis::{Alternative, Diagnosis};
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
-use crate::estimator::stages::ColourRegistration;
 use crate::options::Registration;
-use crate::pose::{ContrastOutcome, ContrastSearch, PhotometricReport, Similarity};
+use crate::pose::{ContrastOutcome, ContrastReport, ContrastSearch, PhotometricReport, Similarity};
 use crate::view::ColourView;
 
 /// Two registrations agree if they end within this angle, degrees: local contrast can be off by a few.
@@ -23,7 +24,7 @@ const MOST_TURNS: i32 = 3;
 /// or shadows could explain them. Behind a pinhole silhouettes decide instead; under a known light the surfaces settle
 /// what noisy normals leave open. Noisy normals leave as large residuals as varying albedo does, so with them the image
 /// itself must show edges of albedo.
-pub fn may_be_called_for(pair: &ViewPair, colours: &ColourRegistration) -> bool {
+pub fn may_be_called_for(pair: &ViewPair, colours: &PhotometricRegistration) -> bool {
     is_open(pair, None) && (colours.has_clean_normals() || CleanedImage::new(pair).image.is_some())
 }
 
@@ -31,7 +32,7 @@ pub fn may_be_called_for(pair: &ViewPair, colours: &ColourRegistration) -> bool 
 /// contrast.
 pub fn cleaned(
     pair: &ViewPair,
-    colours: &ColourRegistration,
+    colours: &PhotometricRegistration,
     plain: Option<&PhotometricReport>,
 ) -> Option<CleanedImage> {
     let cleaned = is_open(pair, plain).then(|| CleanedImage::new(pair))?;
@@ -111,10 +112,10 @@ pub fn around(pair: &ViewPair, initial: &Similarity) -> Vec<Similarity> {
 /// noise.
 pub fn conclude(
     pair: &ViewPair,
-    colours: &ColourRegistration,
+    colours: &PhotometricRegistration,
     cleaned: &CleanedImage,
     search: &mut ContrastSearch,
-) -> Option<Conclusion> {
+) -> Option<Decision> {
     let image = cleaned.image(pair);
     let problem = colours.contrast_problem(pair, image);
     let mut contrast = search.outcome(&problem)?;
@@ -122,7 +123,7 @@ pub fn conclude(
     let is_coarse = cleaned.was_soft || !colours.has_clean_normals();
     // With blurred chromaticity or noisy normals, contrast is less reliable if photometric registration ends elsewhere.
     if is_coarse {
-        rival(&mut contrast, plain.as_ref().map(|plain| plain.pose));
+        add_rival(&contrast.best, &mut contrast.rivals, plain.as_ref().map(|plain| plain.pose));
     }
     let is_believed = |plain: &PhotometricReport, search: &mut ContrastSearch| {
         is_plain(pair, plain, &contrast)
@@ -130,19 +131,14 @@ pub fn conclude(
             && (!is_coarse || plain.uncertainty.largest_rotation() <= contrast.best.uncertainty.largest_rotation())
     };
     Some(match plain {
-        Some(plain) if is_believed(&plain, search) => Conclusion::ByColours(Box::new(plain)),
-        _ => Conclusion::ByContrast(Box::new(contrast)),
+        Some(plain) if is_believed(&plain, search) => {
+            Decision { by: Method::Photometric(Box::new(plain)), rivals: Some(Vec::new()) }
+        }
+        _ => Decision { by: Method::Contrast(Box::new(contrast.best)), rivals: Some(contrast.rivals) },
     })
 }
 
-/// Adds the photometric pose as a rival of contrast's if the two differ.
-pub fn rival(contrast: &mut ContrastOutcome, by_colours: Option<Similarity>) {
-    let best = contrast.best.pose;
-    contrast.rivals.extend(by_colours.filter(|pose| pose.degrees_to(&best) >= SAME_POSE));
-}
-
-/// The method that found the pose.
-pub enum Conclusion {
-    ByColours(Box<PhotometricReport>),
-    ByContrast(Box<ContrastOutcome>),
+/// Adds a photometric pose to the rivals of local contrast if the two differ.
+pub fn add_rival(contrast: &ContrastReport, rivals: &mut Vec<Similarity>, photometric: Option<Similarity>) {
+    rivals.extend(photometric.filter(|pose| pose.degrees_to(&contrast.pose) >= SAME_POSE));
 }

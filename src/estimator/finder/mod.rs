@@ -29,6 +29,8 @@
 //! | `trust_region` | an initial pose, and how far from it the answer may lie |
 //! | `nearby` | registrations near an initial pose, before the search |
 //! | `candidates` | the search, and the registration of its candidates |
+//! | `photometric` | photometric registration, with its normals and memory |
+//! | `task` | parts of the search that a worker may take, and their results |
 //! | `local_optima` | ends of the registrations; the best pose and its rivals |
 //! | `local_contrast`, `silhouettes` | the methods for varying albedo |
 //! | `opening` | the halved pair in which large views are searched |
@@ -40,7 +42,9 @@ mod local_contrast;
 pub mod local_optima;
 mod nearby;
 mod opening;
+mod photometric;
 mod silhouettes;
+pub mod task;
 mod trust_region;
 
 use nalgebra::Matrix3;
@@ -51,18 +55,18 @@ use crate::reason::Activity;
 
 use super::gauge;
 use super::pair::ViewPair;
-use super::stages::ColourRegistration;
-use super::workers::task::{Finding, Task};
 use candidates::{Candidates, EVERYWHERE};
-use local_contrast::{CleanedImage, Conclusion};
+use local_contrast::CleanedImage;
 use local_optima::{Choice, LocalOptima};
 use nearby::{Nearby, Progress};
 use silhouettes::Anywhere;
+use task::{Finding, Task};
 
 pub use candidates::search;
 pub use decision::{Decision, Method, Staying};
 pub use nearby::explains;
 pub use opening::Opening;
+pub use photometric::{COLLAPSE, PhotometricRegistration};
 pub use trust_region::TrustRegion;
 
 /// Share of the work that precedes local contrast.
@@ -112,7 +116,7 @@ enum Next {
 }
 
 /// Memory of the photometric registration; the search of a halved pair needs none.
-type Memory = Option<ColourRegistration>;
+type Memory = Option<PhotometricRegistration>;
 
 /// Finds a pose in slices; owns its memory.
 pub struct Finder {
@@ -134,7 +138,7 @@ impl Finder {
     ) -> Result<Self> {
         let (pair, colours) = match &opening {
             Some(opening) => (&opening.pair, &opening.colours),
-            None => (pair, &*ColourRegistration::prepared(memory, pair)),
+            None => (pair, &*PhotometricRegistration::prepared(memory, pair)),
         };
         let optima = LocalOptima::new(EVERYWHERE.most, pair.residuals_of_noise(0.0));
         let may_vary = local_contrast::may_be_called_for(pair, colours);
@@ -226,7 +230,7 @@ impl Finder {
 
     /// A slice of the registrations near an initial pose.
     fn look_nearby(&mut self, pair: &ViewPair, memory: &mut Memory, mut nearby: Box<Nearby>) -> Result<Next> {
-        let progress = nearby.advance(pair, ColourRegistration::prepared(memory, pair))?;
+        let progress = nearby.advance(pair, PhotometricRegistration::prepared(memory, pair))?;
         match progress {
             Progress::Ongoing => Ok(Next::Phase(Phase::Nearby(nearby))),
             Progress::Explained(choice) => {
@@ -250,7 +254,7 @@ impl Finder {
         let choice = match &mut self.scope {
             Scope::Everywhere(Some(opening)) => candidates.advance(&opening.pair, &mut opening.colours, |_| true),
             scope => {
-                let colours = ColourRegistration::prepared(memory, pair);
+                let colours = PhotometricRegistration::prepared(memory, pair);
                 candidates.advance(pair, colours, |pose| scope.holds(pair, pose))
             }
         };
@@ -272,7 +276,7 @@ impl Finder {
         mut looked_at: Vec<Similarity>,
     ) -> Result<Next> {
         self.chosen = choice;
-        let colours = &*ColourRegistration::prepared(memory, pair);
+        let colours = &*PhotometricRegistration::prepared(memory, pair);
         let Some(cleaned) = local_contrast::cleaned(pair, colours, self.chosen.best.as_deref()) else {
             return self.decide(pair, memory, None);
         };
@@ -296,24 +300,24 @@ impl Finder {
         mut contrast: Box<ByContrast>,
     ) -> Result<Next> {
         let ByContrast { cleaned, search } = &mut *contrast;
-        let colours = &*ColourRegistration::prepared(memory, pair);
+        let colours = &*PhotometricRegistration::prepared(memory, pair);
         if !search.advance(&colours.contrast_problem(pair, cleaned.image(pair))) {
             return Ok(Next::Phase(Phase::Contrast(contrast)));
         }
-        let conclusion = local_contrast::conclude(pair, colours, cleaned, search);
-        self.decide(pair, memory, conclusion)
+        let found = local_contrast::conclude(pair, colours, cleaned, search);
+        self.decide(pair, memory, found)
     }
 
     /// A slice of the registrations by silhouettes without an initial pose.
     fn compare_silhouettes(&mut self, pair: &ViewPair, memory: &mut Memory, mut anywhere: Box<Anywhere>) -> Next {
-        if anywhere.advance(pair, ColourRegistration::prepared(memory, pair).normals()) {
+        if anywhere.advance(pair, PhotometricRegistration::prepared(memory, pair).normals()) {
             return Next::Decision(everywhere_by(anywhere.best(), std::mem::take(&mut self.chosen)));
         }
         Next::Phase(Phase::Silhouettes(anywhere))
     }
 
-    fn decide(&mut self, pair: &ViewPair, memory: &mut Memory, found: Option<Conclusion>) -> Result<Next> {
-        let colours = ColourRegistration::prepared(memory, pair);
+    fn decide(&mut self, pair: &ViewPair, memory: &mut Memory, found: Option<Decision>) -> Result<Next> {
+        let colours = PhotometricRegistration::prepared(memory, pair);
         if let Scope::Near(near) = &mut self.scope {
             let choice = std::mem::take(&mut self.chosen);
             if found.is_none() && near.begins_again(pair, colours, &choice) {
@@ -324,10 +328,7 @@ impl Finder {
             return near.decide(pair, colours, choice, found).map(Next::Decision);
         }
         let decision = match found {
-            Some(Conclusion::ByColours(best)) => Decision { by: Method::Image(best), rivals: Some(Vec::new()) },
-            Some(Conclusion::ByContrast(found)) => {
-                Decision { by: Method::Contrast(Box::new(found.best)), rivals: Some(found.rivals) }
-            }
+            Some(decision) => decision,
             None => {
                 let anywhere = silhouettes::are_called_for(pair, self.chosen.best.as_deref())
                     .then(|| Anywhere::new(pair, colours.normals()));
@@ -345,7 +346,7 @@ impl Finder {
 fn everywhere_by(silhouettes: Option<OutlineReport>, Choice { best, rivals }: Choice) -> Decision {
     match (silhouettes, best) {
         (Some(found), _) => Decision { by: Method::Silhouettes(Box::new(found)), rivals: Some(Vec::new()) },
-        (None, Some(best)) => Decision { by: Method::Image(best), rivals: Some(rivals) },
+        (None, Some(best)) => Decision { by: Method::Photometric(best), rivals: Some(rivals) },
         (None, None) => Decision { by: Method::Nothing, rivals: Some(rivals) },
     }
 }
@@ -369,7 +370,7 @@ impl Scope {
 
 impl Near {
     /// Whether to repeat the registrations near the initial pose: once, and only if a single albedo does not explain the image.
-    fn begins_again(&self, pair: &ViewPair, colours: &ColourRegistration, choice: &Choice) -> bool {
+    fn begins_again(&self, pair: &ViewPair, colours: &PhotometricRegistration, choice: &Choice) -> bool {
         let is_explained = choice.best.as_ref().is_some_and(|best| !silhouettes::is_painted(pair, best));
         !colours.is_kept_near() && !is_explained && self.region.prior(pair).is_some()
     }
@@ -378,21 +379,18 @@ impl Near {
     fn decide(
         &mut self,
         pair: &ViewPair,
-        colours: &mut ColourRegistration,
+        colours: &mut PhotometricRegistration,
         Choice { best, rivals }: Choice,
-        found: Option<Conclusion>,
+        found: Option<Decision>,
     ) -> Result<Decision> {
         let region = &self.region;
-        match found {
-            Some(Conclusion::ByColours(found)) if region.holds(pair, &found.pose) => {
-                return Ok(Decision::of(Method::Image(found)));
-            }
-            Some(Conclusion::ByContrast(mut found)) if region.holds(pair, &found.best.pose) => {
+        let is_near = |found: &Decision| found.pose().is_some_and(|pose| region.holds(pair, pose));
+        if let Some(mut found) = found.filter(is_near) {
+            if let (Method::Contrast(contrast), Some(rivals)) = (&found.by, &mut found.rivals) {
                 // A pose that leaves only the image's own noise is a rival, however large the spatial covariance of its residuals.
-                local_contrast::rival(&mut found, self.noisy);
-                return Ok(Decision { by: Method::Contrast(Box::new(found.best)), rivals: Some(found.rivals) });
+                local_contrast::add_rival(contrast, rivals, self.noisy);
             }
-            _ => {}
+            return Ok(found);
         }
         let silhouettes = self.silhouettes.take();
         // If the albedo varies, a photometric pose counts less than silhouettes when it hardly fits or is less certain.
@@ -410,14 +408,14 @@ impl Near {
         // Candidates are registered on a sample of the points; all points follow.
         let found = colours.register_all(pair, *best)?;
         Ok(match region.holds(pair, &found.pose) {
-            true => Decision { by: Method::Image(Box::new(found)), rivals: Some(rivals) },
+            true => Decision { by: Method::Photometric(Box::new(found)), rivals: Some(rivals) },
             false => Decision::of(stay(pair, colours, region)),
         })
     }
 }
 
 /// Keeps the initial pose.
-fn stay(pair: &ViewPair, colours: &mut ColourRegistration, region: &TrustRegion) -> Method {
+fn stay(pair: &ViewPair, colours: &mut PhotometricRegistration, region: &TrustRegion) -> Method {
     // An object shrunk to a few pixels fits any image, so its size must be plausible as well.
     let of_size = Similarity { scale: gauge::unit_scale(pair), ..region.initial };
     let explains = |found: Box<PhotometricReport>| found.noise < pair.image.log_spread();

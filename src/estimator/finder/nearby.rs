@@ -9,11 +9,11 @@
 use crate::diagnosis::{Alternative, Diagnosis};
 use crate::error::Result;
 use crate::estimator::pair::ViewPair;
-use crate::estimator::stages::{Attempt, ColourRegistration, FIRST_LEVEL_NEAR};
 use crate::pose::{COARSEST_NEAR, ImageGrid, OutlineReport, PhotometricReport, Search, Similarity};
 
 use super::candidates::{Candidates, NEARBY, search};
 use super::local_optima::{Choice, LocalOptima, Origin, RegisteredCandidate};
+use super::photometric::{Attempt, FIRST_LEVEL_NEAR, PhotometricRegistration};
 use super::silhouettes;
 use super::trust_region::TrustRegion;
 
@@ -74,7 +74,7 @@ impl Nearby {
     }
 
     /// Runs one slice.
-    pub fn advance(&mut self, pair: &ViewPair, colours: &mut ColourRegistration) -> Result<Progress> {
+    pub fn advance(&mut self, pair: &ViewPair, colours: &mut PhotometricRegistration) -> Result<Progress> {
         match self.step {
             Step::Judge => {
                 self.judge(pair, colours);
@@ -115,7 +115,7 @@ impl Nearby {
     }
 
     /// Enters the initial pose and the result from it, and registers silhouettes.
-    fn judge(&mut self, pair: &ViewPair, colours: &mut ColourRegistration) {
+    fn judge(&mut self, pair: &ViewPair, colours: &mut PhotometricRegistration) {
         let region = &self.region;
         let Some(optima) = &mut self.optima else { return };
         if let Some(staying) = colours.judge(pair, &region.initial) {
@@ -132,7 +132,7 @@ impl Nearby {
     fn register(
         &mut self,
         pair: &ViewPair,
-        colours: &mut ColourRegistration,
+        colours: &mut PhotometricRegistration,
         start: &Similarity,
         first_level: usize,
         next: Step,
@@ -181,7 +181,7 @@ mod tests {
     #[test]
     fn what_was_found_before_outlives_a_registration_that_fails_or_ends_outside_the_region() {
         let (pair, truth) = pair_beside_its_pose();
-        let mut colours = ColourRegistration::new(&pair);
+        let mut colours = PhotometricRegistration::new(&pair);
         let out_of_sight = Similarity { translation: Vector3::new(1e4, 0.0, 0.0), ..truth };
         for (start, is_registered) in [(out_of_sight, false), (truth, true)] {
             let region = TrustRegion::of(&pair).unwrap();

@@ -7,9 +7,8 @@
 //! Limits: cast shadows are mistaken for albedo, so a round counts only if shading explains more of the remainder than
 //! before.
 
-use super::colours::ColourRegistration;
 use super::paint::PaintStage;
-use crate::estimator::finder::TrustRegion;
+use crate::estimator::finder::{PhotometricRegistration, TrustRegion};
 use crate::estimator::pair::ViewPair;
 use crate::pose::{ContrastReport, Similarity, register_again};
 
@@ -43,7 +42,7 @@ impl Contrasted {
     pub fn follow(
         &mut self,
         pair: &ViewPair,
-        colours: &ColourRegistration,
+        colours: &PhotometricRegistration,
         paint: &PaintStage,
         region: Option<&TrustRegion>,
     ) -> Option<Similarity> {

@@ -5,7 +5,7 @@ use crate::estimator::pair::ViewPair;
 use crate::estimator::solution::Solution;
 use crate::pose::CorrespondenceProblem;
 
-/// Correspondences are accepted within this multiple of the robust spread of the distances between the surfaces.
+/// Correspondences are accepted within this multiple of the median distance between the surfaces.
 const SPREADS: f64 = 3.0;
 
 /// The problem that projects the depth points, hides the occluded ones, and drops those too far from the image surface.

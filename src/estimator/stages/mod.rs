@@ -4,7 +4,6 @@
 //! [`ViewPair`]: super::pair::ViewPair
 //! [`Solution`]: super::solution::Solution
 
-mod colours;
 mod contrasted;
 mod correspondences;
 mod light;
@@ -14,12 +13,11 @@ mod registration;
 mod shape;
 mod surfaces;
 
-pub use colours::{Attempt, COLLAPSE, ColourRegistration, FIRST_LEVEL_NEAR};
 pub use correspondences::correspondence_problem;
 pub use light::{Inputs, LightStage};
 pub use paint::PaintStage;
 pub use refinement::{RefinementStage, RefinementTask, terms_from_numbers};
-pub use registration::{Registered, Registering, RegistrationStage};
+pub use registration::{Decided, Registered, Registering, RegistrationStage};
 pub use shape::ShapeStage;
 
 /// All stages of an iteration, in order, except that the albedo is fitted only under a settled pose.

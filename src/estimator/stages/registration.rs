@@ -1,16 +1,15 @@
 //! The registration stage: runs the finder or matches the surfaces, depending on the options, and keeps the result.
 
-use crate::estimator::finder::{Decision, Finder, Method, Staying, TrustRegion, explains};
+use crate::estimator::finder::{Decision, Finder, Method, PhotometricRegistration, Staying, TrustRegion, explains};
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
 use crate::estimator::solution::Solution;
 use crate::light::Light;
 use crate::options::{Registration, Start};
-use crate::pose::{ContrastReport, OutlineReport, PhotometricReport, Similarity, Uncertainty};
+use crate::pose::{OutlineReport, PhotometricReport, Similarity, Uncertainty};
 use crate::reason::Reason;
 use crate::view::Normals;
 
-use super::colours::ColourRegistration;
 use super::contrasted::Contrasted;
 use super::light::Inputs;
 use super::paint::PaintStage;
@@ -45,7 +44,7 @@ impl Registered {
 /// Registers the depth view to the image, photometrically or by matching surfaces.
 pub struct RegistrationStage {
     /// Present only if the options require it, because it holds splines of the image.
-    colours: Option<ColourRegistration>,
+    colours: Option<PhotometricRegistration>,
     surfaces: SurfaceRegistration,
     /// Region around the initial pose, if there is one.
     region: Option<TrustRegion>,
@@ -54,8 +53,8 @@ pub struct RegistrationStage {
 }
 
 /// What the pose rests on.
-enum Decided {
-    Image,
+pub enum Decided {
+    Photometric,
     Contrast(Box<Contrasted>),
     Silhouettes(Box<OutlineReport>),
     /// No better pose was found; the initial pose stays.
@@ -81,7 +80,7 @@ impl RegistrationStage {
         let by_colours = pair.options.start == Start::Search || pair.options.registration == Registration::Joint;
         let by_colours = by_colours && !colours_wait;
         Self {
-            colours: by_colours.then(|| ColourRegistration::new(pair)),
+            colours: by_colours.then(|| PhotometricRegistration::new(pair)),
             surfaces: SurfaceRegistration::new(),
             region: TrustRegion::of(pair),
             decided: None,
@@ -89,13 +88,13 @@ impl RegistrationStage {
     }
 
     /// The photometric registration, for a finder to use or to make.
-    pub const fn memory(&mut self) -> &mut Option<ColourRegistration> {
+    pub const fn memory(&mut self) -> &mut Option<PhotometricRegistration> {
         &mut self.colours
     }
 
     /// The registration that this pair needs now: with noisy depth, photometric registration finds the pose and ICP settles it.
     pub fn kind(&self, pair: &ViewPair) -> Registration {
-        let settled_by_surface = |colours: &ColourRegistration| colours.is_coarse() && colours.found().is_some();
+        let settled_by_surface = |colours: &PhotometricRegistration| colours.is_coarse() && colours.found().is_some();
         match pair.options.registration {
             Registration::Joint if self.colours.as_ref().is_some_and(settled_by_surface) => Registration::Icp,
             asked => asked,
@@ -104,12 +103,12 @@ impl RegistrationStage {
 
     /// Result of the photometric registration, unless depth noise leaves pose and light to other stages.
     pub fn found_by_colours(&self) -> Option<&PhotometricReport> {
-        self.colours.as_ref().filter(|colours| !colours.is_coarse()).and_then(ColourRegistration::found)
+        self.colours.as_ref().filter(|colours| !colours.is_coarse()).and_then(PhotometricRegistration::found)
     }
 
     /// The best measured normals of the depth view.
     pub fn measured_normals<'a>(&'a self, pair: &'a ViewPair) -> &'a Normals {
-        self.colours.as_ref().map_or(&pair.depth.normals, ColourRegistration::normals)
+        self.colours.as_ref().map_or(&pair.depth.normals, PhotometricRegistration::normals)
     }
 
     /// Adopts the finder's decision.
@@ -141,8 +140,8 @@ impl RegistrationStage {
                 self.decided = Some(Decided::Contrast(Box::new(Contrasted::new(*found))));
                 Registered { uncertainty, ..Registered::of_pose(pose) }
             }
-            Method::Image(found) => {
-                self.decided = Some(Decided::Image);
+            Method::Photometric(found) => {
+                self.decided = Some(Decided::Photometric);
                 let registered = self.registered(pair, &found, present);
                 let size = self.region.is_some().then(|| check_size(pair, &found.pose, present));
                 if let Some(colours) = &mut self.colours {
@@ -155,12 +154,9 @@ impl RegistrationStage {
         Ok(Some(Registered { rivals, ..registered }))
     }
 
-    /// Whether the initial pose is usable, if it was kept because no pose near it fits the image better.
-    pub const fn staying(&self) -> Option<Staying> {
-        match self.decided {
-            Some(Decided::Initial(staying)) => Some(staying),
-            _ => None,
-        }
+    /// What the pose rests on, once the finder has decided.
+    pub const fn decided(&self) -> Option<&Decided> {
+        self.decided.as_ref()
     }
 
     /// What the pose rests on, in words.
@@ -175,22 +171,6 @@ impl RegistrationStage {
         }
     }
 
-    /// The report of the silhouettes, if they decide.
-    pub const fn found_by_outlines(&self) -> Option<&OutlineReport> {
-        match &self.decided {
-            Some(Decided::Silhouettes(found)) => Some(found),
-            _ => None,
-        }
-    }
-
-    /// The report of local contrast, if it decides.
-    pub const fn found_by_contrast(&self) -> Option<&ContrastReport> {
-        match &self.decided {
-            Some(Decided::Contrast(found)) => Some(&found.report),
-            _ => None,
-        }
-    }
-
     /// Whether the next registration will leave `pose` unchanged, whatever the shapes become.
     pub fn keeps(&self, pair: &ViewPair, pose: &Similarity) -> bool {
         match self.kind(pair) {
@@ -199,7 +179,7 @@ impl RegistrationStage {
                 let stands = match &self.decided {
                     Some(Decided::Initial(_) | Decided::Silhouettes(_)) => true,
                     Some(Decided::Contrast(found)) => found.stands(),
-                    Some(Decided::Image) | None => false,
+                    Some(Decided::Photometric) | None => false,
                 };
                 stands || self.colours.as_ref().is_some_and(|colours| colours.ended_in(pose))
             }
@@ -249,7 +229,7 @@ impl RegistrationStage {
         let is_answer = |found: &PhotometricReport| region.holds(pair, &found.pose) && explains(pair, found);
         match found {
             Some(found) if is_answer(&found) => {
-                self.adopt(pair, Decision::of(Method::Image(Box::new(found))), present).map(Registering::of)
+                self.adopt(pair, Decision::of(Method::Photometric(Box::new(found))), present).map(Registering::of)
             }
             _ => {
                 let plain = colours.take_found();
@@ -272,7 +252,7 @@ impl RegistrationStage {
                 let pose = found.follow(pair, colours, paint, self.region.as_ref());
                 Ok(pose.map(|pose| Registered::of_pose(with_gauge_of(pair, pose, start))))
             }
-            Some(Decided::Image) | None => {
+            Some(Decided::Photometric) | None => {
                 let found = colours.register(pair, start)?.clone();
                 check_size(pair, &found.pose, start)?;
                 Ok(Some(self.registered(pair, &found, start)))
@@ -283,7 +263,7 @@ impl RegistrationStage {
     fn registered(&self, pair: &ViewPair, found: &PhotometricReport, present: &Similarity) -> Registered {
         let pose = with_gauge_of(pair, found.pose, present);
         // Normals flattened by noise bias the exposure, so the stages find it again.
-        let is_coarse = self.colours.as_ref().is_some_and(ColourRegistration::is_coarse);
+        let is_coarse = self.colours.as_ref().is_some_and(PhotometricRegistration::is_coarse);
         Registered {
             pose,
             light: Some(found.light),

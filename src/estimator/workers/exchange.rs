@@ -6,7 +6,7 @@ use crate::estimator::{Estimator, RefinementTask, Run, memory};
 use crate::report::{Stage, Status};
 use crate::view::Normals;
 
-use super::task::{Finding, Task};
+use crate::estimator::finder::task::{Finding, Task};
 
 impl Estimator {
     /// Number of [`Worker`](crate::Worker)s that fit in memory beside this estimator.

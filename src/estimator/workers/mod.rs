@@ -3,7 +3,6 @@
 
 mod exchange;
 mod refinement;
-pub mod task;
 mod worker;
 
 pub use worker::Worker;

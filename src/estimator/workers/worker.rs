@@ -1,20 +1,20 @@
 //! Performs parts of an estimator's work in another thread, with a separate instance of the module.
 
 use crate::error::Result;
+use crate::estimator::finder::PhotometricRegistration;
 use crate::estimator::finder::local_optima::RegisteredCandidate;
 use crate::estimator::finder::{Opening, TrustRegion, search};
 use crate::estimator::pair::ViewPair;
-use crate::estimator::stages::ColourRegistration;
 use crate::options::Options;
 use crate::pose::{ImageGrid, Search};
 use crate::view::{ColourImage, DepthMap};
 
 use super::refinement::RefinementWorker;
-use super::task::{Finding, Found, Task, Work};
+use crate::estimator::finder::task::{Finding, Found, Task, Work};
 
 /// The views that are searched and whose candidates are registered.
 enum Searched {
-    Views(Box<ColourRegistration>),
+    Views(Box<PhotometricRegistration>),
     Opening(Box<Opening>),
 }
 
@@ -22,12 +22,12 @@ impl Searched {
     fn of(pair: &ViewPair) -> Self {
         match Opening::of(pair) {
             Some(opening) => Self::Opening(Box::new(opening)),
-            None => Self::Views(Box::new(ColourRegistration::new(pair))),
+            None => Self::Views(Box::new(PhotometricRegistration::new(pair))),
         }
     }
 
     /// The pair and its photometric registration.
-    fn parts<'a>(&'a mut self, pair: &'a ViewPair) -> (&'a ViewPair, &'a mut ColourRegistration) {
+    fn parts<'a>(&'a mut self, pair: &'a ViewPair) -> (&'a ViewPair, &'a mut PhotometricRegistration) {
         match self {
             Self::Views(colours) => (pair, colours),
             Self::Opening(opening) => (&opening.pair, &mut opening.colours),

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::pose::increment::UNKNOWNS;
+use crate::pose::increment::{UNKNOWNS, held_unknowns};
 use crate::pose::similarity::Similarity;
 use crate::pose::uncertainty::Uncertainty;
 use crate::view::{ColourView, DepthView, Normals};
@@ -27,11 +27,9 @@ pub struct ContrastProblem<'a> {
 }
 
 impl ContrastProblem<'_> {
-    /// Unknowns that keep their values: t_z of an orthographic image, which is a gauge, and a held scale, which
-    /// includes that of every pinhole image.
+    /// Unknowns that keep their values.
     pub(super) fn held(&self) -> [bool; UNKNOWNS] {
-        let gauge = self.image.camera.is_orthographic();
-        [false, false, false, false, false, gauge, self.scale_is_held || !gauge]
+        held_unknowns(&self.image.camera, self.scale_is_held)
     }
 
     /// Whether the image has a pinhole camera.

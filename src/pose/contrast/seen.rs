@@ -5,11 +5,9 @@ use nalgebra::Vector3;
 use super::problem::ContrastProblem;
 use super::samples::Samples;
 use crate::pose::similarity::Similarity;
-use crate::pose::visibility::HIDDEN_BEHIND;
+use crate::pose::visibility::{HIDDEN_BEHIND, LEAST_FACING};
 use crate::view::Size;
 
-/// Smallest cosine between normal and ray of a visible sample; at a more grazing angle no pixel is reliable.
-const RIM: f64 = 0.05;
 /// Neighbours farther apart than this many median steps do not belong to one surface.
 const JUMP: f64 = 4.0;
 
@@ -63,7 +61,8 @@ impl Seen {
         for (k, sample) in samples.list.iter().enumerate() {
             let point = pose.apply(sample.point);
             let nearest = place(&point).and_then(|place| self.at(place));
-            self.visible[k] = self.facing[k] < -RIM && nearest.is_some_and(|nearest| point.z <= nearest + tolerance);
+            self.visible[k] =
+                self.facing[k] < -LEAST_FACING && nearest.is_some_and(|nearest| point.z <= nearest + tolerance);
         }
         self.find_limbs(samples);
     }

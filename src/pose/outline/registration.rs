@@ -17,15 +17,15 @@ use crate::pose::uncertainty::{Direction, describe};
 use crate::view::extent;
 
 /// Weight of the distance between depth discontinuities and silhouette.
-const RIM: f64 = 1.0;
+const RIM_WEIGHT: f64 = 1.0;
 /// Weight of silhouette pixels without a depth point.
-const BARE: f64 = 0.3;
+const BARE_WEIGHT: f64 = 0.3;
 /// Weight of the distance between depth discontinuities and edges of the image, which may be print (docs/lab/thresholds.md).
-const EDGE: f64 = 0.4;
+const EDGE_WEIGHT: f64 = 0.4;
 /// Weight of the prior.
-const PRIOR: f64 = 0.1;
+const PRIOR_WEIGHT: f64 = 0.1;
 /// One sigma of the edge bias, pixels.
-const LOSS_SIGMA: f64 = 2.0;
+const EDGE_BIAS_SIGMA: f64 = 2.0;
 /// Robust scales in turn, pixels.
 const SCALES: [f64; 4] = [40.0, 14.0, 7.0, 3.5];
 /// Number of rounds at each robust scale.
@@ -40,7 +40,7 @@ const MOST_OUTLINE: usize = 1000;
 /// The last robust scale.
 const FINEST: f64 = SCALES[SCALES.len() - 1];
 /// Length of silhouette, in pixels, whose errors count as one.
-const CORRELATED: f64 = 8.0;
+const CORRELATED_LENGTH: f64 = 8.0;
 /// Factor by which errors exceed the residuals, because errors of masks, of the sensors' registration and of the edge
 /// bias all go one way.
 const SIGMA_INFLATION: f64 = 3.0;
@@ -50,7 +50,7 @@ const LEAST_NOISE: f64 = 0.3;
 const UNSEEN: f64 = 0.8;
 
 /// Index of the edge bias, which takes the place of the scale among the unknowns.
-const LOSS: usize = SCALE;
+const EDGE_BIAS: usize = SCALE;
 
 /// Registers from silhouettes; owns its memory.
 pub struct Outline {
@@ -115,7 +115,7 @@ impl Outline {
                     let Some(step) = damped_step(sums.symmetric(), sums.gradient, DAMPING, &[false; UNKNOWNS]) else {
                         break;
                     };
-                    loss += step[LOSS];
+                    loss += step[EDGE_BIAS];
                     let mut change = step;
                     change[SCALE] = 0.0;
                     pose = frame.change(&change).after(&pose).orthonormal();
@@ -181,7 +181,7 @@ impl Outline {
         let (pixel, slopes) = problem.image.camera.project_with_gradient(problem.image.size, point.into())?;
         let row = |slope: [f64; 3]| {
             let mut row = frame.row(&point, &slope.into());
-            row[LOSS] = 0.0;
+            row[EDGE_BIAS] = 0.0;
             row
         };
         Some((pixel, slopes.map(row)))
@@ -198,7 +198,7 @@ impl Outline {
         let (pixel, [across, down]) = self.rows(problem, pose, index)?;
         let (distance, [right, low]) = self.silhouette.as_ref()?.smoothly_signed_at(pixel);
         let mut row = right * across + low * down;
-        row[LOSS] = 1.0;
+        row[EDGE_BIAS] = 1.0;
         Some((distance + loss, row))
     }
 
@@ -214,7 +214,7 @@ impl Outline {
         }
         self.add_edges(problem, pose, loss, scale, &mut sums);
         self.add_rims(problem, pose, loss, scale, &mut sums);
-        let share = BARE / self.outline.len().max(1) as f64;
+        let share = BARE_WEIGHT / self.outline.len().max(1) as f64;
         for &(place, index) in &self.bare {
             let Some((pixel, [across, down])) = self.rows(problem, pose, index as usize) else { continue };
             let offset = [pixel[0] - place[0], pixel[1] - place[1]];
@@ -222,7 +222,7 @@ impl Outline {
             let residual = distance - SLACK - loss;
             if residual > 0.0 {
                 let mut row = (offset[0] * across + offset[1] * down) / distance;
-                row[LOSS] = -1.0;
+                row[EDGE_BIAS] = -1.0;
                 sums.add(&row, residual, share, scale);
             }
         }
@@ -235,7 +235,7 @@ impl Outline {
         let total: f64 = rims().map(|rim| rim.weight).sum();
         for rim in rims() {
             if let Some((residual, row)) = self.against_mask(problem, pose, loss, rim.index as usize) {
-                sums.add(&row, residual, RIM * rim.weight / total, scale);
+                sums.add(&row, residual, RIM_WEIGHT * rim.weight / total, scale);
             }
         }
     }
@@ -248,20 +248,20 @@ impl Outline {
             {
                 let [right, low] = rim.normal;
                 let mut row = right * across + low * down;
-                row[LOSS] = 1.0;
+                row[EDGE_BIAS] = 1.0;
                 let residual = right * (pixel[0] - at[0]) + low * (pixel[1] - at[1]) + loss;
-                sums.add(&row, residual, EDGE * rim.weight * edge.strength / total, scale);
+                sums.add(&row, residual, EDGE_WEIGHT * rim.weight * edge.strength / total, scale);
             }
         }
     }
 
     fn add_prior(&self, problem: &OutlineProblem<'_>, pose: &Similarity, loss: f64, sums: &mut Sums) {
         problem.prior.for_each(self.middle, pose, &self.frame(pose), |row, residual| {
-            sums.add(row, residual, PRIOR, f64::INFINITY);
+            sums.add(row, residual, PRIOR_WEIGHT, f64::INFINITY);
         });
         let mut row = PoseVector::zeros();
-        row[LOSS] = 1.0 / LOSS_SIGMA;
-        sums.add(&row, loss / LOSS_SIGMA, PRIOR, f64::INFINITY);
+        row[EDGE_BIAS] = 1.0 / EDGE_BIAS_SIGMA;
+        sums.add(&row, loss / EDGE_BIAS_SIGMA, PRIOR_WEIGHT, f64::INFINITY);
     }
 
     /// The report on a pose and its edge bias.
@@ -272,15 +272,16 @@ impl Outline {
         let mut data = Sums::new();
         self.add_rims(problem, &pose, loss, FINEST, &mut data);
         self.add_edges(problem, &pose, loss, FINEST, &mut data);
-        let independent = self.rims.rims.len() as f64 * self.rims.cell() / CORRELATED;
-        let mut information = data.matrix * (independent / ((RIM + EDGE) * (SIGMA_INFLATION * noise).powi(2)));
+        let independent = self.rims.rims.len() as f64 * self.rims.cell() / CORRELATED_LENGTH;
+        let mut information =
+            data.matrix * (independent / ((RIM_WEIGHT + EDGE_WEIGHT) * (SIGMA_INFLATION * noise).powi(2)));
         let mut prior = Sums::new();
         self.add_prior(problem, &pose, loss, &mut prior);
-        information += prior.matrix / PRIOR;
+        information += prior.matrix / PRIOR_WEIGHT;
         information.fill_upper_triangle_with_lower_triangle();
         let frame = self.frame(&pose);
         let mut covariance = inverse(&information).unwrap_or_else(|| PoseMatrix::identity() * UNKNOWN.powi(2));
-        clear_unknowns(&mut covariance, &std::array::from_fn(|k| k == LOSS));
+        clear_unknowns(&mut covariance, &std::array::from_fn(|k| k == EDGE_BIAS));
         let (weakest, share) = weakest_turn(&covariance, problem.prior.rotation);
         OutlineReport {
             uncertainty: describe(&covariance, &frame, &pose, [false, true], weakest),

@@ -19,9 +19,9 @@ const JUMP: f64 = 0.02;
 /// fully from the second; normals of real sensors at an occluding contour do not fall below 0.3.
 const SHARP: [f64; 2] = [0.35, 0.7];
 /// Cosine between normal and ray of the colour camera below which a surface turns away.
-const LIMB: f64 = 0.45;
+const TURNED_AWAY: f64 = 0.45;
 /// Weight of a discontinuity on such a surface.
-const LIMB_WEIGHT: f64 = 0.5;
+const TURNING_WEIGHT: f64 = 0.5;
 
 /// A depth discontinuity: a point of the depth map on the object's silhouette.
 #[derive(Clone, Copy)]
@@ -160,7 +160,7 @@ fn sharpness(problem: &OutlineProblem<'_>, index: usize) -> f32 {
 fn limb(problem: &OutlineProblem<'_>, pose: &Similarity, eye: &Vector3<f64>, index: usize) -> f64 {
     let is_parallel = problem.image.camera.is_orthographic();
     let sight = if is_parallel { pose.rotation.tr_mul(&Vector3::z()) } else { problem.point(index) - eye };
-    LIMB_WEIGHT * (1.0 - cosine(problem, index, &sight) / LIMB).max(0.0)
+    TURNING_WEIGHT * (1.0 - cosine(problem, index, &sight) / TURNED_AWAY).max(0.0)
 }
 
 /// |cosine| between normal and ray; one without a normal.

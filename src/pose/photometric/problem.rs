@@ -6,7 +6,7 @@ use crate::check::not_negative;
 use crate::error::{Error, ErrorKind, Result};
 use crate::light::{Light, LightPrior};
 use crate::numeric::{DOUBLE_LANES, Doubles, Real, dot};
-use crate::pose::increment::{PoseMatrix, UNKNOWNS};
+use crate::pose::increment::{PoseMatrix, UNKNOWNS, held_unknowns};
 use crate::pose::prior::PosePrior;
 use crate::pose::similarity::Similarity;
 use crate::pose::uncertainty::Uncertainty;
@@ -64,11 +64,9 @@ impl PhotometricProblem<'_> {
         rotated(&pose.rotation, gathered(self.normals, indices))
     }
 
-    /// Unknowns that keep their values: t_z of an orthographic image, which is a gauge, and a held scale, which
-    /// includes that of every pinhole image.
+    /// Unknowns that keep their values.
     pub(super) fn held(&self) -> [bool; UNKNOWNS] {
-        let gauge = self.image.camera.is_orthographic();
-        [false, false, false, false, false, gauge, self.scale_is_held || !gauge]
+        held_unknowns(&self.image.camera, self.scale_is_held)
     }
 
     pub(super) fn check(&self, sizes: [Size; 2]) -> Result<()> {

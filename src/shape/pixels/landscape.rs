@@ -6,7 +6,8 @@
 //! are reported.
 
 use super::shading::{
-    LinearisedPixels, MOST_STEPS, Pixels, RIM, ShadingProblem, ShadingReport, ShadingSolver, ShadingWeights, normalise,
+    LARGEST_N_Z, LinearisedPixels, MOST_STEPS, Pixels, ShadingProblem, ShadingReport, ShadingSolver, ShadingWeights,
+    normalise,
 };
 use crate::light::{Light, Polynomial};
 use crate::numeric::{LANES, Lanes, Mask};
@@ -93,7 +94,7 @@ fn minima(pixel: &Pixels<'_>) -> Vec<Minimum> {
         let ends = ends.map(Lanes::array);
         for lane in 0..LANES {
             let (normal, objective) = (ends.map(|axis| axis[lane]), objective[lane]);
-            if normal[2].is_nan() || normal[2] > RIM {
+            if normal[2].is_nan() || normal[2] > LARGEST_N_Z {
                 continue;
             }
             match found.iter_mut().find(|minimum| is_same(minimum.normal, normal)) {

@@ -5,8 +5,8 @@
 //! where m is the other view's normal there, and rho is the identity or Geman-McClure. The paper writes the two prior
 //! terms without a square and lambda_3 linear; a least-squares solver squares them, as this one does.
 //!
-//! Three colours give up to eight solutions. Each pixel therefore first compares directions over the whole visible
-//! hemisphere, then descends by damped Gauss-Newton, [`LANES`] pixels side by side. The same code refines the depth
+//! Three colours give up to eight solutions. A pixel without a normal therefore first compares directions over the whole
+//! visible hemisphere. Every pixel then descends by damped Gauss-Newton, [`LANES`] pixels side by side. The same code refines the depth
 //! view (Eq. 17, 18): its normals, rotated into the colour view's frame, are pixels like any other. Limits: normals
 //! have n_z < 0, and under a light of a single chromaticity, the colours of a pixel do not determine its normal.
 
@@ -71,7 +71,7 @@ pub struct ShadingSolver {
 /// Number of directions on the hemisphere that are compared: 5 degrees apart, well within the basin of the local solve.
 const DIRECTIONS: usize = 600;
 /// n_z of the flattest direction: closer to the edge of the hemisphere, a surface is too steep to be seen in a pixel.
-pub(super) const RIM: f32 = -0.05;
+pub(super) const LARGEST_N_Z: f32 = -0.05;
 /// Most trials of one pixel in one solve. The paper allows 1000 and needs 300; Gauss-Newton needs about five.
 pub(super) const MOST_STEPS: usize = 30;
 /// A step this short (in units of a unit normal, 0.06 degrees) is the last one: it is taken, and leaves an error of at
@@ -96,7 +96,7 @@ impl ShadingSolver {
     #[must_use]
     pub fn new() -> Self {
         let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
-        let rim = f64::from(RIM);
+        let rim = f64::from(LARGEST_N_Z);
         let directions: Vec<[f32; 3]> = (0..DIRECTIONS)
             .map(|index| {
                 let z = rim + (-1.0 - rim) * (index as f64 + 0.5) / DIRECTIONS as f64;

@@ -12,9 +12,9 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::gauge;
-use super::pair::ViewPair;
-use super::solution::{Accepted, Shape, Solution};
+use crate::estimator::gauge;
+use crate::estimator::pair::ViewPair;
+use crate::estimator::solution::{Accepted, Shape, Solution};
 use crate::light::Light;
 use crate::numeric::quantile;
 use crate::view::{Normals, Size};

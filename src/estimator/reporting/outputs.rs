@@ -4,8 +4,9 @@ use std::borrow::Cow;
 
 use nalgebra::Vector3;
 
-use super::{Estimator, measurement, units};
+use super::{measurement, units};
 use crate::error::Result;
+use crate::estimator::Estimator;
 use crate::light::Light;
 use crate::picture::{self, ColourMap, Layer};
 use crate::report::StepReport;
@@ -117,7 +118,7 @@ impl Estimator {
     }
 
     /// Converts the report of the last stage to the caller's units.
-    pub(super) fn translate_report(&mut self) {
+    pub(in crate::estimator) fn translate_report(&mut self) {
         self.report.translate(self.pair.way.as_ref());
     }
 

@@ -3,7 +3,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::estimator::finder::local_optima::RegisteredCandidate;
+use super::local_optima::RegisteredCandidate;
 use crate::pose::{Candidate, Hypothesis, SearchFinding, SearchTask, Similarity};
 
 /// A part of the search. It depends only on the pair, the options and itself, so every worker gets the same result.

@@ -2,10 +2,10 @@
 
 use nalgebra::Matrix3;
 
-use super::objective;
-use super::pair::ViewPair;
-use super::solution::Solution;
-use super::stages::PaintStage;
+use crate::estimator::objective;
+use crate::estimator::pair::ViewPair;
+use crate::estimator::solution::Solution;
+use crate::estimator::stages::PaintStage;
 use crate::light::{Light, Polynomial};
 use crate::numeric::{LANES, Lanes, quantile};
 use crate::pose::Correspondences;

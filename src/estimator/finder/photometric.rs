@@ -36,7 +36,7 @@ pub enum Attempt {
 }
 
 /// Registers the measured depth view to the image; owns all memory.
-pub struct ColourRegistration {
+pub struct PhotometricRegistration {
     photometric: Photometric,
     sharp: SharpNormals,
     is_coarse: bool,
@@ -91,7 +91,7 @@ impl SharpNormals {
     }
 }
 
-impl ColourRegistration {
+impl PhotometricRegistration {
     #[inline(never)]
     pub fn new(pair: &ViewPair) -> Self {
         let sharp = SharpNormals::new(&pair.depth);

@@ -10,8 +10,8 @@ use crate::pose::Direction;
 use crate::reason::Reason;
 use crate::report::Status;
 
-use super::evidence::{ColourEvidence, ContrastEvidence, Evidence, OutlineEvidence};
-use super::finder::Staying;
+use super::evidence::{Answer, ContrastEvidence, Evidence, PhotometricEvidence, SilhouetteEvidence};
+use crate::estimator::finder::Staying;
 
 /// Successive rejected iterations after which no better pose is expected.
 const MOST_REJECTIONS: u32 = 6;
@@ -32,7 +32,7 @@ const FIRST_VERDICT_OF_SURFACE: u32 = crate::shape::STARTS;
 const UNOBSERVABLE: f64 = 25.0;
 /// A rotation less certain than this about any axis is unusable, degrees (one sigma). Set above the sigmas of poses
 /// found in random scenes.
-const LARGEST_SIGMA: f64 = 5.0;
+const LOST_SIGMA: f64 = 5.0;
 /// Smallest share of points within the robust scale for a pose to be trusted.
 const FEWEST_INLIERS: f64 = 0.4;
 
@@ -87,42 +87,35 @@ fn has_settled(evidence: &Evidence) -> bool {
 
 /// The reason why the answer is "lost" or "ambiguous" although the loop has ended, if there is one.
 fn reason_for_distrust(evidence: &Evidence) -> Option<Verdict> {
-    if let Some(staying) = evidence.staying {
-        let status = match staying {
-            Staying::Explains => Status::Ambiguous,
-            Staying::ExplainsNothing => Status::Lost,
-        };
-        return Some((status, Some(Reason::InitialPoseKept)));
-    }
-    if let Some(OutlineEvidence { sigma, weakest, is_unseen }) = evidence.outlines {
-        let reason = if is_unseen {
-            Reason::SilhouetteBlind { weakest }
-        } else if sigma.is_nan() || sigma > evidence.tolerance {
-            Reason::AlbedoVaries { sigma_degrees: sigma, weakest }
-        } else {
-            return None;
-        };
-        return Some((Status::Ambiguous, Some(reason)));
-    }
-    if let Some(reason) = evidence.contrast.and_then(|contrast| reason_without_contrast(&contrast)) {
-        return Some((Status::Lost, Some(reason)));
-    }
-    if let Some(reason) = evidence.colours.and_then(|colours| reason_to_be_lost(&colours)) {
-        return Some((Status::Lost, Some(reason)));
+    let (lost, certainty) = match evidence.answer {
+        Answer::Initial(Staying::Explains) => return Some(capped(Reason::InitialPoseKept)),
+        Answer::Initial(Staying::ExplainsNothing) => return Some((Status::Lost, Some(Reason::InitialPoseKept))),
+        Answer::Silhouettes(found) => return reason_to_doubt_silhouettes(&found, evidence.tolerance).map(capped),
+        Answer::Contrast(found) => (reason_without_contrast(&found), Some((found.sigma, found.weakest))),
+        Answer::Photometric(found) => (reason_to_be_lost(&found), Some((found.sigma, found.weakest))),
+        Answer::Surfaces => (None, None),
+    };
+    if lost.is_some() {
+        return Some((Status::Lost, lost));
     }
     if let Some(hollow) = &evidence.hollow {
         return Some(capped(hollow.clone()));
     }
-    let certainty = evidence.colours.map(|colours| (colours.sigma, colours.weakest));
-    let certainty = certainty.or(evidence.contrast.map(|contrast| (contrast.sigma, contrast.weakest)));
-    let reason = match (evidence.rivals, certainty) {
+    match (evidence.rivals, certainty) {
         (0, Some((sigma, weakest))) if sigma > evidence.tolerance => {
-            Reason::RotationUncertain { sigma_degrees: sigma, weakest }
+            Some(capped(Reason::RotationUncertain { sigma_degrees: sigma, weakest }))
         }
-        (0, _) => return None,
-        (count, _) => Reason::Rivals { count, nearest_degrees: evidence.nearest_rival },
-    };
-    Some((Status::Ambiguous, Some(reason)))
+        (0, _) => None,
+        (count, _) => Some(capped(Reason::Rivals { count, nearest_degrees: evidence.nearest_rival })),
+    }
+}
+
+fn reason_to_doubt_silhouettes(found: &SilhouetteEvidence, tolerance: f64) -> Option<Reason> {
+    let &SilhouetteEvidence { sigma, weakest, is_unseen } = found;
+    if is_unseen {
+        return Some(Reason::SilhouetteBlind { weakest });
+    }
+    (sigma.is_nan() || sigma > tolerance).then_some(Reason::AlbedoVaries { sigma_degrees: sigma, weakest })
 }
 
 fn reason_without_contrast(&ContrastEvidence { sigma, weakest, unexplained }: &ContrastEvidence) -> Option<Reason> {
@@ -132,10 +125,12 @@ fn reason_without_contrast(&ContrastEvidence { sigma, weakest, unexplained }: &C
 }
 
 fn too_uncertain(sigma: f64, weakest: Direction) -> Option<Reason> {
-    (sigma.is_nan() || sigma > LARGEST_SIGMA).then_some(Reason::RotationUncertain { sigma_degrees: sigma, weakest })
+    (sigma.is_nan() || sigma > LOST_SIGMA).then_some(Reason::RotationUncertain { sigma_degrees: sigma, weakest })
 }
 
-fn reason_to_be_lost(&ColourEvidence { sigma, weakest, unexplained, inliers }: &ColourEvidence) -> Option<Reason> {
+fn reason_to_be_lost(
+    &PhotometricEvidence { sigma, weakest, unexplained, inliers }: &PhotometricEvidence,
+) -> Option<Reason> {
     if sigma.is_nan() || sigma > UNOBSERVABLE {
         return Some(Reason::NotObservable { weakest });
     }
@@ -168,10 +163,7 @@ mod tests {
         rejections: 0,
         unmoved: 1,
         is_whole_step: true,
-        colours: Some(SURE),
-        outlines: None,
-        contrast: None,
-        staying: None,
+        answer: Answer::Photometric(SURE),
         hollow: None,
         missing_mask: None,
         rivals: 0,
@@ -179,10 +171,12 @@ mod tests {
     };
     const ABOUT_X: Direction = Direction { first: Some(Unknown::Rotation(Axis::X)), second: None };
     const ABOUT_Y: Direction = Direction { first: Some(Unknown::Rotation(Axis::Y)), second: None };
-    const SURE: ColourEvidence = ColourEvidence { sigma: 0.1, weakest: ABOUT_X, unexplained: 0.05, inliers: 0.9 };
-    const SEEN: OutlineEvidence = OutlineEvidence { sigma: 0.8, weakest: ABOUT_Y, is_unseen: false };
-    const ICP: Evidence = Evidence { registration: Registration::Icp, colours: None, ..SETTLED };
-    const FIXED: Evidence = Evidence { registration: Registration::Fixed, colours: None, ..SETTLED };
+    const SURE: PhotometricEvidence =
+        PhotometricEvidence { sigma: 0.1, weakest: ABOUT_X, unexplained: 0.05, inliers: 0.9 };
+    const CONTRASTED: ContrastEvidence = ContrastEvidence { sigma: 0.5, weakest: ABOUT_X, unexplained: 0.3 };
+    const SEEN: SilhouetteEvidence = SilhouetteEvidence { sigma: 0.8, weakest: ABOUT_Y, is_unseen: false };
+    const ICP: Evidence = Evidence { registration: Registration::Icp, answer: Answer::Surfaces, ..SETTLED };
+    const FIXED: Evidence = Evidence { registration: Registration::Fixed, answer: Answer::Surfaces, ..SETTLED };
     const MOVING: Evidence = Evidence { unmoved: 0, ..SETTLED };
 
     /// A case: its name, the evidence, the expected status and reason.
@@ -232,7 +226,8 @@ mod tests {
 
     /// Whether its end is reliable.
     fn reliability() -> Vec<Row> {
-        let colours = |colours: ColourEvidence| Evidence { colours: Some(colours), ..SETTLED };
+        let photometric = |found: PhotometricEvidence| Evidence { answer: Answer::Photometric(found), ..SETTLED };
+        let contrast = |found: ContrastEvidence| Evidence { answer: Answer::Contrast(found), ..SETTLED };
         let (lost, ambiguous) = (Some(Status::Lost), Some(Status::Ambiguous));
         vec![
             (
@@ -249,36 +244,55 @@ mod tests {
             ),
             (
                 "a turn that nothing shows",
-                colours(ColourEvidence { sigma: 31.0, ..SURE }),
+                photometric(PhotometricEvidence { sigma: 31.0, ..SURE }),
                 lost,
                 Some(Reason::NotObservable { weakest: ABOUT_X }),
             ),
             (
                 "a sigma that is no number",
-                colours(ColourEvidence { sigma: f64::NAN, ..SURE }),
+                photometric(PhotometricEvidence { sigma: f64::NAN, ..SURE }),
                 lost,
                 Some(Reason::NotObservable { weakest: ABOUT_X }),
             ),
-            ("a large sigma", colours(ColourEvidence { sigma: 6.0, ..SURE }), lost, turned(6.0)),
+            ("a large sigma", photometric(PhotometricEvidence { sigma: 6.0, ..SURE }), lost, turned(6.0)),
             (
                 "paint",
-                colours(ColourEvidence { unexplained: 0.4, ..SURE }),
+                photometric(PhotometricEvidence { unexplained: 0.4, ..SURE }),
                 lost,
                 Some(Reason::Unexplained { percent: 40.0 }),
             ),
             (
                 "colours without spread",
-                colours(ColourEvidence { unexplained: f64::NAN, ..SURE }),
+                photometric(PhotometricEvidence { unexplained: f64::NAN, ..SURE }),
                 lost,
                 Some(Reason::Unexplained { percent: f64::NAN }),
             ),
             (
                 "outliers",
-                colours(ColourEvidence { inliers: 0.3, ..SURE }),
+                photometric(PhotometricEvidence { inliers: 0.3, ..SURE }),
                 lost,
                 Some(Reason::FewInliers { percent: 30.0 }),
             ),
-            ("a fair sigma", colours(ColourEvidence { sigma: 1.6, ..SURE }), ambiguous, turned(1.6)),
+            ("a fair sigma", photometric(PhotometricEvidence { sigma: 1.6, ..SURE }), ambiguous, turned(1.6)),
+            (
+                "local contrast that shading does not explain",
+                contrast(ContrastEvidence { unexplained: 0.6, ..CONTRASTED }),
+                lost,
+                Some(Reason::ContrastUnexplained { percent: 60.0 }),
+            ),
+            (
+                "local contrast with a large sigma",
+                contrast(ContrastEvidence { sigma: 6.0, ..CONTRASTED }),
+                lost,
+                turned(6.0),
+            ),
+            (
+                "local contrast with a fair sigma",
+                contrast(ContrastEvidence { sigma: 1.6, ..CONTRASTED }),
+                ambiguous,
+                turned(1.6),
+            ),
+            ("local contrast", contrast(CONTRASTED), Some(Status::Converged), None),
             (
                 "a hollow depth map",
                 Evidence { hollow: Some(Reason::Hollow), ..SETTLED },
@@ -331,42 +345,50 @@ mod tests {
     }
 
     /// Initial poses, and silhouettes where the albedo varies.
-    fn told_and_outlined() -> Vec<Row> {
-        let outlines = |outlines: OutlineEvidence| Evidence { colours: None, outlines: Some(outlines), ..SETTLED };
+    fn initial_poses_and_silhouettes() -> Vec<Row> {
+        let silhouettes = |found: SilhouetteEvidence| Evidence { answer: Answer::Silhouettes(found), ..SETTLED };
+        let initial = |staying: Staying| Evidence { answer: Answer::Initial(staying), ..SETTLED };
         let (lost, ambiguous) = (Some(Status::Lost), Some(Status::Ambiguous));
         vec![
             (
                 "an initial pose that nothing improves",
-                Evidence { staying: Some(Staying::Explains), colours: None, ..SETTLED },
+                initial(Staying::Explains),
                 ambiguous,
                 Some(Reason::InitialPoseKept),
             ),
             (
                 "an initial pose that explains nothing, as nothing else does",
-                Evidence { staying: Some(Staying::ExplainsNothing), colours: None, ..SETTLED },
+                initial(Staying::ExplainsNothing),
                 lost,
                 Some(Reason::InitialPoseKept),
             ),
-            ("outlines that see everything", outlines(SEEN), Some(Status::Converged), None),
+            ("silhouettes that see everything", silhouettes(SEEN), Some(Status::Converged), None),
             (
-                "outlines that see little",
-                outlines(OutlineEvidence { sigma: 1.9, ..SEEN }),
+                "silhouettes that see little",
+                silhouettes(SilhouetteEvidence { sigma: 1.9, ..SEEN }),
                 ambiguous,
                 Some(Reason::AlbedoVaries { sigma_degrees: 1.9, weakest: ABOUT_Y }),
             ),
             (
                 "a mug's own axis",
-                outlines(OutlineEvidence { sigma: 2.8, is_unseen: true, ..SEEN }),
+                silhouettes(SilhouetteEvidence { sigma: 2.8, is_unseen: true, ..SEEN }),
                 ambiguous,
                 Some(Reason::SilhouetteBlind { weakest: ABOUT_Y }),
             ),
-            ("an initial pose that still settles", Evidence { staying: Some(Staying::Explains), ..MOVING }, None, None),
+            (
+                "an initial pose that still settles",
+                Evidence { answer: Answer::Initial(Staying::Explains), ..MOVING },
+                None,
+                None,
+            ),
         ]
     }
 
     #[test]
     fn each_kind_of_evidence_has_its_verdict() {
-        for (name, evidence, status, reason) in ends().into_iter().chain(reliability()).chain(told_and_outlined()) {
+        for (name, evidence, status, reason) in
+            ends().into_iter().chain(reliability()).chain(initial_poses_and_silhouettes())
+        {
             // Compared as text, by code and numbers, because NaN equals nothing.
             let found = verdict(&evidence);
             assert_eq!(format!("{found:?}"), format!("{:?}", status.map(|status| (status, reason))), "{name}");

@@ -1,20 +1,20 @@
 //! The end of an iteration: the solution is accepted or rejected, shapes settle, and the loop continues or ends.
 
-use super::Estimator;
 use super::checks;
-use super::evidence::{ColourEvidence, ContrastEvidence, Evidence, OutlineEvidence};
-use super::objective::{self, Trial};
-use super::run::{History, Run};
+use super::evidence::{Answer, ContrastEvidence, Evidence, PhotometricEvidence, SilhouetteEvidence};
 use super::settling;
-use super::stages::Stages;
 use super::verdict::{self, Verdict};
+use crate::estimator::Estimator;
+use crate::estimator::objective::{self, Trial};
+use crate::estimator::run::{History, Run};
+use crate::estimator::stages::{Decided, Stages};
 use crate::options::Registration;
 use crate::reason::Reason;
 use crate::report::{Objective, Status};
 
 impl Estimator {
     /// Compares the new solution with the accepted one, keeps the better, and decides whether the loop continues.
-    pub(super) fn finish_iteration(&mut self) {
+    pub(in crate::estimator) fn finish_iteration(&mut self) {
         self.report.iteration += 1;
         let is_first = self.report.iteration == 1;
         if is_first {
@@ -44,7 +44,7 @@ impl Estimator {
     }
 
     /// Objective of the working solution over the evaluation points.
-    pub(super) fn objective(&self) -> Objective {
+    pub(in crate::estimator) fn objective(&self) -> Objective {
         let light = self.solution.light.total();
         let colours = self.stages.paint.colours(&self.pair);
         objective::evaluate(
@@ -99,7 +99,7 @@ impl Estimator {
     }
 
     /// Measures overlap, inliers and residuals of the current correspondences.
-    pub(super) fn measure(&mut self) {
+    pub(in crate::estimator) fn measure(&mut self) {
         let Self { pair, stages: Stages { paint, .. }, solution, correspondences, scratch, .. } = self;
         let residual = self.residuals.measure(pair, paint, solution, correspondences, &mut scratch.spare);
         self.report.residual = residual.unwrap_or(self.report.residual);
@@ -128,22 +128,28 @@ impl Estimator {
             rejections: history.rejections,
             unmoved: history.unmoved,
             is_whole_step: history.step_fraction >= 1.0 && history.improved,
-            colours: self
-                .stages
-                .registration
-                .found_by_colours()
-                .map(|it| ColourEvidence::of(it, pair.image.log_spread())),
-            outlines: self.stages.registration.found_by_outlines().map(OutlineEvidence::of),
-            contrast: self.stages.registration.found_by_contrast().map(ContrastEvidence::of),
+            answer: self.answer(),
             hollow: history.hollow.clone(),
             missing_mask: checks::missing_mask(pair),
-            staying: self.stages.registration.staying(),
             rivals: report.rivals.len() as u32,
             nearest_rival: nearest,
         });
         let checked = ended.map(|ended| self.check_unit(ended));
         if let Some((status, reason)) = checked {
             self.end(status, reason);
+        }
+    }
+
+    /// What the method that found the pose reports about it.
+    fn answer(&self) -> Answer {
+        let registration = &self.stages.registration;
+        match registration.decided() {
+            Some(Decided::Initial(staying)) => Answer::Initial(*staying),
+            Some(Decided::Silhouettes(found)) => Answer::Silhouettes(SilhouetteEvidence::of(found)),
+            Some(Decided::Contrast(found)) => Answer::Contrast(ContrastEvidence::of(&found.report)),
+            Some(Decided::Photometric) | None => registration.found_by_colours().map_or(Answer::Surfaces, |found| {
+                Answer::Photometric(PhotometricEvidence::of(found, self.pair.image.log_spread()))
+            }),
         }
     }
 
@@ -160,7 +166,7 @@ impl Estimator {
         reason.map_or(ended, verdict::capped)
     }
 
-    pub(super) fn end(&mut self, status: Status, reason: Option<Reason>) {
+    pub(in crate::estimator) fn end(&mut self, status: Status, reason: Option<Reason>) {
         self.run = Run::Ended;
         self.report.status = status;
         self.report.reason = reason;

@@ -5,7 +5,7 @@ use crate::options::{Registration, Shading};
 use crate::pose::{ContrastReport, Direction, OutlineReport, PhotometricReport};
 use crate::reason::Reason;
 
-use super::finder::Staying;
+use crate::estimator::finder::Staying;
 
 /// The state of the loop at the end of an iteration.
 #[derive(Clone, Debug)]
@@ -32,14 +32,7 @@ pub struct Evidence {
     pub unmoved: u32,
     /// Whether the registration's whole step was taken, and to a better pose.
     pub is_whole_step: bool,
-    /// Report of the photometric registration, if it found the answer.
-    pub colours: Option<ColourEvidence>,
-    /// Report of the silhouettes, if the albedo varies and they found the answer.
-    pub outlines: Option<OutlineEvidence>,
-    /// Report of local contrast, if it found the answer.
-    pub contrast: Option<ContrastEvidence>,
-    /// Whether the initial pose is usable, if it was kept.
-    pub staying: Option<Staying>,
+    pub answer: Answer,
     /// Reasons of the input checks to distrust an answer: a hollow depth map, a missing mask.
     pub hollow: Option<Reason>,
     pub missing_mask: Option<Reason>,
@@ -48,9 +41,21 @@ pub struct Evidence {
     pub nearest_rival: f64,
 }
 
+/// The method that found the answer, and what it reports about it.
+#[derive(Clone, Copy, Debug)]
+pub enum Answer {
+    Photometric(PhotometricEvidence),
+    Contrast(ContrastEvidence),
+    Silhouettes(SilhouetteEvidence),
+    /// The initial pose was kept.
+    Initial(Staying),
+    /// The surfaces were matched, or the pose is fixed.
+    Surfaces,
+}
+
 /// What photometric registration reports about its answer.
 #[derive(Clone, Copy, Debug)]
-pub struct ColourEvidence {
+pub struct PhotometricEvidence {
     /// Sigma of the rotation about the least certain axis, degrees, and the weakest direction.
     pub sigma: f64,
     pub weakest: Direction,
@@ -62,7 +67,7 @@ pub struct ColourEvidence {
 
 /// What silhouettes report about their answer.
 #[derive(Clone, Copy, Debug)]
-pub struct OutlineEvidence {
+pub struct SilhouetteEvidence {
     /// Sigma of the rotation about the least certain axis, degrees, and that axis.
     pub sigma: f64,
     pub weakest: Direction,
@@ -91,7 +96,7 @@ impl ContrastEvidence {
     }
 }
 
-impl ColourEvidence {
+impl PhotometricEvidence {
     /// Evidence from a photometric registration, given the spread of the log image.
     pub fn of(found: &PhotometricReport, log_spread: f64) -> Self {
         Self {
@@ -103,7 +108,7 @@ impl ColourEvidence {
     }
 }
 
-impl OutlineEvidence {
+impl SilhouetteEvidence {
     /// Evidence from a registration by silhouettes.
     pub fn of(found: &OutlineReport) -> Self {
         Self {

@@ -3,9 +3,9 @@
 //! Applies only to depth maps under a parallel projection: behind a pinhole, the unit scales all three axes alike.
 
 use crate::diagnosis::{Alternative, Diagnosis};
+use crate::estimator::finder::{COLLAPSE, PhotometricRegistration};
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
-use crate::estimator::stages::{COLLAPSE, ColourRegistration};
 use crate::pose::{PhotometricReport, Similarity};
 use crate::reason::Reason;
 
@@ -26,12 +26,12 @@ const BETTER_STRUCTURE: f64 = 0.5;
 const SIGMAS_OF_NOISE: f64 = 4.0 * 0.56;
 
 /// The reason to cap a verdict if relief in another unit explains an image that the given unit does not explain.
-pub fn other_unit(colours: &mut ColourRegistration, pair: &ViewPair, pose: &Similarity) -> Option<Reason> {
+pub fn other_unit(colours: &mut PhotometricRegistration, pair: &ViewPair, pose: &Similarity) -> Option<Reason> {
     better_unit(colours, pair, pose).map(|times| Reason::OtherUnit { times: f64::from(times) })
 }
 
 /// The factor by which relief would have to be deeper.
-fn better_unit(colours: &mut ColourRegistration, pair: &ViewPair, pose: &Similarity) -> Option<f32> {
+fn better_unit(colours: &mut PhotometricRegistration, pair: &ViewPair, pose: &Similarity) -> Option<f32> {
     // White noise leaves nothing for another unit to explain, neither in all points nor in the few that are tried here.
     let is_explained =
         |found: &PhotometricReport| pair.residuals(found).diagnose(Alternative::DepthUnit) == Diagnosis::Explained;
@@ -74,7 +74,7 @@ mod tests {
 
     /// The views of a pair whose depths are multiplied by `unit`, registered from the true rotation with their centres
     /// aligned.
-    fn registered(unit: f64) -> (Estimator, ColourRegistration) {
+    fn registered(unit: f64) -> (Estimator, PhotometricRegistration) {
         let request = SampleRequest {
             light: light("colourful").unwrap(),
             size: Size { width: 96, height: 96 },
@@ -85,7 +85,7 @@ mod tests {
         let sample = Scene::new(&surface("ripples").unwrap()).unwrap().sample(&request).unwrap();
         let depth = DepthMap { unit: Some(unit), ..sample.depth_map() };
         let estimator = Estimator::new(sample.colour_image(), &depth, Options::default()).unwrap();
-        let mut registration = ColourRegistration::new(&estimator.pair);
+        let mut registration = PhotometricRegistration::new(&estimator.pair);
         let middle = estimator.pair.depth.points.centroid();
         let moved = Vector3::new(0.0, 0.0, middle.z * (1.0 / unit - 1.0));
         let translation = sample.pose.translation + sample.pose.scale * sample.pose.rotation * moved;
@@ -93,7 +93,7 @@ mod tests {
         (estimator, registration)
     }
 
-    fn better_unit(estimator: &Estimator, registration: &mut ColourRegistration) -> Option<f32> {
+    fn better_unit(estimator: &Estimator, registration: &mut PhotometricRegistration) -> Option<f32> {
         let pose = registration.found().unwrap().pose;
         super::better_unit(registration, &estimator.pair, &pose)
     }
