@@ -15,9 +15,9 @@
 //! | Eq. 6 to 9 (17 and 18 for the depth view): terms and derivatives of one pixel | `pixels/shading` |
 //! | the objective of one pixel over the hemisphere, for display | `pixels/landscape` |
 //! | the exposure of a known light | `pixels/exposure` |
-//! | gradients and slopes of normals | `integration/normals_to_gradients` |
+//! | Eq. 4, 10: gradients and slopes of normals | `integration/normals_to_gradients` |
 //! | a surface from given normals alone | `integration/surface_of_normals` |
-//! | robust weights of gradients | `integration/gradients_to_heights` |
+//! | Eq. 11: a surface from gradients, with robust weights | `integration/gradients_to_heights` |
 //! | the weighted Poisson equation and its preconditioner | `integration/poisson` |
 //! | brightness of a cell as a function of its slopes | `heights/cell_terms`, its rays in `heights/ray_frames` |
 //! | the Gauss-Newton matrix of the heights | `heights/normal_operator` |

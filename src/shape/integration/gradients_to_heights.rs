@@ -1,5 +1,5 @@
 //! min over z of sum_e w_e (z_j - z_i - (g_i + g_j)/2)^2 + sum_i a_i (z_i - anchor_i)^2: a surface from its gradients
-//! (docs/method/normals.md; the paper's "integration", which follows Harker & O'Leary).
+//! (Eq. 11; docs/method/normals.md; the paper's "integration", which follows Harker & O'Leary).
 //!
 //! Method: an edge e joins neighbours i and j (right or below) inside the mask. The trapezoidal rule on the gradients
 //! g = p (along a row) or q (down a column) predicts its height difference, exactly for quadratics and otherwise with

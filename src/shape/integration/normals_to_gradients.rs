@@ -1,5 +1,5 @@
 //! p = -n_x/n_z, q = -n_y/n_z; with a pinhole camera d(log Z)/du = -(n . r_u)/(n . r): gradients from normals
-//! (docs/method/normals.md).
+//! (Eq. 4, 10; docs/method/normals.md).
 //!
 //! Method: a point of the surface is P = Z r(u, v) with the ray r = (x, y, 1). n . P_u = 0 gives the second formula.
 //! r_u and r_v are central differences of [`Camera::ray`] over one pixel, so that lens distortion is included.
