@@ -1,12 +1,13 @@
 //! Mutual information of colours and surface patches (Viola and Wells 1997, with patches in place of a second image).
 //!
 //! The depth map is split into patches of similar normal and position. Under the right pose a patch shows few colours,
-//! because albedo and light vary less on a surface than in a scene; under a wrong pose its colours mix with those of its
-//! neighbours. The log likelihood is that of colours given patches over that of colours alone, the sum over points and
+//! because albedo and light vary less on a surface than in a scene; under a wrong pose its colours mix with those of
+//! its neighbours. The log likelihood compares colours given patches with colours alone. It is the sum over points and
 //! channels of log p(c | patch) / p(c), with both densities measured in the image under the same pose.
 //!
-//! Where a scanner's intensities are known, their levels group the samples once more, with lightness as the channel: what
-//! reflects alike looks alike, whatever the curve between the two (Koide, Oishi, Yokozuka and Banno 2023).
+//! If a scanner's intensities are known, their levels group the samples once more, with lightness as the channel:
+//! points of equal intensity look alike, whatever curve relates intensity to lightness (Koide, Oishi, Yokozuka and
+//! Banno 2023).
 //!
 //! Method: histograms with linear weights, so that finite differences are smooth.
 

@@ -99,7 +99,7 @@ impl Correspondences {
         &self.depth_of_pixel
     }
 
-    /// The same without normals in gaps between points, as in the paper, whose prior holds each pixel separately:
+    /// The same without normals in gaps between points, as in the paper. Its prior holds each pixel separately, and
     /// additional pixels with wrong normals would impede its loop.
     #[must_use]
     pub fn of_points_alone(self) -> Self {

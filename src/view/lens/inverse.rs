@@ -14,9 +14,9 @@ pub(super) fn pixels([fx, fy]: [f64; 2], [right, down]: [f64; 2]) -> f64 {
     (fx * right).hypot(fy * down)
 }
 
-/// Argument at which a function that grows from zero up to its first fold reaches `target`, by Newton's method within a
-/// bracket. `function` returns its value, its derivative, and whether it has grown all the way. Beyond the function's
-/// range: the fold, or `most`.
+/// The argument at which a function reaches `target`, by Newton's method within a bracket. The function grows from zero
+/// up to its first fold. It returns its value, its derivative, and whether it has grown all the way. If the target lies
+/// beyond its range, the result is the fold or `most`.
 pub(super) fn inverse(function: impl Fn(f64) -> (f64, f64, bool), target: f64, most: f64) -> f64 {
     let (mut low, mut high) = (0.0, most);
     let mut at = target.min(0.5 * most);
