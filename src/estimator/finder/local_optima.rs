@@ -3,9 +3,9 @@
 //! Registrations that end in different poses see different points, so their objectives cannot be compared. They are
 //! ranked by gain = N^(1/3) ln(spread / noise). The logarithm is how much better the pose explains the image than a
 //! constant would. The root of the number N of visible points penalises tiny overlaps, which are easy to explain. Other
-//! powers were compared on local optima of random scenes (docs/lab/thresholds.md): without any, tiny overlaps win; the
-//! square root prefers the pose that merely sees more of two that are a few degrees apart. A pose that leaves only the
-//! image noise ranks above one that sees more but leaves over 1.25 times as much.
+//! powers were compared on local optima of random scenes (docs/lab/thresholds.md): without this factor, tiny overlaps
+//! win; the square root prefers, of two poses a few degrees apart, the one that merely sees more. A pose that leaves
+//! only the image noise ranks above one that sees more but leaves over 1.25 times as much.
 
 use crate::diagnosis::{Alternative, Diagnosis, Residuals};
 use crate::pose::{PhotometricReport, Similarity};
@@ -226,9 +226,9 @@ mod tests {
         let (large, exact) = (optimum(40.0, 1000.0, 0.02), optimum(0.0, 600.0, 0.0099));
         assert!(large.gain > exact.gain);
         assert_eq!(winner(&[large.clone(), exact.clone()], 0.01), (Some(Origin::Candidate(0)), 0));
-        // Not if the image is so clean that more is left to explain.
+        // The exact one does not win if the image is so clean that this one leaves more than its noise, too.
         assert_eq!(winner(&[large.clone(), exact], 0.005).0, Some(Origin::Candidate(40)));
-        // Nor if the first leaves hardly more noise, or the other sees little.
+        // Nor does it win if the other leaves hardly more noise, or if it sees little itself.
         assert_eq!(
             winner(&[optimum(40.0, 1000.0, 0.012), optimum(0.0, 600.0, 0.0099)], 0.01),
             (Some(Origin::Candidate(40)), 1)

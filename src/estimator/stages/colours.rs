@@ -145,7 +145,7 @@ impl ColourRegistration {
         }
     }
 
-    /// Whether the depth is so noisy that its normals only find the pose and matching surfaces must settle it, because
+    /// Whether the depth is so noisy that its normals only find the pose. Matching surfaces then settles it, because
     /// that averages the noise of whole surfaces. False under an unknown light, where the image's surface follows the
     /// pose and settles nothing.
     pub const fn is_coarse(&self) -> bool {
@@ -217,8 +217,8 @@ impl ColourRegistration {
         }
     }
 
-    /// Registers everything else first, and the scale last at the noise of the sharp image: on its way from a coarse
-    /// level, a registration may shrink the cloud onto a few pixels, where it fits easily.
+    /// Registers with the scale held first, and frees it last, at the noise of the sharp image: on its way from a
+    /// coarse level, a registration may shrink the cloud onto a few pixels, where it fits easily.
     fn register_scale_last(
         &mut self,
         pair: &ViewPair,

@@ -28,10 +28,9 @@ pub(super) struct Evaluation<'a> {
     pub weighting: Weighting,
 }
 
-/// Ratio of the variance of a normal along each of two tangents to the square of the error that its cubic fit reports.
-/// That error covers both tangents together, and treats the Gaussian weights of a window as inverse variances, so that
-/// its square is 1 / 0.62 of the variance that white noise leaves (0.617 to 0.634 for windows of 2 to 8 pixels, by
-/// summation).
+/// Variance of a normal along one tangent, relative to the square of the error that its cubic fit reports. That error
+/// covers both tangents together, and treats the Gaussian weights of a window as inverse variances, so that its square
+/// is 1 / 0.62 of the variance that white noise leaves (0.617 to 0.634 for windows of 2 to 8 pixels, by summation).
 const NOISE_VARIANCE: f64 = 0.31;
 
 impl Evaluation<'_> {

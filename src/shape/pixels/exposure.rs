@@ -92,7 +92,7 @@ fn misfit(colour: [f64; 3], offset: f64, shades: &[[f64; 3]]) -> f64 {
     robust::saturated(nearest)
 }
 
-/// The change of the exposure after a solve of `normals`; `moved` is its distance from the first one so far.
+/// The change of the exposure after a solve of `normals`; `moved` is how far it is from the first exposure.
 #[must_use]
 pub fn exposure_step(problem: ShadingProblem<'_>, weights: ShadingWeights, normals: &Normals, moved: f64) -> f64 {
     let polynomials = Polynomial::of(problem.light);
