@@ -8,27 +8,27 @@ export interface ElementError {
   readonly code: string;
   /** The attribute or the input at fault. */
   readonly field?: string;
-  /** In words, which may change. */
+  /** The failure in words, which may change. */
   readonly message: string;
-  /** More for programs, as of a `BimodalError`. */
+  /** Further values for programs, as in a `BimodalError`. */
   readonly details?: ErrorDetails;
 }
 
-/** The numbers under a lesson's figure, and those that are words. */
+/** The values under a lesson's figure: numbers and words. */
 export interface FigureResult {
-  /** By the names of the lesson's readouts. */
+  /** The numbers, by the names of the lesson's readouts. */
   readonly numbers: Readonly<Record<string, number>>;
-  /** Those that are words, such as the status of a run. */
+  /** The values that are words, such as the status of a run. */
   readonly words: Readonly<Record<string, string>>;
 }
 
-/** What a `status` event of `<bimodal-stereo>` tells. */
+/** The detail of a `status` event of `<bimodal-stereo>`. */
 export interface StatusDetail {
   /** The new status. */
   readonly status: StepReport["status"];
 }
 
-/** What a `status` event of `<bimodal-figure>` tells. */
+/** The detail of a `status` event of `<bimodal-figure>`. */
 export interface StateDetail {
   /** The new state, as the attribute has it. */
   readonly state: string;
@@ -84,7 +84,7 @@ export interface BimodalStereoElement extends HTMLElement {
   play(): void;
   /** Waits before the next step. */
   pause(): void;
-  /** One step; the run is paused then. */
+  /** Runs one step and pauses. */
   step(): void;
   /** Takes listeners of this element's events by their names. */
   addEventListener<K extends keyof StereoEvents>(

@@ -17,7 +17,7 @@ export interface Reached {
   begun: boolean;
   stage: Stage;
   iteration: number;
-  /** Of the search. */
+  /** Slices of the search that were done. */
   slices: number;
   /** Whether the status is no longer "running". */
   ended: boolean;

@@ -222,7 +222,7 @@ interface Sorted {
   texts: NamedFile[];
   /** The coefficients of lenses alone. */
   lenses: LensFile[];
-  /** What is none of these. */
+  /** All other files. */
   others: NamedFile[];
 }
 

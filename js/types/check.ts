@@ -82,9 +82,9 @@ export type CheckReading =
 
 /** The result for one candidate. */
 export interface CandidateReport {
-  /** Of this candidate. */
+  /** The verdict on this candidate. */
   verdict: CheckVerdict;
-  /** Why, for programs. */
+  /** The reason, for programs. */
   code: CheckCode;
   /** The verdict in a sentence with its numbers. */
   reason: string;
@@ -106,9 +106,9 @@ export interface CandidateReport {
 
 /** The result of checking a calibration. The first candidate is the one being checked (JavaScript puts names like "7" before all others). */
 export interface CheckReport {
-  /** Of the first candidate. */
+  /** The verdict on the first candidate. */
   verdict: CheckVerdict;
-  /** Why, for programs. */
+  /** The reason, for programs. */
   code: CheckCode;
   /** The verdict in a sentence with its numbers. */
   reason: string;
@@ -133,7 +133,7 @@ export interface CheckReport {
     /** 95 % interval of `pixels`. */
     interval: [number, number];
   };
-  /** By name; the one being checked comes first. */
+  /** The results for the candidates by name; the one being checked comes first. */
   candidates: Record<string, CandidateReport>;
   /** Each cue's share of the evidence, 0 to 1, and its sharpness: the inverse of its sigma in pixels of the colour image. */
   cues: Record<
@@ -141,20 +141,20 @@ export interface CheckReport {
     {
       /** Share of the evidence, 0 to 1. */
       share: number;
-      /** One over its sigma, per pixel. */
+      /** The inverse of the cue's sigma, per pixel. */
       sharpness: number;
     }
   >;
   /** What each frame contributes. */
   frames: {
-    /** As given, or "frame 1" and so on. */
+    /** The frame's name as given, or "frame 1" and so on. */
     name: string;
     /** Share of the evidence, 0 to 1. */
     share: number;
     /** What is wrong with it, if anything. */
     note?: string;
   }[];
-  /** How the log likelihood of each cue falls about the estimate: offsets in degrees (rx ry rz) or millimetres (tx ty tz). */
+  /** Decrease of each cue's log likelihood away from the estimate: offsets in degrees (rx ry rz) or millimetres (tx ty tz). */
   sensitivity: {
     /** Name of the cue. */
     cue: string;

@@ -12,7 +12,7 @@ export type Status = "running" | "converged" | "max-iterations" | "ambiguous" | 
 export interface Uncertainty {
   /** About x, y and z of the colour view, degrees. */
   rotationDegrees: number[];
-  /** Along x, y and z of the colour view, in its units; `null` where the views cannot see it. */
+  /** Along x, y and z of the colour view, in its units; `null` where the views do not determine it. */
   translation: (number | null)[];
   /** Sigma of the scale itself; `null` if the scale is fixed. */
   scale: number | null;
@@ -35,7 +35,7 @@ export interface StepReport {
   stage: Stage;
   /** The present pose. */
   pose: Pose;
-  /** Degrees. */
+  /** Change of the rotation in the last iteration, degrees. */
   rotationChange: number;
   /** The terms of the objective, without unit. */
   energy: {

@@ -6,7 +6,7 @@ import { MOST_SIDE } from "./limits.js";
 import type { Numbers } from "./numbers.js";
 import { type ReaderWarning, warning } from "../warnings.js";
 
-/** What a file says of a camera, before it is checked. */
+/** A camera as a file states it, before it is checked. */
 export interface RawCamera {
   name?: string | undefined;
   focal: Numbers;

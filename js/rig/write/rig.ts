@@ -15,7 +15,7 @@ export interface RigContext {
   colour?: PinholeInput | undefined;
   /** The depth camera. */
   depth?: PinholeInput | undefined;
-  /** Of both cameras' pictures. */
+  /** The sizes of both cameras' pictures. */
   sizes?:
     | {
         /** Of the colour camera, pixels. */

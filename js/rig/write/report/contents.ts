@@ -33,7 +33,7 @@ export interface Overlay {
 
 /** A file that the report names. */
 export interface ReportInput {
-  /** Of the file. */
+  /** The name of the file. */
   name: string;
   /** A description of what was read from it. */
   says?: string | undefined;
