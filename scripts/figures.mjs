@@ -12,7 +12,7 @@ import { setup } from "./setup.mjs";
 import { Failure, root, say, script } from "./shell.mjs";
 
 export const FOLDER = "docs/figures";
-/** Each in a file of `figures` that exports a function of its name. */
+/** Each figure has a file in scripts/figures/ that exports a function of the same name. */
 export const FIGURES = ["terms", "stages", "verdicts"];
 
 function parsed() {

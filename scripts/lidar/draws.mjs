@@ -10,7 +10,7 @@ const ERRORS = {
   "5 deg": { degrees: 5, millimetres: 0 },
 };
 const KEPT = 0.6;
-/** The distribution by chi-square with six degrees of freedom at 95 %. */
+/** The 95 % quantile of chi-squared with six degrees of freedom. */
 const INSIDE = 12.59;
 
 /** The points of some columns of a range image; the others become empty. */

@@ -157,7 +157,7 @@ function slow(base = {}) {
 }
 
 const turned = { given: () => noisy({ start: { angles: {} } }) };
-/** Where another value than the default has an effect, unless on the noisy pair, and that value. */
+/** For options whose effect the noisy pair does not show at another value, the run that shows it or the value to be used. */
 const SHOWN = {
   "options.light": { other: new Array(27).fill(0.1) },
   "options.start": { given: () => noisy({}), steps: 1, other: "identity" },

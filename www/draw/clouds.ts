@@ -61,14 +61,14 @@ export class Clouds {
   #next: Change | undefined;
   #drawing = false;
   #shown: Change["surfaces"];
-  /** Their extent. */
+  /** Bounding sphere of the surfaces. */
   #extent: Sphere | undefined;
   /** The pose that the depth map's points come with, and where they stand now. */
   #pose: Matrix4 | undefined;
   #standing = NOWHERE.clone();
   #swings = 0;
   #bounds = new Sphere(new Vector3(), 1);
-  /** Of the surfaces that are pinned. */
+  /** Bounding sphere of the pinned surfaces. */
   #pinned: Sphere | undefined;
   #marked: Record<Side, readonly number[] | null> = { image: null, depth: null };
   readonly #marks: Record<Side, HTMLElement>;

@@ -53,7 +53,7 @@ export interface Change {
 
 export interface PinnedSurfaces {
   surfaces: Record<Side, Surface>;
-  /** As `swing` was. */
+  /** The `swing` of the pinned run. */
   swing: number[];
 }
 

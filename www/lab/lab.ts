@@ -79,7 +79,7 @@ export class Lab {
   #turn = 0;
   /** The beginning under way, which steps wait for. */
   #beginning: Promise<void> = Promise.resolve();
-  /** The object that the surfaces on the screen are of. */
+  /** The object whose surfaces are on the screen. */
   #seen = "";
   #offered = false;
   /** Whether the input is played once it has been opened. */

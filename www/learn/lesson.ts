@@ -84,7 +84,7 @@ export interface Lesson {
   can: string;
   controls: readonly Control[];
   readouts: readonly Readout[];
-  /** Panels on which a drag sets two sliders; those that follow need no button. */
+  /** Panels on which a drag sets two sliders. With `follows`, a mouse sets them without a pressed button. */
   drags: Readonly<Record<string, { x: string; y: string; follows?: boolean }>>;
   /** Where the method is written down. */
   more: References;

@@ -31,7 +31,7 @@ interface Step {
 export class Undo {
   readonly #rig: RigState;
   #steps: Step[] = [];
-  /** Files that the worker holds, by what was seen of them here. */
+  /** Ids of the files that the worker holds, as far as this page has seen them. */
   #known = new Set<number>();
 
   constructor(rig: RigState) {
