@@ -5,7 +5,7 @@ import { exercises, learn, lessons } from "./lesson-figures.mjs";
 
 const { READ, SAME_UNITS, STATUSES, SYMBOLS, chapters, nameOf, placeOf, wordsOf } = learn;
 
-/** The entries that have words as an object; undefined if there are none. */
+/** The entries that have words, as an object; undefined if no entry has any. */
 const full = (entries) => {
   const kept = entries.filter(([, words]) => words !== undefined);
   return kept.length > 0 ? Object.fromEntries(kept) : undefined;
