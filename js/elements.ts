@@ -42,7 +42,7 @@ export interface StereoEvents {
   status: CustomEvent<StatusDetail>;
   /** The run has ended. */
   done: CustomEvent<StepReport>;
-  /** Nothing more is to be expected of this run. */
+  /** The run has failed; no further event follows. */
   error: CustomEvent<ElementError>;
 }
 
@@ -54,7 +54,7 @@ export interface FigureEvents {
   status: CustomEvent<StateDetail>;
   /** The last drawing has arrived. */
   done: CustomEvent<FigureResult>;
-  /** Nothing more is to be expected of this run. */
+  /** The run has failed; no further event follows. */
   error: CustomEvent<ElementError>;
 }
 
@@ -104,7 +104,7 @@ export interface BimodalStereoElement extends HTMLElement {
 export interface BimodalFigureElement extends HTMLElement {
   /** The lesson's name, such as "pixel". */
   lesson: string;
-  /** Its controls as in an address, such as "noise=2&light=window"; follows the visitor's changes. */
+  /** The values of the controls in the form of an address, such as "noise=2&light=window". Follows the visitor's changes. */
   state: string;
   /** The numbers of the last drawing. */
   readonly result: FigureResult | undefined;
@@ -151,7 +151,7 @@ export interface ElementsInJsx<Common = unknown> {
   "bimodal-figure": Omit<Common, "onerror"> & {
     /** The lesson's name. */
     lesson: string;
-    /** Its controls as in an address. */
+    /** The values of the controls in the form of an address. */
     state?: string;
     /** React's key. */
     key?: string | number;

@@ -59,7 +59,7 @@ function pixelsOf(stored: Stored): Pixels {
   return new Float32Array(stored);
 }
 
-/** What to do about types that are not read. */
+/** The remedy for a type that is not read. */
 function refusal(type: string): string {
   const advice = "save it as float32 or uint16";
   if (/^[<>|=]?O/.test(type))

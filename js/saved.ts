@@ -11,7 +11,7 @@ import { crc32 } from "./crc.js";
 import { BimodalError } from "./errors.js";
 import type { ColorImage, DepthMap, Options, Stage, StepReport } from "./types/index.js";
 
-/** How far a run has come. */
+/** The progress of a run. */
 export interface Reached {
   /** Whether anything has been run; before that the report names no stage of this run. */
   begun: boolean;
@@ -50,7 +50,7 @@ const VIEWS = ["image", "depth"] as const;
 const MEMBERS = ["data", "mask", "points", "normals"] as const;
 const STAGES: readonly Stage[] = ["search", "light", "shading", "surface", "registration", "refinement"];
 
-/** Where an array of a view belongs. */
+/** The place of an array within a view. */
 interface Entry {
   view: (typeof VIEWS)[number];
   member: (typeof MEMBERS)[number];

@@ -60,7 +60,7 @@ pub struct StartTolerance {
 
 impl Default for StartTolerance {
     fn default() -> Self {
-        // As far as registrations converge.
+        // Registrations converge from this far off.
         Self { degrees: 30.0, distance: None }
     }
 }

@@ -46,7 +46,7 @@ pub enum Reason {
     ShapesStay,
     /// Successive iterations found no better pose.
     NoBetterPose {
-        /// Their number.
+        /// Number of those iterations.
         iterations: u32,
     },
     /// The cap on iterations was reached.
@@ -85,7 +85,7 @@ pub enum Reason {
     },
     /// The same, and the silhouettes do not constrain a direction at all, which keeps its initial value.
     SilhouetteBlind {
-        /// That direction.
+        /// The direction that keeps its initial value.
         weakest: Direction,
     },
     /// A single albedo does not fit the image, and shading fits too little of its local contrast.
@@ -109,7 +109,7 @@ pub enum Reason {
     Hollow,
     /// Other poses fit the image equally well.
     Rivals {
-        /// Their number.
+        /// Number of those poses.
         count: u32,
         /// Rotation to the nearest one.
         nearest_degrees: f64,

@@ -30,7 +30,7 @@ const SAMPLE: usize = 65_536;
 pub struct Unit {
     pub metres: f64,
     pub is_guessed: bool,
-    /// What the values show, if the guess needs a reason.
+    /// The reason for the guess, as the values show it; may be empty.
     why: &'static str,
 }
 

@@ -16,7 +16,7 @@ export interface CheckFrame {
     /** The depth camera, which a depth map needs. */
     camera?: Pinhole;
   };
-  /** Its name in the report. Default: "frame 1" and so on. */
+  /** The name of the frame in the report. Default: "frame 1" and so on. */
   name?: string;
 }
 
@@ -145,13 +145,13 @@ export interface CheckReport {
       sharpness: number;
     }
   >;
-  /** What each frame contributes. */
+  /** The contribution of each frame. */
   frames: {
     /** The frame's name as given, or "frame 1" and so on. */
     name: string;
     /** Share of the evidence, 0 to 1. */
     share: number;
-    /** What is wrong with it, if anything. */
+    /** The fault of the frame, if it has one. */
     note?: string;
   }[];
   /** Decrease of each cue's log likelihood away from the estimate: offsets in degrees (rx ry rz) or millimetres (tx ty tz). */

@@ -49,7 +49,7 @@ struct Profile {
     /// Standard deviation s of the position at which the near surface ends, pixels.
     sigma: f64,
     window: f64,
-    /// How many independent discontinuities it stands for, at most one.
+    /// Weight of the profile, at most 1: its share of an independent discontinuity.
     weight: f64,
     tile: u32,
     edges: Vec<(f64, f64)>,

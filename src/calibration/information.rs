@@ -146,7 +146,7 @@ mod tests {
             [&|grey| 200.0 * grey, &|grey| -grey.powi(3), &|grey| (grey - 0.5).abs()];
         for (index, curve) in curves.into_iter().enumerate() {
             let found = values(&painted(Some(curve)));
-            // What the intensity adds.
+            // The information that the intensity adds.
             let added: Vec<f64> = found.iter().zip(&plain).map(|(found, plain)| found - plain).collect();
             let next = added[1..].iter().copied().fold(f64::NEG_INFINITY, f64::max);
             assert!(added[0] > 1.2 * next && next > 0.0, "curve {index}: {} and {next}", added[0]);

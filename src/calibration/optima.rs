@@ -91,11 +91,11 @@ impl Optimum {
     }
 }
 
-/// How well a pose fits, with given weights of the cues.
+/// The fit of a pose under given weights of the cues.
 struct Fit {
     /// Weighted log likelihood of the cues in each tile.
     by_tile: Vec<f64>,
-    /// Their sum and the log prior.
+    /// Log posterior: the sum over the tiles plus the log prior.
     posterior: f64,
 }
 

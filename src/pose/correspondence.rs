@@ -218,7 +218,7 @@ impl Correspondences {
         let threshold = problem.distance.unwrap_or(follows) as f32;
         let inlier = (INLIER_SPREADS * median).min(threshold);
         self.depth_of_pixel.fill(-1);
-        // From here on: squared distance of each pixel's point from its centre.
+        // From here on, `of_pixel` holds the squared distance between the centre of each pixel and the pixel's point.
         self.visible.of_pixel.fill(f32::INFINITY);
         (self.count, self.inliers) = (0, 0.0);
         for index in 0..self.of_point.len() {

@@ -151,7 +151,7 @@ pub enum DepthData {
     Map(Vec<f32>),
     /// A point and a unit normal for each pixel, NaN where missing. Normals may face away from the depth camera.
     Cloud {
-        /// In the depth camera's frame.
+        /// Points in the depth camera's frame.
         points: Points,
         /// Towards the camera of the grid.
         normals: Normals,

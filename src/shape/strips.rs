@@ -33,7 +33,7 @@ const CONTRADICTION: f64 = 0.1;
 /// A picture of a surface of albedo 1 under one lamp.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadedImage<'a> {
-    /// Its size in pixels.
+    /// Size of the picture in pixels.
     pub size: Size,
     /// Intensities row by row, NaN outside the object.
     pub values: &'a [f32],

@@ -186,7 +186,7 @@ fn fit_all(
             let (cosine, error) = (dot(fitted, normal).array(), error.array());
             for lane in (0..count).filter(|lane| known(start + lane)) {
                 let fitted = fitted.map(|axis| axis.array()[lane] as f32);
-                // Both are NaN if no cubic could be fitted.
+                // Cosine and error are NaN if no cubic could be fitted.
                 let good = cosine[lane] > LEAST_COSINE && error[lane].is_finite();
                 let (normal, error) = if good { (fitted, error[lane] as f32) } else { (firsts[lane], UNFITTED) };
                 visit(start + lane, normal, error.min(UNFITTED));

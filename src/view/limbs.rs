@@ -83,7 +83,7 @@ mod tests {
 
     #[test]
     fn a_bowl_that_shows_its_outside_as_well_is_solid() {
-        // Its far half shows the inside, its near half the outside.
+        // The far half of the bowl shows the inside, the near half the outside.
         assert!(!judged(|x, y| 100.0 + ball(x, y, 16.0) * if y < 0.0 { -1.0 } else { 1.0 }));
     }
 

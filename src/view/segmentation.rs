@@ -65,7 +65,7 @@ impl Mark {
     }
 }
 
-/// What a segmentation has reached.
+/// The progress of a segmentation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SegmentationReport {
     /// Rounds so far.
@@ -157,7 +157,7 @@ impl Segmentation {
         self.report()
     }
 
-    /// What has been reached.
+    /// The progress so far.
     #[must_use]
     pub fn report(&self) -> SegmentationReport {
         let count = self.is_object.iter().filter(|&&inside| inside).count();

@@ -121,7 +121,7 @@ export class Clouds {
     else this.#follow();
     const before = this.#pose;
     this.#pose = matrixOf(pose);
-    // From its previous place, relative to the new points.
+    // The animation starts from the previous pose, expressed for the new points.
     const from =
       before && !fresh
         ? this.#standing.clone().multiply(before).multiply(this.#pose.clone().invert())

@@ -27,14 +27,14 @@ export interface NumberField extends Common {
   kind: "number";
   initial: number | null;
   unit?: string | undefined;
-  /** What an empty field means. */
+  /** The meaning of an empty field. */
   empty: string;
   slider?: PageField["slider"];
 }
 export interface ChoiceField extends Common {
   kind: "choice";
   initial: string;
-  /** Without choices they come from the library's catalogue. */
+  /** The choices; if absent, they come from the library's catalogue. */
   choices?: readonly (readonly [value: string, label: string])[];
   /** Choices that apply to one origin only; for the other the initial choice is used. */
   only?: Readonly<Record<string, Origin>>;

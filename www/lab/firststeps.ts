@@ -179,7 +179,7 @@ export function stepsOf(
     if (step === "depth")
       [hooks.placeOf("depth"), field("unit"), field("meaning"), field("numerator"), camera("depth")].forEach(lend);
     if (step === "masks") [hooks.placeOf("colourMask"), hooks.placeOf("depthMask")].forEach(lend);
-    // What the last step expects already says what the notes do.
+    // The last step already says the same as the notes.
     if (step !== "go") borrowed.show(hooks.notes(), bodies[step]);
     void refresh();
   };

@@ -196,7 +196,7 @@ export class Gallery {
   open({ units, measured, frame }: Opened, fresh: boolean): Promise<void> {
     this.#units = this.#card.units = units;
     if (fresh) this.#clouds.lookAnew();
-    // Its pixels have changed.
+    // The pixels of another input are different, so the probe is reset.
     if (fresh) this.#probe.point(null);
     byId("errors", HTMLElement).hidden = !measured;
     return this.show(frame, []);

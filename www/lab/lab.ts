@@ -71,9 +71,9 @@ export class Lab {
   readonly #record = new RunRecord();
   /** The input that was requested last, accepted or not, or what it lacked. */
   #wanted: Source | string = "";
-  /** What is on the screen, to be opened again if the worker has lost it. */
+  /** The input on the screen, to be opened again if the worker has lost it. */
   #good: { source: Source; settings: Settings } | undefined;
-  /** What the worker holds; this may be an input that was superseded before it was shown. */
+  /** The input that the worker holds. It may have been superseded before it was shown. */
   #held: Source | undefined;
   /** Counts beginnings, so that the answer to a superseded one is dropped. */
   #turn = 0;

@@ -51,7 +51,7 @@ export class RunRecord {
     this.from = undefined;
   }
 
-  /** Its input is gone. */
+  /** Clears the record when its input is gone. */
   clear(): void {
     this.report = undefined;
     this.truth = null;

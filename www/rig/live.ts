@@ -33,7 +33,7 @@ export class Live {
   name = "";
   topics: Topic[] = [];
   chosen = { colour: "", depth: "" };
-  /** What went wrong, in words. */
+  /** The message of the last error. */
   error = "";
   progress = "";
   steps: Step[] = [];

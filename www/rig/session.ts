@@ -7,7 +7,7 @@ import type { Answer, CallKind, Calls, Request } from "./protocol";
 /** Milliseconds within which a cancelled check has to end by itself before its worker is terminated. */
 const PATIENCE = 1500;
 
-/** What went wrong in the worker. */
+/** An error in the worker. */
 export class RigError extends Error {
   readonly fault: Fault;
   constructor(fault: Fault) {

@@ -72,5 +72,5 @@ export function shellOf(rig: Rig, run: Run): ShellCheck {
   };
 }
 
-/** What the command cannot repeat. */
+/** Whether the run has restrictions that the command cannot repeat. */
 export const isRestricted = ({ plans }: Run): boolean => plans.some(({ paint, range }) => paint || range);

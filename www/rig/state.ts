@@ -17,9 +17,9 @@ export interface Item {
   error?: string;
   as?: Kind;
   unit?: number;
-  /** Its frame was removed, so that it does not make a new one automatically. */
+  /** The visitor removed the frame of this file, so the file does not form a new frame automatically. */
   aside?: true;
-  /** Its calibration has been arranged for the frames. */
+  /** The calibration of this file has been adapted to the frames. */
   arranged?: true;
   /** The recording from which it was taken; it is removed with the recording. */
   recording?: number;
@@ -73,7 +73,7 @@ export interface CameraChoice {
 export interface Candidate {
   id: number;
   name: string;
-  /** Where it comes from, in words. */
+  /** The source of the candidate, in words. */
   origin: string;
   pose: Pose;
   /** The file that it came from; it is removed with that file. */

@@ -86,7 +86,7 @@ pub fn words(name: &str) -> Vec<String> {
         .collect()
 }
 
-/// What remains of a name without one of some phrases at its beginning or end; `None` if it has none of them.
+/// The rest of a name after removing one of some phrases at its beginning or end; `None` if no phrase is there.
 pub fn leftover(name: &str, phrases: Phrases) -> Option<String> {
     let words = words(name);
     phrases.iter().find_map(|phrase| {

@@ -54,7 +54,7 @@ export async function eachRecord(
     let view = new DataView(library.HEAPU8.buffer);
     for (let point = 0; point < count; point++) {
       reader.getPoint(record);
-      // Its memory may have grown.
+      // The decoder's memory may have grown, which invalidates the old view.
       if (view.buffer !== library.HEAPU8.buffer) view = new DataView(library.HEAPU8.buffer);
       take(view, record, point);
     }

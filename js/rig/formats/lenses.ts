@@ -58,7 +58,7 @@ const LONGEST = 80;
 export interface LensName {
   /** Undefined where the table does not have the name. */
   family: Family | undefined;
-  /** What an unsupported model is. */
+  /** A description of an unsupported model. */
   meaning?: string;
 }
 

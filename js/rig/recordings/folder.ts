@@ -9,11 +9,11 @@ import type { Shot, Source, Track, TrackKind } from "./source.js";
 
 /** A topic or track of a recording. */
 export interface Topic {
-  /** Its name. */
+  /** The name of the topic. */
   name: string;
   /** The type of its messages, or its codec. */
   type: string;
-  /** What it holds. */
+  /** The kind of data that the topic holds. */
   kind: TrackKind;
   /** Number of its messages. */
   messages: number;

@@ -51,7 +51,7 @@ export interface Robot {
   address: string;
   /** The name that the bridge gives. */
   name: string;
-  /** All of its topics. */
+  /** All topics of the robot. */
   topics: Topic[];
   /** The topics that fit the two cameras best. */
   chosen: Choice;

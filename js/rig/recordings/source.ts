@@ -35,15 +35,15 @@ export interface ShotOptions extends ReadOptions {
 /** One image or cloud of a recording, decoded on demand. */
 export interface Shot {
   track: string;
-  /** When it was recorded, seconds. */
+  /** Time of the recording, seconds. */
   logged: number;
-  /** When it was taken, seconds on the clock of its camera, where the recording states it. */
+  /** Time of the exposure, seconds on the camera's clock; undefined if the recording does not state it. */
   taken: number | undefined;
   /** The coordinate frame of its camera. */
   frame: string;
   /** How its pixels are stored: "rgb8", "16UC1", "JPEG". */
   encoding: string;
-  /** Its size, where it is known before decoding. */
+  /** Columns, if they are known before decoding. */
   width?: number;
   height?: number;
   bytes: number;

@@ -31,7 +31,7 @@ pub const FIRST_LEVEL_NEAR: usize = 1;
 /// Progress of a candidate's registration.
 pub enum Attempt {
     Ongoing,
-    /// Its report; `None` if the candidate cannot be registered, which is not an error of the pair.
+    /// The report of the registration; `None` if the candidate cannot be registered, which is not an error of the pair.
     Ended(Option<Box<PhotometricReport>>),
 }
 

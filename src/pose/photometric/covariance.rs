@@ -35,9 +35,9 @@ const LEAST_SIGNAL: f64 = 1e-3;
 /// Standard deviations per channel, log units.
 #[derive(Clone, Copy)]
 pub(super) struct Noise {
-    /// Of the residuals at the present pose.
+    /// Standard deviation of the residuals at the present pose.
     pub residuals: f64,
-    /// Of the image, regardless of the pose.
+    /// Standard deviation of the image noise, regardless of the pose.
     pub image: f64,
 }
 

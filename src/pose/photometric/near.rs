@@ -52,7 +52,7 @@ pub(super) struct NearWeights {
 }
 
 impl NearTerms {
-    /// From the mask and the points of a problem.
+    /// Built from the mask and the points of a problem.
     pub fn new(problem: &PhotometricProblem<'_>) -> Self {
         let object = &problem.image.whole.object;
         let stride = problem.points.valid().count().div_ceil(MOST_POINTS).max(1);

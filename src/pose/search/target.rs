@@ -52,7 +52,7 @@ pub struct Target {
 /// Spectra of real fields, in the order of [`Fourier`].
 pub struct Spectra {
     pub mask: Field,
-    /// Of mask |y|^2.
+    /// Spectrum of mask |y|^2.
     pub square: Field,
     pub colour: [Field; 3],
 }

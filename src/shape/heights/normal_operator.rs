@@ -27,9 +27,9 @@ pub(super) struct NormalOperator {
     /// half the sum and half the difference of both components.
     cell_sum: Vec<f32>,
     cell_difference: Vec<f32>,
-    /// For edges: weight times first difference.
+    /// Weight times first difference, at the edges.
     edge_flux: [Vec<f32>; 2],
-    /// For the smoothness: kappa times second difference.
+    /// Kappa times second difference, for the smoothness.
     second_difference: [Vec<f32>; 2],
 }
 
@@ -240,7 +240,7 @@ mod tests {
     fn the_product_is_half_the_gradient_of_the_quadratic_form() {
         for (width, height) in [(9, 8), (5, 1), (1, 6), (2, 2), (16, 3)] {
             let (mut operator, inside, anchors, damping, edges) = system(width, height);
-            // Not zero off the mask, where it must not count.
+            // The direction is not zero outside the mask, where it must have no effect.
             let direction: Vec<f32> = (0..width * height).map(|index| (0.9 * index as f32).cos()).collect();
             let mut image = vec![f32::NAN; direction.len()];
             operator.apply(&anchors, &direction, &mut image);

@@ -33,7 +33,7 @@ export function landscapeOf(
   const found = pixelLandscape({ side: SIDE, ...request });
   const distances = found.objective.map((value) => Math.sqrt(value));
   const inside = distances.filter(Number.isFinite);
-  // Of three channels together.
+  // The noise of three channels together.
   const reach = NOISE * Math.sqrt(3);
   const minima = minimaOf(found);
   const best = minima[0]?.objective ?? NaN;

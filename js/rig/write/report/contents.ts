@@ -37,7 +37,7 @@ export interface ReportInput {
   name: string;
   /** A description of what was read from it. */
   says?: string | undefined;
-  /** Its size, bytes. */
+  /** Size of the file, bytes. */
   bytes?: number | undefined;
   /** The codes of its warnings, including guesses. */
   notes?: readonly string[] | undefined;
@@ -52,7 +52,7 @@ export type ReportEntry = readonly [name: string, value: string];
 export interface ReportOptions {
   /** The title. Default "Check of a calibration". */
   title?: string | undefined;
-  /** When it was made; without it the report has no date. */
+  /** Date of the report; without it the report shows none. */
   made?: Date | undefined;
   /** The files that were read. */
   inputs?: readonly ReportInput[] | undefined;
@@ -67,7 +67,7 @@ export interface ReportOptions {
     | {
         /** The command, of one or more lines; absent if no command can repeat it. */
         command?: string | undefined;
-        /** Where to type it, and how its result differs. */
+        /** Where to type the command, and how its result differs from this one. */
         note?: string | undefined;
       }
     | undefined;
