@@ -83,7 +83,8 @@ pub enum Reason {
         /// The least certain direction.
         weakest: Direction,
     },
-    /// The same, and the silhouettes do not constrain a direction at all, which keeps its initial value.
+    /// As [`AlbedoVaries`](Self::AlbedoVaries), and the silhouettes do not constrain one direction at all. The pose
+    /// keeps its initial value in that direction.
     SilhouetteBlind {
         /// The direction that keeps its initial value.
         weakest: Direction,
@@ -134,14 +135,14 @@ pub enum Reason {
     },
     /// The image pulls the apparent size of the object too far from that of the initial pose.
     SizeRunsAway {
-        /// The factor.
+        /// The factor between the two sizes.
         times: f64,
     },
     /// The pose puts the object behind the colour camera.
     BehindCamera,
     /// A stage of the loop failed.
     StageFailed {
-        /// The error.
+        /// The error of the stage.
         error: Error,
     },
 }

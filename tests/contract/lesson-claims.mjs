@@ -418,7 +418,7 @@ const guessed = [
   claim("sensor", "the refined normals?\nThey [hardly|greatly] change", () =>
     numberOf("sensor&noise=1", "normalsAfter") < 1.2 * numberOf("sensor", "normalsAfter") ? "hardly" : "greatly",
   ),
-  claim("paint", "does the program take it?\n[Dark paint|Shading].", () =>
+  claim("paint", "does the program mistake it for?\n[Dark paint|Shading].", () =>
     numberOf("paint&paint=0&shadow=0.9", "taken") > 90 ? "Dark paint" : "Shading",
   ),
   claim(

@@ -131,8 +131,7 @@ function isFit({ how, polar: { radius, height }, rows, row }: Rows): boolean {
 }
 
 /**
- * Largest ratio of the scatter of directions along a frame's axis to that along the best axis at which the frame's axis counts as the
- * scanner's.
+ * An axis of the frame counts as the scanner's axis if directions scatter along it at most this many times as much as along the best axis.
  */
 const AS_GOOD = 1.5;
 /** Cosine of 1.5 degrees. */
@@ -145,7 +144,7 @@ export function byRing(points: Float32Array, ring: ArrayLike<number>, forward: V
   return fitted(polarOf(points, frameOf(own ?? upwards(axis), forward)), ring, "ring");
 }
 
-/** The axis with the sign of the frame's axis that is nearest to it. */
+/** The axis, negated if it points away from the nearest axis of the frame. */
 function upwards(axis: Vector): Vector {
   const nearest = AXES.reduce((best, each) => (Math.abs(dot(each, axis)) > Math.abs(dot(best, axis)) ? each : best));
   return dot(nearest, axis) < 0 ? [-axis[0], -axis[1], -axis[2]] : axis;
@@ -291,7 +290,7 @@ function valleysOf(smooth: Float64Array, least: number): number[] {
   return valleys;
 }
 
-/** The rows with each uncertain point moved to the nearest of its row and the two on either side. */
+/** Moves each uncertain point to the nearest of three rows: its own and the two next to it. */
 function refined(rows: Rows, isDoubtful: (index: number) => boolean): Rows | undefined {
   const { radius, height } = rows.polar;
   const group = rows.row.map((own, index) => {

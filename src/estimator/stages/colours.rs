@@ -315,7 +315,7 @@ impl ColourRegistration {
     }
 }
 
-/// The object moved very far away or close, where a few pixels explain anything.
+/// The error for an object that moved so far away or so close that only a few pixels are compared.
 fn collapsed() -> Error {
     Error::new(ErrorKind::Degenerate, "start", "the image moves the object too far along the line of sight")
 }

@@ -136,7 +136,7 @@ const CALIBRATORS: readonly Row[] = [
     warnings: ["pose-left-out", "pose-assumed"],
     taken: "Cameras; poses relative to the first camera, which has the identity and is left out.",
     guessed:
-      "That a pose leads the way its name says, with a warning, because multical's exporter writes the opposite direction.",
+      "The direction of a pose, which is taken from its name with a warning, because multical's exporter writes the opposite direction.",
     exported: "`multical calibrate` writes it",
   },
   {

@@ -41,7 +41,7 @@ export interface ReportInput {
   bytes?: number | undefined;
   /** The codes of its warnings, including guesses. */
   notes?: readonly string[] | undefined;
-  /** SHA-256 of its bytes, in hexadecimal. */
+  /** SHA-256 of the file's bytes, in hexadecimal. */
   sha256?: string | undefined;
 }
 
@@ -73,6 +73,6 @@ export interface ReportOptions {
     | undefined;
   /** Options of the check with their values. */
   settings?: readonly ReportEntry[] | undefined;
-  /** Versions of the programs that made it. */
+  /** Versions of the programs that made the report. */
   versions?: readonly ReportEntry[] | undefined;
 }
