@@ -248,7 +248,7 @@ export class Estimator {
     return this.#call((raw) => raw.light());
   }
 
-  /** Points of one view, 3*n, both views in the colour view's frame. */
+  /** Points of one view, 3*n. The points of either view are in the colour view's frame. */
   points(view: "image" | "depth"): Float32Array {
     if (view !== "image" && view !== "depth") {
       throw new BimodalError("option", 'view: must be "image" or "depth"', "view");

@@ -38,7 +38,7 @@ const FORMAT = 1;
 const MARK = NAME.length + 1;
 /** A 32-bit number: the header's length, the checksum. */
 const WORD = 4;
-/** Most bytes of a header: options hold at most 800 numbers, of 25 characters each. */
+/** Largest number of bytes in a header: options hold at most 800 numbers of 25 characters each. */
 const LONGEST_HEADER = 65_536;
 /** Most bytes in all: two views of 4096 pixels on a side with all members have 0.7 GB. */
 const MOST_BYTES = 2 ** 30;

@@ -177,7 +177,7 @@ impl Default for Options {
     }
 }
 
-/// A term that weighs a million times as much as the colours leaves only their rounding in a 32-bit sum.
+/// If a term weighs a million times as much as the colours, a 32-bit sum keeps hardly a digit of the colours.
 const LARGEST_WEIGHT: f64 = 1e6;
 /// More iterations than anyone would wait for; guards against typing errors.
 const MOST_ITERATIONS: u32 = 100_000;

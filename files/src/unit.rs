@@ -135,7 +135,8 @@ impl Sample {
         self.0.last() == Some(&BLIND) && self.share(|value| value == BLIND) > STRAY
     }
 
-    /// The share of depths outside the range that a rig's camera is expected to see, if it exceeds that of stray ones.
+    /// The share of depths outside the range that a rig's camera is expected to see; `None` if only stray depths are
+    /// outside.
     pub fn beyond(&self, metres: f64) -> Option<f64> {
         let beyond = self.share(|value| value * metres < NEAREST || value * metres > FARTHEST);
         (beyond > STRAY).then_some(beyond)

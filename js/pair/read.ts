@@ -28,7 +28,7 @@ async function picture(bytes: Uint8Array, isColour: boolean): Promise<Picture> {
   throw badFile("it is too large for its format; save it as a PNG or a .npy file");
 }
 
-/** Reads a file as one of a pair. */
+/** Reads one of the two files of a pair. */
 export async function readPart(file: NamedFile, options: ReadOptions): Promise<RigReading> {
   try {
     return await readRigFile(file, options);

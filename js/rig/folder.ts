@@ -95,7 +95,7 @@ class FolderReader {
     this.#signal?.throwIfAborted();
   }
 
-  /** The file's content, or nothing with a warning. */
+  /** Reads a file; if that fails, adds a warning and returns undefined. */
   async read(file: NamedFile, options: ReadOptions): Promise<RigReading | undefined> {
     await this.rest();
     try {
@@ -150,7 +150,9 @@ class FolderReader {
     return frame;
   }
 
-  /** TUM's unit is trusted if the values are those of TUM's sensor, whose millimetres are all multiples of 5 in it. */
+  /**
+   * TUM's unit is a fifth of a millimetre. It is trusted if all values are multiples of 5, because TUM's sensor measures whole millimetres.
+   */
   #checkSupposed({ name, depth }: Extract<RigReading, { kind: "depth" }>, unit: number): void {
     if (!(depth.data instanceof Uint16Array)) return;
     const sample = sampled(depth.data);

@@ -49,7 +49,7 @@ const FORMS: Form[] = [
 export interface Times {
   colours: number[];
   depths: number[];
-  /** Whether the names are nothing but times. */
+  /** Whether the names consist of times only. */
   isAlone: boolean;
 }
 

@@ -41,18 +41,18 @@ export interface StepReport {
   energy: {
     /** Image residuals. */
     shading: number;
-    /** Normals against those of the other view. */
+    /** Differences of the normals from those of the other view. */
     prior: number;
     /** Distances of correspondences. */
     registration: number;
-    /** Refined depth against the measured one. */
+    /** Differences of the refined depth from the measured depth. */
     refinement: number;
     /** The sum. */
     total: number;
   };
   /** Share of valid depth pixels with a correspondence. */
   overlap: number;
-  /** Share of those within the robust scale. */
+  /** Share of the correspondences within the robust scale. */
   inliers: number;
   /** Robust mean log-colour residual. */
   residual: number;

@@ -19,8 +19,9 @@ use super::verdict::{CandidateReport, CheckVerdict, Judge};
 const FARTHEST: f64 = 1e6;
 /// The inverse fits clearly better if the candidate's error is at least this multiple of the error of the inverse.
 const CLEARLY: f64 = 3.0;
-/// Ratio of two densities above which a candidate was misread: that of the reading in the distribution of the estimate,
-/// over that of the candidate in the prior about the estimate. It is twenty for each of the fourteen readings.
+/// Ratio of two densities above which a candidate counts as misread. The first is the density of the reading in the
+/// distribution of the estimate, the second that of the candidate in the prior about the estimate. The limit is twenty
+/// times the number of readings, fourteen.
 const MISREAD: f64 = 280.0;
 /// Smallest share of the depth points that the estimate has to put onto the image before it may judge a candidate. The
 /// other points are not compared with anything, and a wrong pose can always fit a small part.

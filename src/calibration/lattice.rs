@@ -71,7 +71,7 @@ mod tests {
     fn rounds_that_differ_by_rounding_end_at_one_state() {
         let (scene, initial) = (scene(), State::at(Similarity::identity()));
         let units = scene.units(&initial);
-        // None lies halfway between two states.
+        // No state lies halfway between two nodes.
         let step = Vector::from_fn(|k, _| 0.73 * k as f64 - 2.83);
         let [one, other] = [0.0, 1e-6].map(|error| {
             let state = units.step(&initial, &step.add_scalar(error));

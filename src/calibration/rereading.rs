@@ -44,8 +44,8 @@ impl Rereading {
         (self.level as f64 + of_level) / (SIGMAS.len() + 1) as f64
     }
 
-    /// Registers one reading at one level; after the last level, the best one with all cues on the finest images.
-    /// Returns whether the search is over.
+    /// Registers one reading at one level. After the last level, registers the best reading with all cues on the finest
+    /// images. Returns whether the search is over.
     pub fn step(&mut self, scene: &Scene, finest: &[Planes]) -> bool {
         if self.level == SIGMAS.len() {
             if let Some((_, start)) = self.starts.first_mut() {

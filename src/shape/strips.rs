@@ -170,7 +170,7 @@ fn advanced(image: &ShadedImage<'_>, (place, slopes): State, at: State, step: f6
     }
     let change = gradient_of_image(image, at.0)? * (step / length);
     let moved = slopes + change;
-    // Back onto the curve of the slopes that have the picture's intensity, so that errors do not add up.
+    // Moves the slopes back onto the curve of slopes with the picture's intensity, so that errors do not add up.
     let next = place + gradient * (step / length);
     let there = gradient_of_reflectance(image.lamp, moved);
     let rest = sampled(image, next)? - reflectance(image.lamp, moved);

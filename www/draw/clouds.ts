@@ -63,7 +63,7 @@ export class Clouds {
   #shown: Change["surfaces"];
   /** Bounding sphere of the surfaces. */
   #extent: Sphere | undefined;
-  /** The pose that the depth map's points come with, and where they stand now. */
+  /** The pose under which the depth map's points are given, and their present position. */
   #pose: Matrix4 | undefined;
   #standing = NOWHERE.clone();
   #swings = 0;
@@ -150,7 +150,10 @@ export class Clouds {
     this.#change({ wipe: share });
   }
 
-  /** Moves the pinned run to the present one if its distance is not determined by the image or its pixels have another size. */
+  /**
+   * Moves the pinned run to the present run. This is needed if the image does not determine the distance, or if the pixels of the two runs
+   * differ in size.
+   */
   #placePinned(): void {
     const [then, now] = [this.#pinned, this.#extent];
     if (!then || !now) return;

@@ -65,7 +65,7 @@ pub fn decoded(bytes: &[u8]) -> std::result::Result<Raster, String> {
     }
 }
 
-/// 27 numbers in a text, whatever lies between them: names of channels and coefficients are ignored.
+/// Reads 27 numbers from a text. Everything between them is ignored, such as names of channels and coefficients.
 pub fn light(path: &Path) -> Result<Light> {
     /// A light takes half a kilobyte.
     const MOST_TEXT: u64 = 1 << 16;

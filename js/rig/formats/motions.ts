@@ -77,7 +77,7 @@ export class Motions {
     const used = new Set<string>();
     const before = this.poses.length;
     for (const key of Object.keys(node)) {
-      // The walk reads its group as well.
+      // Members of a group are read when the walk reaches their group.
       if (isOfGroup(node, key)) continue;
       const name = rotationName(key);
       if (name !== undefined && this.#pair(node, key, name, parent, context)) {

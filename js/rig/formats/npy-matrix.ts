@@ -52,7 +52,7 @@ const MOST_NUMBERS = 400;
 const MOST_ARCHIVE = 1 << 17;
 /** The plainest names of a depth map in an archive. */
 export const DEPTH = /^(?:depth|depths|depth_?map|depth_?image)$/i;
-/** Bytes at the start of an archive that has one array at least. */
+/** First bytes of a ZIP archive that is not empty. */
 const IS_ZIP = [0x50, 0x4b, 0x03, 0x04];
 
 /** An array as JSON has it: a list, or rows; undefined where it is too large for a calibration. */

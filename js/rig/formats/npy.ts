@@ -23,8 +23,8 @@ function asLevels(data: Pixels): Pixels {
 }
 
 /**
- * A list of points as a scan, with intensities if it has the columns of KITTI or nuScenes; as an organised cloud if it has as many points
- * as a depth camera has pixels.
+ * Reads a list of points. With the columns of KITTI or nuScenes it is a scan with intensities. With as many points as a depth camera has
+ * pixels, it is an organised cloud.
  */
 function ofList(data: Pixels, count: number, columns: number): Picture {
   const points = pointsOf(data, columns);

@@ -53,7 +53,7 @@ export function pointColumns(row: string[]): PointColumns | undefined {
   return { axes, names, ...(unit !== undefined && units.every((each) => each === unit) && { unit }) };
 }
 
-/** Whether named columns are those of poses over time; what a LiDAR measures beside the time makes them points. */
+/** Whether named columns hold poses over time. A column with a LiDAR's measurement makes them points instead. */
 function arePoses(names: string[]): boolean {
   if (names.some((name) => /^q_?[wxyz]$/.test(name))) return true;
   const isMeasured = names.some((name) => ["ring", "intensity"].includes(channelOf(name) ?? ""));

@@ -12,7 +12,7 @@ export interface Bytes {
   read(from: number, length: number): Promise<Uint8Array>;
 }
 
-/** What a track holds for the check of a rig. */
+/** The kind of data on a track, as the check of a rig uses it. */
 export type TrackKind = "picture" | "cloud" | "camera" | "transforms" | "other";
 
 export interface Track {
@@ -64,7 +64,7 @@ export interface Source {
   tracks: Track[];
   /** Seconds of the first and the last message. */
   span: [number, number];
-  /** The recorded data of these tracks from one time of recording to another, including both, in order. */
+  /** The data of these tracks between two times of recording (both inclusive), in order of time. */
   shots(tracks: readonly string[], from: number, until: number): AsyncIterable<Shot>;
   /** The intrinsics of the camera that took a shot. */
   camera(shot: Shot): Promise<Found<NamedCamera | undefined>>;

@@ -23,7 +23,8 @@ pub enum Origin {
 
 /// Exponent of the number of visible points in the gain. `powf` serves, because a separate `cbrt` would add 1 kB to the download.
 const THIRD: f64 = 1.0 / 3.0;
-/// A local optimum is convincing if every other one that sees as much has at least this many times its noise.
+/// A local optimum is convincing if every other optimum with as many visible points has at least this many times its
+/// noise.
 const CONVINCING_NOISE: f64 = 2.0;
 /// Registrations that end within this angle have found the same optimum, degrees.
 const SAME_OPTIMUM: f64 = 3.0;
@@ -177,7 +178,7 @@ impl LocalOptima {
     pub fn ranked(&mut self) -> Ranking {
         let (mut optima, noise) = (std::mem::take(&mut self.optima), self.image.image_noise);
         optima.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-        // The other one leaves only the image's noise, and the first far more.
+        // The second optimum leaves only the image's noise, and the first far more.
         let wins = |first: &LocalOptimum, other: &LocalOptimum| {
             other.registered.noise <= noise && other.rivals(first, 1.0) && !first.rivals(other, RIVAL_NOISE)
         };
@@ -226,7 +227,7 @@ mod tests {
         let (large, exact) = (optimum(40.0, 1000.0, 0.02), optimum(0.0, 600.0, 0.0099));
         assert!(large.gain > exact.gain);
         assert_eq!(winner(&[large.clone(), exact.clone()], 0.01), (Some(Origin::Candidate(0)), 0));
-        // The exact one does not win if the image is so clean that this one leaves more than its noise, too.
+        // The exact optimum does not win if the image is so clean that it leaves more than the image's noise, too.
         assert_eq!(winner(&[large.clone(), exact], 0.005).0, Some(Origin::Candidate(40)));
         // Nor does it win if the other leaves hardly more noise, or if it sees little itself.
         assert_eq!(

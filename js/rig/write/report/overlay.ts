@@ -26,7 +26,10 @@ function runs(edges: ArrayLike<number>, cell: number, columns: number, rows: num
   return path;
 }
 
-/** Both sides of one frame; the second one shows the picture of the first, so that the file holds it once. */
+/**
+ * The overlays of one frame before and after, that is with the calibration in question and with the best fit. The second overlay refers to
+ * the picture of the first, so that the file holds it once.
+ */
 export function overlayPair({ frame, width, height, picture, before, after }: Overlay, index: number): Markup {
   const field = `options.overlays[${index}]`;
   if (!isPicture(picture))
