@@ -83,7 +83,8 @@ pub enum Registration {
 pub enum Shading {
     /// One normal for each pixel (Eq. 6), then integration.
     Pixel,
-    /// The same, then the heights themselves: the surface determines what poor light leaves open for single pixels.
+    /// As [`Pixel`](Self::Pixel), then the heights themselves: the surface determines what a poor light leaves
+    /// undetermined in single pixels.
     Surface,
 }
 

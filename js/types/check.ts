@@ -56,7 +56,7 @@ export type CheckVerdict = "consistent" | "off" | "undecided";
 export interface Warning {
   /** Stable, for programs. */
   code: WarningCode;
-  /** The same in a sentence. */
+  /** The warning as a sentence. */
   message: string;
   /** The input that it is about, as a path in the contract. */
   field?: string;
@@ -94,7 +94,10 @@ export interface CandidateReport {
   offDegrees: number;
   /** Shift of the scene's centre between the candidate and the estimate, millimetres. */
   offMillimetres: number;
-  /** The same by axis, from the estimate to the candidate: degrees about x, y, z, then millimetres along them, in the colour frame. */
+  /**
+   * Rotation and shift by axis, from the estimate to the candidate: degrees about x, y, z, then millimetres along them, in the colour
+   * frame.
+   */
   offAxes: [number, number, number, number, number, number];
   /** Expected reprojection error of the candidate at the scene's depth, pixels of the colour image, and its 95 % interval. */
   pixels: number;

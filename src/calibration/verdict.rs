@@ -64,8 +64,8 @@ pub struct CandidateReport {
     pub off_degrees: f64,
     /// Shift of the scene's centre from that of the estimate, millimetres.
     pub off_millimetres: f64,
-    /// The same by axis, from the estimate to the candidate: degrees about x, y, z, then millimetres along them; colour
-    /// camera's frame.
+    /// Rotation and shift by axis, from the estimate to the candidate: degrees about x, y, z, then millimetres along
+    /// them; colour camera's frame.
     pub off_axes: [f64; POSE],
     /// Expected reprojection error of the candidate.
     #[cfg_attr(feature = "serde", serde(flatten))]

@@ -99,8 +99,8 @@ impl Correspondences {
         &self.depth_of_pixel
     }
 
-    /// The same without normals in gaps between points, as in the paper. Its prior holds each pixel separately, and
-    /// additional pixels with wrong normals would impede its loop.
+    /// These correspondences without normals in gaps between points, as in the paper. The paper's prior holds each
+    /// pixel separately, and additional pixels with wrong normals would impede the paper's loop.
     #[must_use]
     pub fn of_points_alone(self) -> Self {
         Self { widest_gap: 0, ..self }
@@ -132,7 +132,8 @@ impl Correspondences {
         across().or_else(|| self.ends(pixel, self.image.width, row, self.image.height))
     }
 
-    /// The same along a line of pixels that are `stride` apart; this pixel is number `place` on it.
+    /// The depth pixels on either side of a gap in a line of pixels that are `stride` apart. This pixel is number
+    /// `place` in the line.
     fn ends(&self, pixel: usize, stride: usize, place: usize, length: usize) -> Option<[usize; 2]> {
         let reach = 1..=self.widest_gap;
         let before =

@@ -346,7 +346,7 @@ impl Icp {
 struct Match {
     /// The transformed depth point.
     point: Vector3<f64>,
-    /// Vector from it to the image point.
+    /// Vector from the depth point to the image point.
     difference: Vector3<f64>,
     /// Normal of the image surface.
     normal: Vector3<f64>,

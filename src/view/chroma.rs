@@ -27,7 +27,7 @@ const COVERED: f32 = 0.6;
 /// Weight of brightness relative to chromaticity in the variance of a window: shading varies brightness, albedo varies
 /// both.
 const BRIGHTNESS: f32 = 0.5;
-/// Rounds of the filter: one alone leaves the middle of the drift.
+/// Rounds of the filter. A single round leaves the middle of the drift.
 const ROUNDS: usize = 2;
 
 /// Chromaticity in three channels (log S minus log brightness), and log brightness.

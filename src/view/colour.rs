@@ -38,7 +38,7 @@ pub struct ColourImage {
     pub transfer: Option<Transfer>,
     /// Non-zero where the object is; `None`: everywhere.
     pub mask: Option<Vec<u8>>,
-    /// `None`: orthographic.
+    /// The intrinsics; `None` for an orthographic view.
     pub camera: Option<Pinhole>,
 }
 

@@ -34,7 +34,7 @@ pub struct DepthMap {
     pub unit: Option<f64>,
     /// Non-zero where the object is; `None`: pixels with depth, and holes enclosed by them.
     pub mask: Option<Vec<u8>>,
-    /// `None`: orthographic.
+    /// The intrinsics; `None` for an orthographic view.
     pub camera: Option<Pinhole>,
     /// The caller's unit normals, interleaved; they override the computed ones.
     pub normals: Option<Vec<f32>>,

@@ -75,7 +75,7 @@ impl DepthNoise {
         }
         let determinant = ss * cc - sc * sc;
         let [variance, wander] = [cc * s1 - sc * c1, ss * c1 - sc * s1].map(|part| part / determinant);
-        // Covers too few spans as well, where the determinant is zero.
+        // This also covers too few spans, for which the determinant is zero.
         if !(variance > 0.0 && wander > 0.0 && variance.is_finite() && wander.is_finite()) {
             return Self::default();
         }

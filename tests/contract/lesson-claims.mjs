@@ -280,7 +280,7 @@ const paint = [
     change(numberOf("paint", "likeness"), numberOf("paint&shadow=0.9", "likeness"), ["rises", "falls"]),
   ),
   claim("paint", "but the status is still [converged|ambiguous|lost]", () => wordOf("paint&shadow=0.9")),
-  claim("paint", "chromaticity is now [less|more] informative", () =>
+  claim("paint", "Chromaticity is now [less|more] informative", () =>
     change(numberOf("paint", "likeness"), numberOf("paint&light=colourful", "likeness"), ["more", "less"]),
   ),
   claim("paint", "and the normals get [worse|better]", () =>

@@ -162,7 +162,7 @@ export class Plot {
     if (!options.waits) this.begin();
     this.#observer = new ResizeObserver(() => {
       const size = this.#size();
-      // The first size that it reports is the one with which it was built.
+      // The first size that the observer reports is the one with which the chart was built.
       if (!this.#begin && size.width !== this.#plot?.width) this.#plot?.setSize(size);
     });
     this.#observer.observe(box);

@@ -101,7 +101,7 @@ export class Clouds {
     this.recolour();
   }
 
-  /** Frees the box for others. */
+  /** Ends the drawing and frees the box. */
   end(): void {
     this.#swings++;
     this.#renderer.end();

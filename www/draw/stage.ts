@@ -162,7 +162,7 @@ function place(group: Group, matrix: number[]): void {
   group.matrixWorldNeedsUpdate = true;
 }
 
-/** One surface both ways. */
+/** One surface, drawn as points or as a mesh. */
 class Sheet {
   readonly group = new Group();
   readonly #points: Points<BufferGeometry, PointsMaterial>;

@@ -20,7 +20,7 @@ interface Common {
   group: Group;
   /** Path in the library's errors that belongs to this field. */
   path: string;
-  /** Shown only while this holds. */
+  /** The condition under which the field is shown. */
   when?: (settings: Settings, source: Origin) => boolean;
 }
 export interface NumberField extends Common {

@@ -106,7 +106,7 @@ function gallery(hooks: Hooks): HTMLElement {
   return element;
 }
 
-/** Files of any kind at once, on devices without dropping as well. */
+/** A button that takes several files of any kind at once, for devices without drag and drop. */
 function several(hooks: Hooks): HTMLElement {
   const picker = make("input", { type: "file", multiple: true, class: "visually-hidden", id: "first-run-all" });
   picker.addEventListener("change", () => {

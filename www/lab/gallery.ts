@@ -297,7 +297,7 @@ export class Gallery {
   #place(figure: HTMLElement, parent: string | undefined, title: string): void {
     this.#figures.push(figure);
     const number = this.#figures.length;
-    // The tenth has the key 0; those after it have none.
+    // The tenth view has the key 0; later views have none.
     const key = number > 10 ? "+" : String(number % 10);
     const hint = number > 10 ? "Enlarge" : `Enlarge (${key})`;
     const button = make(

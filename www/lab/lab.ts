@@ -59,7 +59,7 @@ export class Lab {
   });
   /** A saved run that replaces a pair of files, until a pair is given. */
   #saved: Source | undefined;
-  /** The files of what is on the screen; none of a sample. */
+  /** The files of the input on the screen; empty for a sample. */
   #pair: readonly (File | undefined)[] = [];
   readonly #panels: Panels;
   readonly #compare: Compare;

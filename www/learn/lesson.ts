@@ -8,7 +8,7 @@ interface CommonControl {
   key: string;
   label: string | ((values: Values) => string);
   hint?: string;
-  /** Shown only while this holds. */
+  /** The condition under which the control is shown. */
   when?: (values: Values) => boolean;
 }
 export interface SliderControl extends CommonControl {

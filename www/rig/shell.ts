@@ -45,7 +45,7 @@ function camerasOf(rig: Rig, { plans: [plan] }: Run): { names: string[]; text?: 
   return { names: [], text: JSON.stringify(cameras) };
 }
 
-/** The folder is the one in which the command is typed. */
+/** The arguments of the command that repeats the check. It has to be typed in the folder that holds the files. */
 export function shellOf(rig: Rig, run: Run): ShellCheck {
   const cameras = camerasOf(rig, run);
   const calibrations = Object.entries(run.candidates).map(([name, pose], k) => {

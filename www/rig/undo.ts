@@ -38,7 +38,7 @@ export class Undo {
     this.#rig = rig;
   }
 
-  /** What the next undo takes back, in words; nothing if there is no step, or if its effect would not be visible. */
+  /** A description of what the next undo takes back; undefined if there is no step, or if its effect would not be visible. */
   wordsAt(where: string): string | undefined {
     if (this.#steps.at(-1)?.isMoot()) {
       this.#steps = this.#steps.slice(0, this.#steps.findLastIndex((step) => !step.isMoot()) + 1);

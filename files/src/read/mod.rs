@@ -50,12 +50,12 @@ pub fn whole(path: &Path) -> Result<Vec<u8>> {
     }
 }
 
-/// A picture or an array.
+/// Reads a picture or an array from a file.
 pub fn raster(path: &Path) -> Result<Raster> {
     decoded(&whole(path)?).map_err(|reason| Problem::file(path, reason))
 }
 
-/// The same for a file's bytes, or why they are not read.
+/// Decodes the bytes of a picture or an array. The error is the reason why they are not read.
 pub fn decoded(bytes: &[u8]) -> std::result::Result<Raster, String> {
     match kind_of(bytes) {
         Some(Kind::Png) => picture::png(bytes),

@@ -129,7 +129,7 @@ pub fn motion(
     Ok(NamedPose { names, pose: Similarity { scale: 1.0, rotation, translation } })
 }
 
-/// The same for a rotation computed from other numbers.
+/// A named pose from a rotation that was computed from other numbers.
 pub fn turned(
     rotation: &Matrix3<f64>,
     translation: &[f64],

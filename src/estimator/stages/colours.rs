@@ -239,7 +239,7 @@ impl ColourRegistration {
         self.step_from(pair, start, first_level, anew)
     }
 
-    /// The same, beginning at a level of the image.
+    /// A step of a candidate's registration that begins at a given level of the image.
     pub fn step_from(&mut self, pair: &ViewPair, start: &Similarity, first_level: usize, anew: bool) -> Attempt {
         let outcome = if anew { self.begin(pair, start, first_level).map(|()| None) } else { self.advance(pair) };
         match outcome {

@@ -83,9 +83,9 @@ impl Evaluation<'_> {
         self.system_without_noise(frame, None)
     }
 
-    /// The same by instrumental variables, minus the contribution of white noise of the normals, which biases the light
-    /// towards less contrast, and with it the pose. The contribution stays in if the light would be undetermined
-    /// without it.
+    /// The equations by instrumental variables, minus the contribution of white noise of the normals. This noise biases
+    /// the light towards less contrast, and with it the pose. The contribution stays in if the light would be
+    /// undetermined without it.
     pub fn unbiased_system(&self, frame: &Frame) -> Option<ReducedSystem> {
         let noise = self.problem.depth_noise;
         self.system_without_noise(frame, self.problem.normal_error.filter(|_| noise.is_white && noise.is_visible()))

@@ -51,8 +51,8 @@ impl NormalOperator {
         }
     }
 
-    /// Adopts the edges' weights, and adds a damping between all neighbours inside: a pixel whose `flags` contain the
-    /// first of `neighbours` has one to the right, and with the second one below.
+    /// Adopts the edges' weights, and adds a damping between all neighbouring pixels inside. `neighbours` are the two
+    /// bits in `flags` that mark a pixel with a neighbour to the right and below.
     pub fn set_edges(&mut self, edges: &[Edges; 2], flags: &[u8], neighbours: [u8; 2], damping: f32) {
         for ((sum, edges), neighbour) in self.edge_weight.iter_mut().zip(edges).zip(neighbours) {
             for ((sum, weight), flags) in sum.iter_mut().zip(&edges.weight).zip(flags) {

@@ -27,7 +27,7 @@ export interface Overlay {
   picture: string;
   /** Column and row of each point of a depth edge, with the calibration in question; absent if there is only an estimate. */
   before?: ArrayLike<number> | undefined;
-  /** The same points with the best fit. */
+  /** Column and row of each of these points with the best fit. */
   after: ArrayLike<number>;
 }
 
