@@ -23,7 +23,7 @@ import type { Views } from "./workers/messages.js";
 import { RefinementWorker, type Refinement } from "./workers/refinement.js";
 import { SearchWorkers } from "./workers/search.js";
 
-/** Pixels of the depth view from which on a refinement worker is worth its messages: a refinement then takes some milliseconds. */
+/** Smallest number of depth pixels for which a refinement worker is worth its messages: a refinement then takes some milliseconds. */
 const LEAST_SHARED = 96 * 96;
 
 /** Whether the canvas is the page's or a worker's; where there are no canvases there is no context either. */

@@ -40,7 +40,7 @@ const MARK = NAME.length + 1;
 const WORD = 4;
 /** Largest number of bytes in a header: options hold at most 800 numbers of 25 characters each. */
 const LONGEST_HEADER = 65_536;
-/** Most bytes in all: two views of 4096 pixels on a side with all members have 0.7 GB. */
+/** Largest number of bytes in all: two views of 4096 pixels on a side with all members have 0.7 GB. */
 const MOST_BYTES = 2 ** 30;
 
 const TYPES = { Uint8Array, Uint8ClampedArray, Uint16Array, Float32Array } as const;

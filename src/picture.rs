@@ -77,7 +77,7 @@ const STEPS: usize = 256;
 const LAST: f64 = (STEPS - 1) as f64;
 const OPAQUE: u8 = 255;
 const CLEAR: [u8; 4] = [0; 4];
-/// Most values from which an automatic range is derived.
+/// Largest number of values from which an automatic range is derived.
 const MOST_SAMPLES: usize = 4096;
 /// Share of the values below and above an automatic range, so that single outliers do not flatten everything else.
 const OUTLIERS: f64 = 0.01;

@@ -23,7 +23,7 @@ const DEEPEST: usize = 8;
 const MOST_FILES: usize = 200_000;
 /// Number of first bytes, which identify pictures.
 const HEAD: u64 = 16;
-/// Most bytes of a list of frames.
+/// Largest number of bytes of a list of frames.
 const MOST_LIST: u64 = 64 << 20;
 
 fn pattern(text: &str) -> Regex {

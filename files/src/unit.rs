@@ -20,9 +20,9 @@ const NEARLY_ALL: f64 = 0.99;
 const MOSTLY: f64 = 0.9;
 /// With fewer distinct depths, the map was made by hand, and its round numbers say nothing about the unit.
 const MANY_VALUES: usize = 16;
-/// Values from which on nothing was seen.
+/// A value from here on means that nothing was seen.
 const LARGEST: f64 = 1e12;
-/// Most values in a quantile.
+/// Largest number of values in a quantile.
 const SAMPLE: usize = 65_536;
 
 /// Metres for each stored number, and how they are known.

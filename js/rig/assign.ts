@@ -300,7 +300,7 @@ function carriedInto(
 
 /** Facts that the names of a folder's files state. */
 export interface Hints {
-  /** The depth maps are aligned with the colour images. */
+  /** Whether the depth maps are aligned with the colour images. */
   isAligned?: boolean;
   /** Cameras named after a frame are the cameras of that frame. */
   cameraOf?: (frame: CheckFrame) => NamedCamera | undefined;

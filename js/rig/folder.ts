@@ -249,7 +249,7 @@ function sortedFiles(files: NamedFile[]): Sorted {
   return found;
 }
 
-/** Most poses that a warning names. */
+/** Largest number of poses that a warning names. */
 const MOST_NAMED = 4;
 /** Names of sensors that take no pictures and no points. */
 const INERTIAL = /(?:^|[^a-z])(?:imu|gps|oxts|gyro\w*|accel\w*)(?:[^a-z]|$)/i;
@@ -329,7 +329,7 @@ async function calibrationOf({ texts, others, lenses }: Sorted, frames: Readonly
   return { ...all, depthUnit, own };
 }
 
-/** Most reasons that an error gives. */
+/** Largest number of reasons that an error gives. */
 const REASONS = 3;
 
 /**

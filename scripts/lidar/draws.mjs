@@ -1,5 +1,6 @@
-// Checks of LiDAR frames whose candidate is the data set's calibration or off by a known error, with the intensities and without them. That
-// calibration counts as true. All draws but the first keep three fifths of the range image's columns, from a random one on.
+// Checks LiDAR frames with two kinds of candidates, the data set's calibration and poses with a known error, each with and without the
+// intensities. The data set's calibration counts as true. All draws but the first keep three fifths of the range image's columns, from a
+// random one on.
 import { mahalanobis, offset, chance, poseOf, quantile, sizes, wrong } from "../rigs/draws.mjs";
 import { seedOf } from "../captures/draws.mjs";
 import { say } from "../shell.mjs";

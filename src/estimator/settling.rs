@@ -23,7 +23,8 @@ use crate::view::{Normals, Size};
 pub const TOLERANCE: f64 = 0.1;
 /// Sigma of a height, pixel lengths: at best, surfaces from shading at 1 % noise are this accurate.
 const HEIGHT_SIGMA: f64 = 0.05;
-/// Most pixels of each frame that are compared, on a square grid: their mean square is then accurate to a few percent.
+/// Largest number of pixels of each frame that are compared, on a square grid: their mean square is then accurate to a
+/// few percent.
 const MOST_PIXELS: usize = 4000;
 
 /// How far both shapes are from rest.

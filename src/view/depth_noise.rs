@@ -27,8 +27,8 @@ const SURFACE_GROWTH: f64 = 1.0 / 6.0;
 /// variance of the others if they are normal: 1 - 2 q phi(q) / 0.8 with q = 1.2816.
 const KEPT: f64 = 0.8;
 const KEPT_VARIANCE: f64 = 0.438;
-/// Fewest second differences, which determine a variance to 5 %, and the most that are used. An object of 32x32 pixels
-/// has fewer: relief of a few pixels cannot be distinguished from noise there.
+/// Smallest number of second differences, which determine a variance to 5 %, and the most that are used. An object of
+/// 32x32 pixels has fewer: relief of a few pixels cannot be distinguished from noise there.
 const FEWEST: usize = 1000;
 const MOST: usize = 1 << 16;
 

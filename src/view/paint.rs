@@ -22,11 +22,11 @@ use crate::numeric::quantile;
 const HUE_STEP: f32 = 0.06;
 /// The same limit for brightness (the channels' mean), log units. No other value was tried.
 const LOG_STEP: f32 = 0.22;
-/// Fewest pixels of a region.
+/// Smallest number of pixels of a region.
 const SMALLEST_REGION: usize = 6;
-/// Most regions; beyond these, the smallest leave the mask.
+/// Largest number of regions; beyond these, the smallest leave the mask.
 const MOST_REGIONS: usize = 240;
-/// Fewest pairs of pixels along a border.
+/// Smallest number of pairs of pixels along a border.
 const FEWEST_PAIRS: usize = 3;
 /// Widest border of mixed pixels between two regions.
 const WIDEST_BORDER: usize = 3;
@@ -45,7 +45,7 @@ const ONE_BRIGHTNESS: f64 = 0.4;
 /// together.
 const PALETTE_ROUNDS: usize = 2;
 
-/// Most sweeps over the borders, and the change of a log offset that ends them.
+/// Largest number of sweeps over the borders, and the change of a log offset that ends them.
 const MOST_SWEEPS: usize = 2000;
 const SETTLED_OFFSET: f64 = 1e-5;
 

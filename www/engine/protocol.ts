@@ -247,7 +247,7 @@ export interface Fault {
   message: string;
   field?: string;
   details?: ErrorDetails;
-  /** After a panic the instance cannot be trusted, and without its module it cannot work, so the worker has to be replaced. */
+  /** Whether the worker has to be replaced: after a panic its instance cannot be trusted, and without its module it cannot work. */
   fatal: boolean;
 }
 

@@ -67,10 +67,10 @@ async function rangeInWords({ depth }: Files, settings: Settings): Promise<strin
   const stored = measured.range.map(short).join(" to ");
   const { unit } = settings;
   if (settings.meaning === "inverse") return `Stored numbers ${stored}; larger is nearer.`;
-  if (typeof unit !== "number") return `Stored numbers ${stored}. Without a camera one of them is one pixel.`;
+  if (typeof unit !== "number") return `Stored numbers ${stored}. Without a camera, one unit is one pixel.`;
   const unitName = settings["depth.fx"] === null ? "pixels" : "m";
   const metres = measured.range.map((value) => short(value * unit)).join(" to ");
-  return `Stored numbers ${stored}, which is ${metres} ${unitName}. Is that as far as the object was? If not, change the unit.`;
+  return `Stored numbers ${stored}, which is ${metres} ${unitName}. Was the object that far away? If not, change the unit.`;
 }
 
 async function expected(files: Files, settings: Settings): Promise<{ words: string; isDoubt: boolean }[]> {

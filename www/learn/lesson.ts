@@ -18,7 +18,7 @@ export interface SliderControl extends CommonControl {
   step: number;
   initial: number;
   unit?: string;
-  /** The slider runs over the logarithm: from 10^min to 10^max. */
+  /** Whether the slider runs over the logarithm, from 10^min to 10^max. */
   logarithmic?: boolean;
   /** The value as people read it, if it depends on the other controls. */
   reads?: (value: number, values: Values) => string;

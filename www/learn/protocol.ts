@@ -53,7 +53,7 @@ export interface Mark {
   points: number[];
   /** Radius of dots and rings in hundredths of the picture. */
   size?: number;
-  /** A thin line without a dark edge, for lines that lie close to each other. */
+  /** Whether lines are thin and have no dark edge, because they lie close to each other. */
   isFine?: boolean;
 }
 

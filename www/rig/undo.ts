@@ -2,7 +2,7 @@
 
 import type { RigState } from "./state";
 
-/** Most undo steps; their contents stay in memory. */
+/** Largest number of undo steps; their contents stay in memory. */
 const MOST_STEPS = 20;
 
 /** An object in its earlier state; lists contain the same objects, to which rows of the page refer. */
@@ -21,7 +21,7 @@ interface Step {
   isMoot(): boolean;
   /** Later items have higher numbers. */
   last: number;
-  /** Everything was removed, so later items belong to another rig. */
+  /** Whether everything was removed, so that later items belong to another rig. */
   isWhole: boolean;
   lists: Pick<RigState, "items" | "frames" | "candidates">;
   rest: Pick<RigState, "notes" | "history" | "run">;

@@ -67,7 +67,7 @@ pub fn decoded(bytes: &[u8]) -> std::result::Result<Raster, String> {
 
 /// Reads 27 numbers from a text. Everything between them is ignored, such as names of channels and coefficients.
 pub fn light(path: &Path) -> Result<Light> {
-    /// A light takes half a kilobyte.
+    /// Largest size of a light's file, bytes; usual files have half a kilobyte.
     const MOST_TEXT: u64 = 1 << 16;
     let bytes = head(path, MOST_TEXT).map_err(|error| Problem::file(path, error))?;
     let text = String::from_utf8(bytes).map_err(|_| Problem::file(path, "it is not text"))?;
@@ -82,7 +82,7 @@ pub fn light(path: &Path) -> Result<Light> {
 
 /// A Gaussian over lights from JSON. Other members, such as its source, are ignored.
 pub fn light_prior(path: &Path) -> Result<LightGaussian> {
-    /// The file of the crate's default prior takes ten kilobytes.
+    /// Largest size of a prior's file, bytes; that of the crate's default prior has ten kilobytes.
     const MOST_TEXT: u64 = 1 << 20;
     let bytes = head(path, MOST_TEXT).map_err(|error| Problem::file(path, error))?;
     let mut file: serde_json::Value = serde_json::from_slice(&bytes).map_err(|error| Problem::file(path, error))?;

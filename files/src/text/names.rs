@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 /// Longest name that is interpreted.
 pub const LONGEST: usize = 80;
 
-/// Most characters of a text that names something.
+/// Largest number of characters of a text that names something.
 const LONGEST_TEXT: usize = 200;
 
 pub type Pattern = LazyLock<Regex>;

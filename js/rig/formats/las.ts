@@ -12,7 +12,7 @@ import type { Points } from "./picture.js";
 /** Bytes of the shortest header, and of the header of LAS 1.4. */
 const HEADER = 227;
 const HEADER_14 = 375;
-/** Fewest bytes of a point in each format, and the offset of its GPS time. */
+/** Smallest number of bytes of a point in each format, and the offset of its GPS time. */
 const FORMATS: [bytes: number, time: number | undefined][] = [
   [20, undefined],
   [28, 20],

@@ -36,7 +36,7 @@ import {
 } from "./poses.js";
 import { type Turn, numbersAsRotation, ofFour, ofNine, ofThree, orderWarning } from "./turns.js";
 
-/** Most unused poses that warnings name. */
+/** Largest number of unused poses that warnings name. */
 const FEW = 4;
 /** Tolerances within which two motions of a file are inverse, degrees and metres. */
 const AGREES = { degrees: 0.02, metres: 1e-3 };

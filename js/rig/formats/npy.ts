@@ -10,7 +10,7 @@ import type { Picture } from "./picture.js";
 import type { ReaderWarning } from "../warnings.js";
 import { entriesOf, unpacked } from "./zip.js";
 
-/** Columns of a list of points: x, y, z and, for instance, intensity or colours; images are wider. */
+/** Smallest and largest number of columns in a list of points: x, y, z and, for instance, intensity or colours. Images are wider. */
 const [FEWEST_COLUMNS, MOST_COLUMNS] = [3, 8];
 /** Smallest ratio of rows to columns of a list of points; images are not so tall. */
 const TALL = 10;

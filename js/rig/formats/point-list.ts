@@ -5,9 +5,9 @@ import { lengthOf } from "./names.js";
 import { numberOf } from "./numbers.js";
 import { headOf, isNumbers } from "./table.js";
 
-/** Fewest lines of a list of points; a shorter text is a matrix or a short trajectory. */
+/** Smallest number of lines of a list of points; a shorter text is a matrix or a short trajectory. */
 const FEWEST_LINES = 20;
-/** Most columns of a point without names: x y z, intensity, colours, normals. */
+/** Largest number of columns of a point without names: x y z, intensity, colours, normals. */
 const MOST_OF_POINT = 10;
 /** Largest difference of a quaternion's length from 1. */
 const SLACK = 0.01;

@@ -3,7 +3,7 @@ import { lensNamed } from "./lenses.js";
 import { member } from "./names.js";
 import { type Node, matrixOf, numberOf } from "./numbers.js";
 
-/** Most letters of a name. */
+/** Largest number of letters of a name. */
 const LONGEST = 80;
 
 /** Members that name the lens of a camera and nothing else. */

@@ -35,7 +35,7 @@ export interface Calibration {
 
 const MOST_NODES = 50_000;
 const MOST_MEMBERS = 200_000;
-/** Most members of an object that is a camera or a motion; larger objects may contain some. */
+/** Largest number of members of an object that is a camera or a motion; larger objects may contain some. */
 const MOST_OWN = 300;
 const MOST_DEPTH = 24;
 

@@ -26,13 +26,13 @@ export interface Rows {
 
 const FEWEST_ROWS = 4;
 const MOST_ROWS = 512;
-/** Fewest points in a row for the fit of its cone. */
+/** Smallest number of points in a row for the fit of its cone. */
 const FEWEST_POINTS = 20;
 /** Largest ratio of the median distance of points from their cones to the distance of neighbouring cones; points without rows have 0.25. */
 const FITTING = 0.15;
 /** The same limit if the rows come from rings or from turns, which are rows even if their cones fit poorly. */
 const FITTING_RINGS = 0.5;
-/** Most points on which this ratio is measured. */
+/** Largest number of points on which this ratio is measured. */
 const LOOKED_AT = 50_000;
 /** Share of points that have to lie in rows. */
 const NEARLY_ALL = 0.95;

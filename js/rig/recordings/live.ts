@@ -20,7 +20,7 @@ import { Transforms, isStatic } from "./transforms.js";
 
 /** Milliseconds within which the first message of each topic must arrive. */
 const FIRST = 4000;
-/** Most topics whose first message is awaited. */
+/** Largest number of topics whose first message is awaited. */
 const MOST_TOPICS = 40;
 /** Shots of each topic among which the nearest pair is chosen. */
 const KEPT = 8;

@@ -51,7 +51,7 @@ export interface Recording {
 }
 
 const FRAMES = 10;
-/** Most topics whose first message is read. */
+/** Largest number of topics whose first message is read. */
 const MOST_TOPICS = 100;
 
 const topicName = (value: unknown, field: string): void => {

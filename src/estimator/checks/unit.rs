@@ -15,9 +15,9 @@ const UNITS: [[f32; 6]; 2] = [[0.7, 0.5, 0.3, 0.2, 0.15, 0.1], [1.5, 2.0, 3.0, 5
 /// A unit whose noise exceeds this multiple of the given unit's leads away from the right one, and no unit beyond it is
 /// tried.
 const AWAY: f64 = 2.0;
-/// Most rounds of a registration in another unit. Least squares usually needs all of them, and further rounds with
-/// instrumental variables would double the time. A registration that settles sooner spends its remaining rounds on
-/// instrumental variables.
+/// Largest number of rounds of a registration in another unit. Least squares usually needs all of them, and further
+/// rounds with instrumental variables would double the time. A registration that settles sooner spends its remaining
+/// rounds on instrumental variables.
 const UNIT_ROUNDS: usize = 5;
 /// Another unit fits better if the spatial covariance of its residuals is below this share of the given unit's. Set on
 /// pairs with right and wrong units (docs/lab/thresholds.md).

@@ -34,9 +34,9 @@ const ENOUGH_SUPPORT: u32 = 2;
 const CATCHMENT: f64 = 15.0;
 /// Largest noise of a rival, as a multiple of the winner's.
 const RIVAL_NOISE: f64 = 1.25;
-/// Fewest visible points of a rival, as a share of the winner's.
+/// Smallest number of visible points of a rival, as a share of the winner's.
 const RIVAL_VISIBLE: f64 = 0.5;
-/// Most rivals in a report.
+/// Largest number of rivals in a report.
 const MOST_RIVALS: usize = 5;
 
 /// What distinguishes one registration from another.

@@ -43,7 +43,7 @@ const ROUND_TOLERANCE: f64 = 1e-3;
 /// Factor on the scale between rounds of a cold start, which begins at the root mean square residual. Least squares
 /// smears a jump over its neighbours, and a small scale would cut these as well.
 const ANNEALING: f64 = 0.5;
-/// Most cells in the median, evenly spread: its error is then below one percent.
+/// Largest number of cells in the median, evenly spread: its error is then below one percent.
 const MOST_SAMPLES: usize = 1 << 15;
 
 /// Treatment of outliers among the gradients.

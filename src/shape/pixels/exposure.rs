@@ -14,7 +14,7 @@ use crate::light::{Light, Polynomial};
 use crate::numeric::{LANES, Lanes, Real, quantile, robust};
 use crate::view::Normals;
 
-/// Most pixels, and number of directions on the hemisphere, for the first exposure: enough for two digits.
+/// Largest number of pixels, and number of directions on the hemisphere, for the first exposure: enough for two digits.
 const MOST_PIXELS: usize = 400;
 const DIRECTIONS: usize = 300;
 /// The first exposure is the best of a grid: its step in log units (a parabola then reduces the error to a fifth of

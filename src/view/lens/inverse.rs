@@ -1,6 +1,7 @@
 //! Inversion of the distorted radius, shared by both lens models.
 
-/// Most rounds of Newton's method; usual lenses take three, and halving the bracket down to rounding takes fifty.
+/// Largest number of rounds of Newton's method; usual lenses take three, and halving the bracket down to rounding takes
+/// fifty.
 pub(super) const MOST_ROUNDS: usize = 60;
 /// A ray has been found when its pixel is this close, pixels: a hundredth of the step between coordinates in f32.
 pub(super) const RETURN_DISTANCE: f64 = 1e-7;

@@ -7,7 +7,7 @@ import { onDisc, scalarOf } from "./draw";
 const SIDE = 128;
 /** Distance in log colour up to which a normal counts as an explanation: two percent of brightness, the noise of a good camera. */
 export const NOISE = 0.02;
-/** Distance at which the picture's colour scale ends. */
+/** Largest distance on the picture's colour scale. */
 const MOST_SHOWN = 1;
 
 export interface Landscape {

@@ -4,7 +4,7 @@ import { Estimator, sample, type Options, type Sample, type SampleRequest } from
 import type { Values } from "../protocol";
 import { statusIn, type Status } from "./status";
 
-/** The last few scenes, so that dragging a control that does not affect the scene does not render it again. */
+/** Number of scenes that are kept, so that a scene is not rendered again while a control that does not affect it is dragged. */
 const MOST_KEPT = 8;
 const kept = new Map<string, Sample>();
 

@@ -97,7 +97,7 @@ export const failure: Lesson = {
     "Remove the nose of the disc. At 100 % the rotation cannot be determined, and the report names the axis.",
     "Make the depth map as narrow as possible. Then find the width at which the status stops being converged.",
     "Print texture on the object. Now, with the print at 100 %, more of the colour stays unexplained than with none, and the rotation is so uncertain that the status is lost. The report names the axis.",
-    "Turn the views apart. Here at 90° and with a narrow depth map, little remains to compare.",
+    "Increase the rotation between the views. Here at 90° and with a narrow depth map, little remains to compare.",
   ],
   tries: [
     { set: { case: "symmetry", amount: 100 } },

@@ -261,7 +261,8 @@ const ROBOTS: readonly Row[] = [
     warnings: [],
     taken:
       "Each transform: the child in its parent, by angles (yaw pitch roll) or a quaternion (x y z w). Comments are skipped.",
-    guessed: "That conditions (`if`, `unless`) hold, with a warning. Computed numbers (`$(arg x)`) are refused.",
+    guessed:
+      "Conditions (`if`, `unless`) are assumed to hold, with a warning. Computed numbers (`$(arg x)`) are refused.",
     exported: "The file itself",
   },
   {

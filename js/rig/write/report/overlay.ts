@@ -6,7 +6,7 @@ import { isPicture } from "./parts.js";
 
 /** Columns of the grid on which edges are drawn; finer ones would not be visible on a printed page. */
 const COLUMNS = 640;
-/** Most points that are drawn; a picture of 12 megapixels has fewer. */
+/** Largest number of points that are drawn; a picture of 12 megapixels has fewer. */
 const MOST_POINTS = 1_000_000;
 
 /** Points as runs along the rows of a grid. */
