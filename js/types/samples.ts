@@ -156,7 +156,7 @@ export interface PairSample {
 
 /** How a mask is suggested. */
 export interface SuggestOptions {
-  /** Ends it; the promise is rejected with its reason. */
+  /** Cancels the suggestion; the promise is rejected with the reason of the signal. */
   signal?: AbortSignal;
   /** Called after each of at most twelve rounds with the share of pixels that it changed. */
   onProgress?: (changed: number, round: number) => void;

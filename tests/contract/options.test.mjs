@@ -63,7 +63,7 @@ const NUMBERS = [...ROWS].filter(([, { kind }]) => ["number", "whole", "side"].i
 
 /** Members that the numerics never see: they get the rotation of the angles, a seed of 64 bits, and no threads. */
 const FACADE_ALONE = /\.(angles\.\w+|workers|seed)$/;
-/** In the numerics, both sides are one member. */
+/** In the numerics, height and width are one member. */
 const NATIVE_FIELD = { "sample.height": "sample.size" };
 
 /** The code of a call's error, or undefined; errors about other fields, such as too large a view, do not count. */

@@ -286,7 +286,7 @@ export class Gallery {
       return;
     }
     chosen.querySelector("canvas")?.focus({ preventScroll: true });
-    // The other views have made room above it.
+    // The page has scrolled, because the views above the chosen one are visible again.
     chosen.scrollIntoView({ block: "nearest" });
   }
 

@@ -23,9 +23,9 @@ export interface Topic {
   stored?: string;
   /** Bytes of the pixels or points of its first message. */
   bytes?: number;
-  /** Which of the two cameras may have taken it. */
+  /** The camera that may have taken the images or clouds of the topic. */
   role?: "colour" | "depth";
-  /** Why it is not read. */
+  /** The reason why the topic is not read. */
   unread?: string;
 }
 

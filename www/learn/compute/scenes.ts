@@ -60,7 +60,7 @@ export function ofOrder(light: Float64Array, order: 0 | 1 | 2): Float64Array {
   return light.map((value, index) => (index % ORDERS >= first && index % ORDERS < end ? value : 0));
 }
 
-/** The normal at the pointer; beyond the edge, the nearest one on it. */
+/** The normal at the pointer; beyond the ball's edge, the nearest normal on the edge. */
 export function normalAt(x: number, y: number): [number, number, number] {
   const length = Math.hypot(x, y);
   const shrink = length > 0.98 ? 0.98 / length : 1;
