@@ -142,7 +142,8 @@ mod tests {
     use crate::view::{Lens, Pinhole};
     use nalgebra::Vector3;
 
-    /// An optimum this many sigmas of the prior from its mean, whose edges have this log likelihood and this weight.
+    /// An optimum that is `sigmas` of the prior away from the prior's mean. Its edges have the log likelihood `value`
+    /// and the weight `weight`.
     fn optimum(sigmas: f64, value: f64, weight: f64) -> Optimum {
         let camera = Pinhole { fx: 500.0, fy: 500.0, cx: 320.0, cy: 240.0, lens: Lens::None };
         let cloud = [[-0.3, -0.2, 1.0], [0.3, -0.2, 1.2], [0.0, 0.3, 0.9]].map(Vector3::from);
@@ -169,7 +170,7 @@ mod tests {
         assert_eq!((sigmas, behind), (vec![1.0, 0.0, 5.0], vec![0.0, 0.5, 11.0]));
     }
 
-    /// An optimum whose edges fit by these log likelihoods, tile by tile.
+    /// An optimum whose edges have these log likelihoods, one for each tile.
     fn tiled(values: &[f64]) -> Optimum {
         let mut optimum = optimum(0.0, 0.0, 1.0);
         let evidence = Evidence { shares: values.iter().map(|&value| Share { value, ..Share::none() }).collect() };

@@ -194,7 +194,7 @@ export class Clouds {
     }
   }
 
-  /** From a surface's points to the screen, -1 to 1. */
+  /** The matrix that projects a surface's points onto the screen, whose coordinates range from -1 to 1. */
   #toScreen(side: Side): Matrix4 {
     const camera = this.#camera.projectionMatrix.clone().multiply(this.#camera.matrixWorld.clone().invert());
     return side === "depth" ? camera.multiply(this.#standing) : camera;
@@ -258,8 +258,8 @@ export class Clouds {
   }
 
   /**
-   * From the colour camera, a little from the side so that depth can be seen. The depth map sets the size: it was
-   * measured, whereas the image's surface can be anything before the loop has settled.
+   * Looks from the colour camera, but a little from the side, so that depth can be seen. The depth map sets the size: it was measured,
+   * whereas the image's surface can be anything before the loop has settled.
    */
   home(): void {
     if (!this.#extent) return;

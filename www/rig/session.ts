@@ -84,7 +84,7 @@ export class Session {
       return void this.#known.delete(key);
     }
     if (!READS.includes(kind) && kind !== "unit" && kind !== "frames") return;
-    // Repeated requests come last, after the files to which they may refer.
+    // A repeated request moves to the end, because it may refer to files that came later.
     this.#known.delete(key);
     this.#known.set(key, { kind, ask });
   }

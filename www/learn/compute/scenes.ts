@@ -143,7 +143,7 @@ const PICTURE_EVERY = 150;
 /** Slices and iterations after which a run is stopped; the longest searches of such scenes take five thousand. */
 const MOST_STEPS = 12_000;
 
-/** A whole run from search to verdict, drawn at intervals, and at its end with its status. */
+/** Runs an estimator from search to verdict. Yields a state to draw at intervals, and at the end one with the status. */
 export function* watched(
   made: Pick<Sample, "image" | "depth">,
   options: Options,

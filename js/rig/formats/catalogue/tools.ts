@@ -220,7 +220,7 @@ const CALIBRATORS: readonly Row[] = [
     sample: "hand-eye",
     reads: "poses",
     warnings: [],
-    taken: "The camera in the robot's base or in its hand, by the names of the frames.",
+    taken: "The pose of the camera in the robot's base or hand; the names of the frames say which.",
     guessed: NOTHING,
     exported: "Saved to `~/.ros/easy_handeye/NAME.yaml`",
   },
