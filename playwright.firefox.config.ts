@@ -10,7 +10,7 @@ export default defineConfig(page, {
   use: {
     browserName: "firefox",
     channel: "moz-firefox",
-    // What Chromium lets a context have, Firefox does not know by this protocol.
+    // Firefox cannot block service workers by this protocol, so they stay allowed.
     serviceWorkers: "allow",
     launchOptions: { executablePath: fileURLToPath(new URL("tests/firefox/launcher.mjs", import.meta.url)), args: [] },
   },

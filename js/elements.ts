@@ -8,27 +8,27 @@ export interface ElementError {
   readonly code: string;
   /** The attribute or the input at fault. */
   readonly field?: string;
-  /** In words, which may change. */
+  /** The failure in words, which may change. */
   readonly message: string;
-  /** More for programs, as of a `BimodalError`. */
+  /** Further values for programs, as in a `BimodalError`. */
   readonly details?: ErrorDetails;
 }
 
-/** The numbers under a lesson's figure, and those that are words. */
+/** The values under a lesson's figure: numbers and words. */
 export interface FigureResult {
-  /** By the names of the lesson's readouts. */
+  /** The numbers, by the names of the lesson's readouts. */
   readonly numbers: Readonly<Record<string, number>>;
-  /** Those that are words, such as the status of a run. */
+  /** The values that are words, such as the status of a run. */
   readonly words: Readonly<Record<string, string>>;
 }
 
-/** What a `status` event of `<bimodal-stereo>` tells. */
+/** The detail of a `status` event of `<bimodal-stereo>`. */
 export interface StatusDetail {
   /** The new status. */
   readonly status: StepReport["status"];
 }
 
-/** What a `status` event of `<bimodal-figure>` tells. */
+/** The detail of a `status` event of `<bimodal-figure>`. */
 export interface StateDetail {
   /** The new state, as the attribute has it. */
   readonly state: string;
@@ -42,7 +42,7 @@ export interface StereoEvents {
   status: CustomEvent<StatusDetail>;
   /** The run has ended. */
   done: CustomEvent<StepReport>;
-  /** Nothing more is to be expected of this run. */
+  /** The run has failed; no further event follows. */
   error: CustomEvent<ElementError>;
 }
 
@@ -54,7 +54,7 @@ export interface FigureEvents {
   status: CustomEvent<StateDetail>;
   /** The last drawing has arrived. */
   done: CustomEvent<FigureResult>;
-  /** Nothing more is to be expected of this run. */
+  /** The run has failed; no further event follows. */
   error: CustomEvent<ElementError>;
 }
 
@@ -84,7 +84,7 @@ export interface BimodalStereoElement extends HTMLElement {
   play(): void;
   /** Waits before the next step. */
   pause(): void;
-  /** One step; the run is paused then. */
+  /** Runs one step and pauses. */
   step(): void;
   /** Takes listeners of this element's events by their names. */
   addEventListener<K extends keyof StereoEvents>(
@@ -104,7 +104,7 @@ export interface BimodalStereoElement extends HTMLElement {
 export interface BimodalFigureElement extends HTMLElement {
   /** The lesson's name, such as "pixel". */
   lesson: string;
-  /** Its controls as in an address, such as "noise=2&light=window"; follows the visitor's changes. */
+  /** The values of the controls in the form of an address, such as "noise=2&light=window". Follows the visitor's changes. */
   state: string;
   /** The numbers of the last drawing. */
   readonly result: FigureResult | undefined;
@@ -151,7 +151,7 @@ export interface ElementsInJsx<Common = unknown> {
   "bimodal-figure": Omit<Common, "onerror"> & {
     /** The lesson's name. */
     lesson: string;
-    /** Its controls as in an address. */
+    /** The values of the controls in the form of an address. */
     state?: string;
     /** React's key. */
     key?: string | number;

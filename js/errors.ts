@@ -1,4 +1,4 @@
-/** What can go wrong, for programs. */
+/** Errors that programs can handle by their codes. */
 export type ErrorCode =
   | "size"
   | "range"
@@ -51,11 +51,11 @@ interface BimodalErrorOptions extends ErrorOptions {
   details?: ErrorDetails;
 }
 
-/** What programs can read from an error besides its code. */
+/** Details of an error besides its code, for programs. */
 export interface ErrorDetails {
   /** The file that could not be read. */
   readonly file?: string;
-  /** What is wrong with it, without its name. */
+  /** The fault of the file; the text does not name the file. */
   readonly reason?: string;
   /**
    * "too-large": it exceeds a limit of the readers; "picture": its format is an image that browsers can read and these readers cannot;
@@ -63,11 +63,11 @@ export interface ErrorDetails {
    * numbers suggest another kind of file, and the option `as` overrides that.
    */
   readonly problem?: "too-large" | "picture" | "disparity" | "kind";
-  /** What its name or its numbers suggest, without the remedy, if its kind is the problem. */
+  /** For the problem "kind", what the name or the numbers of the file suggest. The text has no remedy. */
   readonly finding?: string;
-  /** Its columns, if its size is the problem. */
+  /** Columns of the file's picture, if the size is the problem. */
   readonly width?: number;
-  /** Its rows, if its size is the problem. */
+  /** Rows of the file's picture, if the size is the problem. */
   readonly height?: number;
 }
 
@@ -80,14 +80,14 @@ export const refused = (value: unknown, index?: number): { value: number | undef
 /** The message of any kind of error. */
 export const reasonOf = (error: unknown): string => (error instanceof Error ? error.message : String(error));
 
-/** What is wrong with a file. */
+/** The error about a file that has no name yet. */
 export const badFile = (message: string, cause?: unknown, details?: ErrorDetails) =>
   new BimodalError("file", message, "file", {
     ...(cause !== undefined && { cause }),
     details: { reason: message, ...details },
   });
 
-/** What is wrong with the file of this name. */
+/** The error about the file with this name. */
 export const badNamed = (name: string, reason: string, cause?: unknown, details?: ErrorDetails): BimodalError =>
   badFile(`${name}: ${reason}`, cause, { ...details, file: name, reason });
 

@@ -23,7 +23,7 @@ import type { Views } from "./workers/messages.js";
 import { RefinementWorker, type Refinement } from "./workers/refinement.js";
 import { SearchWorkers } from "./workers/search.js";
 
-/** Pixels of the depth view from which on a refinement worker is worth its messages: a refinement then takes some milliseconds. */
+/** Smallest number of depth pixels for which a refinement worker is worth its messages: a refinement then takes some milliseconds. */
 const LEAST_SHARED = 96 * 96;
 
 /** Whether the canvas is the page's or a worker's; where there are no canvases there is no context either. */
@@ -248,7 +248,7 @@ export class Estimator {
     return this.#call((raw) => raw.light());
   }
 
-  /** Points of one view, 3*n, both views in the colour view's frame. */
+  /** Points of one view, 3*n. The points of either view are in the colour view's frame. */
   points(view: "image" | "depth"): Float32Array {
     if (view !== "image" && view !== "depth") {
       throw new BimodalError("option", 'view: must be "image" or "depth"', "view");

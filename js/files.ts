@@ -15,7 +15,9 @@ export type { ColorImage, DepthMap, ImageOptions, ImageSource, Mask } from "./ty
 
 type Bytes = Uint8Array | ArrayBuffer;
 
-/** Most pixels of a PNG. A photograph of 12000 x 9000 has 108 million. A small file that declares more could exhaust memory. */
+/**
+ * Largest number of pixels of a PNG. A photograph of 12000 x 9000 has 108 million. A small file that declares more could exhaust memory.
+ */
 const MOST_PIXELS = 2 ** 27;
 
 function checkSize(width: number, height: number): void {

@@ -55,7 +55,7 @@ async function bytesOf(source: ImageSource, signal: AbortSignal | undefined): Pr
   return undefined;
 }
 
-/** What an error calls a source that is a file: its path, its address, or the name of a page's `File`. */
+/** The name of a source in errors if the source is a file: a path, an address, or the name of a page's `File`. */
 function nameOf(source: ImageSource): string {
   // An address may hold the whole picture.
   if (typeof source === "string" || source instanceof URL)
@@ -85,7 +85,7 @@ async function shown(bytes: Uint8Array, name: string): Promise<ColorImage> {
   }
 }
 
-/** What the browser shows, as sRGB of 8 bits and upright. */
+/** Decodes a source in the browser to 8-bit sRGB, upright. */
 async function drawn(source: ImageBitmapSource): Promise<ColorImage> {
   const bitmap = await bitmapOf(source);
   try {

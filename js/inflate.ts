@@ -4,7 +4,7 @@ import { badFile } from "./errors.js";
 
 /** Bytes given to the decoder at a time. */
 const PIECE = 16_384;
-/** Most bytes that deflate makes of one byte. */
+/** Largest number of bytes that deflate makes of one byte. */
 const MOST_OF_ONE = 1032;
 
 class TooLong extends Error {}

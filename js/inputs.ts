@@ -114,7 +114,7 @@ export const checkLightIsKnown = (value: unknown): void => flag(value, "lightIsK
 /** The check of a light to turn or to shade with: a name, or 27 numbers. */
 export const checkLight = (value: unknown): void => nameOr(numbers(27))(value, "light");
 export const checkAngles = (value: unknown): void => checkOf(POSE.angles)(value, "angles");
-/** Whole normals. */
+/** Checks that a list of normals has three numbers for each. */
 export const checkNormals = (value: unknown): void => {
   array(Float32Array)(value, "normals");
   const { length } = value as Float32Array;

@@ -18,10 +18,10 @@ export interface Raster<T> {
 type Pixels = Float32Array | Uint16Array | Uint8Array;
 
 const MAGIC = "\x93NUMPY";
-/** Magic, two bytes of version, two or four of header length. */
+/** Smallest length of a file: the magic, two bytes of version, and two or four of header length. */
 const SHORTEST = 10;
 
-/** Red, green, blue and alpha. */
+/** Largest number of channels: red, green, blue and alpha. */
 const MOST_CHANNELS = 4;
 
 export const isNpy = (bytes: Uint8Array): boolean => [...MAGIC].every((letter, i) => bytes[i] === letter.charCodeAt(0));
@@ -59,7 +59,7 @@ function pixelsOf(stored: Stored): Pixels {
   return new Float32Array(stored);
 }
 
-/** What to do about types that are not read. */
+/** The remedy for a type that is not read. */
 function refusal(type: string): string {
   const advice = "save it as float32 or uint16";
   if (/^[<>|=]?O/.test(type))

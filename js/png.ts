@@ -24,7 +24,7 @@ export const isPng = (bytes: Uint8Array): boolean => SIGNATURE.every((byte, at) 
 
 /** Length, type and checksum. */
 const FRAME = 12;
-/** Most extra bytes that careless encoders write. */
+/** Largest number of extra bytes that careless encoders write. */
 const SPARE = 65_536;
 const KEPT = ["IHDR", "PLTE", "tRNS"];
 const REMARKS = ["iCCP", "sRGB", "gAMA", "cHRM", "cICP", "eXIf"];

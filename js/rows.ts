@@ -6,7 +6,7 @@ export interface PageField {
   readonly label: string;
   /** One sentence that explains the label. */
   readonly hint?: string;
-  /** Its name in links, where the last part of its path has another meaning there. */
+  /** The member's name in links, if the last part of its path is already used there. */
   readonly link?: string;
   /** The initial value of the field, if it is not the default. */
   readonly initial?: number;
@@ -56,7 +56,7 @@ export interface MatrixRow extends Common {
 }
 export interface ObjectRow extends Common {
   readonly kind: "object";
-  /** What it is, with its article. */
+  /** A noun for the object with its article, such as "a pose". */
   readonly noun: string;
   readonly members: Rows;
   /** The required members. */

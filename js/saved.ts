@@ -11,13 +11,13 @@ import { crc32 } from "./crc.js";
 import { BimodalError } from "./errors.js";
 import type { ColorImage, DepthMap, Options, Stage, StepReport } from "./types/index.js";
 
-/** How far a run has come. */
+/** The progress of a run. */
 export interface Reached {
   /** Whether anything has been run; before that the report names no stage of this run. */
   begun: boolean;
   stage: Stage;
   iteration: number;
-  /** Of the search. */
+  /** Slices of the search that were done. */
   slices: number;
   /** Whether the status is no longer "running". */
   ended: boolean;
@@ -38,9 +38,9 @@ const FORMAT = 1;
 const MARK = NAME.length + 1;
 /** A 32-bit number: the header's length, the checksum. */
 const WORD = 4;
-/** Most bytes of a header: options hold at most 800 numbers, of 25 characters each. */
+/** Largest number of bytes in a header: options hold at most 800 numbers of 25 characters each. */
 const LONGEST_HEADER = 65_536;
-/** Most bytes in all: two views of 4096 pixels on a side with all members have 0.7 GB. */
+/** Largest number of bytes in all: two views of 4096 pixels on a side with all members have 0.7 GB. */
 const MOST_BYTES = 2 ** 30;
 
 const TYPES = { Uint8Array, Uint8ClampedArray, Uint16Array, Float32Array } as const;
@@ -50,7 +50,7 @@ const VIEWS = ["image", "depth"] as const;
 const MEMBERS = ["data", "mask", "points", "normals"] as const;
 const STAGES: readonly Stage[] = ["search", "light", "shading", "surface", "registration", "refinement"];
 
-/** Where an array of a view belongs. */
+/** The place of an array within a view. */
 interface Entry {
   view: (typeof VIEWS)[number];
   member: (typeof MEMBERS)[number];

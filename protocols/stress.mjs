@@ -112,7 +112,7 @@ function print(colours, size, dice) {
   }
 }
 
-/** As a camera stores it whose exposure is set for the object, in front of a grey wall. */
+/** The image as a camera stores it if the exposure is set for the object. Behind the object is a grey wall. */
 function photographed(image, colours, dice) {
   const { width, height, mask } = image;
   const inside = [...mask.keys()].filter((index) => mask[index]);

@@ -25,7 +25,7 @@ import { buildPage, sizes as measureSizes } from "./sizes.mjs";
 const SIZES = ["32x32", "64x64", "128x128", "256x256", "640x480"];
 /** A median of fewer samples is unreliable on a busy machine. */
 const SAMPLES = 20;
-/** Limit of pixels up to which one scene is searched three times; larger views take long and are searched once. */
+/** Views of up to this many pixels are searched three times; larger views take long and are searched once. */
 const SOON = 128 * 128;
 /** Number of pixels from which workers share iterations (js/estimator.ts), rounded up to a size that is timed. */
 const SHARED = 128 * 128;

@@ -45,7 +45,7 @@ const SHELL = "chromium-headless-shell";
 export async function headless() {
   if (!process.env.CHROMIUM && !inPath(SHELL) && canInstall()) {
     say(`${SHELL}: installing Debian's package`);
-    // Without removals: a shell of another release than the installed common files would replace them.
+    // No package may be removed, because a shell of another release would replace the installed files that both need.
     const installed = () => watch("apt-get", ["install", "-y", "--no-remove", "--no-install-recommends", SHELL], QUIET);
     // The lists of packages may be missing or too old.
     if ((await installed()).code !== 0 && (await watch("apt-get", ["update"], QUIET)).code === 0) await installed();
@@ -53,7 +53,7 @@ export async function headless() {
   return named("CHROMIUM") ?? inPath(SHELL) ?? (await browser()).chromium;
 }
 
-/** Paths of both. Debian's package manager installs them if that needs no further rights. */
+/** The paths of Chromium and its driver. Debian's package manager installs them if that needs no further rights. */
 export async function browser() {
   let found = find();
   if (found.chromium && found.chromedriver) return found;

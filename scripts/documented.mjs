@@ -106,7 +106,7 @@ const unframed = (comment) =>
     .map((line) => line.replace(/^\s*\* ?/, "").trim())
     .filter((line, index, all) => line !== "" || (index > 0 && index < all.length - 1));
 
-/** A source of types whose members state what their rows state; `rows` are by interface and path. */
+/** The source of types with the comments of its members updated from their rows; `rows` are by interface and path. */
 export function documented(text, rows) {
   const source = ts.createSourceFile("types.ts", text, ts.ScriptTarget.ES2022, true);
   const edits = [];

@@ -1,9 +1,6 @@
-// npm run figures: the figures of the documents, from rendered scenes alone, the same at each run.
-//   [FOLDER]       docs/figures by default
-//   --only a,b     these alone
-//   terms.svg      what an occluding contour, a depth discontinuity, a tile of the covariance and local contrast are
-//   stages.svg     what goes into a run, and what each stage makes of it
-//   verdicts.svg   the three verdicts of the check of a calibration
+// npm run figures: draws the figures of the documents from rendered scenes; each run gives the same files. [FOLDER] docs/figures by default
+//   --only a,b these alone terms.svg what an occluding contour, a depth discontinuity, a tile of the covariance and local contrast are
+//   stages.svg what goes into a run, and what each stage makes of it verdicts.svg the three verdicts of the check of a calibration
 import { mkdirSync, realpathSync, writeFileSync } from "node:fs";
 import { join, relative, resolve } from "node:path";
 import { parseArgs } from "node:util";
@@ -12,7 +9,7 @@ import { setup } from "./setup.mjs";
 import { Failure, root, say, script } from "./shell.mjs";
 
 export const FOLDER = "docs/figures";
-/** Each in a file of `figures` that exports a function of its name. */
+/** Each figure has a file in scripts/figures/ that exports a function of the same name. */
 export const FIGURES = ["terms", "stages", "verdicts"];
 
 function parsed() {

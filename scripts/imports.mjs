@@ -17,7 +17,7 @@ export function imports(text, lang) {
   return [...new Set(sources.filter((source) => typeof source === "string"))];
 }
 
-/** The declarations below a folder that some of them reach by relative imports. A missing file is an error. */
+/** The declarations below a folder that the entries reach by relative imports. A missing file is an error. */
 export function reachable(folder, entries) {
   const found = new Set();
   const waiting = [...entries];

@@ -24,8 +24,8 @@ const MODULE = "bimodal_stereo";
  */
 const REFERENCES = "reference-types";
 /**
- * The facade is bundled with the first one's glue. Builds with equal flags share compiled crates (`crates`), which are two thirds of a build.
- * Cargo appends these flags to those of .cargo/config.toml; of two opposite features, the later one counts.
+ * The facade is bundled with the glue of the first file. Builds with equal flags share compiled crates (`crates`), which are two thirds of
+ * a build. Cargo appends these flags to those of .cargo/config.toml; of two opposite features, the later one counts.
  */
 const FLAVOURS = [
   { file: `${MODULE}_bg.wasm`, target: "target", flags: ["-C", `target-feature=-${REFERENCES}`] },

@@ -53,7 +53,7 @@ const wasmTests = (where, chosen = WITHOUT_SEARCHES, targets = ["--lib", "--test
  */
 const wasmInNode = () => wasmTests({}, LONG ? ["--skip", "::long::"] : WITHOUT_SEARCHES);
 const longWasmInNode = () => wasmTests({}, ["::long::"], ["--test", "library"]);
-/** Maximum number of runs in a browser, if a loaded machine loses its driver before the tests end. A failing test is not repeated. */
+/** Largest number of runs in a browser. A run is repeated if a loaded machine loses the driver, but not if a test fails. */
 const MOST_RUNS = 3;
 const wasmIn = (variable) => async () => {
   const run = async () => wasmTests({ [variable]: "1", CHROMEDRIVER: (await browser()).chromedriver });
@@ -177,8 +177,8 @@ const contract = () => {
 };
 
 /**
- * Without `--long` the library alone: compiling the readers and the command line takes longer than their tests. Tests that need the data
- * beside the project are marked as ignored, with that reason, and included if the data are there.
+ * Without `--long` only the library is tested, because compiling the readers and the command line takes longer than their tests. Tests that
+ * need the data beside the project are marked as ignored, with that reason, and included if the data are there.
  */
 const rust = () =>
   watch("cargo", [

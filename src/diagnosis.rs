@@ -31,13 +31,15 @@ const PURE_SHARE: f64 = 0.15;
 const MODEL_COVARIANCE: f64 = 0.007;
 /// [`MODEL_COVARIANCE`] behind a pinhole, where dark print makes the spread of the colours large in comparison with the noise.
 const PINHOLE_COVARIANCE: f64 = 0.03;
-/// `MODEL_COVARIANCE` for another unit of depth: up to this value, no other unit is tried.
+/// No other unit of depth is tried if the spatial covariance of residuals is at most this, log units, and they are at
+/// most `UNIT_NOISE` times the image's noise.
 pub const UNIT_COVARIANCE: f64 = 0.0015;
 /// Residuals up to this multiple of the image's own noise count as noise.
 const NOISE_OF_IMAGE: f64 = 1.5;
 /// Residuals up to this share of the spread of the log image also count as noise.
 const SHARE_OF_SPREAD: f64 = 0.05;
-/// [`NOISE_OF_IMAGE`] for another unit of depth.
+/// No other unit of depth is tried if residuals are at most this multiple of the image's noise, and their spatial
+/// covariance is at most [`UNIT_COVARIANCE`].
 pub const UNIT_NOISE: f64 = 1.25;
 /// Residuals beyond this multiple of the image's own noise are errors of the model: shadows, print, a lamp too sharp
 /// for nine harmonics.

@@ -62,7 +62,7 @@ pub struct StartTolerance {
 
 impl Default for StartTolerance {
     fn default() -> Self {
-        // As far as registrations converge.
+        // Registrations converge from this far off.
         Self { degrees: 30.0, distance: None }
     }
 }
@@ -85,7 +85,8 @@ pub enum Registration {
 pub enum Shading {
     /// One normal for each pixel (Eq. 6), then integration.
     Pixel,
-    /// The same, then the heights themselves: the surface determines what poor light leaves open for single pixels.
+    /// As [`Pixel`](Self::Pixel), then the heights themselves: the surface determines what a poor light leaves
+    /// undetermined in single pixels.
     Surface,
 }
 
@@ -179,7 +180,7 @@ impl Default for Options {
     }
 }
 
-/// A term that weighs a million times as much as the colours leaves only their rounding in a 32-bit sum.
+/// If a term weighs a million times as much as the colours, a 32-bit sum keeps hardly a digit of the colours.
 const LARGEST_WEIGHT: f64 = 1e6;
 /// More iterations than anyone would wait for; guards against typing errors.
 const MOST_ITERATIONS: u32 = 100_000;

@@ -24,7 +24,7 @@ impl Layer {
     /// In the order of the data flow.
     pub const ALL: [Self; 5] = [Self::Normals, Self::Depth, Self::Residual, Self::Refined, Self::RefinedNormals];
 
-    /// Its name in JavaScript.
+    /// The name in JavaScript.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -40,10 +40,10 @@ impl Layer {
 /// Perceptually uniform colour maps, readable without red-green vision (van der Walt, Smith and Firing 2015).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ColourMap {
-    /// From dark blue to yellow.
+    /// Colours from dark blue to yellow.
     #[default]
     Viridis,
-    /// From black to light yellow: for values that should be zero.
+    /// Colours from black to light yellow, for values that should be zero.
     Magma,
 }
 
@@ -51,7 +51,7 @@ impl ColourMap {
     /// All maps.
     pub const ALL: [Self; 2] = [Self::Viridis, Self::Magma];
 
-    /// Its name in JavaScript.
+    /// The name in JavaScript.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -77,7 +77,7 @@ const STEPS: usize = 256;
 const LAST: f64 = (STEPS - 1) as f64;
 const OPAQUE: u8 = 255;
 const CLEAR: [u8; 4] = [0; 4];
-/// Most values from which an automatic range is derived.
+/// Largest number of values from which an automatic range is derived.
 const MOST_SAMPLES: usize = 4096;
 /// Share of the values below and above an automatic range, so that single outliers do not flatten everything else.
 const OUTLIERS: f64 = 0.01;

@@ -46,7 +46,7 @@ pub enum Reason {
     ShapesStay,
     /// Successive iterations found no better pose.
     NoBetterPose {
-        /// Their number.
+        /// Number of those iterations.
         iterations: u32,
     },
     /// The cap on iterations was reached.
@@ -83,9 +83,10 @@ pub enum Reason {
         /// The least certain direction.
         weakest: Direction,
     },
-    /// The same, and the silhouettes do not constrain a direction at all, which keeps its initial value.
+    /// As [`AlbedoVaries`](Self::AlbedoVaries), and the silhouettes do not constrain one direction at all. The pose
+    /// keeps its initial value in that direction.
     SilhouetteBlind {
-        /// That direction.
+        /// The direction that keeps its initial value.
         weakest: Direction,
     },
     /// A single albedo does not fit the image, and shading fits too little of its local contrast.
@@ -109,7 +110,7 @@ pub enum Reason {
     Hollow,
     /// Other poses fit the image equally well.
     Rivals {
-        /// Their number.
+        /// Number of those poses.
         count: u32,
         /// Rotation to the nearest one.
         nearest_degrees: f64,
@@ -134,14 +135,14 @@ pub enum Reason {
     },
     /// The image pulls the apparent size of the object too far from that of the initial pose.
     SizeRunsAway {
-        /// The factor.
+        /// The factor between the two sizes.
         times: f64,
     },
     /// The pose puts the object behind the colour camera.
     BehindCamera,
     /// A stage of the loop failed.
     StageFailed {
-        /// The error.
+        /// The error of the stage.
         error: Error,
     },
 }

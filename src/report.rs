@@ -196,7 +196,7 @@ mod tests {
     }
 }
 
-/// Members of the contract that are not fields: sums and messages, made when a report leaves the crate.
+/// Members of the contract that are computed when a report leaves the crate: sums and messages.
 #[cfg(feature = "serde")]
 mod serialised {
     use serde::{Serialize, Serializer};

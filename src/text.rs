@@ -74,7 +74,7 @@ fn write(f: &mut fmt::Formatter<'_>, value: f64, digits: u64, decimals: u32) -> 
         f.write_str("-")?;
     }
     if value.is_infinite() {
-        // As in JavaScript.
+        // JavaScript writes infinity in this way, too.
         return f.write_str("Infinity");
     }
     let unit = 10_u64.pow(decimals);

@@ -48,7 +48,7 @@ export function dipInto(root: ShadowRoot): void {
   inks.clear();
 }
 
-/** Call it when the theme changes, before anything is drawn in the new colours. */
+/** To be called when the theme changes, before anything is drawn in the new colours. */
 export const forgetInks = (): void => inks.clear();
 
 let counter = 0;

@@ -270,7 +270,7 @@ keys.checked = areKeysOn();
 keys.addEventListener("change", () => rememberKeys(keys.checked));
 const press = (id: string) => () => byId(id, HTMLButtonElement).click();
 listenToKeys(() => keys.checked && placeOf(location.hash) === "lab", {
-  // Like the buttons, which are off while there is nothing to run.
+  // These keys press the buttons, which are off while there is nothing to run.
   " ": press("play"),
   s: press("step"),
   t: press("stage-step"),

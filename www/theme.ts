@@ -18,7 +18,7 @@ function remember(theme: string): void {
   try {
     localStorage.setItem(KEY, theme);
   } catch {
-    // Nothing to do: see above.
+    // The choice is not stored, for the reason given above.
   }
 }
 

@@ -1,15 +1,15 @@
 /**
- * The words of the interface in the language of the page. English stands in the code and in index.html, beside its id; another language is a
- * catalogue with the same ids (www/learn/languages/), and what it lacks stays English.
+ * The words of the interface in the language of the page. The English words are in the code and in index.html, each beside its id. Another
+ * language is a catalogue with the same ids (www/learn/languages/); words missing there stay English.
  */
 
 import { decimals } from "./draw/numbers";
 
-/** Words by their path: nested, because a lesson is nested. */
+/** Words by their path. They are nested like the parts of a lesson. */
 export interface Words {
   readonly [name: string]: string | Words | readonly (string | Words)[];
 }
-/** What stands in the place of {names}. */
+/** Values that replace {names} in a text. */
 export type Details = Readonly<Record<string, number | string>>;
 
 let current: Words | undefined;
@@ -34,7 +34,7 @@ export function phrase(id: string, english: string, details: Details = {}): stri
   return filled(typeof said === "string" ? said : english, details);
 }
 
-/** Words in which {name} and {name:digits} stand for details. */
+/** Replaces {name} and {name:digits} by details. */
 export const filled = (words: string, details: Details): string =>
   words.replace(/\{(\w+)(?::(\d))?\}/g, (all, name: string, digits?: string) => {
     const detail = details[name];
@@ -42,5 +42,5 @@ export const filled = (words: string, details: Details): string =>
     return inFigures(digits === undefined ? String(detail) : decimals(detail, Number(digits)));
   });
 
-/** A number as the language writes it. */
+/** A number with the decimal sign of the language. */
 export const inFigures = (number: string): string => number.replace(".", phrase("decimal-sign", "."));

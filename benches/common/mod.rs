@@ -34,7 +34,7 @@ pub struct Run {
     pub preparation: f64,
 }
 
-/// The true pose as the initial pose, where a search would end.
+/// Starts at the true pose, where a search would end.
 #[must_use]
 pub fn near(scene: &Scene) -> Start {
     let Similarity { rotation, scale, translation } = scene.pose;
@@ -69,7 +69,7 @@ pub fn run(scene: &Scene, start: Start, shading: Shading, most: u32) -> Result<R
     })
 }
 
-/// Wall time since then, milliseconds.
+/// Wall time since an instant, milliseconds.
 pub fn milliseconds(since: Instant) -> f64 {
     since.elapsed().as_secs_f64() * 1e3
 }

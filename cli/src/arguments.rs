@@ -115,7 +115,7 @@ pub struct Arguments {
     seed: u64,
 }
 
-/// What to read.
+/// The input: one pair of files, or a folder of pairs.
 pub enum Input {
     Pair(Files),
     Folder(PathBuf),

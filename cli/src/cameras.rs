@@ -1,4 +1,4 @@
-//! The intrinsics of a pair from files: from given ones, or from those beside its images.
+//! The intrinsics of a pair, read from given files or from files beside its images.
 
 use std::path::{Path, PathBuf};
 

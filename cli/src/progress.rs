@@ -20,7 +20,8 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// In a folder, with the pair's index, the number of pairs, and its name.
+    /// Creates the bar. For a pair of a folder, `pair` holds the pair's index, the number of pairs, and the pair's
+    /// name.
     pub fn new(pair: Option<(usize, usize, &str)>, most_iterations: u32) -> Self {
         let bar = ProgressBar::with_draw_target(Some(LENGTH), ProgressDrawTarget::stderr());
         if let Ok(style) = ProgressStyle::with_template(STYLE) {

@@ -217,7 +217,7 @@ pub fn json_line(name: &str, found: &Outcome) -> String {
     text(&Report::of(Some(name), found), Layout::OneLine)
 }
 
-/// Why there is no report, for a pair or, without files, for all.
+/// The error that is written instead of a report. Without files it is an error of all pairs.
 pub fn json_of_problem(name: Option<&str>, files: Option<&Files>, problem: &Problem, layout: Layout) -> String {
     let [image, depth] = [files.map(|files| shown(&files.image)), files.map(|files| shown(&files.depth))];
     let error = Fault { code: problem.code, field: &problem.field, message: problem.to_string() };

@@ -28,7 +28,7 @@ pub fn transfer(raster: &Raster) -> Option<Transfer> {
     raster.linear.map(|linear| if linear { Transfer::Linear } else { Transfer::Srgb })
 }
 
-/// One for pixels that are neither zero nor transparent.
+/// 1 for pixels that are neither zero nor transparent, 0 for all others.
 pub fn mask(raster: &Raster) -> Vec<u8> {
     let half = if raster.bits == 8 { 0x80 } else { 0x8000 };
     let visible = if raster.has_colour() { 3 } else { 1 };

@@ -12,7 +12,7 @@ use crate::warning::Warnings;
 const MANY_HOLES: f64 = 0.4;
 /// Renderers write 1e10 where nothing was seen.
 const BEYOND: f32 = 1e9;
-/// Values from which on nothing was seen.
+/// A value from here on means that nothing was seen.
 const LARGEST: f64 = 1e12;
 
 /// A depth map as read.

@@ -23,7 +23,7 @@ const DEEPEST: usize = 8;
 const MOST_FILES: usize = 200_000;
 /// Number of first bytes, which identify pictures.
 const HEAD: u64 = 16;
-/// Most bytes of a list of frames.
+/// Largest number of bytes of a list of frames.
 const MOST_LIST: u64 = 64 << 20;
 
 fn pattern(text: &str) -> Regex {
@@ -309,8 +309,8 @@ fn by_names(folder: &Path, files: &[PathBuf], warnings: &mut Warnings) -> Vec<Pa
     depths.iter().zip(&colours).map(|((name, depth), (_, colour))| of(key(name), colour, depth)).collect()
 }
 
-/// The colour image of each depth map: the one with a similar name or, if several names differ only in case and signs,
-/// the one whose whole path is the same, except for the parts that tell the files of one frame apart.
+/// The colour image of each depth map: the image with a similar name. If several names differ only in case and signs,
+/// the whole paths are compared, without the words for "colour" and "depth".
 fn partners(colours: &[(String, PathBuf)], depths: &[(String, PathBuf)]) -> Vec<Option<usize>> {
     let mut alike: HashMap<String, (Vec<usize>, usize)> = HashMap::new();
     for (index, (name, _)) in colours.iter().enumerate() {

@@ -65,7 +65,7 @@ pub fn shown(path: &Path) -> String {
     plain(&path.display().to_string())
 }
 
-/// The same for any text.
+/// A text for a terminal, with its control characters replaced.
 pub fn plain(text: &str) -> String {
     text.chars().map(|letter| if letter.is_control() { '\u{fffd}' } else { letter }).collect()
 }

@@ -21,7 +21,7 @@ use crate::warning::{Warning, Warnings};
 
 /// Number of pairs that are read by default.
 const FRAMES: usize = 20;
-/// Most bytes in a folder, since much of it is read: some hundreds of pairs.
+/// Largest number of bytes in a folder, since most files are read: some hundreds of pairs.
 const MOST_BYTES: u64 = 2 << 30;
 /// Number of first bytes, which identify pictures.
 const HEAD: u64 = 512;
@@ -51,7 +51,7 @@ pub struct Reading {
 pub struct FolderOptions {
     /// Metres for each stored number of all depth maps.
     pub unit: Option<f64>,
-    /// Most pairs, evenly spread; `None`: 20.
+    /// Largest number of pairs, which are evenly spread; `None` means 20.
     pub frames: Option<usize>,
     /// Files of intrinsics, which take precedence over those in the folder.
     pub cameras: Vec<PathBuf>,

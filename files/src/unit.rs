@@ -20,9 +20,9 @@ const NEARLY_ALL: f64 = 0.99;
 const MOSTLY: f64 = 0.9;
 /// With fewer distinct depths, the map was made by hand, and its round numbers say nothing about the unit.
 const MANY_VALUES: usize = 16;
-/// Values from which on nothing was seen.
+/// A value from here on means that nothing was seen.
 const LARGEST: f64 = 1e12;
-/// Most values in a quantile.
+/// Largest number of values in a quantile.
 const SAMPLE: usize = 65_536;
 
 /// Metres for each stored number, and how they are known.
@@ -30,7 +30,7 @@ const SAMPLE: usize = 65_536;
 pub struct Unit {
     pub metres: f64,
     pub is_guessed: bool,
-    /// What the values show, if the guess needs a reason.
+    /// The reason for the guess, as the values show it; may be empty.
     why: &'static str,
 }
 
@@ -135,7 +135,8 @@ impl Sample {
         self.0.last() == Some(&BLIND) && self.share(|value| value == BLIND) > STRAY
     }
 
-    /// The share of depths outside the range that a rig's camera is expected to see, if it exceeds that of stray ones.
+    /// The share of depths outside the range that a rig's camera is expected to see; `None` if only stray depths are
+    /// outside.
     pub fn beyond(&self, metres: f64) -> Option<f64> {
         let beyond = self.share(|value| value * metres < NEAREST || value * metres > FARTHEST);
         (beyond > STRAY).then_some(beyond)

@@ -41,7 +41,7 @@ impl Warning {
         Self { code, reason: message.clone(), message, field: None }
     }
 
-    /// The same for a file, with its name in the message as well.
+    /// The same warning about a named file; its message begins with the name.
     #[must_use]
     pub fn of_file(&self, name: &str) -> Self {
         let message = format!("{name}: {}", self.message);

@@ -36,7 +36,7 @@ const frame = object(
     image: object({ ...IMAGE, camera }, ["width", "height", "data"]),
     depth: object({ ...DEPTH, camera }, ["width", "height"]),
     name,
-    // What `sampleRig` adds.
+    // Members that `sampleRig` adds.
     pose: rigPose,
   },
   ["image", "depth"],

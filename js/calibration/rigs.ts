@@ -50,7 +50,7 @@ const picture = object({ width: side, height: side, data: array(Uint8Array, Uint
 ]);
 const options = object({ signal: abortSignal, onProgress: callback });
 
-/** Between rounds events can happen, of which one may be the end. */
+/** Events are handled between rounds, so that the suggestion can be cancelled. */
 async function rounds(found: Segmentation, { signal, onProgress }: SuggestOptions): Promise<MaskSuggestion> {
   for (;;) {
     signal?.throwIfAborted();

@@ -16,7 +16,7 @@ export class Mistake extends Error {
 
 export interface Arguments {
   folder: string;
-  /** The one to check comes first. */
+  /** Files of calibrations; the calibration to be checked comes first. */
   calibrations: string[];
   isInverted: boolean;
   cameras: string[];

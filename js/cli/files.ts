@@ -6,7 +6,7 @@ import type { NamedFile, Reading } from "../rig/types.js";
 import { reasonOf } from "../errors.js";
 import { Mistake } from "./arguments.js";
 
-/** Most bytes in a folder, because all files are read: some hundreds of pairs. */
+/** Largest number of bytes in a folder, because all files are read: some hundreds of pairs. */
 const MOST_BYTES = 2 ** 31;
 
 export const file = (path: string, name = path): NamedFile => ({

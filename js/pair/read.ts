@@ -12,7 +12,7 @@ import { pngPicture } from "../rig/formats/png.js";
 import { ofPicture, readRigFile } from "../rig/read.js";
 import type { NamedFile, ReadOptions, RigReading } from "../rig/types.js";
 
-/** Most pixels of a picture: a photograph of 12000x9000 has 108 million, and a larger canvas exhausts memory. */
+/** Largest number of pixels of a picture: a photograph of 12000x9000 has 108 million, and a larger canvas exhausts memory. */
 const MOST_PIXELS = 2 ** 27;
 
 function checkPixels(width: number, height: number): void {
@@ -28,7 +28,7 @@ async function picture(bytes: Uint8Array, isColour: boolean): Promise<Picture> {
   throw badFile("it is too large for its format; save it as a PNG or a .npy file");
 }
 
-/** Reads a file as one of a pair. */
+/** Reads one of the two files of a pair. */
 export async function readPart(file: NamedFile, options: ReadOptions): Promise<RigReading> {
   try {
     return await readRigFile(file, options);

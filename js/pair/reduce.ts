@@ -27,7 +27,7 @@ interface Block {
   column: number;
   row: number;
   factor: number;
-  /** Of the full view. */
+  /** Columns of the full view. */
   width: number;
 }
 
@@ -105,7 +105,7 @@ function putLevels(to: Uint16Array, at: number, { linear, usable, level, opaque 
   to[at + 3] = opaque >= COVERED * area ? FULL : 0;
 }
 
-/** How levels are meant. */
+/** How the levels of a block are reduced. */
 interface Rules {
   /** Pixels of a block. */
   area: number;

@@ -52,8 +52,8 @@ export function byCamera(paths: string[]): CameraPictures[] {
 }
 
 /**
- * The cameras around a LiDAR that are named after the pictures' folder or after the pictures. The others did not take these pictures, and
- * poses between them and the same sensor are left out.
+ * Keeps those cameras around a LiDAR whose names occur in the names of the pictures or their folders. The other cameras did not take these
+ * pictures. They are left out, and so are their poses relative to the same LiDAR.
  */
 export function ofNamedPictures<T extends { cameras: NamedCamera[]; poses: NamedPose[] }>(all: T, paths: string[]): T {
   const parts = new Set(paths.flatMap(partsOf).map((part) => part.toLowerCase()));

@@ -24,7 +24,7 @@ const fits = (camera: NamedCamera, { width, height }: Size): boolean =>
   camera.width === width && camera.height === height;
 const unsized = (camera: NamedCamera): boolean => camera.width === undefined;
 
-/** What a name says about a camera, or about an end of a pose. */
+/** The side, colour or depth, that a name gives a camera or an end of a pose. */
 export function sideOf(name = ""): Side | undefined {
   const [colour, depth] = [COLOUR.test(words(name)), DEPTH.test(words(name))];
   return colour === depth ? undefined : colour ? "colour" : "depth";
@@ -88,7 +88,7 @@ function shared(only: NamedCamera, image: Size, depth: Size, warnings: ReaderWar
   return pair;
 }
 
-/** Whether a principal point is as near to the middle of a picture as lenses are mounted: within a fifth of its sides. */
+/** Whether a principal point lies as near to the middle of the picture as a usual lens puts it: within a fifth of the sides. */
 const isCentred = ({ camera: { cx, cy } }: NamedCamera, { width, height }: Size): boolean =>
   Math.abs(cx / width - 0.5) < 0.2 && Math.abs(cy / height - 0.5) < 0.2;
 
@@ -235,8 +235,8 @@ function relate({ poses }: RigFolder, colour: string | undefined, depth: string 
 const family = (name: string): string => name.replace(/\d+/g, "#");
 
 /**
- * If cameras are named after folders of pictures, such as KITTI's image_2, those that took these pictures. The other cameras of the series
- * took none of them, and poses that lead to these are left out if the same frame has a pose that leads to ours.
+ * If cameras are named after folders of pictures, such as KITTI's image_2, keeps only the cameras of the folders that these pictures are
+ * in. A pose to a removed camera is left out as well, if the same frame also has a pose to a kept camera.
  */
 export function ofPictures<T extends { cameras: NamedCamera[]; poses: NamedPose[] }>(all: T, paths: string[]): T {
   const segments = new Set(paths.flatMap((path) => path.split("/").slice(0, -1)));
@@ -298,9 +298,9 @@ function carriedInto(
   return undefined;
 }
 
-/** What the names of a folder's files say. */
+/** Facts that the names of a folder's files state. */
 export interface Hints {
-  /** The depth maps are aligned with the colour images. */
+  /** Whether the depth maps are aligned with the colour images. */
   isAligned?: boolean;
   /** Cameras named after a frame are the cameras of that frame. */
   cameraOf?: (frame: CheckFrame) => NamedCamera | undefined;

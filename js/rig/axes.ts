@@ -8,7 +8,7 @@ import { badFile } from "../errors.js";
 
 /** Fewest points for a correlation, and most points that are examined. */
 const [FEWEST, MOST] = [200, 20_000];
-/** Rows and columns that a correlation needs. */
+/** Smallest number of rows and of columns for a correlation. */
 const FEWEST_LINES = 8;
 /** Smaller correlations are not those of a camera. */
 const LEAST = 0.6;

@@ -58,7 +58,7 @@ interface Values extends Extent {
   sample: Float64Array;
 }
 
-/** What looks wrong about the values of a depth map, whatever it was stored as. */
+/** Warnings about suspicious values of a depth map, whatever its format. */
 function doubts({ sample, ...extent }: Values, unit: Unit, valid: number, range: string): ReaderWarning[] {
   const warnings: ReaderWarning[] = [];
   if (unit.isGuessed)

@@ -95,7 +95,7 @@ class FolderReader {
     this.#signal?.throwIfAborted();
   }
 
-  /** The file's content, or nothing with a warning. */
+  /** Reads a file; if that fails, adds a warning and returns undefined. */
   async read(file: NamedFile, options: ReadOptions): Promise<RigReading | undefined> {
     await this.rest();
     try {
@@ -150,7 +150,9 @@ class FolderReader {
     return frame;
   }
 
-  /** TUM's unit is trusted if the values are those of TUM's sensor, whose millimetres are all multiples of 5 in it. */
+  /**
+   * TUM's unit is a fifth of a millimetre. It is trusted if all values are multiples of 5, because TUM's sensor measures whole millimetres.
+   */
   #checkSupposed({ name, depth }: Extract<RigReading, { kind: "depth" }>, unit: number): void {
     if (!(depth.data instanceof Uint16Array)) return;
     const sample = sampled(depth.data);
@@ -222,7 +224,7 @@ interface Sorted {
   texts: NamedFile[];
   /** The coefficients of lenses alone. */
   lenses: LensFile[];
-  /** What is none of these. */
+  /** All other files. */
   others: NamedFile[];
 }
 
@@ -247,7 +249,7 @@ function sortedFiles(files: NamedFile[]): Sorted {
   return found;
 }
 
-/** Most poses that a warning names. */
+/** Largest number of poses that a warning names. */
 const MOST_NAMED = 4;
 /** Names of sensors that take no pictures and no points. */
 const INERTIAL = /(?:^|[^a-z])(?:imu|gps|oxts|gyro\w*|accel\w*)(?:[^a-z]|$)/i;
@@ -327,7 +329,7 @@ async function calibrationOf({ texts, others, lenses }: Sorted, frames: Readonly
   return { ...all, depthUnit, own };
 }
 
-/** Most reasons that an error gives. */
+/** Largest number of reasons that an error gives. */
 const REASONS = 3;
 
 /**

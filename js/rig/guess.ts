@@ -39,7 +39,7 @@ export const isThere = (value: number): boolean => value > 0 && value < 1e12;
 export const metresText = (value: number): string =>
   value < 0.01 || value >= 1000 ? value.toPrecision(3) : value.toFixed(2);
 
-/** Most values in a sample; quantiles need no more. */
+/** Largest number of values in a sample; quantiles need no more. */
 const SAMPLE = 65_536;
 /** An evenly spread sample of the valid values among `values[offset + i * step]`, in order. */
 export function sampled(values: ArrayLike<number>, step = 1, offset = 0): Float64Array {

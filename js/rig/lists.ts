@@ -24,7 +24,7 @@ export interface Pairs {
 /** Time stamps farther apart than this, in seconds, are not a pair; TUM's own tool has the same limit. */
 export const APART = 0.02;
 const TUM_UNIT = 1 / 5000;
-/** Lines of a list of frames. */
+/** Largest number of lines in a list of frames. */
 const MOST_LINES = 200_000;
 
 export interface Stamp {

@@ -12,7 +12,7 @@ const common = (name: string): string =>
   name
     .normalize("NFC")
     .replace(/(?:depth|dpt|colou?r|rgb|image|img|mask|crop|registered|aligned)(?:(?:_?maps?|s)(?![a-z]))?/gi, " ");
-/** .. with its folders. */
+/** A path without the parts that say which file of a frame it is. */
 export const commonPath = (name: string): string => common(folderOf(name) + stem(name));
 
 /** What the names of one frame's files have in common: letters of any script, in either case, and numbers without leading zeros. */

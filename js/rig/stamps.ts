@@ -31,7 +31,7 @@ const FORMS: Form[] = [
     ([seconds, digits]) => Number(seconds) + fraction(digits),
     ([, digits]) => stepOf(digits),
   ],
-  // .. or milliseconds, microseconds or nanoseconds
+  // Milliseconds, microseconds or nanoseconds since 1970
   [
     /(?<!\d)([1-3]\d{9})(\d{3}|\d{6}|\d{9})(?![-_.]?\d)/,
     ([seconds, digits]) => Number(seconds) + fraction(digits),
@@ -49,7 +49,7 @@ const FORMS: Form[] = [
 export interface Times {
   colours: number[];
   depths: number[];
-  /** Whether the names are nothing but times. */
+  /** Whether the names consist of times only. */
   isAlone: boolean;
 }
 

@@ -22,7 +22,7 @@ export function isScattered(data: ArrayLike<number>, width: number): boolean {
 
 /** No surface makes a pixel differ from the mean of its neighbours by more than this share, except at edges. */
 const CHANGE = 0.04;
-/** In a noisy infrared image more than this share of pixels differs that much, ten times as many as in a depth map. */
+/** Share of pixels with such a difference above which values are those of an image. A depth map has a tenth of this share. */
 const MANY = 0.3;
 
 /** Whether values change from pixel to pixel as those of an image do. */

@@ -1,4 +1,4 @@
-/** What is read from the files of a rig. */
+/** The types of what the readers of rig files return. */
 import type { CheckFrame, Mask, Pinhole, Pose } from "../types/index.js";
 import type { InverseDepth } from "./inverse.js";
 import type { Scan } from "./lidar/scan.js";
@@ -30,7 +30,7 @@ export interface NamedPose {
 export interface NamedCamera {
   /** The camera's name in its file, or the name of the file. */
   name?: string;
-  /** Its intrinsics, pixels. */
+  /** The intrinsics, pixels. */
   camera: Pinhole;
   /** Columns of its pictures, where the file gives them. */
   width?: number;

@@ -9,7 +9,7 @@ import type { Size } from "./formats/raw.js";
 import type { NamedFile } from "./types.js";
 import { type ReaderWarning, warning } from "./warnings.js";
 
-/** Characters of a text that are searched for a unit. */
+/** Largest number of characters that are searched for a unit. */
 const MOST = 2 ** 20;
 
 /** ORB-SLAM, NICE-SLAM, ScanNet, GraspNet and others: stored units per metre. */

@@ -108,7 +108,7 @@ export const warning = (
   details: Readonly<Record<string, unknown>> = {},
 ): ReaderWarning => ({ code, message, isDoubt: !HARMLESS.has(code), ...details });
 
-/** The warning of a file, beginning with the file's name, for those of its folder. `reason` stays without the name. */
+/** A file's warning for the list of its folder: the message begins with the file's name. `reason` stays without the name. */
 export const ofFile = (file: string, found: ReaderWarning): ReaderWarning => ({
   reason: found.message,
   ...found,

@@ -3,7 +3,7 @@ import { degreesOf } from "./formats/poses.js";
 import type { NamedCamera, NamedPose } from "./types.js";
 
 const digits = (value: number): string => Number(value.toPrecision(5)).toString();
-/** Most cameras or poses that are described individually. */
+/** Largest number of cameras or poses that are described individually. */
 const FEW = 4;
 
 function lens({ camera: { model, distortion } }: NamedCamera): string {

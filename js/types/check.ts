@@ -16,7 +16,7 @@ export interface CheckFrame {
     /** The depth camera, which a depth map needs. */
     camera?: Pinhole;
   };
-  /** Its name in the report. Default: "frame 1" and so on. */
+  /** The name of the frame in the report. Default: "frame 1" and so on. */
   name?: string;
 }
 
@@ -56,7 +56,7 @@ export type CheckVerdict = "consistent" | "off" | "undecided";
 export interface Warning {
   /** Stable, for programs. */
   code: WarningCode;
-  /** The same in a sentence. */
+  /** The warning as a sentence. */
   message: string;
   /** The input that it is about, as a path in the contract. */
   field?: string;
@@ -82,9 +82,9 @@ export type CheckReading =
 
 /** The result for one candidate. */
 export interface CandidateReport {
-  /** Of this candidate. */
+  /** The verdict on this candidate. */
   verdict: CheckVerdict;
-  /** Why, for programs. */
+  /** The reason, for programs. */
   code: CheckCode;
   /** The verdict in a sentence with its numbers. */
   reason: string;
@@ -94,7 +94,10 @@ export interface CandidateReport {
   offDegrees: number;
   /** Shift of the scene's centre between the candidate and the estimate, millimetres. */
   offMillimetres: number;
-  /** The same by axis, from the estimate to the candidate: degrees about x, y, z, then millimetres along them, in the colour frame. */
+  /**
+   * Rotation and shift by axis, from the estimate to the candidate: degrees about x, y, z, then millimetres along them, in the colour
+   * frame.
+   */
   offAxes: [number, number, number, number, number, number];
   /** Expected reprojection error of the candidate at the scene's depth, pixels of the colour image, and its 95 % interval. */
   pixels: number;
@@ -106,9 +109,9 @@ export interface CandidateReport {
 
 /** The result of checking a calibration. The first candidate is the one being checked (JavaScript puts names like "7" before all others). */
 export interface CheckReport {
-  /** Of the first candidate. */
+  /** The verdict on the first candidate. */
   verdict: CheckVerdict;
-  /** Why, for programs. */
+  /** The reason, for programs. */
   code: CheckCode;
   /** The verdict in a sentence with its numbers. */
   reason: string;
@@ -133,7 +136,7 @@ export interface CheckReport {
     /** 95 % interval of `pixels`. */
     interval: [number, number];
   };
-  /** By name; the one being checked comes first. */
+  /** The results for the candidates by name; the one being checked comes first. */
   candidates: Record<string, CandidateReport>;
   /** Each cue's share of the evidence, 0 to 1, and its sharpness: the inverse of its sigma in pixels of the colour image. */
   cues: Record<
@@ -141,20 +144,20 @@ export interface CheckReport {
     {
       /** Share of the evidence, 0 to 1. */
       share: number;
-      /** One over its sigma, per pixel. */
+      /** The inverse of the cue's sigma, per pixel. */
       sharpness: number;
     }
   >;
-  /** What each frame contributes. */
+  /** The contribution of each frame. */
   frames: {
-    /** As given, or "frame 1" and so on. */
+    /** The frame's name as given, or "frame 1" and so on. */
     name: string;
     /** Share of the evidence, 0 to 1. */
     share: number;
-    /** What is wrong with it, if anything. */
+    /** The fault of the frame, if it has one. */
     note?: string;
   }[];
-  /** How the log likelihood of each cue falls about the estimate: offsets in degrees (rx ry rz) or millimetres (tx ty tz). */
+  /** Decrease of each cue's log likelihood away from the estimate: offsets in degrees (rx ry rz) or millimetres (tx ty tz). */
   sensitivity: {
     /** Name of the cue. */
     cue: string;

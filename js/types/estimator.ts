@@ -28,7 +28,7 @@ export interface RestoreOptions {
 export interface EstimatorWarning {
   /** Stable, for programs. */
   code: EstimatorWarningCode;
-  /** The same in a sentence. */
+  /** The warning as a sentence. */
   message: string;
   /** The input that it is about, as a path in the contract. */
   field?: string;

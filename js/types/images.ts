@@ -13,7 +13,7 @@ export interface ColorImage {
   height: number;
   /** Non-zero where the object is; all pixels without it. */
   mask?: Uint8Array;
-  /** Without it the view is orthographic. */
+  /** The intrinsics. Without them the view is orthographic. */
   camera?: Pinhole;
   /** How integers encode intensity; 8 bit defaults to "srgb", 16 bit is guessed. Floats are linear. */
   transfer?: "srgb" | "linear";
@@ -23,7 +23,7 @@ export interface ColorImage {
 
 /** A colour image as it may be given: its camera in any of the forms of `PinholeInput`. */
 export interface ColorImageInput extends Omit<ColorImage, "camera"> {
-  /** Without it the view is orthographic. */
+  /** The intrinsics. Without them the view is orthographic. */
   camera?: PinholeInput;
 }
 
@@ -35,7 +35,7 @@ export interface DepthMap {
   height: number;
   /** Non-zero where the object is; all pixels without it. */
   mask?: Uint8Array;
-  /** Without it the view is orthographic, and its unit is the pixel. */
+  /** The intrinsics. Without them the view is orthographic, and its unit is the pixel. */
   camera?: Pinhole;
   /** Metres (or pixels, orthographic) per stored unit; default 1, and 0.001 for a Uint16Array with a camera. */
   unit?: number;
@@ -54,7 +54,7 @@ export interface DepthMap {
 
 /** A depth map as it may be given: its camera in any of the forms of `PinholeInput`. */
 export interface DepthMapInput extends Omit<DepthMap, "camera"> {
-  /** Without it the view is orthographic. */
+  /** The intrinsics. Without them the view is orthographic. */
   camera?: PinholeInput;
 }
 

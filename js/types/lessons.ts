@@ -30,7 +30,7 @@ export interface PixelLandscape {
 
 /** A surface that looks like another one, with its lamp. */
 export interface BasRelief {
-  /** Its unit normals, three numbers each. */
+  /** Unit normals of the surface, three numbers each. */
   normals: Float32Array;
   /** The factor of each albedo. */
   albedo: Float32Array;

@@ -21,7 +21,7 @@ export interface Pose {
     /** About z, degrees, -180 to 180. */
     gamma: number;
   };
-  /** The same as one 4x4 matrix, four rows of four numbers: scale * rotation beside the translation, 0 0 0 1 below. */
+  /** The whole pose as a 4x4 matrix, four rows of four numbers: scale * rotation beside the translation, 0 0 0 1 below. */
   matrix: number[][];
 }
 

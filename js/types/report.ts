@@ -12,7 +12,7 @@ export type Status = "running" | "converged" | "max-iterations" | "ambiguous" | 
 export interface Uncertainty {
   /** About x, y and z of the colour view, degrees. */
   rotationDegrees: number[];
-  /** Along x, y and z of the colour view, in its units; `null` where the views cannot see it. */
+  /** Along x, y and z of the colour view, in its units; `null` where the views do not determine it. */
   translation: (number | null)[];
   /** Sigma of the scale itself; `null` if the scale is fixed. */
   scale: number | null;
@@ -35,24 +35,24 @@ export interface StepReport {
   stage: Stage;
   /** The present pose. */
   pose: Pose;
-  /** Degrees. */
+  /** Change of the rotation in the last iteration, degrees. */
   rotationChange: number;
   /** The terms of the objective, without unit. */
   energy: {
     /** Image residuals. */
     shading: number;
-    /** Normals against those of the other view. */
+    /** Differences of the normals from those of the other view. */
     prior: number;
     /** Distances of correspondences. */
     registration: number;
-    /** Refined depth against the measured one. */
+    /** Differences of the refined depth from the measured depth. */
     refinement: number;
     /** The sum. */
     total: number;
   };
   /** Share of valid depth pixels with a correspondence. */
   overlap: number;
-  /** Share of those within the robust scale. */
+  /** Share of the correspondences within the robust scale. */
   inliers: number;
   /** Robust mean log-colour residual. */
   residual: number;

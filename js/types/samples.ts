@@ -121,7 +121,7 @@ export interface Sample {
 
 /** Selects a frame of a rendered rig: two cameras with lenses, sensor noise, and a known answer. */
 export interface RigRequest {
-  /** What is in front of the cameras. */
+  /** The kind of scene in front of the cameras. */
   kind: "objects" | "sheet" | "boxes" | "room";
   /** Seed of the rig: cameras, lenses, extrinsics. Default 0. */
   seed?: number;
@@ -133,7 +133,7 @@ export interface RigRequest {
 
 /** A rendered frame of a rig, with the answer. */
 export interface RigSample extends CheckFrame {
-  /** Its kind, seed and frame. */
+  /** A name made from the kind, the seed and the frame. */
   name: string;
   /** The true extrinsics. */
   pose: Pose;
@@ -144,7 +144,7 @@ export type PairKind = "bust" | "knot" | "marble" | "relief" | "cut" | "bowl";
 
 /** A rendered pair of the gallery, with masks, cameras and the answer. */
 export interface PairSample {
-  /** Its kind. */
+  /** The kind of the pair. */
   name: string;
   /** 8-bit sRGB, with the mask of the object. */
   image: ColorImage;
@@ -156,7 +156,7 @@ export interface PairSample {
 
 /** How a mask is suggested. */
 export interface SuggestOptions {
-  /** Ends it; the promise is rejected with its reason. */
+  /** Cancels the suggestion; the promise is rejected with the reason of the signal. */
   signal?: AbortSignal;
   /** Called after each of at most twelve rounds with the share of pixels that it changed. */
   onProgress?: (changed: number, round: number) => void;

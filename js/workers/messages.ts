@@ -1,8 +1,8 @@
-/** What an estimator and its workers in other threads send each other. */
+/** The messages between an estimator and its workers in other threads. */
 import type { PlainOptions } from "../options.js";
 import type { ColorImage, DepthMap } from "../types/index.js";
 
-/** Both views, of which every worker gets a copy. */
+/** Both views; every worker gets a copy. */
 export interface Views {
   image: ColorImage;
   depth: DepthMap;

@@ -124,7 +124,7 @@ export interface DepthPng {
   bytes: Uint8Array<ArrayBuffer>;
   /** Units (metres or pixels) per stored number. */
   step: number;
-  /** The same in words: "0.1 mm". */
+  /** The step in words: "0.1 mm". */
   says: string;
 }
 

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 class CheckFrame:
     """One pair from a rig whose calibration is to be checked. It holds the whole frames; masks are optional.
 
-    Without a camera for the image its focal length is estimated. ``depth`` is a depth map with its camera, or an organised cloud
-    in metres. ``name``: its name in the report.
+    If the image has no camera, the focal length is estimated. ``depth`` is a depth map with its camera, or an
+    organised cloud in metres. ``name`` is the frame's name in the report.
     """
 
     image: Union[ColorImage, Pixels]
@@ -37,12 +37,15 @@ class RigSample(CheckFrame):
 
 @dataclass(frozen=True)
 class CandidateReport:
-    """The verdict on one candidate, "consistent", "off" or "undecided", and the reason with its numbers; ``code`` names it for programs.
+    """The result for one candidate: its verdict, "consistent", "off" or "undecided", and the reason with its numbers.
 
+    ``code``: the reason, for programs.
+    ``reading``: the convention in which the candidate was misread, such as "inverse"; ``None`` if it was not misread.
     ``off_degrees``, ``off_millimetres``: rotation from the estimate, and shift at the centre of the scene.
-    ``off_axes``: the same by axis, from the estimate to the candidate: degrees about x, y, z, then millimetres along them. ``pixels``, ``interval``:
-    expected reprojection error at the scene's depth, pixels of the colour image, and its 95 % interval. ``probability``: of a distance at least this large if it
-    were right. ``reading``: how it was misread, such as "inverse"; ``None`` if it was not.
+    ``off_axes``: the same by axis, from the estimate to the candidate: degrees about x, y, z, then millimetres along them.
+    ``pixels``, ``interval``: expected reprojection error at the scene's depth, pixels of the colour image, and its 95 %
+        interval.
+    ``probability``: probability of a distance from the estimate at least this large if the candidate were right.
     """
 
     verdict: str
@@ -73,7 +76,7 @@ class FrameReport(NamedTuple):
 
 
 class Sensitivity(NamedTuple):
-    """How the log likelihood of a cue falls about the estimate: offsets in degrees (rx ry rz) or millimetres (tx ty tz)."""
+    """Decrease of the log likelihood of a cue away from the estimate: offsets in degrees (rx ry rz) or millimetres (tx ty tz)."""
 
     cue: str
     axis: str
@@ -85,12 +88,15 @@ class Sensitivity(NamedTuple):
 class CheckReport:
     """The result of a check. ``verdict`` and ``reason`` are those of the first candidate, which is the one being checked.
 
-    ``code`` names the reason for programs. ``warnings``: what was guessed or looks wrong, each a ``code``, a ``message``, the ``field`` and
-    its numbers. ``estimate``: the extrinsics that fit best, P_colour = rotation @ P_depth + translation, metres. ``overlap``: share of the
-    depth points that the estimate puts onto the image, 0 .. 1. ``middle``: (3,), the centre of the scene in the colour frame, metres.
-    ``covariance``: (6, 6), of a rotation vector in rad about the middle, then a translation in m. ``focal``: factor to the assumed focal
-    length, and the sigma of its logarithm, if no colour camera was given. ``pixels``, ``interval``: expected reprojection error of the
-    estimate, and its 95 % interval. ``reading``: how the first candidate was misread, or ``None``.
+    ``code``: the reason, for programs.
+    ``reading``: the convention in which the first candidate was misread, or ``None``.
+    ``warnings``: guesses and suspicious inputs, each with ``code``, ``message``, ``field`` and its numbers.
+    ``estimate``: the extrinsics that fit best, P_colour = rotation @ P_depth + translation, metres.
+    ``overlap``: share of the depth points that the estimate puts onto the image, 0 .. 1.
+    ``middle``: (3,), the centre of the scene in the colour frame, metres.
+    ``covariance``: (6, 6), of a rotation vector in rad about the middle, then of a translation in m.
+    ``focal``: factor to the assumed focal length, and the sigma of its logarithm, if no colour camera was given.
+    ``pixels``, ``interval``: expected reprojection error of the estimate, and its 95 % interval.
     """
 
     verdict: str
@@ -118,10 +124,13 @@ def check_calibration(
     cues: Optional[Sequence[str]] = None,
     on_progress: Optional[Callable[[float, str], Any]] = None,
 ) -> CheckReport:
-    """Checks whether frames agree with candidates for the extrinsics of a rig, P_colour = rotation @ P_depth + translation in metres.
+    """Checks whether frames agree with candidates for the extrinsics of a rig.
 
-    candidates: poses by name, each a 4x4 matrix, or ``rotation`` (3, 3) and ``translation`` (3,); the first one is checked. cues: of
-    "shading", "edges", "information" and "silhouette"; default: all. on_progress: called with the share of the work done, 0 .. 1, and what is being done.
+    The extrinsics are P_colour = rotation @ P_depth + translation in metres.
+
+    candidates: poses by name, each a 4x4 matrix, or ``rotation`` (3, 3) and ``translation`` (3,); the first one is checked.
+    cues: a selection of "shading", "edges", "information" and "silhouette"; default: all.
+    on_progress: called with the share of the work done, 0 .. 1, and a description of the current step.
     """
     if not isinstance(candidates, Mapping):
         raise BimodalError("type", "candidates: must be a dictionary of poses by name", "candidates")
@@ -188,8 +197,10 @@ def sample_rig(
 ) -> RigSample:
     """One frame of a rendered rig whose extrinsics are known.
 
-    kind: "objects", "sheet", "boxes" or "room". seed: of the rig; 0. frame: frames of one seed share the rig, and show other things; 0.
-    noise: factor of both sensors' noise; 1.
+    kind: "objects", "sheet", "boxes" or "room".
+    seed: seed of the rig; default 0.
+    frame: number of the frame; frames of one seed share the rig and show different scenes; default 0.
+    noise: factor on the noise of both sensors; default 1.
     """
     raw = _native.sample_rig({"kind": kind, "seed": seed, "frame": frame, "noise": noise})
     image, depth = ({**raw[view], "camera": Pinhole(**raw[view]["camera"])} for view in ("image", "depth"))

@@ -8,9 +8,11 @@ from typing import Optional
 class BimodalError(ValueError):
     """An invalid input, or a failure of the numerics.
 
-    ``code`` is stable, for programs: "size", "range", "missing", "empty", "degenerate", "memory", "option", "type",
-    "file", "unsupported", "state", "panic", "poisoned". ``field`` is the argument at fault as a path, such as "depth.camera.fx" or "stop_degrees",
-    or ``None``. ``index``: of the entry of that argument, where a single one is at fault. ``value``: the number at fault.
+    ``code``: stable, for programs: "size", "range", "missing", "empty", "degenerate", "memory", "option", "type", "file",
+        "unsupported", "state", "panic" or "poisoned".
+    ``field``: the argument at fault as a path, such as "depth.camera.fx" or "stop_degrees", or ``None``.
+    ``index``: index of the entry at fault, if it is a single entry of the argument.
+    ``value``: the number at fault.
     """
 
     code: str

@@ -22,10 +22,11 @@ if TYPE_CHECKING:
 class Estimator:
     """Shape, light and pose from one colour image and one depth map, one iteration after the other.
 
-    ``image`` is a ``ColorImage``, or what its ``data`` may be: an array (h, w), (h, w, 3) or (h, w, 4), a picture, a file. ``depth`` is a
-    ``DepthMap``, an array, (h, w) of depths or (h, w, 3) of an organised cloud, a picture, or a file. ``options`` are those of ``Options``,
-    each with a default; nothing needs to be known. Every returned array is a copy. Other threads of Python run while a step does;
-    threads that share an estimator wait for each other. ``for report in estimator`` steps until the loop ends.
+    ``image`` is a ``ColorImage``, or anything that its ``data`` accepts: an array (h, w), (h, w, 3) or (h, w,
+    4), a picture, a file. ``depth`` is a ``DepthMap``, an array, (h, w) of depths or (h, w, 3) of an
+    organised cloud, a picture, or a file. ``options`` are those of ``Options``; each has a default, so none
+    has to be given. Every returned array is a copy. Other threads of Python run while a step does; threads
+    that share an estimator wait for each other. ``for report in estimator`` steps until the loop ends.
     """
 
     def __init__(

@@ -79,8 +79,8 @@ def read_depth(
 ) -> DepthMap:
     """Reads a PNG or .npy file as a depth map, or a .npy file of three channels as an organised cloud.
 
-    With a camera depths are metric, and ``unit`` is the metres of a stored number; without it, it is guessed, with a ``BimodalWarning``.
-    Without a camera depths are pixels.
+    With a camera depths are metric, and ``unit`` is the number of metres per stored unit; if it is not given, it is
+    guessed, with a ``BimodalWarning``. Without a camera depths are in pixels.
     """
     found = _sources.depth(path, unit, camera is not None)
     return DepthMap(mask=mask, camera=camera, **found)
@@ -95,9 +95,11 @@ def read_calibration(path: FilePath) -> Calibration:
 def read_rig_folder(
     path: FilePath, *, unit: Optional[float] = None, frames: Optional[int] = None, cameras: Sequence[FilePath] = ()
 ) -> RigFolder:
-    """Reads a folder of frames: pairs of a colour image and a depth map with matching names, or as TUM RGB-D or Redwood have them.
+    """Reads a folder of frames: pairs of a colour image and a depth map with matching names, or as TUM RGB-D and Redwood
+    store them.
 
-    unit: metres of a stored number of all depth maps; guessed without it, with a warning. frames: at most so many pairs, evenly spread; 20.
+    unit: metres per stored unit of all depth maps; without it, the unit is guessed, with a warning.
+    frames: largest number of pairs, evenly spread over the folder; default 20.
     cameras: files of intrinsics outside the folder, which take precedence over those in it.
     """
     raw = _native.read_rig_folder(os.fspath(path), unit, frames, [os.fspath(each) for each in cameras])

@@ -1,4 +1,4 @@
-"""From arrays and objects of the caller to contiguous arrays and dictionaries for the bindings."""
+"""Converts the caller's arrays and objects to contiguous arrays and dictionaries for the bindings."""
 
 from __future__ import annotations
 
@@ -35,7 +35,8 @@ class LightGaussian(TypedDict):
 class StartTolerance(TypedDict, total=False):
     """How far from a given initial pose the result may lie.
 
-    degrees: of the rotation; default 30. distance: of the object's centre in units of the colour view; default: the width of the object.
+    degrees: tolerance of the rotation; default 30.
+    distance: tolerance of the object's centre, in units of the colour view; default: the width of the object.
     """
 
     degrees: float
@@ -45,7 +46,10 @@ class StartTolerance(TypedDict, total=False):
 class Weights(TypedDict, total=False):
     """Weights of the terms of the objective, 0 .. 1e6.
 
-    prior: shape prior, 0.05; unit: unit length, 1; light: natural lights, 1e-6; refinement: shape prior of the depth view, 0.01.
+    prior: shape prior; default 0.05.
+    unit: unit length of the normals; default 1.
+    light: prior over natural lights; default 1e-6.
+    refinement: shape prior of the depth view; default 0.01.
     """
 
     prior: float
@@ -57,14 +61,23 @@ class Weights(TypedDict, total=False):
 class Options(TypedDict, total=False):
     """The options of a run; each has a default.
 
-    light: "estimate", or 27 coefficients, (3, 9) or flat. prior: the prior over lights if the light is estimated; natural lights.
-    start: "search", "identity", or a pose: a 4x4 matrix that transforms depth points into the colour view, or the known parts.
-    start_tolerance: how far from a given initial pose the result may lie. registration: "joint", "icp" or "fixed". shading: "surface" or "pixel".
-    scale: "free", or a fixed number. trim: whether flying pixels and background inside the mask are left out; True. annealing:
-    whether the registration starts tolerant; True. lambda\\_: weights. stop_degrees: the loop converges once the rotation changes by less;
-    0.01. tolerance: largest sigma of the rotation of a run that converges, degrees; 1.5. max_iterations: 1 .. 100000; 60.
-    correspondence_distance: accepted distance in image pixels; follows the data. seed: of the random generator; 1.
-    workers: threads that share the work, 1 .. 16, with bit-identical results; 1.
+    light: "estimate" (the default), or 27 coefficients, (3, 9) or flat.
+    prior: the prior over lights if the light is estimated; default: natural lights.
+    start: "search" (the default), "identity", or an initial pose: a 4x4 matrix that transforms depth points into the
+        colour view, or the known parts of the pose.
+    start_tolerance: how far from a given initial pose the result may lie.
+    registration: "joint" (the default), "icp" or "fixed".
+    shading: "surface" (the default) or "pixel".
+    scale: "free" (the default), or a fixed number.
+    trim: whether flying pixels and background inside the mask are left out; default True.
+    annealing: whether the robust scale of the registration starts wide and narrows; default True.
+    lambda\\_: the weights of the terms.
+    stop_degrees: the loop converges once the rotation changes by less than this; default 0.01.
+    tolerance: largest sigma of the rotation of a run that converges, degrees; default 1.5.
+    max_iterations: 1 .. 100000; default 60.
+    correspondence_distance: largest distance of a correspondence, image pixels; by default it follows from the data.
+    seed: seed of the random generator; default 1.
+    workers: number of threads that share the work, 1 .. 16; the result is the same to the bit; default 1.
     """
 
     light: Union[str, ArrayLike]
@@ -86,7 +99,7 @@ class Options(TypedDict, total=False):
 
 
 def keywords(given: Mapping[str, Any]) -> dict[str, Any]:
-    """Arguments with objects made plain and lights as numbers."""
+    """The arguments with objects as dictionaries and lights as numbers."""
     made: dict[str, Any] = plain({name: value for name, value in given.items() if name != "start"})
     if "start" in given:
         made["start"] = pose(given["start"], "start")

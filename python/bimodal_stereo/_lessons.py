@@ -41,8 +41,10 @@ class PixelLandscape:
 def integrate_normals(normals: ArrayLike, *, robust: bool = True) -> Singles:
     """Depth, (h, w) float32, in pixels, of the surface with these normals, seen by an orthographic camera.
 
-    normals: (h, w, 3), unit normals, NaN where missing. robust: slopes across a discontinuity are ignored; without it the depth is the
-    least-squares solution. Mean zero in each connected part, NaN where there is no normal.
+    Its mean is zero in each connected part; NaN marks pixels without a normal.
+
+    normals: (h, w, 3), unit normals, NaN where missing.
+    robust: whether slopes across a discontinuity are ignored; otherwise the depth is the least-squares solution.
     """
     made = _inputs.shaped(array(normals, "normals", "float32"), "normals", (None, None, 3))
     planes = _inputs.singles(np.moveaxis(made, 2, 0))
@@ -50,7 +52,7 @@ def integrate_normals(normals: ArrayLike, *, robust: bool = True) -> Singles:
 
 
 def turn_light(light: Union[str, ArrayLike], angles: Union[None, Angles, Mapping[str, float]] = None) -> Floats:
-    """The coefficients of a light, (3, 9), rotated by angles in degrees: light that fell on a normal n falls on R n.
+    """The coefficients of a light, (3, 9), rotated by angles in degrees: light that illuminated a normal n illuminates R n.
 
     light: a name of ``sample_lights()``, or 27 coefficients, (3, 9) or flat.
     """
@@ -79,10 +81,13 @@ def pixel_landscape(
 ) -> PixelLandscape:
     """The objective of one pixel over all normals that a camera can see, its minima, and the steps of one descent.
 
-    log: natural logarithms of its linear R, G, B. light: a name of ``sample_lights()``, or 27 coefficients with the exposure. prior: the
-    unit normal of a depth map at this pixel. weight: of the prior, as ``lambda_["prior"]`` of ``Options``. robust: whether a prior that is far off
-    loses its weight, as in the loop; without it the objective is Eq. 9 as printed in the paper. start: the unit normal at which the descent
-    starts; towards the camera. side: rows and columns of ``objective``, 0 .. 512.
+    log: natural logarithms of its linear R, G, B.
+    light: a name of ``sample_lights()``, or 27 coefficients with the exposure.
+    prior: the unit normal of a depth map at this pixel.
+    weight: weight of the prior, ``lambda_["prior"]`` of ``Options``.
+    robust: whether a prior that is far off loses its weight, as in the loop. False gives Eq. 9 as printed in the paper.
+    start: the unit normal at which the descent starts; default: towards the camera.
+    side: rows and columns of ``objective``, 0 .. 512.
     """
     if not weight >= 0:
         raise BimodalError("range", f"weight: must be zero or above (got {weight})", "weight")

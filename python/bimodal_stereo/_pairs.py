@@ -51,8 +51,11 @@ def sample_pair(kind: str) -> PairSample:
 def suggest_mask(image: Union[ColorImage, Pixels], marks: ArrayLike) -> MaskSuggestion:
     """The mask of the object in a colour image, from a rectangle around it or from strokes.
 
-    image: 8 bits. marks: (h, w), what is known of each pixel: 0 certainly background, 1 certainly the object, 2 probably background, 3
-    probably the object. Method: a random walker with colour models, in at most twelve rounds.
+    image: a colour image of 8 bits.
+    marks: (h, w), one number for each pixel: 0 certainly background, 1 certainly the object, 2 probably background, 3
+        probably the object.
+
+    The method is a random walker with colour models, in at most twelve rounds.
     """
     data = _inputs.image(image)["data"]
     if data.dtype != np.uint8:

@@ -54,11 +54,19 @@ def sample(
 ) -> Sample:
     """Renders a colour image and a depth map of a surface.
 
-    surface: a name of ``sample_surfaces()``, or heights (h, w), 64 .. 512 on a side: larger is nearer, zero or NaN is background.
-    light: a name of ``sample_lights()``, or 27 coefficients. size: side of both views in pixels, 16 .. 1024; 64. height: where it
-    differs from that. protocol: "rendered", or "grid", the paper's bare grid. angles: of the true pose, degrees; beta = 20. scale: of the
-    true pose; 1. overlap: share of the depth map's columns that is kept; 1. noise: sigma on the logarithm of the
-    colours; 0. depth_noise: sigma in pixels; 0. holes: share of the depth pixels that is lost; 0. seed: 1.
+    surface: a name of ``sample_surfaces()``, or heights (h, w), 64 .. 512 on a side: larger is nearer, zero or NaN is
+        background.
+    light: a name of ``sample_lights()``, or 27 coefficients.
+    size: side of both views in pixels, 16 .. 1024; default 64.
+    height: height of both views if it differs from ``size``.
+    protocol: "rendered" (the default), or "grid", the paper's bare grid.
+    angles: angles of the true pose, degrees; default: beta = 20.
+    scale: scale of the true pose; default 1.
+    overlap: share of the depth map's columns that is kept; default 1.
+    noise: sigma of the noise on the logarithm of the colours; default 0.
+    depth_noise: sigma of the noise on depth, pixels; default 0.
+    holes: share of the depth pixels that is lost; default 0.
+    seed: seed of noise and holes; default 1.
     """
     options = {
         "size": size,

@@ -1,12 +1,13 @@
 """A run as bytes, for ``Estimator.save`` and ``Estimator.restore``.
 
-A run follows from its views, its options and how many stages have been run, to the bit, however the steps were sliced. So these are
-what is kept, with a checksum of the results to verify that they were found again. That costs the time of the run and saves a
-format that would change with every stage.
+The views, the options and the number of stages that have been run determine a run to the bit, however the
+steps were sliced. The file therefore holds these, with a checksum of the results that tells whether they were
+reproduced. Restoring takes as long as the run, but the format does not change with every stage.
 
-Laid out as the files of the JavaScript package (js/saved.ts), in a format of another number: native code and WebAssembly differ in their
-last digits, so that neither can go on with the other's run to the bit. Sixteen bytes of name and format, the header's length (32 bits,
-little-endian), the header (JSON), the arrays one after the other, CRC-32 of all that.
+The layout is that of the JavaScript package (js/saved.ts) with another format number: native code and
+WebAssembly differ in their last digits, so neither can continue the other's run to the bit. Sixteen bytes of
+name and format, the header's length (32 bits, little-endian), the header (JSON), the arrays one after the
+other, CRC-32 of all that.
 """
 
 from __future__ import annotations
@@ -45,7 +46,7 @@ View = dict[str, Any]
 
 
 class Saved(NamedTuple):
-    """What a file holds. ``reached``: how far the run has come; ``found``: what had been found, summed up."""
+    """The content of a file. ``reached``: how far the run has come; ``found``: the checksum of its results."""
 
     image: View
     depth: View
@@ -59,12 +60,12 @@ def bad(what: str) -> BimodalError:
 
 
 def copied(view: Mapping[str, Any]) -> View:
-    """With copies of the arrays, because the caller may change the originals before the run is saved."""
+    """A view with copies of its arrays, because the caller may change the originals before the run is saved."""
     return {name: value.copy() if isinstance(value, np.ndarray) else value for name, value in view.items()}
 
 
 def text(options: Mapping[str, Any]) -> str:
-    """Options as the header has them; whatever the bindings took for a number is one."""
+    """The options as JSON for the header. Whatever the bindings accept as a number becomes a number."""
     return json.dumps(options, default=number)
 
 
@@ -99,7 +100,7 @@ def saved(image: View, depth: View, options: str, reached: Mapping[str, Any], fo
 
 
 def opened(state: Union[bytes, bytearray, memoryview]) -> Saved:
-    """What a file holds, once it is known to be one of ours and whole; what views and options are worth, the estimator judges."""
+    """The content of a file, if it is complete and was written by this package. The estimator checks its views and options."""
     if not isinstance(state, (bytes, bytearray, memoryview)):
         raise BimodalError("type", f"state: must be bytes, not {type(state).__name__}", "state")
     whole = bytes(state)
@@ -155,7 +156,7 @@ def read_header(whole: bytes) -> tuple[dict[str, Any], int]:
 
 
 def typed(value: Any, members: Mapping[str, type], path: str) -> None:
-    """Refuses what has other members, or members of another type; whole numbers are zero or above."""
+    """Refuses a value with other members or members of another type; whole numbers must not be negative."""
     if type(value) is not dict or set(value) != set(members):
         raise bad(f"cannot be run ({path}: must have {', '.join(members)} and nothing else)")
     for name, kind in members.items():

@@ -1,4 +1,4 @@
-"""From files, and from pictures, cameras and poses as other packages hold them, to arrays and dictionaries.
+"""Converts files, and the pictures, cameras and poses of other packages, to arrays and dictionaries.
 
 No other package is imported: an object is recognised by the package that its type comes from.
 """
@@ -23,14 +23,14 @@ FilePath = Union[str, "os.PathLike[str]"]
 
 
 class Picture(Protocol):
-    """What numpy takes for an array, such as an image of Pillow."""
+    """An object that numpy converts to an array, such as an image of Pillow."""
 
     @property
     def __array_interface__(self) -> Any: ...
 
 
 def plain(value: Any) -> Any:
-    """Objects as dictionaries, and numbers of numpy's as Python's."""
+    """Objects as dictionaries, and numbers of numpy as numbers of Python."""
     if is_dataclass(value) and not isinstance(value, type):
         return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
     if isinstance(value, Mapping):
@@ -116,13 +116,13 @@ def is_path(value: Any) -> bool:
 
 
 def warn(found: Sequence[Mapping[str, Any]]) -> None:
-    """Passes on what a reader has guessed."""
+    """Passes on the warnings of a reader."""
     for each in found:
         warnings.warn(BimodalWarning(each["code"], each["message"], each["field"]), stacklevel=4)
 
 
 def picture(value: Any) -> Any:
-    """An image of Pillow with its palette and its colour model resolved; anything else as it is."""
+    """An image of Pillow with its palette and its colour model resolved; anything else unchanged."""
     if package(value) != "PIL" or not hasattr(value, "convert"):
         return value
     kept = ("L", "RGB", "RGBA", "I", "F")
@@ -133,7 +133,7 @@ def picture(value: Any) -> Any:
 
 
 def read(reader: Callable[..., Made], path: Any, field: Optional[str], *others: Any) -> Made:
-    """What a reader makes of a file; an error names the argument that the file was given for, if any."""
+    """The result of a reader. An error names the argument for which the file was given, if there is one."""
     try:
         return reader(os.fspath(path), *others)
     except BimodalError as error:
@@ -159,12 +159,12 @@ def depth(path: Any, unit: Optional[float], is_metric: bool, field: Optional[str
 
 
 def points(value: Any) -> Any:
-    """The points of a cloud of Open3D, which has no rows and columns; anything else as it is."""
+    """The points of a cloud of Open3D, which has no rows and columns; anything else unchanged."""
     return value.points if package(value) == "open3d" and hasattr(value, "points") else value
 
 
 def mask(value: Any, field: str) -> Any:
-    """Non-zero where the object is, of a file, a picture or an array."""
+    """A mask from a file, a picture or an array: non-zero where the object is."""
     if is_path(value):
         return read(_native.read_mask, value, field)
     made = picture(value)

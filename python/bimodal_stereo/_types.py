@@ -31,7 +31,7 @@ def renamed(raw: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def made(kind: type[Made], raw: Mapping[str, Any], **parts: Any) -> Made:
-    """An object from its members in the contract: ``None`` for those that are absent, ``parts`` in place of those named."""
+    """Makes an object from its members in the contract. Absent members are ``None``; ``parts`` replace members of the same name."""
     members = {**dict.fromkeys(kind.__annotations__), **renamed(raw), **parts}
     return kind(**members)
 
@@ -61,11 +61,13 @@ class Pinhole:
 class ColorImage:
     """One colour image of the object, up to 4096 pixels on a side.
 
-    ``data``: (h, w, 3) or (h, w, 4), R G B and perhaps A, (h, w) grey, an image of Pillow or Open3D, or the path of a PNG, JPEG or .npy
-    file. uint8 and uint16 are encoded by ``transfer``, "srgb" or "linear": 8 bits default to "srgb"; for 16 bits it is guessed unless the
-    file states it. Floats are linear intensities above 0. Black, saturated and transparent pixels are left out. ``mask``: (h, w),
-    non-zero where the object is, or a picture or a file of that; all pixels without it. ``camera``: a ``Pinhole``, its matrix (3, 3), a
-    dictionary with ``K``, ``distortion`` and ``model``, or Open3D's PinholeCameraIntrinsic, in pixels; without it the view is orthographic.
+    ``data``: (h, w, 3) or (h, w, 4), R G B and perhaps A, (h, w) grey, an image of Pillow or Open3D, or the path of a PNG,
+        JPEG or .npy file. Floats are linear intensities above 0. Black, saturated and transparent pixels are left out.
+    ``mask``: (h, w), non-zero where the object is, or a picture or a file of a mask; without it, all pixels.
+    ``camera``: a ``Pinhole``, its matrix (3, 3), a dictionary with ``K``, ``distortion`` and ``model``, or Open3D's
+        PinholeCameraIntrinsic, in pixels; without it the view is orthographic.
+    ``transfer``: the encoding of uint8 and uint16, "srgb" or "linear". 8 bits default to "srgb"; for 16 bits it is guessed
+        unless the file states it.
     """
 
     data: Pixels
@@ -78,12 +80,16 @@ class ColorImage:
 class DepthMap:
     """One depth map of the same object from another view: ``data`` or ``points``, exactly one of the two.
 
-    ``data``: (h, w), depth along z, an image of Pillow or Open3D, or the path of a PNG or .npy file. Zero, negative, NaN, and 1e12 or more
-    are holes. ``points``: (h, w, 3), an organised cloud in the depth camera's frame, NaN where missing. ``unit``: metres (or pixels,
-    orthographic) of a stored unit; default 1, and 0.001 for integers with a camera; of a file with a camera it is guessed, with a
-    ``BimodalWarning``. ``mask`` and ``camera`` as those of ``ColorImage``. ``normals``: (h, w, 3), unit normals that replace those computed
-    from the depth. ``intensity``: (h, w), for the check of a calibration alone: the strength of the return at each pixel, or any other
-    quantity of the surface's reflectivity, whether it grows with it or not; NaN where unknown. Only its rank is used.
+    ``data``: (h, w), depth along z, an image of Pillow or Open3D, or the path of a PNG or .npy file. Zero, negative, NaN,
+        and 1e12 or more are holes.
+    ``points``: (h, w, 3), an organised cloud in the depth camera's frame, NaN where missing.
+    ``mask``, ``camera``: those of ``ColorImage``.
+    ``unit``: metres (or pixels, orthographic) per stored unit; default 1, and 0.001 for integers with a camera. For a file
+        with a camera it is guessed, with a ``BimodalWarning``.
+    ``normals``: (h, w, 3), unit normals that replace those computed from the depth.
+    ``intensity``: (h, w), for the check of a calibration alone: the strength of the return at each pixel, or any other
+        quantity that depends on the surface's reflectivity, increasing or decreasing; NaN where unknown. Only its rank is
+        used.
     """
 
     data: Optional[Pixels] = None
@@ -143,10 +149,14 @@ class Energy:
 
 @dataclass(frozen=True, eq=False)
 class Uncertainty:
-    """One sigma of the pose: the truth is (a small turn) times the estimate, about the axes of the colour view.
+    """One sigma of the pose, about and along the axes of the colour view.
 
-    ``rotation_degrees``: (3,), about x, y, z, degrees. ``translation``: (3,), along them in the view's units, NaN where the views cannot
-    see it. ``scale``: of the scale itself, ``None`` if it is fixed. ``weakest``: the least certain direction in words.
+    The true rotation is a small rotation times the estimated one.
+
+    ``rotation_degrees``: (3,), about x, y, z, degrees.
+    ``translation``: (3,), along x, y, z in the view's units, NaN where the views do not determine it.
+    ``scale``: sigma of the scale, ``None`` if the scale is fixed.
+    ``weakest``: the least certain direction in words.
     """
 
     rotation_degrees: Floats
@@ -165,12 +175,15 @@ class Uncertainty:
 class StepReport:
     """State of the loop after a step.
 
-    ``stage``: "search", "light", "shading", "surface", "registration" or "refinement"; the last one that ran. ``status``: "running",
-    "converged", "max-iterations", "ambiguous" or "lost". ``reason``: why, as a ``code`` for programs and its numbers; ``message``: the same
-    in words. ``rivals``: other poses that fit the image equally well.
-    ``rotation_change``: degrees. ``overlap``: share of valid depth pixels with a correspondence, ``inliers``: share of those within the
-    robust scale. ``residual``: robust mean of the log-colour residual. ``milliseconds``: wall time of each stage in the last step; with
-    ``workers``, whose stages overlap, of the whole "iteration".
+    ``stage``: the stage that ran last: "search", "light", "shading", "surface", "registration" or "refinement".
+    ``status``: "running", "converged", "max-iterations", "ambiguous" or "lost".
+    ``reason``: the reason as a ``code`` for programs and its numbers; ``message``: the same in words.
+    ``rivals``: other poses that fit the image equally well.
+    ``rotation_change``: change of the rotation, degrees.
+    ``overlap``: share of valid depth pixels with a correspondence; ``inliers``: share of those within the robust scale.
+    ``residual``: robust mean of the log-colour residual.
+    ``milliseconds``: wall time of each stage in the last step. With ``workers`` the stages overlap, and it has the time of
+        the whole "iteration".
     """
 
     iteration: int

@@ -79,7 +79,7 @@ export const PARTS = [
   },
   {
     name: "means",
-    // A window of three quarters of an object leaves the mean over the whole object, which is the exposure.
+    // A window of three quarters of the object's size subtracts nearly the mean over the whole object, which only removes the exposure.
     what: "local means (the mean over the whole object is subtracted)",
     changes: [
       {

@@ -6,9 +6,9 @@ import { degreesBetween } from "../../protocols/rotations.mjs";
  * pixel's size at the middle of the surface for a view with a camera. At 128 pixels and more, one bit of a 32-bit depth is 1.5e-5.
  */
 export const LIMITS = {
-  /** Of the rotation and of the rivals' rotations. */
+  /** Rotations of the pose and of its rivals. */
   degrees: 1e-6,
-  /** Relative: 80 pixels from the middle, it moves a point as far as a height may move. */
+  /** Relative. It moves a point 80 pixels from the middle as far as a height may move. */
   scale: 1e-7,
   translation: 1e-5,
   /** `imageDepth` and `refinedDepth`. */
@@ -125,14 +125,14 @@ export function compare(before, after, { rasterApart, pairsApart }) {
   };
 }
 
-/** For whole answers. */
+/** Comparison of whole answers. */
 export const WHOLE = {
   rasterApart(a, b) {
     if (a.length !== b.length) return Infinity;
     let most = 0;
     for (let index = 0; index < a.length; index++) {
       if (Number.isNaN(a[index]) !== Number.isNaN(b[index])) return Infinity;
-      // False where neither has a value.
+      // NaN where neither has a value, so the comparison is false.
       const difference = apart(a[index], b[index]);
       if (difference > most) most = difference;
     }

@@ -56,7 +56,7 @@ function namesOf(path, value) {
   return [path, ...Object.entries(value).flatMap(([key, member]) => namesOf(`${path}.${key}`, member))];
 }
 
-/** Those that a scene uses. */
+/** The members that a scene uses. */
 export function usesOf({ request = {}, image, depth, albedo = {} }, options, way, endedBy) {
   const used = Object.entries({ sample: request, image, depth, options, albedo }).flatMap(([path, value]) =>
     namesOf(path, value),

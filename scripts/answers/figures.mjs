@@ -67,7 +67,7 @@ export const figureOf = ({ input, report, endedBy, light, pixel, correspondence,
   ),
 });
 
-/** For figures. */
+/** Comparison of the figures that condense answers. */
 export const SAMPLED = {
   rasterApart(a, b) {
     if (a.pattern !== b.pattern || a.values.length !== b.values.length) return Infinity;

@@ -65,7 +65,7 @@ function integers({ data, mask, ...image }, Type, most, transfer, encode) {
   return { ...image, mask, data: rgba, ...(transfer ? { transfer } : {}) };
 }
 
-/** As a camera stores it whose exposure is set for the object; the surroundings are grey. */
+/** The image as a camera stores it if the exposure is set for the object. The surroundings are grey. */
 function photographed({ data, mask, ...image }, quality) {
   const [exposure, wall] = [0.9 / data.reduce((high, value) => Math.max(high, value), 0), 0.2];
   const levels = data.map((value, index) => (mask[Math.floor(index / 3)] ? value * exposure : wall));

@@ -60,7 +60,7 @@ export function scenes(api, files) {
   mkdirSync(inRoot(FOLDER), { recursive: true });
   const names = kit(hasData());
   const data = library(files);
-  // Of the built-in surfaces, the ripples cover half of their grid, as Mozart does.
+  // Among the built-in surfaces, ripples cover half of their grid, like Mozart.
   const surface = hasData() ? "mozart" : "ripples";
   const relief = hasData() ? data.surface(surface) : heightsOf(surface, api.sample);
   const lightName = hasData() ? "A" : "window";

@@ -1,4 +1,4 @@
-// What goes into a run and what each stage makes of it, on one rendered bust.
+// The inputs of a run and the result of each stage, on one rendered bust.
 import { IDENTITY } from "../../protocols/rotations.mjs";
 import { withRun } from "../../protocols/runs.mjs";
 import { boxAround, byteOf, clamped, grey, median, normalColour, picture, tint, triple } from "./raster.mjs";
@@ -15,18 +15,18 @@ const SCENE = {
   depthNoise: 0.2,
   holes: 0.02,
 };
-/** Points that are interpolated between two neighbouring depth points, along either axis, so that a projected surface has no gaps. */
+/** Number of points per axis that are interpolated between two neighbouring depth points, so that a projected surface has no gaps. */
 const FILLED = 4;
-/** A step of depth over which no surface is continued, pixel lengths. */
+/** Smallest jump in depth that the surface does not bridge, in pixels. */
 const JUMP = 6;
-/** Log units of a residual at the dark end, and of brightness from black to white in the overlay. */
+/** Residual (log units) that gets the darkest colour, and the range of log brightness from black to white in the overlay. */
 const RESIDUAL = 0.3;
 const LOG_RANGE = 2;
 
-/** Both views as they stand. */
+/** The pose before the run: the views lie over each other as they are. */
 const BEFORE = { scale: 1, rotation: IDENTITY, translation: [0, 0, 0] };
 
-/** Mean log shading of the depth map's surface where a pose projects it; NaN elsewhere. */
+/** Mean log shading of the depth map's surface in the image, after projection by a pose; NaN where nothing projects. */
 function projected(api, { depth }, light, values, pose) {
   const turned = normalsOf(depth, values);
   for (let index = 0; index < SIZE * SIZE; index++)
@@ -60,13 +60,13 @@ function projected(api, { depth }, light, values, pose) {
   return found;
 }
 
-/** Mean log intensity of the image; NaN off its mask. */
+/** Mean log intensity of the image; NaN outside its mask. */
 const brightness = ({ data, mask }) =>
   Float32Array.from(mask, (inside, index) =>
     inside ? triple(data, index).reduce((sum, value) => sum + Math.log(value) / 3, 0) : NaN,
   );
 
-/** The image in red, the depth map's shading in cyan: where both agree the colours add up to grey. */
+/** Shows the image in red and the depth map's shading in cyan. Where they agree, the colours add up to grey. */
 function overlay(image, shading) {
   const shared = (_, index) => Number.isFinite(image[index] + shading[index]);
   const both = [image, shading].map((values) => median([...values.filter(shared)]));

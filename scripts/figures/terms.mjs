@@ -1,4 +1,4 @@
-// What the terms of the method mean, on one rendered bust: an occluding contour, a depth discontinuity, tiles, local contrast.
+// Explains terms of the method on one rendered bust: occluding contour, depth discontinuity, tile, local contrast.
 import { aboutY, product, turn } from "../../protocols/rotations.mjs";
 import { lookUp } from "../thresholds.mjs";
 import { boxAround, byteOf, indices, median, picture, tint, triple } from "./raster.mjs";
@@ -7,18 +7,18 @@ import { fallsOn, jumps, moved, neighbours, pixelAt, pointOf, sideOf } from "./v
 
 const SIZE = 160;
 const BETA = 40;
-/** Stains: log albedo between its ends, and the wavelengths across and down, pixels. */
+/** Varying albedo of the bust: the log albedo (R, G, B) of the darkest spots, and the wavelengths across and down in pixels. */
 const STAIN = [-0.12, -0.3, -0.4];
 const WAVES = [52, 64];
 const TURNED = Number(lookUp("TURNED", "src/view/limbs.rs").value);
 const TILE = Number(lookUp("TILE", "src/pose/photometric/covariance.rs").value);
-/** A jump of the depth, pixel lengths. */
+/** Smallest difference of neighbouring depths that counts as a discontinuity, in pixels. */
 const JUMP = 8;
-/** Sigma of the window of local contrast, depth pixels, and the pose beside the true one, degrees. */
+/** Sigma of the Gaussian window for local contrast (depth pixels), and the rotation between the true and the wrong pose (degrees). */
 const WINDOW = 5;
 const BESIDE = 15;
 
-/** How dark a stain is at a pixel, 0 to 1. */
+/** How dark the albedo is at a pixel, from 0 to 1. */
 function stained({ width }, index) {
   const [x, y] = [index % width, Math.floor(index / width)].map((at, axis) => (2 * Math.PI * at) / WAVES[axis]);
   return (1 + Math.sin(x + Math.sin(y)) * Math.sin(y)) / 2;
@@ -33,7 +33,7 @@ function scene(api) {
   return { ...made, image: { ...made.image, data } };
 }
 
-/** Sides of pixels at the border of the object or before a jump, where the surface has turned away from the camera, and the others. */
+/** Borders of pixels at depth discontinuities: `turned` where the surface bends away from the camera, `cut` elsewhere. */
 function contours({ image, truth }) {
   const found = { turned: [], cut: [] };
   for (const index of indices(image, (index) => Number.isFinite(truth.imageDepth[index])))
@@ -47,7 +47,10 @@ function contours({ image, truth }) {
   return found;
 }
 
-/** Of each depth pixel: log intensity where it falls, and the shading that its normal predicts; NaN where the image does not see it. */
+/**
+ * For each depth pixel, the log intensity of the image at its projection, and the log shading that its normal predicts. Both are NaN where
+ * the image does not show the pixel.
+ */
 function compared(api, { image, depth, light, truth }, pose) {
   const normals = Float32Array.from({ length: 3 * SIZE * SIZE }, () => 0);
   for (let index = 0; index < SIZE * SIZE; index++)
@@ -71,7 +74,7 @@ function compared(api, { image, depth, light, truth }, pose) {
   return { seen, predicted };
 }
 
-/** Values minus their mean in a Gaussian window. */
+/** Values minus their mean within a Gaussian window. */
 function normalised({ width, height }, values) {
   const reach = 2 * WINDOW;
   return Float32Array.from(values, (value, index) => {
@@ -95,14 +98,14 @@ const spread = (values) => {
   return 1.4826 * median([...finite].map((value) => Math.abs(value - middle)));
 };
 
-/** ln of the spread of the local contrast over what the shading leaves of it. */
+/** The logarithm of two spreads' ratio: that of the local contrast, and that of its difference from the predicted shading. */
 function gain(size, { seen, predicted }) {
   const [contrast, shading] = [seen, predicted].map((values) => normalised(size, values));
   const left = contrast.map((value, at) => value - shading[at]);
   return Math.log(spread(contrast) / spread(left));
 }
 
-/** The true pose, turned about the middle of the object. */
+/** The true pose, rotated about the middle of the object. */
 function turnedPose({ pose, depth, truth }) {
   const points = indices(depth, (index) => Number.isFinite(truth.depth[index])).map((index) =>
     moved(pose, pointOf(depth, truth.depth, index)),
@@ -118,11 +121,11 @@ function turnedPose({ pose, depth, truth }) {
 }
 
 const hexOf = (colour) => [1, 3, 5].map((at) => Number.parseInt(colour.slice(at, at + 2), 16));
-/** Negative values blue, positive ones orange. */
+/** Colours negative values blue and positive values orange. */
 const signed = (value, range) =>
   Number.isFinite(value) ? tint(Math.abs(value) / range, hexOf(value < 0 ? BLUE : ORANGE)) : undefined;
 
-/** Lines between tiles inside a box, and the box of one tile. */
+/** The lines between tiles inside a box, and a frame around one tile. */
 function tiles(box, [column, row]) {
   const grid = [];
   for (let x = Math.ceil(box.left / TILE) * TILE; x <= box.left + box.width; x += TILE)
@@ -136,7 +139,7 @@ function tiles(box, [column, row]) {
   ];
 }
 
-/** The tile whose residuals agree best. */
+/** The tile whose residuals have the largest absolute sum. */
 function strongest({ width }, residuals) {
   const sums = new Map();
   for (const index of indices({ width, height: width }, (index) => Number.isFinite(residuals[index]))) {

@@ -1,4 +1,4 @@
-// The three verdicts of the check of a calibration: three candidates for one rendered frame, with the check's own words.
+// The three verdicts of the calibration check on three candidates for one rendered frame, with the reason that the check gives.
 import { chance, wrong } from "../rigs/draws.mjs";
 import { Failure } from "../shell.mjs";
 import { lookUp } from "../thresholds.mjs";
@@ -6,24 +6,24 @@ import { picture } from "./raster.mjs";
 import { BLUE, GREEN, INK, ORANGE, SOFT, dots, figure, line, over, placed, text } from "./svg.mjs";
 
 const RIG = { kind: "objects", seed: 5 };
-/** The part of the frame that is shown, shares of its width and height. */
+/** The part of the frame that is shown, as shares of the frame's width and height. */
 const PART = { left: 0.22, top: 0.38, width: 0.56, height: 0.62 };
-/** Degrees about the camera and millimetres by which each candidate is off, the verdict that it gets, and its colour. */
+/** The candidates: the error of each (degrees about the camera, and millimetres), the expected verdict, and the verdict's colour. */
 const CANDIDATES = [
   { degrees: 0, millimetres: 0, verdict: "consistent", colour: GREEN },
   { degrees: 1, millimetres: 10, verdict: "off", colour: ORANGE },
   { degrees: 0.3, millimetres: 3, verdict: "undecided", colour: BLUE },
 ];
-/** Letters of a line beside a picture. */
+/** Largest number of characters in a line beside a picture. */
 const LETTERS = 42;
-/** Pixels at the end of the scale of an interval, and its place and width in the figure. */
+/** The scale of the intervals: the largest error on it in image pixels, and its left end and width in the figure. */
 const SCALE = { most: 18, left: 372, width: 300 };
 const STEP = 6;
 const PINK = "#d1006c";
 const TALL = 186;
 const APART = TALL + 22;
 
-/** Words in lines of at most so many letters. */
+/** Text broken into lines of at most `LETTERS` characters. */
 const wrapped = (words) =>
   words.split(" ").reduce(
     (lines, word) => {
@@ -33,7 +33,7 @@ const wrapped = (words) =>
     [""],
   );
 
-/** The expected error with its interval, and the error that passes. */
+/** Draws the expected error with its interval, and the range of errors that pass. */
 function scale(y, { pixels, interval }, passing, colour) {
   const at = (value) => SCALE.left + (SCALE.width * value) / SCALE.most;
   const ticks = Array.from({ length: SCALE.most / STEP + 1 }, (_, index) => STEP * index);
@@ -48,7 +48,7 @@ function scale(y, { pixels, interval }, passing, colour) {
   ];
 }
 
-/** The part of a frame as a picture, darker colours lifted so that edges show on them. */
+/** The part of a frame as a picture. Dark colours are brightened, so that edges are visible on them. */
 function part(image) {
   const { width, height, data } = image;
   const box = {
@@ -68,7 +68,7 @@ const isInside =
 
 const pairs = (values) => Array.from({ length: values.length / 2 }, (_, at) => [values[2 * at], values[2 * at + 1]]);
 
-/** One candidate: its edges over the picture, its verdict and its interval. */
+/** The row of one candidate: the picture with its edges, its verdict and its interval. */
 function row({ colour, degrees, millimetres, verdict }, { found, edges, box, wide, passing }, y) {
   if (found.verdict !== verdict) throw new Failure(`The check says "${found.verdict}" where "${verdict}" is expected.`);
   // The centre of a pixel is half a pixel from its corner.
@@ -95,7 +95,7 @@ export async function verdicts(api) {
   const passing = (Number(lookUp("TOLERANCE", "src/calibration/verdict.rs").value) * frame.image.width) / 640;
   const shown = part(frame.image);
   const wide = (TALL * shown.box.width) / shown.box.height;
-  // The picture stands in the file once.
+  // The file contains the picture only once; each row refers to it.
   const parts = [`<defs><g id="frame">${placed(shown, 20, 0, wide)}</g></defs>`];
   for (const [at, candidate] of CANDIDATES.entries()) {
     const { edges } = await api.projectFrame(frame, poses[at]);

@@ -1,8 +1,8 @@
-// Orthographic views of a rendered pair: points, projections, borders.
+// Points, projections and borders in the orthographic views of a rendered pair.
 import { turn } from "../../protocols/rotations.mjs";
 import { indices, triple } from "./raster.mjs";
 
-/** A point of a parallel view, in its pixels about its middle. */
+/** The point of a pixel in an orthographic view, in pixels, with the origin in the middle of the view. */
 export const pointOf = ({ width, height }, depth, index) => [
   (index % width) - (width - 1) / 2,
   Math.floor(index / width) - (height - 1) / 2,
@@ -12,16 +12,16 @@ export const pointOf = ({ width, height }, depth, index) => [
 export const moved = ({ scale, rotation, translation }, point) =>
   turn(rotation, point).map((value, axis) => scale * value + translation[axis]);
 
-/** Column and row where a point of the image's frame falls. */
+/** Column and row of a point's projection in the image. */
 export const fallsOn = ({ width, height }, [x, y]) => [x + (width - 1) / 2, y + (height - 1) / 2];
 
-/** The index of the pixel on which a point falls, -1 beside the raster. */
+/** The index of the pixel that a point projects to; -1 if it projects outside the raster. */
 export function pixelAt(size, point) {
   const [column, row] = fallsOn(size, point).map(Math.round);
   return column >= 0 && row >= 0 && column < size.width && row < size.height ? row * size.width + column : -1;
 }
 
-/** The four neighbours of a pixel inside the raster, each with its direction. */
+/** Those of a pixel's four neighbours that are inside the raster, each with its direction. */
 export function neighbours({ width, height }, index) {
   const [column, row] = [index % width, Math.floor(index / width)];
   const all = [
@@ -35,13 +35,13 @@ export function neighbours({ width, height }, index) {
     .map(([u, v]) => ({ index: index + u + v * width, direction: [u, v] }));
 }
 
-/** The side of a pixel toward a neighbour, as a short line between corners. */
+/** The border between a pixel and a neighbour, as a line between two corners. */
 export function sideOf({ width }, index, [u, v]) {
   const [x, y] = [(index % width) + 0.5 + u / 2, Math.floor(index / width) + 0.5 + v / 2];
   return [x - v / 2, y - u / 2, x + v / 2, y + u / 2];
 }
 
-/** Sides of pixels behind which the depth jumps or ends: `ahead` of a farther surface, or of nothing. */
+/** Borders of pixels at depth discontinuities: in front of a farther surface (`ahead`) or next to a pixel without depth (`ofNothing`). */
 export function jumps(size, depth, least) {
   const found = { ahead: [], ofNothing: [] };
   for (const index of indices(size, (index) => Number.isFinite(depth[index])))
@@ -53,7 +53,7 @@ export function jumps(size, depth, least) {
   return found;
 }
 
-/** Normals of a depth map of a parallel view, by differences over two pixels; NaN where a neighbour is missing. */
+/** Normals of an orthographic depth map by central differences; NaN where a neighbour is missing. */
 export function normalsOf(size, depth) {
   const normals = new Float32Array(3 * size.width * size.height).fill(NaN);
   for (const index of indices(size, (index) => Number.isFinite(depth[index]))) {
@@ -67,7 +67,7 @@ export function normalsOf(size, depth) {
   return normals;
 }
 
-/** A surface under a lamp beside the camera: shares of light. */
+/** The share of light that a surface reflects under a lamp beside the camera. */
 export const lit = (normals) => (index) => {
   const [x, y, z] = triple(normals, index);
   const light = -0.45 * x - 0.45 * y - 0.77 * z;

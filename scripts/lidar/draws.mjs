@@ -1,5 +1,6 @@
-// Checks of LiDAR frames whose candidate is the data set's calibration or off by a known error, with the intensities and without them. That
-// calibration counts as true. All draws but the first keep three fifths of the range image's columns, from a random one on.
+// Checks LiDAR frames with two kinds of candidates, the data set's calibration and poses with a known error, each with and without the
+// intensities. The data set's calibration counts as true. All draws but the first keep three fifths of the range image's columns, from a
+// random one on.
 import { mahalanobis, offset, chance, poseOf, quantile, sizes, wrong } from "../rigs/draws.mjs";
 import { seedOf } from "../captures/draws.mjs";
 import { say } from "../shell.mjs";
@@ -10,7 +11,7 @@ const ERRORS = {
   "5 deg": { degrees: 5, millimetres: 0 },
 };
 const KEPT = 0.6;
-/** The distribution by chi-square with six degrees of freedom at 95 %. */
+/** The 95 % quantile of chi-squared with six degrees of freedom. */
 const INSIDE = 12.59;
 
 /** The points of some columns of a range image; the others become empty. */

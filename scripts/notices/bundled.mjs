@@ -12,7 +12,7 @@ const RUNTIME = /^\0(rolldown|vite)\//;
 /** The end of Vite's licence file lists Vite's dependencies, none of which reaches the output. */
 const REST = /\n# Licenses of bundled dependencies[\s\S]*$/;
 
-/** What a reader of a package's texts would otherwise ask. */
+/** Remarks on packages whose texts contradict each other. */
 const REMARKS = {
   "@openpgp/seek-bzip":
     "The manifest and the licence of this package state MIT. The headers of two of its sources, below, name the LGPL 2.1.",

@@ -72,7 +72,7 @@ def integrate(mask, p, q, anchor, weight):
     _, label = connected_components(graph, directed=False)
     free = [np.flatnonzero(label == k) for k in np.unique(label[touched]) if not held[label == k].any()]
     for component in free:
-        normal[component[0], component[0]] += 1  # holds the level until it is set below
+        normal[component[0], component[0]] += 1  # fixes a level, so that there is one solution; the mean is subtracted below
     normal, index = normal.tocsc(), np.flatnonzero(known)
     z = np.full(count, np.nan)
     z[index] = spsolve(normal[index][:, index], right_side[index])

@@ -29,7 +29,7 @@ for name, size in (("brown5", 5), ("brown8", 8), ("fisheye", 4)):
             spread = np.array([0.05, 0.02, 0.01, 0.005])
         lens = random.uniform(-spread, spread)
         z = random.uniform(0.5, 4, POINTS)
-        slope = 0.5 if size > 4 else 3  # tangent of the angle to the axis, each way
+        slope = 0.5 if size > 4 else 3  # largest tangent of the angle to the axis, in x and in y
         points = np.column_stack([random.uniform(-slope, slope, (POINTS, 2)) * z[:, None], z])
         if name == "fisheye":
             pixels, _ = cv2.fisheye.projectPoints(points[None], still, still, matrix, lens)

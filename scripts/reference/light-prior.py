@@ -47,7 +47,8 @@ C1, C2, C3, C4, C5 = 0.429043, 0.511664, 0.743125, 0.886227, 0.247708
 MIRROR = np.tile([1.0, 1, 1, -1, -1, 1, 1, -1, 1], 3)
 CONSTANT = np.arange(27) % 9 == 0
 
-# Rows and columns of the cells that a panorama is summed into, azimuths, and normals: polar angles and azimuths.
+# Rows and columns of the cells into which a panorama is summed; azimuths of the rotated lights; polar angles
+# and azimuths of the normals.
 CELLS = (64, 128)
 AZIMUTHS = 32
 POLAR, AROUND = 16, 48

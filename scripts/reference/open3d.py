@@ -14,7 +14,7 @@ import tempfile
 from pathlib import Path
 
 os.environ["OMP_NUM_THREADS"] = "1"
-sys.path.pop(0)  # this file's folder, in which "open3d" would be this file
+sys.path.pop(0)  # removes this file's folder, where the name "open3d" would find this file
 
 import numpy as np
 import open3d as o3d

@@ -130,7 +130,10 @@ export const CONFUSIONS = {
   "depth in metres, read as millimetres": [inUnit(0.001), ["depth-metres", "unit"]],
 };
 
-/** Where a frame and a pose put the point of every so many pixels of the depth map, as numbered before any turn. */
+/**
+ * The projections of some points of the depth map into the image under a pose. `numbers` are the indices of their pixels before any
+ * rotation of the map.
+ */
 function pixels({ image, depth }, pose, numbers) {
   return numbers.map((index) => {
     const at = depth.from ? depth.from.indexOf(index) : index;
@@ -142,7 +145,7 @@ function pixels({ image, depth }, pose, numbers) {
   });
 }
 
-/** By how many pixels a mistake moves the scene in the image, median over some points. */
+/** The median shift, in image pixels, by which a mistake moves some points of the scene. */
 function motion(right, wrong) {
   const STRIDE = 997;
   const truth = wrong.truth ?? right;

@@ -59,7 +59,8 @@ async function addWorker(paths) {
     minify: true,
   });
   await bundle.close();
-  // It names the hashes of all other files, including the notices, so the notices cannot include its own code.
+  // The service worker contains the hashes of all other files, including the notices, so the notices cannot cover the service worker
+  // itself.
   if (npm.entries().length > 0) throw new Failure("The service worker contains code of others, which has no notice.");
 }
 

@@ -64,7 +64,7 @@ const KEYS = {
   perturbation: ["kind", "of", "change", "degrees", "isWithin", "status"],
   ablation: ["without", "medianDegrees", "found"],
 };
-/** Tables without a replacement where the data beside the project are absent. */
+/** Tables that need the data beside the project; built-in scenes cannot replace these. */
 const REAL = ["table3", "figure7", "sensors", "photographs", "conditions", "albedo", "rgbd", "statue"];
 
 /** Tables without rows, and missing keys of rows. A key may be null, because not every row has a value. */

@@ -3,7 +3,10 @@ import { fork } from "node:child_process";
 import { inRoot } from "../shell.mjs";
 
 const CELLS = inRoot("scripts/tables/worker.mjs");
-/** A cell that has ended its process this many times fails. Processes, not threads: if Node itself crashes, the others continue. */
+/**
+ * Largest number of tries of a cell: it fails if it has ended its process this many times. Processes, not threads: if Node itself crashes,
+ * the others continue.
+ */
 const MOST_TRIES = 2;
 
 /**

@@ -5,8 +5,8 @@
 //! plausibility. These need depths in the scanner's frame: the coordinate along the axis nearest to the mean direction,
 //! or the distance if the scanner looks all around.
 
-/// A scanner looks all around if the mean of its unit directions is shorter than this; for a cone of 120 degrees it is
-/// 0.75 long.
+/// Length of the mean unit direction below which a scanner looks all around; directions that fill a cone of 120 degrees
+/// have a mean of length 0.75.
 const ALL_AROUND: f64 = 0.5;
 
 /// A direction along an axis of the cloud's frame, or all around.

@@ -257,8 +257,8 @@ impl CalibrationCheck {
     /// Writes the first report. If the first candidate does not pass, the search over its other readings follows.
     fn judge(&mut self, rounds: &[Round], planes: Vec<Planes>) -> Stage {
         let mut optima = optima::ranked(&self.scene, rounds, &planes);
-        // The best start stands unless another one is clearly better, so that rounding does not choose between poses that
-        // fit about as well.
+        // The best initial pose is kept unless another one is clearly better, so that rounding does not choose between
+        // poses that fit about as well.
         let is_start = |optimum: &Optimum| optimum.is_equal() && optimum.round.state.pose == rounds[0].state.pose;
         if let Some(start) = optima.iter().position(is_start) {
             optima[..=start].rotate_right(1);
@@ -292,7 +292,7 @@ impl CalibrationCheck {
                 return curves_of(optima, planes);
             }
         }
-        // The first report stands, and the curves are those of its pose.
+        // The first report is kept, and the curves are those of its pose.
         self.lens = lens;
         let findings = Box::new(self.scene.findings(&self.best, &planes));
         Stage::Curves { planes, findings, done: 0 }

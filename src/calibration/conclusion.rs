@@ -19,8 +19,9 @@ use super::verdict::{CandidateReport, CheckVerdict, Judge};
 const FARTHEST: f64 = 1e6;
 /// The inverse fits clearly better if the candidate's error is at least this multiple of the error of the inverse.
 const CLEARLY: f64 = 3.0;
-/// A candidate was misread if this reading of it is so many times more likely under the distribution of the estimate than
-/// the candidate is under the prior about the estimate: twenty for each of the fourteen readings.
+/// Ratio of two densities above which a candidate counts as misread. The first is the density of the reading in the
+/// distribution of the estimate, the second that of the candidate in the prior about the estimate. The limit is twenty
+/// times the number of readings, fourteen.
 const MISREAD: f64 = 280.0;
 /// Smallest share of the depth points that the estimate has to put onto the image before it may judge a candidate. The
 /// other points are not compared with anything, and a wrong pose can always fit a small part.
@@ -146,7 +147,8 @@ impl CalibrationCheck {
         let units = best.findings.units;
         let middle = units.between(&from, &own);
         let mut scale = Matrix::zeros();
-        // The columns of the scale's root, seen from the best.
+        // Each column of the scale's root is a step about this optimum, which is converted to the units of the best
+        // one.
         if let Some(root) = self.scale(&optimum.findings, &own, &self.scene.cloud(&own)).cholesky() {
             for column in root.l_dirty().column_iter().enumerate() {
                 let sigma = Vector::from_fn(|row, _| if row < column.0 { 0.0 } else { column.1[row] });

@@ -24,7 +24,7 @@ pub(super) type PoseMatrix = SMatrix<f64, POSE, POSE>;
 
 /// The distribution about one optimum.
 pub(super) struct Part {
-    /// Relative to those of the other parts.
+    /// Weight relative to those of the other parts.
     pub weight: f64,
     /// Pose of the optimum.
     pub middle: PoseVector,
@@ -65,7 +65,7 @@ impl Distribution {
         distribution
     }
 
-    /// Up to a factor that all distributions share.
+    /// Density at a pose, up to a factor that all distributions share.
     pub fn density(&self, at: &PoseVector) -> f64 {
         let part = |(part, inverse, height): &(Part, PoseMatrix, f64)| {
             let off = at - part.middle;
@@ -74,7 +74,7 @@ impl Distribution {
         self.parts.iter().map(part).sum()
     }
 
-    /// Probability of a pose that is no more likely than this one.
+    /// Probability that a draw is no more likely than this pose.
     pub fn probability(&self, at: &PoseVector) -> f64 {
         let density = self.density(at);
         let count = self.densities.iter().filter(|other| **other < density).count();

@@ -27,7 +27,7 @@ use crate::view::Size;
 const MISSING: f64 = 0.3;
 /// Least half width L of a window, pixels of an image 640 wide.
 const WIDEST: f64 = 14.0;
-/// Width of a uniform distribution over its standard deviation, the square root of twelve.
+/// Ratio of the width of a uniform distribution to its standard deviation: the square root of twelve.
 const EVEN: f64 = 3.464_101_615_137_754_6;
 /// Half width L of a window in standard deviations s.
 const WINDOW: f64 = 3.0;
@@ -35,10 +35,10 @@ const WINDOW: f64 = 3.0;
 const MOST_EDGES: usize = 12;
 /// Edges below this strength are noise. The strength is the norm over the channels of differences of encoded intensities.
 const FAINTEST: f32 = 0.012;
-/// Least factor of the bound's curvature: the factor varies from round to round, and a small one would make steps
-/// diverge.
+/// Smallest factor on the curvature of the bound. The factor varies from round to round, and a small one would make
+/// steps diverge.
 const LEAST_LEFT: f64 = 0.1;
-/// Blur of the image over sigma, and the least blur in pixels.
+/// Ratio of the image's blur to sigma, and the smallest blur in pixels.
 const BLUR: f64 = 0.35;
 const LEAST_BLUR: f64 = 0.7;
 
@@ -49,7 +49,7 @@ struct Profile {
     /// Standard deviation s of the position at which the near surface ends, pixels.
     sigma: f64,
     window: f64,
-    /// How many independent discontinuities it stands for, at most one.
+    /// Weight of the profile, at most 1: its share of an independent discontinuity.
     weight: f64,
     tile: u32,
     edges: Vec<(f64, f64)>,
@@ -60,7 +60,7 @@ pub(super) struct EdgeField {
     profiles: Vec<Profile>,
 }
 
-/// Blur, in pixels, of the image in which edges are looked for that are known to within `sigma` pixels.
+/// Blur of the image, in pixels, for edges whose positions are known to within `sigma` pixels.
 pub(super) fn blur(sigma: f64) -> f64 {
     (BLUR * sigma).max(LEAST_BLUR)
 }
@@ -90,8 +90,8 @@ impl EdgeField {
         rims.iter().filter_map(moved).collect()
     }
 
-    /// Finds the image edges near discontinuities as `state` projects them, on planes blurred for edges known to within
-    /// `sigma` pixels.
+    /// Projects the discontinuities by `state` and finds the image edges near them, on planes that are blurred for this
+    /// `sigma`.
     pub fn new(Sight { frame, planes }: Sight<'_>, rims: &[Rim], state: &State, units: &Units, sigma: f64) -> Self {
         let blur = blur(sigma);
         let camera = state.camera(&frame.camera);
@@ -117,8 +117,8 @@ impl EdgeField {
     }
 
     /// Adds the log likelihood and its gradient at the state of the field, tile by tile. The curvature is that of the
-    /// bound of expectation maximisation, which is never negative, times the factor that remains because discontinuities
-    /// may change their edges.
+    /// bound of expectation maximisation, which is never negative. A factor reduces it, because discontinuities may
+    /// change their edges.
     pub fn evidence(&self, shares: &mut [Share]) {
         let (mut bounds, mut own) = (0.0, 0.0);
         for profile in &self.profiles {
@@ -159,8 +159,8 @@ impl EdgeField {
     }
 }
 
-/// Keeps at most `most` discontinuities, evenly spread. Each pixel of the raster has a fixed rank, so that one
-/// discontinuity that appears replaces one other, and the sample of all others stays.
+/// Keeps at most `most` discontinuities, evenly spread. Each pixel of the raster has a fixed rank. A discontinuity that
+/// appears therefore replaces only one other.
 fn keep(rims: &mut Vec<Rim>, grid: Size, most: usize) {
     if rims.len() <= most {
         return;

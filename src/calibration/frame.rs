@@ -8,16 +8,16 @@ use super::unknowns::State;
 use crate::numeric::quantile;
 use crate::view::{Pinhole, Size, depth_noise};
 
-/// A point farther behind the nearest one than this share of the distance is hidden: twice the depth step of a Kinect at
-/// three metres.
+/// A point is hidden if it lies behind the nearest one by more than this share of the distance: twice the depth step of
+/// a Kinect at three metres.
 const HIDDEN_SHARE: f64 = 0.02;
-/// Least distance behind the nearest point from which a point is hidden, metres: larger than flying pixels and the noise
-/// of a near object.
+/// A point is hidden only if it lies at least this far behind the nearest one, metres: farther than flying pixels and
+/// the noise of a near object reach.
 const HIDDEN_LEAST: f64 = 0.015;
 
-/// A point counts as behind another one from this distance on, in sigmas of the map's own noise. This is
-/// about three standard deviations: a depth discontinuity compares a depth with one that is extrapolated from two others,
-/// and the difference has 1.9 times the sigma of a depth. With five sigmas a receding floor has discontinuities all over.
+/// Distance from which a point counts as behind another one, in sigmas of the map's noise. A depth is compared with one
+/// that is extrapolated from two others, and their difference has 1.9 times the sigma of a depth. The limit is
+/// therefore about three standard deviations. With five sigmas, a receding floor has discontinuities everywhere.
 const NOISE_SIGMAS: f64 = 6.0;
 
 /// Colours, points, and the known parameters of the colour camera.
@@ -34,7 +34,7 @@ pub(super) struct Frame {
     pub cell: [usize; 2],
     /// Column and row of the depth map of each cell's sample; empty if every pixel of the map is a cell.
     pub places: Vec<(usize, usize)>,
-    /// In the depth camera's frame, metres; NaN where missing or outside the mask.
+    /// Points in the depth camera's frame, metres; NaN where missing or outside the mask.
     pub points: Vec<[f32; 3]>,
     /// Intensity of each sample, in the scanner's own unit, if it is known.
     pub intensity: Option<Vec<f32>>,
@@ -80,7 +80,7 @@ impl Frame {
         self.places.get(index).copied().unwrap_or_else(|| self.grid.position(index))
     }
 
-    /// From one sample to another on the raster, in cells.
+    /// Step from one sample to another on the raster, in cells.
     pub fn step(&self, from: usize, to: usize) -> [f64; 2] {
         let ((column, row), (to_column, to_row)) = (self.place(from), self.place(to));
         let [columns, rows] = self.cell.map(|side| side as f64);
@@ -123,9 +123,9 @@ impl Frame {
 
 /// The cloud in the colour camera's view: the pixel of each point, and which points are hidden.
 pub(super) struct Projection {
-    /// Colour camera's frame; NaN where missing.
+    /// Points in the colour camera's frame; NaN where missing.
     pub positions: Vec<[f32; 3]>,
-    /// Column and row, possibly off the image; NaN where missing or behind the camera.
+    /// Column and row of each point, possibly off the image; NaN where missing or behind the camera.
     pub pixels: Vec<[f32; 2]>,
     pub is_hidden: Vec<bool>,
 }
@@ -148,7 +148,8 @@ impl Projection {
     }
 }
 
-/// A z-buffer whose cells are wide enough to be hit by neighbours on one surface.
+/// Which points are hidden, by a z-buffer. Its cells are so wide that the samples of a surface leave none of them
+/// empty.
 fn hidden(frame: &Frame, positions: &[[f32; 3]], pixels: &[[f32; 2]]) -> Vec<bool> {
     let cell = 2.0 * spacing(frame.grid, pixels).max(1.0);
     let size = frame.planes.size;

@@ -4,8 +4,8 @@
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Health {
-    /// Root mean square.
+    /// Root mean square error.
     pub pixels: f64,
-    /// Lower and upper end.
+    /// Lower and upper end of the interval.
     pub interval: [f64; 2],
 }

@@ -1,12 +1,13 @@
 //! Mutual information of colours and surface patches (Viola and Wells 1997, with patches in place of a second image).
 //!
 //! The depth map is split into patches of similar normal and position. Under the right pose a patch shows few colours,
-//! because albedo and light vary less on a surface than in a scene; under a wrong pose its colours mix with those of its
-//! neighbours. The log likelihood is that of colours given patches over that of colours alone, the sum over points and
+//! because albedo and light vary less on a surface than in a scene; under a wrong pose its colours mix with those of
+//! its neighbours. The log likelihood compares colours given patches with colours alone. It is the sum over points and
 //! channels of log p(c | patch) / p(c), with both densities measured in the image under the same pose.
 //!
-//! Where a scanner's intensities are known, their levels group the samples once more, with lightness as the channel: what
-//! reflects alike looks alike, whatever the curve between the two (Koide, Oishi, Yokozuka and Banno 2023).
+//! If a scanner's intensities are known, their levels group the samples once more, with lightness as the channel:
+//! points of equal intensity look alike, whatever curve relates intensity to lightness (Koide, Oishi, Yokozuka and
+//! Banno 2023).
 //!
 //! Method: histograms with linear weights, so that finite differences are smooth.
 
@@ -145,7 +146,7 @@ mod tests {
             [&|grey| 200.0 * grey, &|grey| -grey.powi(3), &|grey| (grey - 0.5).abs()];
         for (index, curve) in curves.into_iter().enumerate() {
             let found = values(&painted(Some(curve)));
-            // What the intensity adds.
+            // The information that the intensity adds.
             let added: Vec<f64> = found.iter().zip(&plain).map(|(found, plain)| found - plain).collect();
             let next = added[1..].iter().copied().fold(f64::NEG_INFINITY, f64::max);
             assert!(added[0] > 1.2 * next && next > 0.0, "curve {index}: {} and {next}", added[0]);

@@ -123,7 +123,7 @@ impl RigView {
         }
         frame.image_mask = mask;
         frame.has_depth_mask = self.depth_mask.is_some();
-        // An organised cloud does not tell whose raster it has.
+        // The raster of an organised cloud may be that of either camera.
         let shares_camera = self.depth_camera.is_none_or(|own| Some(own) == self.image_camera);
         frame.may_be_registered = self.depth_size == self.image_size && shares_camera;
         while frame.planes.size.width.max(frame.planes.size.height) > WIDEST {

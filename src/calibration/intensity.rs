@@ -8,7 +8,7 @@ use crate::numeric::quantile;
 
 /// Levels of equal count: as many as a channel of the image has.
 pub(super) const LEVELS: usize = 16;
-/// The level of a sample without intensity, which is none of a table's rows.
+/// The level of a sample without intensity; no row of a table belongs to it.
 pub(super) const UNKNOWN: u8 = u8::MAX;
 
 /// The level of each intensity among all of them; equal intensities have one level. Taken over all samples of a frame, seen

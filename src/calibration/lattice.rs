@@ -1,29 +1,30 @@
-//! Lattices of states about the initial one, on which rounding decides nothing.
+//! Lattices of states about the initial one, so that rounding does not choose between states.
 //!
-//! The objective is rough: a depth discontinuity or a sample is seen or not, and an image edge appears or vanishes. Where a
-//! direction is hardly determined, a round multiplies a small difference of states by ten. So states are taken from a fine
-//! lattice after each round, and what they see of the scene from a coarse one. Limit: a candidate that differs by more than
-//! rounding shifts both lattices, and the estimate may end elsewhere within its covariance.
+//! The objective is rough: a depth discontinuity or a sample is seen or not, and an image edge appears or vanishes. In
+//! a direction that is hardly determined, a round multiplies a small difference of states by ten. After each round, the
+//! state therefore moves to the nearest node of a fine lattice. Visibility is computed at the nearest node of a coarse
+//! one. Limit: a candidate that differs by more than rounding shifts both lattices, and the estimate may end elsewhere
+//! within its covariance.
 
 use super::registration::{Round, Scene};
 use super::unknowns::{FOCAL, POSE, State, UNKNOWNS, Vector};
 
 /// Spacing of the lattice of states at which visibility is computed, pixels of an image 640 wide.
 const SPACING: f64 = 1.0;
-/// Spacing of the states at which rounds end: less than a step that has converged, and an odd part of `SPACING`, so that none
-/// lies halfway between two states from which the scene is seen.
+/// Spacing of the states at which rounds end, pixels of an image 640 wide: less than a step that has converged. It is
+/// an odd fraction of `SPACING`, so that no state lies halfway between two states at which visibility is computed.
 const RESOLUTION: f64 = SPACING / 127.0;
 
 impl Scene {
-    /// Moves the state from which a round sees the scene if its own state went farther from it than the spacing, and returns
-    /// whether it did. What is hidden depends on the pose by leaps. It changes little within a pixel, so it is taken from
-    /// the nearest state on a lattice about the initial state, which rounding does not move.
+    /// Moves the state at which a round computes visibility if the round's own state is farther from it than the
+    /// spacing. Returns whether it moved. Visibility jumps as the pose changes, but changes little within a pixel. It
+    /// is therefore computed at the nearest node of a lattice about the initial state, which rounding does not move.
     pub fn look(&self, round: &mut Round) -> bool {
         let spacing = SPACING * self.scale;
         let units = self.units(&round.initial);
         let [from, to] = [round.seen_from, round.state].map(|state| units.between(&round.initial, &state));
         let moves = |k: &usize| *k < POSE || *k == FOCAL;
-        // Between two states of the lattice of rounds, so that rounding does not decide.
+        // This limit lies between two states of the finer lattice, so that rounding does not decide.
         let farthest = spacing + 0.5 * RESOLUTION * self.scale;
         if (0..UNKNOWNS).filter(moves).all(|k| (to[k] - from[k]).abs() <= farthest) {
             return false;
@@ -33,9 +34,9 @@ impl Scene {
         true
     }
 
-    /// The nearest of closely spaced states about the initial one. Sums in another order, other axes of the cloud and another
-    /// processor change a step by rounding. The states of the lattice are equal again after each round, so that the rounding
-    /// of one round does not grow in the next.
+    /// The nearest node of the finer lattice about the initial state. Another order of sums, other axes of the cloud or
+    /// another processor change a step by rounding. Steps that differ by this little end at the same node, so the
+    /// rounding of one round does not grow in the next.
     pub fn on_lattice(&self, initial: &State, state: &State) -> State {
         let units = self.units(initial);
         let spacing = RESOLUTION * self.scale;
@@ -70,7 +71,7 @@ mod tests {
     fn rounds_that_differ_by_rounding_end_at_one_state() {
         let (scene, initial) = (scene(), State::at(Similarity::identity()));
         let units = scene.units(&initial);
-        // None lies halfway between two states.
+        // No state lies halfway between two nodes.
         let step = Vector::from_fn(|k, _| 0.73 * k as f64 - 2.83);
         let [one, other] = [0.0, 1e-6].map(|error| {
             let state = units.step(&initial, &step.add_scalar(error));

@@ -91,11 +91,11 @@ impl Optimum {
     }
 }
 
-/// How well a pose fits, with given weights of the cues.
+/// The fit of a pose under given weights of the cues.
 struct Fit {
     /// Weighted log likelihood of the cues in each tile.
     by_tile: Vec<f64>,
-    /// Their sum and the log prior.
+    /// Log posterior: the sum over the tiles plus the log prior.
     posterior: f64,
 }
 
@@ -120,8 +120,8 @@ impl Fit {
     }
 }
 
-/// Sorts by posterior with the weights of the optimum that is best with its own: a pose that puts nothing onto the image
-/// has no weights that could compare others.
+/// Sorts by posterior. All posteriors have the weights of one optimum, the one that is best with its own weights. A
+/// pose that puts no points onto the image has no weights with which others could be compared.
 pub(super) fn rank(optima: &mut [Optimum]) {
     let own = |optimum: &Optimum| Fit::of(&optimum.findings, &optimum.findings.weights()).posterior;
     let Some(first) = optima.iter().min_by(|a, b| own(b).total_cmp(&own(a))) else { return };
@@ -142,8 +142,8 @@ mod tests {
     use crate::view::{Lens, Pinhole};
     use nalgebra::Vector3;
 
-    /// An optimum at a pose that is this many sigmas from the prior's, with a log likelihood of its edges and their
-    /// weight.
+    /// An optimum that is `sigmas` of the prior away from the prior's mean. Its edges have the log likelihood `value`
+    /// and the weight `weight`.
     fn optimum(sigmas: f64, value: f64, weight: f64) -> Optimum {
         let camera = Pinhole { fx: 500.0, fy: 500.0, cx: 320.0, cy: 240.0, lens: Lens::None };
         let cloud = [[-0.3, -0.2, 1.0], [0.3, -0.2, 1.2], [0.0, 0.3, 0.9]].map(Vector3::from);
@@ -170,7 +170,7 @@ mod tests {
         assert_eq!((sigmas, behind), (vec![1.0, 0.0, 5.0], vec![0.0, 0.5, 11.0]));
     }
 
-    /// An optimum whose edges fit by these log likelihoods, tile by tile.
+    /// An optimum whose edges have these log likelihoods, one for each tile.
     fn tiled(values: &[f64]) -> Optimum {
         let mut optimum = optimum(0.0, 0.0, 1.0);
         let evidence = Evidence { shares: values.iter().map(|&value| Share { value, ..Share::none() }).collect() };

@@ -22,7 +22,8 @@ pub(super) struct Planes {
 }
 
 impl Planes {
-    /// The image blurred by a Gaussian of this sigma, pixels; at the border, by the part of it that lies on the image.
+    /// The image blurred by a Gaussian of this sigma, pixels. At the border only the part of the Gaussian that lies on
+    /// the image counts.
     pub fn blurred(&self, sigma: f32) -> Self {
         if sigma <= 0.0 {
             return self.clone();

@@ -136,7 +136,7 @@ fn about_axis(degrees: f64) -> Similarity {
 mod tests {
     use super::*;
 
-    /// A rig, and what each convention makes of its file when it is read as if there were none.
+    /// Writes the pose of a rig in each convention, reads it as if there were no convention, and applies the reading.
     #[test]
     fn each_reading_undoes_its_own_mistake() {
         let rotation = Rotation3::new(Vector3::new(0.3, -0.5, 0.2)).into_inner();

@@ -32,7 +32,7 @@ pub enum CheckReason {
     },
     /// Off: the candidate fits if it is read in another convention.
     Misread {
-        /// That convention.
+        /// The convention in which the candidate fits.
         reading: Reading,
         /// Error of the candidate in that convention.
         margin: Margin,
@@ -61,7 +61,7 @@ pub enum CheckReason {
     NoPoseOnImage,
     /// Undecided: the estimate puts few of the depth points onto the image.
     LittleOverlap {
-        /// Their share.
+        /// Share of the depth points on the image, percent.
         percent: f64,
     },
     /// Undecided: no cue finds anything to compare.
@@ -243,7 +243,7 @@ pub enum WarningKind {
     RoughDepth,
     /// The cameras are farther apart than those of any rig.
     FarApart {
-        /// Their distance.
+        /// Distance between the cameras, metres.
         metres: f64,
     },
     /// The inverse of the candidate fits.

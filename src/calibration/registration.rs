@@ -19,8 +19,8 @@ use super::surface::{self, Sample};
 use super::surfaces::{LogLikelihood, log_likelihood};
 use super::unknowns::{BIAS, FOCAL, Matrix, SIDES, State, Units, Vector, solve};
 
-/// Sigma of edges at each level, pixels of an image 640 wide: from the error that the coarse search leaves of a few
-/// degrees to the resolution of an image. It halves every two levels.
+/// Sigma of edges at each level, pixels of an image 640 wide: it falls from the error that the coarse search leaves to
+/// the resolution of an image. It halves every two levels.
 pub(super) const SIGMAS: [f64; 4] = [4.0, 2.8, 1.9, 1.3];
 /// How many poses proceed after each level, the best by score.
 pub(super) const SURVIVORS: [usize; 4] = [10, 6, 4, 3];
@@ -53,13 +53,13 @@ const MOST_POINTS: usize = 3000;
 /// hand are off by this much. The check finds larger errors too if the scene shows them.
 const PRIOR_DEGREES: f64 = 4.0;
 const PRIOR_METRES: f64 = 0.05;
-/// Share of the scene's points on the image below which a pose cannot be judged; fields of view that hardly overlap have
-/// more.
+/// Share of the scene's points on the image below which a pose cannot be judged; even fields of view that hardly
+/// overlap share more.
 const LEAST_SEEN: f64 = 0.02;
 /// Sigma of the edge bias that all sides share, pixels.
 const PRIOR_BIAS: f64 = 1.0;
-/// Sigma of its change from side to side, pixels, if the maker may have registered the depth map: the registration shifts
-/// the depth edges, which no pose that is estimated from them can undo.
+/// Sigma of the change of the edge bias from side to side, pixels, if the maker may have registered the depth map. Such
+/// a registration shifts the depth edges, and no pose that is estimated from them can undo the shift.
 const PRIOR_SIDES: f64 = 0.5;
 /// Information that holds an unknown in place.
 const HELD: f64 = 1e6;
@@ -100,7 +100,7 @@ impl Round {
     }
 }
 
-/// What a state sees of the scene.
+/// The depth discontinuities and the samples that are visible from a state.
 struct Seen {
     rims: Vec<Vec<Rim>>,
     patches: Vec<Patches>,
@@ -121,7 +121,7 @@ pub(super) struct Findings {
     pub cues: Vec<(Cue, Evidence, f64)>,
     pub total: Evidence,
     pub traces: [Traces; Cue::ALL.len()],
-    /// Step from the initial state of the prior to the state.
+    /// Step from the initial state, on which the prior is centred, to this state.
     pub back: Vector,
 }
 
@@ -246,7 +246,7 @@ impl Scene {
         Findings { prior: self.prior(&units), units, cues, total, traces, back }
     }
 
-    /// Log posteriors of states, with what the state of a round sees and the weights of its findings.
+    /// Log posteriors of states, with the visible samples of a round's state and the weights of its findings.
     fn posterior<'a>(
         &'a self,
         round: &'a Round,
@@ -304,7 +304,7 @@ impl Scene {
         }
     }
 
-    /// A start from a state that is seen as it is.
+    /// A start whose visibility is computed at its own state.
     pub fn start(&self, state: State, initial: State) -> Start {
         let round = Round { seen_from: state, ..Round::from(state, initial) };
         Start { round, rims: self.rims(&state, MOST_RIMS_OF_STARTS), score: 0.0 }
@@ -358,8 +358,8 @@ impl Scene {
 /// still determines the pose.
 const SURFACE_TRUST: f64 = 0.25;
 
-/// Mean log likelihood of a depth discontinuity that one sigma of the prior is worth: neighbouring discontinuities count
-/// as one, so that about a hundred of the thousands in a scene are independent.
+/// Mean log likelihood of a depth discontinuity that counts as much as one sigma of the prior. Neighbouring
+/// discontinuities share errors, so that about a hundred of the thousands in a scene are independent.
 const SCORE_PRIOR: f64 = 0.01;
 
 /// Adds the evidence of a frame's edges, and returns the number of independent depth discontinuities on its image.

@@ -27,7 +27,7 @@ pub(super) struct Rereading {
 impl Rereading {
     /// The readings of a candidate that put points onto the image.
     pub fn new(scene: &Scene, candidate: &State, mut optima: Vec<Optimum>) -> Self {
-        // A pose that shows nothing fits no worse than one that shows much.
+        // Nothing contradicts a pose that puts no points onto the image, so it does not compete.
         optima.retain(|optimum| scene.is_seen(&optimum.round.state));
         let start = |reading: Reading| {
             let state = State::at(reading.of(&candidate.pose)?);
@@ -44,8 +44,8 @@ impl Rereading {
         (self.level as f64 + of_level) / (SIGMAS.len() + 1) as f64
     }
 
-    /// Registers one reading at one level; after the last level, the best one with all cues on the finest images.
-    /// Returns whether the search is over.
+    /// Registers one reading at one level. After the last level, registers the best reading with all cues on the finest
+    /// images. Returns whether the search is over.
     pub fn step(&mut self, scene: &Scene, finest: &[Planes]) -> bool {
         if self.level == SIGMAS.len() {
             if let Some((_, start)) = self.starts.first_mut() {
@@ -74,7 +74,7 @@ impl Rereading {
     pub fn end(self, scene: &Scene, planes: &[Planes]) -> Vec<Optimum> {
         let Self { mut optima, starts, .. } = self;
         for (reading, start) in starts {
-            // The prior of a reading is about its own pose, so it stands for the optimum that it ends at.
+            // The prior of a reading is centred on its own pose, so the reading replaces an optimum at the same place.
             let found = Optimum::at(scene, start.round, Some(reading), planes);
             optima.retain(|other| !other.is_same(&found, scene));
             optima.push(found);

@@ -11,8 +11,8 @@ use super::frame::{Frame, Projection};
 /// (baseline 75 mm) has a hole of 15 to 30 pixels. An object at half a metre in front of a wall at two metres has one of
 /// 60 pixels, and its discontinuities on that side are not found.
 const WIDEST_HOLE: usize = 40;
-/// Distances at which a pixel on the near side is looked for that tells the slope of the surface: two pixels average
-/// the steps of a quantised map, and farther ones stand in for missing depths.
+/// Distances to the pixel on the near side from which the slope of the surface is measured, in the order of preference.
+/// Two pixels average the steps of a quantised map; the other distances serve if that pixel has no depth.
 const BEHIND: [isize; 4] = [2, 1, 3, 4];
 /// Neighbours to each side that determine the local map from raster to image.
 const REACH: isize = 2;
@@ -30,8 +30,8 @@ pub(super) struct Rim {
     pub pixel: [f64; 2],
     /// Unit normal of the discontinuity on the image, away from the near surface.
     pub normal: [f64; 2],
-    /// Distance on the image along the normal, in pixels, from the near pixel to the nearest next one of the raster that
-    /// is not on the near surface. This surface ends anywhere in between.
+    /// Distance along the normal on the image, in pixels, from the near pixel to the next pixel of the raster beyond
+    /// the near surface. The surface ends anywhere in between.
     pub gap: f64,
     /// Number of neighbours along a row or column of the raster, including the pixel itself, whose surface ends in the
     /// same gap. The position of a straight boundary in its gap is one unknown for all of them.
@@ -99,7 +99,7 @@ fn ends_before_farther(frame: &Frame, projection: &Projection, index: usize) -> 
             return None;
         }
         let is_known = |&back: &isize| back as usize <= behind && !at(-back).is_nan();
-        // One sample alone may lie on a floor that recedes.
+        // A single sample does not show whether the surface recedes like a floor.
         let back = BEHIND.into_iter().find(is_known)?;
         // Planes are linear in the inverse depth.
         let slope = ((1.0 / here - 1.0 / at(-back)) / back as f64).min(0.0);
@@ -184,9 +184,9 @@ struct Gap {
 }
 
 impl Gap {
-    /// Each step s at an angle to the normal ends after |s| cos. The gap is the root of the mean of the inverse squares,
-    /// weighted by the fourth power of the cosine: the nearest sample beyond counts most, and one beside the normal, which
-    /// only noise puts beyond a straight boundary, counts for nothing as its cosine vanishes.
+    /// A step s at an angle to the normal covers |s| cos of it. The gap follows from the mean of the inverse squares of
+    /// these lengths, weighted by the fourth power of the cosine. The nearest sample beyond counts most. A sample in
+    /// the direction of the boundary, which only noise puts beyond it, has a cosine near zero and hardly counts.
     fn of(ends: &[Option<[f64; 2]>; 4], normal: [f64; 2], on_image: impl Fn([f64; 2]) -> [f64; 2]) -> Option<Self> {
         let (mut precision, mut weights, mut best) = (0.0, 0.0, (0.0, 0));
         for (direction, step) in ends.iter().enumerate() {

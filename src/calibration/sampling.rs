@@ -7,7 +7,7 @@
 
 use crate::view::Size;
 
-/// Smallest share of the cells next to a cell with a sample, along an axis, that must hold a sample too.
+/// Cells grow along an axis until at least this share of the neighbours of cells with a sample hold a sample too.
 const COVERED: f64 = 0.6;
 /// Longest side of a cell, pixels: 16 rings in a map of 480 rows are 30 pixels apart.
 const LARGEST_CELL: usize = 32;

@@ -1,11 +1,11 @@
 //! The coarse search for initial poses: a lattice of possible errors of a candidate.
 //!
 //! The prior states how far a candidate may be off. The eigenvectors of J^T J in sigmas of the prior, with J the motion
-//! of the depth discontinuities, are the errors that move the image the most. A sigma of two of them, shifts of the
-//! image, moves it by tens of pixels. A rotation about the optical axis, a shift along it and an unknown focal length
-//! move it less, and rotations and shifts that cancel at one depth but not at another move it by a few pixels. A lattice
-//! with one pace in pixels covers all of them, and discontinuities move along straight lines on it. The best places that
-//! are not neighbours become initial poses of the registration.
+//! of the depth discontinuities, are the errors that move the image the most. Two of them are shifts of the image; one
+//! sigma of these moves it by tens of pixels. A rotation about the optical axis, a shift along it and an unknown focal
+//! length move it less, and rotations and shifts that cancel at one depth but not at another move it by a few pixels. A
+//! lattice covers all of them with the same pace in pixels, and discontinuities move on straight lines along its
+//! directions. The best places that are not neighbours become initial poses of the registration.
 //!
 //! score = mean over discontinuities of s - PRIOR_WEIGHT / 2 * squared distance in sigmas of the prior,
 //! s = |n . grad I| / (|grad I| + mean of |grad I| in the surroundings + FAINTEST)
@@ -36,8 +36,8 @@ const BLUR: f64 = 0.5;
 const AROUND: f64 = 2.0;
 /// Gradients weaker than this are noise: sum of three encoded channels, difference over two pixels.
 const FAINTEST: f32 = 0.03;
-/// Weight of the prior against the mean score: one sigma costs 0.01, as much as one discontinuity of fifty gains on an
-/// edge with s = 0.5.
+/// Weight of the prior against the mean score: one sigma costs 0.01, which is what the score gains if one discontinuity
+/// in fifty lies on an edge with s = 0.5.
 const PRIOR_WEIGHT: f64 = 0.02;
 
 /// Gradient of lightness relative to its surroundings.
@@ -101,7 +101,7 @@ struct Lattice {
 
 type Place = [i8; UNKNOWNS];
 
-/// The depth discontinuities as `state` sees them, and initial poses near it, itself the first.
+/// The depth discontinuities that are visible from `state`, and initial poses near it, of which `state` is the first.
 pub(super) fn starts(scene: &Scene, state: &State) -> (Vec<Vec<Rim>>, Vec<State>) {
     let units = scene.units(state);
     let rims = scene.rims(state, MOST_RIMS);

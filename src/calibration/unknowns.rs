@@ -1,11 +1,11 @@
 //! The unknowns of a check, and the derivatives of pixels with respect to them.
 //!
-//! P -> c + exp([w]) (P - c) + v about the scene's centre c, in the colour camera's frame; the edge bias, d_0 + d_x n_x +
-//! d_y n_y pixels at a depth discontinuity with the normal n; and ln f of the colour camera if it is unknown. A depth camera
-//! removes or adds a strip at depth discontinuities: of one width everywhere, and of another at each side, since the
-//! shadow of a stereo pair lies to one side and a maker's registration may be off. The unit of each unknown moves the
-//! scene's pixels by one pixel, root mean square. All unknowns are then comparable, and steps, derivatives and tolerances
-//! have one size.
+//! P -> c + exp([w]) (P - c) + v about the scene's centre c, in the colour camera's frame; the edge bias, d_0 + d_x n_x
+//! + d_y n_y pixels at a depth discontinuity with the normal n; and ln f of the colour camera if it is unknown. A depth
+//! camera removes or adds a strip at depth discontinuities. One part of the strip's width is the same everywhere.
+//! Another part differs from side to side, since the shadow of a stereo pair lies to one side, and a maker's
+//! registration may be off. The unit of each unknown moves the scene's pixels by one pixel, root mean square. All
+//! unknowns are then comparable, and steps, derivatives and tolerances have one size.
 
 use nalgebra::{Rotation3, SMatrix, SVector, Vector3};
 
@@ -91,7 +91,7 @@ pub(super) struct Units {
 }
 
 impl Units {
-    /// The units by which a cloud moves by one pixel; its points are in the colour camera's frame.
+    /// The units, each of which moves a cloud by one pixel. The points of the cloud are in the colour camera's frame.
     pub fn new(points: &[Vector3<f64>], camera: &Pinhole) -> Self {
         let mut depths: Vec<f32> = points.iter().map(|point| point.z as f32).collect();
         let mean = points.iter().sum::<Vector3<f64>>() / points.len().max(1) as f64;

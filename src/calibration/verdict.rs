@@ -9,9 +9,10 @@
 //! draws are less likely), and the scene would show a relevant error (the estimate's own error is below the tolerance in
 //! 95 % of cases).
 //!
-//! Off: all of the interval lies above the tolerance, and 95 % of the draws are more likely than the candidate. The second condition is needed because with six unknowns hardly any draw is near a candidate, wherever it
-//! is. If the colour camera was guessed, all of the interval has to lie above the error that the guess explains, too. The
-//! interval of the estimate's own error must not lie above these limits.
+//! Off: all of the interval lies above the tolerance, and 95 % of the draws are more likely than the candidate. The
+//! second condition is needed because with six unknowns hardly any draw is near a candidate, wherever it is. If the
+//! colour camera was guessed, all of the interval must also lie above the error that the guess explains. The interval
+//! of the estimate's own error must not lie above these limits.
 //!
 //! Undecided: otherwise.
 
@@ -63,8 +64,8 @@ pub struct CandidateReport {
     pub off_degrees: f64,
     /// Shift of the scene's centre from that of the estimate, millimetres.
     pub off_millimetres: f64,
-    /// The same by axis, from the estimate to the candidate: degrees about x, y, z, then millimetres along them; colour
-    /// camera's frame.
+    /// Rotation and shift by axis, from the estimate to the candidate: degrees about x, y, z, then millimetres along
+    /// them; colour camera's frame.
     pub off_axes: [f64; POSE],
     /// Expected reprojection error of the candidate.
     #[cfg_attr(feature = "serde", serde(flatten))]
@@ -89,8 +90,9 @@ pub(super) struct Judge {
 }
 
 impl Judge {
-    /// Decrease of the log posterior, in units of the scale, at the border of the ellipsoid that holds 95 % of a normal
-    /// distribution with the reported covariance: a pose as likely as those within is an alternative.
+    /// Decrease of the log posterior, in units of the scale, up to which a pose is an alternative to the best one. It
+    /// is the decrease at the border of the ellipsoid that holds 95 % of a normal distribution with the reported
+    /// covariance.
     pub const ALTERNATIVE: f64 = 0.5 * VARIANCE * CHI_SQUARED;
 
     /// `cloud` is in the colour camera's frame, and the distribution in `units`. `pixel` is the width of a

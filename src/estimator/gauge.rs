@@ -89,8 +89,8 @@ pub fn shares_frame(pair: &ViewPair) -> bool {
     coincides(&pair.image, &pair.depth, Start::Identity)
 }
 
-/// Whether both views share their frame initially, so that no translation is the best first one. A start that rotates a
-/// view rotates it about the frame's origin, so its centre must be brought back.
+/// Whether both views share their frame initially, so that a translation of zero is the best initial one. An initial
+/// rotation rotates a view about the frame's origin, so its centre must then be moved back.
 fn coincides(image: &ColourView, depth: &DepthView, start: Start) -> bool {
     start == Start::Identity
         && match (image.camera, depth.camera) {

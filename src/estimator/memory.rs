@@ -11,7 +11,7 @@ const BYTES_PER_PIXEL: f64 = 220.0;
 /// Bytes for one pixel of either view in a [`Worker`](super::Worker), which has a separate module. Set at 640x480,
 /// where refinement takes more than the search.
 const WORKER_BYTES_PER_PIXEL: f64 = 110.0;
-/// Most bytes of a pair: a quarter of a wasm module's limit, and what a phone's browser grants a page.
+/// Largest number of bytes of a pair: a quarter of a wasm module's limit, and what a phone's browser grants a page.
 const MOST_BYTES: f64 = 1e9;
 
 /// Refuses pairs that are too large.
@@ -30,7 +30,7 @@ pub fn check(image: Size, depth: Size) -> Result<()> {
     Err(Error::new(ErrorKind::Memory, field, message))
 }
 
-/// Most image pixels that fit in memory with a depth map of this size.
+/// Largest number of image pixels that fit in memory with a depth map of this size.
 pub fn most_image_pixels(depth: Size) -> usize {
     (MOST_BYTES / BYTES_PER_PIXEL - depth.len() as f64).max(0.0) as usize
 }

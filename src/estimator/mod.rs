@@ -342,8 +342,8 @@ impl Estimator {
         self.report.rivals = found.rivals.unwrap_or_else(|| std::mem::take(&mut self.report.rivals));
     }
 
-    /// After rejections, takes only a fraction of the step of a match of surfaces. Behind a pinhole the pose keeps its
-    /// scale, and the image's surface takes the rest.
+    /// After rejections, takes only a fraction of the step from matching surfaces. Behind a pinhole the pose keeps its
+    /// scale, and the image's surface takes up the change of scale.
     fn shorten_step(&mut self, start: &Similarity) {
         let Solution { pose, image, depth, .. } = &mut self.solution;
         if self.history.step_fraction < 1.0 {

@@ -27,8 +27,8 @@ const DISTANCE_SCALE: f64 = 1.0;
 /// Robust scale of the difference of two normals: 12 degrees.
 const NORMAL_SCALE: f64 = 0.2;
 
-/// Most points or pixels in a mean: robust costs in 0 .. 1 are then accurate to half a percent. Both solutions are
-/// compared over the same ones.
+/// Largest number of points or pixels in a mean: robust costs in 0 .. 1 are then accurate to half a percent. Both
+/// solutions are compared over the same ones.
 pub const MOST_POINTS: usize = 10_000;
 /// Distance of the evaluation points from the border of the mask, image pixels.
 const MARGIN: f32 = 1.5;

@@ -116,8 +116,8 @@ fn place(size: Size, camera: &Camera, points: &mut Points) {
     }
 }
 
-/// The last accepted iteration: a rejected one restores it, and the next one is compared with it. Points follow from
-/// their depths.
+/// The last accepted iteration. A rejected iteration restores it, and the next iteration is compared with it. Points
+/// follow from their depths.
 pub struct Accepted {
     pub pose: Similarity,
     pub light: ExposedLight,

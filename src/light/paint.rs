@@ -38,7 +38,7 @@ const LIGHTNESS_SHARE: f64 = 0.5;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Paint {
     mixture: Mixture,
-    /// The same with the scales for pixels without a normal, of whose shading only mean and variance are known.
+    /// The mixture with the scales for pixels without a normal, of whose shading only mean and variance are known.
     unseen: Mixture,
     axes: Axes,
     /// The light if it is known; the mixture then has none.
@@ -49,7 +49,7 @@ pub struct Paint {
     mean_shading: [f64; 3],
     /// Share of the residual of a region's albedo that is albedo as well, along each axis.
     gains: [f64; 3],
-    /// The same for pixels without a normal, whose lightness carries no information about albedo.
+    /// The shares for pixels without a normal, whose lightness carries no information about albedo.
     unseen_gains: [f64; 3],
 }
 
@@ -58,7 +58,7 @@ pub struct Paint {
 pub struct PaintOfPixel {
     /// Offset of the pixel's albedo; between albedos, the mean by probability.
     pub region: [f64; 3],
-    /// The same plus the part of the residual that seems to be albedo.
+    /// The offset `region` plus the part of the residual that seems to be albedo.
     pub fine: [f64; 3],
 }
 

@@ -144,7 +144,7 @@ impl Lanes {
         Mask(arch::at_most(self.0, other.0))
     }
 
-    /// Neither NaN nor infinite.
+    /// The lanes that are neither NaN nor infinite.
     #[inline(always)]
     pub fn finite(self) -> Mask {
         (self * Self::splat(0.0)).at_most(Self::splat(0.0))

@@ -65,7 +65,7 @@ pub struct GivenPose {
     translation: Option<[f64; 3]>,
     #[serde(skip_serializing)]
     angles: GivenAngles,
-    /// It adds nothing to a rotation, which a reported pose has as well.
+    /// Reported poses have this member as well as the rotation, which takes precedence.
     #[serde(skip_serializing)]
     matrix: Option<GivenMatrix>,
 }

@@ -7,8 +7,8 @@
 
 use nalgebra::Matrix3;
 
-/// Distance of beta from +-90 degrees (as cos beta, in effect radians) below which alpha and gamma turn about the same
-/// axis and only their sum is determined. By convention alpha is then zero.
+/// Value of cos beta below which alpha and gamma turn about the same axis, so that only their sum is determined: beta
+/// is then this many radians from +-90 degrees. By convention alpha is then zero.
 const POLE: f64 = 1e-6;
 
 /// Angles in degrees of R = Rx(alpha) Ry(beta) Rz(gamma), active and right-handed, in the colour view's frame.

@@ -98,8 +98,8 @@ impl Correspondences {
         &self.depth_of_pixel
     }
 
-    /// The same without normals in gaps between points, as in the paper, whose prior holds each pixel separately:
-    /// additional pixels with wrong normals would impede its loop.
+    /// These correspondences without normals in gaps between points, as in the paper. The paper's prior holds each
+    /// pixel separately, and additional pixels with wrong normals would impede the paper's loop.
     #[must_use]
     pub fn of_points_alone(self) -> Self {
         Self { widest_gap: 0, ..self }
@@ -131,7 +131,8 @@ impl Correspondences {
         across().or_else(|| self.ends(pixel, self.image.width, row, self.image.height))
     }
 
-    /// The same along a line of pixels that are `stride` apart; this pixel is number `place` on it.
+    /// The depth pixels on either side of a gap in a line of pixels that are `stride` apart. This pixel is number
+    /// `place` in the line.
     fn ends(&self, pixel: usize, stride: usize, place: usize, length: usize) -> Option<[usize; 2]> {
         let reach = 1..=self.widest_gap;
         let before =
@@ -217,7 +218,7 @@ impl Correspondences {
         let threshold = problem.distance.unwrap_or(follows) as f32;
         let inlier = (INLIER_SPREADS * median).min(threshold);
         self.depth_of_pixel.fill(-1);
-        // From here on: squared distance of each pixel's point from its centre.
+        // From here on, `of_pixel` holds the squared distance between the centre of each pixel and the pixel's point.
         self.visible.of_pixel.fill(f32::INFINITY);
         (self.count, self.inliers) = (0, 0.0);
         for index in 0..self.of_point.len() {

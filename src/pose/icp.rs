@@ -53,11 +53,11 @@ const MOST_POINTS: usize = 5_000;
 pub struct IcpProblem<'a> {
     /// Points of the depth view, in its own frame and unit.
     pub depth_points: &'a Points,
-    /// Their normals.
+    /// Normals of the depth points.
     pub depth_normals: &'a Normals,
     /// Points of the image surface on its raster, in the colour view's frame.
     pub image_points: &'a Points,
-    /// Their normals.
+    /// Normals of the image points.
     pub image_normals: &'a Normals,
     /// Raster of the image surface.
     pub image_size: Size,
@@ -346,7 +346,7 @@ impl Icp {
 struct Match {
     /// The transformed depth point.
     point: Vector3<f64>,
-    /// Vector from it to the image point.
+    /// Vector from the depth point to the image point.
     difference: Vector3<f64>,
     /// Normal of the image surface.
     normal: Vector3<f64>,

@@ -80,7 +80,8 @@ pub(crate) fn clear_unknowns(matrix: &mut PoseMatrix, held: &[bool; UNKNOWNS]) {
     }
 }
 
-/// The same with a one on the diagonal, so that held unknowns do not move and the matrix can be inverted.
+/// Sets rows and columns of held unknowns to zero and their diagonal to one, so that they do not move and the matrix
+/// can be inverted.
 pub(crate) fn fix_unknowns(matrix: &mut PoseMatrix, held: &[bool; UNKNOWNS]) {
     clear_unknowns(matrix, held);
     (0..UNKNOWNS).filter(|&k| held[k]).for_each(|k| matrix[(k, k)] = 1.0);

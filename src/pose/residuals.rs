@@ -9,6 +9,6 @@ pub(super) const NORMAL_ERROR: f64 = 0.1;
 /// round.
 pub(super) const FIRST_SCALE: f64 = 2.0;
 pub(super) const SHRINKING: f64 = 0.6;
-/// Square root of the number of object pixels in the depth map for which the sizes of windows are stated; windows grow
-/// with the object.
+/// Side of the object, pixels, for which the sizes of windows are stated: the square root of the number of its pixels
+/// in the depth map. Windows grow with the object.
 pub(super) const MEASURED_SIDE: f64 = 64.0;

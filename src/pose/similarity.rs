@@ -10,9 +10,9 @@ use crate::numeric::eigen::symmetric_eigen;
 /// Largest difference of R^T R from the identity: rotations typed with five digits pass, anything worse is a mistake.
 const ROTATION_TOLERANCE: f64 = 1e-4;
 
-/// A rotation is undetermined if its eigenvalue gap, twice the sum of the second and the signed third of the normalised
-/// singular values, is below this, as for points on a line. Rounding of f32 coordinates leaves at most 1e-7 squared;
-/// real objects are above 1e-4.
+/// Smallest eigenvalue gap of a determined rotation: twice the sum of the second and the signed third of the normalised
+/// singular values, which is zero for points on a line. Rounding of f32 coordinates leaves at most 1e-7 squared; real
+/// objects are above 1e-4.
 const RANK_TOLERANCE: f64 = 1e-9;
 
 /// Minimum number of pairs for a similarity: three are fitted so well that no residual reveals a mistake.

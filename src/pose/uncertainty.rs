@@ -46,11 +46,11 @@ pub enum Unknown {
 /// An axis of a view's frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axis {
-    /// To the right.
+    /// Points to the right.
     X,
-    /// Down.
+    /// Points down.
     Y,
-    /// Forward.
+    /// Points forward.
     Z,
 }
 

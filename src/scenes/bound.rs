@@ -21,8 +21,8 @@ const UNKNOWNS: usize = POSE + COEFFICIENTS;
 type FisherInformation = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
 type Row = SVector<f64, UNKNOWNS>;
 
-/// The depth view sees a point of the image if their depths differ by less than this, in steps between neighbouring
-/// pixels (at least one pixel length).
+/// A point of the image is visible in the depth view if both depths differ by less than this, in steps between
+/// neighbouring pixels (at least one pixel length).
 const SAME_DEPTH: f64 = 1.0;
 
 /// The bound of a sample's rotation in degrees for noise `sigma` of log S. `None` if the scene determines no rotation

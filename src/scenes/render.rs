@@ -107,7 +107,7 @@ struct Corner {
     normal: Vector3<f64>,
     /// Column and row.
     pixel: [f64; 2],
-    /// In the plane of [`Camera::ray`], where straight lines stay straight behind any lens.
+    /// Position in the plane of [`Camera::ray`], where straight lines stay straight behind any lens.
     ray: [f64; 2],
     /// Factor that makes attributes linear over the ray plane: 1 / z for a pinhole, 1 for parallel rays.
     weight: f64,

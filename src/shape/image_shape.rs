@@ -78,8 +78,8 @@ impl ImageShapeSolver {
         self.pixels.solve(problem.shading(), problem.weights(problem.prior_weight), normals);
     }
 
-    /// Change of the exposure after [`solve_normals`](Self::solve_normals); `moved` is its distance from the first one
-    /// so far.
+    /// Change of the exposure after [`solve_normals`](Self::solve_normals); `moved` is how far it is from the first
+    /// exposure.
     pub fn exposure_step(problem: &ImageShapeProblem<'_>, normals: &Normals, moved: f64) -> f64 {
         pixels::exposure_step(problem.shading(), problem.weights(problem.prior_weight), normals, moved)
     }

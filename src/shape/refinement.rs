@@ -39,7 +39,7 @@ const GIVEN_WAY: f64 = 0.75;
 const FIRST: Effort = Effort { steps: 6, iterations: 40, tolerance: 0.03, damping: FAR_DAMPING };
 /// Work of a refinement that continues an earlier one, at the last scale only.
 const LATER: Effort = Effort { steps: 1, iterations: 20, tolerance: 0.03, damping: FAR_DAMPING };
-/// Most sweeps that extend slopes into a hole, and thus its largest radius in pixels.
+/// Largest number of sweeps that extend slopes into a hole, and thus its largest radius in pixels.
 const FILL_SWEEPS: usize = 256;
 
 /// Input of a refinement.

@@ -33,7 +33,7 @@ const CONTRADICTION: f64 = 0.1;
 /// A picture of a surface of albedo 1 under one lamp.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadedImage<'a> {
-    /// Its size in pixels.
+    /// Size of the picture in pixels.
     pub size: Size,
     /// Intensities row by row, NaN outside the object.
     pub values: &'a [f32],
@@ -170,7 +170,7 @@ fn advanced(image: &ShadedImage<'_>, (place, slopes): State, at: State, step: f6
     }
     let change = gradient_of_image(image, at.0)? * (step / length);
     let moved = slopes + change;
-    // Back onto the curve of the slopes that have the picture's intensity, so that errors do not add up.
+    // Moves the slopes back onto the curve of slopes with the picture's intensity, so that errors do not add up.
     let next = place + gradient * (step / length);
     let there = gradient_of_reflectance(image.lamp, moved);
     let rest = sampled(image, next)? - reflectance(image.lamp, moved);

@@ -17,8 +17,8 @@ use super::{ColourView, Size};
 /// encoding.
 const LUMA: [f32; 3] = [0.299, 0.587, 0.114];
 const GAMMA: f32 = 2.2;
-/// Chromaticity is sharpened if its [`softness`] is below this share of that of brightness. Set on renders with varying
-/// albedo, with and without JPEG (docs/lab/thresholds.md).
+/// Chromaticity is sharpened if its [`softness`] is below this share of the softness of brightness. Set on renders with
+/// varying albedo, with and without JPEG (docs/lab/thresholds.md).
 const SOFT: f64 = 0.85;
 /// Half width of a window, pixels: a drift of four pixels fits between two windows.
 const REACH: isize = 2;
@@ -27,7 +27,7 @@ const COVERED: f32 = 0.6;
 /// Weight of brightness relative to chromaticity in the variance of a window: shading varies brightness, albedo varies
 /// both.
 const BRIGHTNESS: f32 = 0.5;
-/// Rounds of the filter: one alone leaves the middle of the drift.
+/// Rounds of the filter. A single round leaves the middle of the drift.
 const ROUNDS: usize = 2;
 
 /// Chromaticity in three channels (log S minus log brightness), and log brightness.

@@ -38,7 +38,7 @@ pub struct ColourImage {
     pub transfer: Option<Transfer>,
     /// Non-zero where the object is; `None`: everywhere.
     pub mask: Option<Vec<u8>>,
-    /// `None`: orthographic.
+    /// The intrinsics; `None` for an orthographic view.
     pub camera: Option<Pinhole>,
 }
 
@@ -130,8 +130,7 @@ impl ColourView {
 
     /// A view of these logarithms, which are NaN off the mask.
     pub(super) fn of(size: Size, camera: Camera, mask: Vec<bool>, log: [Vec<f32>; 3], transfer: Transfer) -> Self {
-        // Computed once, because every stage's preparation needs them and recomputing would take a fifth of the
-        // search's.
+        // Computed once, because the preparation of every stage needs them.
         let (log_spread, log_noise) = (spread_of(&log), noise_of(size, &log));
         Self { size, camera, mask, log, transfer, whole: WholeFrame::default(), log_spread, log_noise }
     }

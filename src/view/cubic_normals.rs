@@ -26,10 +26,10 @@ const SIGMA: f64 = 0.75;
 /// Median error of the normals above which windows wider than the first two are tried, radians: views without noise
 /// stay below it (data not recorded).
 const NOISY: f32 = 0.06;
-/// In noisy views a wider window is used if the mean square motion of its normals is below this multiple of the decrease of
-/// their squared errors, which the fits estimate. Noise alone gives 0.62, its share of the estimated square. The rest is the
-/// squared bias of the wider window. Up to 1.24, the sum of bias and noise falls. The limit is a little lower, because a
-/// registration averages noise over its points, but not bias.
+/// Limit for a wider window in noisy views: the ratio of the mean square motion of the normals to the decrease of their
+/// squared errors, as the fits estimate them. Noise alone gives a ratio of 0.62, its share of the estimated square. The
+/// rest is the squared bias of the wider window. Up to a ratio of 1.24, the sum of bias and noise falls. The limit is a
+/// little lower, because a registration averages noise over its points, but not bias.
 const MOST_MOVED: f64 = 1.1;
 /// Half width of the squares over which the motion of the normals is summed, in half widths of the window: overlapping
 /// windows share their noise.
@@ -38,13 +38,14 @@ const REACH: usize = 2;
 /// the object.
 const LARGEST_SLOPE: f64 = 0.5;
 const LARGEST_OFFSET: f64 = 0.3;
-/// Replaces [`LARGEST_OFFSET`] if larger: standard deviations of the depth's noise.
+/// The same limit close to the point in noisy views, standard deviations of the depth's noise; the larger of both
+/// limits holds.
 const NOISE_OFFSETS: f64 = 3.0;
 /// Residuals up to this multiple of the estimated noise count as noise: the estimate errs by a sixth on steep or small
 /// views.
 const NOISE_MARGIN: f64 = 1.25;
-/// Rounds from a first normal: the second starts from a normal accurate to a few hundredths. If the normal of a
-/// narrower window is that accurate, one round from it suffices.
+/// Rounds from a first normal: the second starts from a normal that is accurate to a few hundredths of a radian. If the
+/// normal of a narrower window is that accurate, one round from it suffices.
 const ROUNDS: usize = 2;
 /// Error below which a normal is accurate enough for a single round, radians. Set on Mozart at 128x128
 /// (docs/lab/thresholds.md).
@@ -185,7 +186,7 @@ fn fit_all(
             let (cosine, error) = (dot(fitted, normal).array(), error.array());
             for lane in (0..count).filter(|lane| known(start + lane)) {
                 let fitted = fitted.map(|axis| axis.array()[lane] as f32);
-                // Both are NaN if no cubic could be fitted.
+                // Cosine and error are NaN if no cubic could be fitted.
                 let good = cosine[lane] > LEAST_COSINE && error[lane].is_finite();
                 let (normal, error) = if good { (fitted, error[lane] as f32) } else { (firsts[lane], UNFITTED) };
                 visit(start + lane, normal, error.min(UNFITTED));

@@ -34,7 +34,7 @@ pub struct DepthMap {
     pub unit: Option<f64>,
     /// Non-zero where the object is; `None`: pixels with depth, and holes enclosed by them.
     pub mask: Option<Vec<u8>>,
-    /// `None`: orthographic.
+    /// The intrinsics; `None` for an orthographic view.
     pub camera: Option<Pinhole>,
     /// The caller's unit normals, interleaved; they override the computed ones.
     pub normals: Option<Vec<f32>>,
@@ -161,8 +161,8 @@ impl DepthView {
         }
     }
 
-    /// Moves the points along their rays to remove the noise of the map, unless that is white: cubics and registration
-    /// average white noise themselves, and smoothing would take relief that they need.
+    /// Moves the points along their rays to remove the noise of the map, unless that noise is white: cubics and
+    /// registration average white noise themselves, and smoothing would remove relief that they need.
     fn remove_noise(&mut self) {
         let mut depth = self.points.z.clone();
         self.camera.heights_from_depth(&mut depth);

@@ -1,11 +1,11 @@
 //! The noise of a depth map, distinguished from its surface by how second differences grow with their span
 //! (docs/method/views.md).
 //!
-//! D_k = z(x - k) - 2 z(x) + z(x + k). A surface whose slope wanders, by innovations of variance c^2 a pixel, has
-//! var D_k = c^2 k (2 k^2 + 1) / 3. Noise has var D_k = 6 sigma^2 for every span wider than its correlation. Both therefore
+//! D_k = z(x - k) - 2 z(x) + z(x + k). A surface whose slope wanders, by innovations of variance c^2 a pixel, has var
+//! D_k = c^2 k (2 k^2 + 1) / 3. Noise has var D_k = 6 sigma^2 for every span wider than its correlation. Both therefore
 //! follow from a few spans by linear least squares, whatever causes the noise: white noise, noise that the sensor has
 //! smoothed laterally, and the staircase of a quantised map all stop growing, while a surface never does. Fourth
-//! differences of neighbours (`numeric::noise`) see only white noise, and nothing of a staircase.
+//! differences of neighbours (`numeric::noise`) see white noise, but not a staircase.
 //!
 //! All lengths are heights in pixels (`heights`). A depth sensor's noise grows with z^2, so that of f ln Z grows with
 //! z. Limits: relief that repeats within a few pixels stops growing as well; relief that grows too slowly over the
@@ -27,20 +27,21 @@ const SURFACE_GROWTH: f64 = 1.0 / 6.0;
 /// variance of the others if they are normal: 1 - 2 q phi(q) / 0.8 with q = 1.2816.
 const KEPT: f64 = 0.8;
 const KEPT_VARIANCE: f64 = 0.438;
-/// Fewest second differences, which determine a variance to 5 %, and the most that are used. An object of 32x32 pixels
-/// has fewer: relief of a few pixels cannot be distinguished from noise there.
+/// Smallest number of second differences, which determine a variance to 5 %, and the most that are used. An object of
+/// 32x32 pixels has fewer: relief of a few pixels cannot be distinguished from noise there.
 const FEWEST: usize = 1000;
 const MOST: usize = 1 << 16;
 
-/// Noise counts as white if fourth differences of neighbours see at least this share of it. They see less of it in
-/// quantised and laterally smoothed maps, unless steps are as narrow as pixels, which makes the noise white. Set on ten
-/// surfaces (docs/lab/thresholds.md).
+/// Noise counts as white if fourth differences of neighbours see at least this share of it. They see less of the noise
+/// in quantised and laterally smoothed maps. If the steps of a quantised map are as narrow as pixels, its noise is
+/// white. Set on ten surfaces (docs/lab/thresholds.md).
 const LEAST_WHITE: f64 = 0.75;
-/// Least smoothing of a map whose noise is not white: a window of lambda^(1/4) = 0.8 pixels. Less cannot be
-/// distinguished from relief and smooths nothing. Set on busts of 64x64 (docs/lab/thresholds.md).
+/// A map whose noise is not white is smoothed if lambda exceeds this: a window of lambda^(1/4) = 0.8 pixels. Noise with
+/// a smaller lambda cannot be distinguished from relief, and a narrower window smooths nothing. Set on busts of 64x64
+/// (docs/lab/thresholds.md).
 const LEAST_SMOOTHING: f64 = 0.4;
-/// Scale of the robust second differences in roughnesses: least squares alone would round off creases. Set on five
-/// objects of MIT-Berkeley with quantised depth and a scanned bear (docs/lab/thresholds.md).
+/// Robust scale of the second differences, in units of the roughness: least squares would round off creases. Set on
+/// five objects of MIT-Berkeley with quantised depth and a scanned bear (docs/lab/thresholds.md).
 const CREASE: f64 = 2.0;
 
 /// Noise and roughness of a depth map, heights in pixels.
@@ -74,7 +75,7 @@ impl DepthNoise {
         }
         let determinant = ss * cc - sc * sc;
         let [variance, wander] = [cc * s1 - sc * c1, ss * c1 - sc * s1].map(|part| part / determinant);
-        // Covers too few spans as well, where the determinant is zero.
+        // This also covers too few spans, for which the determinant is zero.
         if !(variance > 0.0 && wander > 0.0 && variance.is_finite() && wander.is_finite()) {
             return Self::default();
         }
@@ -83,7 +84,7 @@ impl DepthNoise {
         let is_white = white > LEAST_WHITE * all;
         let sigma = if is_white { white } else { all };
         let told = Self { sigma, roughness: wander.sqrt(), is_white };
-        // White noise is identified by itself; noise that is neither white nor wide may be relief.
+        // White noise is certain; other noise may be relief unless its window is wide.
         if is_white || told.smoothing() > LEAST_SMOOTHING { told } else { Self::default() }
     }
 

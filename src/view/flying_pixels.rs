@@ -17,7 +17,7 @@ const JUMP_STEPS: f32 = 12.0;
 const METRIC_JUMP: f32 = 0.015;
 /// Smallest cutting step in pixels: a slope of 76 degrees.
 const PIXEL_JUMP: f32 = 4.0;
-/// Fewest pixels of a piece that stays, as a share of the largest piece's.
+/// Smallest number of pixels of a piece that stays, as a share of the largest piece's.
 const LEAST_SHARE: f64 = 0.05;
 /// Largest distance of a piece that stays in front of or behind the largest one, in extents of that one.
 const REACH: f32 = 1.0;

@@ -86,8 +86,8 @@ fn half_origin(size: Size, unit_is_pixel: bool) -> Option<Vector3<f64>> {
 }
 
 impl ColourView {
-    /// The origin of the halved view's frame in this view's, whose unit is half as long; `None` if both frames are the
-    /// same.
+    /// The origin of the halved view's frame, given in this view's frame, whose unit is half as long; `None` if both
+    /// frames are the same.
     pub(crate) fn half_origin(&self) -> Option<Vector3<f64>> {
         half_origin(self.size, self.camera.is_orthographic())
     }

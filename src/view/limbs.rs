@@ -14,8 +14,8 @@ const BEYOND: isize = 2;
 /// by 37 degrees.
 const TURNED: f32 = 0.6;
 /// Ratio of inward to outward contour pixels above which a map counts as hollow. Set on random scenes, their mirrored
-/// versions and a capture of a bowl (docs/lab/thresholds.md). Solid objects have inward ones where the surface seen
-/// from the side lacks its far part.
+/// versions and a capture of a bowl (docs/lab/thresholds.md). Solid objects have inward contour pixels where the map
+/// lacks the far part of a surface that is seen from the side.
 const HOLLOW: f64 = 1.5;
 /// Fewer contour pixels are not judged.
 const FEWEST: usize = 12;
@@ -83,7 +83,7 @@ mod tests {
 
     #[test]
     fn a_bowl_that_shows_its_outside_as_well_is_solid() {
-        // Its far half shows the inside, its near half the outside.
+        // The far half of the bowl shows the inside, the near half the outside.
         assert!(!judged(|x, y| 100.0 + ball(x, y, 16.0) * if y < 0.0 { -1.0 } else { 1.0 }));
     }
 

@@ -3,7 +3,7 @@
 use crate::error::{Error, ErrorKind, Result};
 use crate::view::Size;
 
-/// Fewest usable pixels of a view: as many as the smallest view, 4x4, has.
+/// Smallest number of usable pixels of a view: as many as the smallest view, 4x4, has.
 pub const FEWEST_PIXELS: usize = 16;
 
 /// The caller's mask, checked; without one, every pixel.

@@ -1,36 +1,36 @@
 //! Removes the albedo that shows at its edges from an image: regions between sharp changes of colour are brought to one
 //! level.
 //!
-//! Shading changes slowly from pixel to pixel; albedo changes abruptly, and mostly in chromaticity. Neighbours whose
-//! log colours differ by more than shading does therefore lie in two regions. The difference across their common
-//! border, minus the slope on either side, is the difference of their albedos; its median over the border counts. Least
-//! squares over all borders gives a log offset for each region, up to a common one.
+//! Shading changes slowly from pixel to pixel; albedo changes abruptly, and mostly in chromaticity. Two neighbours
+//! therefore lie in different regions if their log colours differ by more than shading explains. The difference across
+//! their common border, minus the slope on either side, is the difference of their albedos; its median over the border
+//! counts. Least squares over all borders gives a log offset for each region, up to a common one.
 //!
 //! E. Land, J. McCann: "Lightness and retinex theory", Journal of the Optical Society of America 61, 1971.
 //!
-//! Limits: gradual changes of albedo stay, and so does what a region's borders do not show. A sufficiently sharp edge
-//! of the relief looks like one of albedo. Regions of a few pixels, which mix two albedos, leave the mask.
+//! Limits: gradual changes of albedo stay, and so do differences of albedo that no border shows. A sufficiently sharp
+//! edge of the relief looks like one of albedo. Regions of a few pixels, which mix two albedos, leave the mask.
 
 use std::cmp::Reverse;
 
 use super::ColourView;
 use crate::numeric::quantile;
 
-/// Neighbours have an edge of albedo between them if their chromaticities (log colours less the channels' mean) differ by
-/// more than this plus four sigmas of the noise, log units: no shading of a smooth surface reaches it.
-/// Not varied.
+/// Difference of chromaticity (log colours less the channels' mean) above which two neighbours have an edge of albedo
+/// between them, log units; four sigmas of the noise are added. No shading of a smooth surface reaches it. No other
+/// value was tried.
 const HUE_STEP: f32 = 0.06;
-/// The same step for brightness (the channels' mean), log units. Not varied.
+/// The same limit for brightness (the channels' mean), log units. No other value was tried.
 const LOG_STEP: f32 = 0.22;
-/// Fewest pixels of a region.
+/// Smallest number of pixels of a region.
 const SMALLEST_REGION: usize = 6;
-/// Most regions; beyond these, the smallest leave the mask.
+/// Largest number of regions; beyond these, the smallest leave the mask.
 const MOST_REGIONS: usize = 240;
-/// Fewest pairs of pixels along a border.
+/// Smallest number of pairs of pixels along a border.
 const FEWEST_PAIRS: usize = 3;
 /// Widest border of mixed pixels between two regions.
 const WIDEST_BORDER: usize = 3;
-/// Share of the pixels outside the largest region from which on the albedo counts as varying.
+/// The albedo counts as varying if at least this share of the pixels lies outside the largest region.
 const LEAST_PAINT: f64 = 0.03;
 /// Weight that ties each region to the mean, in pairs of pixels: it matters only for regions without borders.
 const LOOSE_TIE: f64 = 1e-3;
@@ -45,7 +45,7 @@ const ONE_BRIGHTNESS: f64 = 0.4;
 /// together.
 const PALETTE_ROUNDS: usize = 2;
 
-/// Most sweeps over the borders, and the change of a log offset that ends them.
+/// Largest number of sweeps over the borders, and the change of a log offset that ends them.
 const MOST_SWEEPS: usize = 2000;
 const SETTLED_OFFSET: f64 = 1e-5;
 
@@ -237,7 +237,7 @@ impl Regions {
                     let inside = (0..width).contains(&column) && (0..height).contains(&row);
                     inside.then(|| view.size.index(column as usize, row as usize))
                 };
-                // The next pixel of another region, across mixed pixels without one.
+                // The next pixel of another region, beyond mixed pixels that belong to none.
                 let across = (1..=1 + WIDEST_BORDER as isize)
                     .map_while(|steps| at(steps).map(|other| (steps, other)))
                     .find(|(_, other)| self.of_pixel[*other] != NONE);
@@ -314,7 +314,7 @@ mod tests {
     #[test]
     fn without_paint_there_is_nothing_to_take_away() {
         assert!(ball(|_, _| [0.0; 3]).without_paint().is_none());
-        // Nor if it changes gradually.
+        // A gradual change is no edge either.
         assert!(ball(|column, _| [0.01 * column as f64, 0.0, 0.0]).without_paint().is_none());
     }
 }

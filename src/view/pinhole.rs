@@ -20,13 +20,13 @@ pub struct Pinhole {
     pub lens: Lens,
 }
 
-/// Metres or pixels from which on a depth, or a coordinate of a cloud, counts as missing: some formats mark a hole by
-/// their largest number, and f32 cannot hold its square.
+/// A depth or a coordinate of a cloud from this value on counts as missing, metres or pixels: some formats mark a hole
+/// by their largest number, and f32 cannot hold its square.
 pub const FARTHEST: f64 = 1e12;
-/// Message for a ray steeper than in any picture, whose points may overflow.
+/// Message for a ray that is steeper than any in a picture; its points may overflow.
 const TOO_STEEP: &str = "must be finite, and below 1e12 focal lengths";
-/// Pixels and slopes from here on, whose squares overflow f64, have no ray: rounding would send some to infinity and
-/// back.
+/// Pixels and slopes from this value on have no ray: their squares overflow f64, and rounding would send some to
+/// infinity and back.
 const BEYOND: f64 = 1e150;
 
 impl Pinhole {

@@ -28,11 +28,12 @@ use crate::view::Size;
 const LONGEST: usize = 512;
 /// Bins along each colour channel. 16 of them distinguish shades and fill with the pixels of a small object.
 const BINS: usize = 16;
-/// Share of both histograms that is spread over all colours, so that a colour that neither has seen decides nothing.
+/// Share of both histograms that is spread over all colours, so that a colour that occurs in neither of them decides
+/// nothing.
 const UNSEEN: f32 = 0.01;
-/// Largest number of rounds, as in GrabCut, whose energy mostly rests after five to ten.
+/// Largest number of rounds; GrabCut mostly settles after five to ten.
 const ROUNDS: u32 = 12;
-/// Share of the pixels that may still change in a round that counts as the last.
+/// A round is the last if it changes at most this share of the pixels.
 const RESTING: f64 = 1e-3;
 /// Share of the object's area below which an island or a hole is noise.
 const SPECK: f64 = 0.01;
@@ -64,7 +65,7 @@ impl Mark {
     }
 }
 
-/// What a segmentation has reached.
+/// The progress of a segmentation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SegmentationReport {
     /// Rounds so far.
@@ -156,7 +157,7 @@ impl Segmentation {
         self.report()
     }
 
-    /// What has been reached.
+    /// The progress so far.
     #[must_use]
     pub fn report(&self) -> SegmentationReport {
         let count = self.is_object.iter().filter(|&&inside| inside).count();

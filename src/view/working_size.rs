@@ -1,11 +1,10 @@
 //! Matches the resolutions of the two views: a photograph finer than the depth map is reduced until one of its pixels
 //! covers about as much of the object as one of the depth map's (docs/method/views.md).
 //!
-//! A working pixel is the mean of the linear intensities over a square of the photograph, whose side need not be whole;
-//! a pixel counts by its usable area in the square. Results are carried back to the photograph's pixels. Normals of a
-//! coarse depth map cannot explain finer colours, which would be noise to the model and cost memory and time. Views of
-//! similar resolution stay unchanged, and so does a depth map finer than the image: its normals average what an image
-//! pixel sees.
+//! A working pixel is the mean of the linear intensities over a square of the photograph, whose side need not be whole.
+//! Each pixel is weighted by its usable area in the square. Results are carried back to the photograph's pixels.
+//! Normals of a coarse depth map cannot explain finer colours, which would be noise to the model and cost memory and
+//! time. Views of similar resolution stay unchanged, and so does a depth map that is finer than the image.
 
 use nalgebra::Vector3;
 
@@ -13,8 +12,8 @@ use super::colour::{self, ColourImage, ColourSamples, ColourView};
 use super::{Camera, DepthMap, DepthSamples, Normals, Pinhole, Size};
 use crate::error::Result;
 
-/// Smallest ratio of resolutions at which the finer view is reduced: areas of masks, and of two views of one object, do not
-/// determine smaller ratios.
+/// Smallest ratio of resolutions at which the image is reduced: the areas of two masks do not determine smaller ratios,
+/// because both views differ.
 const UNLIKE: f64 = 1.25;
 /// Smallest share of a working pixel that usable image pixels must cover.
 const COVERED: f64 = 0.5;

@@ -155,7 +155,7 @@ pub fn angles(js: &JsAngles) -> Angles {
     }
 }
 
-/// Fills rasters from their concatenation, as many as there are; returns whether it ends with a whole one.
+/// Fills as many rasters as their concatenation holds; returns whether the last one is complete.
 pub fn planes<'a>(all: &Float32Array, planes: impl IntoIterator<Item = &'a mut [f32]>) -> bool {
     let mut start = 0;
     for plane in planes {

@@ -39,7 +39,7 @@ pub fn shade_lamp(toward: &[f64], normals: &[f32]) -> Float32Array {
     Float32Array::from(shaded.as_slice())
 }
 
-/// What looks the same from the front: normals, albedo and lamp.
+/// A surface that looks the same from the front: its normals, its albedo and its lamp.
 #[wasm_bindgen(js_name = "basRelief")]
 #[must_use]
 pub fn bas_relief(stretch: f64, right: f64, down: f64, toward: &[f64], normals: &[f32]) -> JsRelieved {

@@ -5,7 +5,7 @@ import { exercises, learn, lessons } from "./lesson-figures.mjs";
 
 const { READ, SAME_UNITS, STATUSES, SYMBOLS, chapters, nameOf, placeOf, wordsOf } = learn;
 
-/** Not empty, or undefined. */
+/** The entries that have words, as an object; undefined if no entry has any. */
 const full = (entries) => {
   const kept = entries.filter(([, words]) => words !== undefined);
   return kept.length > 0 ? Object.fromEntries(kept) : undefined;
@@ -36,10 +36,10 @@ function textsOf(part, lesson, field) {
   return full(Object.entries(part).map(([name, each]) => [name, textsOf(each, lesson, name)]));
 }
 
-/** States with other words that no choice alone brings about. */
+/** States of figures with further words, which no single choice produces. */
 const OTHERS = { strips: [{ lx: 0.6, ly: 0.6, sx: 0.1, sy: 0.1 }] };
 
-/** The first drawing of a figure for each value of its choices and boxes, and in other states: later drawings have the same words. */
+/** The first drawing of a figure for each value of its choices and boxes, and for the states above. Later drawings have the same words. */
 function panelsOf(lesson) {
   const values = (control) =>
     control.kind === "choice" ? control.choices.map(([value]) => value) : control.kind === "box" ? [0, 1] : [];
@@ -76,7 +76,7 @@ function figuresOf() {
           throw new Error(`${name} has other words in another state: give the panel a "state"`);
         known.set(name, typeof text === "string" ? text : { ...before, ...text });
       }
-      // Within the words of the panel may be those of one of its states.
+      // A panel's words may contain those of one of its states.
       const { names, ...rest } = words;
       const there = Object.assign((place[last] ??= {}), rest);
       if (names) there.names = { ...there.names, ...names };

@@ -1,4 +1,4 @@
-// The figures of the documents: small, on white, each with its words, and shown by a document.
+// The figures of the documents are small, have a white background and a description, and each is shown by a document.
 import assert from "node:assert/strict";
 import { readFileSync, readdirSync } from "node:fs";
 import { join } from "node:path";

@@ -5,7 +5,7 @@ import { test } from "node:test";
 import { Estimator, estimator, init, refused, sample } from "./support.mjs";
 
 const PAGE = 65_536;
-/** Enough for a small pair and for some of 400x400, bytes. */
+/** Limit of the memory, bytes: enough for a small pair and for a few pairs of 400x400. */
 const GRANTED = 120e6;
 const MEMORY_SECTION = 5;
 

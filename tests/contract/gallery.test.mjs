@@ -1,4 +1,5 @@
-// The gallery: each rendered pair ends as its card says, with the options of the page. And the suggestion of masks for the page's tool.
+// The gallery: each rendered pair ends as its card says, with the options of the page. The suggestion of masks for the page's tool is
+// tested here, too.
 import assert from "node:assert/strict";
 import { before, describe, test } from "node:test";
 import init, { Estimator, samplePair, suggestMask } from "../../pkg/index.js";

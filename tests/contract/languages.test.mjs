@@ -41,7 +41,7 @@ function detailsOfReasons() {
   );
 }
 
-/** What is wrong with a catalogue, as text. */
+/** The faults of a catalogue, as text. */
 function faults(catalogue, source, { same, sign }) {
   const [given, wanted] = [new Map(flat(catalogue)), new Map(flat(source))];
   const found = [];
@@ -50,7 +50,7 @@ function faults(catalogue, source, { same, sign }) {
     const original = wanted.get(path);
     if (!wanted.has(path)) found.push(`${path} is not in the English source`);
     else if (typeof text !== "string" || text.trim() === "") found.push(`${path} is empty`);
-    // Of a run only the code is known; its details are checked below. "by" names a control, not words.
+    // The English source has only the codes of a run's reasons; their details are checked below. "by" names a control, not words.
     else if (original === undefined || path.endsWith(".by")) continue;
     else if (text === original && !same.includes(text)) found.push(`${path} is English: ${text}`);
     else if (!isDeepEqual(braces(text), braces(original))) found.push(`${path} has other {names}: ${text}`);

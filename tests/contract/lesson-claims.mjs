@@ -280,7 +280,7 @@ const paint = [
     change(numberOf("paint", "likeness"), numberOf("paint&shadow=0.9", "likeness"), ["rises", "falls"]),
   ),
   claim("paint", "but the status is still [converged|ambiguous|lost]", () => wordOf("paint&shadow=0.9")),
-  claim("paint", "chromaticity is now [less|more] informative", () =>
+  claim("paint", "Chromaticity is now [less|more] informative", () =>
     change(numberOf("paint", "likeness"), numberOf("paint&light=colourful", "likeness"), ["more", "less"]),
   ),
   claim("paint", "and the normals get [worse|better]", () =>
@@ -418,7 +418,7 @@ const guessed = [
   claim("sensor", "the refined normals?\nThey [hardly|greatly] change", () =>
     numberOf("sensor&noise=1", "normalsAfter") < 1.2 * numberOf("sensor", "normalsAfter") ? "hardly" : "greatly",
   ),
-  claim("paint", "does the program take it?\n[Dark paint|Shading].", () =>
+  claim("paint", "does the program mistake it for?\n[Dark paint|Shading].", () =>
     numberOf("paint&paint=0&shadow=0.9", "taken") > 90 ? "Dark paint" : "Shading",
   ),
   claim(

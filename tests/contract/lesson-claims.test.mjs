@@ -14,7 +14,7 @@ const texts = new Map([
   ...exercises.map(({ title, question, answer }) => [title, [question, ...answer].join("\n")]),
 ]);
 
-/** The claim's words as a pattern with one group, and the words that the text might use instead. */
+/** The pattern of a claim, whose one group is the word or number to be checked, and the words that the group may be. */
 function patternOf({ words }) {
   const escaped = (part) => part.replace(/[.*+?^${}()|[\]\\]/g, "\\$&");
   const [before, options, after] = /^(.*)\[(.*)\](.*)$/s.exec(words).slice(1);
@@ -23,7 +23,7 @@ function patternOf({ words }) {
   return { choices, pattern: new RegExp(`${escaped(before)}(${group})${escaped(after)}`) };
 }
 
-/** What the text says in the claim's place. */
+/** The word or number that the text has where the claim's group is. */
 function saidIn(text, claim) {
   const { pattern } = patternOf(claim);
   const found = pattern.exec(text);
@@ -38,7 +38,7 @@ function bears(said, right) {
   return Math.abs(Number(said) - right) <= 1.001 * 10 ** -digits;
 }
 
-/** The text with this claim turned round. */
+/** The text with a wrong word or number in this claim. */
 function turned(text, claim) {
   const { choices, pattern } = patternOf(claim);
   const said = saidIn(text, claim);

@@ -26,7 +26,7 @@ const ENTRY = [
   'export { runOptions, sampleRequest, fromLink } from "./www/lab/settings.ts";',
 ].join("\n");
 
-/** The texts build no elements here, and the package keeps its own address, since it loads files that are beside it. */
+/** Here the lessons create no elements. The package is not bundled, since it loads files from its own folder. */
 const outside = {
   name: "outside",
   setup({ onLoad, onResolve }) {
@@ -42,7 +42,7 @@ const outside = {
 };
 
 async function load() {
-  // Node has none, and the drawings need only their size and their bytes.
+  // Node has no ImageData. The drawings need only its size and bytes.
   globalThis.ImageData ??= class {
     constructor(width, height) {
       Object.assign(this, { width, height, data: new Uint8ClampedArray(4 * width * height) });

@@ -63,7 +63,7 @@ const NUMBERS = [...ROWS].filter(([, { kind }]) => ["number", "whole", "side"].i
 
 /** Members that the numerics never see: they get the rotation of the angles, a seed of 64 bits, and no threads. */
 const FACADE_ALONE = /\.(angles\.\w+|workers|seed)$/;
-/** In the numerics, both sides are one member. */
+/** In the numerics, height and width are one member. */
 const NATIVE_FIELD = { "sample.height": "sample.size" };
 
 /** The code of a call's error, or undefined; errors about other fields, such as too large a view, do not count. */
@@ -157,7 +157,7 @@ function slow(base = {}) {
 }
 
 const turned = { given: () => noisy({ start: { angles: {} } }) };
-/** Where another value than the default has an effect, unless on the noisy pair, and that value. */
+/** For options whose effect the noisy pair does not show at another value, the run that shows it or the value to be used. */
 const SHOWN = {
   "options.light": { other: new Array(27).fill(0.1) },
   "options.start": { given: () => noisy({}), steps: 1, other: "identity" },

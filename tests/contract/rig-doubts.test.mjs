@@ -1,4 +1,4 @@
-// What files leave open, and what they only seem to say: comments, places of cameras in bodies and worlds, lenses without a model.
+// Files that are ambiguous or misleading: comments, positions of cameras in bodies and worlds, lenses without a model.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { mkdtempSync, rmSync, writeFileSync } from "node:fs";

@@ -18,7 +18,7 @@ function filesBelow(folder) {
   return files.map((entry) => join(entry.parentPath ?? entry.path, entry.name)).filter((path) => TEXT.test(path));
 }
 
-/** What other programs read in the fixtures is no file of a rig. */
+/** read.json contains what other programs read from the fixtures and is not a file of a rig. */
 const FIXTURES = filesBelow(inRoot("tests/fixtures/rig")).filter((path) => !path.endsWith("read.json"));
 
 /** The reading in the form that the Rust example prints. */

@@ -1,4 +1,4 @@
-/** The words of the page in the language in which a test sees it: the tests of Learn run in each. */
+/** The words of the page in the language of a test. The tests of Learn run in each language. */
 
 import { readFileSync, readdirSync } from "node:fs";
 
@@ -7,7 +7,7 @@ const FOLDER = new URL("../../www/learn/languages/", import.meta.url);
 /** The languages with a catalogue. */
 export const LANGUAGES = readdirSync(FOLDER).map((name) => name.replace(".json", ""));
 
-/** Words of a catalogue at a path such as "lessons.pixel.title"; in English those given. */
+/** Returns the catalogue's words at a path such as "lessons.pixel.title"; in English, the words that are given. */
 export type Say = (path: string, english: string) => string;
 
 export const catalogueOf = (language: string): object =>
@@ -18,7 +18,7 @@ export function sayIn(locale = "en"): Say {
   if (!LANGUAGES.includes(language)) return (_, english) => english;
   const catalogue = catalogueOf(language);
   return (path) => {
-    // Ids of the interface have points themselves.
+    // Ids of the interface contain points themselves.
     const [first = "", ...rest] = path.split(".");
     const names = first === "interface" ? [first, rest.join(".")] : [first, ...rest];
     const words = names.reduce<unknown>((at, name) => (at as Record<string, unknown> | undefined)?.[name], catalogue);

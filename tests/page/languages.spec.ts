@@ -1,4 +1,4 @@
-/** Learn in other languages: how one is chosen, that no English is left in it, and that its longer words fit. */
+/** Learn in other languages: the choice of a language, no remaining English, and room for longer words. */
 
 import type { Page } from "@playwright/test";
 import { LESSONS, control, open, settled } from "./figure";
@@ -23,7 +23,7 @@ test("the language is chosen by hand, remembered, and part of the address", asyn
   await expect(control(page, "turn")).toHaveValue("90");
   await expect(language(page)).toBeFocused();
   await expect(page).toHaveTitle(`${say("interface.learn", "")}, bimodal-stereo`);
-  // Without a language in its address the page keeps the one that was chosen.
+  // If the address names no language, the page keeps the chosen one.
   await page.goto("about:blank");
   await open(page, "at=grey");
   await shows(page, "de", say("lessons.grey.title", ""));
@@ -50,7 +50,7 @@ test("a link brings its language, and the other parts of the page stay English",
   await expect(page.locator("#theme")).toHaveAccessibleName(
     new RegExp(say("interface.theme.light", "").split(" ")[0] ?? ""),
   );
-  // A language that there is not is passed over.
+  // The page ignores an unknown language.
   await page.goto("about:blank");
   await open(page, "at=pixel&lang=xx");
   await shows(page, "en", "What a pixel shows");
@@ -101,7 +101,7 @@ test("a guess is compared in the language of the page, with its numbers as that 
   );
 });
 
-/** All that is read out or seen of Learn, without what is marked as English: titles of papers, headings of documents. */
+/** All visible or announced texts of Learn, except those marked as English, such as titles of papers and headings of documents. */
 const read = (page: Page): Promise<string[]> =>
   page.evaluate(() => {
     const parts = [
@@ -122,7 +122,7 @@ const read = (page: Page): Promise<string[]> =>
     );
   });
 
-/** Words in nearly every English sentence and in no German one, and those of labels; names of papers are marked as English. */
+/** Words that occur in nearly every English sentence and in no German one, and words of English labels. */
 const ENGLISH =
   /\b(?:the|of|and|with|is|are|to|by|for|at|light|picture|depth|height|column|error|share|true|found|bump|dent|unit|normals?|noise|remainder|show|close|copy|iteration \d+ of)\b/i;
 
@@ -159,7 +159,7 @@ for (const code of LANGUAGES)
     });
   });
 
-/** Texts that are wider than their place; a select is as wide as its longest choice wants to be. */
+/** Texts that are cut off, including selects that are narrower than their longest choice. */
 const cut = (page: Page): Promise<string[]> =>
   page.locator("#learn").evaluate((learn) => {
     const boxes = [

@@ -1,4 +1,4 @@
-/** The first lessons of Learn, the buttons of the tasks, the guesses, and what is lit together. */
+/** The first lessons of Learn, the buttons of the tasks, the guesses, and the highlighting of related parts. */
 
 import type { Page } from "@playwright/test";
 import { LESSONS, figure, number, open, settled, slide } from "./figure";

@@ -1,4 +1,4 @@
-/** A run as a file: saved, dropped on another visit, and continued where it stopped. */
+/** A run is saved as a file, dropped on another visit, and continued where it stopped. */
 
 import { expect, test } from "./lab";
 import { colourPng, depthPng, drop } from "./uploads";

@@ -64,7 +64,7 @@ export class Card {
 
   #moveAway(x: number, y: number): void {
     this.#element.dataset.x = x < innerWidth / 2 ? "right" : "left";
-    // Buttons and status are at the top; only where there is no room beside the pointer the card goes there.
+    // The card avoids the top, where buttons and status are, unless there is no room beside the pointer.
     this.#element.dataset.y = innerWidth < NARROW && y >= innerHeight / 2 ? "top" : "bottom";
   }
 

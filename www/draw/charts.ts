@@ -9,7 +9,7 @@ import { short } from "./numbers";
 export interface Curve {
   label: string;
   token: string;
-  /** Dashed, and without a line in the legend. */
+  /** Whether the curve belongs to the pinned run; it is dashed and has no entry in the legend. */
   isPinned?: boolean;
 }
 
@@ -127,7 +127,7 @@ function inWords(name: string, lines: readonly Line[], curves: readonly (readonl
 
 const isPower = (value: number): boolean => Number.isInteger(Math.log10(value));
 
-/** Over many decades the lines in between would merge into a grey area. */
+/** Largest number of grid lines; over many decades, the lines in between would merge into a grey area. */
 const MOST_LINES = 30;
 const sparse = (_: uPlot, splits: number[]): (number | null)[] =>
   splits.length > MOST_LINES ? splits.map((value) => (isPower(value) ? value : null)) : splits;
@@ -140,7 +140,7 @@ export interface PlotOptions {
   curves: readonly Curve[];
   /** Whether x is a count: the axis then begins at one and has no ticks in between. */
   whole: boolean;
-  /** Draws nothing before `begin` is called. */
+  /** Whether the chart draws nothing before `begin` is called. */
   waits?: boolean;
 }
 
@@ -162,7 +162,7 @@ export class Plot {
     if (!options.waits) this.begin();
     this.#observer = new ResizeObserver(() => {
       const size = this.#size();
-      // The first size that it reports is the one with which it was built.
+      // The first size that the observer reports is the one with which the chart was built.
       if (!this.#begin && size.width !== this.#plot?.width) this.#plot?.setSize(size);
     });
     this.#observer.observe(box);
@@ -207,7 +207,7 @@ export class Plot {
     this.#plot = new uPlot(
       {
         ...this.#size(),
-        // There may be no axis to the left of the first number.
+        // Leaves room for the first number, to the left of which there may be no axis.
         padding: [8, 8, 0, 4],
         cursor: { y: false, drag: { x: false, y: false } },
         scales: { x: { time: false, ...(whole ? counted : {}) }, y: { distr: 3 } },

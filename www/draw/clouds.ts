@@ -61,14 +61,14 @@ export class Clouds {
   #next: Change | undefined;
   #drawing = false;
   #shown: Change["surfaces"];
-  /** Their extent. */
+  /** Bounding sphere of the surfaces. */
   #extent: Sphere | undefined;
-  /** The pose that the depth map's points come with, and where they stand now. */
+  /** The pose under which the depth map's points are given, and their present position. */
   #pose: Matrix4 | undefined;
   #standing = NOWHERE.clone();
   #swings = 0;
   #bounds = new Sphere(new Vector3(), 1);
-  /** Of the surfaces that are pinned. */
+  /** Bounding sphere of the pinned surfaces. */
   #pinned: Sphere | undefined;
   #marked: Record<Side, readonly number[] | null> = { image: null, depth: null };
   readonly #marks: Record<Side, HTMLElement>;
@@ -101,7 +101,7 @@ export class Clouds {
     this.recolour();
   }
 
-  /** Frees the box for others. */
+  /** Ends the drawing and frees the box. */
   end(): void {
     this.#swings++;
     this.#renderer.end();
@@ -121,7 +121,7 @@ export class Clouds {
     else this.#follow();
     const before = this.#pose;
     this.#pose = matrixOf(pose);
-    // From its previous place, relative to the new points.
+    // The animation starts from the previous pose, expressed for the new points.
     const from =
       before && !fresh
         ? this.#standing.clone().multiply(before).multiply(this.#pose.clone().invert())
@@ -150,7 +150,10 @@ export class Clouds {
     this.#change({ wipe: share });
   }
 
-  /** Moves the pinned run to the present one if its distance is not determined by the image or its pixels have another size. */
+  /**
+   * Moves the pinned run to the present run. This is needed if the image does not determine the distance, or if the pixels of the two runs
+   * differ in size.
+   */
   #placePinned(): void {
     const [then, now] = [this.#pinned, this.#extent];
     if (!then || !now) return;
@@ -191,7 +194,7 @@ export class Clouds {
     }
   }
 
-  /** From a surface's points to the screen, -1 to 1. */
+  /** The matrix that projects a surface's points onto the screen, whose coordinates range from -1 to 1. */
   #toScreen(side: Side): Matrix4 {
     const camera = this.#camera.projectionMatrix.clone().multiply(this.#camera.matrixWorld.clone().invert());
     return side === "depth" ? camera.multiply(this.#standing) : camera;
@@ -255,8 +258,8 @@ export class Clouds {
   }
 
   /**
-   * From the colour camera, a little from the side so that depth can be seen. The depth map sets the size: it was
-   * measured, whereas the image's surface can be anything before the loop has settled.
+   * Looks from the colour camera, but a little from the side, so that depth can be seen. The depth map sets the size: it was measured,
+   * whereas the image's surface can be anything before the loop has settled.
    */
   home(): void {
     if (!this.#extent) return;

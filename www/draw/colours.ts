@@ -122,7 +122,7 @@ function paint(raster: Raster, pixel: (data: Float32Array, i: number, out: Uint8
   return image;
 }
 
-/** Most values that are examined for an automatic range. */
+/** Largest number of values that are examined for an automatic range. */
 const SAMPLES = 4096;
 
 /** A sample of the finite values, sorted. */

@@ -2,7 +2,7 @@
 
 /** Milliseconds of a frame that drawing may take; the rest belongs to the browser and the visitor. */
 const BUDGET = 5;
-/** Most pixels of canvases per frame: the browser copies them after the scripts, which cannot measure that time. */
+/** Largest number of pixels of canvases per frame: the browser copies them after the scripts, which cannot measure that time. */
 const PIXELS = 400_000;
 
 interface Job {

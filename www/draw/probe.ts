@@ -30,7 +30,7 @@ export class Probe {
     return this.#answer;
   }
 
-  /** Its position in a view: in the selecting view immediately, in the other one once the answer has come. */
+  /** The position of the probe in a view. The selecting view shows it immediately, the other one once the answer has come. */
   at(side: Side): Pixel | null {
     if (!this.#asked) return null;
     return this.#asked.side === side ? this.#asked.pixel : (this.#answer?.pixels[side] ?? null);

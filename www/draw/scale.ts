@@ -18,7 +18,7 @@ export class Scale {
     this.#onChange = onChange;
   }
 
-  /** What the visitor has fixed. */
+  /** The range that the visitor has fixed, if any. */
   get fixed(): Range | undefined {
     return this.#isFixed ? this.#range : undefined;
   }

@@ -53,7 +53,7 @@ export interface Change {
 
 export interface PinnedSurfaces {
   surfaces: Record<Side, Surface>;
-  /** As `swing` was. */
+  /** The `swing` of the pinned run. */
   swing: number[];
 }
 
@@ -162,7 +162,7 @@ function place(group: Group, matrix: number[]): void {
   group.matrixWorldNeedsUpdate = true;
 }
 
-/** One surface both ways. */
+/** One surface, drawn as points or as a mesh. */
 class Sheet {
   readonly group = new Group();
   readonly #points: Points<BufferGeometry, PointsMaterial>;

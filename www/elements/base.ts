@@ -27,7 +27,7 @@ export abstract class Base extends (globalThis.HTMLElement ?? Nothing) {
     this.stop();
   }
 
-  /** Once for all changes of one task. */
+  /** Restarts once for all changes of one task. */
   restart(): void {
     if (this.#isScheduled || !this.isConnected) return;
     this.#isScheduled = true;
@@ -39,7 +39,7 @@ export abstract class Base extends (globalThis.HTMLElement ?? Nothing) {
     });
   }
 
-  /** Whether a restart is about to take all attributes as they are then. */
+  /** Whether a restart is scheduled, which will read all attributes. */
   protected get isScheduled(): boolean {
     return this.#isScheduled;
   }

@@ -3,7 +3,7 @@
 import type { Options, SampleRequest, StepReport } from "../../pkg/index.js";
 import type { Fault } from "../engine/protocol";
 
-/** Addresses are absolute, because a thread resolves relative ones by its own. */
+/** Addresses are absolute, because a thread would resolve relative addresses by its own address. */
 export interface Input {
   image: string;
   depth: string;

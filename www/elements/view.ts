@@ -17,7 +17,7 @@ interface Hooks {
   restart(): void;
 }
 
-/** Not that of the page's dom.ts, which needs a document when it is loaded. */
+/** Like `make` of the page's dom.ts, which cannot be used here because it needs a document when it is loaded. */
 function made<K extends keyof HTMLElementTagNameMap>(tag: K, content = "", attributes: Record<string, string> = {}) {
   const element = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);

@@ -20,5 +20,5 @@ export function onGone(worker: Worker, tell: () => void): void {
   });
 }
 
-/** The words for it. */
+/** The message about a worker that has ended silently. */
 export const GONE = "the browser ended the computing thread, probably because memory ran short";

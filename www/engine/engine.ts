@@ -50,7 +50,7 @@ export class Engine {
     this.#hooks = hooks;
   }
 
-  /** The page no longer has what it transfers. */
+  /** The page can no longer use transferred buffers. */
   call<K extends Kind>(
     kind: K,
     request: Calls[K]["request"],

@@ -2,7 +2,7 @@
 
 import type { Holding } from "./alive";
 
-/** Another one for each worker of all tabs. */
+/** The name differs for each worker of all tabs. */
 const name = `bimodal-stereo ${performance.timeOrigin} ${Math.random()}`;
 
 // The page works without locks, too.

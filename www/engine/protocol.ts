@@ -158,7 +158,7 @@ export interface Frame extends Drawings {
 /** A light whose numbers are known. */
 export interface KnownLight {
   ball: ImageBitmap;
-  /** All 27. */
+  /** All 27 coefficients of the light. */
   coefficients: Float64Array;
 }
 
@@ -213,7 +213,7 @@ export interface Catalogue {
 /** The downloads at full resolution. */
 export interface Taken {
   pose: Pose;
-  /** The colour view's and the depth view's. */
+  /** The unit of the colour view; `depthUnit` is that of the depth view. */
   unit: "px" | "m";
   depthUnit: "px" | "m";
   light: Float64Array;
@@ -247,7 +247,7 @@ export interface Fault {
   message: string;
   field?: string;
   details?: ErrorDetails;
-  /** After a panic the instance cannot be trusted, and without its module it cannot work, so the worker has to be replaced. */
+  /** Whether the worker has to be replaced: after a panic its instance cannot be trusted, and without its module it cannot work. */
   fatal: boolean;
 }
 

@@ -7,7 +7,7 @@ import type { Picture, Raster, Surface } from "./protocol";
 /** Longest side of a drawn view in pixels, so that all canvases together are drawn within one frame. */
 const LONGEST = 512;
 
-/** Most points of a drawn cloud. */
+/** Largest number of points of a drawn cloud. */
 const MOST_POINTS = 20_000;
 
 /** Margin around the object, pixels. */

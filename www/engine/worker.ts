@@ -39,7 +39,7 @@ interface Input extends Pick<Run, "image" | "depth"> {
 }
 
 interface OpenInput extends Input, Run {
-  /** What the search tried, which the library forgets once it has chosen a pose. */
+  /** The scores of the poses that the search tried. The library forgets them once it has chosen a pose. */
   scores: Float32Array;
   /** The initial pose, and the position to which it maps the first point of the depth map. */
   start: { pose: Pose; first: readonly number[] };

@@ -20,21 +20,21 @@ interface Common {
   group: Group;
   /** Path in the library's errors that belongs to this field. */
   path: string;
-  /** Shown only while this holds. */
+  /** The condition under which the field is shown. */
   when?: (settings: Settings, source: Origin) => boolean;
 }
 export interface NumberField extends Common {
   kind: "number";
   initial: number | null;
   unit?: string | undefined;
-  /** What an empty field means. */
+  /** The meaning of an empty field. */
   empty: string;
   slider?: PageField["slider"];
 }
 export interface ChoiceField extends Common {
   kind: "choice";
   initial: string;
-  /** Without choices they come from the library's catalogue. */
+  /** The choices; if absent, they come from the library's catalogue. */
   choices?: readonly (readonly [value: string, label: string])[];
   /** Choices that apply to one origin only; for the other the initial choice is used. */
   only?: Readonly<Record<string, Origin>>;

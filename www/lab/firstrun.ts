@@ -8,7 +8,7 @@ import { make } from "../dom";
 import { Borrowed, STEPS, type Hooks, type StepName, stepsOf } from "./firststeps";
 import type { Files } from "./storage";
 
-/** Undone masks that are kept. */
+/** Largest number of earlier masks that undo can restore. */
 const MOST_PAST = 20;
 
 export class FirstRun {
@@ -106,7 +106,7 @@ export class FirstRun {
     this.#hooks.run();
   }
 
-  /** Once a frame, however many parts have changed. */
+  /** Refreshes the step once per frame, however many parts have changed. */
   #later(): void {
     if (this.#isLate || !this.#dialog.open) return;
     this.#isLate = true;

@@ -67,10 +67,10 @@ async function rangeInWords({ depth }: Files, settings: Settings): Promise<strin
   const stored = measured.range.map(short).join(" to ");
   const { unit } = settings;
   if (settings.meaning === "inverse") return `Stored numbers ${stored}; larger is nearer.`;
-  if (typeof unit !== "number") return `Stored numbers ${stored}. Without a camera one of them is one pixel.`;
+  if (typeof unit !== "number") return `Stored numbers ${stored}. Without a camera, one unit is one pixel.`;
   const unitName = settings["depth.fx"] === null ? "pixels" : "m";
   const metres = measured.range.map((value) => short(value * unit)).join(" to ");
-  return `Stored numbers ${stored}, which is ${metres} ${unitName}. Is that as far as the object was? If not, change the unit.`;
+  return `Stored numbers ${stored}, which is ${metres} ${unitName}. Was the object that far away? If not, change the unit.`;
 }
 
 async function expected(files: Files, settings: Settings): Promise<{ words: string; isDoubt: boolean }[]> {
@@ -106,7 +106,7 @@ function gallery(hooks: Hooks): HTMLElement {
   return element;
 }
 
-/** Files of any kind at once, on devices without dropping as well. */
+/** A button that takes several files of any kind at once, for devices without drag and drop. */
 function several(hooks: Hooks): HTMLElement {
   const picker = make("input", { type: "file", multiple: true, class: "visually-hidden", id: "first-run-all" });
   picker.addEventListener("change", () => {
@@ -179,7 +179,7 @@ export function stepsOf(
     if (step === "depth")
       [hooks.placeOf("depth"), field("unit"), field("meaning"), field("numerator"), camera("depth")].forEach(lend);
     if (step === "masks") [hooks.placeOf("colourMask"), hooks.placeOf("depthMask")].forEach(lend);
-    // What the last step expects already says what the notes do.
+    // The last step already says the same as the notes.
     if (step !== "go") borrowed.show(hooks.notes(), bodies[step]);
     void refresh();
   };

@@ -196,7 +196,7 @@ export class Gallery {
   open({ units, measured, frame }: Opened, fresh: boolean): Promise<void> {
     this.#units = this.#card.units = units;
     if (fresh) this.#clouds.lookAnew();
-    // Its pixels have changed.
+    // The pixels of another input are different, so the probe is reset.
     if (fresh) this.#probe.point(null);
     byId("errors", HTMLElement).hidden = !measured;
     return this.show(frame, []);
@@ -286,7 +286,7 @@ export class Gallery {
       return;
     }
     chosen.querySelector("canvas")?.focus({ preventScroll: true });
-    // The other views have made room above it.
+    // The page has scrolled, because the views above the chosen one are visible again.
     chosen.scrollIntoView({ block: "nearest" });
   }
 
@@ -297,7 +297,7 @@ export class Gallery {
   #place(figure: HTMLElement, parent: string | undefined, title: string): void {
     this.#figures.push(figure);
     const number = this.#figures.length;
-    // The tenth has the key 0; those after it have none.
+    // The tenth view has the key 0; later views have none.
     const key = number > 10 ? "+" : String(number % 10);
     const hint = number > 10 ? "Enlarge" : `Enlarge (${key})`;
     const button = make(

@@ -95,7 +95,7 @@ export class Intake {
     return this.#files;
   }
 
-  /** The place of a file, and what is said about all of them; the short path through the files borrows them. */
+  /** The element of a slot, or the element with the messages about all slots. The short path through the files borrows these elements. */
   placeOf(slot: Slot): HTMLElement | null | undefined {
     return this.#entries.get(slot)?.zone.parentElement;
   }

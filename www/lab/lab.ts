@@ -59,7 +59,7 @@ export class Lab {
   });
   /** A saved run that replaces a pair of files, until a pair is given. */
   #saved: Source | undefined;
-  /** The files of what is on the screen; none of a sample. */
+  /** The files of the input on the screen; empty for a sample. */
   #pair: readonly (File | undefined)[] = [];
   readonly #panels: Panels;
   readonly #compare: Compare;
@@ -71,15 +71,15 @@ export class Lab {
   readonly #record = new RunRecord();
   /** The input that was requested last, accepted or not, or what it lacked. */
   #wanted: Source | string = "";
-  /** What is on the screen, to be opened again if the worker has lost it. */
+  /** The input on the screen, to be opened again if the worker has lost it. */
   #good: { source: Source; settings: Settings } | undefined;
-  /** What the worker holds; this may be an input that was superseded before it was shown. */
+  /** The input that the worker holds. It may have been superseded before it was shown. */
   #held: Source | undefined;
   /** Counts beginnings, so that the answer to a superseded one is dropped. */
   #turn = 0;
   /** The beginning under way, which steps wait for. */
   #beginning: Promise<void> = Promise.resolve();
-  /** The object that the surfaces on the screen are of. */
+  /** The object whose surfaces are on the screen. */
   #seen = "";
   #offered = false;
   /** Whether the input is played once it has been opened. */

@@ -138,7 +138,7 @@ class Ball {
   readonly canvas: HTMLCanvasElement;
   readonly element: HTMLElement;
   readonly #title: HTMLElement;
-  /** Like those of the views, it is requested before it is on the page. */
+  /** Like the contexts of the views, this one is requested before its canvas is on the page. */
   readonly #context: CanvasRenderingContext2D | null;
 
   constructor(title: string, description: string) {

@@ -11,7 +11,7 @@ import { RigError, Session } from "../rig/session";
 import { sniffed } from "./kind";
 import type { Files, Slot } from "./storage";
 
-/** What a file was recognised as. */
+/** The kind of file that was recognised, and its properties. */
 export interface Look {
   kind: Summary["kind"] | undefined;
   says: string;
@@ -30,7 +30,7 @@ export interface Look {
   /** Metres per stored unit that a file of cameras gives for the depth maps beside it. */
   unit?: number;
   picture?: ImageBitmap;
-  /** Of a depth map: the stored numbers that nearly all pixels lie between, and the share of pixels that have one. */
+  /** For a depth map, the range of nearly all stored numbers, and the share of pixels with a depth. */
   measured?: { range: [number, number]; valid: number };
 }
 

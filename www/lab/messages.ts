@@ -36,7 +36,7 @@ export class Messages {
     this.note(this.#notes);
   }
 
-  /** What was guessed about the input. */
+  /** Shows what was guessed about the input. */
   note(notes: Opened["notes"]): void {
     this.#notes = notes;
     this.#form.clearMessages();

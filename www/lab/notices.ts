@@ -25,7 +25,7 @@ export class Notices {
     this.announce(names ? "loading" : "waiting", names ? "looking at the files" : lacking, names || wayOut(lacking));
   }
 
-  /** What is loading. */
+  /** Adds what is loading to the notice. */
   detail(words: string): void {
     if (this.#now?.state === "loading") this.announce("loading", this.#now.words, words);
   }

@@ -8,11 +8,11 @@ import type { Origin, Settings, Value } from "./settings";
 import type { Files, Slot } from "./storage";
 
 export interface OwnFilesHooks {
-  /** The files have changed. */
+  /** Called when the files have changed. */
   onChange(): void;
-  /** A saved run in place of a pair. */
+  /** Called with a saved run that was dropped instead of a pair. */
   onRun(file: File): void;
-  /** Called when it changes whether a file seems to be in the wrong slot. */
+  /** Called when the suspicion that a file is in the wrong slot changes. */
   onDoubt(): void;
   /** Names of the files being recognised; empty if none of them went into a slot. */
   onLooking(names: string): void;

@@ -23,7 +23,7 @@ function thumbnail(own: OwnFiles, step: number, canvas: HTMLCanvasElement): void
   canvas.getContext("2d")?.drawImage(source, 0, 0);
 }
 
-/** What the Lab says of a pair that it cannot run. */
+/** The Lab's message about a pair that it cannot run. */
 function trouble(): string {
   const isWrong = byId("status", HTMLElement).dataset.state === "error";
   return isWrong ? byId("verdict", HTMLElement).textContent : "";

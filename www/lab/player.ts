@@ -39,7 +39,7 @@ export class Player {
   #underWay: Promise<boolean> = Promise.resolve(true);
   /** The step under way. */
   #stepping: Advance["by"] | undefined;
-  /** What has been asked for, until it is paused. */
+  /** The kind of playing that was requested, until it is paused. */
   #asked: Again | undefined;
   readonly #hooks: PlayerHooks;
 

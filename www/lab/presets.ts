@@ -5,7 +5,7 @@ import { defaults, type Settings, type Value } from "./settings";
 
 interface Preset {
   name: string;
-  /** What the example shows. */
+  /** A sentence about what the example shows. */
   words: string;
   set: Readonly<Record<string, Value>>;
 }
@@ -52,7 +52,7 @@ const settingsOf = ({ set }: Preset): Settings => ({ ...defaults, ...set });
 
 /** Buttons; the one that matches the settings is pressed. */
 export class Presets {
-  /** What the present example shows, also where there are no tooltips. */
+  /** The sentence about the present example, for devices without tooltips. */
   readonly #words = byId("example", HTMLElement);
   readonly #buttons: readonly { preset: Preset; button: HTMLButtonElement }[];
 

@@ -14,7 +14,7 @@ export class RunRecord {
   from: Pose | undefined;
   /** One report for each completed iteration. */
   history: StepReport[] = [];
-  /** The first one shows the start. */
+  /** Number of frames so far; the first one shows the start. */
   #frames = 0;
 
   get isFinished(): boolean {
@@ -51,7 +51,7 @@ export class RunRecord {
     this.from = undefined;
   }
 
-  /** Its input is gone. */
+  /** Clears the record when its input is gone. */
   clear(): void {
     this.report = undefined;
     this.truth = null;

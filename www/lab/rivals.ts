@@ -14,7 +14,7 @@ export interface RivalHooks {
 
 /** More rivals could not be distinguished on the screen. */
 const MOST = 4;
-/** Within two sigmas of the least certain pose that still converges, another pose is the same one. */
+/** Another pose counts as the same pose within this angle: two sigmas of the least certain pose that still converges. */
 const APART = 2 * (OPTIONS.tolerance.default ?? 0);
 
 export class Rivals {

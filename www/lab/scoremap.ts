@@ -1,4 +1,7 @@
-/** The scores of rotations during the search: across, the rotation about the vertical axis; up and down, that about the horizontal one. */
+/**
+ * The map of scores during the search. The horizontal axis is the rotation about the vertical axis of the object, the vertical axis that
+ * about the horizontal axis.
+ */
 
 import type { Pose } from "../../pkg/index.js";
 import { colourAt } from "../draw/colours";

@@ -47,7 +47,7 @@ function channel(): BroadcastChannel | undefined {
   try {
     return new BroadcastChannel(`${NAME} ${STORE}`);
   } catch {
-    // Closed if storage is forbidden; nothing is stored then.
+    // Some browsers forbid the channel together with storage; nothing is stored then.
     return undefined;
   }
 }

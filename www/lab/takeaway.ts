@@ -30,7 +30,7 @@ export interface Run {
 export interface Made {
   name: string;
   blob: Blob;
-  /** What a reader of the file needs to know, such as the unit. */
+  /** Information for the reader of the file, such as the unit. */
   says?: string;
 }
 

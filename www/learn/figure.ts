@@ -21,7 +21,7 @@ export class Figure {
   readonly #followed: ReadonlySet<string>;
   readonly #onDrag: OnDrag;
 
-  /** Panels that can be dragged on; those that are followed also report a mouse that only hovers. */
+  /** `drags` are the panels on which the visitor can drag. Panels in `followed` also report a mouse that only hovers. */
   constructor(drags: ReadonlySet<string>, followed: ReadonlySet<string>, onDrag: OnDrag) {
     this.#drags = drags;
     this.#followed = followed;

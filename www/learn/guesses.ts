@@ -17,7 +17,7 @@ interface Hooks {
 export class Guesses {
   readonly elements: readonly HTMLElement[];
   readonly #hooks: Hooks;
-  /** What waits for the last drawing. */
+  /** Called with the next complete drawing. */
   #waiting: ((drawing: Drawing, values: Values) => void) | undefined;
 
   constructor({ guesses }: Lesson, hooks: Hooks) {
@@ -54,7 +54,7 @@ export class Guesses {
       const given = field.value();
       if (given === undefined) return;
       answer.replaceChildren();
-      // From the state of the question, whatever has been moved since.
+      // The answer is about the state of the question, even if the visitor has moved something since.
       this.#hooks.set(guess.at);
       this.#hooks.reveal(guess.reveal, () => {
         this.#waiting = (drawing, values) => {

@@ -37,7 +37,7 @@ export function remember(language: Language): void {
   try {
     localStorage.setItem(KEY, language);
   } catch {
-    // Nothing to do: see above.
+    // The choice is not stored, for the reason given above.
   }
 }
 
@@ -54,7 +54,7 @@ export const languageFor = (hash: string): Language =>
 /** The language in which Learn is shown. */
 export const shownLanguage = (): Language => shown ?? "en";
 
-/** What an address needs so that others see the same language: nothing where English is what the browser would show by itself. */
+/** The part of an address with which others see the same language. It is empty if the browser would show English by itself. */
 export const languageInAddress = (): { lang?: Language } =>
   shownLanguage() === "en" && ownLanguage() === "en" ? {} : { lang: shownLanguage() };
 

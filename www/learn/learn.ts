@@ -1,4 +1,4 @@
-/** Learn in one of its languages: another language makes its parts anew, with the settings of all figures. */
+/** Shows Learn in one language. After a change of the language its parts are created again, with the settings of all figures. */
 
 import { make } from "../dom";
 import { placeOf } from "../place";

@@ -8,7 +8,7 @@ interface CommonControl {
   key: string;
   label: string | ((values: Values) => string);
   hint?: string;
-  /** Shown only while this holds. */
+  /** The condition under which the control is shown. */
   when?: (values: Values) => boolean;
 }
 export interface SliderControl extends CommonControl {
@@ -18,7 +18,7 @@ export interface SliderControl extends CommonControl {
   step: number;
   initial: number;
   unit?: string;
-  /** The slider runs over the logarithm: from 10^min to 10^max. */
+  /** Whether the slider runs over the logarithm, from 10^min to 10^max. */
   logarithmic?: boolean;
   /** The value as people read it, if it depends on the other controls. */
   reads?: (value: number, values: Values) => string;
@@ -40,11 +40,11 @@ export interface Readout {
   unit?: string;
   digits?: number;
   ink?: Ink;
-  /** What it means, in a sentence. */
+  /** One sentence that explains the number. */
   hint?: string;
 }
 
-/** What a button does: it sets controls at once, and then moves one slider slowly, so that the change can be watched. */
+/** The effect of a button. It sets controls at once and then moves one slider slowly, so that the change can be watched. */
 export interface Try {
   set?: Values;
   sweep?: { key: string; to: number };
@@ -60,7 +60,7 @@ export interface Guess {
   right?: number;
   /** The number of the figure that is asked for, and how near counts as right. */
   number?: { key: string; unit?: string; digits: number; within: number };
-  /** What reveals the answer. */
+  /** The change of the figure that reveals the answer. */
   reveal: Try;
   answer: string;
 }
@@ -76,17 +76,17 @@ export interface Lesson {
   text: readonly string[];
   /** Things to try with the figure: the first sentence says what its button does, the rest what to look for. */
   tasks: readonly string[];
-  /** What the buttons of the tasks do, in the same order. */
+  /** The effects of the tasks' buttons, in the same order. */
   tries: readonly Try[];
-  /** Questions to be answered before the figure reveals it. */
+  /** Questions whose answers the figure reveals afterwards. */
   guesses: readonly Guess[];
-  /** What one can do after the lesson, in one sentence. */
+  /** One sentence about what the reader can do after the lesson. */
   can: string;
   controls: readonly Control[];
   readouts: readonly Readout[];
-  /** Panels on which a drag sets two sliders; those that follow need no button. */
+  /** Panels on which a drag sets two sliders. With `follows`, a mouse sets them without a pressed button. */
   drags: Readonly<Record<string, { x: string; y: string; follows?: boolean }>>;
-  /** Where the method is written down. */
+  /** Sections of the method's documents and publications on the subject. */
   more: References;
 }
 

@@ -1,4 +1,4 @@
-/** Lights what belongs together: a symbol under the pointer, its marks, curves and numbers in the figure, and the other way round. */
+/** Highlights related parts together: the symbol under the pointer and its marks, curves and numbers in the figure, or the reverse. */
 
 const PREFIX = "learn-ink-";
 

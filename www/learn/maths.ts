@@ -34,7 +34,7 @@ export const comma = (): Element => row(mo(","), space("0.6em"));
 interface Symbol {
   make(): Element;
   ink: Ink;
-  /** Its meaning, shown when the pointer rests on it. */
+  /** The meaning of the symbol, shown when the pointer rests on it. */
   name: string;
 }
 

@@ -143,7 +143,7 @@ export class LearnPage {
       this.#shown = this.#make(lesson, values);
       if (this.#slides.isOpen) this.#slides.take(slideOf(this.#shown));
       else this.#main.replaceChildren(this.#shown.article);
-      // The link to it stands at the end of the one before.
+      // The link to this lesson is at the end of the previous one, so the page has to scroll up.
       if (before) scrollTo(0, 0);
     }
     this.#mark(lesson.id);

@@ -15,7 +15,7 @@ export class Player {
   constructor(lesson: Lesson, controls: Controls) {
     this.#lesson = lesson;
     this.#controls = controls;
-    // Whoever takes a control in hand ends the move.
+    // Using any control stops the animation.
     for (const kind of ["pointerdown", "keydown"]) controls.element.addEventListener(kind, () => this.stop());
   }
 

@@ -53,7 +53,7 @@ export interface Mark {
   points: number[];
   /** Radius of dots and rings in hundredths of the picture. */
   size?: number;
-  /** A thin line without a dark edge, for lines that lie close to each other. */
+  /** Whether lines are thin and have no dark edge, because they lie close to each other. */
   isFine?: boolean;
 }
 
@@ -63,7 +63,7 @@ interface Common {
   title: string;
   /** A description for screen readers. */
   alt: string;
-  /** What stands in the place of {names} in its words. */
+  /** Values that replace {names} in the panel's words. */
   details?: Details;
   /** Distinguishes the words of a panel whose words depend on the controls. */
   state?: string;
@@ -92,7 +92,7 @@ export interface PlotPanel extends Common {
   x: string;
   y: string;
   series: Series[];
-  /** Where the control stands now. */
+  /** The present value of the control on the x axis. */
   at?: number;
   /** Smallest range of x, so that the axis does not move while the curve grows. */
   domain?: readonly [number, number];
@@ -107,7 +107,7 @@ export interface CloudPanel extends Common {
 
 export type Panel = ImagePanel | PlotPanel | CloudPanel;
 
-/** All that a figure shows for one set of values. */
+/** Everything that a figure shows for one set of values. */
 export interface Drawing {
   panels: Panel[];
   numbers: Record<string, number>;

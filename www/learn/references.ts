@@ -23,7 +23,7 @@ const SECTIONS = {
 
 export interface References {
   sections: readonly (keyof typeof SECTIONS)[];
-  /** What of the paper. */
+  /** The parts of the paper, such as sections and equations. */
   paper?: string;
   /** The original publication on the subject, by its DOI. */
   others?: readonly (readonly [doi: string, words: string])[];

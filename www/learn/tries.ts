@@ -1,13 +1,13 @@
-/** The tasks of a lesson as buttons: each sets the figure, and says beside it what to look for. */
+/** The tasks of a lesson as buttons. Each button changes the figure and shows beside it what to look for. */
 
 import { make } from "../dom";
 import type { Lesson, Try } from "./lesson";
 import { sentence } from "./maths";
 
 export interface Task {
-  /** What the button does. */
+  /** The label of the button, which says what it does. */
   action: string;
-  /** What to look for. */
+  /** The text about what to look for. */
   look: string;
 }
 

@@ -146,7 +146,7 @@ export class SensitivityCharts {
   }
 }
 
-/** All cues at the offsets of the first, as the loss relative to the best of each. */
+/** The curves of all cues at the offsets of the first cue. Values are the loss relative to the maximum of the cue. */
 function lossesOf(curves: readonly Sensitivity[]): {
   xs: number[];
   lines: { cue: string; losses: number[] }[];

@@ -2,7 +2,7 @@
 
 import type { Doubt, RigState, Side } from "./state";
 
-/** Share of the picture's side beyond which the distance of a principal point from the middle suggests that it belongs to another size. */
+/** A principal point farther from the middle than this share of the picture's side probably belongs to another picture size. */
 const OFF_CENTRE = 0.2;
 
 /** Parameters for another image size are the second most common mistake. */
@@ -21,8 +21,8 @@ export function cameraDoubt(rig: RigState, side: Side): string {
 }
 
 /**
- * The warnings of the readers that are evidence against the values, once for all files with the same warning, and those about the cameras'
- * parameters. A guessed unit is not one of them, because the visitor can confirm it.
+ * The warnings about the cameras' parameters, and those warnings of the readers that are evidence against the values. A warning that
+ * several files have appears once. A guessed unit is left out, because the visitor can confirm it.
  */
 export function doubtsOf(rig: RigState): Doubt[] {
   const used = new Set(rig.complete.flatMap(({ colour, depth }) => [colour, depth]));

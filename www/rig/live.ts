@@ -5,7 +5,7 @@ import type { Assembly } from "./protocol";
 import { type Session, wasCancelled } from "./session";
 import { type Item, type RigState, messageOf } from "./state";
 
-/** Most views that are taken; more views of one rig add little. */
+/** Largest number of views that are taken; more views of one rig add little. */
 const MOST = 10;
 
 export type LiveState = "off" | "connecting" | "connected" | "looking" | "checking" | "done" | "lost";
@@ -33,7 +33,7 @@ export class Live {
   name = "";
   topics: Topic[] = [];
   chosen = { colour: "", depth: "" };
-  /** What went wrong, in words. */
+  /** The message of the last error. */
   error = "";
   progress = "";
   steps: Step[] = [];

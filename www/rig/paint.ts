@@ -14,7 +14,7 @@ export class Paint {
   readonly height: number;
   /** Absent as long as the whole image is used. */
   data: Uint8Array | undefined;
-  /** What was said of each pixel since the last suggestion: 0 background, 1 object, 2 and 3 the same as long as nothing else is known. */
+  /** The label of each pixel since the last suggestion: 0 background, 1 object, 2 probably background, 3 probably object. */
   marks: Uint8Array | undefined;
 
   constructor(width: number, height: number, data?: Uint8Array) {

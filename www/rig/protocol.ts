@@ -32,7 +32,7 @@ export interface Summary extends Omit<Reading, "name"> {
   /** For a recording: its topics, and those chosen. */
   topics?: Topic[];
   chosen?: { colour?: string; depth?: string };
-  /** What the reader guessed, such as the unit of a depth map. */
+  /** The reader's guesses, such as the unit of a depth map. */
   guessed: string[];
   width?: number;
   height?: number;
@@ -62,7 +62,7 @@ export interface FramePlan {
 
 /** Several files that belong together: a folder, or the example. */
 export interface Assembly {
-  /** Where its poses come from, in words. */
+  /** The source of the poses, in words. */
   origin: string;
   items: { file: number; name: string; summary: Summary }[];
   frames: { name: string; colour: number; depth: number; mask?: number }[];

@@ -7,7 +7,7 @@ import type { Answer, CallKind, Calls, Request } from "./protocol";
 /** Milliseconds within which a cancelled check has to end by itself before its worker is terminated. */
 const PATIENCE = 1500;
 
-/** What went wrong in the worker. */
+/** An error in the worker. */
 export class RigError extends Error {
   readonly fault: Fault;
   constructor(fault: Fault) {
@@ -84,7 +84,7 @@ export class Session {
       return void this.#known.delete(key);
     }
     if (!READS.includes(kind) && kind !== "unit" && kind !== "frames") return;
-    // Repeated requests come last, after the files to which they may refer.
+    // A repeated request moves to the end, because it may refer to files that came later.
     this.#known.delete(key);
     this.#known.set(key, { kind, ask });
   }

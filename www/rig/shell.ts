@@ -31,7 +31,10 @@ const cameraOf = ({ model, ...camera }: Pinhole, size: object | undefined): obje
   ...size,
 });
 
-/** Cameras from files, which the command finds as the page does; otherwise both cameras as they were used. */
+/**
+ * The names of the files that the cameras come from; the command reads them as the page does. If a camera is not from a file, the text of
+ * both cameras as they were used.
+ */
 function camerasOf(rig: Rig, { plans: [plan] }: Run): { names: string[]; text?: string } {
   const sides: Side[] = ["colour", "depth"];
   const items = sides.map((side) => rig.item(Number.parseInt(rig.cameras[side].source, 10)));
@@ -45,7 +48,7 @@ function camerasOf(rig: Rig, { plans: [plan] }: Run): { names: string[]; text?: 
   return { names: [], text: JSON.stringify(cameras) };
 }
 
-/** The folder is the one in which the command is typed. */
+/** The arguments of the command that repeats the check. It has to be typed in the folder that holds the files. */
 export function shellOf(rig: Rig, run: Run): ShellCheck {
   const cameras = camerasOf(rig, run);
   const calibrations = Object.entries(run.candidates).map(([name, pose], k) => {
@@ -57,7 +60,7 @@ export function shellOf(rig: Rig, run: Run): ShellCheck {
   return {
     folder: ".",
     calibrations: calibrations.map(({ name }) => name),
-    // A calibration's own cameras count as named already.
+    // A calibration that contains cameras is already in the command, so it is not named twice.
     cameras: [
       ...cameras.names.filter((name) => !calibrations.some((each) => each.name === name)),
       ...(cameras.text === undefined ? [] : ["cameras.json"]),
@@ -72,5 +75,5 @@ export function shellOf(rig: Rig, run: Run): ShellCheck {
   };
 }
 
-/** What the command cannot repeat. */
+/** Whether the run has restrictions that the command cannot repeat. */
 export const isRestricted = ({ plans }: Run): boolean => plans.some(({ paint, range }) => paint || range);

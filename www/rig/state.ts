@@ -10,18 +10,18 @@ export type Side = "colour" | "depth";
 export interface Item {
   id: number;
   name: string;
-  /** Absent if it was added with others, for example in a folder or as the example; it cannot then be read in another way. */
+  /** The contents. They are absent if the file was added with others, for example in a folder; it cannot then be read in another way. */
   blob?: Blob;
   state: "reading" | "read" | "failed";
   summary?: Summary;
   error?: string;
   as?: Kind;
   unit?: number;
-  /** Its frame was removed, so that it does not make a new one automatically. */
+  /** The visitor removed the frame of this file, so the file does not form a new frame automatically. */
   aside?: true;
-  /** Its calibration has been arranged for the frames. */
+  /** The calibration of this file has been adapted to the frames. */
   arranged?: true;
-  /** The recording from which it was taken; it is removed with the recording. */
+  /** The recording from which the file was taken; removing the recording also removes the file. */
   recording?: number;
   /** For a recording: the topics from which frames are taken, and the progress. */
   taking?: Taking;
@@ -32,10 +32,10 @@ export interface Taking {
   depth: string;
   frames: number;
   state: "reading" | "read" | "failed";
-  /** 0 to 1. */
+  /** Progress, 0 to 1. */
   share: number;
   error?: string;
-  /** The options with which its frames were taken, among the notes of the rig. */
+  /** The warnings of the reader about these frames; they are also among the notes of the rig. */
   notes: ReaderWarning[];
 }
 
@@ -49,7 +49,7 @@ export interface Frame {
   range?: [number, number];
 }
 
-/** Typed in; empty fields are NaN. */
+/** A camera that the visitor typed in; empty fields are NaN. */
 export interface TypedCamera {
   by: "focal" | "view";
   model: "brown" | "fisheye";
@@ -57,7 +57,7 @@ export interface TypedCamera {
   fy: number;
   cx: number;
   cy: number;
-  /** Horizontal, degrees. */
+  /** Horizontal field of view, degrees. */
   view: number;
   distortion: number[];
 }
@@ -65,7 +65,7 @@ export interface TypedCamera {
 export interface CameraChoice {
   /** "", "typed", "same" as the colour camera, or the camera's place among those of the files, "3:0". */
   source: string;
-  /** Whether the visitor has chosen it; otherwise it follows the files. */
+  /** Whether the visitor has chosen the source; otherwise it follows the files. */
   chosen: boolean;
   typed: TypedCamera;
 }
@@ -73,10 +73,10 @@ export interface CameraChoice {
 export interface Candidate {
   id: number;
   name: string;
-  /** Where it comes from, in words. */
+  /** The source of the candidate, in words. */
   origin: string;
   pose: Pose;
-  /** The file that it came from; it is removed with that file. */
+  /** The file that the candidate came from; removing the file also removes the candidate. */
   file?: number;
 }
 

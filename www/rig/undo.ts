@@ -2,7 +2,7 @@
 
 import type { RigState } from "./state";
 
-/** Most undo steps; their contents stay in memory. */
+/** Largest number of undo steps; their contents stay in memory. */
 const MOST_STEPS = 20;
 
 /** An object in its earlier state; lists contain the same objects, to which rows of the page refer. */
@@ -21,7 +21,7 @@ interface Step {
   isMoot(): boolean;
   /** Later items have higher numbers. */
   last: number;
-  /** Everything was removed, so later items belong to another rig. */
+  /** Whether everything was removed, so that later items belong to another rig. */
   isWhole: boolean;
   lists: Pick<RigState, "items" | "frames" | "candidates">;
   rest: Pick<RigState, "notes" | "history" | "run">;
@@ -31,14 +31,14 @@ interface Step {
 export class Undo {
   readonly #rig: RigState;
   #steps: Step[] = [];
-  /** Files that the worker holds, by what was seen of them here. */
+  /** Ids of the files that the worker holds, as far as this page has seen them. */
   #known = new Set<number>();
 
   constructor(rig: RigState) {
     this.#rig = rig;
   }
 
-  /** What the next undo takes back, in words; nothing if there is no step, or if its effect would not be visible. */
+  /** A description of what the next undo takes back; undefined if there is no step, or if its effect would not be visible. */
   wordsAt(where: string): string | undefined {
     if (this.#steps.at(-1)?.isMoot()) {
       this.#steps = this.#steps.slice(0, this.#steps.findLastIndex((step) => !step.isMoot()) + 1);

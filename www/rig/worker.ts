@@ -15,7 +15,7 @@ const MOST_WORKERS = 4;
 
 const readings = new Map<number, RigReading>();
 let recorded: Promise<Recorded> | undefined;
-/** Recordings and robots; they are few, and their readers large. */
+/** The readers of recordings and robots are loaded on demand, because they are large and rarely needed. */
 const recordedOf = () => (recorded ??= import("./recorded").then(({ Recorded }) => new Recorded()));
 let paired: ReturnType<typeof loadPairs> | undefined;
 const loadPairs = () => import("./pairs");
@@ -111,7 +111,7 @@ function assemble(
         guessed,
         depth,
       }),
-      // A separate file, so that it is visible and can be removed, because the background is informative.
+      // The mask becomes a separate file, so that the visitor sees it and can remove it: the background is informative, too.
       ...(mask
         ? {
             mask: keep({

@@ -5,7 +5,7 @@ import { cellsOf, paperDegrees, tableNamed, type Cell, type Result } from "./pro
 export interface Axis {
   label: string;
   of(cell: Cell): string | number;
-  /** What a header says. */
+  /** The text of a header. */
   name(value: string | number): string;
 }
 
@@ -20,7 +20,7 @@ export interface Panel {
   name: string;
   tab: string;
   title: string;
-  /** What is measured, for a visitor who has not read the paper. */
+  /** An explanation of what is measured, for a visitor who has not read the paper. */
   words: string;
   choices: readonly Choice[];
   down: Axis;

@@ -16,7 +16,7 @@ const bytes = (value: number): [number, number, number] =>
 
 export const colourOf = (value: number): string => `rgb(${bytes(value).join(" ")})`;
 
-/** Whether black is more legible on it than white: the contrast formula's luminance, at the level where both are equal. */
+/** Whether black is more legible than white on the colour of a value, by the luminance of the contrast formula. */
 export function wantsBlack(value: number): boolean {
   const [r = 0, g = 0, b = 0] = bytes(value).map((byte) => (byte / 255) ** 2.2);
   return 0.2126 * r + 0.7152 * g + 0.0722 * b > 0.18;

@@ -23,7 +23,7 @@ export class Runner {
     this.#onChange = onChange;
   }
 
-  /** Nothing for a cell that has not been run. */
+  /** The state of a cell; undefined if the cell has not been run. */
   stateOf(id: string): State | undefined {
     return this.#states.get(id);
   }

@@ -12,7 +12,7 @@ use crate::text::{Calibration, NamedPose};
 use crate::warning::{Warning, Warnings};
 
 pub struct Candidates {
-    /// By name, with the calibration to be checked first.
+    /// The candidates by name; the first one is the calibration to be checked.
     pub poses: Vec<(String, Similarity)>,
     pub readings: Vec<Reading>,
     /// Calibration files that hold cameras as well.

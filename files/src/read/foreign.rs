@@ -11,7 +11,7 @@ const PICTURES: [(usize, &[u8], &str); 7] = [
     (8, b"WEBP", "WebP; save it as PNG"),
 ];
 
-/// The same for files that are not pictures.
+/// First bytes of other files that are not supported, with advice.
 const OTHERS: [(usize, &[u8], &str); 10] = [
     (0, b"PK\x03\x04", "a ZIP archive (.npz is one); unpack it first"),
     (0, b"\x1f\x8b", "compressed by gzip; unpack it first"),

@@ -50,12 +50,12 @@ pub fn whole(path: &Path) -> Result<Vec<u8>> {
     }
 }
 
-/// A picture or an array.
+/// Reads a picture or an array from a file.
 pub fn raster(path: &Path) -> Result<Raster> {
     decoded(&whole(path)?).map_err(|reason| Problem::file(path, reason))
 }
 
-/// The same for a file's bytes, or why they are not read.
+/// Decodes the bytes of a picture or an array. The error is the reason why they are not read.
 pub fn decoded(bytes: &[u8]) -> std::result::Result<Raster, String> {
     match kind_of(bytes) {
         Some(Kind::Png) => picture::png(bytes),
@@ -65,9 +65,9 @@ pub fn decoded(bytes: &[u8]) -> std::result::Result<Raster, String> {
     }
 }
 
-/// 27 numbers in a text, whatever lies between them: names of channels and coefficients are ignored.
+/// Reads 27 numbers from a text. Everything between them is ignored, such as names of channels and coefficients.
 pub fn light(path: &Path) -> Result<Light> {
-    /// A light takes half a kilobyte.
+    /// Largest size of a light's file, bytes; usual files have half a kilobyte.
     const MOST_TEXT: u64 = 1 << 16;
     let bytes = head(path, MOST_TEXT).map_err(|error| Problem::file(path, error))?;
     let text = String::from_utf8(bytes).map_err(|_| Problem::file(path, "it is not text"))?;
@@ -82,7 +82,7 @@ pub fn light(path: &Path) -> Result<Light> {
 
 /// A Gaussian over lights from JSON. Other members, such as its source, are ignored.
 pub fn light_prior(path: &Path) -> Result<LightGaussian> {
-    /// The file of the crate's default prior takes ten kilobytes.
+    /// Largest size of a prior's file, bytes; that of the crate's default prior has ten kilobytes.
     const MOST_TEXT: u64 = 1 << 20;
     let bytes = head(path, MOST_TEXT).map_err(|error| Problem::file(path, error))?;
     let mut file: serde_json::Value = serde_json::from_slice(&bytes).map_err(|error| Problem::file(path, error))?;

@@ -5,9 +5,9 @@
 
 use super::raster::{Raster, Samples, check_size};
 
-/// Magic, two bytes of version, two or four of header length.
+/// Smallest length of a file: the magic, two bytes of version, and two or four of header length.
 const SHORTEST: usize = 10;
-/// Red, green, blue and alpha.
+/// Largest number of channels: red, green, blue and alpha.
 const MOST_CHANNELS: usize = 4;
 const CUT_OFF: &str = "this .npy file is cut off in its header";
 

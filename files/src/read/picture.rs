@@ -9,7 +9,7 @@ use moxcms::{ColorProfile, Layout, TransformOptions};
 use super::raster::{MOST_SIDE, Raster, Samples, check_size};
 use crate::warning::Warning;
 
-/// Most bytes for a decoder: 4096x4096 pixels of four 16-bit channels, twice.
+/// Largest number of bytes for a decoder: 4096x4096 pixels of four 16-bit channels, twice.
 const MOST_MEMORY: u64 = 256 << 20;
 /// The gAMA value of linear numbers, and its relative tolerance.
 const LINEAR: f64 = 1.0;

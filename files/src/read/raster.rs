@@ -2,7 +2,7 @@
 
 use crate::warning::Warning;
 
-/// Most pixels on a side, as for all images of the library.
+/// Largest number of pixels on a side, as for all images of the library.
 pub const MOST_SIDE: usize = 4096;
 
 #[derive(Clone, Debug, PartialEq)]

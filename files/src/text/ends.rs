@@ -82,8 +82,8 @@ pub fn world_frames(name: &str) -> Option<Frames> {
     OF_WORLD.is_match(&words).then(|| Frames::between("camera", "world"))
 }
 
-/// The frames of a file that is named, by itself or by its folder, as a pose of the camera in the world: "pose.txt",
-/// "c2w/0.txt".
+/// The frames of a file whose name, or whose folder's name, says that it holds a pose of the camera in the world:
+/// "pose.txt", "c2w/0.txt".
 pub fn world_frames_of_file(path: &str) -> Option<Frames> {
     static PLACE: Pattern = Pattern::new(|| {
         pattern(

@@ -31,9 +31,9 @@ pub use calibration::{Calibration, NamedCamera, NamedPose, Names};
 
 use calibration::Reason;
 
-/// Most characters of a text with cameras or poses; a trajectory of ten thousand poses has a million.
+/// Largest number of characters of a text with cameras or poses; a trajectory of ten thousand poses has a million.
 const MOST_TEXT: usize = 4 << 20;
-/// Most characters of YAML: calibrations have a few thousand.
+/// Largest number of characters of YAML: calibrations have a few thousand.
 const MOST_YAML: usize = 1 << 18;
 const NO_FORM: &str = "it is text in an unknown format";
 

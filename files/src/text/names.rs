@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 /// Longest name that is interpreted.
 pub const LONGEST: usize = 80;
 
-/// Most characters of a text that names something.
+/// Largest number of characters of a text that names something.
 const LONGEST_TEXT: usize = 200;
 
 pub type Pattern = LazyLock<Regex>;
@@ -86,7 +86,7 @@ pub fn words(name: &str) -> Vec<String> {
         .collect()
 }
 
-/// What remains of a name without one of some phrases at its beginning or end; `None` if it has none of them.
+/// The rest of a name after removing one of some phrases at its beginning or end; `None` if no phrase is there.
 pub fn leftover(name: &str, phrases: Phrases) -> Option<String> {
     let words = words(name);
     phrases.iter().find_map(|phrase| {

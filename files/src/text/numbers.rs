@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use regex_lite::Regex;
 use serde_json::Value;
 
-/// Most numbers of a matrix: calibrations have 16, distortions 14; more is something else.
+/// Largest number of numbers in a matrix: calibrations have 16, distortions 14; more is something else.
 const MOST: usize = 64;
 
 static NUMBER: LazyLock<Regex> = LazyLock::new(|| {

@@ -7,7 +7,7 @@ use super::poses::{motion_of_matrix, of_quaternion, turned};
 use crate::warning::Warnings;
 
 const MOST_NUMBERS: usize = 200_000;
-/// Most warnings of a trajectory, whose poses mostly share them.
+/// Largest number of warnings of a trajectory, whose poses mostly share them.
 const MOST_WARNINGS: usize = 4;
 
 fn near(value: Option<&f64>, to: f64) -> bool {

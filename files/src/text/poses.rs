@@ -99,8 +99,8 @@ pub fn of_yaw_pitch_roll([yaw, pitch, roll]: [f64; 3]) -> Matrix3<f64> {
     )
 }
 
-/// A shift in metres. If `is_rig`, so that it relates two cameras rather than a camera and the world, one longer than a
-/// rig is in millimetres.
+/// A shift in metres. `is_rig` states that the shift is between two cameras rather than a camera and the world. A shift
+/// that is too long for a rig is then read in millimetres.
 pub fn shift_of(values: &[f64], is_rig: bool, warnings: &mut Warnings) -> Result<Vector3<f64>, Reason> {
     if values.len() != 3 || !values.iter().all(|value| value.is_finite() && value.abs() < 1e9) {
         return Err("a translation has three numbers".into());
@@ -129,7 +129,7 @@ pub fn motion(
     Ok(NamedPose { names, pose: Similarity { scale: 1.0, rotation, translation } })
 }
 
-/// The same for a rotation computed from other numbers.
+/// A named pose from a rotation that was computed from other numbers.
 pub fn turned(
     rotation: &Matrix3<f64>,
     translation: &[f64],

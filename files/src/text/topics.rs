@@ -5,7 +5,7 @@ use super::calibration::Calibration;
 /// What topics have in common: the kind of message, and whether it was rectified.
 const MESSAGES: [&str; 8] =
     ["/image", "/compressed", "/image_raw", "/image_rect", "/image_rect_raw", "/image_color", "/image_mono", "/raw"];
-/// Most characters of a topic.
+/// Largest number of characters of a topic.
 const LONGEST: usize = 80;
 
 /// A topic without the kind of its messages and its first slash.

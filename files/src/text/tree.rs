@@ -22,10 +22,10 @@ type Done = Result<(), Reason>;
 
 const MOST_NODES: usize = 50_000;
 const MOST_MEMBERS: usize = 200_000;
-/// Most members of an object that is a camera or a motion; larger ones may contain some.
+/// Largest number of members of an object that is a camera or a motion; larger ones may contain some.
 const MOST_OWN: usize = 300;
 const MOST_DEPTH: usize = 24;
-/// Most cameras and poses of a file.
+/// Largest number of cameras and poses of a file.
 const MOST_FOUND: usize = 5000;
 #[derive(Default)]
 struct Search {

@@ -7,7 +7,7 @@ use super::calibration::{Calibration, NamedCamera, NamedPose};
 use super::cameras::coefficients;
 use super::numbers::{brief, fixed};
 
-/// How many are described individually.
+/// Largest number of cameras or poses that are described one by one.
 const FEW: usize = 4;
 const DIGITS: usize = 5;
 

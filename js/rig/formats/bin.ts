@@ -26,7 +26,7 @@ const LEAST = 1e-6;
 const NEARLY_ALL = 0.99;
 /** Smallest share of points with a negative coordinate; depths are never negative. */
 const LEAST_NEGATIVE = 0.1;
-/** Most points that are examined. */
+/** Largest number of points that are examined. */
 const LOOKED_AT = 20_000;
 
 /** Median distance from point to point over the median range; undefined where the numbers are not coordinates. */

@@ -27,7 +27,10 @@ export function intrinsicsOf4x4(values: Numbers): Numbers | undefined {
 export const PROJECTION =
   "is a projection K [R | t] into pixels, not a motion; give K as a camera, and [R | t] as a pose";
 
-/** A 4x4 matrix for columns; one with its translation in the last row is for row vectors (MATLAB's rigid3d) or is a list of columns (ARKit). */
+/**
+ * A 4x4 matrix that applies to column vectors. A matrix with its translation in the last row is transposed, because it applies to row
+ * vectors (MATLAB's rigid3d) or lists columns (ARKit).
+ */
 export function forColumns(values: Numbers, name: string, warnings: ReaderWarning[]): Numbers {
   const last = [3, 7, 11, 15].map((at) => values[at] ?? NaN);
   if (values.length !== 16 || isLastRow(values.slice(12)) || !isLastRow(last)) return values;

@@ -6,7 +6,7 @@ import { MOST_SIDE } from "./limits.js";
 import type { Numbers } from "./numbers.js";
 import { type ReaderWarning, warning } from "../warnings.js";
 
-/** What a file says of a camera, before it is checked. */
+/** A camera as a file states it, before it is checked. */
 export interface RawCamera {
   name?: string | undefined;
   focal: Numbers;
@@ -14,11 +14,11 @@ export interface RawCamera {
   skew?: number | undefined;
   model?: string | undefined;
   distortion?: Numbers | undefined;
-  /** The model's name cannot be that of a product. */
+  /** Whether the name of the model cannot be the name of a product. */
   isLens?: boolean | undefined;
-  /** The coefficients are by Brown's names in OpenCV's order, whatever the model. */
+  /** Whether the coefficients have Brown's names and OpenCV's order, whatever the model. */
   isByName?: boolean | undefined;
-  /** The file has k1 to k4 by name, and neither tangential coefficients nor more radial ones. */
+  /** Whether the file names k1 to k4, but neither tangential coefficients nor further radial ones. */
   isFourRadial?: boolean | undefined;
   width?: number | undefined;
   height?: number | undefined;
@@ -28,7 +28,7 @@ export interface RawCamera {
 export const BROWN_NAMES = ["k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"];
 export const FISHEYE_NAMES = ["k1", "k2", "k3", "k4"];
 
-/** The members of a matrix of intrinsics, row by row with three columns, or four of a projection. */
+/** The intrinsics from a matrix in row order, which has three columns, or four if it is a projection. */
 export const ofMatrix = (k: Numbers, columns = 3): Required<Pick<RawCamera, "focal" | "centre" | "skew">> => ({
   focal: [k[0] ?? NaN, k[columns + 1] ?? NaN],
   centre: [k[2] ?? NaN, k[columns + 2] ?? NaN],

@@ -12,7 +12,7 @@ export const CORNER = 0.5;
 
 interface Model {
   focals: 1 | 2;
-  /** Parameters beyond focal lengths and principal point, and where they stand among OpenCV's. */
+  /** The positions, among OpenCV's coefficients, of the parameters beyond focal lengths and principal point. */
   lens: number[];
   fisheye?: true;
 }

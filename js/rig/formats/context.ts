@@ -1,4 +1,4 @@
-/** What the surrounding objects specify for a motion. */
+/** Frames and units of a motion, as the objects around it specify them. */
 import type { Frames } from "./ends.js";
 import { angleOf, lengthOf, member } from "./names.js";
 import { type Node, isNode } from "./numbers.js";

@@ -39,7 +39,7 @@ const attribute = (name: string, type: string, body: Uint8Array): Uint8Array[] =
   body,
 ];
 
-/** The channels' names for parse-exr: those that it supports for the chosen channels, other names for the rest. */
+/** Names of the channels for parse-exr. The chosen channels get names that it supports, the others do not. */
 function names({ channels, compression }: Header, used: number[]): string[] {
   const known = used.length === 1 ? ["Y"] : ["R", "G", "B"];
   const given = channels.map(({ name }, index) => known[used.indexOf(index)] ?? `other ${name}`);

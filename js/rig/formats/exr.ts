@@ -14,7 +14,7 @@ import { warning } from "../warnings.js";
 
 /** The last compression that is read here. */
 const ZIP = 3;
-/** Bytes of all channels, used or not. */
+/** Largest number of bytes of all channels, including unused ones. */
 const MOST_PIXELS = 2 ** 28;
 
 function runs(bytes: Uint8Array, length: number): Uint8Array {

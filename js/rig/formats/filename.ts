@@ -12,7 +12,7 @@ const SENSOR =
 /** Words before and after the frames. */
 const AROUND =
   /^(?:calib(?:ration)?|extrinsics?|transform|tf|pose|rt)[_-]+|[_-]+(?:calib(?:ration)?|extrinsics?|transform|tf|pose|rt)$/gi;
-/** Results of a calibration of a camera with a robot, which holds it or looks at it. */
+/** Names of hand-eye calibrations, in which a robot holds the camera or the camera looks at a robot. */
 const HAND_EYE = /(?:^|[_-])(?:hand[_-]?eye|eye[_-]?(?:in|on|to)[_-]?(?:hand|base))(?![a-z])/i;
 const FIXED_EYE = /eye[_-]?(?:to|on[_-]?base)/i;
 const LONGEST = 100;

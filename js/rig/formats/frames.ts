@@ -16,9 +16,9 @@ const BODY_OF_OPTICAL = poseOf([0, 0, 1, -1, 0, 0, 0, -1, 0], [0, 0, 0]);
  * z points up or their y points down.
  */
 export const hasBodyAxes = ({ rotation: r }: Pose): boolean => (r[8] ?? 0) > -(r[7] ?? 0);
-/** The pose of a camera whose frame had body axes, for optical ones. */
+/** Converts the pose of a camera from body axes to optical axes. */
 export const asOptical = (pose: Pose): Pose => chained(pose, BODY_OF_OPTICAL);
-/** The pose for points in body axes, from one for points in optical axes. */
+/** Converts a pose for points in optical axes to a pose for points in body axes. */
 export const ofBody = (pose: Pose): Pose => chained(pose, inverseOf(BODY_OF_OPTICAL));
 
 /** Longest chain of frames; it ends the search where frames form a circle. */
@@ -55,7 +55,7 @@ const bodyAxes = (frames: readonly string[]): ReaderWarning =>
     `The frame ${frames.join(" and ")} does not have the name of an optical frame and was read as looking along x with z up, as in ROS.`,
   );
 
-/** The first optical frame that fits, or else the first one. */
+/** The first optical frame that fits, or else the first frame that fits. */
 function best(names: string[], is: (name: string) => boolean): string | undefined {
   const fitting = names.filter(is);
   return fitting.find((name) => OPTICAL.test(name)) ?? fitting[0];

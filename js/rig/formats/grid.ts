@@ -25,7 +25,7 @@ export const SIZES = [
   [160, 120],
 ] as const;
 
-/** Most points of a cloud. */
+/** Largest number of points of a cloud. */
 export const MOST_POINTS = 2 ** 22;
 
 export function checkPoints(count: number): void {

@@ -1,7 +1,7 @@
 /** Members of one object that belong together by their names: "Camera.fx" and "Camera.fy", "cam_fx" and "cam_d0", "rot0" to "rot8". */
 import { type Node, type Numbers, isNode, matrixOf, numberOf } from "./numbers.js";
 
-/** Most groups of one object. */
+/** Largest number of groups of one object. */
 const MOST = 300;
 /** Lengths of the lists in cameras and motions. */
 const LENGTHS = new Set([3, 4, 5, 8, 9, 12, 14, 16]);

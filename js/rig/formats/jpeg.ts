@@ -10,10 +10,10 @@ import { inSrgb } from "./icc.js";
 import { checkSize } from "./limits.js";
 import type { Picture } from "./picture.js";
 
-/** Most scans. Progressive files have about ten; each costs a pass over all blocks. */
+/** Largest number of scans. Progressive files have about ten; each costs a pass over all blocks. */
 const MOST_SCANS = 64;
 const MEMORY = 512;
-/** Most segments: tables, remarks and scans. A camera's file has a few dozen. */
+/** Largest number of segments: tables, remarks and scans. A camera's file has a few dozen. */
 const MOST_SEGMENTS = 5000;
 /** A block of 8x8 takes at least two bits: one for its mean, one for the end. */
 const BITS_OF_BLOCK = 2;

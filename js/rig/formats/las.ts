@@ -12,7 +12,7 @@ import type { Points } from "./picture.js";
 /** Bytes of the shortest header, and of the header of LAS 1.4. */
 const HEADER = 227;
 const HEADER_14 = 375;
-/** Fewest bytes of a point in each format, and the offset of its GPS time. */
+/** Smallest number of bytes of a point in each format, and the offset of its GPS time. */
 const FORMATS: [bytes: number, time: number | undefined][] = [
   [20, undefined],
   [28, 20],
@@ -31,7 +31,10 @@ const WAVES = [4, 5, 9, 10];
 /** Bit of the format that marks compressed points. */
 const COMPRESSED = 0x80;
 const INTENSITY = 12;
-/** Fewest compressed bytes of a point: its noise alone takes several. With fewer, a small file could declare millions of copies of one point. */
+/**
+ * Smallest number of compressed bytes per point. The noise of a real point alone takes several bytes. Without this limit, a small file
+ * could declare millions of copies of one point.
+ */
 const FEWEST_BYTES = 0.25;
 /** Share of the points that may lie outside the box that the header declares. */
 const OUTSIDE = 0.01;

@@ -2,15 +2,15 @@
  * The points of LAZ, which is LAS compressed by arithmetic coding: laz-perf, loaded with the first such file.
  *
  * laz-perf (0.0.7, 100 kB gzipped) reads bytes in memory and creates no code at run time, which a content security policy would forbid.
- * copc and @loaders.gl/las contain it beside code for pyramids of tiles and tables. Its code is embedded in the script, so that no bundler
- * loses it. Limits: it does not read wave packets (point formats 4, 5, 9 and 10), and LAZ has no checksums.
+ * copc and @loaders.gl/las contain laz-perf too, together with code for pyramids of tiles and tables. Its code is embedded in the script,
+ * so that no bundler loses it. Limits: it does not read wave packets (point formats 4, 5, 9 and 10), and LAZ has no checksums.
  */
 import create, { type LazPerf } from "laz-perf/lib/web/laz-perf.js";
 import packed from "laz-perf/lib/web/laz-perf.wasm";
 import { badFile } from "../../errors.js";
 import { inflateUpTo } from "../../inflate.js";
 
-/** Most bytes of its code. */
+/** Largest size of the decoder's code, bytes. */
 const MOST_CODE = 2 ** 20;
 
 let code: Promise<WebAssembly.Module> | undefined;
@@ -54,7 +54,7 @@ export async function eachRecord(
     let view = new DataView(library.HEAPU8.buffer);
     for (let point = 0; point < count; point++) {
       reader.getPoint(record);
-      // Its memory may have grown.
+      // The decoder's memory may have grown, which invalidates the old view.
       if (view.buffer !== library.HEAPU8.buffer) view = new DataView(library.HEAPU8.buffer);
       take(view, record, point);
     }

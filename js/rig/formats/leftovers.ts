@@ -14,7 +14,7 @@ export interface Place {
   node: Node;
   parent: Place | undefined;
   depth: number;
-  /** It is a list. */
+  /** Whether the value is a list. */
   isList?: boolean;
 }
 
@@ -126,7 +126,10 @@ const LENS_LIKE = /distort|dist_?coef|lens_?(?:coef|param)|^kc$|radial|tangentia
 /** Numbers of coefficients that lenses have, and the largest that one may be. */
 const [COUNTS, LARGEST] = [[4, 5, 8, 12, 14], 100];
 
-/** Whether a list may be the coefficients of a lens, whatever its name: a few fractions that are no pose and no quaternion. */
+/**
+ * Whether a list may hold the coefficients of a lens, whatever its name. It must have a few fractions and must not be a pose or a
+ * quaternion.
+ */
 function isLensLike(key: string, value: unknown): boolean {
   const { values = [], rows = 1 } = matrixOf(value) ?? {};
   const isList = COUNTS.includes(values.length) && (rows === 1 || rows === values.length);
@@ -142,7 +145,7 @@ const isBelow = (place: Place | undefined, top: Place): boolean => {
   return false;
 };
 
-/** A label without the words that do not distinguish cameras. */
+/** A label without words such as "camera", which do not distinguish cameras. */
 const plainLabel = (label: string): string =>
   label
     .split(" ")
@@ -164,7 +167,7 @@ export class Leftovers {
   collect(place: Place, used: ReadonlySet<string>): void {
     const { node } = place;
     for (const key of Object.keys(node)) {
-      // The walk reads its group as well.
+      // Members of a group are collected when the walk reaches their group.
       if (isOfGroup(node, key)) continue;
       const label = used.has(key) ? undefined : isLens(key);
       const lens = label === undefined && !LENS_LIKE.test(key) ? undefined : lensOf(node[key]);

@@ -16,7 +16,7 @@ const [CAMERAS, LIDARS] = [1, 3];
 const PARALLEL = 60;
 /** Frames of vehicles, robots and boards, in which sensors may be far away. */
 const FAR = /imu|body|base|vehicle|ego|car\b|robot|world|map|odom|hand|gripper|flange|tool|board|target|reference|gps/i;
-/** Most comments that are examined. */
+/** Largest number of comments that are examined. */
 const MOST = 200;
 
 const COMMENT = /(?:^|[\s,;{])(?:#|\/\/|%|;|\/\*)([^\n]{1,200})/gm;

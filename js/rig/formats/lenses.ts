@@ -17,8 +17,8 @@ const FISHEYE = [
   "(?:pinhole|opencv)?(?:fisheye4?|fisheyeopencv|equi|equid4?|equidistant4?|equidistantdistortedpinhole|kb[48]?|kannalabrandt[48]?)",
 ];
 /**
- * librealsense projects with either of these two as with Brown's model, except for products of terms (its older versions used the inverse
- * direction for the second).
+ * For both of these models librealsense projects as with Brown's model, except for products of terms. Its older versions used the inverse
+ * direction for the second model.
  */
 const REALSENSE = ["modifiedbrownconrady|inversebrownconrady"];
 /** Models that are not supported, with what they stand for. */
@@ -58,7 +58,7 @@ const LONGEST = 80;
 export interface LensName {
   /** Undefined where the table does not have the name. */
   family: Family | undefined;
-  /** What an unsupported model is. */
+  /** A description of an unsupported model. */
   meaning?: string;
 }
 

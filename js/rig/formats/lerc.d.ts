@@ -1,4 +1,4 @@
-/** The package declares nothing. */
+/** The package has no type declarations. */
 declare module "lerc" {
   const lerc: {
     decode(

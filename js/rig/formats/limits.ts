@@ -1,15 +1,15 @@
 /** Limits on the size of files, which are checked before memory is allocated. */
 import { badFile } from "../../errors.js";
 
-/** Pixels on a side, as for all images of the package. */
+/** Largest number of pixels on a side, as for all images of the package. */
 export const MOST_SIDE = 4096;
-/** Most bytes of a file: twice those of 4096x4096 pixels of 16 bits, or a cloud of 1280x960 pixels as text. */
+/** Largest number of bytes of a file: twice those of 4096x4096 pixels of 16 bits, or a cloud of 1280x960 pixels as text. */
 export const MOST_BYTES = 64 * 2 ** 20;
 /** Bytes by which compressed data may exceed twice their content. */
 export const OVERHEAD = 1024;
-/** Cameras and poses of a file. */
+/** Largest number of cameras, and of poses, in a file. */
 export const MOST_FOUND = 5000;
-/** Most characters of a text that holds cameras or poses; a trajectory of ten thousand poses has a million. */
+/** Largest number of characters of a text that holds cameras or poses; a trajectory of ten thousand poses has a million. */
 export const MOST_TEXT = 4 * 2 ** 20;
 
 export function checkSize(width: number, height: number): void {

@@ -36,7 +36,7 @@ import {
 } from "./poses.js";
 import { type Turn, numbersAsRotation, ofFour, ofNine, ofThree, orderWarning } from "./turns.js";
 
-/** Most unused poses that warnings name. */
+/** Largest number of unused poses that warnings name. */
 const FEW = 4;
 /** Tolerances within which two motions of a file are inverse, degrees and metres. */
 const AGREES = { degrees: 0.02, metres: 1e-3 };
@@ -77,7 +77,7 @@ export class Motions {
     const used = new Set<string>();
     const before = this.poses.length;
     for (const key of Object.keys(node)) {
-      // The walk reads its group as well.
+      // Members of a group are read when the walk reaches their group.
       if (isOfGroup(node, key)) continue;
       const name = rotationName(key);
       if (name !== undefined && this.#pair(node, key, name, parent, context)) {

@@ -5,9 +5,9 @@
  * are not those of its phrase are the label of the camera or of the motion.
  */
 
-/** Most letters of a name that is considered. */
+/** Largest number of letters of a name that is considered. */
 const LONGEST_NAME = 80;
-/** Most names whose results are cached. */
+/** Largest number of names whose results are cached. */
 const MOST_KEPT = 5000;
 
 const INTRINSICS = [

@@ -6,7 +6,7 @@ import type { Node, Numbers } from "./numbers.js";
 import { numberOf } from "./numbers.js";
 import { plainPython } from "./settings.js";
 
-/** Most lines and numbers of such a text; calibrations have a few hundred. */
+/** Largest number of lines and numbers of such a text; calibrations have a few hundred. */
 const MOST_LINES = 5000;
 const MOST_NUMBERS = 20_000;
 const LONGEST_NAME = 80;

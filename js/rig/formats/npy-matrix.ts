@@ -4,7 +4,7 @@ import { isNpy, readSmall } from "../../npy.js";
 import { entriesOf, unpacked } from "./zip.js";
 import { isLastRow } from "./poses.js";
 
-/** Most bytes of such a file, with any header. */
+/** Largest number of bytes of such a file, with any header. */
 const MOST_BYTES = 1024;
 
 /** Whether rows are intrinsics of 3x3, or a motion of 3x4 or 4x4. */
@@ -46,13 +46,15 @@ export function lensArray(bytes: Uint8Array): number[] | undefined {
   }
 }
 
-/** Most numbers of an array of a calibration: matrices of 16 and lenses of 14, and motions of the views that it was made from. */
+/**
+ * Largest number of numbers in an array of a calibration: matrices of 16 and lenses of 14, and motions of the views that it was made from.
+ */
 const MOST_NUMBERS = 400;
-/** Most bytes of such an archive; a picture beside the matrices takes more. */
+/** Largest number of bytes of such an archive; a picture beside the matrices takes more. */
 const MOST_ARCHIVE = 1 << 17;
 /** The plainest names of a depth map in an archive. */
 export const DEPTH = /^(?:depth|depths|depth_?map|depth_?image)$/i;
-/** Bytes at the start of an archive that has one array at least. */
+/** First bytes of a ZIP archive that is not empty. */
 const IS_ZIP = [0x50, 0x4b, 0x03, 0x04];
 
 /** An array as JSON has it: a list, or rows; undefined where it is too large for a calibration. */

@@ -10,7 +10,7 @@ import type { Picture } from "./picture.js";
 import type { ReaderWarning } from "../warnings.js";
 import { entriesOf, unpacked } from "./zip.js";
 
-/** Columns of a list of points: x, y, z and, for instance, intensity or colours; images are wider. */
+/** Smallest and largest number of columns in a list of points: x, y, z and, for instance, intensity or colours. Images are wider. */
 const [FEWEST_COLUMNS, MOST_COLUMNS] = [3, 8];
 /** Smallest ratio of rows to columns of a list of points; images are not so tall. */
 const TALL = 10;
@@ -23,8 +23,8 @@ function asLevels(data: Pixels): Pixels {
 }
 
 /**
- * A list of points as a scan, with intensities if it has the columns of KITTI or nuScenes; as an organised cloud if it has as many points
- * as a depth camera has pixels.
+ * Reads a list of points. With the columns of KITTI or nuScenes it is a scan with intensities. With as many points as a depth camera has
+ * pixels, it is an organised cloud.
  */
 function ofList(data: Pixels, count: number, columns: number): Picture {
   const points = pointsOf(data, columns);

@@ -8,9 +8,9 @@ export const isNode = (value: unknown): value is Node =>
 
 // The pattern matches any digits in only one way; with two ways, a long run of digits would take minutes.
 const NUMBER = /^[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eEdD][-+]?\d+)?$/;
-/** Most numbers of a list; calibrations have matrices of 16 and distortions of 14. */
+/** Largest number of numbers in a list; calibrations have matrices of 16 and distortions of 14. */
 const MOST = 64;
-/** Names for "a text of numbers". */
+/** Largest number of names in a text of numbers. */
 const MOST_NAMES = 400;
 const LONGEST_TEXT = 200;
 

@@ -203,7 +203,7 @@ function scanOf(body: Uint8Array, head: Header): Scan {
   return ofBinary(lzf(body.subarray(8, 8 + packed), length), head, true);
 }
 
-/** Most bytes of uncompressed points; a short file may declare any number. */
+/** Largest number of bytes of uncompressed points; a short file may declare any number. */
 const MOST_BYTES = 2 ** 28;
 
 export function readPcd(bytes: Uint8Array): Cloud | Points {

@@ -155,7 +155,7 @@ function scanOf(source: Source, { count, properties }: Element): Scan {
   return scan;
 }
 
-/** The points of a grid's cells, each of which has the index of its point or none. */
+/** The points in the cells of a grid. Each cell holds the index of its point, or no index. */
 function inCells(
   source: Source,
   grid: Element,

@@ -44,7 +44,7 @@ function inColour(picture: Picture, chunks: Map<string, Uint8Array>): Picture {
 export function pngPicture(bytes: Uint8Array, check = checkSize): Picture {
   const { chunks, ...raster } = readPng(bytes, check);
   const picture: Picture = { ...raster, format: "PNG", notes: [], warnings: [] };
-  // Its colour metadata do not matter for depths.
+  // The colour metadata of a grey picture do not matter, since it may hold depths.
   const coloured = picture.channels >= 3 ? inColour(picture, chunks) : picture;
   const exif = chunks.get("eXIf");
   return exif ? turnedBy(coloured, exifOrientation(exif), "EXIF says") : coloured;

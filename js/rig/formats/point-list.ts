@@ -5,9 +5,9 @@ import { lengthOf } from "./names.js";
 import { numberOf } from "./numbers.js";
 import { headOf, isNumbers } from "./table.js";
 
-/** Fewest lines of a list of points; a shorter text is a matrix or a short trajectory. */
+/** Smallest number of lines of a list of points; a shorter text is a matrix or a short trajectory. */
 const FEWEST_LINES = 20;
-/** Most columns of a point without names: x y z, intensity, colours, normals. */
+/** Largest number of columns of a point without names: x y z, intensity, colours, normals. */
 const MOST_OF_POINT = 10;
 /** Largest difference of a quaternion's length from 1. */
 const SLACK = 0.01;
@@ -53,7 +53,7 @@ export function pointColumns(row: string[]): PointColumns | undefined {
   return { axes, names, ...(unit !== undefined && units.every((each) => each === unit) && { unit }) };
 }
 
-/** Whether named columns are those of poses over time; what a LiDAR measures beside the time makes them points. */
+/** Whether named columns hold poses over time. A column with a LiDAR's measurement makes them points instead. */
 function arePoses(names: string[]): boolean {
   if (names.some((name) => /^q_?[wxyz]$/.test(name))) return true;
   const isMeasured = names.some((name) => ["ring", "intensity"].includes(channelOf(name) ?? ""));

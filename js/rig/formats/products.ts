@@ -95,7 +95,7 @@ export function productOfText(text: string): Found | undefined {
   return format !== undefined && read ? named(read(text), format) : undefined;
 }
 
-/** Most members of one object; a scene of BOP has some thousand images. */
+/** Largest number of members of one object; a scene of BOP has some thousand images. */
 const MOST_MEMBERS = 20_000;
 
 /** The cameras and poses of a product's object, which may be the only document of a YAML file. */

@@ -35,7 +35,7 @@ export function readColmapMap(bytes: Uint8Array): Picture {
   return { ...size, channels: 1, data, format: "COLMAP", bits: 32, unit: 1, notes: ["COLMAP's depth map"], warnings };
 }
 
-/** Most points that are examined. */
+/** Largest number of points that are examined. */
 const LOOKED_AT = 256;
 /** The range of a LiDAR, metres. */
 const REACH = 400;

@@ -10,9 +10,9 @@ import { type Numbers, numberOf, transposed } from "./numbers.js";
 
 const INTRINSIC = /^\s*Intrinsic of "([^"]{1,60})"(?:\s*\/?\s*(\d{2,5})\s*x\s*(\d{2,5}))?/;
 const EXTRINSIC = /^\s*Extrinsic from "([^"]{1,60})"\s+To\s+"([^"]{1,60})"/i;
-/** Most blocks of a print; a camera has some sixty streams and sizes. */
+/** Largest number of blocks of a print; a camera has some sixty streams and sizes. */
 const MOST = 2000;
-/** Most lines of a block. */
+/** Largest number of lines of a block. */
 const LONGEST = 16;
 
 export const isEnumeration = (text: string): boolean => /^[ \t]*(?:Intrinsic of|Extrinsic from) "/m.test(text);

@@ -45,7 +45,7 @@ function mentions(text: string): string[] {
 const CONDITION = /<(?:node|group|include)\b[^<>]*?\s(?:if|unless)\s*=|\b(?:IfCondition|UnlessCondition)\s*\(/;
 /** Arguments that ROS computes when it starts the file. */
 const COMPUTED = /\$\([^)]{0,80}\)?|\$\{?\w{1,40}\}?|\b(?:LaunchConfiguration|math\.\w+|str|float)\b/;
-/** Such an argument after a flag that takes a number. */
+/** A computed argument after a flag that takes a number. */
 const COMPUTED_FLAG = new RegExp(`--(?:x|y|z|roll|pitch|yaw|q[xyzw])[\\s'",=]+(${COMPUTED.source})`);
 const words = (text: string): string[] => text.split(/[\s,'"[\]()=]+/).filter((part) => part !== "");
 

@@ -36,7 +36,7 @@ const poseAt = (entries: Map<string, Numbers>, key: string): Pose | undefined =>
   return m?.length === 16 ? poseOfMatrix(m) : undefined;
 };
 
-/** Released scenes have the pose from colour to depth, sensor files one of each camera into a common frame. */
+/** Released scenes hold the pose from colour to depth. Sensor files hold the pose of each camera in a common frame. */
 function posesOf(found: Findings, entries: Map<string, Numbers>): void {
   const names = { name: "depth to color", from: "depth", to: "color" };
   const back = poseAt(entries, "colorToDepthExtrinsics");

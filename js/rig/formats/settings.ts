@@ -7,7 +7,7 @@
 import { badFile } from "../../errors.js";
 import type { Node } from "./numbers.js";
 
-/** Most characters of a text that is not plain JSON; calibrations have a few thousand. */
+/** Largest number of characters of a text that is not plain JSON; calibrations have a few thousand. */
 export const MOST_SETTINGS = 2 ** 18;
 
 /** A text without the names that Python prints around the arrays of numpy and PyTorch. */

@@ -3,12 +3,12 @@ import { lensNamed } from "./lenses.js";
 import { member } from "./names.js";
 import { type Node, matrixOf, numberOf } from "./numbers.js";
 
-/** Most letters of a name. */
+/** Largest number of letters of a name. */
 const LONGEST = 80;
 
 /** Members that name the lens of a camera and nothing else. */
 const LENS_KEYS = ["distortionmodel", "distortiontype", "lensmodel", "lenstype", "projectionmodel", "projectiontype"];
-/** Members that may name its product instead. */
+/** Members that may name the camera's product instead of its lens. */
 const MODEL_KEYS = ["model", "cameramodel", "cammodel", "modeltype", "cameratype", "camtype"];
 const KIND_KEYS = ["lens", "type", "name"];
 

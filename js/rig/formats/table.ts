@@ -12,9 +12,9 @@ import type { Picture } from "./picture.js";
 const [FEWEST_COLUMNS, FEWEST_ROWS] = [24, 18];
 /** Smallest share of the first rows that must have as many numbers as the first one. */
 const MOSTLY = 0.9;
-/** Most lines that are examined to recognise a text. */
+/** Largest number of lines that are examined to recognise a text. */
 const HEAD = 40;
-/** Most characters of these lines. */
+/** Largest number of characters of these lines. */
 const HEAD_CHARACTERS = 2 ** 19;
 
 export const isComment = (line: string): boolean => /^\s*(?:[#%]|\/\/|$)/.test(line);
@@ -68,7 +68,7 @@ export function isTable(bytes: Uint8Array): boolean {
   return rows.length >= FEWEST_ROWS && alike.length >= MOSTLY * others.length;
 }
 
-/** Most numbers of a table: 1920x1080 pixels, and the names of rows and columns. */
+/** Largest number of numbers in a table: 1920x1080 pixels, and the names of rows and columns. */
 const MOST_CELLS = 2 ** 21;
 const [TAB, NEWLINE, RETURN, SPACE, QUOTE, ZERO, NINE] = [9, 10, 13, 32, 34, 48, 57];
 const [PLUS, COMMA, MINUS, POINT, LOWER_E, UPPER_E] = [43, 44, 45, 46, 101, 69];

@@ -26,7 +26,7 @@ const plainYaml = (text: string): string =>
     .replace(/!!(?:opencv-[\w-]+|python\/[\w:./]+)/g, "")
     .replace(/^\t+/gm, (tabs) => "  ".repeat(tabs.length));
 
-/** Most characters of a list that is put into one line. */
+/** Largest number of characters of a list that is put into one line. */
 const LONGEST_LIST = 20_000;
 
 /** Converts YAML as OpenCV and PyYAML accept it for js-yaml: "data:[" without a space, and lists that are indented as far as their name. */

@@ -44,7 +44,7 @@ export function lzw(bytes: Uint8Array, length: number): Uint8Array {
   return out;
 }
 
-/** Copies within `out` as far as it reaches, plus one byte if it is given. */
+/** Copies bytes within `out`, at most up to its end, and appends one byte if it is given. */
 function copied(out: Uint8Array, from: number, count: number, made: number, more?: number): number {
   let at = made;
   for (let index = 0; index < count && at < out.length; index++) out[at++] = out[from + index] ?? 0;

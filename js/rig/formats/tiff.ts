@@ -15,7 +15,7 @@ import type { Picture } from "./picture.js";
 import { lzw, packBits, undoFloats, undoIntegers } from "./tiff-coding.js";
 import { warning } from "../warnings.js";
 
-/** Bytes of all pixels. */
+/** Largest number of bytes of all pixels. */
 const MOST_PIXELS = 2 ** 28;
 
 const Tag = {

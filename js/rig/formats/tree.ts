@@ -35,7 +35,7 @@ export interface Calibration {
 
 const MOST_NODES = 50_000;
 const MOST_MEMBERS = 200_000;
-/** Most members of an object that is a camera or a motion; larger objects may contain some. */
+/** Largest number of members of an object that is a camera or a motion; larger objects may contain some. */
 const MOST_OWN = 300;
 const MOST_DEPTH = 24;
 
@@ -44,7 +44,7 @@ const SERIES = 3;
 /** Labels of cameras that are derived from another one, for rectified or undistorted images. */
 const DERIVED = /^(?:new|optimal|rectified|undistorted|original)$/;
 
-/** Frames that carry several cameras, and the cameras that are numbered there. */
+/** Names of frames that carry several cameras, which are numbered within the frame. */
 const BODY = /^(?:imu\d*|body|base|rig)$/i;
 const CAMERA = /^cam(\d+)$/;
 
@@ -56,11 +56,11 @@ class Search {
   readonly #leftovers = new Leftovers();
   /** Lens models that objects without cameras state. */
   readonly #lenses: { place: Place; model: string }[] = [];
-  /** Poses that are the only one in an object with a single camera. */
+  /** Poses from objects that hold one camera and one pose, with the name of the camera. */
   readonly #own = new Map<NamedPose, string | undefined>();
   /** Topics of cameras by their names, where a file has both. */
   readonly #topics = new Map<string, string>();
-  /** What warnings say of cameras with lenses that are not supported. */
+  /** Texts for warnings about cameras whose lens is not supported. */
   readonly #unsupported: string[] = [];
   /** Models of cameras that the file names. */
   readonly models = new Set<string>();

@@ -121,13 +121,13 @@ export function ofThree(values: Numbers, said: Attributes, name: string, warning
 export interface Layout {
   /** The number of rows, where the numbers are a list of rows or a matrix with this member. */
   rows?: number | undefined;
-  /** They are the data of a matrix of OpenCV or ROS, which is written row by row. */
+  /** Whether the numbers are the data of a matrix of OpenCV or ROS, which is written row by row. */
   isMatrix: boolean;
-  /** The members are called rotation and translation, as in librealsense. */
+  /** Whether the members are called rotation and translation, as in librealsense. */
   isNamedAsRealSense: boolean;
-  /** The file has other signs of librealsense. */
+  /** Whether the file has other signs of librealsense. */
   isRealSense: boolean;
-  /** The members are at the root of the file, as in a message of realsense-ros. */
+  /** Whether the members are at the root of the file, as in a message of realsense-ros. */
   isAtRoot: boolean;
 }
 

@@ -26,7 +26,7 @@ const transform = (each: Node) => {
 const HEAD = /(?:^|\n)[ \t]*(?:camera_calibrations|laser_calibrations)[ \t]*\{/;
 export const isWaymoText = (text: string): boolean => HEAD.test(text);
 
-/** Most nested blocks; a calibration has four. */
+/** Largest number of nested blocks; a calibration has four. */
 const MOST_OPEN = 16;
 
 /** Protobuf's text format: "name: value" lines and "name { .. }" blocks, which may be repeated. */

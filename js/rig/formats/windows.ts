@@ -1,6 +1,4 @@
-/**
- * What Orbbec's SDK prints in Python, and what MATLAB's command window shows of matrices and camera parameters.
- */
+/** Reads the output of Orbbec's SDK in Python, and matrices and camera parameters as MATLAB's command window shows them. */
 import { badFile } from "../../errors.js";
 import { BROWN_NAMES, ofMatrix } from "./cameras.js";
 import { Findings } from "./findings.js";

@@ -12,10 +12,10 @@ export interface Element {
   text: string;
 }
 
-/** Calibrations are not nested deeper than this. */
+/** Largest depth of nested elements; calibrations are less deep. */
 const MOST_DEPTH = 32;
 const MOST_ELEMENTS = 100_000;
-/** Characters of a tag with its attributes. */
+/** Largest number of characters of a tag with its attributes. */
 const MOST_TAG = 4096;
 
 const ENTITIES: Record<string, string> = { lt: "<", gt: ">", amp: "&", quot: '"', apos: "'" };

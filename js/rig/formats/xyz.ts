@@ -6,7 +6,7 @@ import type { Points } from "./picture.js";
 import { type PointColumns, pointColumns } from "./point-list.js";
 import { headOf, isComment, isNumbers, wordsOf } from "./table.js";
 
-/** What the columns of a text without names hold. */
+/** The contents of columns without names, by their number. */
 const unnamed = (count: number): PointColumns => ({
   axes: [0, 1, 2],
   names: count === 4 ? ["x", "y", "z", "intensity"] : [],

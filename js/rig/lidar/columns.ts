@@ -10,7 +10,7 @@ import { DEGREE, TURN } from "./frame.js";
 import type { Image } from "./image.js";
 import type { Rows } from "./rows.js";
 
-/** Fewest columns of a full turn. */
+/** Smallest number of columns of a full turn. */
 const FEWEST_COLUMNS = 90;
 /** Azimuths that differ by less, radians, belong to one pulse. */
 const ONE_PULSE = 0.008 * DEGREE;
@@ -110,9 +110,9 @@ class Line {
 }
 /** Azimuths that differ by less, as a share of a cell, belong to one pulse. */
 const ONE_PULSE_SHARE = 0.04;
-/** Cells that may shift to make room. */
+/** Largest number of cells that shift to make room for a point. */
 const MOST_SHIFTED = 64;
-/** Most cells between a point's azimuth and the middle of its cell; a larger shift would misplace its neighbours. */
+/** Largest number of cells between a point's azimuth and the middle of its cell; a larger shift would misplace its neighbours. */
 const FARTHEST_SHIFT = 1.1;
 
 /** The range image of a full turn, with the seam behind `forward`. */

@@ -32,7 +32,7 @@ const X: Vector = [1, 0, 0];
 const Y_UP: Vector = [0, -1, 0];
 const Z: Vector = [0, 0, 1];
 
-/** Axes with this up, and with forward as near to the given direction as up allows. */
+/** Axes with the given up direction, and with the forward direction that is perpendicular to it and nearest to the given one. */
 export function frameOf(up: Vector, forward: Vector): Frame {
   const right = cross(forward, up);
   // A forward direction along up leaves the azimuth open.

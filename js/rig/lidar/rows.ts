@@ -26,13 +26,13 @@ export interface Rows {
 
 const FEWEST_ROWS = 4;
 const MOST_ROWS = 512;
-/** Fewest points in a row for the fit of its cone. */
+/** Smallest number of points in a row for the fit of its cone. */
 const FEWEST_POINTS = 20;
 /** Largest ratio of the median distance of points from their cones to the distance of neighbouring cones; points without rows have 0.25. */
 const FITTING = 0.15;
 /** The same limit if the rows come from rings or from turns, which are rows even if their cones fit poorly. */
 const FITTING_RINGS = 0.5;
-/** Most points on which this ratio is measured. */
+/** Largest number of points on which this ratio is measured. */
 const LOOKED_AT = 50_000;
 /** Share of points that have to lie in rows. */
 const NEARLY_ALL = 0.95;
@@ -131,8 +131,7 @@ function isFit({ how, polar: { radius, height }, rows, row }: Rows): boolean {
 }
 
 /**
- * Largest ratio of the scatter of directions along a frame's axis to that along the best axis at which the frame's axis counts as the
- * scanner's.
+ * An axis of the frame counts as the scanner's axis if directions scatter along it at most this many times as much as along the best axis.
  */
 const AS_GOOD = 1.5;
 /** Cosine of 1.5 degrees. */
@@ -145,7 +144,7 @@ export function byRing(points: Float32Array, ring: ArrayLike<number>, forward: V
   return fitted(polarOf(points, frameOf(own ?? upwards(axis), forward)), ring, "ring");
 }
 
-/** The axis with the sign of the frame's axis that is nearest to it. */
+/** The axis, negated if it points away from the nearest axis of the frame. */
 function upwards(axis: Vector): Vector {
   const nearest = AXES.reduce((best, each) => (Math.abs(dot(each, axis)) > Math.abs(dot(best, axis)) ? each : best));
   return dot(nearest, axis) < 0 ? [-axis[0], -axis[1], -axis[2]] : axis;
@@ -291,7 +290,7 @@ function valleysOf(smooth: Float64Array, least: number): number[] {
   return valleys;
 }
 
-/** The rows with each uncertain point moved to the nearest of its row and the two on either side. */
+/** Moves each uncertain point to the nearest of three rows: its own and the two next to it. */
 function refined(rows: Rows, isDoubtful: (index: number) => boolean): Rows | undefined {
   const { radius, height } = rows.polar;
   const group = rows.row.map((own, index) => {

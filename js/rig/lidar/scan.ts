@@ -14,7 +14,7 @@ export interface Scan {
 
 /** Returns nearer than this, metres, come from the sensor's own housing or mark a missing return. */
 const NEAREST = 0.1;
-/** Distances from here on, metres, mark a missing point. */
+/** A distance from here on marks a missing point, metres. */
 const FARTHEST = 1e4;
 
 /** Distance from the origin of the point whose x is at this index; by the square root, because Math.hypot is several times slower. */

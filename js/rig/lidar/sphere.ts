@@ -194,7 +194,7 @@ const AROUND = [
   [0, 1],
   [1, 1],
 ] as const;
-/** Fewest nearer neighbours that hide a point; at a straight edge, three of eight are nearer. */
+/** Smallest number of nearer neighbours that hide a point; at a straight edge, three of eight are nearer. */
 const FEWEST_BEFORE = 4;
 /** Smallest share of the neighbours that must be nearer to hide a point. */
 const MOSTLY_BEFORE = 0.75;

@@ -9,7 +9,7 @@ import type { Bytes } from "./source.js";
 
 export interface Element {
   id: number;
-  /** Where its content begins and ends. */
+  /** Positions at which the element's content begins and ends. */
   from: number;
   until: number;
 }

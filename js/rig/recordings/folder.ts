@@ -9,11 +9,11 @@ import type { Shot, Source, Track, TrackKind } from "./source.js";
 
 /** A topic or track of a recording. */
 export interface Topic {
-  /** Its name. */
+  /** The name of the topic. */
   name: string;
   /** The type of its messages, or its codec. */
   type: string;
-  /** What it holds. */
+  /** The kind of data that the topic holds. */
   kind: TrackKind;
   /** Number of its messages. */
   messages: number;
@@ -23,9 +23,9 @@ export interface Topic {
   stored?: string;
   /** Bytes of the pixels or points of its first message. */
   bytes?: number;
-  /** Which of the two cameras may have taken it. */
+  /** The camera that may have taken the images or clouds of the topic. */
   role?: "colour" | "depth";
-  /** Why it is not read. */
+  /** The reason why the topic is not read. */
   unread?: string;
 }
 

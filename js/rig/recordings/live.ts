@@ -20,7 +20,7 @@ import { Transforms, isStatic } from "./transforms.js";
 
 /** Milliseconds within which the first message of each topic must arrive. */
 const FIRST = 4000;
-/** Most topics whose first message is awaited. */
+/** Largest number of topics whose first message is awaited. */
 const MOST_TOPICS = 40;
 /** Shots of each topic among which the nearest pair is chosen. */
 const KEPT = 8;
@@ -30,7 +30,7 @@ const PAUSE = 250;
 const APART = 2.5 * ALIKE;
 /** Milliseconds after which a frame is taken even if the view moves. */
 const RESTLESS = 5000;
-/** Most seconds between the stamps of a pair that is taken earlier. */
+/** A pair whose stamps differ by at most this, seconds, is taken before `RESTLESS` has passed. */
 const NEAR = 0.02;
 
 const wait = (milliseconds: number) => new Promise<void>((go) => setTimeout(go, milliseconds));
@@ -51,7 +51,7 @@ export interface Robot {
   address: string;
   /** The name that the bridge gives. */
   name: string;
-  /** All of its topics. */
+  /** All topics of the robot. */
   topics: Topic[];
   /** The topics that fit the two cameras best. */
   chosen: Choice;

@@ -45,9 +45,9 @@ const TOP: ReadonlySet<number> = new Set([
   0x1c53bb6b,
   0x114d9b74,
 ]);
-/** Most bytes before the content of a block: track number, time and flags. */
+/** Largest number of bytes before the content of a block: track number, time and flags. */
 const BLOCK_HEAD = 12;
-/** Most blocks of a recording; an hour of three cameras has a third as many. */
+/** Largest number of blocks of a recording; an hour of three cameras has a third as many. */
 const MOST_BLOCKS = 1_000_000;
 
 interface Video {

@@ -14,9 +14,9 @@ export type { Topic } from "./folder.js";
 
 /** The file of a recording. */
 export interface RecordingFile {
-  /** Its name, which begins the messages of errors. */
+  /** The name of the file; messages of errors begin with it. */
   name: string;
-  /** Its bytes; a blob is read in parts. */
+  /** The contents of the file; a blob is read in parts. */
   content: Blob | Uint8Array;
 }
 
@@ -38,11 +38,11 @@ export interface Recording {
   name: string;
   /** "MCAP", "MCAP without an index", "ROS 1 bag" or "Matroska". */
   format: string;
-  /** Its format, duration and number of topics, in words. */
+  /** A description with format, duration and number of topics. */
   says: string;
   /** Seconds from its first message to its last. */
   seconds: number;
-  /** All of its topics or tracks. */
+  /** All topics or tracks of the recording. */
   topics: Topic[];
   /** The topics that fit the two cameras best. */
   chosen: Choice;
@@ -51,7 +51,7 @@ export interface Recording {
 }
 
 const FRAMES = 10;
-/** Most topics whose first message is read. */
+/** Largest number of topics whose first message is read. */
 const MOST_TOPICS = 100;
 
 const topicName = (value: unknown, field: string): void => {

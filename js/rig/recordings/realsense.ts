@@ -22,7 +22,7 @@ export function unitOf(track: string, units: ReadonlyMap<string, number>): numbe
   return undefined;
 }
 
-/** The motion between two streams, from the motions of both out of one reference: P_stream = R P_reference + t. */
+/** The motion between two streams. It is computed from the motions from one reference into both: P_stream = R P_reference + t. */
 export function betweenStreams(from: Shot, to: Shot, motions: ReadonlyMap<string, Pose>): NamedPose | undefined {
   const [a, b] = [from, to].map(({ track }) => STREAM.exec(track)?.[1]);
   if (a === undefined || b === undefined) return undefined;

@@ -27,7 +27,7 @@ export function byName(channels: Iterable<Omit<RosTopic, "by"> & { by: () => Ros
   return [...found.values()];
 }
 
-/** Bytes of an uncompressed chunk: writers use about a megabyte, or one message. */
+/** Largest size of an uncompressed chunk, bytes. Writers use about a megabyte, or one message. */
 const MOST_CHUNK = 2 ** 30;
 
 /** The declared size of an uncompressed chunk, checked before memory is allocated for it. */
@@ -48,7 +48,7 @@ export interface RosFile {
   ): AsyncIterable<{ topic: string; time: number; bytes: Uint8Array }>;
 }
 
-/** Messages of /tf that are read: a minute of a robot's joints. */
+/** Largest number of /tf messages that are read: a minute of a robot's joints. */
 const MOST_TRANSFORMS = 6000;
 
 const isMotion = (name: string, { type }: { type: string }): boolean =>

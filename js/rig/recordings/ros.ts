@@ -12,7 +12,7 @@ import { type Stored, isKnown, pixels } from "./pixels.js";
 import { cloudOf, isScan, scanOf } from "./points.js";
 import type { Content, Shot, ShotOptions, TrackKind } from "./source.js";
 
-/** What messages of a type hold. ROS 1 writes "sensor_msgs/Image", ROS 2 "sensor_msgs/msg/Image". */
+/** The kind of data in messages of a type. ROS 1 writes "sensor_msgs/Image", ROS 2 "sensor_msgs/msg/Image". */
 export function kindOfType(type: string): TrackKind {
   switch (type.replace("/msg/", "/")) {
     case "sensor_msgs/Image":

@@ -12,7 +12,7 @@ export interface Bytes {
   read(from: number, length: number): Promise<Uint8Array>;
 }
 
-/** What a track holds for the check of a rig. */
+/** The kind of data on a track, as the check of a rig uses it. */
 export type TrackKind = "picture" | "cloud" | "camera" | "transforms" | "other";
 
 export interface Track {
@@ -35,15 +35,15 @@ export interface ShotOptions extends ReadOptions {
 /** One image or cloud of a recording, decoded on demand. */
 export interface Shot {
   track: string;
-  /** When it was recorded, seconds. */
+  /** Time of the recording, seconds. */
   logged: number;
-  /** When it was taken, seconds on the clock of its camera, where the recording states it. */
+  /** Time of the exposure, seconds on the camera's clock; undefined if the recording does not state it. */
   taken: number | undefined;
   /** The coordinate frame of its camera. */
   frame: string;
   /** How its pixels are stored: "rgb8", "16UC1", "JPEG". */
   encoding: string;
-  /** Its size, where it is known before decoding. */
+  /** Columns, if they are known before decoding. */
   width?: number;
   height?: number;
   bytes: number;
@@ -64,7 +64,7 @@ export interface Source {
   tracks: Track[];
   /** Seconds of the first and the last message. */
   span: [number, number];
-  /** The recorded data of these tracks from one time of recording to another, including both, in order. */
+  /** The data of these tracks between two times of recording (both inclusive), in order of time. */
   shots(tracks: readonly string[], from: number, until: number): AsyncIterable<Shot>;
   /** The intrinsics of the camera that took a shot. */
   camera(shot: Shot): Promise<Found<NamedCamera | undefined>>;

@@ -70,7 +70,7 @@ export class Transforms {
     });
   }
 
-  /** A frame and its ancestors, each with the motion into it and the transforms on the way that move. */
+  /** A frame and its ancestors. Each has the motion into it and those transforms on the way that change over time. */
   #upward(frame: string): Map<string, { pose: Pose; moving: string[] }> {
     const found = new Map<string, { pose: Pose; moving: string[] }>();
     let pose = poseOf([1, 0, 0, 0, 1, 0, 0, 0, 1], [0, 0, 0]);

@@ -7,7 +7,7 @@ export interface Cloud {
   points: Float32Array;
   /** Red, green and blue of each point, 0 .. 255; grey without it. */
   colours?: Uint8Array | Uint8ClampedArray | undefined;
-  /** Its name in the file. */
+  /** The name of the cloud in the file. */
   name?: string | undefined;
 }
 

@@ -15,12 +15,12 @@ export interface RigContext {
   colour?: PinholeInput | undefined;
   /** The depth camera. */
   depth?: PinholeInput | undefined;
-  /** Of both cameras' pictures. */
+  /** The sizes of both cameras' pictures. */
   sizes?:
     | {
-        /** Of the colour camera, pixels. */
+        /** Size of the colour camera's pictures, pixels. */
         colour?: Size | undefined;
-        /** Of the depth camera, pixels. */
+        /** Size of the depth camera's pictures, pixels. */
         depth?: Size | undefined;
       }
     | undefined;
@@ -29,9 +29,9 @@ export interface RigContext {
   /** ROS names of both cameras' optical frames; by default those of the RealSense driver. */
   frames?:
     | {
-        /** Of the colour camera. Default "camera_color_optical_frame". */
+        /** Name of the colour camera's frame. Default "camera_color_optical_frame". */
         colour?: string | undefined;
-        /** Of the depth camera. Default "camera_depth_optical_frame", or "lidar" where the pose is for axes with x forward. */
+        /** Name of the depth camera's frame. Default "camera_depth_optical_frame", or "lidar" where the pose is for axes with x forward. */
         depth?: string | undefined;
       }
     | undefined;

@@ -1,10 +1,10 @@
 //! Settled shapes, which the next iteration keeps (docs/method/loop.md).
 //!
 //! Once the pose no longer moves, two shapes still do: the image's, from the colours and the depth view's normals, and
-//! the depth view's, from the colours and the image's normals. A shape has settled if its last solve moved it, and the
-//! other one's normals have moved since, by less than a tenth of a sigma. It is kept until the other one has moved far
-//! enough; movements add up from its last solve on, so that slow ones count as well. If both have settled, an iteration
-//! costs nothing.
+//! the depth view's, from the colours and the image's normals. A shape has settled if its last solve moved it by less
+//! than a tenth of a sigma, and if the other one's normals have moved by less than that since. It is kept until the
+//! other one has moved far enough; movements add up from its last solve on, so that slow ones count as well. If both
+//! have settled, an iteration costs nothing.
 //!
 //! The movement of normals is the root mean square change of the colours that they predict, in units of the image's
 //! noise. That of heights is their median change in units of [`HEIGHT_SIGMA`], because the median ignores unconnected
@@ -23,7 +23,8 @@ use crate::view::{Normals, Size};
 pub const TOLERANCE: f64 = 0.1;
 /// Sigma of a height, pixel lengths: at best, surfaces from shading at 1 % noise are this accurate.
 const HEIGHT_SIGMA: f64 = 0.05;
-/// Most pixels of each frame that are compared, on a square grid: their mean square is then accurate to a few percent.
+/// Largest number of pixels of each frame that are compared, on a square grid: their mean square is then accurate to a
+/// few percent.
 const MOST_PIXELS: usize = 4000;
 
 /// How far both shapes are from rest.

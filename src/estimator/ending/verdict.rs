@@ -46,7 +46,7 @@ pub fn verdict(evidence: &Evidence) -> Option<Verdict> {
         return Some((Status::Lost, Some(Reason::LittleOverlap { percent: 100.0 * evidence.overlap })));
     }
     let end = if has_settled(evidence) {
-        // The fate of the last iteration no longer matters once the answer is final.
+        // Once the answer is final, it does not matter whether the last iteration was rejected.
         (Status::Converged, None)
     } else if is_rejected && registration == Registration::Fixed {
         // With a fixed pose, the next iteration would repeat this one.
@@ -186,7 +186,7 @@ mod tests {
         Some(Reason::RotationUncertain { sigma_degrees, weakest: ABOUT_X })
     }
 
-    /// Whether the loop ends.
+    /// Cases of whether the loop ends.
     fn ends() -> Vec<Row> {
         let (converged, capped) = (Some(Status::Converged), Some(Status::MaxIterations));
         vec![
@@ -224,7 +224,7 @@ mod tests {
         ]
     }
 
-    /// Whether its end is reliable.
+    /// Cases of whether the end of the loop is reliable.
     fn reliability() -> Vec<Row> {
         let photometric = |found: PhotometricEvidence| Evidence { answer: Answer::Photometric(found), ..SETTLED };
         let contrast = |found: ContrastEvidence| Evidence { answer: Answer::Contrast(found), ..SETTLED };
@@ -344,7 +344,7 @@ mod tests {
         ]
     }
 
-    /// Initial poses, and silhouettes where the albedo varies.
+    /// Cases with initial poses, and with silhouettes where the albedo varies.
     fn initial_poses_and_silhouettes() -> Vec<Row> {
         let silhouettes = |found: SilhouetteEvidence| Evidence { answer: Answer::Silhouettes(found), ..SETTLED };
         let initial = |staying: Staying| Evidence { answer: Answer::Initial(staying), ..SETTLED };

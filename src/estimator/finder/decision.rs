@@ -10,7 +10,7 @@ pub struct Decision {
     pub rivals: Option<Vec<Similarity>>,
 }
 
-/// What the pose rests on.
+/// The result that determines the pose.
 pub enum Method {
     /// A single albedo explains the image.
     Photometric(Box<PhotometricReport>),

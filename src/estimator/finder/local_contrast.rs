@@ -21,9 +21,9 @@ const TURN: f64 = 5.0;
 const MOST_TURNS: i32 = 3;
 
 /// Whether local contrast may take over if photometric residuals exceed noise: the image has a mask, and varying albedo
-/// or shadows could explain them. Behind a pinhole silhouettes decide instead; under a known light the surfaces settle
-/// what noisy normals leave open. Noisy normals leave as large residuals as varying albedo does, so with them the image
-/// itself must show edges of albedo.
+/// or shadows could explain them. With a pinhole camera, silhouettes decide instead. Under a known light, matching
+/// surfaces determines what noisy normals cannot. Noisy normals leave as large residuals as varying albedo does, so
+/// with them the image itself must show edges of albedo.
 pub fn may_be_called_for(pair: &ViewPair, colours: &PhotometricRegistration) -> bool {
     is_open(pair, None) && (colours.has_clean_normals() || CleanedImage::new(pair).image.is_some())
 }
@@ -53,7 +53,7 @@ fn albedo_varies(pair: &ViewPair, plain: &PhotometricReport) -> bool {
 }
 
 /// Whether a photometric registration from the end of local contrast leaves only noise. Then the albedo does not vary,
-/// and its pose is the better one.
+/// and the photometric pose is the better one.
 fn is_plain(pair: &ViewPair, plain: &PhotometricReport, contrast: &ContrastOutcome) -> bool {
     !albedo_varies(pair, plain) && plain.pose.degrees_to(&contrast.best.pose) < SAME_POSE
 }
@@ -108,8 +108,8 @@ pub fn around(pair: &ViewPair, initial: &Similarity) -> Vec<Similarity> {
     turns.map(|turn| turned(TURN.to_radians() * turn)).collect()
 }
 
-/// The outcome of a finished search: that of local contrast, or the photometric pose from there if it leaves only
-/// noise.
+/// The outcome of a finished search: the pose of local contrast or, if a photometric registration from there leaves
+/// only noise, the photometric pose.
 pub fn conclude(
     pair: &ViewPair,
     colours: &PhotometricRegistration,

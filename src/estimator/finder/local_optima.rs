@@ -3,9 +3,9 @@
 //! Registrations that end in different poses see different points, so their objectives cannot be compared. They are
 //! ranked by gain = N^(1/3) ln(spread / noise). The logarithm is how much better the pose explains the image than a
 //! constant would. The root of the number N of visible points penalises tiny overlaps, which are easy to explain. Other
-//! powers were compared on local optima of random scenes (docs/lab/thresholds.md): without any, tiny overlaps win; the
-//! square root prefers the pose that merely sees more of two that are a few degrees apart. A pose that leaves only the
-//! image noise ranks above one that sees more but leaves over 1.25 times as much.
+//! powers were compared on local optima of random scenes (docs/lab/thresholds.md): without this factor, tiny overlaps
+//! win; the square root prefers, of two poses a few degrees apart, the one that merely sees more. A pose that leaves
+//! only the image noise ranks above one that sees more but leaves over 1.25 times as much.
 
 use crate::diagnosis::{Alternative, Diagnosis, Residuals};
 use crate::pose::{PhotometricReport, Similarity};
@@ -23,7 +23,8 @@ pub enum Origin {
 
 /// Exponent of the number of visible points in the gain. `powf` serves, because a separate `cbrt` would add 1 kB to the download.
 const THIRD: f64 = 1.0 / 3.0;
-/// A local optimum is convincing if every other one that sees as much has at least this many times its noise.
+/// A local optimum is convincing if every other optimum with as many visible points has at least this many times its
+/// noise.
 const CONVINCING_NOISE: f64 = 2.0;
 /// Registrations that end within this angle have found the same optimum, degrees.
 const SAME_OPTIMUM: f64 = 3.0;
@@ -33,9 +34,9 @@ const ENOUGH_SUPPORT: u32 = 2;
 const CATCHMENT: f64 = 15.0;
 /// Largest noise of a rival, as a multiple of the winner's.
 const RIVAL_NOISE: f64 = 1.25;
-/// Fewest visible points of a rival, as a share of the winner's.
+/// Smallest number of visible points of a rival, as a share of the winner's.
 const RIVAL_VISIBLE: f64 = 0.5;
-/// Most rivals in a report.
+/// Largest number of rivals in a report.
 const MOST_RIVALS: usize = 5;
 
 /// What distinguishes one registration from another.
@@ -177,7 +178,7 @@ impl LocalOptima {
     pub fn ranked(&mut self) -> Ranking {
         let (mut optima, noise) = (std::mem::take(&mut self.optima), self.image.image_noise);
         optima.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-        // The other one leaves only the image's noise, and the first far more.
+        // The second optimum leaves only the image's noise, and the first far more.
         let wins = |first: &LocalOptimum, other: &LocalOptimum| {
             other.registered.noise <= noise && other.rivals(first, 1.0) && !first.rivals(other, RIVAL_NOISE)
         };
@@ -226,9 +227,9 @@ mod tests {
         let (large, exact) = (optimum(40.0, 1000.0, 0.02), optimum(0.0, 600.0, 0.0099));
         assert!(large.gain > exact.gain);
         assert_eq!(winner(&[large.clone(), exact.clone()], 0.01), (Some(Origin::Candidate(0)), 0));
-        // Not if the image is so clean that more is left to explain.
+        // The exact optimum does not win if the image is so clean that it leaves more than the image's noise, too.
         assert_eq!(winner(&[large.clone(), exact], 0.005).0, Some(Origin::Candidate(40)));
-        // Nor if the first leaves hardly more noise, or the other sees little.
+        // Nor does it win if the other leaves hardly more noise, or if it sees little itself.
         assert_eq!(
             winner(&[optimum(40.0, 1000.0, 0.012), optimum(0.0, 600.0, 0.0099)], 0.01),
             (Some(Origin::Candidate(40)), 1)

@@ -63,7 +63,8 @@ impl Opening {
         Similarity { scale, rotation: pose.rotation, translation }
     }
 
-    /// Converts a registration of the coarse pair, which is one of a sample of the views' points.
+    /// Converts a registration of the coarse pair to the views, for which it counts as a registration of sampled
+    /// points.
     pub fn report_out(&self, mut report: Box<PhotometricReport>) -> Box<PhotometricReport> {
         report.pose = self.pose_out(&report.pose);
         report.sampled = true;
@@ -84,7 +85,7 @@ impl Frame {
         origin.map_or(Self::OWN, |origin| Self { unit: 2.0, origin })
     }
 
-    /// Expresses a frame within this one in the frame of the view.
+    /// Converts a frame that is given relative to this frame to one relative to the view.
     fn then(self, inner: Self) -> Self {
         Self { unit: self.unit * inner.unit, origin: self.origin + self.unit * inner.origin }
     }

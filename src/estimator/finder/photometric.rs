@@ -16,9 +16,9 @@ const PRIOR_WEIGHT: f64 = 1.0;
 /// (docs/lab/thresholds.md).
 const LARGEST_NOISE: f64 = 0.2;
 
-/// Most points by which a candidate of the search is registered, evenly spread; the best one is registered again by
-/// all. For 14 to 34 unknowns they average the noise well enough to distinguish candidates, and large views take no
-/// longer.
+/// Largest number of points, evenly spread, by which a candidate of the search is registered. The best candidate is
+/// registered again by all points. With 14 to 34 unknowns, so many points average the noise well enough to distinguish
+/// candidates, and large views take no longer.
 const CANDIDATE_POINTS: usize = 2500;
 
 /// Change of the apparent size (natural logarithm) beyond which a registration has collapsed: a cloud that shrinks onto
@@ -31,7 +31,7 @@ pub const FIRST_LEVEL_NEAR: usize = 1;
 /// Progress of a candidate's registration.
 pub enum Attempt {
     Ongoing,
-    /// Its report; `None` if the candidate cannot be registered, which is not an error of the pair.
+    /// The report of the registration; `None` if the candidate cannot be registered, which is not an error of the pair.
     Ended(Option<Box<PhotometricReport>>),
 }
 
@@ -145,14 +145,15 @@ impl PhotometricRegistration {
         }
     }
 
-    /// Whether the depth is so noisy that its normals only find the pose and matching surfaces must settle it, because
-    /// that averages the noise of whole surfaces. False under an unknown light, where the image's surface follows the
-    /// pose and settles nothing.
+    /// Whether the depth is so noisy that its normals determine the pose only roughly. Matching surfaces then
+    /// determines the pose, because this averages the noise of whole surfaces. False under an unknown light, where the
+    /// image's surface depends on the pose and cannot determine it.
     pub const fn is_coarse(&self) -> bool {
         self.is_coarse
     }
 
-    /// Whether the depth is clean enough for its normals to reveal varying albedo: noisy ones leave residuals as large.
+    /// Whether the depth is clean enough for its normals to reveal varying albedo. Noisy normals leave residuals as
+    /// large as those of varying albedo.
     pub fn has_clean_normals(&self) -> bool {
         self.sharp.noise <= LARGEST_NOISE
     }
@@ -217,8 +218,8 @@ impl PhotometricRegistration {
         }
     }
 
-    /// Registers everything else first, and the scale last at the noise of the sharp image: on its way from a coarse
-    /// level, a registration may shrink the cloud onto a few pixels, where it fits easily.
+    /// Registers with a held scale first, and frees the scale last, at the noise of the sharp image. With a free scale,
+    /// a registration from a coarse level may shrink the cloud onto a few pixels, where it fits easily.
     fn register_scale_last(
         &mut self,
         pair: &ViewPair,
@@ -230,15 +231,15 @@ impl PhotometricRegistration {
         self.photometric.register(&self.sharp.problem(pair, is_scale_held(pair), self.near), &near.pose, &options)
     }
 
-    /// A step of a candidate's registration, the first if `anew`. Near an initial pose it begins with a slightly
-    /// blurred image: candidates are many and close together, and in a strongly blurred one they would all end in one
-    /// place.
+    /// A step of a candidate's registration; `anew` states that it is the first. Near an initial pose the registration
+    /// begins with a slightly blurred image. There are many candidates close together, and in a strongly blurred image
+    /// all would end in one place.
     pub fn step_candidate(&mut self, pair: &ViewPair, start: &Similarity, anew: bool) -> Attempt {
         let first_level = if self.near.is_some() { FIRST_LEVEL_NEAR } else { options(pair).first_level };
         self.step_from(pair, start, first_level, anew)
     }
 
-    /// The same, beginning at a level of the image.
+    /// A step of a candidate's registration that begins at a given level of the image.
     pub fn step_from(&mut self, pair: &ViewPair, start: &Similarity, first_level: usize, anew: bool) -> Attempt {
         let outcome = if anew { self.begin(pair, start, first_level).map(|()| None) } else { self.advance(pair) };
         match outcome {
@@ -315,7 +316,7 @@ impl PhotometricRegistration {
     }
 }
 
-/// The object moved very far away or close, where a few pixels explain anything.
+/// The error for an object that moved so far away or so close that only a few pixels are compared.
 fn collapsed() -> Error {
     Error::new(ErrorKind::Degenerate, "start", "the image moves the object too far along the line of sight")
 }

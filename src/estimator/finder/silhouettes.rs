@@ -15,8 +15,8 @@ const LARGEST_RIM_NOISE: f64 = 6.0;
 /// Without an initial pose, starts are turned by these angles about y and x, degrees.
 const TURNS: [f64; 3] = [0.0, -32.0, 32.0];
 const TILTS: [f64; 3] = [0.0, -24.0, 24.0];
-/// Sigma of the pose without an initial one, degrees and shares of the distance: both cameras look from roughly the
-/// same side.
+/// Sigma of the prior if no initial pose is given, degrees and shares of the distance: both cameras look from roughly
+/// the same side.
 const ANYWHERE_DEGREES: f64 = 25.0;
 const ANYWHERE_ACROSS: f64 = 0.12;
 const ANYWHERE_ALONG: f64 = 0.08;

@@ -14,8 +14,8 @@ use crate::view::extent;
 use super::silhouettes;
 
 /// Default tolerance of the object's position, in object sizes (root mean square distance of its points from their
-/// centre). It is roughly the object's own width, and covers how far a turn by 8 degrees about a sensor at 0.8 m moves
-/// an object 0.2 m high, even a slim vase.
+/// centre). It is roughly the object's width. A turn by 8 degrees about a sensor at 0.8 m moves an object 0.2 m high by
+/// less than this, even a slim vase.
 const OBJECT_SIZES: f64 = 3.0;
 /// One sigma of the initial pose as a share of its tolerance: of the rotation, and of the object's position across and
 /// along the line of sight. For a mug at 0.8 m these are 3 degrees, 45 and 25 mm.

@@ -110,8 +110,8 @@ impl Estimator {
         })
     }
 
-    /// Log shading of each image pixel, R, G, B interleaved, NaN off the mask. log S minus [`albedo`](Self::albedo) and
-    /// this has the length [`residual`](Self::residual).
+    /// Log shading of each image pixel, R, G, B interleaved, NaN off the mask. The length of log S minus
+    /// [`albedo`](Self::albedo) and shading is [`residual`](Self::residual).
     #[must_use]
     pub fn shading(&self) -> Vec<f32> {
         self.carried(measurement::shading(&self.pair, &self.stages.paint, &self.solution, &self.correspondences))

@@ -1,8 +1,9 @@
 //! Alternates between pose and albedo if the albedo varies (docs/method/registration.md).
 //!
-//! The search by contrast can remove only the albedo that shows at edges, because it has no pose yet. Under its pose
-//! the light stage finds more: a palette and gradual changes ([`PaintStage`]). Without these, contrast is compared once
-//! more from that pose, which moves the pose, and the albedo is fitted again: coordinate descent for a few rounds.
+//! The search by contrast can remove only the albedo that shows at edges, because it has no pose yet. Under the pose of
+//! the search, the light stage finds more of the albedo: a palette and gradual changes ([`PaintStage`]). This albedo is
+//! removed, and the contrast is registered once more. The new pose then gives a new albedo. These two steps alternate
+//! for a few rounds (coordinate descent).
 //!
 //! Limits: cast shadows are mistaken for albedo, so a round counts only if shading explains more of the remainder than
 //! before.
@@ -12,10 +13,10 @@ use crate::estimator::finder::{PhotometricRegistration, TrustRegion};
 use crate::estimator::pair::ViewPair;
 use crate::pose::{ContrastReport, Similarity, register_again};
 
-/// Most rounds of pose and albedo in turn. Set on photographs at 20 and 60 degrees (docs/lab/thresholds.md).
+/// Largest number of rounds of pose and albedo. Set on photographs at 20 and 60 degrees (docs/lab/thresholds.md).
 const ROUNDS: usize = 3;
 
-/// A pose from contrast, and how many rounds it may still follow the albedo.
+/// A pose from contrast, and the number of rounds that remain.
 pub struct Contrasted {
     /// The result of the search. Its sigmas and its E stay when the pose moves: albedo found from the same colours is
     /// no independent evidence.
@@ -37,8 +38,9 @@ impl Contrasted {
         self.rounds == 0
     }
 
-    /// One round: the pose from the image without the albedo found under the current one. `None` if the pose has
-    /// settled, if E does not fall, or if the pose would leave the trust region of an initial one.
+    /// One round: registers the pose to the image, from which the albedo found under the current pose is removed.
+    /// `None` if the pose has settled, if E does not fall, or if the pose would leave the trust region of an initial
+    /// one.
     pub fn follow(
         &mut self,
         pair: &ViewPair,

@@ -14,7 +14,7 @@ use crate::view::{ColourView, Normals};
 #[derive(Clone, Copy)]
 pub struct Inputs<'a> {
     pub pair: &'a ViewPair,
-    /// The image from which shape is found: without the albedo.
+    /// The image without the albedo, from which shape is found.
     pub colours: &'a ColourView,
     /// The light stage, which has the depth view's normals at the image's pixels and the variance of the colours.
     pub fitted: &'a LightStage,

@@ -48,11 +48,11 @@ pub struct RegistrationStage {
     surfaces: SurfaceRegistration,
     /// Region around the initial pose, if there is one.
     region: Option<TrustRegion>,
-    /// What the pose rests on, once the finder has decided.
+    /// The result that determines the pose, once the finder has decided.
     decided: Option<Decided>,
 }
 
-/// What the pose rests on.
+/// The result that determines the pose.
 pub enum Decided {
     Photometric,
     Contrast(Box<Contrasted>),
@@ -159,7 +159,7 @@ impl RegistrationStage {
         self.decided.as_ref()
     }
 
-    /// What the pose rests on, in words.
+    /// Names the kind of registration that determined the pose.
     pub fn engine(&self, pair: &ViewPair) -> &'static str {
         match (self.kind(pair), &self.decided) {
             (Registration::Fixed, _) => "held pose",

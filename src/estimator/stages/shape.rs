@@ -10,7 +10,7 @@ use crate::view::Normals;
 
 use super::light::Inputs;
 
-/// Solves of normals and exposure in the first iteration, whose exposure comes from the colours alone.
+/// How often the first iteration solves for normals and exposure. Its exposure comes from the colours alone.
 const FIRST_EXPOSURE_ROUNDS: usize = 4;
 
 /// Finds the normals and the surface of the image.

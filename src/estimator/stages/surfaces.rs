@@ -15,7 +15,7 @@ const FIRST_DISTANCE: f64 = 8.0;
 const FINAL_DISTANCE: f64 = 2.0;
 /// Pairs within this distance agree with a pose, image pixels: the paper's threshold.
 const CONSENSUS_DISTANCE: f64 = 1.0;
-/// Most pairs in the consensus, evenly spread.
+/// Largest number of pairs in the consensus, evenly spread.
 const MOST_CONSENSUS_PAIRS: usize = 2000;
 
 /// Result of matching both surfaces.

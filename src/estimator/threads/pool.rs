@@ -8,7 +8,7 @@ use crate::estimator::workers::Worker;
 /// The threads and their workers.
 pub struct Threads {
     pub pool: ThreadPool,
-    /// One for each thread; only the first once the search is over.
+    /// A worker for each thread. Once the search is over, only the first worker remains.
     pub workers: Vec<Worker>,
     /// Number of the refined shape that the first worker holds.
     pub held: Option<u32>,

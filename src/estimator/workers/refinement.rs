@@ -17,7 +17,7 @@ pub struct RefinementWorker {
 }
 
 impl RefinementWorker {
-    /// For one pair, whose shapes have already been refined.
+    /// Creates a worker for one pair whose shapes have already been refined.
     pub fn new(pair: &ViewPair) -> Result<Self> {
         let [pixels, points] = pair.lengths();
         let refiner = Refiner::new(&pair.depth, &pair.image)?.resumed();

@@ -14,7 +14,8 @@ type Gram = SMatrix<f64, SHADES, SHADES>;
 /// One row for each unknown of the pose, one column for each harmonic.
 type Cross = SMatrix<f64, UNKNOWNS, SHADES>;
 
-/// Share of the trace on the diagonal, which bounds combinations of harmonics that the points cannot distinguish.
+/// Ridge on the diagonal, as a share of the trace. It bounds combinations of harmonics that the points cannot
+/// distinguish.
 const RIDGE: f64 = 1e-4;
 
 /// Length of the vector of one channel at a point: derivatives by the pose, harmonics, residual.

@@ -27,7 +27,7 @@ pub(in crate::pose) struct LocalMeans {
 }
 
 impl LocalMeans {
-    /// For a raster of `length` pixels with `width` columns; sigma in pixels.
+    /// Prepares a raster of `length` pixels with `width` columns; sigma is in pixels.
     pub fn new(width: usize, length: usize, sigma: f64) -> Self {
         let reach = (REACH * sigma).ceil() as usize;
         let bell = |k: usize| (-0.5 * (k.abs_diff(reach) as f64 / sigma).powi(2)).exp() as f32;

@@ -31,8 +31,8 @@ const SETTLING_LIMB_WEIGHT: f64 = 0.1;
 /// Weight of ln^2 of the apparent size relative to the initial one: 20 % more costs about a sixth of the contrast.
 /// Without it a registration slides to where the object is small.
 const SIZE_WEIGHT: f64 = 5.0;
-/// Weight of ln^2 of the scale relative to that of the units, where poses are compared: loose enough for a quarter more
-/// or less.
+/// Weight of ln^2 of the scale relative to that of the units, where poses are compared. A scale that is a quarter
+/// larger or smaller costs little.
 const UNIT_WEIGHT: f64 = 1.0;
 /// Ratio of the robust scale to the noise of a channel: three sigmas of three channels.
 const SCALE_OVER_NOISE: f64 = robust::SCALE_IN_SIGMAS * robust::NORM_OF_CHANNELS;
@@ -268,8 +268,9 @@ impl Objective {
         self.value(problem, level, state) + units_term(problem, &state.pose)
     }
 
-    /// The same with the contrast term divided by its value without any light; poses are ranked by it. By E alone, a
-    /// cloud that shrinks to where the image has little contrast would win, although no light explains that contrast.
+    /// The value by which poses are ranked: the same with the contrast term divided by its value without any light. By
+    /// E alone, a cloud that shrinks to where the image has little contrast would win, although no light explains that
+    /// contrast.
     pub fn ranked(&mut self, problem: &ContrastProblem<'_>, level: &mut Level, state: &State) -> f64 {
         let value = self.compared(problem, level, state);
         let left = self.unexplained(&state.light);

@@ -29,7 +29,7 @@ pub(super) struct Prediction {
 }
 
 impl Prediction {
-    /// For a grid of `length` pixels.
+    /// Allocates memory for a grid of `length` pixels.
     pub fn new(length: usize) -> Self {
         Self { seen: vec![[f32::NAN; 2 + CHANNELS]; length], gradients: vec![[[0.0; 2]; CHANNELS]; length] }
     }

@@ -12,7 +12,7 @@ use crate::view::{Size, extent};
 
 /// A grid pixel with a point and a normal.
 pub(super) struct Sample {
-    /// Its index on the grid.
+    /// Index of the pixel on the grid.
     pub cell: usize,
     pub point: Vector3<f64>,
     pub normal: Vector3<f64>,

@@ -130,8 +130,8 @@ impl ContrastSearch {
         self.next = 0;
     }
 
-    /// Keeps the initial pose of the sharp stage if its end is farther away than a rival may be, having slid into
-    /// another optimum.
+    /// Keeps the initial pose of the sharp stage if its end is as far away as a rival, because the registration then
+    /// slid into another optimum.
     fn stay_near(&mut self, problem: &ContrastProblem<'_>) {
         let Some(&start) = self.starts.first() else { return };
         self.ends.retain(|(_, end)| end.degrees_to(&start) <= RIVAL_APART);

@@ -22,7 +22,7 @@ const COARSE_SETTLED: f64 = 0.3;
 /// Annealing ends with a round at the final scale that rotates by less, degrees: points that appear and disappear at
 /// the occluding contour change the pose by more than that.
 const FINE_SETTLED: f64 = 3e-3;
-/// Number of rounds at the final scale after which only such points still change the pose.
+/// Largest number of rounds at the final scale. After these, only points that appear and disappear still change the pose.
 const MOST_FINE_ROUNDS: usize = 4;
 
 impl Photometric {

@@ -25,8 +25,9 @@ const TILE: usize = 8;
 /// Factor on the sigma from tiles where the residuals are model errors instead of noise; set on photographs under one
 /// lamp (docs/lab/thresholds.md).
 const MODEL_SIGMA_INFLATION: f64 = 2.0;
-/// k: covariance of two gradients of white noise of variance one, that of the image's spline and that of the slightly
-/// blurred image's spline, averaged over the positions in a cell (by quadrature over both splines' responses to one pixel).
+/// k, the covariance of two gradients of white noise with variance one: that of the image's spline and that of the
+/// slightly blurred image's spline. It is the mean over the positions in a cell, by quadrature over both splines'
+/// responses to one pixel.
 const GRADIENT_COVARIANCE: f64 = 0.144;
 /// Smallest lambda - 1, at which a sigma grows a thousandfold and its unknown counts as not determined. On a ball, lambda
 /// is 0.85 to 1.15 by chance.
@@ -34,9 +35,9 @@ const LEAST_SIGNAL: f64 = 1e-3;
 /// Standard deviations per channel, log units.
 #[derive(Clone, Copy)]
 pub(super) struct Noise {
-    /// Of the residuals at the present pose.
+    /// Standard deviation of the residuals at the present pose.
     pub residuals: f64,
-    /// Of the image, regardless of the pose.
+    /// Standard deviation of the image noise, regardless of the pose.
     pub image: f64,
 }
 

@@ -28,10 +28,9 @@ pub(super) struct Evaluation<'a> {
     pub weighting: Weighting,
 }
 
-/// Ratio of the variance of a normal along each of two tangents to the square of the error that its cubic fit reports.
-/// That error covers both tangents together, and treats the Gaussian weights of a window as inverse variances, so that
-/// its square is 1 / 0.62 of the variance that white noise leaves (0.617 to 0.634 for windows of 2 to 8 pixels, by
-/// summation).
+/// Variance of a normal along one tangent, relative to the square of the error that its cubic fit reports. That error
+/// covers both tangents together, and treats the Gaussian weights of a window as inverse variances, so that its square
+/// is 1 / 0.62 of the variance that white noise leaves (0.617 to 0.634 for windows of 2 to 8 pixels, by summation).
 const NOISE_VARIANCE: f64 = 0.31;
 
 impl Evaluation<'_> {
@@ -84,9 +83,9 @@ impl Evaluation<'_> {
         self.system_without_noise(frame, None)
     }
 
-    /// The same by instrumental variables, minus the contribution of white noise of the normals, which biases the light
-    /// towards less contrast, and with it the pose. The contribution stays in if the light would be undetermined
-    /// without it.
+    /// The equations by instrumental variables, minus the contribution of white noise of the normals. This noise biases
+    /// the light towards less contrast, and with it the pose. The contribution stays in if the light would be
+    /// undetermined without it.
     pub fn unbiased_system(&self, frame: &Frame) -> Option<ReducedSystem> {
         let noise = self.problem.depth_noise;
         self.system_without_noise(frame, self.problem.normal_error.filter(|_| noise.is_white && noise.is_visible()))

@@ -14,9 +14,9 @@ const SETTLED_STEP: f64 = 1e-7;
 /// Maximum number of rounds with instrumental variables. The first chooses the visible points; the others keep them.
 const INSTRUMENTAL_ROUNDS: usize = 3;
 const MOST_INSTRUMENTAL_STEPS: usize = 12;
-/// The instrumental rounds end when no unknown moves by more than this share of its sigma; because steps halve, about as
-/// much remains. If there are more points than annealing needs, the rounds run first on the points of the annealing and
-/// then on all of them.
+/// The instrumental rounds end when no unknown moves by more than this share of its sigma. Steps halve, so about as
+/// much error remains. If there are more points than annealing needs, the rounds run first on the points of the
+/// annealing and then on all of them.
 const SETTLED_SIGMAS: f64 = 0.02;
 /// The instrumental rounds are undone if they raise the objective by more than this share, because they should only trade noise.
 /// Least squares favours positions between pixels, where a cubic spline leaves 0.572 of the variance of white noise
@@ -40,8 +40,8 @@ impl Photometric {
     }
 
     /// Takes a step of such a round, undamped because there is no objective to lower. Steps of the first round may
-    /// grow. Later rounds reject a step longer than the previous one, because the solution may repel a pose that
-    /// rounding puts beside it, by a third with each step.
+    /// grow. Later rounds reject a step that is longer than the previous one: the solution may repel a pose that
+    /// rounding put beside it, and each step then grows by a third.
     pub(super) fn step_by_instruments(
         &mut self,
         problem: &PhotometricProblem<'_>,

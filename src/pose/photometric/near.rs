@@ -24,10 +24,10 @@ const MOST_POINTS: usize = 2000;
 /// Weight of a point off the mask relative to one whose colours do not fit; set on pairs of a statue
 /// (docs/lab/thresholds.md).
 const OFF_WEIGHT: f64 = 0.5;
-/// Distance off the mask at which a point's weight has fallen to a quarter on each level of the image, pixels: the
-/// reach of the level, because a sharper one follows.
+/// Distance off the mask at which a point's weight has fallen to a quarter, pixels, for each level of the image. It is
+/// the reach of the level; a sharper level follows.
 const SCALES: [f64; 4] = [6.0, 6.0, 12.0, 20.0];
-/// Sigma of the distance on levels above the sharp one, relative to that of the prior.
+/// Sigma of the distance on all levels but the sharp one, as a share of the prior's.
 const DISTANCE_FIRST: f64 = 0.1;
 
 /// The mask and the points tested against it; owns its memory.
@@ -52,7 +52,7 @@ pub(super) struct NearWeights {
 }
 
 impl NearTerms {
-    /// From the mask and the points of a problem.
+    /// Built from the mask and the points of a problem.
     pub fn new(problem: &PhotometricProblem<'_>) -> Self {
         let object = &problem.image.whole.object;
         let stride = problem.points.valid().count().div_ceil(MOST_POINTS).max(1);

@@ -38,7 +38,7 @@ pub(super) struct ReliefSums {
 }
 
 impl Relief {
-    /// From the normals of a problem.
+    /// Built from the normals of a problem.
     pub fn new(problem: &PhotometricProblem<'_>) -> Self {
         let size = problem.depth_size;
         let [fine, coarse] = SCALES.map(|scale| curvature(size, problem.normals, scale));

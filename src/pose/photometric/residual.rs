@@ -39,7 +39,7 @@ pub(super) struct LinearisedPoints {
     pub residual: [Doubles; 3],
     /// d r / d unknowns, one row for each channel.
     pub jacobian: [Derivative; 3],
-    /// Z, the same by the gradients of another image, if the model has one.
+    /// Z: derivatives that use the gradients of another image, if the model has one.
     instruments: Option<[Derivative; 3]>,
     /// d column, d row / d unknowns.
     pub pixel_derivatives: [Derivative; 2],
@@ -60,7 +60,7 @@ impl<'a> ColourModel<'a> {
         Self { image, instruments: None, camera, light: Polynomial::of(light) }
     }
 
-    /// The same with the gradients of another image as instrumental variables.
+    /// This model with the gradients of another image as instrumental variables.
     pub fn with_instruments(self, image: &'a SplineImage) -> Self {
         Self { instruments: Some(image), ..self }
     }

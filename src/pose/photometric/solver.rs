@@ -221,7 +221,7 @@ impl Photometric {
         Evaluation { problem, points: &self.points, relief, model, state, weighting: self.weighting }
     }
 
-    /// The same on the sharp image at the present state, with instrumental variables.
+    /// The points on the sharp image under the present state, with instrumental variables.
     pub(super) fn evaluation_by_instruments<'a>(&'a self, problem: &'a PhotometricProblem<'a>) -> Evaluation<'a> {
         let evaluation = self.evaluation(problem, 0, &self.state);
         Evaluation { model: evaluation.model.with_instruments(&self.instruments), ..evaluation }

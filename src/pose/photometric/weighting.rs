@@ -8,8 +8,8 @@ use crate::numeric::robust;
 /// Largest factor on the robust scale if residuals exceed the noise: a narrow scale would settle on a part of the
 /// object that light and normals happen to fit.
 const LARGEST_WIDENING: f64 = 2.0;
-/// Degrees of freedom of the prior's tails: coloured lamps lie far outside the Gaussian, which would bias poses by
-/// degrees.
+/// Degrees of freedom of Student's t in the prior's tails: under coloured lamps, which lie far outside the Gaussian, a
+/// Gaussian prior would bias poses by degrees.
 const PRIOR_DEGREES_OF_FREEDOM: f64 = 5.0;
 
 /// Number of residuals that count as one independent error if the albedo varies: it sets the weight of other terms

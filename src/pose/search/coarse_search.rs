@@ -14,11 +14,12 @@ use crate::pose::similarity::Similarity;
 
 /// Maximum number of ascents.
 const MOST_ASCENTS: usize = 96;
-/// Hypotheses of the sweep closer than this to a better one are left out, degrees, because an ascent reaches farther.
+/// Hypotheses of the sweep that are closer than this to a better one, degrees, are left out, because an ascent reaches
+/// farther.
 const SWEEP_SEPARATION: f64 = 10.0;
 /// Maximum number of candidates.
 const MOST_CANDIDATES: usize = 40;
-/// Candidates closer than this to a better one are duplicates, degrees, because registration would join them.
+/// Candidates that are closer than this to a better one, degrees, are duplicates, because registration would join them.
 const CANDIDATE_SEPARATION: f64 = 5.0;
 
 /// A search in slices; owns its memory.

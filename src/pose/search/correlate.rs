@@ -24,7 +24,7 @@ const PROPOSALS: usize = 3;
 const LEAST_OVERLAP: f32 = 0.15;
 /// Number of complex fields for the nine harmonics, two in each.
 const PAIRS: usize = HARMONICS.div_ceil(2);
-/// Keeps logarithm and quotient of squares finite; in squares of balanced colours.
+/// Lower bound of sums of squares, in squares of balanced colours. It keeps their quotient and logarithm finite.
 const LEAST_SQUARE: f32 = 1e-3;
 
 /// Correlates templates with a target; owns its memory.

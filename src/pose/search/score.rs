@@ -33,7 +33,7 @@ pub struct Prediction {
     light: Light,
     /// W (1, 1, 1) at length one: the direction in which the exposure moves the colours.
     pub exposure: Vector3<f64>,
-    /// In the order of the template's cells.
+    /// The colours, in the order of the template's cells.
     pub colours: Vec<[f32; 3]>,
 }
 

@@ -1,8 +1,8 @@
 //! The colour view on the search grid: coverage and balanced, mean-free log colours of each cell, and their spectra.
 //!
 //! y = W (log S - mean), where W holds the principal axes of the object's colours, each divided by the root of its
-//! standard deviation. This is half-way between plain differences, which only see grey light, and whitened ones, in
-//! which the faint chromaticity of natural light counts as much as its brightness, but so does noise.
+//! standard deviation. This is half-way between plain and whitened differences. Plain ones show little but brightness.
+//! In whitened ones the faint chromaticity of natural light counts as much as its brightness, but so does noise.
 //!
 //! Limits: the grid spans the mask. If the mask is the whole frame, a small object has few cells.
 
@@ -52,7 +52,7 @@ pub struct Target {
 /// Spectra of real fields, in the order of [`Fourier`].
 pub struct Spectra {
     pub mask: Field,
-    /// Of mask |y|^2.
+    /// Spectrum of mask |y|^2.
     pub square: Field,
     pub colour: [Field; 3],
 }

@@ -44,7 +44,7 @@ impl Rig {
         let turn = chance.between([0.0, LARGEST_TURN]).to_radians();
         let rotation = Rotation3::from_axis_angle(&Unit::new_normalize(axis), turn).into_inner();
         let translation = chance.between(BASELINE) * aside;
-        // Next to the depth camera, on the side of the colour camera or on the opposite one.
+        // The projector is next to the depth camera, on the side of the colour camera or on the opposite one.
         let side = if chance.uniform() < 0.5 { -1.0 } else { 1.0 };
         let pose = Similarity { scale: 1.0, rotation, translation };
         Self { colour_size, colour, depth_size, depth, pose, projector: side * chance.between(PROJECTOR) }

@@ -186,7 +186,7 @@ mod tests {
             let expected = (sigma * sigma + (step * step + 1e-6) / 12.0).sqrt();
             assert!((variance(0).sqrt() / expected - 1.0).abs() < 0.1, "{depth}: {} {expected}", variance(0).sqrt());
             assert!(mean.abs() < 0.1 * expected + 0.5 * step * step / z, "{depth}: {mean}");
-            // Two Gaussians of that sigma, one pixel apart: exp(-1 / (4 sigma^2)) of the smooth part.
+            // Gaussian windows of this sigma, one pixel apart, share exp(-1 / (4 sigma^2)) of the smooth part.
             let shared = (-0.25 / (NOISE_SMOOTHING * NOISE_SMOOTHING)).exp() * sigma * sigma;
             assert!((variance(1) - shared).abs() < 0.1 * variance(0), "{depth}: {} {shared}", variance(1));
             assert!(variance(10).abs() < 0.05 * variance(0));

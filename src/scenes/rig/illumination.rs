@@ -26,7 +26,7 @@ const SURFACE_STEP: f64 = 0.004;
 /// The light of a stage.
 pub struct Illumination {
     sky: Light,
-    /// From normals of the world to those of the natural light.
+    /// Rotation from normals of the world to normals of the natural light.
     turn: Matrix3<f64>,
     sky_share: f64,
     lamps: Vec<Lamp>,

@@ -31,7 +31,7 @@ pub enum Pattern {
 pub struct Paint {
     pattern: Pattern,
     colours: [[f64; 3]; 3],
-    /// From the world to cells of the pattern.
+    /// Rotation from the world to the cells of the pattern.
     rotation: Matrix3<f64>,
     offset: Vector3<f64>,
     seed: u32,

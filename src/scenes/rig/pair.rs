@@ -34,7 +34,7 @@ const WALL: f64 = 0.6;
 const RELIEF_SIDE: f64 = 256.0;
 /// Distance between projector and depth camera in metres.
 const PROJECTOR: f64 = 0.06;
-/// Seed of albedos, lamps and noise, and the streams that it is for.
+/// Seed of albedos, lamps and noise, and its streams.
 const SEED: u64 = 6;
 #[derive(Clone, Copy)]
 enum Stream {
@@ -49,7 +49,7 @@ enum Stream {
 pub enum PairKind {
     /// A bust of one albedo in the light of a window.
     Bust,
-    /// A knotted tube of one albedo under an overcast sky, which hides parts of itself.
+    /// A knotted tube of one albedo that hides parts of itself, under an overcast sky.
     Knot,
     /// A bust with veins like marble, in the light of a window.
     Marble,
@@ -232,7 +232,7 @@ fn of_mesh(mesh: &Mesh) -> Solid {
     }
 }
 
-/// A tube along a trefoil, tilted so that no symmetry is left, which thickens along its way.
+/// A tube along a trefoil knot, tilted so that no symmetry is left. It thickens along its way.
 fn knot() -> Solid {
     let centre = |u: f64| {
         let (twice, thrice) = (2.0 * TAU * u, 3.0 * TAU * u);

@@ -19,8 +19,8 @@ use crate::error::Result;
 use crate::light::Light;
 use crate::view::ColourView;
 
-/// Most object pixels at which all starts are tried at full resolution: an object that fills half of 96x96 is not
-/// halved.
+/// Largest number of object pixels at which all starts are tried at full resolution: an object that fills half of 96x96
+/// is not halved.
 const MOST_PIXELS: usize = 6000;
 
 /// Solves one image repeatedly. Owns what persists between calls; the caller owns the memory of a solve.

@@ -27,9 +27,9 @@ pub(super) struct NormalOperator {
     /// half the sum and half the difference of both components.
     cell_sum: Vec<f32>,
     cell_difference: Vec<f32>,
-    /// For edges: weight times first difference.
+    /// Weight times first difference, at the edges.
     edge_flux: [Vec<f32>; 2],
-    /// For the smoothness: kappa times second difference.
+    /// Kappa times second difference, for the smoothness.
     second_difference: [Vec<f32>; 2],
 }
 
@@ -51,8 +51,8 @@ impl NormalOperator {
         }
     }
 
-    /// Adopts the edges' weights, and adds a damping between all neighbours inside: a pixel whose `flags` contain the
-    /// first of `neighbours` has one to the right, and with the second one below.
+    /// Adopts the edges' weights, and adds a damping between all neighbouring pixels inside. `neighbours` are the two
+    /// bits in `flags` that mark a pixel with a neighbour to the right and below.
     pub fn set_edges(&mut self, edges: &[Edges; 2], flags: &[u8], neighbours: [u8; 2], damping: f32) {
         for ((sum, edges), neighbour) in self.edge_weight.iter_mut().zip(edges).zip(neighbours) {
             for ((sum, weight), flags) in sum.iter_mut().zip(&edges.weight).zip(flags) {
@@ -240,7 +240,7 @@ mod tests {
     fn the_product_is_half_the_gradient_of_the_quadratic_form() {
         for (width, height) in [(9, 8), (5, 1), (1, 6), (2, 2), (16, 3)] {
             let (mut operator, inside, anchors, damping, edges) = system(width, height);
-            // Not zero off the mask, where it must not count.
+            // The direction is not zero outside the mask, where it must have no effect.
             let direction: Vec<f32> = (0..width * height).map(|index| (0.9 * index as f32).cos()).collect();
             let mut image = vec![f32::NAN; direction.len()];
             operator.apply(&anchors, &direction, &mut image);

@@ -8,7 +8,7 @@ use crate::shape::integration::Anchors;
 /// Robust scales of successive solves from a distant start, log residuals. They fall, so that no pixel is discarded
 /// before the surface is close. The last one is three times the noise of an image with 2 % noise.
 pub const COLOUR_SCALES: [f32; 3] = [0.5, 0.2, LAST_SCALE];
-/// The robust scale of solves that continue an earlier one.
+/// The robust scale of solves that continue an earlier one, log residuals.
 pub const LAST_SCALE: f32 = 0.06;
 
 /// Confidence (squared log residual per squared slope) at which the smoothness has half its weight: that of a light
@@ -64,11 +64,12 @@ pub struct Effort {
     pub steps: u32,
     /// Conjugate-gradient iterations of each step: a few settle fine detail, many settle what spans the whole object.
     pub iterations: u32,
-    /// Relative residual at which these end. A step is only a direction, so more digits would be wasted.
+    /// Relative residual at which the conjugate gradients end. A step is only a direction, so more digits would be
+    /// wasted.
     pub tolerance: f64,
     /// Damping of the first step, relative to the mean stiffness of the terms.
     pub damping: f32,
 }
 
-/// Damping from a start that may be far away.
+/// Damping of the first step from a start that may be far away.
 pub const FAR_DAMPING: f32 = 0.1;

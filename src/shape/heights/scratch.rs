@@ -20,7 +20,7 @@ pub struct Scratch {
     pub slopes: [Vec<f32>; 2],
     /// Weights of priors or anchors.
     pub weight: Vec<f32>,
-    /// For any other use.
+    /// Memory for any other use.
     pub spare: Vec<f32>,
     /// Prior normals of a band of pixels, and those to be found.
     pub prior: Normals,
@@ -28,7 +28,7 @@ pub struct Scratch {
 }
 
 impl Scratch {
-    /// For views of at most `pixels`, and for their domains.
+    /// Allocates memory for views of at most `pixels` and for these domains.
     #[inline(never)]
     pub fn new(pixels: usize, domains: &[&HeightDomain]) -> Self {
         let raster = || Vec::with_capacity(pixels);

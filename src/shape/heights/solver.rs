@@ -23,8 +23,8 @@ use crate::numeric::cosine::CosineSolver;
 use crate::numeric::{LANES, Lanes, Real, robust};
 use crate::shape::integration::Edges;
 
-/// kappa, squared log residual per squared second difference in pixels. Set on Mozart at 64x64 with 2 % noise under the
-/// lights A, B and C, with the light known (docs/lab/thresholds.md).
+/// kappa, the weight of a squared second difference in pixels, relative to that of a squared log residual. Set on
+/// Mozart at 64x64 with 2 % noise under the lights A, B and C, with the light known (docs/lab/thresholds.md).
 const SMOOTHNESS: f32 = 1e-3;
 /// Bounds of the damping, relative to the mean stiffness of the terms.
 const DAMPING: [f32; 2] = [1e-4, 1e4];

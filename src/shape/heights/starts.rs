@@ -23,8 +23,9 @@ pub const EARLY_CALL: Effort = Effort { steps: 2, iterations: 30, tolerance: 0.0
 /// most of the gain. Set by the gain per round at 64x64 to 640x480 (docs/lab/thresholds.md).
 pub const EVERY_CALL: Effort = Effort { steps: 1, iterations: 4, tolerance: 0.1, damping: FAR_DAMPING };
 
-/// A start has found another optimum if its objective is lower than the best one's by this share. Ends in one optimum
-/// differ by about a tenth of it, and adopting one would refine a large image again level by level.
+/// A start has found another optimum if its objective is lower than the best one's by this share. Two ends in the same
+/// optimum differ by about a tenth of this share, and adopting the second one would refine a large image again, level
+/// by level.
 const LEAST_GAIN: f64 = 0.01;
 /// Number of calls after which all starts have been tried.
 pub const STARTS: u32 = 3;

@@ -13,10 +13,10 @@
 //! Perspective views pass gradients of log Z (see [`gradients`](super::gradients())) and take exp of the result.
 //!
 //! Limits: gradients do not determine levels, so each connected component without anchors has mean zero. A pixel that
-//! has no edge (unknown gradient) and no anchor is undetermined and comes out NaN. Robust weights are not convex: the
-//! surface depends on the start (least squares when cold, the previous surface when that was robust), and a
-//! discontinuity is smeared if its edges outnumber the good ones that hold it. Gradients that are not integrable at
-//! large scale (rather than by noise or jumps) converge slowly; `max_rounds` bounds the time.
+//! has no edge (unknown gradient) and no anchor is undetermined and comes out NaN. With robust weights the problem is
+//! not convex: the surface depends on the start (least squares when cold, the previous surface when that was robust),
+//! and a discontinuity is smeared if its edges outnumber the good ones that hold it. Gradients that are not integrable
+//! at large scale (rather than by noise or jumps) converge slowly; `max_rounds` bounds the time.
 
 use super::components::Components;
 use super::poisson::{IntegrationTermination, Poisson, PoissonReport};
@@ -35,14 +35,15 @@ const SIGMA_OF_CURL: f64 = robust::SIGMA_OF_MEDIAN / 2.0;
 const LEAST_SCALE: f64 = 0.05;
 /// Least weight of an edge: keeps pixels attached to their neighbours if all their edges are outliers.
 const LEAST_WEIGHT: f32 = 1e-4;
-/// Reweighting ends when the mean change of the weights is below this: as if three edges in a thousand changed sides.
+/// Reweighting ends when the mean change of the weights is below this: the change if three edges in a thousand become
+/// outliers.
 const SMALLEST_CHANGE: f64 = 3e-3;
 /// Relative error of the solves between two reweightings, well below the least robust scale; the last solve is exact.
 const ROUND_TOLERANCE: f64 = 1e-3;
-/// Factor on the scale between rounds of a cold start, from the root mean square residual down: least squares smears a
-/// jump over its neighbours, and a small scale would cut those as well before only the jump is left.
+/// Factor on the scale between rounds of a cold start, which begins at the root mean square residual. Least squares
+/// smears a jump over its neighbours, and a small scale would cut these as well.
 const ANNEALING: f64 = 0.5;
-/// Most cells in the median, evenly spread: its error is then below one percent.
+/// Largest number of cells in the median, evenly spread: its error is then below one percent.
 const MOST_SAMPLES: usize = 1 << 15;
 
 /// Treatment of outliers among the gradients.

@@ -20,7 +20,7 @@ impl Edges {
 /// Weights of the anchors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AnchorWeight<'a> {
-    /// The same for every anchor.
+    /// One weight for all anchors.
     Uniform(f32),
     /// One for each pixel of the raster.
     PerPixel(&'a [f32]),
@@ -46,7 +46,7 @@ impl Anchors<'_> {
         if height.is_finite() && weight.is_finite() && weight > 0.0 { (height, weight) } else { (0.0, 0.0) }
     }
 
-    /// The same for four pixels, restricted to those that are `wanted`.
+    /// Targets and weights of four pixels; zero for pixels that are not `wanted`.
     #[inline(always)]
     pub(crate) fn four(&self, start: isize, wanted: Mask) -> (Lanes, Lanes) {
         let zero = Lanes::splat(0.0);

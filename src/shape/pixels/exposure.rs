@@ -14,7 +14,7 @@ use crate::light::{Light, Polynomial};
 use crate::numeric::{LANES, Lanes, Real, quantile, robust};
 use crate::view::Normals;
 
-/// Most pixels, and number of directions on the hemisphere, for the first exposure: enough for two digits.
+/// Largest number of pixels, and number of directions on the hemisphere, for the first exposure: enough for two digits.
 const MOST_PIXELS: usize = 400;
 const DIRECTIONS: usize = 300;
 /// The first exposure is the best of a grid: its step in log units (a parabola then reduces the error to a fifth of
@@ -92,7 +92,7 @@ fn misfit(colour: [f64; 3], offset: f64, shades: &[[f64; 3]]) -> f64 {
     robust::saturated(nearest)
 }
 
-/// The change of the exposure after a solve of `normals`; `moved` is its distance from the first one so far.
+/// The change of the exposure after a solve of `normals`; `moved` is how far it is from the first exposure.
 #[must_use]
 pub fn exposure_step(problem: ShadingProblem<'_>, weights: ShadingWeights, normals: &Normals, moved: f64) -> f64 {
     let polynomials = Polynomial::of(problem.light);

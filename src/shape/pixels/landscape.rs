@@ -31,8 +31,8 @@ pub struct Minimum {
 /// The objective of one pixel.
 #[derive(Clone, Debug)]
 pub struct PixelLandscape {
-    /// Its values seen from the camera, `side` rows of `side`: n_x grows with the column and n_y with the row, both
-    /// from -1 to 1. NaN where there is no normal.
+    /// Values of the objective as seen from the camera, `side` rows of `side`: n_x grows with the column and n_y with
+    /// the row, both from -1 to 1. NaN where there is no normal.
     pub objective: Vec<f32>,
     /// The minima, lowest first.
     pub minima: Vec<Minimum>,

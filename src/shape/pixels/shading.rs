@@ -72,7 +72,8 @@ pub struct ShadingSolver {
 const DIRECTIONS: usize = 600;
 /// n_z of the flattest direction: closer to the edge of the hemisphere, a surface is too steep to be seen in a pixel.
 pub(super) const LARGEST_N_Z: f32 = -0.05;
-/// Most trials of one pixel in one solve. The paper allows 1000 and needs 300; Gauss-Newton needs about five.
+/// Largest number of trials of one pixel in one solve. The paper allows 1000 and needs 300; Gauss-Newton needs about
+/// five.
 pub(super) const MOST_STEPS: usize = 30;
 /// A step this short (in units of a unit normal, 0.06 degrees) is the last one: it is taken, and leaves an error of at
 /// most a tenth of itself, a hundredth of the best normals' error.
@@ -125,7 +126,7 @@ impl ShadingSolver {
         for index in (0..normals.len()).step_by(LANES) {
             let missing = Lanes::splat(f32::NAN);
             let mut solved = [missing; 3];
-            // Most blocks of a raster lie off the object.
+            // Largest number of blocks of a raster lie off the object.
             let start = index as isize;
             let (red, prior) = (Lanes::load(problem.log[0], start), Lanes::load(&problem.prior.z, start));
             if (red.finite() | prior.finite()).any() {

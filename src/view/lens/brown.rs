@@ -9,8 +9,9 @@ use crate::numeric::{Lanes, Real};
 /// A distorted point, and its derivative by the slopes of the ray.
 pub type Distorted = ([f64; 2], [[f64; 2]; 2]);
 
-/// A ray has been found when its pixel is within [`RETURN_DISTANCE`], or this close relative to its distance from the
-/// centre, which is the rounding of 64 bits for pixels millions beyond the picture.
+/// A ray has been found when its pixel is within [`RETURN_DISTANCE`] of the target, or within this share of the
+/// target's distance from the centre. The share is the rounding of f64, which exceeds that distance for pixels far
+/// outside the picture.
 const ROUNDING: f64 = 1e-13;
 
 /// The distorted slopes of a ray before the first fold of the lens, and their derivative by the slopes.

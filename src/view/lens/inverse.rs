@@ -1,6 +1,7 @@
 //! Inversion of the distorted radius, shared by both lens models.
 
-/// Most rounds of Newton's method; usual lenses take three, and halving the bracket down to rounding takes fifty.
+/// Largest number of rounds of Newton's method; usual lenses take three, and halving the bracket down to rounding takes
+/// fifty.
 pub(super) const MOST_ROUNDS: usize = 60;
 /// A ray has been found when its pixel is this close, pixels: a hundredth of the step between coordinates in f32.
 pub(super) const RETURN_DISTANCE: f64 = 1e-7;
@@ -14,9 +15,9 @@ pub(super) fn pixels([fx, fy]: [f64; 2], [right, down]: [f64; 2]) -> f64 {
     (fx * right).hypot(fy * down)
 }
 
-/// Argument at which a function that grows from zero up to its first fold reaches `target`, by Newton's method within a
-/// bracket. `function` returns its value, its derivative, and whether it has grown all the way. Beyond the function's
-/// range: the fold, or `most`.
+/// The argument at which a function reaches `target`, by Newton's method within a bracket. The function grows from zero
+/// up to its first fold. It returns its value, its derivative, and whether it has grown all the way. If the target lies
+/// beyond its range, the result is the fold or `most`.
 pub(super) fn inverse(function: impl Fn(f64) -> (f64, f64, bool), target: f64, most: f64) -> f64 {
     let (mut low, mut high) = (0.0, most);
     let mut at = target.min(0.5 * most);

@@ -3,7 +3,7 @@
 import type { Estimator } from "../../../pkg/index.js";
 import type { CloudPanel } from "../protocol";
 
-/** Points that are drawn of each. */
+/** Largest number of points that are drawn of each surface. */
 const MOST_POINTS = 2500;
 
 function thinned(points: Float32Array): Float32Array {

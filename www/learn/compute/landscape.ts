@@ -7,7 +7,7 @@ import { onDisc, scalarOf } from "./draw";
 const SIDE = 128;
 /** Distance in log colour up to which a normal counts as an explanation: two percent of brightness, the noise of a good camera. */
 export const NOISE = 0.02;
-/** Distance at which the picture's colour scale ends. */
+/** Largest distance on the picture's colour scale. */
 const MOST_SHOWN = 1;
 
 export interface Landscape {
@@ -33,7 +33,7 @@ export function landscapeOf(
   const found = pixelLandscape({ side: SIDE, ...request });
   const distances = found.objective.map((value) => Math.sqrt(value));
   const inside = distances.filter(Number.isFinite);
-  // Of three channels together.
+  // The noise of three channels together.
   const reach = NOISE * Math.sqrt(3);
   const minima = minimaOf(found);
   const best = minima[0]?.objective ?? NaN;

@@ -4,7 +4,7 @@ import { Estimator, sample, type Options, type Sample, type SampleRequest } from
 import type { Values } from "../protocol";
 import { statusIn, type Status } from "./status";
 
-/** The last few scenes, so that dragging a control that does not affect the scene does not render it again. */
+/** Number of scenes that are kept, so that a scene is not rendered again while a control that does not affect it is dragged. */
 const MOST_KEPT = 8;
 const kept = new Map<string, Sample>();
 
@@ -60,7 +60,7 @@ export function ofOrder(light: Float64Array, order: 0 | 1 | 2): Float64Array {
   return light.map((value, index) => (index % ORDERS >= first && index % ORDERS < end ? value : 0));
 }
 
-/** The normal at the pointer; beyond the edge, the nearest one on it. */
+/** The normal at the pointer; beyond the ball's edge, the nearest normal on the edge. */
 export function normalAt(x: number, y: number): [number, number, number] {
   const length = Math.hypot(x, y);
   const shrink = length > 0.98 ? 0.98 / length : 1;
@@ -143,7 +143,7 @@ const PICTURE_EVERY = 150;
 /** Slices and iterations after which a run is stopped; the longest searches of such scenes take five thousand. */
 const MOST_STEPS = 12_000;
 
-/** A whole run from search to verdict, drawn at intervals, and at its end with its status. */
+/** Runs an estimator from search to verdict. Yields a state to draw at intervals, and at the end one with the status. */
 export function* watched(
   made: Pick<Sample, "image" | "depth">,
   options: Options,

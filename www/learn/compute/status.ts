@@ -4,7 +4,7 @@ import type { StepReport } from "../../../pkg/index.js";
 import { filled, type Details } from "../../words";
 import type { Drawing, Said } from "../protocol";
 
-/** How a run stands, by the names that a catalogue uses. */
+/** The texts of a run's states, by the names that a catalogue uses. */
 export const STATUSES = {
   held: "fixed where you set it",
   search: "search",

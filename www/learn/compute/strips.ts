@@ -87,7 +87,7 @@ function sampled(values: Float32Array, [x = NaN, y = NaN]: number[]): number {
   return (1 - v) * ((1 - u) * a + u * b) + v * ((1 - u) * c + u * d);
 }
 
-/** Heights along the strip in the middle of all by its error, found and true, from the spot. */
+/** Found and true heights along the strip that has the median error, beginning at the spot. */
 function profile(strips: number[][][], heightAt: (point: number[]) => number): PlotPanel["series"] {
   const errorOf = (strip: number[][]) => middleOf(strip.map((point) => Math.abs(-(point[2] ?? NaN) - heightAt(point))));
   const sorted = strips.map((strip) => ({ strip, error: errorOf(strip) })).sort((a, b) => a.error - b.error);

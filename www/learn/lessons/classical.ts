@@ -1,4 +1,4 @@
-/** Lessons 3 and 4: what one picture leaves open, and how one lamp was followed into shape. */
+/** Lessons 3 and 4: the ambiguity of one picture, and classical shape from shading under one lamp. */
 
 import type { Lesson } from "../lesson";
 import { block, comma, lines, mi, mo, row, sub, sup, symbol } from "../maths";

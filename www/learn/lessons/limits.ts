@@ -22,7 +22,7 @@ export const paint: Lesson = {
     "Raise the strength of the paint. It appears in the albedo and disappears from the shading.",
     "Remove the paint and deepen the shadow. Nearly all of it appears in the albedo, and its edge in the remainder.",
     "Deepen the shadow with the paint at 0.8. The correlation of albedo and paint falls, but the status is still converged.",
-    "Choose the coloured lamps. There chromaticity is now less informative, and the normals get worse.",
+    "Choose the coloured lamps. Chromaticity is now less informative, and the normals get worse.",
   ],
   tries: [
     { set: { light: "window", shadow: 0, paint: 1 } },
@@ -32,7 +32,7 @@ export const paint: Lesson = {
   ],
   guesses: [
     {
-      question: "A deep shadow falls on a surface without paint. For what does the program take it?",
+      question: "A deep shadow falls on a surface without paint. What does the program mistake it for?",
       at: { light: "window", paint: 0, shadow: 0 },
       choices: ["Shading, so the normals bend", "Dark paint", "A remainder that nothing explains"],
       right: 1,
@@ -95,9 +95,9 @@ export const failure: Lesson = {
   ],
   tasks: [
     "Remove the nose of the disc. At 100 % the rotation cannot be determined, and the report names the axis.",
-    "Narrow the depth map to the least. Then find the width at which the status stops being converged.",
+    "Make the depth map as narrow as possible. Then find the width at which the status stops being converged.",
     "Print texture on the object. Now, with the print at 100 %, more of the colour stays unexplained than with none, and the rotation is so uncertain that the status is lost. The report names the axis.",
-    "Turn the views apart. Here at 90° and with a narrow depth map, little remains to compare.",
+    "Increase the rotation between the views. Here at 90° and with a narrow depth map, little remains to compare.",
   ],
   tries: [
     { set: { case: "symmetry", amount: 100 } },

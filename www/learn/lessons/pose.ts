@@ -39,7 +39,8 @@ export const pose: Lesson = {
       choices: ["The true pose, converged", "A pose 10° off, converged", "The given pose, ambiguous"],
       right: 2,
       reveal: { set: { run: "register" } },
-      answer: "The given pose, ambiguous. No pose within the tolerance explains the colours better, and it says so.",
+      answer:
+        "The given pose, ambiguous. No pose within the tolerance explains the colours better, and the status says so.",
     },
   ],
   can: "You can describe how colours and normals fix a pose, and what a wrong pose does to the estimate.",

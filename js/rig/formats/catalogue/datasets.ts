@@ -152,7 +152,7 @@ const VEHICLES: readonly Row[] = [
     reads: "cameras",
     warnings: ["distortion-guessed", "pose-left-out"],
     taken: "Cameras of the pictures before they are undistorted. Views of the sensors are left out.",
-    guessed: "That the pictures are not undistorted, with a warning.",
+    guessed: "The pictures are assumed not to be undistorted, with a warning.",
     exported: DOWNLOAD,
   },
   {

@@ -79,7 +79,7 @@ const MICROSOFT: readonly Row[] = [
     taken: "One camera, at 512x424 or 1920x1080 pixels.",
     guessed: "Nothing. libfreenect2's polynomials between the cameras are not a pose and are left out.",
     exported:
-      "`CoordinateMapper.GetDepthCameraIntrinsics()` (SDK) or `getColorCameraParams()` (libfreenect2), written by their names",
+      "`CoordinateMapper.GetDepthCameraIntrinsics()` (SDK) or `getColorCameraParams()` (libfreenect2); write their members with their names",
   },
   {
     product: "Kinect v2 (iai_kinect2)",
@@ -129,7 +129,7 @@ const OTHERS: readonly Row[] = [
     sample: "zivid",
     reads: "cameras",
     warnings: [],
-    taken: "The camera, which measures colours and points alike; the transform, from millimetres.",
+    taken: "The camera, which measures both colours and points, and the transform, converted from millimetres.",
     guessed: "The transform relates the camera to a robot or a board.",
     exported: '`zivid.experimental.calibration.intrinsics(camera).save("Intrinsics.yml")`',
   },

@@ -222,7 +222,7 @@ export const COLOURS: readonly Row[] = [
     reads: "colour",
     warnings: ["image-turned"],
     taken: "The upright picture.",
-    guessed: "That intrinsics and depth map belong to the upright picture, with a warning.",
+    guessed: "Intrinsics and depth map are assumed to belong to the upright picture, with a warning.",
     exported: "-",
   },
   {
@@ -269,7 +269,7 @@ export const COLOURS: readonly Row[] = [
     sample: "colour-webp",
     reads: "refused",
     warnings: [],
-    taken: "Pixels, on the page. It is refused elsewhere.",
+    taken: "Pixels, on the page. Other programs refuse the file.",
     guessed: NOTHING,
     exported: "`dwebp in.webp -o out.png`",
   },
@@ -297,7 +297,7 @@ export const MASKS: readonly Row[] = [
     reads: "mask",
     warnings: [],
     taken: "The object: pixels above the middle between the two levels. A mask belongs to the picture of its size.",
-    guessed: "That a picture of two levels is a mask, with a warning if it is empty or full.",
+    guessed: "A picture of two levels is assumed to be a mask, with a warning if it is empty or full.",
     exported: "-",
   },
 ];

@@ -1,4 +1,4 @@
-/** What programs print of cameras and poses, and numbers without names. */
+/** Printed output of programs about cameras and poses, and numbers without names. */
 import { NOTHING, type Row, SEE_PRODUCT } from "./row.js";
 
 export const PRINTS: readonly Row[] = [

@@ -136,7 +136,7 @@ const CALIBRATORS: readonly Row[] = [
     warnings: ["pose-left-out", "pose-assumed"],
     taken: "Cameras; poses relative to the first camera, which has the identity and is left out.",
     guessed:
-      "That a pose leads the way its name says, with a warning, because multical's exporter writes the opposite direction.",
+      "The direction of a pose, which is taken from its name with a warning, because multical's exporter writes the opposite direction.",
     exported: "`multical calibrate` writes it",
   },
   {
@@ -220,7 +220,7 @@ const CALIBRATORS: readonly Row[] = [
     sample: "hand-eye",
     reads: "poses",
     warnings: [],
-    taken: "The camera in the robot's base or in its hand, by the names of the frames.",
+    taken: "The pose of the camera in the robot's base or hand; the names of the frames say which.",
     guessed: NOTHING,
     exported: "Saved to `~/.ros/easy_handeye/NAME.yaml`",
   },
@@ -261,7 +261,8 @@ const ROBOTS: readonly Row[] = [
     warnings: [],
     taken:
       "Each transform: the child in its parent, by angles (yaw pitch roll) or a quaternion (x y z w). Comments are skipped.",
-    guessed: "That conditions (`if`, `unless`) hold, with a warning. Computed numbers (`$(arg x)`) are refused.",
+    guessed:
+      "Conditions (`if`, `unless`) are assumed to hold, with a warning. Computed numbers (`$(arg x)`) are refused.",
     exported: "The file itself",
   },
   {

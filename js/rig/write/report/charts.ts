@@ -15,7 +15,7 @@ const AXES: readonly { axis: Axis; title: string; unit: string }[] = [
   { axis: "tz", title: "Shift along z", unit: "mm" },
 ];
 
-/** Sigmas that a panel shows: offsets farther away are excluded, whatever their height. */
+/** Largest height that a panel shows, sigmas: higher offsets are excluded anyway. */
 export const MOST_SIGMAS = 8;
 
 /** Line styles that the style sheet distinguishes. */

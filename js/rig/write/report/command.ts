@@ -12,7 +12,7 @@ export interface ShellCheck {
   isInverted?: boolean | undefined;
   /** Metres per stored number. */
   unit?: number | undefined;
-  /** Most pairs. */
+  /** Largest number of pairs. */
   frames?: number | undefined;
   /** The cues to use. */
   cues?: readonly string[] | undefined;

@@ -27,21 +27,21 @@ export interface Overlay {
   picture: string;
   /** Column and row of each point of a depth edge, with the calibration in question; absent if there is only an estimate. */
   before?: ArrayLike<number> | undefined;
-  /** The same points with the best fit. */
+  /** Column and row of each of these points with the best fit. */
   after: ArrayLike<number>;
 }
 
 /** A file that the report names. */
 export interface ReportInput {
-  /** Of the file. */
+  /** The name of the file. */
   name: string;
   /** A description of what was read from it. */
   says?: string | undefined;
-  /** Its size, bytes. */
+  /** Size of the file, bytes. */
   bytes?: number | undefined;
   /** The codes of its warnings, including guesses. */
   notes?: readonly string[] | undefined;
-  /** SHA-256 of its bytes, in hexadecimal. */
+  /** SHA-256 of the file's bytes, in hexadecimal. */
   sha256?: string | undefined;
 }
 
@@ -52,7 +52,7 @@ export type ReportEntry = readonly [name: string, value: string];
 export interface ReportOptions {
   /** The title. Default "Check of a calibration". */
   title?: string | undefined;
-  /** When it was made; without it the report has no date. */
+  /** Date of the report; without it the report shows none. */
   made?: Date | undefined;
   /** The files that were read. */
   inputs?: readonly ReportInput[] | undefined;
@@ -67,12 +67,12 @@ export interface ReportOptions {
     | {
         /** The command, of one or more lines; absent if no command can repeat it. */
         command?: string | undefined;
-        /** Where to type it, and how its result differs. */
+        /** Where to type the command, and how its result differs from this one. */
         note?: string | undefined;
       }
     | undefined;
   /** Options of the check with their values. */
   settings?: readonly ReportEntry[] | undefined;
-  /** Versions of the programs that made it. */
+  /** Versions of the programs that made the report. */
   versions?: readonly ReportEntry[] | undefined;
 }

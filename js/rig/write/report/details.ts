@@ -54,7 +54,7 @@ function covarianceSection({ covariance }: Checked): Markup {
   );
 }
 
-/** What the cues are. */
+/** Descriptions of the cues. */
 const MORE: Readonly<Record<string, string>> = {
   shading: "lighting of the surface's slopes",
   edges: "depth edges on image edges",

@@ -36,7 +36,7 @@ const OPTIONS: Example = {
 
 const LEGEND = html`<p class="soft"><svg class="key" viewBox="0 0 24 8" aria-hidden="true"><path class="edge" d="M0 4H24"/></svg> depth edges; they should coincide with the silhouettes in the image</p>`;
 
-/** Most lines in the lists of a printed page at which its pictures may be large. */
+/** Largest number of lines in the lists of a printed page at which its pictures may be large. */
 const FEW_LINES = 14;
 
 /** Lines that the lists take, each limited to what a full page holds. */

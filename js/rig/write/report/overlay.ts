@@ -6,7 +6,7 @@ import { isPicture } from "./parts.js";
 
 /** Columns of the grid on which edges are drawn; finer ones would not be visible on a printed page. */
 const COLUMNS = 640;
-/** Most points that are drawn; a picture of 12 megapixels has fewer. */
+/** Largest number of points that are drawn; a picture of 12 megapixels has fewer. */
 const MOST_POINTS = 1_000_000;
 
 /** Points as runs along the rows of a grid. */
@@ -26,7 +26,10 @@ function runs(edges: ArrayLike<number>, cell: number, columns: number, rows: num
   return path;
 }
 
-/** Both sides of one frame; the second one shows the picture of the first, so that the file holds it once. */
+/**
+ * The overlays of one frame before and after, that is with the calibration in question and with the best fit. The second overlay refers to
+ * the picture of the first, so that the file holds it once.
+ */
 export function overlayPair({ frame, width, height, picture, before, after }: Overlay, index: number): Markup {
   const field = `options.overlays[${index}]`;
   if (!isPicture(picture))

@@ -8,7 +8,7 @@ import { sigmasOf, valuesOf } from "./unknowns.js";
 import { SIGMAS_95 } from "./curves.js";
 import { placeInWords, verdictOf, verdictReason, verdictWords, wordOf } from "./words.js";
 
-/** What fits on the first page. */
+/** Numbers of warnings, and of other candidates, that fit on the first page. */
 const [MOST_WARNINGS, MOST_OTHERS] = [3, 2];
 
 const within = (interval: readonly [number, number]): string => `95\u202f%: ${span(interval, "px")}`;

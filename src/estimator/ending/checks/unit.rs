@@ -12,17 +12,18 @@ use crate::reason::Reason;
 /// Factors that scale the relief (flatter, deeper), nearest first. A unit may be mistaken by any factor, so they cover
 /// a tenth to ten times in steps of 1.3 to 1.7.
 const UNITS: [[f32; 6]; 2] = [[0.7, 0.5, 0.3, 0.2, 0.15, 0.1], [1.5, 2.0, 3.0, 5.0, 7.0, 10.0]];
-/// A unit with more than this multiple of the given unit's noise leads away from the right one; no unit beyond it is
+/// A unit whose noise exceeds this multiple of the given unit's leads away from the right one, and no unit beyond it is
 /// tried.
 const AWAY: f64 = 2.0;
-/// Most rounds of a registration in another unit. Least squares usually takes as many, and rounds with instrumental
-/// variables would double the time. A registration that settles sooner spends the remaining rounds on them.
+/// Largest number of rounds of a registration in another unit. Least squares usually needs all of them, and further
+/// rounds with instrumental variables would double the time. A registration that settles sooner spends its remaining
+/// rounds on instrumental variables.
 const UNIT_ROUNDS: usize = 5;
 /// Another unit fits better if the spatial covariance of its residuals is below this share of the given unit's. Set on
 /// pairs with right and wrong units (docs/lab/thresholds.md).
 const BETTER_STRUCTURE: f64 = 0.5;
-/// The noise of another unit must also be lower by four sigmas: the median of n points in three channels gives the noise
-/// to 0.56/sqrt(n).
+/// Another unit must also lower the noise by four sigmas: the noise, estimated by the median of n points in three
+/// channels, has a relative sigma of 0.56 / sqrt(n).
 const SIGMAS_OF_NOISE: f64 = 4.0 * 0.56;
 
 /// The reason to cap a verdict if relief in another unit explains an image that the given unit does not explain.
