@@ -115,18 +115,16 @@ function verdict(guess: Guess, given: number, drawing: Drawing, values: Values):
   const shows = numberShown(guess, drawing, values);
   const { digits = 0, unit } = guess.number ?? {};
   const said = guess.choices?.[given] ?? withUnit(inFigures(String(given)), unit?.trim());
+  const near = Math.abs(shows) < 10 ** -digits / 2 ? 0 : shows;
   const head = good
-    ? guess.choices || given === shows
+    ? guess.choices || decimals(given, digits) === decimals(near, digits)
       ? phrase("guess.right", "Right.")
       : phrase("guess.near", "Close.")
     : phrase("guess.wrong", "Not quite.");
-  const near = Math.abs(shows) < 10 ** -digits / 2 ? 0 : shows;
   const figure = guess.number
     ? ` ${phrase("guess.shows", "The figure shows {number}.", { number: withUnit(decimals(near, digits), unit?.trim()) })}`
     : "";
-  return [
-    make("strong", {}, head),
-    ` ${phrase("guess.chose", "You guessed: {guess}.", { guess: said })}${figure} `,
-    ...sentence(guess.answer),
-  ];
+  // The answer to a right choice begins with that choice.
+  const chosen = good && guess.choices ? "" : ` ${phrase("guess.chose", "You guessed: {guess}.", { guess: said })}`;
+  return [make("strong", {}, head), `${chosen}${figure} `, ...sentence(guess.answer)];
 }

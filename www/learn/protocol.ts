@@ -26,6 +26,8 @@ export type LessonId = (typeof LESSONS)[number];
 
 /** Ends of the slider of the last lesson: the narrowest depth map as a share of its width, and the largest rotation in degrees. */
 export const [LEAST_OVERLAP, LARGEST_TURN] = [0.08, 90];
+/** The largest constant that lesson 5 moves between its orders. */
+export const LARGEST_CONSTANT = 0.6;
 
 /** Marks on a picture; the style sheet gives each its colour, the same as that of its symbol in the text. */
 export type Ink =

@@ -2,8 +2,8 @@
 
 import { secondOrder, shadeLamp, shadeNormals } from "../../../pkg/index.js";
 import { ballNormals } from "../../engine/ball";
-import type { Drawing, Mark, Values } from "../protocol";
-import { onDisc, pictureOf, plot } from "./draw";
+import { LARGEST_CONSTANT, type Drawing, type Mark, type Values } from "../protocol";
+import { brightest, onDisc, pictureOf, plot } from "./draw";
 import { rms } from "./measure";
 import { lightNamed, normalAt, numberOf, ofOrder } from "./scenes";
 
@@ -56,15 +56,18 @@ export function* orders(values: Values): Generator<Drawing> {
   const [o0 = NaN, o1 = NaN, o2 = NaN] = ([0, 1, 2] as const).map((order) => at(order, Float32Array.from(one))[1]);
   const ring: Mark[] = [{ ink: "normal", shape: "ring", points: onDisc(one), size: 4 }];
   const whole = total(parts);
-  const ball = (key: string, title: string, alt: string, log: Float32Array, legend: string) =>
-    pictureOf({ key, title, alt, legend }, GRID, log.map(Math.exp), ring);
+  const ball = (key: string, title: string, alt: string, log: Float32Array, legend: string, white?: number) =>
+    pictureOf({ key, title, alt, legend }, GRID, log.map(Math.exp), ring, white);
+  // Whatever constant is moved, a ball keeps its white, so that the balls of order 0 and 2 show it.
+  const whiteOf = (order: 0 | 1 | 2) =>
+    brightest(part(light, order, 0, normals).map(Math.exp)) * (order === 1 ? 1 : Math.exp(LARGEST_CONSTANT));
   const { components, intensity, direct, byLog } = approximations(numberOf(values, "around"));
   const curve = (of: Float32Array) =>
     components.flatMap((c, i) => [(180 / Math.PI) * Math.acos(c), of[i] ?? NaN]).filter((_, i) => i % 8 < 2);
   yield {
     panels: [
-      ...parts.map((log, order) =>
-        ball(`order${order}`, TITLES[order] ?? "", `A ball, ${ALT[order]}.`, log, ALT[order] ?? ""),
+      ...([0, 1, 2] as const).map((order) =>
+        ball(`order${order}`, TITLES[order], `A ball, ${ALT[order]}.`, at(order, normals), ALT[order], whiteOf(order)),
       ),
       ball(
         "whole",

@@ -29,10 +29,10 @@ export const relief: Lesson = {
     ),
   formulaWords: "The new depth is s times the depth plus t times x, and the new intensity is the old one.",
   text: [
-    "Sculptors of coins and medals have always known it: a portrait a few millimetres deep looks like a whole head. Multiply all depths by a factor s, here {=stretch}. Every normal changes, and yet a lamp in another place, together with another albedo, restores the picture pixel by pixel. This is the bas-relief ambiguity. It holds for any factor s and any added tilt t, for one picture or a hundred under different lamps.",
+    "Sculptors of coins and medals have always known it: a portrait a few millimetres deep looks like a whole head. Multiply all depths by a factor s, here {=stretch}. Every normal changes, and yet a lamp in another place, together with another albedo, restores the picture pixel by pixel. The section shows heights: a height is a depth with the opposite sign. This is the bas-relief ambiguity. It holds for any factor s and any added tilt t, for one picture or a hundred under different lamps.",
     "The reason is a matrix. Scale each normal by its albedo and call the result b, so that the intensity is b·l. For any invertible matrix A, the vectors A b and A⁻ᵀ l have the same product. Most such matrices turn the normals into vectors that belong to no surface. Those that flatten, tilt or invert depth are the ones that leave a surface.",
-    "The most famous case is s = −1: near and far are exchanged, and a face becomes its mould. It needs no other albedo, only a lamp on the opposite side. People see the mould of a face as a face, because they expect faces, and light from above.",
-    "So a single picture does not determine a shape. Something else has to be known: the lamp, the albedo, the silhouette, a second lamp, or a depth map. From lesson 10 on, this page uses the depth map.",
+    "The most famous case is s = −1: near and far are exchanged, and a face becomes its mould. It needs no other albedo, only a lamp rotated by half a turn about the line of sight. People see the mould of a face as a face, because they expect faces, and light from above.",
+    "So a single picture does not determine a shape. Something else has to be known: the lamp, the albedo, the silhouette, or a depth map. From lesson 10 on, this page uses the depth map.",
   ],
   tasks: [
     "Flatten the bust to a fifth of its depth. The two pictures stay the same, while the section collapses.",

@@ -79,7 +79,7 @@ export const grey: Lesson = {
   formulaWords: "One colour gives one equation. The unit normal has two unknowns.",
   text: [
     "From here to lesson 12 the whole object has one albedo. Its logarithm is then a constant, which {M} includes.",
-    "A normal has two degrees of freedom; grey light gives one equation. The normals that explain one pixel therefore form a curve, the dark line in the cost map. The pixel alone does not determine where on that line the true normal lies.",
+    "A normal has two degrees of freedom; grey light gives one equation. The cost map shows for each normal how far its log intensity is from the measured one. The normals that explain the pixel form a curve, the dark line in the map. The pixel alone does not determine where on that line the true normal lies.",
     "The picture as a whole is ambiguous, too. Rotate every normal by half a turn about the line of sight, and a bump becomes a dent. Rotate the lamp by the same angle (now {=turn}), and every pixel keeps its brightness. This is why craters in photographs sometimes look like hills.",
     "The reason is that rotating a second-order light gives another second-order light. If the light is unknown, colour does not resolve the ambiguity. A known light does, and so does a depth map. Cast shadows, occluding contours and the assumption that light comes from above help as well.",
   ],

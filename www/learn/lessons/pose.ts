@@ -14,8 +14,8 @@ export const pose: Lesson = {
     "The cost of the colours plus lambda times the squared distance between the normal and the depth map's normal rotated by the pose.",
   text: [
     "A photograph and a depth map look nothing alike, so there are no features to match. The image model links them: the depth map's normals {m}, rotated by the pose's rotation {R}, must explain the colours. Under a wrong pose they do not, and a residual remains. Here the pose is off by {=offset}. The curve shows the residual for errors about the vertical axis.",
-    "Joint registration minimises this residual; if the light is unknown, light and pose are estimated together. It needs an initial pose within some 20 to 30 degrees. If nothing is known, a search comes first: it scores a coarse grid over all rotations and passes the best ones to the registration.",
-    "“Register from there” gives the registration an initial pose. The given pose is trusted within a tolerance: the result has to lie within 30° of it and may move the centre of the object by about the object's width. If no pose within the tolerance explains the colours better, the given pose is kept and the status is ambiguous.",
+    "Joint registration minimises this residual; if the light is unknown, light and pose are estimated together. A pose also has a translation and, without known cameras, a scale; both are found with the rotation. It needs an initial pose within some 20 to 30 degrees. If nothing is known, a search comes first: it scores a coarse grid over all rotations and passes the best ones to the registration.",
+    "“Register from there” gives the registration an initial pose. The given pose is trusted within a tolerance: the result has to lie within 30° of it and may move the centre of the object by about the object's width. It moves downhill on the residual until it rests in a minimum. If it finds no minimum within the tolerance, the given pose is kept and the status is ambiguous: a pose at the edge of the tolerance is no answer.",
     "The last map shows the cost of one pixel over all normals, with the prior that the depth map gives under the present pose. The ring marks the prior, the dots mark the minima, and the line shows the solver's steps from the prior. A small {lambda} leaves several minima. With a larger one they merge into one near the prior. If the pose is right, the prior is near the true normal, and so is that minimum. If the pose is wrong, the minimum moves away from the true normal. The robust prior is a compromise: a prior that is far off is ignored.",
   ],
   tasks: [
@@ -40,7 +40,7 @@ export const pose: Lesson = {
       right: 2,
       reveal: { set: { run: "register" } },
       answer:
-        "The given pose, ambiguous. No pose within the tolerance explains the colours better, and the status says so.",
+        "The given pose, ambiguous. From 40° the residual falls all the way to the true pose, so there is no minimum within the tolerance of 30°. A pose at its edge is no answer.",
     },
   ],
   can: "You can describe how colours and normals fix a pose, and what a wrong pose does to the estimate.",
