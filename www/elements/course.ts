@@ -4,27 +4,30 @@ import type { Estimator, StepReport } from "../../pkg/index.js";
 import { cloudsOf } from "../learn/compute/clouds";
 import type { Panel, PlotPanel } from "../learn/protocol";
 
-type Curve = Pick<PlotPanel, "key" | "title" | "alt" | "y"> & {
+type Curve = Pick<PlotPanel, "key" | "title" | "alt" | "y" | "range"> & {
   ink: "error" | "pose";
   value(report: StepReport): number;
 };
 
+/** With the smallest range of each, so that the last digits of a run that has converged do not fill the picture. */
 const CURVES: readonly Curve[] = [
   {
     key: "residual",
     title: "Residual",
     alt: "The image residual of each iteration.",
     y: "log colour",
+    range: [0, 0.05],
     ink: "error",
     value: ({ residual }) => residual,
   },
   {
     key: "rotation-change",
     title: "Change of the rotation",
-    alt: "The change of the rotation in each iteration, as a logarithm.",
-    y: "log10 of degrees",
+    alt: "The change of the rotation in each iteration.",
+    y: "degrees",
+    range: [0, 1],
     ink: "pose",
-    value: ({ rotationChange }) => Math.log10(rotationChange),
+    value: ({ rotationChange }) => rotationChange,
   },
 ];
 
@@ -33,21 +36,16 @@ export class Course {
   readonly #points = CURVES.map((): number[] => []);
 
   take(report: StepReport): void {
-    // The search has no iterations, and a rotation that stays has no logarithm.
+    // The search has no iterations.
     if (report.stage === "search") return;
-    for (const [at, { value }] of CURVES.entries()) {
-      const now = value(report);
-      this.#points[at]?.push(report.iteration, Number.isFinite(now) ? now : NaN);
-    }
+    for (const [at, { value }] of CURVES.entries()) this.#points[at]?.push(report.iteration, value(report));
   }
 
   panels(estimator: Estimator): Panel[] {
-    const plots = CURVES.map(
-      ({ key, title, alt, y, ink }, at): PlotPanel => ({
-        ...{ kind: "plot", key, title, alt, x: "iteration", y },
-        series: [{ name: title, ink, points: this.#points[at] ?? [], dots: true }],
-      }),
-    );
+    const plots = CURVES.map(({ ink, value: _, ...panel }, at): PlotPanel => {
+      const series = [{ name: panel.title, ink, points: this.#points[at] ?? [], dots: true }];
+      return { kind: "plot", x: "iteration", ...panel, series };
+    });
     return [cloudsOf(estimator), ...plots];
   }
 }
