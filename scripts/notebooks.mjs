@@ -28,7 +28,7 @@ export async function notebooks() {
   }
   await install();
   const env = { NOTEBOOKS: inRoot(VENV, "bin"), CHROMIUM: await headless() };
-  const files = matching(["tests/notebooks"], /\.test\.mjs$/);
+  const files = matching(["tests/notebooks", "tests/pyodide"], /\.test\.mjs$/);
   const options = ["--test", "--test-reporter=spec", "--test-concurrency=2", `--test-timeout=${HANGS}`];
   return watch(process.execPath, ["--no-concurrent-recompilation", ...options, ...files], { env });
 }

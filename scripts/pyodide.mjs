@@ -1,9 +1,11 @@
 // Builds the Python package's wheel for Pyodide: its own modules, and an adapter to the WebAssembly of the npm package in place of the bindings.
 import { createHash } from "node:crypto";
-import { mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { mkdirSync, readFileSync, realpathSync, rmSync, writeFileSync } from "node:fs";
 import { relative } from "node:path";
+import { build } from "./build.mjs";
 import { NOTICES } from "./notices/text.mjs";
-import { filesBelow, inRoot } from "./shell.mjs";
+import { setup } from "./setup.mjs";
+import { filesBelow, inRoot, say, script } from "./shell.mjs";
 
 export const PYODIDE_WHEELS = "target/python/pyodide";
 const PACKAGE = "python/bimodal_stereo";
@@ -12,9 +14,11 @@ const MODULES = ["bimodal_stereo_bg.wasm", "bimodal_stereo_check_bg.wasm", "bimo
 const PLATFORMS = "pyodide_2025_0_wasm32.pyemscripten_2026_0_wasm32";
 
 /** One script without imports, which Pyodide evaluates. */
-async function script() {
+async function adapter() {
   const { rolldown } = await import("rolldown");
-  const bundle = await rolldown({ input: inRoot("js/pyodide.ts"), platform: "browser", external: /^node:/ });
+  // Nothing is beside the script, and nothing needs it.
+  const transform = { define: { "import.meta.url": "undefined" } };
+  const bundle = await rolldown({ input: inRoot("js/pyodide.ts"), platform: "browser", external: /^node:/, transform });
   const options = { format: "iife", name: "bimodalStereo", codeSplitting: false, minify: true };
   const { output } = await bundle.generate(options);
   await bundle.close();
@@ -49,7 +53,7 @@ export async function pyodideWheel() {
   const files = Object.fromEntries(kept.map((path) => [relative(inRoot("python"), path), readFileSync(path)]));
   const put = (name, content) => (files[name] = Buffer.from(content));
   put("bimodal_stereo/_native.py", readFileSync(inRoot("python/pyodide/_native.py")));
-  put("bimodal_stereo/_pyodide/method.js", await script());
+  put("bimodal_stereo/_pyodide/method.js", await adapter());
   put("bimodal_stereo/_pyodide/codes.json", readFileSync(inRoot("src/codes.json")));
   put("bimodal_stereo/_pyodide/version.txt", version);
   for (const name of MODULES) put(`bimodal_stereo/_pyodide/${name}`, readFileSync(inRoot("pkg", name)));
@@ -70,4 +74,12 @@ export async function pyodideWheel() {
   const path = inRoot(PYODIDE_WHEELS, `bimodal_stereo-${version}-py3-none-${PLATFORMS}.whl`);
   writeFileSync(path, zipSync(files));
   return path;
+}
+
+if (import.meta.filename === realpathSync(process.argv[1])) {
+  await script(async () => {
+    await setup();
+    await build();
+    say(await pyodideWheel());
+  });
 }

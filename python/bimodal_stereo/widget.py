@@ -97,7 +97,7 @@ class _Element(AnyWidget):
         self.on_msg(self._answer)
 
     def _answer(self, _: Any, wanted: Any, __: Any) -> None:
-        """Sends the browser what it asks for once for each page."""
+        """Sends the browser its files, which it requests once for each page."""
         if wanted == {"wants": "files"}:
             self.send({"files": list(FILES)}, buffers=[content(name) for name in FILES.values()])
 

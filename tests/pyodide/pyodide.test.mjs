@@ -12,8 +12,7 @@ import { inRoot } from "../../scripts/shell.mjs";
 async function printed(script) {
   const lines = [];
   const python = await loadPyodide({ stdout: (line) => lines.push(line) });
-  const bytes = readFileSync(await pyodideWheel());
-  python.unpackArchive(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length), "wheel");
+  await python.loadPackage(await pyodideWheel(), { messageCallback: () => {} });
   const packages = python.runPython("import sysconfig; sysconfig.get_path('purelib')");
   python.FS.writeFile(`${packages}/numpy.py`, readFileSync(inRoot("tests/pyodide/numpy.py")));
   python.runPython(readFileSync(inRoot(script), "utf8"));
