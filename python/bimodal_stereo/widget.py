@@ -1,6 +1,6 @@
-"""The Lab and the lessons' figures in notebooks: Jupyter, JupyterLite and marimo.
+"""The Lab and the lessons' figures in notebooks of Jupyter and marimo.
 
-Needs anywidget: ``pip install "bimodal-stereo[widget]"``. The visitor's browser computes and draws, as on the page; the kernel only sends
+Needs anywidget, which the extra ``widget`` brings. The visitor's browser computes and draws, as on the page; the kernel only sends
 the pair and receives reports.
 
     from bimodal_stereo import sample
@@ -27,7 +27,7 @@ try:
     from anywidget import AnyWidget
     from traitlets import Bool, Dict, Unicode
 except ImportError as reason:
-    raise ImportError('bimodal_stereo.widget needs anywidget: pip install "bimodal-stereo[widget]"') from reason
+    raise ImportError("bimodal_stereo.widget needs anywidget: pip install anywidget") from reason
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack

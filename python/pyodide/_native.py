@@ -69,14 +69,15 @@ def called(function: Any, *arguments: Any) -> Any:
         raise translated(error) from None
 
 
-def plain(value: Any, rename: bool = True) -> Any:
+def members(given: Mapping[str, Any]) -> Any:
+    """An object of JavaScript; attributes of the proxy would lose names such as ``new``."""
+    return Object.fromEntries(to_js([to_js([name, value]) for name, value in given.items()]))
+
+
+def plain(value: Any) -> Any:
     """A value for JavaScript: members that are not given are left out, arrays are copied and flat."""
     if isinstance(value, Mapping):
-        made = Object.new()
-        for name, member in value.items():
-            if member is not None:
-                setattr(made, camel(name) if rename else name, plain(member))
-        return made
+        return members({camel(name): plain(member) for name, member in value.items() if member is not None})
     if isinstance(value, np.ndarray):
         return to_js(memoryview(np.ravel(value)))
     if isinstance(value, (list, tuple)):
@@ -226,9 +227,7 @@ def check_calibration(
     cues: list[str],
     on_progress: Optional[Callable[[float, str], Any]],
 ) -> dict[str, Any]:
-    poses = Object.new()
-    for name, pose in candidates:
-        setattr(poses, name, plain(pose))
+    poses = members({name: plain(pose) for name, pose in candidates})
     tell = create_proxy(on_progress or (lambda share, message: None))
     try:
         given = to_js([plain(frame) for frame in frames])

@@ -38,7 +38,7 @@ test("a script of Python runs in Pyodide, bit-identical to JavaScript", async ()
   assert.deepEqual(await printed("tests/pyodide/script.py"), [
     await expected(),
     "light (3, 9) lights 3",
-    "check consistent ['my rig'] True",
+    "check consistent ['new'] True",
     "refused range stop_degrees True",
     "refused range surface True",
     "refused unsupported read_image True",

@@ -16,7 +16,7 @@ print("light", bimodal.turn_light("window", {"beta": 30}).shape, "lights", len(b
 
 rig = bimodal.sample_rig("room", seed=1)
 told = []
-check = bimodal.check_calibration([bimodal.CheckFrame(rig.image, rig.depth)], {"my rig": vars(rig.pose)}, on_progress=lambda *each: told.append(each))
+check = bimodal.check_calibration([bimodal.CheckFrame(rig.image, rig.depth)], {"new": vars(rig.pose)}, on_progress=lambda *each: told.append(each))
 print("check", check.verdict, list(check.candidates), len(told) > 3)
 
 for call in (
