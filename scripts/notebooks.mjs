@@ -13,7 +13,8 @@ async function install() {
   await once(VENV, ".venv-stamp", stamp([REQUIREMENTS]), async () => {
     say("notebooks: an environment with JupyterLab and marimo");
     await must("python3", ["-m", "venv", "--clear", inRoot(VENV)]);
-    await pip(inRoot(VENV), "install", "--requirement", REQUIREMENTS);
+    // Most of its modules are never imported, so compiling them would take longer than the tests.
+    await pip(inRoot(VENV), "install", "--no-compile", "--requirement", REQUIREMENTS);
   });
   const installed = () => pip(inRoot(VENV), "install", "--force-reinstall", "--no-deps", ...wheels());
   await once(VENV, ".wheel-stamp", stamp([WHEELS, REQUIREMENTS]), installed);

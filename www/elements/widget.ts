@@ -35,11 +35,14 @@ function pageOf(): Page {
   all[PAGE] ??= (() => {
     let take: Page["take"] = () => {};
     const files = new Promise<Record<string, DataView>>((resolve) => (take = resolve));
-    const page: Page = { isReady: false, take, ready: files.then(place).then(() => void (page.isReady = true)) };
-    return page;
+    const made: Page = { isReady: false, take, ready: files.then(place).then(() => void (made.isReady = true)) };
+    return made;
   })();
   return all[PAGE];
 }
+
+/** At once, so that the copy that defines the elements is also the one that is told where their files are. */
+const page = pageOf();
 
 async function place(files: Record<string, DataView>): Promise<void> {
   const bytesOf = (name: string) => files[name] as DataView<ArrayBuffer>;
@@ -51,7 +54,6 @@ async function place(files: Record<string, DataView>): Promise<void> {
 
 /** Asks the kernel of this widget, because the kernel of another one may have ended before it answered. */
 async function files(model: Model): Promise<void> {
-  const page = pageOf();
   if (page.isReady) return;
   const listen = (content: unknown, buffers: unknown) => {
     const { files: names } = content as { files?: string[] };
