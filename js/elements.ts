@@ -1,6 +1,6 @@
 /** The types of the custom elements. Their code is in www/elements, which is bundled after this package. */
 import type { ErrorDetails } from "./errors.js";
-import type { Options, SampleRequest, StepReport } from "./types/index.js";
+import type { ColorImageInput, DepthMapInput, Options, SampleRequest, StepReport } from "./types/index.js";
 
 /** A failure: `code` is that of a `BimodalError`, or "lost" if the browser ended the worker. */
 export interface ElementError {
@@ -13,6 +13,27 @@ export interface ElementError {
   /** Further values for programs, as in a `BimodalError`. */
   readonly details?: ErrorDetails;
 }
+
+/** A pair as arrays, as the `Estimator` takes it. */
+export interface StereoPair {
+  /** The colour image. */
+  image: ColorImageInput;
+  /** The depth map. */
+  depth: DepthMapInput;
+}
+
+/** Where the elements find their files; those left out are beside the module. */
+export interface Places {
+  /** The .wasm: its address, its bytes or the compiled module. */
+  wasm?: string | URL | BufferSource | WebAssembly.Module;
+  /** The address of elements-thread.js, which may be of another origin. */
+  stereoThread?: string | URL;
+  /** The address of figure-thread.js, which may be of another origin. */
+  figureThread?: string | URL;
+}
+
+/** Says where the files of all elements of the page are; call it before the first element is in the document. */
+export declare function configure(places: Places): void;
 
 /** The values under a lesson's figure: numbers and words. */
 export interface FigureResult {
@@ -72,6 +93,10 @@ export interface BimodalStereoElement extends HTMLElement {
   sample: string;
   /** Whether the run waits for `play()` or `step()`. */
   paused: boolean;
+  /** Whether both surfaces and the curves of the run are shown as well. */
+  charts: boolean;
+  /** A pair as arrays, instead of addresses; setting it restarts the run. */
+  pair: StereoPair | undefined;
   /** Options of the estimator; setting them restarts the run. */
   options: Options;
   /** The scene of `sample`, beside its surface; setting it restarts the run. */
@@ -131,7 +156,12 @@ export interface BimodalFigureElement extends HTMLElement {
 export interface ElementsInJsx<Common = unknown> {
   /** The run, with its attributes, its properties and its events. */
   "bimodal-stereo": Omit<Common, "onerror"> &
-    Partial<Pick<BimodalStereoElement, "image" | "depth" | "mask" | "sample" | "options" | "scene" | "paused">> & {
+    Partial<
+      Pick<
+        BimodalStereoElement,
+        "image" | "depth" | "mask" | "sample" | "options" | "scene" | "pair" | "paused" | "charts"
+      >
+    > & {
       /** Pixels (or metres) per stored number. */
       unit?: number;
       /** React's key. */

@@ -31,6 +31,12 @@ export function load(where: () => WasmSource): Promise<void> {
   return loading;
 }
 
+/** The same at once, where nothing can wait. */
+export function loadNow(compiled: WebAssembly.Module): void {
+  ({ memory } = glue.initSync({ module: compiled }));
+  module = compiled;
+}
+
 /** The compiled module, which other threads can start as well. */
 export function compiled(): WebAssembly.Module {
   if (!module) throw new BimodalError("init", "await init() first");

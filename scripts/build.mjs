@@ -18,6 +18,7 @@ import { NOTICES, section } from "./notices/text.mjs";
 import { ALL, GLUE, NUMERICS, allNumerics, node } from "./numerics.mjs";
 import { setup } from "./setup.mjs";
 import { inRoot, say, script, seconds, stamp } from "./shell.mjs";
+import { WIDGET, bundleWidget } from "./widget.mjs";
 
 /** The package's README; the project's README addresses its developers. */
 const README = "js/README.md";
@@ -29,6 +30,7 @@ const SOURCES = [
   "package-lock.json",
   "scripts/build.mjs",
   "scripts/elements.mjs",
+  "scripts/widget.mjs",
   ...["elements", "learn", "draw", "engine", "style", "dom.ts"].map((part) => `www/${part}`),
   "scripts/imports.mjs",
   "scripts/notices",
@@ -160,6 +162,7 @@ async function facade() {
   await bundle.write({ dir: inRoot("pkg"), format: "esm", chunkFileNames: "[name].js", codeSplitting });
   await bundle.close();
   await bundleElements(npm.plugin);
+  await bundleWidget(npm.plugin);
   chmodSync(inRoot("pkg/cli.js"), 0o755);
   writeFileSync(inRoot("pkg", NOTICES), notices(npm.entries()));
   await declarations();
@@ -215,7 +218,7 @@ function link() {
 export async function build() {
   link();
   const wanted = stamp([...SOURCES, ...COPIED]);
-  const complete = [MARK, ...GLUE].every((path) => existsSync(inRoot(path)));
+  const complete = [MARK, WIDGET, ...GLUE].every((path) => existsSync(inRoot(path)));
   if (complete && readFileSync(inRoot(MARK), "utf8") === wanted) return say("pkg/ is up to date");
   const start = performance.now();
   say("building pkg/");

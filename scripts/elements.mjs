@@ -11,7 +11,7 @@ const packageBeside = {
   },
 };
 
-const styles = {
+export const styles = {
   name: "styles",
   load(id) {
     if (!/\.css\?inline$/.test(id)) return undefined;
@@ -20,13 +20,12 @@ const styles = {
   },
 };
 
-/** The thread of the lessons has another name here than in the page. */
-const lessonsThread = {
+/** The elements start the thread of the lessons in another way than the page. */
+export const lessonsThread = {
   name: "lessons-thread",
-  transform(code, id) {
-    if (!/[\\/]learn[\\/]session\.ts$/.test(id)) return undefined;
-    if (!code.includes('"./worker.ts"')) throw new Error("www/learn/session.ts starts its worker in another way");
-    return { code: code.replace('"./worker.ts"', '"./figure-thread.js"'), map: null };
+  resolveId(source, importer) {
+    if (source !== "./thread" || !/[\\/]learn[\\/]session\.ts$/.test(importer)) return undefined;
+    return inRoot("www/elements/threads.ts");
   },
 };
 

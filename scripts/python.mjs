@@ -1,5 +1,5 @@
 // Installs the checkout's Python package into an environment below target/ and runs its tests.
-import { existsSync, mkdirSync, readdirSync, rmSync, writeFileSync } from "node:fs";
+import { existsSync, readdirSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { NOTICES } from "./notices/text.mjs";
 import { ask, inRoot, must, print, readIfThere, say, stamp, watch } from "./shell.mjs";
@@ -25,7 +25,7 @@ const SOURCES = [
 ];
 
 /** Why Python can't be used here; undefined if it can. */
-function missing() {
+export function missing() {
   const version = ask("python3", ["-c", "import venv, ensurepip, sys; print(*sys.version_info[:2])"]);
   if (version === undefined) return "needs python3 with its module venv (Debian: apt-get install python3-venv)";
   const [major, minor] = version.split(" ").map(Number);
@@ -33,35 +33,35 @@ function missing() {
   return isOld ? `needs Python ${OLDEST.join(".")}, this is ${version.replace(" ", ".")}` : undefined;
 }
 
-/** Runs a step of the set-up if its stamp has changed; a step that fails leaves no stamp. */
-async function once(mark, wanted, step) {
-  const path = inRoot("target/python", mark);
-  if (readIfThere(path) === wanted && existsSync(inVenv("python"))) return;
+/** Runs a step of an environment's set-up if its stamp has changed; a step that fails leaves no stamp. */
+export async function once(venv, mark, wanted, step) {
+  const path = inRoot(venv, mark);
+  const interpreter = ask("python3", ["-c", "import sys; print(sys.version, sys.prefix)"]);
+  if (readIfThere(path) === `${wanted} ${interpreter}` && existsSync(inRoot(venv, "bin/python"))) return;
   rmSync(path, { force: true });
   await step();
-  writeFileSync(path, wanted);
+  writeFileSync(path, `${wanted} ${interpreter}`);
 }
 
-async function install() {
-  mkdirSync(inRoot("target/python"), { recursive: true });
-  const pip = (...args) => must(inVenv("python"), ["-m", "pip", "--disable-pip-version-check", "--quiet", ...args]);
-  const interpreter = ask("python3", ["-c", "import sys; print(sys.version, sys.prefix)"]);
-  await once(".venv-stamp", `${stamp([REQUIREMENTS])} ${interpreter}`, async () => {
+export const pip = (venv, ...args) =>
+  must(join(venv, "bin/python"), ["-m", "pip", "--disable-pip-version-check", "--quiet", ...args]);
+
+/** The wheels to install. */
+export const wheels = () => readdirSync(inRoot(WHEELS)).map((name) => join(WHEELS, name));
+
+/** The environment of the package's tests, which also builds its wheel. */
+export async function install() {
+  await once(VENV, ".venv-stamp", stamp([REQUIREMENTS]), async () => {
     say("Python: an environment for its tests");
     await must("python3", ["-m", "venv", "--clear", inRoot(VENV)]);
-    await pip("install", "--requirement", REQUIREMENTS);
+    await pip(inRoot(VENV), "install", "--requirement", REQUIREMENTS);
   });
-  await once(".package-stamp", stamp([...SOURCES, REQUIREMENTS]), async () => {
+  await once(VENV, ".package-stamp", stamp([...SOURCES, REQUIREMENTS]), async () => {
     say("Python: pip install ., by way of its wheel");
     rmSync(inRoot(WHEELS), { recursive: true, force: true });
     // Cargo's output stays in python/target.
-    await pip("wheel", "--no-deps", "--wheel-dir", WHEELS, ".");
-    await pip(
-      "install",
-      "--force-reinstall",
-      "--no-deps",
-      ...readdirSync(inRoot(WHEELS)).map((name) => join(WHEELS, name)),
-    );
+    await pip(inRoot(VENV), "wheel", "--no-deps", "--wheel-dir", WHEELS, ".");
+    await pip(inRoot(VENV), "install", "--force-reinstall", "--no-deps", ...wheels());
   });
 }
 

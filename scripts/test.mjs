@@ -5,6 +5,7 @@ import { createServer } from "node:net";
 import { availableParallelism } from "node:os";
 import { browser, firefox, headless } from "./browser.mjs";
 import { build } from "./build.mjs";
+import { notebooks } from "./notebooks.mjs";
 import { python } from "./python.mjs";
 import { WASM, setup } from "./setup.mjs";
 import { Failure, ask, inOnePiece, inRoot, matching, print, say, script, seconds, watch } from "./shell.mjs";
@@ -285,6 +286,7 @@ const PARTS = [
   },
   { name: "types", run: types, needsBuild: true, lane: 1, closing: /^tsc .*$/gm },
   { name: "python", run: python, needsBuild: true, long: true, lane: 1, closing: PYTHON },
+  { name: "notebooks", run: notebooks, needsBuild: true, long: true, lane: 1, closing: NODE },
   { name: "contract", run: contract, needsBuild: true, lane: 1, closing: NODE },
   {
     name: "tables",

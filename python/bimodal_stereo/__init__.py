@@ -91,3 +91,12 @@ __all__ = [
     "write_pose",
     "write_results",
 ]
+
+
+def __getattr__(name: str) -> object:
+    """``bimodal_stereo.widget``, which needs another package, is imported where it is used."""
+    if name == "widget":
+        from importlib import import_module
+
+        return import_module(".widget", __name__)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -1,5 +1,6 @@
 """The names and ranges of the JavaScript package, in Python's spelling."""
 
+import ast
 import inspect
 import json
 import re
@@ -153,3 +154,20 @@ def judged(row):
         if abs(row.get(end, 1e9)) < 1e9:
             yield row[end], inclusive
             yield row[end] + outward * step * max(1, abs(row[end])) * (1 if inclusive else -1), not inclusive
+
+
+def bindings(path):
+    """Functions and methods of a file, with the names of their arguments."""
+
+    def own(body):
+        return {each.name: [arg.arg for arg in each.args.args] for each in body if isinstance(each, ast.FunctionDef)}
+
+    tree = ast.parse((ROOT / "python" / path).read_text())
+    [estimator] = [each for each in tree.body if isinstance(each, ast.ClassDef)]
+    return own(tree.body), own(estimator.body)
+
+
+def test_pyodide_has_the_same_bindings():
+    for native, pyodide in zip(bindings("bimodal_stereo/_native.pyi"), bindings("pyodide/_native.py")):
+        native.pop("__new__", None)
+        assert len(native) > 10 and {name: pyodide.get(name) for name in native} == native

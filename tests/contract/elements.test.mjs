@@ -8,6 +8,7 @@ import { decodeDepth } from "../../pkg/files.js";
 import { inRoot } from "../../scripts/shell.mjs";
 import { chrome, examples, freshProject, html, pairFiles, run, served, write } from "./fresh.mjs";
 import { LONG } from "./long.mjs";
+import { init, sample } from "./support.mjs";
 
 const project = freshProject();
 const MAP = `<script type="importmap">{ "imports": { "bimodal-stereo/elements": "./node_modules/bimodal-stereo/elements.js" } }</script>`;
@@ -93,6 +94,22 @@ describe("<bimodal-stereo> in plain HTML", LONG, () => {
     });
     assert.equal(error, undefined);
     assert.ok(Math.abs(report.pose.angles.beta - 20) < 2, JSON.stringify(report.pose.angles));
+    assert.deepEqual(errors, []);
+    await page.close();
+  });
+
+  test("takes a pair as arrays, and shows its surfaces and curves", async () => {
+    await init();
+    const { image, depth } = sample({ ...SCENE, surface: "bust", noise: 0.01 });
+    const { page, errors } = await opened("pair.html", MAP);
+    const members = { pair: { image, depth }, charts: true, options: OPTIONS };
+    const seen = await until(page, "bimodal-stereo", members, "done");
+    assert.equal(seen.at(-1).status, "converged");
+    await page.locator("bimodal-stereo .learn-plot .curve").nth(1).waitFor();
+    await page.locator("bimodal-stereo canvas[aria-label^='Points of the depth map']").waitFor();
+    await page.evaluate(() => (document.querySelector("bimodal-stereo").charts = false));
+    await page.locator("bimodal-stereo .learn-plot").first().waitFor({ state: "hidden" });
+    assert.equal(await page.evaluate(() => document.querySelector("bimodal-stereo").report.status), "converged");
     assert.deepEqual(errors, []);
     await page.close();
   });

@@ -3,6 +3,8 @@
 import { BimodalFigure } from "./figure";
 import { BimodalStereo } from "./stereo";
 
+export { configure } from "./threads";
+
 if (typeof customElements !== "undefined") {
   // Two copies of the package on one page are no error.
   if (!customElements.get("bimodal-stereo")) customElements.define("bimodal-stereo", BimodalStereo);

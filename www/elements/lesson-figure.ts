@@ -9,10 +9,7 @@ import { lessonNamed, lessons } from "../learn/lessons";
 import type { Values } from "../learn/protocol";
 import { Readouts } from "../learn/readouts";
 import { Session } from "../learn/session";
-import words from "../style/learn.css?inline";
-import parts from "../style/learn-figure.css?inline";
-import tokens from "../style/tokens.css?inline";
-import own from "./figure.css?inline";
+import { styled } from "./styled";
 
 interface Hooks {
   onResult(result: FigureResult, done: boolean): void;
@@ -23,19 +20,6 @@ interface Hooks {
 export interface Shown {
   set(state: string): void;
   end(): void;
-}
-
-/** The page's rules about its root are about the element here. */
-const inShadow = (text: string): string =>
-  text.replaceAll(/:root\[([^\]]+)\]/g, ":host([$1])").replaceAll(":root", ":host");
-
-let sheet: CSSStyleSheet | undefined;
-function styled(root: ShadowRoot): void {
-  if (!sheet) {
-    sheet = new CSSStyleSheet();
-    sheet.replaceSync([tokens, words, parts, own].map(inShadow).join("\n"));
-  }
-  root.adoptedStyleSheets = [sheet];
 }
 
 /** The values that differ from the lesson's own, as in the page's addresses. */

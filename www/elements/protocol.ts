@@ -1,7 +1,9 @@
 /** The messages between `<bimodal-stereo>` and its thread. Both sides import this file and nothing else of each other. */
 
-import type { Options, SampleRequest, StepReport } from "../../pkg/index.js";
+import type { StereoPair } from "../../pkg/elements.js";
+import type { Options, SampleRequest, StepReport, WasmSource } from "../../pkg/index.js";
 import type { Fault } from "../engine/protocol";
+import type { Panel } from "../learn/protocol";
 
 /** Addresses are absolute, because a thread would resolve relative addresses by its own address. */
 export interface Input {
@@ -10,9 +12,12 @@ export interface Input {
   mask: string;
   unit: number | undefined;
   sample: SampleRequest | undefined;
+  pair: StereoPair | undefined;
 }
 
-export type Order = { kind: "open"; input: Input; options: Options } | { kind: "step" };
+export type Order =
+  | { kind: "open"; input: Input; options: Options; wasm: WasmSource | undefined }
+  | { kind: "step"; withCharts: boolean };
 
 /** What is shown; the image is sent once, with the first answer. */
 export const PICTURES = ["image", "surface", "light"] as const;
@@ -21,5 +26,5 @@ export type Pictures = Partial<Record<PictureName, ImageBitmap>>;
 
 export type Answer =
   | { kind: "opened"; pictures: Pictures }
-  | { kind: "stepped"; report: StepReport; pictures: Pictures }
+  | { kind: "stepped"; report: StepReport; pictures: Pictures; panels: Panel[] | undefined }
   | { kind: "fault"; fault: Fault };

@@ -1,22 +1,24 @@
 /** `<bimodal-stereo>`: one run, one iteration per frame, in one worker. */
 
-import type { BimodalStereoElement, ElementError } from "../../pkg/elements.js";
+import type { BimodalStereoElement, ElementError, StereoPair } from "../../pkg/elements.js";
 import type { Options, SampleRequest, StepReport } from "../../pkg/index.js";
 import { GONE, onGone } from "../engine/alive";
 import { Base } from "./base";
 import type { Answer, Input, Order } from "./protocol";
+import { startStereo, wasm } from "./threads";
 import { StereoView } from "./view";
 
 /** The scene of a sample of which only the surface was named. */
 const SCENE = { light: "window", angles: { beta: 30 }, noise: 0.01 } as const;
 
 export class BimodalStereo extends Base implements BimodalStereoElement {
-  static readonly observedAttributes = ["image", "depth", "mask", "unit", "sample", "paused"];
-  protected readonly settable = ["image", "depth", "mask", "unit", "sample", "paused", "options", "scene"];
+  static readonly observedAttributes = ["image", "depth", "mask", "unit", "sample", "paused", "charts"];
+  protected readonly settable = [...BimodalStereo.observedAttributes, "options", "scene", "pair"];
   #worker: Worker | undefined;
   #view: StereoView | undefined;
   #options: Options = {};
   #scene: Partial<SampleRequest> = {};
+  #pair: StereoPair | undefined;
   #report: StepReport | undefined;
   /** Whether the worker has the pair, and whether a step is under way. */
   #isOpen = false;
@@ -59,6 +61,12 @@ export class BimodalStereo extends Base implements BimodalStereoElement {
   set paused(value: boolean) {
     this.toggleAttribute("paused", Boolean(value));
   }
+  get charts(): boolean {
+    return this.hasAttribute("charts");
+  }
+  set charts(value: boolean) {
+    this.toggleAttribute("charts", Boolean(value));
+  }
   get options(): Options {
     return this.#options;
   }
@@ -71,6 +79,13 @@ export class BimodalStereo extends Base implements BimodalStereoElement {
   }
   set scene(value: Partial<SampleRequest>) {
     this.#scene = value ?? {};
+    this.restart();
+  }
+  get pair(): StereoPair | undefined {
+    return this.#pair;
+  }
+  set pair(value: StereoPair | undefined) {
+    this.#pair = value ?? undefined;
     this.restart();
   }
   get report(): StepReport | undefined {
@@ -90,6 +105,7 @@ export class BimodalStereo extends Base implements BimodalStereoElement {
 
   attributeChangedCallback(name: string, before: string | null, now: string | null): void {
     if (before === now) return;
+    if (name === "charts") return this.#view?.showCharts(this.charts);
     if (name !== "paused") return this.restart();
     this.#view?.showPaused(this.paused);
     this.#next();
@@ -110,13 +126,14 @@ export class BimodalStereo extends Base implements BimodalStereoElement {
     });
     this.#report = undefined;
     this.#view.clear(this.paused);
-    if (this.sample === "" && (this.image === "" || this.depth === "")) return this.#missing();
+    this.#view.showCharts(this.charts);
+    if (!this.#pair && this.sample === "" && (this.image === "" || this.depth === "")) return this.#missing();
     try {
       this.#worker = this.#spawn();
     } catch (error) {
       return this.#fault({ code: "init", message: `the worker cannot be started (${String(error)})` });
     }
-    this.#send({ kind: "open", input: this.#input(), options: this.#options });
+    this.#send({ kind: "open", input: this.#input(), options: this.#options, wasm: wasm() });
   }
 
   /** An element that was just made has no attributes yet; a half of a pair is an error. */
@@ -134,11 +151,12 @@ export class BimodalStereo extends Base implements BimodalStereoElement {
       mask: absolute(this.mask),
       unit: this.unit,
       sample: this.sample === "" ? undefined : { ...SCENE, ...this.#scene, surface: this.sample },
+      pair: this.#pair,
     };
   }
 
   #spawn(): Worker {
-    const worker = new Worker(new URL("./elements-thread.js", import.meta.url), { type: "module" });
+    const worker = startStereo();
     const isMine = () => worker === this.#worker;
     onGone(worker, () => {
       if (isMine()) this.#fault({ code: "lost", message: `This run stopped: ${GONE}.` });
@@ -166,7 +184,7 @@ export class BimodalStereo extends Base implements BimodalStereoElement {
   #ask(): void {
     if (!this.#isOpen || this.#isBusy || (this.#report && this.#report.status !== "running")) return;
     this.#isBusy = true;
-    this.#send({ kind: "step" });
+    this.#send({ kind: "step", withCharts: this.charts });
   }
 
   #receive(answer: Answer): void {
@@ -178,6 +196,7 @@ export class BimodalStereo extends Base implements BimodalStereoElement {
       return this.#next();
     }
     this.#isBusy = false;
+    if (answer.panels) this.#view?.drawCharts(answer.panels);
     this.#take(answer.report);
   }
 

@@ -1,10 +1,11 @@
 /** The thread of `<bimodal-stereo>`: reads the pair, and computes and draws a step for each request of the element. */
 
 import "../engine/hold";
-import init, { type ColorImage, type DepthMap, Estimator, sample, shadeNormals } from "../../pkg/index.js";
+import init, { type ColorImageInput, type DepthMapInput, Estimator, sample, shadeNormals } from "../../pkg/index.js";
 import { decodeDepth, decodeMask, imageFrom } from "../../pkg/files.js";
 import { ballNormals } from "../engine/ball";
 import { faultOf } from "../engine/fault";
+import { Course } from "./course";
 import type { Answer, Input, Order, Pictures } from "./protocol";
 
 const BALL = 128;
@@ -14,6 +15,7 @@ const GAMMA = 1 / 2.2;
 let isLoaded = false;
 let estimator: Estimator | undefined;
 let normals: Float32Array | undefined;
+const course = new Course();
 
 const post = (answer: Answer, pictures: Pictures = {}): void =>
   self.postMessage(answer, { transfer: Object.values(pictures) });
@@ -41,7 +43,15 @@ async function bytesAt(field: string, address: string): Promise<ArrayBuffer> {
   return response.arrayBuffer();
 }
 
-async function pairOf({ image, depth, mask, unit, sample: request }: Input): Promise<[ColorImage, DepthMap]> {
+async function pairOf({
+  image,
+  depth,
+  mask,
+  unit,
+  sample: request,
+  pair,
+}: Input): Promise<[ColorImageInput, DepthMapInput]> {
+  if (pair) return [pair.image, pair.depth];
   if (request) {
     const made = sample(request);
     return [made.image, made.depth];
@@ -87,7 +97,7 @@ function bitmapOf(
 }
 
 /** Integers are already encoded for a screen; rendered scenes are linear floats of three channels. */
-function imagePicture({ width, height, data }: ColorImage): ImageBitmap {
+function imagePicture({ width, height, data }: ColorImageInput): ImageBitmap {
   const channels = data.length / (width * height);
   const isLinear = data instanceof Float32Array;
   const least = data instanceof Uint16Array ? 1 / 257 : 1;
@@ -106,8 +116,8 @@ function imagePicture({ width, height, data }: ColorImage): ImageBitmap {
 
 let size = { width: 1, height: 1 };
 
-async function open({ input, options }: Extract<Order, { kind: "open" }>): Promise<void> {
-  await init();
+async function open({ input, options, wasm }: Extract<Order, { kind: "open" }>): Promise<void> {
+  await init(wasm);
   isLoaded = true;
   const [image, depth] = await pairOf(input);
   estimator = new Estimator(image, depth, options);
@@ -116,23 +126,24 @@ async function open({ input, options }: Extract<Order, { kind: "open" }>): Promi
   post({ kind: "opened", pictures }, pictures);
 }
 
-function step(): void {
+function step(withCharts: boolean): void {
   const from = estimator;
   if (!from) return;
   const report = from.step();
+  course.take(report);
   normals ??= ballNormals(BALL, 0.98);
   const ball = shadeNormals(from.light(), normals).map(Math.exp);
   const pictures = {
     surface: bitmapOf(size.width, size.height, (context) => from.draw(context, "normals")),
     light: pictured(BALL, BALL, ball),
   };
-  post({ kind: "stepped", report, pictures }, pictures);
+  post({ kind: "stepped", report, pictures, panels: withCharts ? course.panels(from) : undefined }, pictures);
 }
 
 self.onmessage = async ({ data }: MessageEvent<Order>) => {
   try {
     if (data.kind === "open") await open(data);
-    else step();
+    else step(data.withCharts);
   } catch (error) {
     const fault =
       error instanceof Unreachable

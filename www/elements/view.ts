@@ -1,6 +1,7 @@
 /** What `<bimodal-stereo>` shows in its shadow: three pictures, a status line and two buttons. */
 
 import type { StepReport } from "../../pkg/index.js";
+import type { Panel } from "../learn/protocol";
 import { PICTURES, type PictureName, type Pictures } from "./protocol";
 import style from "./stereo.css?inline";
 
@@ -31,6 +32,9 @@ export class StereoView {
   readonly #step = made("button", "Step", { type: "button", part: "button" });
   readonly #again = made("button", "Restart", { type: "button", part: "button" });
   readonly #canvases = new Map<PictureName, HTMLCanvasElement>();
+  readonly #charts = made("div", "", { part: "charts", hidden: "" });
+  /** Draws the charts, once their code has loaded. */
+  #chartsShown: Promise<(panels: Panel[]) => void> | undefined;
 
   constructor(root: ShadowRoot, hooks: Hooks) {
     const sheet = new CSSStyleSheet();
@@ -49,7 +53,7 @@ export class StereoView {
     this.#again.addEventListener("click", () => hooks.restart());
     const buttons = made("div", "", { class: "buttons" });
     buttons.append(this.#play, this.#step, this.#again);
-    root.append(pictures, this.#status, buttons);
+    root.append(pictures, this.#charts, this.#status, buttons);
   }
 
   clear(paused: boolean): void {
@@ -57,6 +61,19 @@ export class StereoView {
     this.showPaused(paused);
     this.#allow(true);
     this.say("loading");
+  }
+
+  showCharts(areShown: boolean): void {
+    this.#charts.hidden = !areShown;
+  }
+
+  /** A failed load is tried again with the next step; the run itself does not need the charts. */
+  drawCharts(panels: Panel[]): void {
+    this.#chartsShown ??= import("./charts").then(({ chartsIn }) => chartsIn(this.#charts));
+    this.#chartsShown.then(
+      (draw) => draw(panels),
+      () => (this.#chartsShown = undefined),
+    );
   }
 
   showPaused(paused: boolean): void {

@@ -1,5 +1,6 @@
 /** The messages between the lessons and their worker. Both sides import this file and nothing else of each other. */
 
+import type { WasmSource } from "../../pkg/index.js";
 import type { Fault } from "../engine/protocol";
 import type { Details } from "../words";
 
@@ -123,6 +124,11 @@ export interface Drawing {
 export interface Said {
   id: string;
   details: Details;
+}
+
+/** The first message to a thread that finds the .wasm elsewhere than beside itself. */
+export interface Loading {
+  wasm: WasmSource;
 }
 
 export interface Request {

@@ -4,6 +4,7 @@ import { onGone } from "../engine/alive";
 import type { Fault } from "../engine/protocol";
 import { phrase } from "../words";
 import type { Answer, Drawing, LessonId, Request, Values } from "./protocol";
+import { startThread } from "./thread";
 
 export interface Hooks {
   onDrawing(drawing: Drawing, done: boolean): void;
@@ -32,7 +33,7 @@ export class Session {
   }
 
   #spawn(): Worker {
-    const worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
+    const worker = startThread();
     onGone(worker, () => {
       if (worker === this.#worker)
         this.#fail({

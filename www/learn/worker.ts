@@ -1,7 +1,7 @@
 /** The thread that computes the figures of the lessons. A newer request ends the one under way. */
 
 import "../engine/hold";
-import init from "../../pkg/index.js";
+import init, { type WasmSource } from "../../pkg/index.js";
 import { faultOf } from "../engine/fault";
 import { colours } from "./compute/colours";
 import { failure } from "./compute/failure";
@@ -17,7 +17,7 @@ import { relief } from "./compute/relief";
 import { sensor } from "./compute/sensor";
 import { strips } from "./compute/strips";
 import { surface } from "./compute/surface";
-import type { Answer, Drawing, LessonId, Request, Values } from "./protocol";
+import type { Answer, Drawing, LessonId, Loading, Request, Values } from "./protocol";
 
 type Compute = (values: Values) => Generator<Drawing>;
 const lessons: Record<LessonId, Compute> = {
@@ -38,9 +38,14 @@ const lessons: Record<LessonId, Compute> = {
 };
 
 let isLoaded = false;
-const ready = init().then(() => (isLoaded = true));
-// Each request waits for it and reports a failure; before the first request its rejection must not count as unhandled.
-ready.catch(() => {});
+let loading: Promise<void> | undefined;
+/** Loads the numerics once; each request waits for it and reports a failure. */
+function load(wasm?: WasmSource): Promise<void> {
+  loading ??= init(wasm).then(() => {
+    isLoaded = true;
+  });
+  return loading;
+}
 
 let newest: Request | undefined;
 let isBusy = false;
@@ -58,7 +63,7 @@ const breathe = (): Promise<void> =>
 
 async function answer({ id, lesson, values }: Request): Promise<void> {
   try {
-    await ready;
+    await load();
     const drawings = lessons[lesson](values);
     let last: Drawing | undefined;
     for (const drawing of drawings) {
@@ -77,8 +82,10 @@ async function answer({ id, lesson, values }: Request): Promise<void> {
   }
 }
 
-self.onmessage = async (event: MessageEvent<Request>) => {
-  newest = event.data;
+self.onmessage = async ({ data }: MessageEvent<Request | Loading>) => {
+  // The requests report its failure.
+  if ("wasm" in data) return void load(data.wasm).catch(() => {});
+  newest = data;
   if (isBusy) return;
   isBusy = true;
   let done = -1;

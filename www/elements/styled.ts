@@ -1,0 +1,19 @@
+/** The style of the lessons' figures for a shadow root. */
+
+import words from "../style/learn.css?inline";
+import parts from "../style/learn-figure.css?inline";
+import tokens from "../style/tokens.css?inline";
+import own from "./figure.css?inline";
+
+/** The page's rules about its root are about the element here. */
+const inShadow = (text: string): string =>
+  text.replaceAll(/:root\[([^\]]+)\]/g, ":host([$1])").replaceAll(":root", ":host");
+
+let sheet: CSSStyleSheet | undefined;
+export function styled(root: ShadowRoot): void {
+  if (!sheet) {
+    sheet = new CSSStyleSheet();
+    sheet.replaceSync([tokens, words, parts, own].map(inShadow).join("\n"));
+  }
+  root.adoptedStyleSheets = [sheet];
+}
