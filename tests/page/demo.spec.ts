@@ -78,7 +78,7 @@ test("all that a verdict says can be read without scrolling in its panel", async
   await lab.open("size=32");
   const cut = await page.locator("#panel").evaluate((panel) => {
     const next = panel.querySelector("#next");
-    if (next) next.textContent = "Only a tenth of the depth pixels have a counterpart in the image. ".repeat(6);
+    if (next) next.textContent = "Only a tenth of the depth pixels have a counterpart in the image. ".repeat(20);
     return panel.scrollHeight - panel.clientHeight;
   });
   expect(cut).toBeLessThanOrEqual(0);
@@ -91,8 +91,12 @@ test("Export says that it has saved, or that there is nothing", async ({ lab, pa
   await exporting.click();
   await saved;
   await expect(exporting).toHaveText("Saved");
+  const said = page.locator("#exported");
+  await expect(said).toHaveText("Saved bimodal-stereo-report.json: settings, poses and all iterations of this run.");
   await expect(exporting).toHaveText("Export");
   await open(page, "at=grey");
+  await exporting.click();
+  await expect(said).toHaveText("Saved bimodal-stereo-lesson-grey.json: settings and numbers of this figure.");
   await page.getByRole("link", { name: "Exercises", exact: true }).click();
   await exporting.click();
   await expect(exporting).toHaveText("Nothing to export");

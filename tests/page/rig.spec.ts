@@ -58,6 +58,8 @@ test("steps go back, by their buttons and by the browser's, and nothing is lost"
   await page.getByRole("link", { name: "Check a rig" }).click();
   await expect(page.locator(".rig-frame")).toHaveCount(3);
   // A step without content leads to the first step.
+  await page.getByRole("button", { name: "Start over" }).click();
+  await expect(page.getByText("stay in this browser")).toBeHidden();
   await page.goto("about:blank");
   await page.goto("./#rig&step=verdict");
   await expect(heading(page, "1. Files and cameras")).toBeVisible();
