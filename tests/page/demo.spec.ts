@@ -48,6 +48,15 @@ test("the example that is too hard is too hard for the search as well", async ({
   // The true one is turned by 70 degrees about the vertical axis alone. Neighbours on the map are 16 degrees apart.
   expect(Math.hypot(Number(beta) - 70, Number(alpha))).toBeGreaterThan(24);
   expect(await lab.errorDegrees()).toBeGreaterThan(24);
+  // The words tell what rings and colours cannot: here many rotations score alike, and few of an easy scene.
+  const alike = async () => {
+    const said = / (none|\d+) within 5 % of the best$/.exec((await page.locator(words).textContent()) ?? "")?.[1];
+    return said === "none" ? 0 : Number(said);
+  };
+  const here = await alike();
+  await page.getByRole("button", { name: "Easy bust", exact: true }).click();
+  await lab.reaches("converged");
+  expect(here).toBeGreaterThan(3 * (await alike()));
 });
 
 test("an example says in a line what it shows, without a tooltip", async ({ lab, page }) => {
@@ -58,6 +67,46 @@ test("an example says in a line what it shows, without a tooltip", async ({ lab,
     await button.click();
     await expect(page.locator("#example")).toHaveText(`${name}: ${await button.getAttribute("title")}`);
   }
+});
+
+test("a pose that is nearly the best one is no alternative to it", async ({ lab, page }) => {
+  // The worker's reports get rivals 1, 4 and 40 degrees away.
+  await page.addInitScript(() => {
+    const turned = ([a, b, c, ...rest]: number[], degrees: number): number[] => {
+      const [cos, sin] = [Math.cos((degrees * Math.PI) / 180), Math.sin((degrees * Math.PI) / 180)];
+      const [d = 0, e = 0, f = 0, ...last] = rest;
+      const [x = 0, y = 0, z = 0] = [a, b, c];
+      return [
+        cos * x - sin * d,
+        cos * y - sin * e,
+        cos * z - sin * f,
+        sin * x + cos * d,
+        sin * y + cos * e,
+        sin * z + cos * f,
+        ...last,
+      ];
+    };
+    const { set } = Object.getOwnPropertyDescriptor(Worker.prototype, "onmessage") ?? {};
+    Object.defineProperty(Worker.prototype, "onmessage", {
+      set(this: Worker, listen: (event: MessageEvent) => void) {
+        set?.call(this, (event: MessageEvent) => {
+          for (const report of event.data?.reply?.reports ?? []) {
+            const { pose } = report;
+            report.rivals = [1, 4, 40].map((degrees) => ({ ...pose, rotation: turned(pose.rotation, degrees) }));
+          }
+          listen.call(this, event);
+        });
+      },
+    });
+  });
+  await lab.open("size=32");
+  await page.locator("#pace").selectOption({ label: "fastest" });
+  await page.getByRole("button", { name: "Play", exact: true }).click();
+  await expect(page.locator("#rivals").getByRole("button")).toHaveText([
+    "best pose",
+    "alternative, 4° away",
+    "alternative, 40° away",
+  ]);
 });
 
 test("the legend of the surfaces is that of their colours", async ({ lab, page }) => {
@@ -105,6 +154,8 @@ test("Export says that it has saved, or that there is nothing", async ({ lab, pa
 test("the address has what is shown, and nothing that was not followed", async ({ lab, page }) => {
   await lab.visit("size=100000&a=b&beta=30");
   await expect(page).toHaveURL(/#beta=30$/);
+  await lab.visit("a=b");
+  await expect(page).toHaveURL(/\/$/);
 });
 
 test("a stand plays by itself again after some silence, wherever the last visitor has gone", async ({ lab, page }) => {
