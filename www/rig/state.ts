@@ -78,6 +78,8 @@ export interface Candidate {
   pose: Pose;
   /** The file that it came from; it is removed with that file. */
   file?: number;
+  /** What the reader guessed about pasted text. */
+  guessed?: ReaderWarning[];
 }
 
 /** A warning of a reader or of this page. */
