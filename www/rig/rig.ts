@@ -244,15 +244,8 @@ export class Rig implements RigState {
     this.session.cancel();
     if (this.items.length + this.frames.length + this.candidates.length > 0)
       this.undo.keep("starting over", { isWhole: true });
-    Object.assign(this, {
-      items: [],
-      frames: [],
-      candidates: [],
-      notes: [],
-      arranged: {},
-      run: undefined,
-      history: [],
-    });
+    Object.assign(this, { items: [], frames: [], candidates: [], notes: [], arranged: {}, history: [] });
+    this.run = undefined;
     // The forms of the page refer to these objects.
     for (const side of ["colour", "depth"] as const) {
       Object.assign(this.cameras[side], { source: "", chosen: false });
