@@ -1,6 +1,8 @@
 /** The Lab in front of people: steps do what their names say, map and verdict agree, examples and colours explain themselves. */
 
-import { expect, test } from "./lab";
+import type { Page } from "@playwright/test";
+import type { StepReport } from "../../pkg/index.js";
+import { expect, test, type Lab } from "./lab";
 import { open } from "./figure";
 
 const words = "#score-words";
@@ -69,44 +71,52 @@ test("an example says in a line what it shows, without a tooltip", async ({ lab,
   }
 });
 
-test("a pose that is nearly the best one is no alternative to it", async ({ lab, page }) => {
-  // The worker's reports get rivals 1, 4 and 40 degrees away.
-  await page.addInitScript(() => {
-    const turned = ([a, b, c, ...rest]: number[], degrees: number): number[] => {
-      const [cos, sin] = [Math.cos((degrees * Math.PI) / 180), Math.sin((degrees * Math.PI) / 180)];
-      const [d = 0, e = 0, f = 0, ...last] = rest;
-      const [x = 0, y = 0, z = 0] = [a, b, c];
-      return [
-        cos * x - sin * d,
-        cos * y - sin * e,
-        cos * z - sin * f,
-        sin * x + cos * d,
-        sin * y + cos * e,
-        sin * z + cos * f,
-        ...last,
-      ];
-    };
-    const { set } = Object.getOwnPropertyDescriptor(Worker.prototype, "onmessage") ?? {};
+/** Runs this function on every report that the page gets. Must be called before the page opens. */
+const changeReports = (page: Page, change: (report: StepReport) => void): Promise<void> =>
+  page.addInitScript(`{
+    const change = ${change};
+    const { set } = Object.getOwnPropertyDescriptor(Worker.prototype, "onmessage");
     Object.defineProperty(Worker.prototype, "onmessage", {
-      set(this: Worker, listen: (event: MessageEvent) => void) {
-        set?.call(this, (event: MessageEvent) => {
-          for (const report of event.data?.reply?.reports ?? []) {
-            const { pose } = report;
-            report.rivals = [1, 4, 40].map((degrees) => ({ ...pose, rotation: turned(pose.rotation, degrees) }));
-          }
+      set(listen) {
+        set.call(this, (event) => {
+          event.data?.reply?.reports?.forEach(change);
           listen.call(this, event);
         });
       },
     });
-  });
+  }`);
+
+async function playThrough(lab: Lab): Promise<void> {
   await lab.open("size=32");
-  await page.locator("#pace").selectOption({ label: "fastest" });
-  await page.getByRole("button", { name: "Play", exact: true }).click();
+  await lab.page.locator("#pace").selectOption({ label: "fastest" });
+  await lab.page.getByRole("button", { name: "Play", exact: true }).click();
+}
+
+test("a pose that is nearly the best one is no alternative to it", async ({ lab, page }) => {
+  await changeReports(page, (report) => {
+    const [a = 0, b = 0, c = 0, d = 0, e = 0, f = 0, ...rest] = report.pose.rotation;
+    report.rivals = [1, 4, 40].map((degrees) => {
+      const [cos, sin] = [Math.cos((degrees * Math.PI) / 180), Math.sin((degrees * Math.PI) / 180)];
+      const rows = [cos * a - sin * d, cos * b - sin * e, cos * c - sin * f, sin * a + cos * d, sin * b + cos * e];
+      return { ...report.pose, rotation: [...rows, sin * c + cos * f, ...rest] };
+    });
+  });
+  await playThrough(lab);
   await expect(page.locator("#rivals").getByRole("button")).toHaveText([
     "best pose",
     "alternative, 4° away",
     "alternative, 40° away",
   ]);
+});
+
+test("a pose that is right although the run does not trust it is said to be right", async ({ lab, page }) => {
+  await changeReports(page, (report) => {
+    if (report.status === "converged") report.status = "lost";
+  });
+  await playThrough(lab);
+  await lab.reaches("lost");
+  expect(await lab.errorDegrees()).toBeLessThan(1);
+  await expect(page.locator("#next")).toContainText("The pose is nevertheless right.");
 });
 
 test("the legend of the surfaces is that of their colours", async ({ lab, page }) => {
@@ -167,6 +177,20 @@ test("a stand plays by itself again after some silence, wherever the last visito
   await expect(page.locator("#status")).toHaveAttribute("data-state", /^(playing|converged|ambiguous|lost)$/);
   await expect(page).toHaveURL(/\?kiosk=2#/);
   expect(lab.complaints).toEqual([]);
+});
+
+test("the light can be dragged on a laptop's first screen, whatever the verdict says", async ({ lab, page }) => {
+  await page.setViewportSize({ width: 1280, height: 720 });
+  await lab.visit("size=32");
+  await page.locator("#pace").selectOption({ label: "fastest" });
+  await page.getByRole("button", { name: "Too hard", exact: true }).click();
+  await lab.reaches("lost");
+  const [light, bar] = await Promise.all(
+    [page.getByRole("img", { name: /^A ball under the true light/ }), page.locator("#bar")].map((box) =>
+      box.boundingBox(),
+    ),
+  );
+  expect((light?.y ?? Infinity) + (light?.height ?? 0)).toBeLessThanOrEqual(bar?.y ?? 0);
 });
 
 test("the card of a pixel covers neither the status nor the buttons at the top", async ({ lab, page }) => {
