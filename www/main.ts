@@ -92,9 +92,10 @@ button("defaults", () => store.resetToDefaults());
 button("export", () => {
   const place = placeOf(location.hash);
   let isSaved = false;
-  const note = () => {
+  const note = (event: Event) => {
     isSaved = true;
     say("export", phrase("saved", "Saved"));
+    if (event instanceof CustomEvent) report(phrase("saved.as", "Saved {what}.", { what: String(event.detail) }));
   };
   saves.addEventListener("saved", note, { once: true });
   if (place === "lab") lab.download();
@@ -125,6 +126,15 @@ function say(id: string, words: string): void {
   target.textContent = words;
   setTimeout(() => reword(target), 2000);
 }
+
+/** Says below the buttons of the top what was saved. */
+function report(words: string): void {
+  const place = byId("exported", HTMLElement);
+  place.textContent = words;
+  clearTimeout(fading);
+  fading = setTimeout(() => (place.textContent = ""), 8000);
+}
+let fading: ReturnType<typeof setTimeout> | undefined;
 
 function choose(origin: Origin): void {
   for (const each of ["sample", "files"] as const) {

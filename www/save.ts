@@ -1,9 +1,12 @@
 /** Saves a file on the visitor's machine. */
 
-export const saveJson = (name: string, value: unknown): void =>
+/** `content` says in words what the file contains. */
+export function saveJson(name: string, content: string, value: unknown): void {
   saveBlob(name, new Blob([JSON.stringify(value, null, 2)], { type: "application/json" }));
+  saves.dispatchEvent(new CustomEvent("saved", { detail: `${name}: ${content}` }));
+}
 
-/** Has an event "saved" for each file that was handed over. */
+/** Has an event "saved" for each file of numbers that was handed over, with its name and content in words. */
 export const saves = new EventTarget();
 
 export function saveBlob(name: string, blob: Blob): void {
@@ -12,7 +15,6 @@ export function saveBlob(name: string, blob: Blob): void {
   link.href = url;
   link.download = name;
   link.click();
-  saves.dispatchEvent(new Event("saved"));
   // Some browsers read the blob only after the click has returned.
   setTimeout(() => URL.revokeObjectURL(url), 10_000);
 }

@@ -9,6 +9,8 @@ interface Breakable {
   ended: number;
   /** Ends every worker whose script's address contains this name, now. */
   endAll(script: string): void;
+  /** Number of workers that were made of such a script. */
+  made(script: string): number;
   /** Hides the page: frames are not drawn, as while another tab is in front. */
   hide(isHidden: boolean): void;
 }
@@ -57,6 +59,7 @@ export async function breakable(page: Page): Promise<void> {
       endAll: (script) => {
         for (const { worker, address } of workers) if (address.includes(script)) worker.terminate();
       },
+      made: (script) => workers.filter(({ address }) => address.includes(script)).length,
       hide(hidden) {
         isHidden = hidden;
         document.dispatchEvent(new Event("visibilitychange"));
@@ -78,6 +81,8 @@ export const endAt = (page: Page, members: Record<string, string>, nth = 1, time
 export const ended = (page: Page): Promise<number> => page.evaluate(() => (window as unknown as Breakable).ended);
 export const endAll = (page: Page, script: string): Promise<void> =>
   page.evaluate((script) => (window as unknown as Breakable).endAll(script), script);
+export const made = (page: Page, script: string): Promise<number> =>
+  page.evaluate((script) => (window as unknown as Breakable).made(script), script);
 export const hide = (page: Page, isHidden: boolean): Promise<void> =>
   page.evaluate((isHidden) => (window as unknown as Breakable).hide(isHidden), isHidden);
 

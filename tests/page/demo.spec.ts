@@ -1,6 +1,8 @@
 /** The Lab in front of people: steps do what their names say, map and verdict agree, examples and colours explain themselves. */
 
-import { expect, test } from "./lab";
+import type { Page } from "@playwright/test";
+import type { StepReport } from "../../pkg/index.js";
+import { expect, test, type Lab } from "./lab";
 import { open } from "./figure";
 
 const words = "#score-words";
@@ -48,6 +50,15 @@ test("the example that is too hard is too hard for the search as well", async ({
   // The true one is turned by 70 degrees about the vertical axis alone. Neighbours on the map are 16 degrees apart.
   expect(Math.hypot(Number(beta) - 70, Number(alpha))).toBeGreaterThan(24);
   expect(await lab.errorDegrees()).toBeGreaterThan(24);
+  // The words tell what rings and colours cannot: here many rotations score alike, and few of an easy scene.
+  const alike = async () => {
+    const said = / (none|\d+) within 5 % of the best$/.exec((await page.locator(words).textContent()) ?? "")?.[1];
+    return said === "none" ? 0 : Number(said);
+  };
+  const here = await alike();
+  await page.getByRole("button", { name: "Easy bust", exact: true }).click();
+  await lab.reaches("converged");
+  expect(here).toBeGreaterThan(3 * (await alike()));
 });
 
 test("an example says in a line what it shows, without a tooltip", async ({ lab, page }) => {
@@ -58,6 +69,54 @@ test("an example says in a line what it shows, without a tooltip", async ({ lab,
     await button.click();
     await expect(page.locator("#example")).toHaveText(`${name}: ${await button.getAttribute("title")}`);
   }
+});
+
+/** Runs this function on every report that the page gets. Must be called before the page opens. */
+const changeReports = (page: Page, change: (report: StepReport) => void): Promise<void> =>
+  page.addInitScript(`{
+    const change = ${change};
+    const { set } = Object.getOwnPropertyDescriptor(Worker.prototype, "onmessage");
+    Object.defineProperty(Worker.prototype, "onmessage", {
+      set(listen) {
+        set.call(this, (event) => {
+          event.data?.reply?.reports?.forEach(change);
+          listen.call(this, event);
+        });
+      },
+    });
+  }`);
+
+async function playThrough(lab: Lab): Promise<void> {
+  await lab.open("size=32");
+  await lab.page.locator("#pace").selectOption({ label: "fastest" });
+  await lab.page.getByRole("button", { name: "Play", exact: true }).click();
+}
+
+test("a pose that is nearly the best one is no alternative to it", async ({ lab, page }) => {
+  await changeReports(page, (report) => {
+    const [a = 0, b = 0, c = 0, d = 0, e = 0, f = 0, ...rest] = report.pose.rotation;
+    report.rivals = [1, 4, 40].map((degrees) => {
+      const [cos, sin] = [Math.cos((degrees * Math.PI) / 180), Math.sin((degrees * Math.PI) / 180)];
+      const rows = [cos * a - sin * d, cos * b - sin * e, cos * c - sin * f, sin * a + cos * d, sin * b + cos * e];
+      return { ...report.pose, rotation: [...rows, sin * c + cos * f, ...rest] };
+    });
+  });
+  await playThrough(lab);
+  await expect(page.locator("#rivals").getByRole("button")).toHaveText([
+    "best pose",
+    "alternative, 4° away",
+    "alternative, 40° away",
+  ]);
+});
+
+test("a pose that is right although the run does not trust it is said to be right", async ({ lab, page }) => {
+  await changeReports(page, (report) => {
+    if (report.status === "converged") report.status = "lost";
+  });
+  await playThrough(lab);
+  await lab.reaches("lost");
+  expect(await lab.errorDegrees()).toBeLessThan(1);
+  await expect(page.locator("#next")).toContainText("The pose is nevertheless right.");
 });
 
 test("the legend of the surfaces is that of their colours", async ({ lab, page }) => {
@@ -78,7 +137,7 @@ test("all that a verdict says can be read without scrolling in its panel", async
   await lab.open("size=32");
   const cut = await page.locator("#panel").evaluate((panel) => {
     const next = panel.querySelector("#next");
-    if (next) next.textContent = "Only a tenth of the depth pixels have a counterpart in the image. ".repeat(6);
+    if (next) next.textContent = "Only a tenth of the depth pixels have a counterpart in the image. ".repeat(20);
     return panel.scrollHeight - panel.clientHeight;
   });
   expect(cut).toBeLessThanOrEqual(0);
@@ -91,8 +150,12 @@ test("Export says that it has saved, or that there is nothing", async ({ lab, pa
   await exporting.click();
   await saved;
   await expect(exporting).toHaveText("Saved");
+  const said = page.locator("#exported");
+  await expect(said).toHaveText("Saved bimodal-stereo-report.json: settings, poses and all iterations of this run.");
   await expect(exporting).toHaveText("Export");
   await open(page, "at=grey");
+  await exporting.click();
+  await expect(said).toHaveText("Saved bimodal-stereo-lesson-grey.json: settings and numbers of this figure.");
   await page.getByRole("link", { name: "Exercises", exact: true }).click();
   await exporting.click();
   await expect(exporting).toHaveText("Nothing to export");
@@ -101,6 +164,8 @@ test("Export says that it has saved, or that there is nothing", async ({ lab, pa
 test("the address has what is shown, and nothing that was not followed", async ({ lab, page }) => {
   await lab.visit("size=100000&a=b&beta=30");
   await expect(page).toHaveURL(/#beta=30$/);
+  await lab.visit("a=b");
+  await expect(page).toHaveURL(/\/$/);
 });
 
 test("a stand plays by itself again after some silence, wherever the last visitor has gone", async ({ lab, page }) => {
@@ -112,6 +177,20 @@ test("a stand plays by itself again after some silence, wherever the last visito
   await expect(page.locator("#status")).toHaveAttribute("data-state", /^(playing|converged|ambiguous|lost)$/);
   await expect(page).toHaveURL(/\?kiosk=2#/);
   expect(lab.complaints).toEqual([]);
+});
+
+test("the light can be dragged on a laptop's first screen, whatever the verdict says", async ({ lab, page }) => {
+  await page.setViewportSize({ width: 1280, height: 720 });
+  await lab.visit("size=32");
+  await page.locator("#pace").selectOption({ label: "fastest" });
+  await page.getByRole("button", { name: "Too hard", exact: true }).click();
+  await lab.reaches("lost");
+  const [light, bar] = await Promise.all(
+    [page.getByRole("img", { name: /^A ball under the true light/ }), page.locator("#bar")].map((box) =>
+      box.boundingBox(),
+    ),
+  );
+  expect((light?.y ?? Infinity) + (light?.height ?? 0)).toBeLessThanOrEqual(bar?.y ?? 0);
 });
 
 test("the card of a pixel covers neither the status nor the buttons at the top", async ({ lab, page }) => {

@@ -281,7 +281,7 @@ test("the footer begins where its place does, on the widest screens too, and bef
 test("each place has its own help", async ({ lab, page }) => {
   await lab.visit("size=64");
   for (const [link, title, words] of [
-    ["#to-learn", "Learn", "Nine lessons"],
+    ["#to-learn", "Learn", "each a short text beside a figure"],
     ["#to-tables", "Tables", "beside the paper's number"],
     ["#to-rig", "Check a rig", "Load an example"],
     ["#to-lab", "The Lab", "Choose a pair"],

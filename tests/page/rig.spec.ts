@@ -58,6 +58,8 @@ test("steps go back, by their buttons and by the browser's, and nothing is lost"
   await page.getByRole("link", { name: "Check a rig" }).click();
   await expect(page.locator(".rig-frame")).toHaveCount(3);
   // A step without content leads to the first step.
+  await page.getByRole("button", { name: "Start over" }).click();
+  await expect(page.getByText("stay in this browser")).toBeHidden();
   await page.goto("about:blank");
   await page.goto("./#rig&step=verdict");
   await expect(heading(page, "1. Files and cameras")).toBeVisible();
@@ -80,6 +82,16 @@ test("calibrations from a file, pasted and typed in; inverted twice they are wha
   await page.getByLabel("Or paste it in any of these formats").fill("1 0 0 0\n0 1 0 0.01\n0 0 1 0\n0 0 0 1");
   await page.getByRole("button", { name: "Add what I pasted" }).click();
   await expect(words.nth(1)).toContainText("10.0 mm below");
+  await expect(page.locator(".rig-candidate .rig-notes li")).toHaveCount(0);
+  // A guessed unit is said beside its calibration.
+  await page.getByLabel("Or paste it in any of these formats").fill("1 0 0 25\n0 1 0 0\n0 0 1 0\n0 0 0 1");
+  await page.getByRole("button", { name: "Add what I pasted" }).click();
+  await expect(page.locator(".rig-candidate").nth(2)).toContainText("was guessed to be in millimetres");
+  await page
+    .locator(".rig-candidate")
+    .nth(2)
+    .getByRole("button", { name: /^Remove/ })
+    .click();
   await page.getByLabel("Or paste it in any of these formats").fill("what is this");
   await page.getByRole("button", { name: "Add what I pasted" }).click();
   await expect(page.locator(".rig-step:not([hidden]) .rig-error[role=alert]").first()).toContainText("pasted text");

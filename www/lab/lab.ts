@@ -13,6 +13,7 @@ import { Player, type Advance, type Again } from "./player";
 import { offerPictures } from "./pictures";
 import { Panels } from "./panels";
 import { RunRecord } from "./record";
+import { repeated } from "./repeat";
 import { areOfInput } from "./fields";
 import { guess, methodOf, runOptions, settingsOf, startNear, turnOf, type Origin, type Settings } from "./settings";
 import { download, writeAddress } from "./share";
@@ -25,7 +26,9 @@ import type { Kind } from "./kinds";
 import { Messages } from "./messages";
 import { Notices } from "./notices";
 import { fill, sayVacant, vacate } from "./vacancy";
-import { sentence, verdict, wordsOf, type Verdict } from "./verdict";
+import { verdict, wordsOf, type Verdict } from "./verdict";
+
+const offerViews = () => offerPictures(byId("lab", HTMLElement), byId("take-picture", HTMLSelectElement));
 
 export class Lab {
   readonly store: Store;
@@ -46,7 +49,8 @@ export class Lab {
     onLost: (error) => this.#lose(error),
   });
   readonly #form: Form;
-  readonly #own = new OwnFiles({
+  /** The visitor's files. */
+  readonly own = new OwnFiles({
     onChange: () => {
       this.#saved = undefined;
       void this.#reopen();
@@ -93,7 +97,7 @@ export class Lab {
     this.store = store;
     this.#form = form;
     this.gallery = gallery;
-    this.#messages = new Messages(this.#form, this.#own.intake, () => void this.#own.drawMask());
+    this.#messages = new Messages(this.#form, this.own.intake, () => void this.own.drawMask());
     const unlessGone = (): undefined => undefined;
     gallery.serve({
       look: (look) => this.#engine.call("look", { look }).catch(unlessGone),
@@ -121,10 +125,8 @@ export class Lab {
       ...{ store, gallery, engine: this.#engine, panels: this.#panels },
       turn: () => (this.#origin === "sample" ? this.#turn : undefined),
     });
-    byId("slots", HTMLElement).append(this.#own.intake.element);
-    byId("take-picture", HTMLSelectElement).addEventListener("focus", () =>
-      offerPictures(byId("lab", HTMLElement), byId("take-picture", HTMLSelectElement)),
-    );
+    byId("slots", HTMLElement).append(this.own.intake.element);
+    byId("take-picture", HTMLSelectElement).addEventListener("focus", () => offerViews());
     this.store.listen((settings, changed, live) => this.#settingsChanged(settings, changed, live));
     this.#form.adapt(this.store.settings, this.#origin);
   }
@@ -159,7 +161,7 @@ export class Lab {
     rememberOrigin(origin);
     this.#form.adapt(this.store.settings, origin);
     void this.#reopen();
-    this.#own.choose(origin);
+    this.own.choose(origin);
   }
 
   restart(): Promise<void> {
@@ -177,7 +179,7 @@ export class Lab {
   async take(kind: Kind): Promise<void> {
     const { report, truth } = this.#record;
     if (!this.#good || !report) return;
-    const files = this.#good.source.kind === "files" ? this.#own.intake.said : [];
+    const files = this.#good.source.kind === "files" ? this.own.intake.said : [];
     try {
       await handOver(kind, this.#engine, { ...this.#good, report, truth, end: this.#verdict(report), files });
     } catch (error) {
@@ -189,16 +191,11 @@ export class Lab {
   #goOnWith(file: File): void {
     this.player.pause();
     this.#saved = { kind: "saved", file };
-    this.#own.intake.remarks("files", [
+    this.own.intake.remarks("files", [
       { words: `${file.name}: a saved run, resumed where it stopped. Its options are in the fields.`, wrong: false },
     ]);
     this.#vacate();
     void this.#start(this.#saved);
-  }
-
-  /** The visitor's files. */
-  get own(): OwnFiles {
-    return this.#own;
   }
 
   /** Pictures and true values of the previous pair are removed from the screen. */
@@ -215,7 +212,7 @@ export class Lab {
   #settingsChanged(settings: Settings, changed: readonly string[], live: boolean): void {
     writeAddress(settings);
     this.#form.adapt(settings, this.#origin);
-    this.#own.adapt(settings);
+    this.own.adapt(settings);
     // Settings of a run that already exists.
     if (changed.length === 0) return;
     this.#panels.date(true);
@@ -242,13 +239,13 @@ export class Lab {
 
   #reopen(): Promise<void> {
     this.player.pause();
-    const { colour, depth } = this.#own.intake.files;
+    const { colour, depth } = this.own.intake.files;
     const wanted = this.#origin === "files" && !this.#saved ? [colour, depth] : [];
     if (wanted.length !== this.#pair.length || wanted.some((file, i) => file !== this.#pair[i])) this.#vacate();
     return this.#start(
       this.#origin === "files" && this.#saved
         ? this.#saved
-        : sourceOf(this.#origin, this.store.settings, this.#own.intake.files),
+        : sourceOf(this.#origin, this.store.settings, this.own.intake.files),
     );
   }
 
@@ -259,8 +256,7 @@ export class Lab {
   }
 
   #enter(beginning: Promise<void>): Promise<void> {
-    this.#beginning = beginning;
-    return beginning;
+    return (this.#beginning = beginning);
   }
 
   async #attempt(source: Source | string, turn: number): Promise<void> {
@@ -270,11 +266,8 @@ export class Lab {
     if (typeof source === "string") return this.#notices.lack(source);
     const settings = this.store.settings;
     const options = runOptions(settings, originOf(source));
-    this.#notices.announce(
-      "loading",
-      source === this.#good?.source ? "restarting" : "reading the input",
-      source === this.#good?.source ? "" : namesIn(source),
-    );
+    const isAgain = source === this.#good?.source;
+    this.#notices.announce("loading", isAgain ? "restarting" : "reading the input", isAgain ? "" : namesIn(source));
     try {
       await this.#offerChoices();
       await this.#engine.interrupt();
@@ -284,9 +277,7 @@ export class Lab {
         if (turn !== this.#turn) return;
         this.#forget();
         await this.#show(frame);
-      } else {
-        if (!(await this.#open(source, options, turn))) return;
-      }
+      } else if (!(await this.#open(source, options, turn))) return;
       // Includes what the page has filled in by itself.
       this.#good = { source, settings: turn === this.#turn ? this.store.settings : settings };
       if (turn === this.#turn) this.#notices.settle();
@@ -339,7 +330,7 @@ export class Lab {
     this.#messages.note(opened.notes);
     this.#take(opened.frame);
     await nextFrame();
-    offerPictures(byId("lab", HTMLElement), byId("take-picture", HTMLSelectElement));
+    offerViews();
   }
 
   async #advance(request: Advance): Promise<boolean> {
@@ -388,7 +379,7 @@ export class Lab {
   #showState(): void {
     const { playing } = this.player;
     const { report } = this.#record;
-    this.#panels.about(this.#origin, this.#own.doubt);
+    this.#panels.about(this.#origin, this.own.doubt);
     this.#panels.show(this.#record, playing, report && this.#verdict(report));
     const notice = this.#notices.now;
     if (notice) this.#panels.announce(notice);
@@ -401,14 +392,7 @@ export class Lab {
   /** Shows an error beside the field that it concerns; what was on the screen stays usable. */
   async #fail(error: unknown): Promise<void> {
     this.player.pause();
-    const placed = this.#messages.fail(error);
-    if (placed)
-      this.#notices.announce(
-        "error",
-        `${placed.field}: invalid value`,
-        `${sentence(placed.words)} The field is marked.`,
-      );
-    else this.#notices.announce("error", "see the message");
+    this.#notices.fail(this.#messages.fail(error));
     if (this.#good && this.#held !== this.#good.source) await this.#recover(this.#good);
   }
 
@@ -416,8 +400,26 @@ export class Lab {
   #lose(error: EngineError): void {
     this.#held = undefined;
     const turn = this.#turn;
-    if (error.fatal)
-      setTimeout(() => turn === this.#turn && this.#good && !this.#held && void this.#enter(this.#fail(error)));
+    const act = () => {
+      if (turn !== this.#turn || !this.#good || this.#held) return;
+      const reached = error.code === LOST && this.#record.report;
+      void this.#enter(reached ? this.#repeat(this.#good, reached) : this.#fail(error));
+    };
+    if (error.fatal) setTimeout(act);
+  }
+
+  /** The browser ended the worker while the page rested: the run is repeated, and nothing on the screen changes. */
+  async #repeat(good: { source: Source; settings: Settings }, reached: StepReport): Promise<void> {
+    const turn = ++this.#turn;
+    const isWanted = () => turn === this.#turn;
+    try {
+      const frame = await repeated(good, reached, this.#engine, this.gallery, isWanted);
+      if (!frame) return;
+      this.#held = good.source;
+      await this.gallery.show(frame, this.#record.history);
+    } catch (error) {
+      if (isWanted()) await this.#fail(error);
+    }
   }
 
   /** Repeats a run or a step whose worker was ended, with the same numbers; only once, because the run itself may be the cause. */

@@ -2,6 +2,7 @@
 
 import { wayOut } from "./source";
 import type { Notice } from "./status";
+import { sentence } from "./verdict";
 
 export class Notices {
   #now: { state: Notice; words: string; cause: string } | undefined;
@@ -18,6 +19,12 @@ export class Notices {
   announce(state: Notice, words: string, cause = ""): void {
     this.#now = { state, words, cause };
     this.#onChange();
+  }
+
+  /** An error, which may be shown beside a field. */
+  fail(placed: { field: string; words: string } | undefined): void {
+    if (!placed) return this.announce("error", "see the message");
+    this.announce("error", `${placed.field}: invalid value`, `${sentence(placed.words)} The field is marked.`);
   }
 
   /** Says what an input lacks, or that files are being read which may supply it. */

@@ -12,6 +12,8 @@ import { decimals } from "../draw/numbers";
 const REACH = 105;
 /** Distance of neighbouring rotations, degrees, which is the side of a square. */
 const SPACING = 16;
+/** Part of the best score from which another rotation is said to be nearly as good. */
+const NEAR = 0.95;
 
 export class ScoreMap {
   readonly #figure = byId("score-map", HTMLElement);
@@ -41,17 +43,21 @@ export class ScoreMap {
         context.strokeStyle = ink;
         context.lineWidth = 5 - 3 * line;
         context.beginPath();
-        context.arc(at(beta), at(alpha), 0.8 * side, 0, 2 * Math.PI);
+        context.arc(at(beta), at(alpha), 0.6 * side, 0, 2 * Math.PI);
         context.stroke();
       });
     };
     mark(best[0] ?? 0, best[1] ?? 0, ["#000", "#fff"]);
     if (truth) mark(truth.angles.alpha, truth.angles.beta, ["#fff", "#d55e00"]);
     this.#figure.hidden = false;
-    this.#words.textContent = ` of ${count} trial rotations (white ring: best${truth ? "; orange: true" : ""})`;
+    // Where many score alike, the best one is the best by chance, which the colours cannot show.
+    const others = rows.filter(([, , , score = 0]) => score >= NEAR * (best[3] ?? 0)).length - 1;
+    const rings = `white ring: best${truth ? "; orange: true" : ""}`;
+    const alike = others === 0 ? "none" : String(others);
+    this.#words.textContent = ` of ${count} trial rotations (${rings}); ${alike} within 5 % of the best`;
     this.#canvas.setAttribute(
       "aria-label",
-      `Scores of ${count} rotations. The best one is ${decimals(best[1], 0)} degrees about the vertical axis and ${decimals(best[0], 0)} about the horizontal one.`,
+      `Scores of ${count} rotations. The best one is ${decimals(best[1], 0)} degrees about the vertical axis and ${decimals(best[0], 0)} about the horizontal one. Within 5 percent of its score: ${alike}.`,
     );
   }
 

@@ -54,7 +54,7 @@ export interface Experiment {
 /** Saves the full report of a run as JSON. */
 export function download({ source, settings, truth, report, history }: Experiment): void {
   const rotationErrorDegrees = truth ? angleBetween(report.pose.rotation, truth.rotation) : null;
-  saveJson("bimodal-stereo-report.json", {
+  saveJson("bimodal-stereo-report.json", "settings, poses and all iterations of this run", {
     format: "bimodal-stereo report",
     version: 1,
     source,

@@ -122,7 +122,7 @@ export class LearnPage {
     // With the exercises on the page there is no figure to export.
     if (!this.#shown?.article.isConnected) return;
     const { lesson, controls, drawing } = this.#shown;
-    saveJson(`bimodal-stereo-lesson-${lesson.id}.json`, {
+    saveJson(`bimodal-stereo-lesson-${lesson.id}.json`, phrase("saved.lesson", "settings and numbers of this figure"), {
       format: "bimodal-stereo lesson",
       version: 1,
       lesson: lesson.id,

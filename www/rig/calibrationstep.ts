@@ -89,7 +89,7 @@ export class CalibrationStep {
     });
     const words = make("p", { class: "rig-words" });
     const origin = make("p", { class: "soft" });
-    const far = make("ul", { class: "rig-notes" });
+    const notes = make("ul", { class: "rig-notes" });
     const matrix = make("pre", {});
     const rank = make("span", { class: "rig-rank" });
     const invert = press("Invert", () => {
@@ -120,7 +120,7 @@ export class CalibrationStep {
       { class: "rig-candidate" },
       make("div", { class: "rig-row" }, rank, labelled("Name", name, note)),
       words,
-      far,
+      notes,
       origin,
       make("details", {}, make("summary", {}, "Matrix"), matrix),
       make("div", { class: "rig-row" }, invert, first, remove),
@@ -131,16 +131,14 @@ export class CalibrationStep {
         if (document.activeElement !== name) name.value = candidate.name;
         words.textContent = placeInWords(candidate.pose, rig.hasScans);
         const apart = Math.hypot(...candidate.pose.translation);
-        far.replaceChildren(
-          ...(apart > (rig.hasScans ? FAR_ON_VEHICLE : FAR)
-            ? [
-                make(
-                  "li",
-                  {},
-                  `${decimals(apart, apart > 10 ? 0 : 2)} m apart is far for one rig. Is the translation in metres, and does the pose relate the two cameras?`,
-                ),
-              ]
-            : []),
+        const isFar = apart > (rig.hasScans ? FAR_ON_VEHICLE : FAR);
+        const farWords = `${decimals(apart, apart > 10 ? 0 : 2)} m apart is far for one rig. Is the translation in metres, and does the pose relate the two cameras?`;
+        // What was guessed about a file is said here as well: it was perhaps dropped here.
+        const warnings = candidate.guessed ?? rig.item(candidate.file)?.summary?.warnings ?? [];
+        notes.replaceChildren(
+          ...[...(isFar ? [farWords] : []), ...warnings.map(({ message }) => message)].map((each) =>
+            make("li", {}, each),
+          ),
         );
         origin.textContent = `From ${candidate.origin}.`;
         matrix.textContent = matrixText(candidate.pose);
@@ -188,7 +186,12 @@ export class CalibrationStep {
     const id = this.#rig.freshId();
     const name = "pasted text";
     try {
-      const { poses } = await this.#rig.session.call("read", { file: id, name, blob: new Blob([text]), as: "poses" });
+      const { poses, warnings } = await this.#rig.session.call("read", {
+        file: id,
+        name,
+        blob: new Blob([text]),
+        as: "poses",
+      });
       if (poses.length === 0) throw new Error("No calibration was found in the text.");
       if (poses.every(isOfWorld))
         throw new Error(
@@ -199,7 +202,8 @@ export class CalibrationStep {
         throw new Error(
           "This pose relates a sensor to a body, a vehicle, a robot or a calibration target. A calibration transforms points from the depth camera or the LiDAR to the colour camera.",
         );
-      for (const pose of ofSensors) this.#rig.addPose({ ...pose, name: pose.name ?? "pasted" }, name);
+      for (const pose of ofSensors)
+        this.#rig.addPose({ ...pose, name: pose.name ?? "pasted" }, name).guessed = warnings;
     } catch (error) {
       this.#complain(messageOf(error));
     } finally {

@@ -25,6 +25,10 @@ export class FilesStep {
   readonly #notes = make("ul", { class: "rig-notes" });
   readonly #example = press("Load an example", () => void this.#loadExample());
   readonly #clear = press("Start over", () => this.#rig.clear());
+  readonly #restore = press("Restore", () => void this.#onRestore(), { hidden: true });
+  #onRestore: () => Promise<void> = async () => {};
+  /** How the files are kept. */
+  readonly #keeping = make("p", { class: "soft", hidden: true });
   readonly #missing = make("p", { class: "rig-missing" });
   readonly #next: HTMLButtonElement;
   readonly #framesCard: HTMLElement;
@@ -80,7 +84,8 @@ export class FilesStep {
         "section",
         { class: "rig-card" },
         drop,
-        make("div", { class: "rig-row" }, this.#example, this.#clear, this.#status),
+        make("div", { class: "rig-row" }, this.#example, this.#restore, this.#clear, this.#status),
+        this.#keeping,
         this.#alert,
         this.#guess,
         this.#notes,
@@ -122,6 +127,7 @@ export class FilesStep {
         ? ""
         : `The unit of ${guessed.length === 1 ? guessed[0]?.name : `${guessed.length} depth maps`} was guessed: ${names.join(" and ")}.`;
     this.#clear.hidden = items.length === 0;
+    if (items.length > 0) this.#restore.hidden = true;
     const files = items.filter(({ recording }) => recording === undefined);
     const reading = files.filter(({ state }) => state === "reading").length;
     const failed = files.filter(({ state }) => state === "failed").length;
@@ -134,6 +140,19 @@ export class FilesStep {
           : `${files.length - failed} of ${files.length} ${files.length === 1 ? "file" : "files"} read`;
     this.#missing.textContent = missing.length === 0 ? "" : `Still missing: ${missing.join("; ")}.`;
     this.#next.disabled = missing.length > 0;
+  }
+
+  /** Says how the files are kept. */
+  keeping(words: string): void {
+    this.#keeping.textContent = words;
+    this.#keeping.hidden = words === "";
+  }
+
+  /** Offers the files of another visit. */
+  offer(count: number, restore: () => Promise<void>): void {
+    this.#restore.textContent = `Restore the last rig (${count} ${count === 1 ? "file" : "files"})`;
+    this.#onRestore = restore;
+    this.#restore.hidden = false;
   }
 
   #liveBox(seeVerdict: () => void): HTMLElement {

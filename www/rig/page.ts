@@ -5,8 +5,10 @@ import "../style/rig-steps.css";
 import "../style/rig-verdict.css";
 import "../style/rig-narrow.css";
 import { make } from "../dom";
+import { placeOf } from "../place";
 import { CalibrationStep } from "./calibrationstep";
 import { FilesStep } from "./filesstep";
+import { Kept } from "./kept";
 import { press } from "./parts";
 import { Rig } from "./rig";
 import { VerdictStep } from "./verdictstep";
@@ -61,6 +63,16 @@ export class RigPage {
       this.#body,
     );
     rig.listen(() => this.#show());
+    void this.#restore();
+  }
+
+  /** After a reload the rig is as it was, at the step of the address. */
+  async #restore(): Promise<void> {
+    const { files } = this.#steps;
+    const kept = new Kept(this.#rig, (words) => files.keeping(words));
+    const count = await kept.open();
+    if (count > 0) files.offer(count, () => kept.restore());
+    else if (placeOf(location.hash) === "rig") this.open(location.hash);
   }
 
   /** Shows the step named in the address, if there is something to show. */

@@ -166,7 +166,7 @@ export class Rig implements RigState {
   }
 
   /** A pose that leads away from the colour camera, or to the depth camera or a LiDAR, by the names of its frames is inverted. */
-  addPose({ name, pose, from, to }: Summary["poses"][number], origin: string, file?: number): void {
+  addPose({ name, pose, from, to }: Summary["poses"][number], origin: string, file?: number): Candidate {
     const isBackward = isBackwards({ from, to });
     const direction = isBackward
       ? `, given from ${from ?? "colour"} to ${to ?? "depth"} and inverted`
@@ -178,9 +178,11 @@ export class Rig implements RigState {
       name: this.#freshName(name || origin.replace(/\.\w+$/, "").replace(/^.*\//, "")),
       origin: `${origin}${direction}`,
       pose: isBackward ? inverse(pose) : pose,
+      ...(file === undefined ? {} : { file }),
     };
-    this.candidates.push(file === undefined ? candidate : { ...candidate, file });
+    this.candidates.push(candidate);
     this.changed();
+    return candidate;
   }
 
   #freshName(wanted: string): string {
@@ -242,18 +244,13 @@ export class Rig implements RigState {
     this.session.cancel();
     if (this.items.length + this.frames.length + this.candidates.length > 0)
       this.undo.keep("starting over", { isWhole: true });
-    this.items = [];
-    this.frames = [];
-    this.candidates = [];
+    Object.assign(this, { items: [], frames: [], candidates: [], notes: [], arranged: {}, history: [] });
+    this.run = undefined;
     // The forms of the page refer to these objects.
     for (const side of ["colour", "depth"] as const) {
       Object.assign(this.cameras[side], { source: "", chosen: false });
       Object.assign(this.cameras[side].typed, emptyCamera());
     }
-    this.notes = [];
-    this.arranged = {};
-    this.run = undefined;
-    this.history = [];
     this.changed();
   }
 

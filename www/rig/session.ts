@@ -26,6 +26,9 @@ interface Waiting {
   onProgress?: ((share: number, message: string) => void) | undefined;
 }
 
+/** A request that is repeated for a new worker. */
+export type Read = { [K in CallKind]: { kind: K; ask: Calls[K]["ask"] } }[CallKind];
+
 /** Requests after which the worker holds pixels. They are repeated for a new worker, except the one that ended the old worker. */
 const READS: readonly CallKind[] = ["read", "folder", "example", "take"];
 
@@ -42,7 +45,7 @@ export class Session {
   /** Called when a worker is replaced, because frames from a robot were only in the old one. */
   onReplaced = (): void => {};
   /** The first requests to a new worker: everything that the old one had read. */
-  #known = new Map<string, { kind: CallKind; ask: object }>();
+  readonly known = new Map<string, Read>();
 
   call<K extends CallKind>(
     kind: K,
@@ -80,13 +83,13 @@ export class Session {
   #remember(kind: CallKind, ask: object): void {
     const key = keyOf(kind, ask);
     if (kind === "forget") {
-      if ("file" in ask) this.#known.delete(`take ${ask.file}`);
-      return void this.#known.delete(key);
+      if ("file" in ask) this.known.delete(`take ${ask.file}`);
+      return void this.known.delete(key);
     }
     if (!READS.includes(kind) && kind !== "unit" && kind !== "frames") return;
     // A repeated request moves to the end, because it may refer to files that came later.
-    this.#known.delete(key);
-    this.#known.set(key, { kind, ask });
+    this.known.delete(key);
+    this.known.set(key, { kind, ask } as Read);
   }
 
   #thread(): Worker {
@@ -103,7 +106,7 @@ export class Session {
       if (worker === this.#worker) this.#restart(event.message || "The check's worker could not be loaded.");
     };
     this.#worker = worker;
-    for (const { kind, ask } of this.#known.values()) worker.postMessage({ ...ask, id: 0, kind } as Request);
+    for (const { kind, ask } of this.known.values()) worker.postMessage({ ...ask, id: 0, kind } as Request);
     return worker;
   }
 
@@ -134,7 +137,7 @@ export class Session {
     const left = [...this.#waiting.values()];
     this.#waiting.clear();
     // The file being read may have ended the worker, so no other worker reads it.
-    for (const { kind, ask } of left) if (READS.includes(kind)) this.#known.delete(keyOf(kind, ask));
+    for (const { kind, ask } of left) if (READS.includes(kind)) this.known.delete(keyOf(kind, ask));
     for (const { reject } of left) reject(new RigError({ code: "internal", message, fatal: true }));
   }
 }

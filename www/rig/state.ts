@@ -78,6 +78,8 @@ export interface Candidate {
   pose: Pose;
   /** The file that the candidate came from; removing the file also removes the candidate. */
   file?: number;
+  /** What the reader guessed about pasted text. */
+  guessed?: ReaderWarning[];
 }
 
 /** A warning of a reader or of this page. */

@@ -137,7 +137,12 @@ export class VerdictStep {
     if (!run) return this.#complain("There is no verdict to export yet.");
     const { inputsOf } = await import("./reportfile");
     const { inputs } = await inputsOf(this.#rig);
-    saveJson("rig-check.json", { format: "bimodal-stereo check", version: 1, ...whole(run), inputs });
+    saveJson("rig-check.json", "the verdict, its numbers and the hashes of the files", {
+      format: "bimodal-stereo check",
+      version: 1,
+      ...whole(run),
+      inputs,
+    });
   }
 
   #tell(share: number, message: string): void {

@@ -78,7 +78,12 @@ export class TablesPage {
       .map(({ name, cells }) => [name, this.#runner.results(cells)] as const)
       .filter(([, results]) => results.length > 0);
     const json = Object.fromEntries(done.map(([name, results]) => [name, rowsOf(name, results)]));
-    saveJson("bimodal-stereo-tables.json", { format: "bimodal-stereo tables", version: 1, data: false, ...json });
+    saveJson("bimodal-stereo-tables.json", "the numbers of all finished cells", {
+      format: "bimodal-stereo tables",
+      version: 1,
+      data: false,
+      ...json,
+    });
   }
 
   #of(panel: Panel): Chosen {
