@@ -1,5 +1,5 @@
 // Whether the frame that a check proposes sharpens the calibration as much as predicted: it is rendered and added.
-import { percent, poseOf, quantile } from "./draws.mjs";
+import { percent, quantile } from "./draws.mjs";
 
 /** Largest factor between the predicted and the measured gain. */
 const WITHIN = 1.5;
@@ -26,7 +26,7 @@ export async function proposed({ checkCalibration, sampleRig }, { kind, seed }) 
   const one = await checkCalibration([first], { true: pose });
   if (!one.next) return { kind, seed };
   const { axis, motion, sigma, expected, pose: moved } = one.next;
-  const { pose: _, ...second } = await sampleRig({ kind, seed, motion: poseOf(moved.rotation, moved.translation) });
+  const { pose: _, ...second } = await sampleRig({ kind, seed, motion: moved });
   const two = await checkCalibration([first, second], { true: pose });
   const [before, after] = [one, two].map((report) => sigmaOf(report, axis, one.middle));
   return { ...{ kind, seed, axis, motion, sigma, expected }, predicted: sigma / expected, measured: before / after };
