@@ -88,7 +88,7 @@ impl fmt::Display for NextFrame {
     }
 }
 
-/// The proposal at the end of a check; `None` without edges, or if the colour camera is a guess.
+/// The proposal at the end of a check; `None` without edges, if no frame would help, or if the colour camera is a guess.
 pub(super) fn next(
     scene: &Scene,
     round: &Round,
@@ -106,7 +106,7 @@ pub(super) fn next(
         let covariance = VARIANCE * hypothesis.total(total, &pose)?.covariance(prior)?;
         Some((displayed(axis, covariance[(axis, axis)].sqrt() * units.of[axis]), motion, pose))
     };
-    let all = hypothesis.motions().into_iter().filter_map(expected);
+    let all = hypothesis.motions().into_iter().filter_map(expected).filter(|one| one.0 < sigma);
     let (expected, motion, pose) = all.min_by(|a, b| a.0.total_cmp(&b.0))?;
     let frame = hypothesis.frame.name.clone();
     Some(NextFrame { axis: ORDER[axis], sigma, frame, motion, pose, expected })
