@@ -11,6 +11,7 @@
 // --only A,B   of the confusions, by name
 // --right N    number of right rigs of which a check should name no mistake (default 40), seeds from --from
 // --off N      number of rigs whose candidates are merely off, not misread (default 40), seeds from --from
+// --next       instead: whether the frame that a check of one frame proposes sharpens it as predicted, --rigs rigs of each kind
 // --step N     distance of the seeds of --confusions (default 2: odd seeds test what was chosen on even ones)
 import { writeFileSync } from "node:fs";
 import { parseArgs } from "node:util";
@@ -18,6 +19,7 @@ import { build } from "./build.mjs";
 import { nyuRig } from "./captures/read.mjs";
 import { hasData } from "./real-pairs.mjs";
 import { CONFUSIONS, confused, merelyOff, printConfused, printOff, printRight, right } from "./rigs/confusions.mjs";
+import { printProposed, proposed } from "./rigs/next.mjs";
 import { chance, offset, percent, quantile, sizes, thinned, wrong } from "./rigs/draws.mjs";
 import { Failure, inRoot, say, script, seconds } from "./shell.mjs";
 
@@ -137,6 +139,7 @@ await script(async () => {
       right: { type: "string", default: "40" },
       off: { type: "string", default: "40" },
       step: { type: "string", default: "2" },
+      next: { type: "boolean", default: false },
     },
   });
   const [rigs, from] = [values.rigs, values.from].map(Number);
@@ -159,6 +162,16 @@ await script(async () => {
   }
   const start = performance.now();
   const rows = [];
+  if (values.next) {
+    for (const kind of kinds)
+      for (let seed = from; seed < from + rigs; seed++) {
+        rows.push(await proposed({ checkCalibration, sampleRig }, { kind, seed }));
+        say(`${kind} ${seed - from + 1} of ${rigs} (${seconds(start)})`);
+      }
+    printProposed(rows);
+    if (values.json) writeFileSync(values.json, `${JSON.stringify(rows, null, 1)}\n`);
+    return;
+  }
   for (const kind of kinds) {
     for (let seed = from; seed < from + rigs; seed++) {
       const all = [];

@@ -8,7 +8,7 @@ import { SITE, buildSite } from "./site/build.mjs";
 export const WASM_BUDGET = 450_000;
 /** Gzipped size of the scripts before the first paint must stay below this, bytes: half a second at 1 Mbit/s. */
 export const FIRST_PAINT_BUDGET = 60_000;
-/** Largest gzipped size of everything that the check of a rig, its readers and its writers add to the Lab, bytes. */
+/** Largest gzipped size of everything that a check of a rig loads beyond the Lab, with its readers, bytes. */
 export const CHECK_BUDGET = 200_000;
 
 const WASM = "pkg/bimodal_stereo_bg.wasm";
@@ -48,7 +48,8 @@ function firstScripts() {
 const CHECK_WASM = /bimodal_stereo_check_bg/;
 /** The rendered example, which loads on demand. */
 const EXAMPLE = /\/(?:rigs-|bimodal_stereo_rigs_bg)/;
-/** The writer of the report, which loads when somebody saves one. */
+/** The writers of calibrations and clouds and that of the report, which load when somebody saves one. */
+const WRITERS = /\/write-/;
 const REPORT = /^assets\/reportfile-/;
 /**
  * Readers that load only for files of their kind: JPEG without a browser, texts, YAML, TOML, JSON with comments, calibrations of products,
@@ -58,7 +59,7 @@ const REPORT = /^assets\/reportfile-/;
 const OTHERS =
   /\/(?:decoder|dist\d*|pointclouds|exr|exr-others|products|text|tiff|tiff-codecs|js-yaml|recorded|containers|lens-owners|pairs)-/;
 
-/** The files that run a check, read its input and write its results, all loaded on demand, and those that only the example needs. */
+/** The files that run a check and read its input, all loaded on demand, and those that only the example or a saved result needs. */
 function checkFiles() {
   const scripts = readdirSync(inRoot(PAGE, "assets"))
     .filter((name) => name.endsWith(".js"))
@@ -72,11 +73,17 @@ function checkFiles() {
   const first = [...runners, ...workers];
   const all = reached(first, [AT_ONCE, ON_DEMAND], (path) => OTHERS.test(path));
   const example = all.filter((path) => EXAMPLE.test(path));
-  const writers = scripts.filter((path) => REPORT.test(path));
-  if (writers.length === 0) throw new Failure(`No script of the page matches ${REPORT.source}.`);
+  const saved = all.filter((path) => WRITERS.test(path));
+  const reports = scripts.filter((path) => REPORT.test(path));
+  for (const [some, pattern] of [
+    [saved, WRITERS],
+    [reports, REPORT],
+  ])
+    if (some.length === 0) throw new Failure(`No script of the page matches ${pattern.source}.`);
   const loaded = new Set([...all, ...firstScripts()]);
-  const report = reached(writers, [AT_ONCE]).filter((path) => !loaded.has(path));
-  return { check: all.filter((path) => !example.includes(path)), example, report };
+  const report = reached(reports, [AT_ONCE]).filter((path) => !loaded.has(path));
+  const onDemand = new Set([...example, ...saved]);
+  return { check: all.filter((path) => !onDemand.has(path)), example, saved, report };
 }
 
 /** Builds the page that is measured. */
@@ -87,7 +94,7 @@ export function sizes() {
   for (const path of [WASM, SCALAR, `${PAGE}/index.html`])
     if (!existsSync(inRoot(path))) throw new Failure(`${path} has not been built.`);
   const scripts = firstScripts();
-  const { check, example, report } = checkFiles();
+  const { check, example, saved, report } = checkFiles();
   const total = (paths) => paths.reduce((sum, path) => sum + zipped(inRoot(PAGE, path)), 0);
   return {
     wasmBytes: readFileSync(inRoot(WASM)).length,
@@ -98,6 +105,7 @@ export function sizes() {
     scripts,
     checkGzipBytes: total(check),
     exampleGzipBytes: total(example),
+    writersGzipBytes: total(saved),
     reportGzipBytes: total(report),
     check,
   };
@@ -110,6 +118,7 @@ export function judgeSizes({
   jsGzipBytes,
   checkGzipBytes,
   exampleGzipBytes,
+  writersGzipBytes,
   reportGzipBytes,
 }) {
   const line = (name, bytes, kept, budget) =>
@@ -124,8 +133,9 @@ export function judgeSizes({
     line("size of the wasm", wasmGzipBytes, kept[0], WASM_BUDGET),
     line("size of the wasm without SIMD", scalarGzipBytes, kept[1], WASM_BUDGET),
     line("size of the page's first scripts", jsGzipBytes, kept[2], FIRST_PAINT_BUDGET),
-    line("size of the check with its readers and writers", checkGzipBytes, kept[3], CHECK_BUDGET),
+    line("size of the check with its readers", checkGzipBytes, kept[3], CHECK_BUDGET),
     `size of the rendered example, on demand: ${(exampleGzipBytes / 1000).toFixed(1)} kB gzipped`,
+    `size of the writers, when a calibration or a cloud is saved: ${(writersGzipBytes / 1000).toFixed(1)} kB gzipped`,
     `size of a check's report, when it is saved: ${(reportGzipBytes / 1000).toFixed(1)} kB gzipped`,
   ];
   return { lines, kept: kept.every(Boolean) };

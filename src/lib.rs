@@ -152,7 +152,7 @@ mod wasm;
 
 pub use calibration::{
     CalibrationCheck, CandidateReport, CheckReason, CheckReport, CheckVerdict, Cue, CueReport, FrameReport, Health,
-    Margin, Offset, Overlay, Reading, RigView, Sensitivity, Warning, WarningKind, overlay,
+    Margin, NextFrame, NextMotion, Offset, Overlay, Reading, RigView, Sensitivity, Warning, WarningKind, overlay,
 };
 pub use error::{Error, ErrorKind, Result};
 pub use estimator::{Estimator, Finding, RefinementTask, Surface, Task, Worker};

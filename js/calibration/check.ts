@@ -96,6 +96,9 @@ export function checkedPose(given: unknown, field = "pose"): PoseMembers {
   );
 }
 
+/** A pose as the bindings take it: its rotation row by row and its translation. */
+export const twelve = ({ rotation, translation }: PoseMembers): number[] => [...rotation, ...translation];
+
 /** The candidates in their order. */
 export function checkedCandidates(value: unknown): [name: string, pose: PoseMembers][] {
   if (!isObject(value) || Array.isArray(value)) throw wrong("candidates", "an object of poses by name", value);

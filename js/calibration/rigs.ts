@@ -2,6 +2,7 @@
 import start, { Segmentation, samplePair, sampleRig } from "../../target/rigs/wasm-bindgen/bimodal_stereo_rigs.js";
 import { across, compile, lazily } from "../border.js";
 import { breathe } from "../breathe.js";
+import { checkedPose, twelve } from "./check.js";
 import { array, callback, object, ranged, signal as abortSignal, side, word } from "../check.js";
 import type {
   ColorImage,
@@ -24,6 +25,7 @@ const rigRequest = object(
     seed: ranged({ kind: "whole", min: 0 }),
     frame: ranged({ kind: "whole", min: 0, max: 2 ** 31 }),
     noise: ranged({ kind: "number", min: 0 }),
+    motion: () => {},
   },
   ["kind"],
 );
@@ -31,8 +33,9 @@ const rigRequest = object(
 export async function render(request: RigRequest): Promise<RigSample> {
   rigRequest(request, "request");
   await load();
-  const { kind, seed = 0, frame = 0, noise } = request;
-  return across(() => sampleRig(kind, seed, frame, noise));
+  const { kind, seed = 0, frame = 0, noise, motion } = request;
+  const moved = motion === undefined ? undefined : Float64Array.from(twelve(checkedPose(motion, "request.motion")));
+  return across(() => sampleRig(kind, seed, frame, noise, moved));
 }
 
 const pairKind = word("bust", "knot", "marble", "relief", "cut", "bowl");

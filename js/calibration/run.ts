@@ -1,10 +1,9 @@
 /** Runs the check: its module, its inputs' names and types, its slices. */
 import start, { CalibrationCheck, overlay } from "../../target/check/wasm-bindgen/bimodal_stereo_check.js";
-import { checkCheckOptions, checkedCandidates, checkedFrames, checkedPose } from "./check.js";
+import { checkCheckOptions, checkedCandidates, checkedFrames, checkedPose, twelve } from "./check.js";
 import { across, compile, lazily } from "../border.js";
 import { BimodalError } from "../errors.js";
 import { breathe } from "../breathe.js";
-import type { PoseMembers } from "../matrices.js";
 import type {
   CheckFrame,
   CheckFrameInput,
@@ -21,8 +20,6 @@ const SLICE = 30;
 const load = lazily("checkCalibration", async () =>
   start({ module_or_path: await compile(() => new URL("./bimodal_stereo_check_bg.wasm", import.meta.url)) }),
 );
-
-const twelve = ({ rotation, translation }: PoseMembers): number[] => [...rotation, ...translation];
 
 export async function check(
   frames: CheckFrameInput[],

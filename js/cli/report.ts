@@ -76,6 +76,7 @@ export function textOf(report: Whole): string {
     `depth points on the image: ${percent(report.overlap)}`,
     `cues: ${cues.join(", ")}`,
     `frames: ${frames.join(", ")}`,
+    ...(report.next ? [`next frame: ${report.next.message}`] : []),
     ...report.warnings.map(({ message }) => `warning: ${message}`),
     "",
   ].join("\n");

@@ -107,6 +107,24 @@ export interface CandidateReport {
   probability: number;
 }
 
+/** The frame that would determine the least certain unknown best, and by how much; computed from the evidence of a frame of the check. */
+export interface NextFrame {
+  /** The least certain unknown: a rotation about x, y, z through the scene's centre, or a translation along them, in the colour frame. */
+  axis: "rx" | "ry" | "rz" | "tx" | "ty" | "tz";
+  /** Its present sigma, degrees or millimetres. */
+  sigma: number;
+  /** Name of the frame with which the next one is compared. */
+  frame: string;
+  /** Where the scene is in the next frame: nearer, aside by a quarter of the image's width, or rotated by 90 degrees. */
+  motion: "nearer" | "left" | "right" | "up" | "down" | "turned";
+  /** The same as a pose: where each point of the scene goes, in the colour camera's frame, metres. */
+  pose: Pose;
+  /** Sigma with this frame added to those of the check, degrees or millimetres. */
+  expected: number;
+  /** All of it in words. */
+  message: string;
+}
+
 /** The result of checking a calibration. The first candidate is the one being checked (JavaScript puts names like "7" before all others). */
 export interface CheckReport {
   /** The verdict on the first candidate. */
@@ -168,6 +186,8 @@ export interface CheckReport {
     /** Log likelihood at each offset, relative to the estimate. */
     values: number[];
   }[];
+  /** The frame to take next, unless the frames have no depth edges or the colour camera is a guess. */
+  next?: NextFrame;
 }
 
 /** A frame, projected by a pose onto its image. */

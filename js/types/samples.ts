@@ -1,7 +1,7 @@
 /** Rendered scenes with a known answer: pairs for the loop, and frames of rigs for the check. */
 import type { CheckFrame } from "./check.js";
 import type { ColorImage, DepthMap } from "./images.js";
-import type { Pose } from "./poses.js";
+import type { Pose, PoseInput } from "./poses.js";
 
 /** A height map from which a sample is rendered: larger is nearer, zero or NaN is background; 64x64 .. 512x512. */
 export interface Relief {
@@ -129,6 +129,8 @@ export interface RigRequest {
   frame?: number;
   /** Factor for the noise of both sensors. Default 1. */
   noise?: number;
+  /** Where each point of the scene goes, in the colour camera's frame, metres. Default: nowhere. */
+  motion?: PoseInput;
 }
 
 /** A rendered frame of a rig, with the answer. */

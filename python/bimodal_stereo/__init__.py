@@ -12,7 +12,7 @@ depth points into the colour view: P_colour = scale * rotation @ P_depth + trans
     print(report.status, report.pose.angles.beta)
 """
 
-from ._calibration import CandidateReport, CheckFrame, CheckReport, CueReport, FrameOverlay, FrameReport, RigSample, Sensitivity
+from ._calibration import CandidateReport, CheckFrame, CheckReport, CueReport, FrameOverlay, FrameReport, NextFrame, RigSample, Sensitivity
 from ._calibration import check_calibration, project_frame, sample_rig
 from ._codes import CODES
 from ._errors import BimodalError, BimodalWarning
@@ -49,6 +49,7 @@ __all__ = [
     "MaskSuggestion",
     "NamedCamera",
     "NamedPose",
+    "NextFrame",
     "Options",
     "PairSample",
     "PixelLandscape",

@@ -84,6 +84,23 @@ class Sensitivity(NamedTuple):
     values: Floats
 
 
+class NextFrame(NamedTuple):
+    """The frame that would determine the least certain unknown best.
+
+    ``axis``: this unknown, "rx", "ry", "rz" about the scene's centre or "tx", "ty", "tz", in the colour frame. ``sigma``: its present sigma, degrees
+    or millimetres; ``expected``: the sigma with this frame added. ``motion``: where the scene of ``frame`` is then: "nearer", "left", "right",
+    "up", "down" or "turned"; ``pose``: the same as a motion of its points, colour frame, metres. ``message``: all of it in words.
+    """
+
+    axis: str
+    sigma: float
+    frame: str
+    motion: str
+    pose: Pose
+    expected: float
+    message: str
+
+
 @dataclass(frozen=True, eq=False)
 class CheckReport:
     """The result of a check. ``verdict`` and ``reason`` are those of the first candidate, which is the one being checked.
@@ -97,6 +114,7 @@ class CheckReport:
     ``covariance``: (6, 6), of a rotation vector in rad about the middle, then of a translation in m.
     ``focal``: factor to the assumed focal length, and the sigma of its logarithm, if no colour camera was given.
     ``pixels``, ``interval``: expected reprojection error of the estimate, and its 95 % interval.
+    ``next``: the frame to take next, or ``None`` without depth edges or if the colour camera is a guess.
     """
 
     verdict: str
@@ -115,6 +133,7 @@ class CheckReport:
     cues: Mapping[str, CueReport]
     frames: Sequence[FrameReport]
     sensitivity: Sequence[Sensitivity]
+    next: Optional[NextFrame]
 
 
 def check_calibration(
@@ -160,6 +179,7 @@ def check_calibration(
         sensitivity=[
             made(Sensitivity, one, offsets=np.array(one["offsets"]), values=np.array(one["values"])) for one in raw["sensitivity"]
         ],
+        next=made(NextFrame, raw["next"], pose=Pose._of(raw["next"]["pose"])) if "next" in raw else None,
     )
 
 
@@ -193,7 +213,12 @@ def rig_frame(frame: CheckFrame, index: int) -> dict[str, Any]:
 
 
 def sample_rig(
-    kind: str, *, seed: Optional[int] = None, frame: Optional[int] = None, noise: Optional[float] = None
+    kind: str,
+    *,
+    seed: Optional[int] = None,
+    frame: Optional[int] = None,
+    noise: Optional[float] = None,
+    motion: Optional[PoseInput] = None,
 ) -> RigSample:
     """One frame of a rendered rig whose extrinsics are known.
 
@@ -201,7 +226,10 @@ def sample_rig(
     seed: seed of the rig; default 0.
     frame: number of the frame; frames of one seed share the rig and show different scenes; default 0.
     noise: factor on the noise of both sensors; default 1.
+    motion: a 4x4 matrix, or ``rotation`` and ``translation``, that moves each point of the scene in the colour camera's frame, metres;
+        default: none.
     """
-    raw = _native.sample_rig({"kind": kind, "seed": seed, "frame": frame, "noise": noise})
+    moved = None if motion is None else _sources.pose(motion, "motion")
+    raw = _native.sample_rig({"kind": kind, "seed": seed, "frame": frame, "noise": noise, "motion": moved})
     image, depth = ({**raw[view], "camera": Pinhole(**raw[view]["camera"])} for view in ("image", "depth"))
     return RigSample(ColorImage(**image), DepthMap(**depth), raw["name"], Pose._of(raw["pose"]))

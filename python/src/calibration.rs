@@ -92,11 +92,14 @@ fn view(index: usize, frame: &Bound<'_, PyAny>) -> PyResult<RigView> {
 /// One frame of a rendered rig.
 #[pyfunction]
 pub fn sample_rig<'py>(py: Python<'py>, keywords: &Bound<'py, PyAny>) -> Dict<'py> {
-    let given = Members::new(keywords, "", &["kind", "seed", "frame", "noise"])?;
+    let given = Members::new(keywords, "", &["kind", "seed", "frame", "noise", "motion"])?;
     let kind = given.needed("kind", given.word("kind", &RigKind::ALL.map(|kind| (kind.name(), kind)))?)?;
     let mut request =
         RigRequest::new(kind, given.whole("seed")?.unwrap_or_default(), given.whole("frame")?.unwrap_or_default());
     request.noise = given.number("noise")?.unwrap_or(request.noise);
+    if let Some(motion) = given.get("motion")? {
+        request.motion = extrinsics(&motion, "motion")?;
+    }
     let made = outcome(py.detach(|| guarded(|| render(&request))))?;
     let image = [("camera", plain(py, &made.colour_camera)?)].into_py_dict(py)?;
     let Size { width, height } = made.colour_size;

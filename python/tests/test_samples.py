@@ -91,6 +91,9 @@ def test_a_check_agrees_with_the_truth_and_not_with_an_error(rig):
     assert sum(cue.share for cue in check.cues.values()) == pytest.approx(1)
     assert [frame.name for frame in check.frames] == ["frame 1"] and check.focal is None
     assert check.sensitivity[0].offsets.shape == check.sensitivity[0].values.shape
+    assert 0 < check.next.expected < check.next.sigma and check.next.frame == "frame 1"
+    moved = bimodal.sample_rig("room", seed=1, motion=check.next.pose)
+    assert (moved.depth.data != rig.depth.data).any() and (moved.pose.rotation == rig.pose.rotation).all()
 
 
 def test_what_on_progress_raises_ends_a_check(rig):
@@ -132,6 +135,7 @@ def test_bad_checks_are_refused_by_name(rig):
     refused(lambda: bimodal.sample_rig("attic"), "option", "kind")
     refused(lambda: bimodal.sample_rig("boxes", seed=-1), "range", "seed")
     refused(lambda: bimodal.sample_rig("boxes", noise=float("inf")), "range", "noise")
+    refused(lambda: bimodal.sample_rig("boxes", motion=2 * np.eye(3)), "size", "motion")
 
 
 def test_a_scene_has_a_bound():

@@ -14,7 +14,7 @@ function spreadOf(covariance) {
 }
 
 /** All numbers of a report except poses. */
-function numbersOf({ middle, covariance, focal = [], health, candidates, cues, frames, sensitivity }) {
+function numbersOf({ middle, covariance, focal = [], health, candidates, cues, frames, sensitivity, next }) {
   const named = (object) =>
     Object.keys(object)
       .sort()
@@ -34,6 +34,7 @@ function numbersOf({ middle, covariance, focal = [], health, candidates, cues, f
     ...named(cues).flatMap(({ share, sharpness }) => [share, sharpness]),
     ...frames.map(({ share }) => share),
     ...sensitivity.flatMap(({ offsets, values }) => [...offsets, ...values]),
+    ...(next ? [next.sigma, next.expected] : []),
   ];
 }
 
@@ -52,6 +53,7 @@ function disagreements(before, after) {
     ["notes", ...[a, b].map(({ frames }) => frames.filter(({ note }) => note !== undefined).length)],
     ...a.warnings.map(({ code }, index) => [`warning ${index}`, code, b.warnings[index]?.code]),
     ...Object.keys(a.candidates).map((name) => [name, a.candidates[name].verdict, b.candidates[name]?.verdict]),
+    ["next frame", ...[a, b].map(({ next }) => next && `${next.axis} ${next.motion}`)],
     ["the rig itself", before.input, after.input],
   ];
   return pairs.filter(([, x, y]) => differ(x, y)).map(([what, x, y]) => `${what}: ${x} -> ${y}`);

@@ -98,7 +98,7 @@ export const CONFUSIONS = {
     ["body-colour"],
   ],
   "translation in millimetres": [times(1000), ["millimetres"]],
-  "translation in metres, read as millimetres": [times(0.001), ["metres"]],
+  "translation in metres read as millimetres": [times(0.001), ["metres"]],
   "radians read as degrees": [
     withRotation((rotation) => rotationOf(vectorOf(rotation).map((value) => value * DEGREE))),
     ["radians"],
@@ -126,8 +126,8 @@ export const CONFUSIONS = {
   "colour intrinsics of another shape": [image(otherShape), ["image-resized"]],
   "depth intrinsics of another size": [depth(otherSize), ["depth-resized"]],
   "depths along the rays": [depth(lengths), ["ray-length"]],
-  "depth in millimetres, read as metres": [inUnit(1000), ["depth-millimetres", "unit"]],
-  "depth in metres, read as millimetres": [inUnit(0.001), ["depth-metres", "unit"]],
+  "depth in millimetres read as metres": [inUnit(1000), ["depth-millimetres", "unit"]],
+  "depth in metres read as millimetres": [inUnit(0.001), ["depth-metres", "unit"]],
 };
 
 /**

@@ -5,9 +5,11 @@
 //! elsewhere. The best of these optima is the estimate, and its covariance judges the candidates. If the first candidate
 //! does not pass, it is registered again in other conventions.
 
+use super::conclusion::LEAST_OVERLAP;
 use super::cue::Cue;
 use super::distortion;
 use super::input::RigView;
+use super::next::next;
 use super::optima::{self, Optimum, SAME_START};
 use super::planes::Planes;
 use super::reason::{CheckReason, Warning, WarningKind};
@@ -91,6 +93,7 @@ impl CalibrationCheck {
             let (mut frame, guessed) =
                 view.prepare(index, &mut warnings).map_err(|error| error.below(&format!("frames[{index}]")))?;
             is_guessed |= guessed;
+            frame.is_cloud = is_cloud;
             if is_cloud {
                 leave_unseen_out(&mut frame, &states);
             }
@@ -171,6 +174,7 @@ impl CalibrationCheck {
                 if done + 1 < findings.cues.len() {
                     Stage::Curves { planes, findings, done: done + 1 }
                 } else {
+                    self.look_ahead(&findings, &planes);
                     Stage::Done
                 }
             }
@@ -296,6 +300,13 @@ impl CalibrationCheck {
         self.lens = lens;
         let findings = Box::new(self.scene.findings(&self.best, &planes));
         Stage::Curves { planes, findings, done: 0 }
+    }
+
+    /// Adds the frame to take next, unless the estimate puts hardly any point onto the image.
+    fn look_ahead(&mut self, findings: &Findings, planes: &[Planes]) {
+        if let Some(report) = self.report.as_mut().filter(|report| report.overlap >= LEAST_OVERLAP) {
+            report.next = next(&self.scene, &self.best, findings, planes, &report.covariance);
+        }
     }
 
     /// Refines one of the poses by one round with all cues. After the last pose, the candidates are judged.

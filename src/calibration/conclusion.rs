@@ -25,7 +25,7 @@ const CLEARLY: f64 = 3.0;
 const MISREAD: f64 = 280.0;
 /// Smallest share of the depth points that the estimate has to put onto the image before it may judge a candidate. The
 /// other points are not compared with anything, and a wrong pose can always fit a small part.
-const LEAST_OVERLAP: f64 = 0.15;
+pub(super) const LEAST_OVERLAP: f64 = 0.15;
 
 impl CalibrationCheck {
     /// The report on the optima, best first.
@@ -59,6 +59,7 @@ impl CalibrationCheck {
             cues: CueReport::all(findings, frame.pixel),
             frames: FrameReport::all(&self.scene, findings),
             sensitivity: vec![],
+            next: None,
         }
     }
 

@@ -43,7 +43,9 @@ const BLUR: f64 = 0.35;
 const LEAST_BLUR: f64 = 0.7;
 
 /// The image edges near one depth discontinuity.
+#[derive(Clone)]
 struct Profile {
+    rim: Rim,
     /// Derivative of u with respect to the unknowns.
     row: Vector,
     /// Standard deviation s of the position at which the near surface ends, pixels.
@@ -111,7 +113,7 @@ impl EdgeField {
             let weight = 1.0 / (1.0 + (rim.in_gap - 1.0) * (of_gap / sigma).powi(2));
             let window = (WINDOW * sigma).max(widest);
             let edges = edges(planes, start, rim.normal, window, blur)?;
-            Some(Profile { row, sigma, window, weight, tile: tiles.of(rim.pixel), edges })
+            Some(Profile { rim: *rim, row, sigma, window, weight, tile: tiles.of(rim.pixel), edges })
         };
         Self { profiles: rims.iter().filter_map(profile).collect() }
     }
@@ -147,6 +149,17 @@ impl EdgeField {
         // Without discontinuities the curvature is zero, and its factor is arbitrary.
         let left = if bounds > 0.0 { (own / bounds).clamp(LEAST_LEFT, 1.0) } else { 1.0 };
         shares.iter_mut().for_each(|share| share.curvature *= left);
+    }
+
+    /// The discontinuities whose edges were looked for.
+    pub fn all(&self) -> impl Iterator<Item = &Rim> {
+        self.profiles.iter().map(|profile| &profile.rim)
+    }
+
+    /// The same edges with other derivatives, without the discontinuities that have none.
+    pub fn carried(&self, row: impl Fn(&Rim) -> Option<Vector>) -> Self {
+        let carried = |profile: &Profile| Some(Profile { row: row(&profile.rim)?, ..profile.clone() });
+        Self { profiles: self.profiles.iter().filter_map(carried).collect() }
     }
 
     pub fn len(&self) -> usize {

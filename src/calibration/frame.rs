@@ -39,6 +39,8 @@ pub(super) struct Frame {
     /// Intensity of each sample, in the scanner's own unit, if it is known.
     pub intensity: Option<Vec<f32>>,
     pub has_depth_mask: bool,
+    /// Whether points were given instead of a depth map, as by a scanner.
+    pub is_cloud: bool,
     /// Whether the maker may have resampled the depth map onto the image's raster.
     pub may_be_registered: bool,
     /// Width of a pixel of `planes` in pixels of the image as given.
@@ -69,6 +71,7 @@ impl Frame {
             points,
             intensity: None,
             has_depth_mask: false,
+            is_cloud: false,
             may_be_registered: false,
             pixel: 1.0,
             noise,

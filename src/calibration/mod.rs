@@ -21,7 +21,7 @@
 //! | `readings`, `rereading` | other conventions of a candidate, and the search over them |
 //! | `distortion`, `guessed` | whether a lens was left out; the uncertainty of a guessed camera |
 //! | `conclusion`, `verdict`, `reason`, `health` | from the optima to verdicts, their reasons and errors |
-//! | `check`, `sensitivity` | the order of all stages; curves of the cues |
+//! | `check`, `sensitivity`, `next` | the order of all stages; curves of the cues; the frame to take next |
 //! | `report`, `serialised` | the result of a check, and its forms for serde |
 //! | `overlay` | a frame with the points and depth edges of a pose |
 
@@ -41,6 +41,7 @@ mod information;
 mod input;
 mod intensity;
 mod lattice;
+mod next;
 mod optima;
 mod overlay;
 mod patches;
@@ -68,6 +69,7 @@ pub use check::CalibrationCheck;
 pub use cue::Cue;
 pub use health::Health;
 pub use input::RigView;
+pub use next::{NextFrame, NextMotion};
 pub use overlay::{Overlay, overlay};
 pub use readings::Reading;
 pub use reason::{CheckReason, Margin, Offset, Warning, WarningKind};

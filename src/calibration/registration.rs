@@ -193,8 +193,13 @@ impl Scene {
         rows.transpose() * rows
     }
 
+    /// Maximum number of depth discontinuities of a frame.
+    pub fn most_rims(&self) -> usize {
+        MOST_RIMS_OF_ONE.min(MOST_RIMS / self.frames.len())
+    }
+
     fn seen(&self, state: &State) -> Seen {
-        let most = MOST_RIMS_OF_ONE.min(MOST_RIMS / self.frames.len());
+        let most = self.most_rims();
         let (mut rims, mut patches) = (vec![], vec![]);
         for (frame, samples) in self.frames.iter().zip(&self.samples) {
             let projection = Projection::new(frame, state);

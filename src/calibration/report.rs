@@ -6,6 +6,7 @@ use super::cue::Cue;
 use super::evidence::{Evidence, Tiles};
 use super::frame::Frame;
 use super::health::Health;
+use super::next::NextFrame;
 use super::reason::{CheckReason, Warning};
 use super::registration::{Findings, Scene};
 use super::sensitivity::Sensitivity;
@@ -75,6 +76,12 @@ pub struct CheckReport {
     pub frames: Vec<FrameReport>,
     /// Curves by cue and axis.
     pub sensitivity: Vec<Sensitivity>,
+    /// The frame to take next, if the frames tell.
+    #[cfg_attr(
+        feature = "serde",
+        serde(skip_serializing_if = "Option::is_none", serialize_with = "super::serialised::in_words")
+    )]
+    pub next: Option<NextFrame>,
 }
 
 impl CueReport {

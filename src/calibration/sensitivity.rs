@@ -19,7 +19,7 @@ const OFFSETS: i32 = 8;
 const MOST_RIMS: usize = 400;
 
 /// Names of the axes in the order of the unknowns.
-const AXES: [&str; POSE] = ["rx", "ry", "rz", "tx", "ty", "tz"];
+pub(super) const AXES: [&str; POSE] = ["rx", "ry", "rz", "tx", "ty", "tz"];
 
 /// The curve of one cue along one axis.
 #[derive(Clone, Debug, PartialEq)]

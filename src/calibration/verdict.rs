@@ -33,8 +33,18 @@ const INSIDE: f64 = 0.95;
 /// The 95 % quantile of chi-squared with as many degrees of freedom as a pose has.
 const CHI_SQUARED: f64 = 12.59;
 /// Sigma above which the scene does not constrain an axis: about half the sigma of the prior.
-const UNSEEN_DEGREES: f64 = 2.0;
-const UNSEEN_METRES: f64 = 0.03;
+pub(super) const UNSEEN_DEGREES: f64 = 2.0;
+pub(super) const UNSEEN_METRES: f64 = 0.03;
+
+/// The unknowns of a pose in their order.
+pub(super) const ORDER: [Unknown; POSE] = [
+    Unknown::Rotation(Axis::X),
+    Unknown::Rotation(Axis::Y),
+    Unknown::Rotation(Axis::Z),
+    Unknown::Translation(Axis::X),
+    Unknown::Translation(Axis::Y),
+    Unknown::Translation(Axis::Z),
+];
 
 /// The answer of a check about a candidate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -160,14 +170,6 @@ impl Judge {
 
     /// The axis that the scene constrains the least, if it hardly constrains it.
     pub fn weakest(&self, covariance: &Matrix) -> Option<Unknown> {
-        const ORDER: [Unknown; POSE] = [
-            Unknown::Rotation(Axis::X),
-            Unknown::Rotation(Axis::Y),
-            Unknown::Rotation(Axis::Z),
-            Unknown::Translation(Axis::X),
-            Unknown::Translation(Axis::Y),
-            Unknown::Translation(Axis::Z),
-        ];
         let worst = |k: usize| {
             let sigma = covariance[(k, k)].sqrt() * self.units.of[k];
             sigma / if k < 3 { UNSEEN_DEGREES.to_radians() } else { UNSEEN_METRES }

@@ -1,16 +1,15 @@
 //! The calibration check for JavaScript.
 
 use js_sys::{Float32Array, Object};
-use nalgebra::{Matrix3, Vector3};
 use wasm_bindgen::JsCast;
 use wasm_bindgen::prelude::wasm_bindgen;
 
 use super::error::Thrown;
 use super::input::{JsDepth, JsImage, JsPinhole, pinhole, samples_of_depth, samples_of_image};
 use super::output::{plain, set};
+use super::pose::pose;
 use crate::calibration::{self, Cue, RigView};
 use crate::error::{Error, Result};
-use crate::pose::Similarity;
 use crate::view::Transfer;
 
 #[wasm_bindgen]
@@ -88,15 +87,6 @@ pub fn overlay(frame: &JsFrame, numbers: &[f64]) -> std::result::Result<Object, 
     set(&object, "positions", Float32Array::from(overlay.positions.as_slice()));
     set(&object, "edges", Float32Array::from(overlay.edges.as_slice()));
     Ok(object)
-}
-
-fn pose(numbers: &[f64]) -> Similarity {
-    let (rotation, translation) = numbers.split_at(9);
-    Similarity {
-        scale: 1.0,
-        rotation: Matrix3::from_row_slice(rotation),
-        translation: Vector3::from_column_slice(translation),
-    }
 }
 
 fn view(index: usize, js: &JsFrame) -> Result<RigView> {

@@ -18,6 +18,8 @@ mod calibration;
 mod estimator;
 #[cfg(not(any(feature = "bindings-check", feature = "bindings-rigs")))]
 mod lessons;
+#[cfg(any(feature = "bindings-check", feature = "bindings-rigs"))]
+mod pose;
 #[cfg(feature = "bindings-rigs")]
 mod rigs;
 #[cfg(not(any(feature = "bindings-check", feature = "bindings-rigs")))]

@@ -6,6 +6,7 @@ use wasm_bindgen::{JsCast, JsValue};
 
 use super::error::Thrown;
 use super::output::{mask, pinhole, plain, set};
+use super::pose::pose;
 use crate::error::{Error, ErrorKind};
 use crate::scenes::rig::{PairKind, RigKind, RigRequest, render, render_pair};
 use crate::view::{Pinhole, Segmentation, SegmentationReport, Size};
@@ -18,12 +19,18 @@ extern "C" {
     pub type JsPairSample;
 }
 
-/// One frame of a rendered rig.
+/// One frame of a rendered rig. `motion`: the twelve numbers of a pose, its rotation row by row and its translation.
 ///
 /// # Errors
 /// Those of the native renderer.
 #[wasm_bindgen(js_name = "sampleRig")]
-pub fn sample_rig(name: &str, seed: f64, frame: f64, noise: Option<f64>) -> std::result::Result<JsRigSample, Thrown> {
+pub fn sample_rig(
+    name: &str,
+    seed: f64,
+    frame: f64,
+    noise: Option<f64>,
+    motion: Option<Vec<f64>>,
+) -> std::result::Result<JsRigSample, Thrown> {
     let kind = RigKind::ALL.into_iter().find(|kind| kind.name() == name);
     let Some(kind) = kind else {
         let known = RigKind::ALL.map(RigKind::name).join(", ");
@@ -31,6 +38,7 @@ pub fn sample_rig(name: &str, seed: f64, frame: f64, noise: Option<f64>) -> std:
     };
     let mut native = RigRequest::new(kind, seed as u64, frame as u32);
     native.noise = noise.unwrap_or(native.noise);
+    native.motion = motion.map_or(native.motion, |numbers| pose(&numbers));
     let frame = render(&native)?;
     let image = raster(frame.colour_size, &frame.colour_camera);
     set(&image, "data", Uint8Array::from(frame.colour.as_slice()));

@@ -49,6 +49,25 @@ describe("a rig before boxes", () => {
     await assert.rejects(report([1, 2, 3]), { code: "type", field: "frames[0].depth.intensity" });
   });
 
+  test("the next frame has the least certain unknown, its sigma in the covariance, and a motion that a rig takes", async () => {
+    const { next, covariance, frames } = await checkCalibration([frame], { truth });
+    const k = ["rx", "ry", "rz", "tx", "ty", "tz"].indexOf(next.axis);
+    const unit = k < 3 ? 180 / Math.PI : 1000;
+    assert.ok(Math.abs(next.sigma - unit * Math.sqrt(covariance[7 * k])) < 1e-9);
+    assert.ok(next.expected > 0 && next.expected < next.sigma, `${next.expected} of ${next.sigma}`);
+    assert.equal(next.frame, frames[0].name);
+    assert.match(
+      next.message,
+      /is the least certain \([\d.]+ (degrees|mm), one sigma\)\. One more frame with the scene/,
+    );
+    const moved = await sampleRig({ kind: "boxes", seed: 2, motion: next.pose });
+    assert.deepEqual(moved.pose, frame.pose);
+    assert.notDeepEqual(moved.depth.data, frame.depth.data);
+    const bent = { rotation: [2, 0, 0, 0, 1, 0, 0, 0, 1], translation: [0, 0, 0] };
+    await assert.rejects(sampleRig({ kind: "boxes", motion: bent }), { code: "range", field: "motion.rotation" });
+    await assert.rejects(sampleRig({ kind: "boxes", motion: 3 }), { code: "type", field: "request.motion" });
+  });
+
   test("the right calibration is consistent, one that is off is off, and both by the same estimate", async () => {
     const messages = [];
     const candidates = { told: wrong(truth, [1, -2, 1], 1.5, [0.01, 0, -0.01]), factory: truth };

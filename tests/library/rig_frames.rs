@@ -4,7 +4,7 @@
 use wasm_bindgen_test::wasm_bindgen_test as test;
 
 use bimodal_stereo::scenes::rig::{RigFrame, RigKind, RigRequest, render};
-use bimodal_stereo::{ErrorKind, Size};
+use bimodal_stereo::{ErrorKind, Similarity, Size};
 
 const SMALL: Size = Size { width: 160, height: 120 };
 
@@ -80,7 +80,12 @@ fn requests_out_of_range_name_their_field() {
             ErrorKind::Size,
         ),
         (RigRequest { noise: f64::NAN, ..good.clone() }, "noise", ErrorKind::Range),
-        (RigRequest { noise: -1.0, ..good }, "noise", ErrorKind::Range),
+        (RigRequest { noise: -1.0, ..good.clone() }, "noise", ErrorKind::Range),
+        (
+            RigRequest { motion: Similarity { scale: 1.5, ..Similarity::identity() }, ..good },
+            "motion.scale",
+            ErrorKind::Range,
+        ),
     ];
     for (request, field, kind) in cases {
         let error = render(&request).unwrap_err();

@@ -107,6 +107,23 @@ fn an_estimate_that_shows_few_of_the_points_judges_no_candidate() {
     assert!(whole.overlap > 0.5 && whole.overlap <= 1.0, "{}", whole.overlap);
 }
 
+/// With a guessed camera the next step is to find out its intrinsics.
+#[test]
+fn the_next_frame_is_expected_to_sharpen_the_least_certain_unknown() {
+    let size = Size { width: 160, height: 120 };
+    let request =
+        RigRequest { colour_size: Some(size), depth_size: Some(size), ..RigRequest::new(RigKind::Boxes, 1, 0) };
+    let frame = render(&request).expect("a frame");
+    let report = check(view(&frame, true), &[frame.pose], &Cue::ALL);
+    let next = report.next.expect("a proposal");
+    assert!(next.expected > 0.0 && next.expected < next.sigma, "{next:?}");
+    assert_eq!(next.frame, "frame");
+    assert!(next.to_string().contains(&next.axis.to_string()), "{next}");
+    let moved = RigRequest { motion: next.pose, ..request };
+    assert_ne!(render(&moved).expect("a moved frame").depth, frame.depth);
+    assert_eq!(check(view(&frame, false), &[frame.pose], &Cue::ALL).next, None);
+}
+
 /// Tests of over three seconds: `cargo test` runs them, `npm test` only with `--long`.
 mod long {
     #[cfg(target_arch = "wasm32")]

@@ -72,22 +72,6 @@ function headline(run: Run): { word: string; tone: Tone; sentence: string } {
 /** A whole sentence for use beside the controls, where a single word would read like the state of a switch. */
 export const ending = (run: Run): string => `The check is done: ${ENDS[headline(run).word]}.`;
 
-const AXES = ["left or right", "up or down", "forwards or backwards"];
-const FOR_SHIFT = [
-  "show vertical edges with free space behind them, such as the sides of a box or a chair's legs",
-  "show horizontal edges with free space behind them, such as the top of a box",
-  "put objects at different distances in front of the wall, one of them near",
-];
-const FOR_TURN = [
-  "show objects near the top and bottom of the image",
-  "show objects near the left and right of the image",
-  "show silhouettes far from the centre of the image",
-];
-const FOR_LIDAR = [
-  "take frames with poles, trees or corners of houses at the sides",
-  "take frames with kerbs, signs and parked cars, whose upper and lower edges the scan crosses",
-  "take frames with things near the rig as well as far away",
-];
 /** A frame whose share is below this fraction of the mean share adds little. */
 const LITTLE = 0.3;
 
@@ -136,7 +120,7 @@ export function advise(run: Run): string[] {
         ? "Add two more frames, with the object turned by about 30° each time."
         : "Add another frame, with the object turned by about 30°.",
     );
-  list.push(weakest(run), ...(isOpen ? confirm : []));
+  list.push(...(report.next ? [report.next.message] : []), ...(isOpen ? confirm : []));
   const mean = 1 / Math.max(1, report.frames.length);
   for (const { name, share, note } of report.frames)
     if (report.frames.length > 1 && share < LITTLE * mean)
@@ -146,20 +130,6 @@ export function advise(run: Run): string[] {
   return report.verdict === "consistent" && !estimateOnly && guessed.length + doubts.length === 0
     ? [...list.slice(-1), ...list.slice(0, -1)]
     : list;
-}
-
-/** The least certain rotation or shift, one sigma, and what would determine it better. */
-function weakest({ report: { covariance }, isLidar }: Run): string {
-  const sigma = (i: number) => Math.sqrt(Math.max(0, covariance[7 * i] ?? 0));
-  const turns = [0, 1, 2].map((i) => (180 / Math.PI) * sigma(i));
-  const shifts = [3, 4, 5].map((i) => 1000 * sigma(i));
-  const most = (values: number[]) => values.indexOf(Math.max(...values));
-  const [turn, shift] = [most(turns), most(shifts)];
-  const isTurn = (turns[turn] ?? 0) * 15 > (shifts[shift] ?? 0);
-  const [forTurn, forShift] = isLidar ? [FOR_LIDAR, FOR_LIDAR] : [FOR_TURN, FOR_SHIFT];
-  return isTurn
-    ? `The rotation about ${"xyz"[turn]} is the least certain (± ${decimals(turns[turn], 2)}°, one sigma): ${forTurn[turn]}.`
-    : `The shift ${AXES[shift]} is the least certain (± ${decimals(shifts[shift], 1)} mm, one sigma): ${forShift[shift]}.`;
 }
 
 export function card(run: Run): HTMLElement {

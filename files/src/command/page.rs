@@ -73,14 +73,15 @@ fn card(checked: &Checked) -> String {
     let name = checked.report.candidates.first().map_or("", |one| &one.name);
     format!(
         "<section class=\"card {}\"><p class=\"verdict\">{} <span class=\"soft\">{}</span></p><p>{}</p>\n\
-         <p>Expected reprojection error of the best fit: {} (95 %: {}); it puts {} of the depth points onto the image.</p></section>\n",
+         <p>Expected reprojection error of the best fit: {} (95 %: {}); it puts {} of the depth points onto the image.</p>{}</section>\n",
         word(checked.verdict),
         title_of(checked.verdict),
         escaped(name),
         escaped(&checked.reason),
         measure(checked.report.health.pixels, " px"),
         span(&checked.report.health),
-        percent(checked.report.overlap)
+        percent(checked.report.overlap),
+        checked.report.next.as_ref().map(|next| format!("<p>{}</p>", escaped(&next.to_string()))).unwrap_or_default()
     )
 }
 

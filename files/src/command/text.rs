@@ -82,6 +82,7 @@ pub fn text(checked: &Checked) -> String {
         format!("{} {}{note}", plain(&one.name), percent(one.share))
     };
     lines.push(format!("frames: {}", report.frames.iter().map(frame).collect::<Vec<_>>().join(", ")));
+    lines.extend(report.next.iter().map(|next| format!("next frame: {next}")));
     lines.extend(checked.warnings.iter().map(|warning| format!("warning: {}", plain(&warning.message))));
     lines.push(none());
     lines.join("\n")

@@ -40,13 +40,15 @@ pub struct RigRequest {
     pub depth_size: Option<Size>,
     /// Factor on the noise of both sensors. With 0, depth is exact to half a millimetre and still has holes.
     pub noise: f64,
+    /// Moves the scene in front of the rig, in the colour camera's frame, metres; scale 1.
+    pub motion: Similarity,
 }
 
 impl RigRequest {
     /// A frame with typical noise and default sizes.
     #[must_use]
-    pub const fn new(kind: RigKind, seed: u64, frame: u32) -> Self {
-        Self { kind, seed, frame, colour_size: None, depth_size: None, noise: 1.0 }
+    pub fn new(kind: RigKind, seed: u64, frame: u32) -> Self {
+        Self { kind, seed, frame, colour_size: None, depth_size: None, noise: 1.0, motion: Similarity::identity() }
     }
 
     /// # Errors
@@ -59,6 +61,11 @@ impl RigRequest {
                 return Err(Error::new(ErrorKind::Size, field, message));
             }
         }
+        if self.motion.scale != 1.0 {
+            let message = "must be 1: a motion does not change sizes";
+            return Err(Error::new(ErrorKind::Range, "motion.scale", message).value(self.motion.scale));
+        }
+        self.motion.validate("motion")?;
         not_negative("noise", self.noise)
     }
 
@@ -131,6 +138,7 @@ impl Views {
     fn of(request: &RigRequest) -> Self {
         let rig = Rig::random(request.colour_size, request.depth_size, &mut request.of_rig());
         let Layout { stage, view, target } = layout(request.kind, &mut request.of_frame(Stream::Layout));
+        let view = request.motion.after(&view);
         let light = Illumination::random(&stage, target, &mut request.of_frame(Stream::Light));
         let rays = Rays::new(&rig.colour, rig.colour_size, SAMPLES);
         let hits = rays.meet(&stage, &view);

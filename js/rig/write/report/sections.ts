@@ -66,7 +66,7 @@ function others({ candidates }: Checked): Markup[] {
 }
 
 export function summary(report: Checked, options: ReportOptions): Markup {
-  const { candidates, health, overlap, cues } = report;
+  const { candidates, health, overlap, cues, next } = report;
   const candidate = options.isEstimate ? undefined : Object.values(candidates)[0];
   const rests = Object.entries(cues).map(([cue, { share }]) => `${cueName(cue)} ${percent(share)}`);
   return html`<section>${clamped(verdictReason(report))}${places(report, inQuestion(report, options))}${
@@ -81,7 +81,7 @@ export function summary(report: Checked, options: ReportOptions): Markup {
     "Overlap",
     percent(overlap),
     "of the depth points lie on the image",
-  )}${fact("Evidence", rests.join(", "))}</dl></section>`;
+  )}${fact("Evidence", rests.join(", "))}</dl>${next && html`<p>${next.message}</p>`}</section>`;
 }
 
 export function warningList({ warnings }: Checked): Markup {
