@@ -155,6 +155,7 @@ test("Export says that it has saved, or that there is nothing", async ({ lab, pa
   await expect(said).toHaveText("Saved bimodal-stereo-report.json: settings, poses and all iterations of this run.");
   await expect(exporting).toHaveText("Export");
   await open(page, "at=grey");
+  await expect(said).toBeEmpty();
   await exporting.click();
   await expect(said).toHaveText("Saved bimodal-stereo-lesson-grey.json: settings and numbers of this figure.");
   await page.getByRole("link", { name: "Exercises", exact: true }).click();
