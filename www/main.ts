@@ -204,6 +204,8 @@ const places: Record<Place, { main: HTMLElement; link: HTMLAnchorElement; title:
 const labOnly = [byId("bar", HTMLElement), byId("skip", HTMLElement), byId("skip-takeaway", HTMLElement)];
 
 function show(place: Place): void {
+  // What was saved elsewhere is no longer news.
+  if (document.body.dataset.place !== place) report("");
   document.body.dataset.place = place;
   for (const [name, { main, link, title }] of Object.entries(places)) {
     main.hidden = name !== place;

@@ -72,8 +72,8 @@ test("an example says in a line what it shows, without a tooltip", async ({ lab,
 });
 
 /** Runs this function on every report that the page gets. Must be called before the page opens. */
-const changeReports = (page: Page, change: (report: StepReport) => void): Promise<void> =>
-  page.addInitScript(`{
+async function changeReports(page: Page, change: (report: StepReport) => void): Promise<void> {
+  await page.addInitScript(`{
     const change = ${change};
     const { set } = Object.getOwnPropertyDescriptor(Worker.prototype, "onmessage");
     Object.defineProperty(Worker.prototype, "onmessage", {
@@ -85,6 +85,7 @@ const changeReports = (page: Page, change: (report: StepReport) => void): Promis
       },
     });
   }`);
+}
 
 async function playThrough(lab: Lab): Promise<void> {
   await lab.open("size=32");
@@ -154,6 +155,7 @@ test("Export says that it has saved, or that there is nothing", async ({ lab, pa
   await expect(said).toHaveText("Saved bimodal-stereo-report.json: settings, poses and all iterations of this run.");
   await expect(exporting).toHaveText("Export");
   await open(page, "at=grey");
+  await expect(said).toBeEmpty();
   await exporting.click();
   await expect(said).toHaveText("Saved bimodal-stereo-lesson-grey.json: settings and numbers of this figure.");
   await page.getByRole("link", { name: "Exercises", exact: true }).click();
