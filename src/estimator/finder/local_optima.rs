@@ -229,8 +229,7 @@ mod tests {
         assert_eq!(winner(&[large.clone(), exact.clone()], 0.01), (Some(Origin::Candidate(0)), 0));
         // The exact optimum does not win if the image is so clean that it leaves more than the image's noise, too.
         assert_eq!(winner(&[large.clone(), exact], 0.005).0, Some(Origin::Candidate(40)));
-        // The exact optimum also does not win if the other leaves hardly more noise, or if few of its own points are
-        // seen.
+        // The exact optimum also does not win if the other leaves hardly more noise, or if it has few visible points.
         assert_eq!(
             winner(&[optimum(40.0, 1000.0, 0.012), optimum(0.0, 600.0, 0.0099)], 0.01),
             (Some(Origin::Candidate(40)), 1)

@@ -147,7 +147,8 @@ const CALIBRATORS: readonly Row[] = [
     sample: "opencalib",
     reads: "cameras",
     warnings: [],
-    taken: "The camera with its size; the pose between the two sensors that the file's name states.",
+    taken:
+      "The camera with its size, and the pose between the two sensors. The file's name states which sensors these are.",
     guessed: NOTHING,
     exported: "The save button of `run_lidar2camera` and the others",
   },
@@ -159,7 +160,7 @@ const CALIBRATORS: readonly Row[] = [
     sample: "vlcal",
     reads: "cameras",
     warnings: [],
-    taken: "The camera; the result, or else the initial guess with a warning.",
+    taken: "The camera, and the resulting pose. If the file has no result, the initial guess, with a warning.",
     guessed: "Nothing. Omnidirectional cameras are refused by name.",
     exported: "`ros2 run direct_visual_lidar_calibration calibrate FOLDER` writes it into the folder",
   },
