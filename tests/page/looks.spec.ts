@@ -123,7 +123,7 @@ test("a range that is half typed survives the frames that arrive meanwhile", asy
   const highest = page.getByLabel("Depth: highest value shown", { exact: true });
   const before = await highest.inputValue();
   await lowest.fill("-9");
-  // Without a pointer event, which would commit the value.
+  // The button is clicked without a pointer event, because that would commit the value.
   await page.locator("#step").evaluate((button: HTMLButtonElement) => button.click());
   await expect(lab.iteration).toHaveText("1");
   await expect(highest).not.toHaveValue(before);

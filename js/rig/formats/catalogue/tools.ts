@@ -172,7 +172,7 @@ const CALIBRATORS: readonly Row[] = [
     sample: "fast-livo",
     reads: "poses",
     warnings: [],
-    taken: "`Rcl` and `Pcl`, the LiDAR in the camera; the LiDAR in the inertial unit.",
+    taken: "The pose of the LiDAR in the camera (`Rcl` and `Pcl`), and its pose in the inertial unit.",
     guessed: NOTHING,
     exported: SEE_PRODUCT,
   },
