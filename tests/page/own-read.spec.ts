@@ -101,7 +101,7 @@ test("a mask of 16 bits is a mask, and labels are refused in words", async ({ la
   await lab.reaches("ready");
   await drop(page, "body", [mask("soft.png", 30_000)]);
   await expect(slot(lab, 3)).toContainText("soft.png");
-  // A file that is chosen by hand is read as its slot requires, and the page shows what speaks against it.
+  // A file that is chosen by hand is read as its slot requires, and the page shows the reason against it.
   await put(lab, "Depth map", labels);
   await expect(slot(lab, 1)).toContainText(
     "Read as this slot requires; without the slot it would have been refused: its few small integers are labels",

@@ -36,7 +36,7 @@ export const pixel: Lesson = {
       right: 1,
       reveal: { sweep: { key: "albedo", to: 0.5 } },
       answer:
-        "All fall by log 2, about 0.69. Halving a number lowers its logarithm by log 2, however large the number is.",
+        "All fall by log 2, about 0.69. Halving a number lowers its logarithm by the same amount, however large it is.",
     },
   ],
   can: "You can say what the colour of a pixel depends on, and what the model leaves out.",
