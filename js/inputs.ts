@@ -88,7 +88,7 @@ function inputs() {
   };
 }
 let made: ReturnType<typeof inputs> | undefined;
-/** Made on first use, so that bundlers leave them out of code that only checks a rig. */
+/** The checks are made on first use, so that bundlers leave them out of code that only checks a rig. */
 const checks = (): ReturnType<typeof inputs> => (made ??= inputs());
 
 export const checkImage = (value: unknown): void => checks().image(value, "image");

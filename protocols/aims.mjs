@@ -264,7 +264,7 @@ function rgbdAims(rows = []) {
   ];
 }
 
-/** An initial pose counts as ending like the search if the two final poses are closer than this, degrees. */
+/** Distance of the final poses, in degrees, below which an initial pose counts as ending like the search. */
 const SAME_END = 0.5;
 
 function pinholeAims(rows = []) {

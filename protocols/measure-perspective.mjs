@@ -4,7 +4,7 @@ import { meshOf, middleOf, moved, pointAt, seen, shade, times } from "./perspect
 import { IDENTITY, aboutAxis, aboutY, degreesBetween, offBy, product, transpose, turn } from "./rotations.mjs";
 import { judged, optionsOf, withRun } from "./runs.mjs";
 
-/** Neighbouring points of a depth map farther apart than this belong to different parts, metres. */
+/** Distance, in metres, above which neighbouring points of a depth map belong to different parts. */
 const JUMP = 0.01;
 /** Side of the raster for a surface's mesh, and the smallest jump in depth that the mesh does not bridge, in samples. */
 const RASTER = 256;

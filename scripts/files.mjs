@@ -49,7 +49,7 @@ export function documentOf(groups) {
   return ["# Files that are read", "", INTRODUCTION, "", ...sections].join("\n");
 }
 
-/** The source of the page's list: for each group what is read, of pictures and scans the formats and of the others the products. */
+/** The source of the page's list of what is read. A group of pictures or scans lists formats; any other group lists products. */
 export function listOf(groups) {
   const areFormats = (title) => /maps|images|Masks|scans/.test(title);
   const brief = (file) =>

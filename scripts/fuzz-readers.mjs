@@ -88,7 +88,7 @@ async function fuzz(minutes, seed) {
   if (findings.length > 0) process.exitCode = 1;
 }
 
-/** Keeps all findings; of the other files, smallest first, those that run code which no earlier file ran. */
+/** Keeps all findings. Then goes through the other files, the smallest first, and keeps those that run code which no earlier file ran. */
 async function minimise() {
   const coverage = new Coverage();
   await coverage.start();

@@ -6,7 +6,7 @@ import { SITE, buildSite } from "./site/build.mjs";
 
 /** Largest gzipped size of either wasm, of which a visitor downloads one, bytes: 3.6 seconds at 1 Mbit/s. */
 export const WASM_BUDGET = 450_000;
-/** Gzipped size of the scripts before the first paint must stay below this, bytes: half a second at 1 Mbit/s. */
+/** Limit of the gzipped size of the scripts before the first paint, in bytes: half a second at 1 Mbit/s. */
 export const FIRST_PAINT_BUDGET = 60_000;
 /** Largest gzipped size of everything that a check of a rig loads beyond the Lab, with its readers, bytes. */
 export const CHECK_BUDGET = 200_000;

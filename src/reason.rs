@@ -193,7 +193,7 @@ impl From<Error> for Reason {
     }
 }
 
-/// Sigma from which on a decimal is meaningless, degrees.
+/// Sigma, in degrees, from which on a decimal is meaningless.
 const COARSE: f64 = 5.0;
 /// Beginning of the message for every pose from silhouettes.
 const BY_SILHOUETTES: &str = "pose from silhouettes, because a single albedo does not fit the image";

@@ -50,7 +50,7 @@ interface Elsewhere {
 }
 type OtherPlace = Exclude<Place, "lab">;
 
-/** Loaded on first use. */
+/** The places, each loaded on its first use. */
 const loaders: Record<OtherPlace, () => Promise<new (main: HTMLElement) => Elsewhere>> = {
   learn: async () => (await import("./learn/learn")).Learn,
   tables: async () => (await import("./tables/page")).TablesPage,
@@ -282,7 +282,7 @@ keys.checked = areKeysOn();
 keys.addEventListener("change", () => rememberKeys(keys.checked));
 const press = (id: string) => () => byId(id, HTMLButtonElement).click();
 listenToKeys(() => keys.checked && placeOf(location.hash) === "lab", {
-  // These keys press the buttons, which are off while there is nothing to run.
+  // These keys press the buttons, which are disabled while there is nothing to run.
   " ": press("play"),
   s: press("step"),
   t: press("stage-step"),

@@ -14,7 +14,7 @@ import { type Judged, capped, ofReader, textOf } from "./report.js";
 const CODES: Record<string, number> = { consistent: 0, off: 1, undecided: 2 };
 export const BAD = 3;
 
-/** Loaded when needed: printing the manual loads none of them. */
+/** The modules of the check, loaded only when needed: printing the manual loads none of them. */
 async function modules() {
   const [main, rig, write] = await Promise.all([
     import("../index.js"),

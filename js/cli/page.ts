@@ -12,7 +12,7 @@ import type { Input } from "./files.js";
 import type { Whole } from "./report.js";
 import { versionOf } from "./version.js";
 
-/** Widest picture of the report, pixels, and most frames that it shows. */
+/** Largest width of the report's pictures in pixels, and largest number of frames in the report. */
 const [WIDEST, MOST_FRAMES] = [640, 3];
 
 /** Integers of 8 or 16 bits, or linear floats, as bytes. */

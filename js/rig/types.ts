@@ -77,7 +77,7 @@ export type RigReading = Reading &
         depth: CheckFrame["depth"];
         /** Members of the depth map that the file does not give and that were guessed from its values. */
         guessed: "unit"[];
-        /** The unorganised points of the file, metres, where `depth` was made from them. */
+        /** The unorganised points of the file in metres, if `depth` was made from them. */
         scan?: Scan;
       }
     | {

@@ -11,7 +11,7 @@ export interface ColorImage {
   width: number;
   /** Rows, 1 to 4096. */
   height: number;
-  /** Non-zero where the object is; all pixels without it. */
+  /** A number for each pixel, not zero where the object is. Without a mask all pixels belong to the object. */
   mask?: Uint8Array;
   /** The intrinsics. Without them the view is orthographic. */
   camera?: Pinhole;
@@ -33,7 +33,7 @@ export interface DepthMap {
   width: number;
   /** Rows, 1 to 4096. */
   height: number;
-  /** Non-zero where the object is; all pixels without it. */
+  /** A number for each pixel, not zero where the object is. Without a mask all pixels belong to the object. */
   mask?: Uint8Array;
   /** The intrinsics. Without them the view is orthographic, and its unit is the pixel. */
   camera?: Pinhole;

@@ -46,7 +46,7 @@ function filtered({ width, height, channels, data }: Raster<Samples>): Uint8Arra
       out[to++] = value;
     }
   }
-  // From below, so that the row above is still unchanged.
+  // The rows are filtered from the last to the first, so that the row above is still unchanged.
   for (let row = height - 1; row > 0; row--) {
     for (let at = row * stride + 1; at < (row + 1) * stride; at++) out[at] = (out[at] ?? 0) - (out[at - stride] ?? 0);
   }

@@ -29,25 +29,25 @@ export interface RunReport {
   truth?: PoseInput | null | undefined;
   /** The unit of lengths in the colour view. */
   unit: Unit;
-  /** 27 coefficients. */
+  /** The 27 coefficients of the light. */
   light: ArrayLike<number>;
-  /** Shown beside the status. */
+  /** Numbers with their names that are shown beside the status. */
   numbers: readonly Entry[];
   /** Options of the run, in the form in which the report shows them. */
   options: readonly Entry[];
-  /** Shown below the pose. */
+  /** Pictures that are shown below the pose. */
   pictures?: readonly Picture[];
   /** The input files of the run, with their hashes. */
   inputs?: readonly ReportInput[];
-  /** Heading. Default "A run of bimodal stereo". */
+  /** The heading, by default "A run of bimodal stereo". */
   title?: string;
-  /** No date without it. */
+  /** The date of the report. If it is absent, the report has no date. */
   made?: Date;
   /** The page's address with the state of the run. */
   link?: string;
 }
 
-/** The style sheet's kinds of cards. */
+/** The class of the status's card in the style sheet, for each tone. */
 const CARDS = { good: "consistent", open: "undecided", wrong: "off" } as const;
 
 function card({ tone, status, words, numbers }: RunReport): Markup {

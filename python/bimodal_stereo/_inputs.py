@@ -177,7 +177,7 @@ def size(data: NDArray[Any]) -> dict[str, int]:
 
 
 def colours(data: NDArray[Any], field: str) -> NDArray[Any]:
-    """RGBA of integers, RGB of floats, in which transparent pixels have no colour."""
+    """The colours as RGBA if they are integers, or as RGB if they are floats. Floats of transparent pixels become zero, which is no colour."""
     if data.dtype.kind == "f":
         rgb = singles(data[..., :3])
         return rgb if data.shape[2] == 3 else singles(np.where(data[..., 3:] > 0, rgb, 0))

@@ -28,7 +28,7 @@ export const EXCUSED = 1000;
 /** Numbers of a report below this are compared absolutely. */
 const LEAST_NUMBER = 1e-6;
 
-/** Rasters of each column; lengths are in pixels. */
+/** The rasters to which each limit applies; lengths are in pixels. */
 const RASTERS = {
   heights: ["imageDepth", "refinedDepth"],
   normals: ["imageNormals", "depthNormals"],
@@ -74,7 +74,7 @@ export const differ = (a, b) => a !== undefined && b !== undefined && a !== b;
 /** The numbers of a message; its wording may change. */
 const numbersIn = (message = "") => message.match(/-?\d+(\.\d+)?(e-?\d+)?/g)?.join(" ") ?? "";
 
-/** Members that must be equal, described in words. */
+/** The members that have to be equal but are not, in words. */
 function disagreements(before, after) {
   const [a, b] = [before.report, after.report];
   const list = ["status", "iteration", "stage"]

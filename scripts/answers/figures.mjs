@@ -1,7 +1,10 @@
 // Condenses an answer into figures small enough to be committed: the pose in full, rasters by sums and samples.
 import { createHash } from "node:crypto";
 
-/** Number of values kept of each raster, evenly spread over the pixels that have one; points follow from depths and pose. */
+/**
+ * Number of values that are kept of each raster, evenly spread over the pixels that have one. Points are not kept, because they follow from
+ * depths and pose.
+ */
 const SAMPLES = {
   ...{ imageDepth: 24, refinedDepth: 24, imageNormals: 18, depthNormals: 18 },
   ...{ residual: 6, imagePoints: 0, depthPoints: 0 },

@@ -5,7 +5,10 @@ import { chance, wrong } from "../rigs/draws.mjs";
 const LITTLE = { little: { degrees: 0.5, millimetres: 5 } };
 const FAR = { far: { degrees: 3, millimetres: 40 } };
 const AS_IT_IS = { degrees: 0, millimetres: 0 };
-/** Everything nearer than this is the object, metres. Its image mask covers its projected points and their neighbouring pixels. */
+/**
+ * Depth of the end of the object, in metres; everything nearer belongs to it. Its image mask covers its projected points and their
+ * neighbouring pixels.
+ */
 const OBJECT = 1.2;
 const BESIDE = 3;
 

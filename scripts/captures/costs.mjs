@@ -18,7 +18,7 @@ const CELL = 3;
 const REACH = 3;
 /** Canny: blur in pixels, share of pixels below the upper threshold, lower over upper threshold (MATLAB's values for the two). */
 const CANNY = { blur: 1.4, below: 0.7, ratio: 0.4 };
-/** Distances are capped here, pixels: an edge farther away belongs to another object. */
+/** Largest distance that is counted, in pixels. An edge farther away belongs to another object. */
 const FARTHEST = 20;
 
 const point = (points, index) => [points[3 * index], points[3 * index + 1], points[3 * index + 2]];

@@ -1,4 +1,4 @@
-// Turns tables into rows: every cell once, from the journal if known, else run now.
+// Turns tables into rows. Takes the result of each cell from the journal, or runs the cell once if the journal lacks it.
 import { inRoot, say } from "../shell.mjs";
 import { openJournal } from "./journal.mjs";
 import { hasData, statues } from "./library.mjs";

@@ -11,8 +11,8 @@ use crate::view::{Pinhole, Size, depth_noise};
 /// A point is hidden if it lies behind the nearest one by more than this share of the distance: twice the depth step of
 /// a Kinect at three metres.
 const HIDDEN_SHARE: f64 = 0.02;
-/// A point is hidden only if it lies at least this far behind the nearest one, metres: farther than flying pixels and
-/// the noise of a near object reach.
+/// Smallest distance behind the nearest point, in metres, at which a point is hidden. Flying pixels and the noise of a
+/// near object do not reach so far.
 const HIDDEN_LEAST: f64 = 0.015;
 
 /// Distance from which a point counts as behind another one, in sigmas of the map's noise. A depth is compared with one
@@ -90,7 +90,7 @@ impl Frame {
         [(to_column as f64 - column as f64) / columns, (to_row as f64 - row as f64) / rows]
     }
 
-    /// Distance, metres, from which a point counts as behind another one at `distance`.
+    /// Smallest gap, in metres, at which a point counts as behind another one at `distance`.
     pub fn clear_gap(&self, distance: f64) -> f64 {
         HIDDEN_LEAST.max(HIDDEN_SHARE * distance).max(NOISE_SIGMAS * self.noise * distance * distance)
     }

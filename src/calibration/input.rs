@@ -17,7 +17,7 @@ const NEAREST: f32 = 0.1;
 const FARTHEST: f32 = 20.0;
 /// Largest usual median depth of organised clouds, metres; LiDARs produce such clouds as well.
 const FARTHEST_OF_CLOUDS: f32 = 200.0;
-/// Depths from this value on are missing, as in all depth maps, metres: the square of larger ones overflows f32.
+/// Depth in metres from which on a value is missing, as in all depth maps: the square of larger ones overflows f32.
 const BEYOND: f32 = crate::view::FARTHEST as f32;
 /// Share of missing depths above which a depth map without a mask gets a warning.
 const MANY_HOLES: f64 = 0.4;

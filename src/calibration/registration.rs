@@ -35,7 +35,7 @@ const MOST_HALVINGS: usize = 5;
 /// Decrease of the log posterior up to which a step is accepted: the objective is rough on the scale of a pixel, and a
 /// likelihood ratio of less than e is no evidence.
 const ROUGHNESS: f64 = 1.0;
-/// A step that moves the scene by less than this has converged, pixels.
+/// Move of the scene, in pixels, below which a step has converged.
 pub(super) const ARRIVED: f64 = 0.02;
 /// Longest step of a round with all cues, pixels: finite differences are valid no farther.
 const LONGEST: f64 = 3.0;

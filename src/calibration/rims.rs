@@ -309,13 +309,13 @@ mod tests {
     fn a_surface_ends_within_the_gap_between_two_samples() {
         for columns in [1, 2, 4] {
             let found = seen([columns, 1], |[x, _]| if x.abs() < 0.2 { 1.0 } else { 3.0 });
-            // Both sides of the box in nearly all rows. Above and below, the raster ends.
+            // Both sides of the box are found in nearly all rows. Above and below, the raster ends.
             assert!(found.len() >= 90, "{columns}: {}", found.len());
             for rim in found.into_iter().filter(|rim| (2.5..44.5).contains(&rim.pixel[1])) {
                 assert!((rim.gap - columns as f64).abs() < 0.05 * columns as f64, "{columns}: {}", rim.gap);
                 let side = (rim.pixel[0] - 31.5).signum();
                 assert!((rim.normal[0] - side).abs() < 1e-6);
-                // It ends between 0.2 and the next sample of the wall.
+                // The box ends between 0.2 and the next sample of the wall.
                 let beyond = rim.pixel[0] * side - 31.5 * side - 12.0;
                 assert!(beyond.abs() <= columns as f64, "{columns}: {beyond}");
             }

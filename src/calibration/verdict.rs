@@ -95,7 +95,7 @@ pub(super) struct Judge {
     explained: f64,
     /// Expected error of the estimate.
     own: Health,
-    /// The estimate's error is below this in 95 % of cases, pixels.
+    /// Number of pixels below which the estimate's error lies in 95 % of cases.
     reach: f64,
 }
 

@@ -162,8 +162,8 @@ pub(crate) fn basis_gradient<T: Real>([x, y, z]: [T; 3]) -> [[T; 3]; HARMONICS] 
     ]
 }
 
-/// Decrease of one channel's log S per radian as normals turn about x, y and z: the coefficients of grad log S x n.
-/// They exist because rotation turns the harmonics of each order into each other.
+/// Decrease of one channel's log S per radian as normals turn about x, y and z: the coefficients of grad log S x n. The
+/// coefficients exist because a rotation maps the harmonics of each order into each other.
 pub(crate) fn falling_by_turns(l: &[f64; HARMONICS]) -> [[f64; HARMONICS]; 3] {
     // C3 / C1.
     let root = 3.0_f64.sqrt();

@@ -35,7 +35,7 @@ pub(crate) fn weight<T: Real>(u: T) -> T {
     attenuation * attenuation
 }
 
-/// [`weight`] by one division, of the squared sum, which differs in the last bit. One bit changes single
+/// [`weight`] computed by a single division by the squared sum; its last bit may differ. One bit changes single
 /// correspondences of a loop, so each caller keeps the form with which its published figures were measured.
 #[inline(always)]
 pub(crate) fn weight_of_square<T: Real>(u: T) -> T {

@@ -98,8 +98,8 @@ impl Correspondences {
         &self.depth_of_pixel
     }
 
-    /// These correspondences without normals in gaps between points, as in the paper. The paper's prior holds each
-    /// pixel separately, and additional pixels with wrong normals would impede the paper's loop.
+    /// A copy of the correspondences without normals in gaps between points, as in the paper. The paper's prior holds
+    /// each pixel separately, and additional pixels with wrong normals would impede the paper's loop.
     #[must_use]
     pub fn of_points_alone(self) -> Self {
         Self { widest_gap: 0, ..self }

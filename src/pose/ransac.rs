@@ -228,7 +228,7 @@ fn draw(generator: &mut Random, count: u32) -> [usize; SAMPLE] {
     sample.map(|number| number as usize)
 }
 
-/// Number of samples after which the probability of having missed one without outliers is [`MISSED`].
+/// Number of samples to draw, so that with probability 1 - [`MISSED`] at least one of them has no outliers.
 fn samples_needed(share: f64) -> u32 {
     let good = share.powi(SAMPLE as i32);
     // ln_1p keeps the sign of zero, so that a share of zero requires infinitely many samples.

@@ -36,7 +36,7 @@ impl Similarity {
     /// > | s R  t |
     /// > |  0   1 |
     ///
-    /// It maps (x, y, z, 1) of the depth view into the colour view.
+    /// The matrix maps (x, y, z, 1) of the depth view into the colour view.
     #[must_use]
     pub fn matrix(&self) -> Matrix4<f64> {
         let mut matrix = (self.scale * self.rotation).to_homogeneous();

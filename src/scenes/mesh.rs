@@ -19,7 +19,7 @@ const LARGEST_JUMP: f64 = 12.0;
 /// origin in the centre of the grid at height zero, so that z = -height.
 #[derive(Clone, Debug)]
 pub struct Mesh {
-    /// Only vertices that belong to a triangle.
+    /// The vertices that belong to at least one triangle.
     vertices: Vec<Vector3<f64>>,
     /// Unit normals, one for each vertex, on the side from which the relief is seen (z < 0).
     normals: Vec<Vector3<f64>>,

@@ -23,7 +23,7 @@ use crate::view::{Normals, Points, Size};
 const RADII: [usize; 4] = [2, 3, 5, 8];
 /// Sigma of the weights along the tangent plane, in half widths. Set on Mozart (docs/lab/thresholds.md).
 const SIGMA: f64 = 0.75;
-/// Median error of the normals above which windows wider than the first two are tried, radians: views without noise
+/// Median error of the normals, in radians, above which windows wider than the first two are tried. Views without noise
 /// stay below it (data not recorded).
 const NOISY: f32 = 0.06;
 /// Limit for a wider window in noisy views: the ratio of the mean square motion of the normals to the decrease of their
@@ -47,7 +47,7 @@ const NOISE_MARGIN: f64 = 1.25;
 /// Rounds from a first normal: the second starts from a normal that is accurate to a few hundredths of a radian. If the
 /// normal of a narrower window is that accurate, one round from it suffices.
 const ROUNDS: usize = 2;
-/// Error below which a normal is accurate enough for a single round, radians. Set on Mozart at 128x128
+/// Error in radians below which a normal is accurate enough for a single round. Set on Mozart at 128x128
 /// (docs/lab/thresholds.md).
 const CLOSE: f32 = 0.06;
 /// Smallest cosine between the fitted normal and the first one; below it the fit is rejected.

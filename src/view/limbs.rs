@@ -8,7 +8,7 @@
 
 use super::{Normals, Size};
 
-/// Distance at which pixels without depth are looked for, pixels: the normals of the last pixel are one-sided.
+/// Distance, in pixels, at which pixels without depth are looked for: the normals of the last pixel are one-sided.
 const BEYOND: isize = 2;
 /// Outward component of a normal above which a border pixel lies on an occluding contour: the surface has turned away
 /// by 37 degrees.

@@ -16,8 +16,8 @@
 use crate::numeric::{LANES, Lanes, Real};
 use crate::view::{Camera, Normals, Points, Size};
 
-/// Longest usable step in median steps around it. Smooth shapes stay below three up to the last pixel before their
-/// occluding contour; a fold of 75 degrees against a flat surround just passes.
+/// Length of the longest usable step, in units of the median step around it. Smooth shapes stay below three up to the
+/// last pixel before their occluding contour; a fold of 75 degrees against a flat surround just passes.
 const LONGEST_STEP: f64 = 4.0;
 /// Widest window of a plane fit, in pixels from its centre.
 const LARGEST_RADIUS: usize = 16;

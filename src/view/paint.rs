@@ -49,7 +49,7 @@ const PALETTE_ROUNDS: usize = 2;
 const MOST_SWEEPS: usize = 2000;
 const SETTLED_OFFSET: f64 = 1e-5;
 
-/// No region.
+/// Label of a pixel that belongs to no region.
 const NONE: u32 = u32::MAX;
 
 impl ColourView {

@@ -241,7 +241,7 @@ describe("batch.mjs", () => {
     }
   });
 
-  // It continues the results of the test of an interruption.
+  // This test continues with the results of the test of an interruption.
   test("what failed can be tried again, with settings for all pairs", LONG, async () => {
     const settings = join(data, "settings.json");
     writeFileSync(settings, JSON.stringify({ options: { maxIterations: -1 } }));

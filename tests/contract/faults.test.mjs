@@ -4,7 +4,7 @@ import { before, describe, test } from "node:test";
 import { LONG } from "./long.mjs";
 import { BimodalError, Estimator, init, outcome, pair, refused, sample } from "./support.mjs";
 
-/** A pose with the status "converged" is confidently wrong beyond this, degrees. */
+/** Error in degrees above which a pose with the status "converged" is confidently wrong. */
 const WRONG = 3;
 const SIDE = 64;
 /** Side of the scenes with a search. */

@@ -319,7 +319,7 @@ const failure = [
 const solver = (offset, weight, robust = 0) =>
   numberOf(`pose&offset=${offset}&weight=${weight}&robust=${robust}`, "end");
 const MERGE = "When minima merge";
-/** Weights whose logarithm the slider has, from the left. */
+/** Logarithms of the weights that the slider is set to, from left to right. */
 const WEIGHTS = [-3, -2.5, -2, -1.75, -1.5, -1.3, -1, 0, 1];
 
 const merging = [

@@ -56,7 +56,7 @@ export function definitionOf(type, generation) {
 }
 
 const writers = new Map();
-/** A message's bytes; members of ROS 1 have the older names of those of ROS 2. */
+/** A message's bytes. `message` has the names of ROS 2; for ROS 1 they are replaced by its older names. */
 export function encoded(type, message, generation) {
   const key = `${generation} ${type}`;
   if (!writers.has(key)) {
@@ -203,7 +203,7 @@ export async function mcap(messages, { generation = "ros2", compressChunk, chunk
   }
   await writer.end();
   const whole = Buffer.concat(parts);
-  // As after a power failure.
+  // The file ends like one that was cut off by a power failure.
   return whole.subarray(0, whole.length - cut);
 }
 

@@ -163,7 +163,7 @@ test("the best of several topics is chosen, and an option takes another", async 
     poses,
     frames: [first],
   } = await recording.read({ depth: "/camera/aligned_depth_to_color/image_raw" });
-  // It is registered to the colour image, so both share one frame.
+  // The depth map is registered to the colour image, so both share one frame.
   close(poses[0].pose.translation, [0, 0, 0], 1e-12);
   assert.equal(first.depth.camera.fx, K.fx);
 });

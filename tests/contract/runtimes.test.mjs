@@ -22,7 +22,7 @@ const COMMANDS = [
 function isThere(name) {
   if (!existsSync(program(name))) {
     const line = ["install", "--prefix", RUNTIMES, "--no-save", "--no-audit", "--no-fund"];
-    // Both in one command, because npm removes packages that are not listed.
+    // One command installs both, because npm removes packages that are not listed.
     const all = Object.entries(VERSIONS).map(([each, version]) => `${each}@${version}`);
     spawnSync("npm", [...line, ...all], { encoding: "utf8" });
   }

@@ -8,10 +8,10 @@ use std::path::Path;
 use crate::common::{data_dir, median, read_csv, read_npy_f32, read_png};
 use bimodal_stereo::{Light, Size};
 
-/// Bound for central differences, natural logarithm; the differences come from the slopes alone.
+/// Bound of the natural logarithm for central differences, whose errors come from the slopes alone.
 const CENTRAL_BOUND: f64 = 0.004;
-/// Bound for the slopes with which the renders were made, natural logarithm: one step of 16 bits in 65535, at the
-/// renders' usual grey of a tenth of the range, is 1.5e-4.
+/// Bound of the natural logarithm for the slopes with which the renders were made. A step of a 16-bit value changes the
+/// logarithm by 1.5e-4 at a tenth of the range, the usual grey of the renders.
 const SOBEL_BOUND: f64 = 1.5e-4;
 
 /// Slopes of the heights by Sobel's 3 x 3 filters, as in the renders; NaN where a neighbour is missing.

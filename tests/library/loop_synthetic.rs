@@ -80,7 +80,8 @@ fn the_other_sense_of_rotation_is_found_as_well() {
 fn mozart_beats_the_paper() {
     let data = data_dir();
     let scene = Scene::new(&mozart(&data)).expect("a surface");
-    // Both signs of beta, because conventions differ; with and without noise, as in the paper's tables; with a free scale and a scale of one.
+    // Beta has both signs, because conventions differ. Noise is absent or present, as in the paper's tables. The scale
+    // is free or one.
     for (beta, noise, scale) in [(20.0, 0.0, None), (-20.0, 0.0, None), (20.0, 0.01, None), (20.0, 0.01, Some(1.0))] {
         let request = SampleRequest { size: square(32), rotation: about_y(beta), noise, ..SampleRequest::default() };
         let sample = scene.sample(&request).expect("a sample");

@@ -41,7 +41,7 @@ fn scenes_are_what_they_are_called() {
             assert!(share(&frame, 0.1..9.0) > 0.98, "{kind:?} {seed}: nothing is seen");
             let holes = frame.depth.iter().filter(|&&depth| depth == 0).count() as f64 / frame.depth.len() as f64;
             assert!((0.001..0.3).contains(&holes), "{kind:?} {seed}: {holes}");
-            // Neither all black nor all white.
+            // The image is neither all black nor all white.
             let mean = frame.colour.iter().map(|&value| f64::from(value)).sum::<f64>() / frame.colour.len() as f64;
             assert!((90.0..245.0).contains(&mean), "{kind:?} {seed}: {mean}");
             let (near, all) = match kind {

@@ -1,4 +1,4 @@
-/** Where the parts of a lesson's figure are: effect and control in one view, none cut off in a frame. */
+/** Where the parts of a lesson's figure are: an effect and its control are visible together, and a frame cuts nothing off. */
 
 import type { Page } from "@playwright/test";
 import { LESSONS, figure, open, settled } from "./figure";

@@ -110,7 +110,7 @@ test("a card says what is known of the pixel, in a fixed size", async ({ lab, pa
       await numbers("normal"),
     ];
     expect(log.every(Number.isFinite)).toBe(true);
-    // Each is shown with three decimals.
+    // Each number is shown with three decimals.
     expect(
       Math.abs(Math.hypot(...log.map((value, c) => value - (predicted[c] ?? NaN))) - (residual[0] ?? NaN)),
     ).toBeLessThan(0.003);

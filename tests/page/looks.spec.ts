@@ -123,7 +123,7 @@ test("a range that is half typed survives the frames that arrive meanwhile", asy
   const highest = page.getByLabel("Depth: highest value shown", { exact: true });
   const before = await highest.inputValue();
   await lowest.fill("-9");
-  // Without a pointer event, which would commit the value.
+  // The button is clicked without a pointer event, because that would commit the value.
   await page.locator("#step").evaluate((button: HTMLButtonElement) => button.click());
   await expect(lab.iteration).toHaveText("1");
   await expect(highest).not.toHaveValue(before);
@@ -175,7 +175,7 @@ test("on a tablet the verdict is on the first screen, and stages that do not fit
     page.locator(box).evaluate(({ scrollWidth, clientWidth }) => scrollWidth - clientWidth);
   expect(await widths("#stages")).toBeGreaterThan(0);
   expect(await widths("#bar")).toBe(0);
-  // None of them wraps.
+  // No stage wraps.
   const [stages] = await page
     .locator("#stages")
     .evaluateAll((all) =>
@@ -219,12 +219,12 @@ test("open settings hide no input, and what has opened them stays under the poin
   for (const box of ["#inputs", "#hero", "#outcome"])
     expect((await page.locator(box).boundingBox())?.x).toBeGreaterThan((sheet?.x ?? 0) + (sheet?.width ?? 0));
   expect(await summary.boundingBox()).toEqual(before);
-  // Nor does anything above: the places, the sentence, the examples.
+  // The sheet covers nothing of what is above it either: the places, the sentence, the examples.
   for (const box of [".top", ".lead"]) {
     const above = await page.locator(box).boundingBox();
     expect((above?.y ?? Infinity) + (above?.height ?? 0)).toBeLessThanOrEqual(sheet?.y ?? 0);
   }
-  // All of it can be reached, and it stays next to the scrolled content.
+  // The whole sheet can be reached, and it stays next to the scrolled content.
   const bar = await page.locator("#bar").boundingBox();
   expect((sheet?.y ?? 0) + (sheet?.height ?? 0)).toBeLessThanOrEqual(bar?.y ?? 0);
   // The surfaces are fully visible, below a title of one line and above their legend.

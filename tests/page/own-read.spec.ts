@@ -44,7 +44,7 @@ test("the unit of a depth map with a camera is guessed into its field, said, and
   await expect(slot(lab, 1)).toContainText("another.png");
   await lab.reaches("ready");
   await expect(unit(lab)).toHaveValue("0.002");
-  // An emptied field is guessed again, and again for the next depth map.
+  // If the field is emptied, the unit is guessed again, for this depth map and for the next one.
   await unit(lab).fill("");
   await page.keyboard.press("Enter");
   await expect(unit(lab)).toHaveValue("0.001");
@@ -101,7 +101,7 @@ test("a mask of 16 bits is a mask, and labels are refused in words", async ({ la
   await lab.reaches("ready");
   await drop(page, "body", [mask("soft.png", 30_000)]);
   await expect(slot(lab, 3)).toContainText("soft.png");
-  // A file chosen by hand is read as its slot requires, with the objection to it.
+  // A file that is chosen by hand is read as its slot requires, and the page shows the reason against it.
   await put(lab, "Depth map", labels);
   await expect(slot(lab, 1)).toContainText(
     "Read as this slot requires; without the slot it would have been refused: its few small integers are labels",

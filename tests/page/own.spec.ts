@@ -177,7 +177,7 @@ test("swapped files are offered to be swapped, and then run", async ({ lab, page
   await put(lab, "Depth map", colourPng("second.png"));
   await expect(page.locator(".offer")).toContainText("Colour and depth seem to be swapped.");
   await lab.reaches("error");
-  // It is also shown at the verdict, since the settings may be closed.
+  // The error is also shown at the verdict, since the settings may be closed.
   await expect(page.locator("#verdict")).toContainText(
     "second.png: it is a colour picture where a depth map was expected",
   );

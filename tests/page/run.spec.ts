@@ -287,7 +287,7 @@ test("a pose that was held is not said to have been sought", async ({ lab, page 
   await page.keyboard.press(" ");
   await expect(page.locator("#verdict")).toContainText("stayed at its initial value");
   await expect(page.locator("#next")).toContainText("Registration, joint");
-  // It is 20 degrees off and shown in red, since a tick would claim the contrary.
+  // The pose is 20 degrees off and shown in red, since a tick would claim the contrary.
   await expect(page.locator("#status")).toHaveAttribute("data-tone", "wrong");
   await expect(page.locator("#status-icon")).toHaveText("×");
 });

@@ -267,7 +267,7 @@ test("a line puts one figure, as it is set, into another page", async ({ page, c
   for (const hidden of [".top", ".learn-text", ".learn-contents", "#bar", "h1"])
     await expect(frame.locator(hidden).first()).toBeHidden();
   await expect(frame.locator(".learn-panel canvas").first()).toBeVisible();
-  // It is interactive and stays within its frame.
+  // The embedded figure is interactive and stays within its frame.
   await frame.locator('.learn-controls input[name="beta"]').fill("10");
   await expect(frame.locator(".learn-figure")).toHaveAttribute("aria-busy", "false");
   const inside = elsewhere.frames()[1];

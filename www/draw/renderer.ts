@@ -36,7 +36,7 @@ async function elsewhere(thread: Thread, canvas: HTMLCanvasElement): Promise<Ren
   throw new Error("no WebGL in a thread");
 }
 
-/** It answers every message; once it has ended nothing is drawn, and all waiting callers are released. */
+/** The thread that draws. It answers every message. Once it has ended, nothing is drawn, and all waiting callers are released. */
 class Thread implements Renderer {
   readonly #worker = new Worker(new URL("./stage-thread.ts", import.meta.url), { type: "module" });
   #isOver = false;

@@ -5,7 +5,7 @@ import type { Painted, Surface } from "./protocol";
 import { gridOf, type Cut } from "./rasters";
 
 export function contextOf(width: number, height: number): OffscreenCanvasRenderingContext2D {
-  // It is written and read pixel by pixel, which is slow on a graphics card.
+  // The canvas is written and read pixel by pixel, which is slow on a graphics card.
   const context = new OffscreenCanvas(width, height).getContext("2d", { willReadFrequently: true });
   if (!context) throw new Error("This browser cannot draw in a worker.");
   return context;

@@ -28,7 +28,7 @@ export class Numbers {
     return this.#keep(`points ${view}`, () => this.#estimator.points(view));
   }
 
-  /** They change after each step. */
+  /** Discards the numbers, because they change with each step. */
   forget(): void {
     this.#kept.clear();
   }

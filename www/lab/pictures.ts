@@ -42,7 +42,7 @@ export function offerPictures(root: HTMLElement, select: HTMLSelectElement): voi
   if (titles.includes(before)) select.value = before;
 }
 
-/** Drawn on the page's background, because curves may be invisible on another one. */
+/** A copy of the canvas on the page's background, because curves may be invisible on another one. */
 function flat(canvas: HTMLCanvasElement): HTMLCanvasElement {
   const copy = document.createElement("canvas");
   copy.width = canvas.width;

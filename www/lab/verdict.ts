@@ -25,7 +25,7 @@ export const isWithinSearch = (report: StepReport, by: "step" | "stage"): boolea
 export const standing = (report: StepReport): string =>
   isSearching(report) ? "candidate" : report.status === "running" && report.iteration === 0 ? "start" : "found";
 
-/** These words once the settings have changed; an initial pose is not "found". */
+/** How a pose is called once the settings have changed. An initial pose is not renamed, because no run found it. */
 export const BEFORE = "last run";
 export const dated = (standing: string, isBefore: boolean): string =>
   isBefore && standing !== "start" ? BEFORE : standing;

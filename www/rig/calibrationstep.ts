@@ -33,7 +33,7 @@ export class CalibrationStep {
     "Without a calibration the check only estimates one; add yours to have it checked. If the depth maps are already registered to the images, as phones and many drivers save them, the calibration is the identity. ",
     press("Add the identity", () => this.#rig.addPose({ name: "identity", pose: identity }, "the identity")),
   );
-  /** Shown once for all candidates. */
+  /** A hint that is shown once for all candidates. */
   readonly #hint = make("p", { class: "soft rig-hint" });
   readonly #alert = make("p", { class: "rig-error", role: "alert", hidden: true });
   readonly #next: HTMLButtonElement;

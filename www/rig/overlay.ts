@@ -23,7 +23,7 @@ const WAY = 20;
 const EDGE = [255, 60, 190] as const;
 /** Ratio of the point size to the mean distance of points, so that sparse regions are covered. */
 const OVERLAP = 1.2;
-/** Largest width of the report's pictures, px, and most frames in the report. */
+/** Largest width of the report's pictures in pixels, and largest number of frames in the report. */
 const [REPORT_WIDTH, REPORT_FRAMES] = [1280, 3];
 
 export class Overlay {

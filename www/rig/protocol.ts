@@ -52,7 +52,7 @@ export interface FramePlan {
   colour: number;
   depth: number;
   mask?: number;
-  /** Drawn on the colour image, at its size; non-zero pixels are used. */
+  /** A mask that was drawn on the colour image and has its size; non-zero pixels are used. */
   paint?: Uint8Array;
   /** Nearest and farthest depth that is used, metres. */
   range?: [number, number];

@@ -72,7 +72,7 @@ export class Session {
     }
     const worker = this.#worker;
     worker?.postMessage({ kind: "cancel" } satisfies Request);
-    // It answers any request once the check has ended.
+    // The worker answers a request once the check has ended.
     const id = this.#next++;
     const late = setTimeout(() => worker === this.#worker && this.#replace(), PATIENCE);
     const ended = () => clearTimeout(late);

@@ -1,4 +1,4 @@
-//! NumPy's .npy, in the few types that images and depth maps come in, like js/npy.ts.
+//! NumPy's .npy, in the few types that images and depth maps have. The same types are read by js/npy.ts.
 //!
 //! npyz (0.9.1) is not used, because it multiplies the sides of a shape before they can be checked, and so overflows on
 //! a hostile header.

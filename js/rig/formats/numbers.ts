@@ -57,7 +57,7 @@ function listOf(value: unknown): Numbers | undefined {
   return numbers.every((number) => number !== undefined) ? numbers : undefined;
 }
 
-/** The columns of a square matrix, in which Apple's simd stores it. */
+/** Reads a square matrix from its columns, as Apple's simd stores it. */
 function ofColumns(columns: unknown[]): Matrix | undefined {
   const side = columns.length;
   const values = columns.flatMap((column) => listOf(column) ?? []);

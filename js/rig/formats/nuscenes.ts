@@ -13,7 +13,7 @@ const isPosed = (value: unknown): value is Node =>
 const isRecord = (value: unknown): boolean =>
   isPosed(value) && ["camera_intrinsic", "sensor_token", "token", "ego_pose_token"].some((key) => key in value);
 
-/** The records of a table, which have no names, or of an object, with the names of its members. */
+/** The records of a table or an object. Those of an object have the names of its members; those of a table have none. */
 function records(root: unknown): [name: string, record: unknown][] {
   if (Array.isArray(root)) return root.map((each) => ["", each]);
   return isNode(root) ? [["", root], ...Object.entries(root)] : [];

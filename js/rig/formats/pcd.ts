@@ -13,13 +13,13 @@ interface Field {
   size: number;
   type: string;
   count: number;
-  /** Bytes that precede it in a point. */
+  /** Number of bytes before the field in a point. */
   offset: number;
 }
 
 interface Header {
   fields: Field[];
-  /** Bytes of a point. */
+  /** Number of bytes of a point. */
   stride: number;
   width: number;
   height: number;
@@ -132,7 +132,7 @@ interface Target {
   step: number;
 }
 
-/** An empty scan, and the fields that fill it. */
+/** A scan without values, and the fields whose values fill it. */
 function targetsOf(head: Header): { scan: Scan; targets: Target[] } {
   const others = head.fields.filter(({ name, count }) => count === 1 && channelOf(name) !== undefined);
   const room = roomFor(

@@ -127,7 +127,10 @@ export function readPublishers(whole: string): Calibration {
   return { cameras: [], poses, warnings };
 }
 
-/** It is not known which of several transforms between the same frames ROS publishes, or whether it publishes one with a condition. */
+/**
+ * Warns of several transforms between the same frames, and of one with a condition, because the file does not show which of them ROS
+ * publishes.
+ */
 function doubtsOf(poses: NamedPose[], text: string): ReaderWarning[] {
   const isConditional = CONDITION.test(text);
   const twice = poses.find((pose, index) =>

@@ -1,7 +1,7 @@
 /**
  * Strips and tiles of TIFF that are compressed by ZSTD or LERC, read by fzstd and lerc. Loaded with the first such file.
  *
- * Neither writes more than requested: fzstd gets a buffer of fixed size, and the declared sizes of a LERC blob are checked first.
+ * Neither decoder writes more than requested: fzstd gets a buffer of fixed size, and the declared sizes of a LERC blob are checked first.
  */
 import { decompress } from "fzstd";
 import Lerc from "lerc";

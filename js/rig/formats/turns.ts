@@ -13,7 +13,7 @@ import { degreesOf, ofQuaternion, ofScalarFirst, ofVector, ofYawPitchRoll } from
 
 /** Largest angle between the cameras of a rig, degrees: larger than within any depth camera, smaller than to a side view. */
 const PARALLEL = 45;
-/** Angles within this tolerance of multiples of 90 degrees are changes between conventions of axes, radians. */
+/** Tolerance in radians about multiples of 90 degrees. Angles within it are changes between conventions of axes. */
 const AXES = 0.15;
 /** Readings that differ by less than this need no warning, degrees; the digits of a file differ by more. */
 const ALIKE = 0.05;
@@ -77,7 +77,9 @@ const turnsAxes = (values: Numbers): boolean => {
   return isNear && quarters.some((quarter) => quarter !== 0);
 };
 
-/** Whether angles are degrees: the file says so, they are too large for radians, or only degrees make a rig. */
+/**
+ * Whether angles are degrees: the file says so, they are too large for radians, or only as degrees are they a rotation that a rig can have.
+ */
 function areDegrees(values: Numbers, { angle }: Attributes): boolean {
   if (angle !== undefined) return angle === "degrees";
   if (values.some((value) => Math.abs(value) > 2 * Math.PI + 1e-6)) return true;
@@ -149,7 +151,7 @@ export const orderWarning = (name: string, order: "rows" | "columns"): ReaderWar
     { order },
   );
 
-/** The kind of rotation that this many numbers are. */
+/** The kind of rotation that has this many numbers. */
 export function numbersAsRotation(values: Numbers, key: string): "quaternion" | "three" | "nine" {
   if (values.length === 9) return "nine";
   if (values.length === 4) return "quaternion";

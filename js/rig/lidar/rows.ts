@@ -234,7 +234,7 @@ function turnsOf(polar: Polar, travelled: Float64Array): { turn: Int32Array; isS
 
 /** Width of a bin of the histogram of elevations, radians. */
 const BIN = 0.02 * DEGREE;
-/** Points nearer to the axis than this, metres, are left out of the histogram, because they blur the clusters. */
+/** Smallest distance from the axis, metres, of the points in the histogram. Nearer points would blur the clusters. */
 const BLURRED = 2;
 /** Smallest ratio of the height of a cluster to that of the highest ones; it is low, because rays into the sky do not return. */
 const LEAST_CLUSTER = 0.05;

@@ -1,8 +1,8 @@
 /**
  * The range image of points without rows: a z-buffer over azimuths and elevations at the density of the cloud.
  *
- * It serves scanners without rows (Livox, MEMS) and clouds of many sweeps. The nearest point of a cell stays; other points of the same surface
- * move to a free cell beside it. Points seen through the gaps of a nearer surface are hidden and left out.
+ * This image serves scanners without rows (Livox, MEMS) and clouds of many sweeps. The nearest point of a cell stays; other points of the
+ * same surface move to a free cell beside it. Points seen through the gaps of a nearer surface are hidden and left out.
  */
 import { MOST_SIDE } from "../formats/limits.js";
 import { DEGREE, type Polar } from "./frame.js";
@@ -15,7 +15,7 @@ const COARSEST = 4 * DEGREE;
 const FILLED = 1.37;
 /** Two points lie on one surface if their ranges differ by less than this share. */
 const ONE_SURFACE = 0.02;
-/** Two points also lie on one surface if their ranges differ by less than this, metres. */
+/** Difference of ranges, in metres, below which two points also lie on one surface. */
 const ONE_SURFACE_LEAST = 0.03;
 /** Bisection steps for the logarithm of the cell. */
 const STEPS = 9;

@@ -16,7 +16,7 @@ export interface View {
 const MARGIN = 8 * DEGREE;
 /** Widest angle from the optical axis, radians; a pinhole's picture is not wider. */
 const WIDEST = 85 * DEGREE;
-/** Points whose depth is less, metres, are out of focus, and their directions are unreliable. */
+/** Smallest depth of a usable point, metres. Nearer points are out of focus, and their directions are unreliable. */
 const NEAREST = 0.05;
 
 const rowOf = ({ rotation }: View, row: number): Vector => [

@@ -30,7 +30,7 @@ const PAUSE = 250;
 const APART = 2.5 * ALIKE;
 /** Milliseconds after which a frame is taken even if the view moves. */
 const RESTLESS = 5000;
-/** A pair whose stamps differ by at most this, seconds, is taken before `RESTLESS` has passed. */
+/** Largest difference of a pair's stamps, in seconds, at which the pair is taken before `RESTLESS` has passed. */
 const NEAR = 0.02;
 
 const wait = (milliseconds: number) => new Promise<void>((go) => setTimeout(go, milliseconds));

@@ -27,10 +27,10 @@ const FEWEST_CORRESPONDENCES: usize = 12;
 const FIRST_VERDICT: u32 = 2;
 const FIRST_VERDICT_OF_SURFACE: u32 = crate::shape::STARTS;
 
-/// A rotation less certain than this about any axis is not observable, degrees (one sigma): an angle that is uniform over a quarter turn has a
-/// sigma of 26.
+/// Sigma in degrees above which the rotation about an axis is not observable. An angle that is uniform over a quarter
+/// turn has a sigma of 26.
 const UNOBSERVABLE: f64 = 25.0;
-/// A rotation less certain than this about any axis is unusable, degrees (one sigma). Set above the sigmas of poses
+/// Sigma in degrees above which the rotation about an axis is too uncertain to be used. Set above the sigmas of poses
 /// found in random scenes.
 const LOST_SIGMA: f64 = 5.0;
 /// Smallest share of points within the robust scale for a pose to be trusted.

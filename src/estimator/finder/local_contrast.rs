@@ -12,10 +12,11 @@ use crate::options::Registration;
 use crate::pose::{ContrastOutcome, ContrastReport, ContrastSearch, PhotometricReport, Similarity};
 use crate::view::ColourView;
 
-/// Two registrations agree if they end within this angle, degrees: local contrast can be off by a few.
+/// Largest angle, in degrees, between the ends of two registrations that agree: local contrast can be off by a few
+/// degrees.
 const SAME_POSE: f64 = 8.0;
-/// Around an initial pose, starts are turned about the axes by multiples of this angle, degrees. Set on photographs with
-/// initial poses 8 degrees off (docs/lab/thresholds.md).
+/// Angle in degrees by whose multiples the starts around an initial pose are turned about the axes. Set on photographs
+/// with initial poses 8 degrees off (docs/lab/thresholds.md).
 const TURN: f64 = 5.0;
 /// Largest multiple of that angle: 123 turns in all. Set on the same photographs.
 const MOST_TURNS: i32 = 3;
@@ -83,7 +84,7 @@ impl CleanedImage {
 /// sixth larger or smaller are missed.
 const SIZES: [f64; 3] = [0.84, 1.0, 1.19];
 
-/// These poses at each size that the scale may have.
+/// Each of these poses at every size that the scale may have.
 pub fn of_all_sizes(pair: &ViewPair, poses: &[Similarity]) -> Vec<Similarity> {
     let middle = pair.depth.points.centroid();
     let held = gauge::held_scale(pair);

@@ -26,7 +26,7 @@ const THIRD: f64 = 1.0 / 3.0;
 /// A local optimum is convincing if every other optimum with as many visible points has at least this many times its
 /// noise.
 const CONVINCING_NOISE: f64 = 2.0;
-/// Registrations that end within this angle have found the same optimum, degrees.
+/// Largest angle, in degrees, between registrations that have found the same optimum.
 const SAME_OPTIMUM: f64 = 3.0;
 /// An optimum reached this often needs no more support; candidates near it are skipped.
 const ENOUGH_SUPPORT: u32 = 2;
@@ -229,7 +229,7 @@ mod tests {
         assert_eq!(winner(&[large.clone(), exact.clone()], 0.01), (Some(Origin::Candidate(0)), 0));
         // The exact optimum does not win if the image is so clean that it leaves more than the image's noise, too.
         assert_eq!(winner(&[large.clone(), exact], 0.005).0, Some(Origin::Candidate(40)));
-        // Nor does it win if the other leaves hardly more noise, or if it sees little itself.
+        // The exact optimum also does not win if the other leaves hardly more noise, or if it has few visible points.
         assert_eq!(
             winner(&[optimum(40.0, 1000.0, 0.012), optimum(0.0, 600.0, 0.0099)], 0.01),
             (Some(Origin::Candidate(40)), 1)

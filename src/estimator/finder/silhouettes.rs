@@ -12,7 +12,7 @@ use crate::view::Normals;
 /// ignored.
 const FEWEST_RIMS: usize = 40;
 const LARGEST_RIM_NOISE: f64 = 6.0;
-/// Without an initial pose, starts are turned by these angles about y and x, degrees.
+/// Angles in degrees by which the starts are turned about y and x if there is no initial pose.
 const TURNS: [f64; 3] = [0.0, -32.0, 32.0];
 const TILTS: [f64; 3] = [0.0, -24.0, 24.0];
 /// Sigma of the prior if no initial pose is given, degrees and shares of the distance: both cameras look from roughly

@@ -67,7 +67,8 @@ impl Prediction {
         let width = samples.grid.width;
         let across = self.difference(cell, column > 0, column + 1 < width, 1)?;
         let down = self.difference(cell, row > 0, row + 1 < samples.grid.height, width)?;
-        // These are differences of position and shade per grid step; the chain rule yields the derivatives by position.
+        // `across` and `down` are differences of position and shade per grid step; the chain rule yields the
+        // derivatives by position.
         let area = across[0] * down[1] - across[1] * down[0];
         let enough = area.abs() >= LEAST_AREA * (samples.stride * samples.stride) as f32;
         enough.then(|| {

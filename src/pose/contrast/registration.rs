@@ -31,7 +31,7 @@ const MOST_STEPS: usize = 4;
 const MOST_ATTEMPTS: usize = 6;
 /// A step below this, in radians and object sizes, is negligible: a thousandth of a degree.
 const SETTLED_STEP: f64 = 2e-5;
-/// A level ends with a round that rotates by less, degrees.
+/// Rotation in degrees below which a round is the last of its level.
 const SETTLED_ROUND: [f64; LEVELS] = [0.02, 0.3];
 
 /// Damping of an instrumental step, as a share of the diagonal.

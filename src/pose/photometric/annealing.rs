@@ -17,10 +17,10 @@ const MOST_ATTEMPTS: usize = 8;
 const SMALL_STEP: f64 = 1e-3;
 /// A round at the final scale ends with a step below this, 0.002 degrees: less than [`FINE_SETTLED`].
 const SMALL_FINE_STEP: f64 = 3e-5;
-/// A coarse level ends with a round that rotates by less, degrees.
+/// Rotation in degrees below which a round is the last of a coarse level.
 const COARSE_SETTLED: f64 = 0.3;
-/// Annealing ends with a round at the final scale that rotates by less, degrees: points that appear and disappear at
-/// the occluding contour change the pose by more than that.
+/// Rotation in degrees below which a round at the final scale is the last one. Points that appear and disappear at the
+/// occluding contour change the pose by more than that.
 const FINE_SETTLED: f64 = 3e-3;
 /// Largest number of rounds at the final scale. After these, only points that appear and disappear still change the pose.
 const MOST_FINE_ROUNDS: usize = 4;

@@ -19,7 +19,7 @@ pub(super) const CORRELATED: f64 = 640.0;
 /// Weights of residuals and prior.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Weighting {
-    /// |r| at which a point's weight has fallen to a quarter, log units.
+    /// Value of |r|, in log units, at which a point's weight has fallen to a quarter.
     pub robust_scale: f64,
     /// Weight of the light's prior relative to squared residuals.
     pub prior: f64,

@@ -35,7 +35,7 @@ pub fn ascend(matcher: &mut Matcher, start: Hypothesis, size_varies: bool) -> Hy
     best
 }
 
-/// Rotated about x, y and z, and grown, by these numbers of steps.
+/// The hypothesis after these numbers of steps of rotation about x, y and z, and of growth.
 fn moved(hypothesis: &Hypothesis, [x, y, z, grown]: [f64; 4], (degrees, growth): (f64, f64)) -> Hypothesis {
     hypothesis.moved(Vector3::new(x, y, z) * degrees.to_radians(), grown * growth)
 }

@@ -14,12 +14,13 @@ use crate::pose::similarity::Similarity;
 
 /// Maximum number of ascents.
 const MOST_ASCENTS: usize = 96;
-/// Hypotheses of the sweep that are closer than this to a better one, degrees, are left out, because an ascent reaches
-/// farther.
+/// Smallest distance between hypotheses of the sweep, degrees. A worse one that is closer is left out, because an
+/// ascent reaches farther.
 const SWEEP_SEPARATION: f64 = 10.0;
 /// Maximum number of candidates.
 const MOST_CANDIDATES: usize = 40;
-/// Candidates that are closer than this to a better one, degrees, are duplicates, because registration would join them.
+/// Smallest distance between candidates, degrees. A worse one that is closer is a duplicate, because registration would
+/// join them.
 const CANDIDATE_SEPARATION: f64 = 5.0;
 
 /// A search in slices; owns its memory.

@@ -7,7 +7,7 @@ pub struct TaskResults<T>(Vec<TaskState<T>>);
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum TaskState<T> {
     Open,
-    /// Given to a worker.
+    /// The task has been given to a worker.
     Taken,
     Done(T),
 }

@@ -53,7 +53,7 @@ pub struct Bending {
 }
 
 impl Bending {
-    /// No prior.
+    /// Heights bend freely, without a prior.
     pub const FREE: Self = Self { weight: 0.0, scale: 1.0, halving: 1.0 };
 }
 

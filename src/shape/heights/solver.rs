@@ -58,7 +58,7 @@ pub struct HeightSolver {
     step: Vec<f32>,
     right: Vec<f32>,
     direction: Vec<f32>,
-    /// The operator's product with the direction; before there is one, the pixels' confidence.
+    /// The operator's product with the direction. Before a direction exists, the confidence of the pixels.
     product: Vec<f32>,
     /// Scratch memory of the preconditioner.
     spectrum: Vec<f32>,

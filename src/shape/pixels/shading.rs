@@ -57,7 +57,7 @@ pub struct ShadingReport {
     pub stalled: usize,
     /// `MOST_STEPS` were not enough.
     pub capped: usize,
-    /// Neither colour nor prior, so no normal.
+    /// The pixel has neither a colour nor a prior, so it gets no normal.
     pub skipped: usize,
 }
 

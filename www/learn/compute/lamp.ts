@@ -75,5 +75,5 @@ export const onBall = (direction: ArrayLike<number>): [number, number] => [
   (1 + BALL * (direction[1] ?? 0)) / 2,
 ];
 
-/** The angle of two unit vectors whose cosine this is, degrees. */
+/** The angle, in degrees, whose cosine this is. */
 export const degreesOf = (cosine: number): number => (180 / Math.PI) * Math.acos(Math.min(1, Math.max(-1, cosine)));

@@ -11,7 +11,7 @@ const SIDE = 192;
 const GRID = { width: SIDE, height: SIDE };
 const normals = ballNormals(SIDE);
 const TITLES = ["Order 0", "Order 1", "Order 2"] as const;
-/** Directions of the curve, as intervals of the component toward the lamp. */
+/** Number of intervals of the curve. They divide the component of the direction toward the lamp. */
 const STEPS = 400;
 const FRONT = [0, 0, -1];
 

@@ -35,7 +35,8 @@ export const pixel: Lesson = {
       choices: ["The highest falls most", "All fall by the same amount", "They become flatter"],
       right: 1,
       reveal: { sweep: { key: "albedo", to: 0.5 } },
-      answer: "All fall by log 2, about 0.69. Half the light is one and the same step in a logarithm.",
+      answer:
+        "All fall by log 2, about 0.69. Halving a number lowers its logarithm by the same amount, however large it is.",
     },
   ],
   can: "You can say what the colour of a pixel depends on, and what the model leaves out.",

@@ -40,7 +40,7 @@ export const FOLDERS: readonly Row[] = [
     reads: "folder",
     warnings: ["unit-guessed", "camera-shared"],
     taken: "Pairs by numbers; one camera for both pictures.",
-    guessed: `${UNIT} That depth maps are registered to the colour images.`,
+    guessed: `${UNIT} Depth maps are taken to be registered to the colour images.`,
     exported: DOWNLOAD,
   },
   {

@@ -146,8 +146,8 @@ export const DEPTHS: readonly Row[] = [
     sample: "depth-raw",
     reads: "depth",
     warnings: ["unit-guessed"],
-    taken: "Pixels of the `size` that is given, or found in a text file beside the map.",
-    guessed: "The unit; from the values, whether 32-bit numbers are integers or floats.",
+    taken: "The pixels. Their `size` is given, or found in a text file beside the map.",
+    guessed: "The unit. Whether 32-bit numbers are integers or floats follows from the values.",
     exported: SEE_PRODUCT,
   },
   {
@@ -296,7 +296,8 @@ export const MASKS: readonly Row[] = [
     sample: "mask",
     reads: "mask",
     warnings: [],
-    taken: "The object: pixels above the middle between the two levels. A mask belongs to the picture of its size.",
+    taken:
+      "The pixels of the object, which are above the middle between the two levels. A mask belongs to the picture of its size.",
     guessed: "A picture of two levels is assumed to be a mask, with a warning if it is empty or full.",
     exported: "-",
   },

@@ -9,7 +9,7 @@ export interface Checked extends Omit<CheckReport, "warnings"> {
 
 /** A picture that the report shows. */
 export interface Picture {
-  /** Shown above it. */
+  /** The title above the picture. */
   title: string;
   /** `data:image/png;base64,..`, or JPEG, WebP, AVIF or GIF. */
   dataUrl: string;
