@@ -113,9 +113,7 @@ impl Tiles {
         // Products of each point with itself, which are not pairs: of residuals, and of weights.
         let mut own = [Doubles::splat(0.0); 2];
         evaluation.for_each_linearised(frame, |indices, points, weight| {
-            let varying = evaluation.albedo.zip(reduced.albedo.as_deref());
-            let projected = varying.map(|(albedo, explained)| points.less(albedo, explained, indices));
-            let score = scaled(&reduced.score(projected.as_ref().unwrap_or(points)), weight).map(Doubles::array);
+            let score = scaled(&reduced.score(points), weight).map(Doubles::array);
             let residual = points.residual.map(|residual| weight * residual);
             own = [own[0] + dot(residual, residual), own[1] + weight * weight];
             let shared = [residual[0], residual[1], residual[2], weight].map(Doubles::array);

@@ -9,7 +9,6 @@
 
 use nalgebra::{Cholesky, Const, SMatrix};
 
-use super::albedo::{AlbedoCoefficients, BASIS, ExplainedByAlbedo, INSTRUMENTS, RESIDUAL};
 use super::residual::{Derivative, LinearisedPoints};
 use super::state::Step;
 use crate::light::{COEFFICIENTS, CoefficientMatrix, Coefficients, HARMONICS, Light, LightPrior, falling_by_turns};
@@ -66,8 +65,6 @@ pub(super) struct ReducedSystem {
     /// D^-1 d.
     light: Coefficients,
     light_is_known: bool,
-    /// The varying albedo, which has been eliminated as well.
-    pub albedo: Option<Box<ExplainedByAlbedo>>,
 }
 
 impl LightEquations {
@@ -112,34 +109,9 @@ impl LightEquations {
         }
     }
 
-    /// The step of light and albedo under the present pose; `None` if the points do not determine it.
-    pub fn step(&mut self, albedo: Option<&ExplainedByAlbedo>) -> Option<Step> {
-        if let Some(albedo) = albedo {
-            self.subtract(albedo);
-        }
-        let light = -self.factor()?.solve(&self.gradient());
-        let pose = PoseVector::zeros();
-        Some(Step { pose, light, albedo: albedo_step(albedo, &pose, &light, self.is_known) })
-    }
-
-    /// Subtracts what a varying albedo explains, which eliminates it.
-    fn subtract(&mut self, explained: &ExplainedByAlbedo) {
-        for (channel, products) in explained.products.iter().enumerate() {
-            let product = |row: usize, column: usize| products[(BASIS + row, column)];
-            if self.is_known {
-                self.gram[0][0] = self.gram[0][0] - once(product(0, BASIS));
-                self.point_gradient[0][0] = self.point_gradient[0][0] + once(product(0, RESIDUAL));
-                continue;
-            }
-            for row in 0..HARMONICS {
-                let gradient = &mut self.point_gradient[channel][row];
-                *gradient = *gradient + once(product(row, RESIDUAL));
-                // All channels have the same matrix.
-                for column in (0..=row).filter(|_| channel == 0) {
-                    self.gram[row][column] = self.gram[row][column] - once(product(row, BASIS + column));
-                }
-            }
-        }
+    /// The step of the light; `None` if the points do not determine it.
+    pub fn step(&self) -> Option<Coefficients> {
+        self.factor().map(|factor| -factor.solve(&self.gradient()))
     }
 
     /// d.
@@ -208,6 +180,8 @@ impl Equations {
     /// derivatives by rotation, and K are linear combinations of the harmonics under this light.
     #[inline(never)]
     pub fn take_off(&mut self, noise: SMatrix<f64, HARMONICS, HARMONICS>, light: &Light) {
+        // The value in one of the lanes.
+        let once = |value: f64| Doubles::from(std::array::from_fn(|lane| if lane == 0 { value } else { 0.0 }));
         for (channel, coefficients) in light.0.iter().enumerate() {
             let shade = SMatrix::<f64, HARMONICS, 1>::from(*coefficients);
             let turns = SMatrix::<f64, HARMONICS, 3>::from(falling_by_turns(coefficients));
@@ -236,28 +210,6 @@ impl Equations {
         }
     }
 
-    /// Subtracts what a varying albedo explains, which eliminates it.
-    pub fn subtract(&mut self, explained: &ExplainedByAlbedo) {
-        self.light.subtract(explained);
-        for (channel, products) in explained.products.iter().enumerate() {
-            for row in 0..UNKNOWNS {
-                self.score[row] = self.score[row] - once(products[(INSTRUMENTS + row, RESIDUAL)]);
-                for column in 0..UNKNOWNS {
-                    self.pose[row][column] = self.pose[row][column] - once(products[(INSTRUMENTS + row, column)]);
-                }
-            }
-            let (first, count) = if self.light.is_known { (0, 1) } else { (channel * HARMONICS, HARMONICS) };
-            let both = [(0, Some(&mut self.cross)), (INSTRUMENTS, self.instrument_cross.as_mut())];
-            for (side, sums) in both.into_iter().filter_map(|(side, sums)| Some((side, sums?))) {
-                for (k, sums) in sums[first..first + count].iter_mut().enumerate() {
-                    for (unknown, sum) in sums.iter_mut().enumerate() {
-                        *sum = *sum + once(products[(BASIS + k, side + unknown)]);
-                    }
-                }
-            }
-        }
-    }
-
     /// Eliminates the light; `None` if the points do not determine it.
     pub fn reduce(&self) -> Option<ReducedSystem> {
         let factor = self.light.factor()?;
@@ -274,17 +226,11 @@ impl Equations {
             light_by_pose,
             light,
             light_is_known: self.light.is_known,
-            albedo: None,
         })
     }
 }
 
 impl ReducedSystem {
-    /// The system of a varying albedo that has been eliminated as well.
-    pub fn with_albedo(self, albedo: Box<ExplainedByAlbedo>) -> Self {
-        Self { albedo: Some(albedo), ..self }
-    }
-
     /// Adds sums that do not depend on the light.
     pub fn add(&mut self, sums: &Sums) {
         self.matrix += sums.symmetric();
@@ -304,8 +250,7 @@ impl ReducedSystem {
         fix_unknowns(&mut matrix, held);
         let pose = -inverse(&matrix)? * score;
         let light = -(self.light + self.light_by_pose * pose);
-        let albedo = albedo_step(self.albedo.as_deref(), &pose, &light, self.light_is_known);
-        (pose.norm().is_finite() && light.norm().is_finite()).then_some(Step { pose, light, albedo })
+        (pose.norm().is_finite() && light.norm().is_finite()).then_some(Step { pose, light })
     }
 
     /// Scores of points, their contributions to the right-hand side of the reduced system: sum over channels of (Z - C
@@ -329,11 +274,6 @@ impl ReducedSystem {
         }
         sum
     }
-}
-
-/// The value in one of the lanes.
-fn once(value: f64) -> Doubles {
-    Doubles::from(std::array::from_fn(|lane| if lane == 0 { value } else { 0.0 }))
 }
 
 /// Sums before any points.
@@ -386,18 +326,4 @@ fn add_cross(
             *sum = *sum - value * entry;
         }
     }
-}
-
-/// The step of the albedo that follows steps of pose and light; zero if the albedo does not vary.
-fn albedo_step(
-    explained: Option<&ExplainedByAlbedo>,
-    pose: &PoseVector,
-    light: &Coefficients,
-    light_is_known: bool,
-) -> AlbedoCoefficients {
-    let of = |channel: usize| match light_is_known {
-        true => &light.as_slice()[..1],
-        false => &light.as_slice()[channel * HARMONICS..(channel + 1) * HARMONICS],
-    };
-    explained.map_or_else(AlbedoCoefficients::zeros, |explained| explained.step(pose.as_slice(), [of(0), of(1), of(2)]))
 }

@@ -1,13 +1,13 @@
 //! Sums over the points of a registration at one state of pose and light: objective, linearised equations, noise, share
 //! of inliers.
 
-use super::albedo::{AlbedoSums, VaryingAlbedo, columns};
-use super::equations::{Equations, LightEquations, ReducedSystem, no_sums};
+use super::equations::{Equations, LightEquations, ReducedSystem};
 use super::normal_noise::NormalNoise;
 use super::points::VisiblePoints;
 use super::problem::{Indices, PhotometricProblem};
+use super::relief::{Relief, ReliefSums};
 use super::residual::{ColourModel, LinearisedPoints, Samples};
-use super::state::{State, Step};
+use super::state::State;
 use super::weighting::Weighting;
 use crate::light::{Coefficients, basis};
 use crate::numeric::{DOUBLE_LANES, Doubles, Real, dot, quantile, robust};
@@ -21,8 +21,7 @@ const LEAST_WEIGHT_FOR_NOISE: f64 = 0.25;
 pub(super) struct Evaluation<'a> {
     pub problem: &'a PhotometricProblem<'a>,
     pub points: &'a VisiblePoints,
-    /// Present if the albedo varies.
-    pub albedo: Option<&'a VaryingAlbedo>,
+    pub relief: Option<&'a Relief>,
     /// The image model under the light of the state.
     pub model: ColourModel<'a>,
     pub state: &'a State,
@@ -38,10 +37,7 @@ const NOISE_VARIANCE: f64 = 0.31;
 impl Evaluation<'_> {
     /// Sum of w rho + prior.
     pub fn objective(&self) -> f64 {
-        let mut sum = self.data_term();
-        if self.albedo.is_some() {
-            sum += self.weighting.albedo * self.state.albedo.norm_squared();
-        }
+        let sum = self.data_term();
         if self.problem.light.is_some() {
             return sum;
         }
@@ -90,7 +86,7 @@ impl Evaluation<'_> {
 
     /// The same by instrumental variables, minus the contribution of white noise of the normals, which biases the light
     /// towards less contrast, and with it the pose. The contribution stays in if the light would be undetermined
-    /// without it, and if the albedo varies, because its regressors are as noisy.
+    /// without it.
     pub fn unbiased_system(&self, frame: &Frame) -> Option<ReducedSystem> {
         let noise = self.problem.depth_noise;
         self.system_without_noise(frame, self.problem.normal_error.filter(|_| noise.is_white && noise.is_visible()))
@@ -102,22 +98,13 @@ impl Evaluation<'_> {
         let (problem, pose) = (self.problem, &self.state.pose);
         let mut equations = Equations::new(problem.light.is_some(), self.model.has_instruments());
         let mut noise = NormalNoise::new();
-        let mut albedo = self.albedo.map(|_| AlbedoSums::new());
         self.for_each_linearised(frame, |indices, points, weight| {
             equations.add(points, weight);
-            if let Some((sums, albedo)) = albedo.as_mut().zip(self.albedo) {
-                sums.add(albedo, indices, weight, &points.columns());
-            }
             let Some(errors) = errors else { return };
             let error = Doubles::from(indices.map(|index| f64::from(errors[index as usize])));
             noise.add(problem.normals(pose, indices), Doubles::splat(NOISE_VARIANCE) * error * error * weight);
         });
         equations.add_prior(problem.prior, self.weighting.prior, &self.off_the_mean_light());
-        let explained = albedo.and_then(|sums| sums.explained(self.weighting.albedo, &self.state.albedo));
-        if let Some(explained) = explained {
-            equations.subtract(&explained);
-            return equations.reduce().map(|system| system.with_albedo(explained));
-        }
         if errors.is_none() {
             return equations.reduce();
         }
@@ -137,24 +124,17 @@ impl Evaluation<'_> {
         samples.extend(points.map(|points| self.model.sample(points)));
     }
 
-    /// A step of light and albedo alone; `samples` belong to the same points under the same pose.
-    pub fn light_step(&self, samples: &[Samples]) -> Option<Step> {
+    /// The equations of the light alone; `samples` belong to the same points under the same pose.
+    pub fn light_equations(&self, samples: &[Samples]) -> LightEquations {
         let mut equations = LightEquations::new(self.problem.light.is_some());
-        let mut albedo = self.albedo.map(|_| AlbedoSums::new());
-        let still = no_sums();
         for ((indices, weight), samples) in self.points.lane_groups().zip(samples) {
             let normals = self.problem.normals(&self.state.pose, &indices);
             let residual = self.less_albedo(&indices, self.model.residual(samples, normals));
             let weight = weight * samples.shown * self.robust_weight(&residual);
-            let basis = basis(normals);
-            equations.add(&basis, &residual, weight);
-            if let Some((sums, albedo)) = albedo.as_mut().zip(self.albedo) {
-                sums.add(albedo, &indices, weight, &columns([&still; 2], &basis, &residual));
-            }
+            equations.add(&basis(normals), &residual, weight);
         }
         equations.add_prior(self.problem.prior, self.weighting.prior, &self.off_the_mean_light());
-        let explained = albedo.and_then(|sums| sums.explained(self.weighting.albedo, &self.state.albedo));
-        equations.step(explained.as_deref())
+        equations
     }
 
     /// Visits the points side by side with their indices and weights: each point's weight times its robust weight.
@@ -181,13 +161,34 @@ impl Evaluation<'_> {
         }
     }
 
-    /// Residuals minus the varying albedo.
+    /// Sums for a fit of the albedo that follows the relief.
+    pub fn relief_sums(&self, samples: &[Samples]) -> ReliefSums {
+        let mut sums = ReliefSums::new();
+        let Some(relief) = self.relief else { return sums };
+        for ((indices, weight), samples) in self.points.lane_groups().zip(samples) {
+            let normals = self.problem.normals(&self.state.pose, &indices);
+            let residual = self.less_albedo(&indices, self.model.residual(samples, normals));
+            let weight = (weight * samples.shown * self.robust_weight(&residual)).array();
+            let residual = residual.map(Doubles::array);
+            for (lane, &index) in indices.iter().enumerate().filter(|(lane, _)| weight[*lane] > 0.0) {
+                relief.add(
+                    &mut sums,
+                    index as usize,
+                    [0, 1, 2].map(|channel: usize| residual[channel][lane]),
+                    weight[lane],
+                );
+            }
+        }
+        sums
+    }
+
+    /// Residuals minus the albedo that follows the relief.
     #[inline(always)]
     fn less_albedo(&self, indices: &Indices, residual: [Doubles; 3]) -> [Doubles; 3] {
-        let Some(albedo) = self.albedo else { return residual };
-        let albedo = indices.map(|index| albedo.at(&self.state.albedo, index as usize));
+        let Some(relief) = self.relief else { return residual };
+        let albedo = indices.map(|index| relief.albedo(index as usize));
         std::array::from_fn(|channel| {
-            residual[channel] - Doubles::from(std::array::from_fn(|lane| albedo[lane][channel]))
+            residual[channel] - Doubles::from(std::array::from_fn(|lane| f64::from(albedo[lane][channel])))
         })
     }
 

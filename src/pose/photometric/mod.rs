@@ -36,7 +36,7 @@
 //! | `residual` | r and its derivatives |
 //! | `weighting` | robust scale and weight of the prior |
 //! | `near` | terms of the pose alone about an initial pose: mask and prior |
-//! | `albedo` | albedo that varies |
+//! | `relief` | albedo that follows the curvature of the depth map |
 //! | `evaluation` | sums over the points: objective, equations, noise, inliers |
 //! | `equations` | the linear system, the light eliminated |
 //! | `normal_noise` | contribution of noisy normals to that system |
@@ -45,7 +45,6 @@
 //! Limits: Lambertian surfaces with a single albedo. Initial poses more than 20 to 30 degrees off may end elsewhere.
 //! Behind a pinhole image the scale is held, because it cannot be distinguished from the distance.
 
-mod albedo;
 mod annealing;
 mod covariance;
 mod equations;
@@ -58,6 +57,7 @@ mod phase;
 mod points;
 mod problem;
 mod registration;
+mod relief;
 mod residual;
 mod solver;
 mod state;

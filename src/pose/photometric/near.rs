@@ -11,7 +11,7 @@
 use nalgebra::Vector3;
 
 use super::problem::PhotometricProblem;
-use super::weighting::{CORRELATED, CORRELATED_COARSE};
+use super::weighting::CORRELATED;
 use crate::pose::increment::Frame;
 use crate::pose::prior::PosePrior;
 use crate::pose::silhouette::{SLACK, Silhouette};
@@ -75,10 +75,9 @@ impl NearTerms {
         let mut sums = Sums::new();
         self.add_mask(problem, pose, frame, weights, &mut sums);
         let NearWeights { noise, level, .. } = weights;
-        let correlated = if level > 0 { CORRELATED_COARSE } else { CORRELATED };
         let along = if level > 0 { DISTANCE_FIRST * prior.along } else { prior.along };
         PosePrior { along, ..*prior }.for_each(self.middle, pose, frame, |row, residual| {
-            sums.add(row, residual, correlated * noise * noise, f64::INFINITY);
+            sums.add(row, residual, CORRELATED * noise * noise, f64::INFINITY);
         });
         sums
     }

@@ -47,10 +47,9 @@ impl Photometric {
         let level = options.first_level.min(coarsest(problem)).min(self.levels.len() - 1);
         // Starts from the image's own brightness, so that a change of exposure has no effect on the rest.
         let brightness = problem.image.log_mean();
-        self.state.albedo.fill(0.0);
         self.state = match problem.light {
-            Some(light) => State { pose: *start, light: *light, exposure: brightness, ..self.state },
-            None => State { pose: *start, light: problem.prior.mean().exposed(brightness), exposure: 0.0, ..self.state },
+            Some(light) => State { pose: *start, light: *light, exposure: brightness },
+            None => State { pose: *start, light: problem.prior.mean().exposed(brightness), exposure: 0.0 },
         };
         (self.phase, self.rounds, self.iterations) = (Phase::AnnealingRound { level, fine_rounds: 0 }, 0, 0);
         self.options = PhotometricOptions {

@@ -4,8 +4,6 @@
 //! P' = T P, and n' -> exp([w]) n' for its rotated normal. With g = d log S / d P' and b = d (B L) / d n' of one
 //! channel, the derivatives are dr/dw = (P' - c) x g - n' x b, dr/dv = l g, dr/du = (P' - c) . g and dr/dL = -B.
 
-use super::albedo::{BASIS, ExplainedByAlbedo, INSTRUMENTS, PointColumns, VaryingAlbedo, columns};
-use super::problem::Indices;
 use crate::light::{HARMONICS, Light, Polynomial, basis};
 use crate::numeric::{DOUBLE_LANES, Doubles, Real, dot};
 use crate::pose::increment::{Frame, UNKNOWNS};
@@ -35,7 +33,6 @@ pub(super) struct Samples {
 }
 
 /// Residuals of points side by side, with the quantities that the equations need.
-#[derive(Clone, Copy)]
 pub(super) struct LinearisedPoints {
     pub shown: Doubles,
     /// One for each channel.
@@ -54,28 +51,6 @@ impl LinearisedPoints {
     /// Z: the instrumental variables, or the Jacobian for least squares.
     pub fn instruments(&self) -> &[Derivative; 3] {
         self.instruments.as_ref().unwrap_or(&self.jacobian)
-    }
-
-    /// J, Z, the harmonics and r.
-    pub fn columns(&self) -> PointColumns {
-        columns([&self.jacobian, self.instruments()], &self.basis, &self.residual)
-    }
-
-    /// The same with instruments and harmonics less the part that a varying albedo explains.
-    pub fn less(&self, albedo: &VaryingAlbedo, by: &ExplainedByAlbedo, indices: &Indices) -> Self {
-        let (mut instruments, mut basis) = (*self.instruments(), self.basis);
-        for (channel, instruments) in instruments.iter_mut().enumerate() {
-            let explained = indices.map(|index| albedo.explained(by, index as usize, channel));
-            let of = |column: usize| Doubles::from(std::array::from_fn(|lane| explained[lane][column]));
-            for (unknown, entry) in instruments.iter_mut().enumerate() {
-                *entry = *entry - of(INSTRUMENTS + unknown);
-            }
-            // All channels have the same harmonics.
-            if channel == 0 {
-                basis.iter_mut().enumerate().for_each(|(k, value)| *value = *value - of(BASIS + k));
-            }
-        }
-        Self { instruments: Some(instruments), basis, ..*self }
     }
 }
 

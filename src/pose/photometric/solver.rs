@@ -1,6 +1,5 @@
 //! The state of a photometric registration, and the operations that its rounds share.
 
-use super::albedo::{AlbedoCoefficients, VaryingAlbedo, ridge};
 use super::covariance::{Noise, Tiles};
 use super::equations::ReducedSystem;
 use super::evaluation::Evaluation;
@@ -8,6 +7,7 @@ use super::near::{NearTerms, NearWeights};
 use super::phase::Phase;
 use super::points::{Sampling, VisiblePoints};
 use super::problem::{COARSEST, COARSEST_NEAR, PhotometricOptions, PhotometricProblem, PhotometricTermination};
+use super::relief::Relief;
 use super::residual::{ColourModel, Samples};
 use super::state::State;
 use super::weighting::{Weighting, final_robust_scale, prior_weight};
@@ -34,7 +34,7 @@ const FEWEST_POINTS: usize = 14;
 /// Terms and albedo for a problem with an initial pose.
 struct Near {
     terms: NearTerms,
-    albedo: VaryingAlbedo,
+    relief: Relief,
 }
 
 /// Registers one depth view to one image repeatedly; owns all memory.
@@ -72,7 +72,7 @@ impl Photometric {
     #[must_use]
     pub fn new(problem: &PhotometricProblem<'_>) -> Self {
         let light = problem.prior.mean();
-        let state = State { pose: Similarity::identity(), light, exposure: 0.0, albedo: AlbedoCoefficients::zeros() };
+        let state = State { pose: Similarity::identity(), light, exposure: 0.0 };
         let sharp = SplineImage::new(problem.image, BLURS[0]);
         let instruments = sharp.blurred(problem.image, INSTRUMENT_BLUR);
         let mut levels = vec![sharp];
@@ -135,8 +135,10 @@ impl Photometric {
         let mut samples = std::mem::take(&mut self.samples);
         self.evaluation(problem, level, &self.state).sample(&mut samples);
         for _ in 0..LIGHT_ROUNDS {
-            let step = self.evaluation(problem, level, &self.state).light_step(&samples).ok_or_else(undetermined_light)?;
+            let equations = self.evaluation(problem, level, &self.state).light_equations(&samples);
+            let step = equations.step().ok_or_else(undetermined_light)?;
             self.state = self.state.relit(&step, problem.light.is_some());
+            self.fit_relief(problem, level, &samples);
         }
         self.samples = samples;
         Ok(())
@@ -150,9 +152,21 @@ impl Photometric {
         for &blur in &BLURS[self.levels.len().min(coarsest(problem) + 1)..=coarsest(problem)] {
             self.levels.push(self.levels[0].blurred(problem.image, blur));
         }
-        self.near.get_or_insert_with(|| {
-            Box::new(Near { terms: NearTerms::new(problem), albedo: VaryingAlbedo::new(problem) })
-        });
+        match &mut self.near {
+            Some(near) => near.relief.clear(),
+            none => *none = Some(Box::new(Near { terms: NearTerms::new(problem), relief: Relief::new(problem) })),
+        }
+    }
+
+    /// Fits the albedo that follows the relief, if there is an initial pose and the noise is known.
+    pub(super) fn fit_relief(&mut self, problem: &PhotometricProblem<'_>, level: usize, samples: &[Samples]) {
+        if problem.near.is_none() || !self.noise.residuals.is_finite() {
+            return;
+        }
+        let sums = self.evaluation(problem, level, &self.state).relief_sums(samples);
+        if let Some(near) = &mut self.near {
+            near.relief.step(sums, self.noise.residuals);
+        }
     }
 
     /// Measures the noise of the residuals.
@@ -166,7 +180,7 @@ impl Photometric {
     /// Sets a robust scale, and the prior's weight at the present light.
     pub(super) fn weigh(&mut self, problem: &PhotometricProblem<'_>, robust_scale: f64) {
         let prior = prior_weight(problem, &self.state.light, self.noise.residuals);
-        self.weighting = Weighting { robust_scale, prior, albedo: ridge(self.noise.residuals) };
+        self.weighting = Weighting { robust_scale, prior };
     }
 
     /// The terms of the pose alone, if there are any.
@@ -203,9 +217,8 @@ impl Photometric {
         state: &'a State,
     ) -> Evaluation<'a> {
         let model = ColourModel::new(&self.levels[level], &problem.image.camera, &state.exposed_light());
-        let is_fitted = problem.near.is_some() && self.weighting.albedo.is_finite();
-        let albedo = self.near.as_ref().filter(|_| is_fitted).map(|near| &near.albedo);
-        Evaluation { problem, points: &self.points, albedo, model, state, weighting: self.weighting }
+        let relief = self.near.as_ref().filter(|_| problem.near.is_some()).map(|near| &near.relief);
+        Evaluation { problem, points: &self.points, relief, model, state, weighting: self.weighting }
     }
 
     /// The same on the sharp image at the present state, with instrumental variables.

@@ -1,6 +1,5 @@
 //! State of a registration, pose and light, and a step of both.
 
-use super::albedo::AlbedoCoefficients;
 use crate::light::{COEFFICIENTS, Coefficients, HARMONICS, Light};
 use crate::pose::increment::{Frame, PoseVector};
 use crate::pose::similarity::Similarity;
@@ -12,29 +11,24 @@ pub(super) struct State {
     pub light: Light,
     /// Offset of log S relative to a known light; zero if the light is free.
     pub exposure: f64,
-    /// Coefficients of the varying albedo; zero if there is none.
-    pub albedo: AlbedoCoefficients,
 }
 
 /// A step of pose and light together. For a known light the first coefficient is the exposure, and the others are zero.
 pub(super) struct Step {
     pub pose: PoseVector,
     pub light: Coefficients,
-    pub albedo: AlbedoCoefficients,
 }
 
 impl State {
     /// The state after a step of pose and light.
     pub fn stepped(&self, frame: &Frame, step: &Step, light_is_known: bool) -> Self {
         let pose = frame.change(&step.pose).after(&self.pose).orthonormal();
-        Self { pose, ..self.relit(step, light_is_known) }
+        Self { pose, ..self.relit(&step.light, light_is_known) }
     }
 
-    /// The state after a step of light and albedo alone.
-    pub fn relit(&self, step: &Step, light_is_known: bool) -> Self {
+    /// The state after a step of the light alone.
+    pub fn relit(&self, step: &Coefficients, light_is_known: bool) -> Self {
         let mut next = *self;
-        next.albedo += step.albedo;
-        let step = &step.light;
         if light_is_known {
             next.exposure += step[0];
         } else {

@@ -14,9 +14,7 @@ const PRIOR_DEGREES_OF_FREEDOM: f64 = 5.0;
 
 /// Number of residuals that count as one independent error if the albedo varies: it sets the weight of other terms
 /// relative to sums over residuals. Set on pairs of a statue (docs/lab/thresholds.md).
-pub(super) const CORRELATED: f64 = 60.0;
-/// The same on blurred images.
-pub(super) const CORRELATED_COARSE: f64 = 640.0;
+pub(super) const CORRELATED: f64 = 640.0;
 
 /// Weights of residuals and prior.
 #[derive(Clone, Copy, Debug)]
@@ -25,14 +23,12 @@ pub(super) struct Weighting {
     pub robust_scale: f64,
     /// Weight of the light's prior relative to squared residuals.
     pub prior: f64,
-    /// Weight of the albedo's prior; infinite if there is none, or before the noise is known.
-    pub albedo: f64,
 }
 
 impl Weighting {
     /// For the first fit of the light, before the residuals are known: the scale exceeds all residuals, so that all
     /// points count alike.
-    pub const FIRST: Self = Self { robust_scale: 1e3, prior: 1e-2, albedo: f64::INFINITY };
+    pub const FIRST: Self = Self { robust_scale: 1e3, prior: 1e-2 };
 }
 
 /// The robust scale for residuals with this standard deviation per channel, log units.
