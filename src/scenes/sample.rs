@@ -242,6 +242,10 @@ impl Scene {
         let depth = self.view(&inverse, 1.0 / scale, size, request.depth_camera);
 
         let mut mask = depth.mask();
+        if !mask.contains(&true) {
+            let message = "the depth camera sees only the back of the surface";
+            return Err(Error::new(ErrorKind::Empty, "angles", message));
+        }
         keep_columns(&mut mask, size, request.overlap);
         if !mask.contains(&true) || !image.mask().contains(&true) {
             return Err(Error::new(ErrorKind::Empty, "size", "a view sees nothing of the surface"));

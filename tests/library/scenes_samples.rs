@@ -173,11 +173,13 @@ fn every_size_within_the_limits_works() {
 fn bad_requests_are_refused_by_name() {
     let scene = scene("bust");
     let plain = SampleRequest::default;
+    let turned = |beta| Angles { beta, ..Angles::default() }.rotation();
     let cases = [
         ("size", ErrorKind::Size, SampleRequest { size: square(15), ..plain() }),
         ("size", ErrorKind::Size, SampleRequest { size: square(1025), ..plain() }),
         ("light", ErrorKind::Range, SampleRequest { light: Light([[f64::NAN; 9]; 3]), ..plain() }),
         ("pose.rotation", ErrorKind::Range, SampleRequest { rotation: Matrix3::zeros(), ..plain() }),
+        ("angles", ErrorKind::Empty, SampleRequest { rotation: turned(180.0), ..plain() }),
         ("scale", ErrorKind::Range, SampleRequest { scale: 0.0, ..plain() }),
         ("overlap", ErrorKind::Range, SampleRequest { overlap: 0.0, ..plain() }),
         ("overlap", ErrorKind::Range, SampleRequest { overlap: 1.1, ..plain() }),

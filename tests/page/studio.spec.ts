@@ -75,6 +75,12 @@ test("a link that asks for what can't be says which field is wrong, and how", as
   const field = page.locator("#fields-sample").getByRole("spinbutton", { name: "Overlap" });
   await expect(field).toHaveAttribute("aria-invalid");
   await expect(field).toBeInViewport();
+  // A view that sees the back alone is the fault of the rotation, not of the size.
+  await page.goto("./#size=32&beta=180");
+  await expect(page.locator("#status")).toHaveText("Rotation β: invalid value");
+  await expect(page.locator("#verdict")).toHaveText(
+    "The depth camera sees only the back of the surface. The field is marked.",
+  );
 });
 
 test(

@@ -72,10 +72,12 @@ export class Form {
 
   /** Shows an error beside its field and returns that field; nothing if no field has this path. */
   complain(path: string, message: string): string | undefined {
-    const candidates = [...this.#controls.values()].filter(
-      ({ field, row }) => !row.hidden && (path === field.path || path.startsWith(`${field.path}.`)),
-    );
-    const control = candidates.sort((a, b) => b.field.path.length - a.field.path.length)[0];
+    const shown = [...this.#controls.values()].filter(({ row }) => !row.hidden);
+    const candidates = shown.filter(({ field }) => path === field.path || path.startsWith(`${field.path}.`));
+    // An error of several fields together, such as angles, is shown beside the first of them.
+    const control =
+      candidates.sort((a, b) => b.field.path.length - a.field.path.length)[0] ??
+      shown.find(({ field }) => field.path.startsWith(`${path}.`));
     if (!control) return undefined;
     mark(control, message, "error");
     let folded = control.row.closest("details");
