@@ -64,7 +64,7 @@ export async function opened(address) {
 /** Both widgets have been drawn: the run has ended, and its canvases show more than one colour. */
 export async function drawn(page) {
   await page.locator("bimodal-figure").getByRole("region").waitFor();
-  await page.waitForFunction(() => document.querySelector("bimodal-figure").result);
+  await page.locator("bimodal-figure canvas").first().waitFor();
   await page
     .locator("bimodal-stereo [role=status]")
     .getByText(/^converged/)

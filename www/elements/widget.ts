@@ -41,7 +41,7 @@ function pageOf(): Page {
   return all[PAGE];
 }
 
-/** At once, so that the copy that defines the elements is also the one that is told where their files are. */
+/** At once, so that the copy that defines the elements also receives the places of their files. */
 const page = pageOf();
 
 async function place(files: Record<string, DataView>): Promise<void> {
