@@ -5,7 +5,6 @@
 //! elsewhere. The best of these optima is the estimate, and its covariance judges the candidates. If the first candidate
 //! does not pass, it is registered again in other conventions.
 
-use super::conclusion::LEAST_OVERLAP;
 use super::cue::Cue;
 use super::distortion;
 use super::input::RigView;
@@ -20,7 +19,7 @@ use super::search;
 use super::sensitivity::curves;
 use super::unknowns::State;
 use super::unseen::leave_unseen_out;
-use super::verdict::CheckVerdict;
+use super::verdict::{CheckVerdict, LEAST_OVERLAP};
 use crate::error::{Error, ErrorKind, Result};
 use crate::pose::Similarity;
 

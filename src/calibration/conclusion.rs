@@ -13,7 +13,7 @@ use super::reason::{CheckReason, Margin, Warning, WarningKind};
 use super::registration::{Findings, Round};
 use super::report::{CheckReport, CueReport, FrameReport};
 use super::unknowns::{FOCAL, Matrix, POSE, State, Vector, add_square};
-use super::verdict::{CandidateReport, CheckVerdict, Judge};
+use super::verdict::{CandidateReport, CheckVerdict, Judge, LEAST_OVERLAP};
 
 /// Variance if nothing at all is known, squared pixels.
 const FARTHEST: f64 = 1e6;
@@ -23,9 +23,6 @@ const CLEARLY: f64 = 3.0;
 /// distribution of the estimate, the second that of the candidate in the prior about the estimate. The limit is twenty
 /// times the number of readings, fourteen.
 const MISREAD: f64 = 280.0;
-/// Smallest share of the depth points that the estimate has to put onto the image before it may judge a candidate. The
-/// other points are not compared with anything, and a wrong pose can always fit a small part.
-pub(super) const LEAST_OVERLAP: f64 = 0.15;
 
 impl CalibrationCheck {
     /// The report on the optima, best first.

@@ -1,8 +1,8 @@
 //! The unknowns of a check, and the derivatives of pixels with respect to them.
 //!
-//! P -> c + exp([w]) (P - c) + v about the scene's centre c, in the colour camera's frame; the edge bias, d_0 + d_x n_x
-//! + d_y n_y pixels at a depth discontinuity with the normal n; and ln f of the colour camera if it is unknown. A depth
-//! camera removes or adds a strip at depth discontinuities. One part of the strip's width is the same everywhere.
+//! P -> c + exp([w]) (P - c) + v about the scene's centre c, in the colour camera's frame; the edge bias, in pixels
+//! d_0 + d_x n_x + d_y n_y at a depth discontinuity with the normal n; and ln f of the colour camera if it is unknown. A
+//! depth camera removes or adds a strip at depth discontinuities. One part of the strip's width is the same everywhere.
 //! Another part differs from side to side, since the shadow of a stereo pair lies to one side, and a maker's
 //! registration may be off. The unit of each unknown moves the scene's pixels by one pixel, root mean square. All
 //! unknowns are then comparable, and steps, derivatives and tolerances have one size.

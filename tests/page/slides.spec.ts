@@ -1,5 +1,6 @@
 /** The slides of Learn: each fits its screen, and the browser's Back turns them like pages. */
 
+import type { Locator, Page } from "@playwright/test";
 import { LESSONS, open } from "./figure";
 import { LONG, expect, test } from "./lab";
 
@@ -21,6 +22,39 @@ test("each slide fits its screen, whatever its figure has to say", LONG, async (
         page.locator(".learn-slide").evaluate(({ scrollHeight, clientHeight }) => scrollHeight - clientHeight);
       await expect.poll(below, { message: `${state} at ${width} px` }).toBeLessThanOrEqual(0);
     }
+  }
+  expect(lab.complaints).toEqual([]);
+});
+
+/** Sizes of the visible text of a slide in px, and the axis labels that end outside their plot. */
+const textOf = (page: Page): Promise<{ smallest: string; cut: string[] }> =>
+  page.locator(".learn-slide").evaluate((slide) => {
+    const found: { size: number; words: string }[] = [];
+    const cut: string[] = [];
+    const walk = document.createTreeWalker(slide, NodeFilter.SHOW_TEXT);
+    for (let node = walk.nextNode(); node; node = walk.nextNode()) {
+      const [words, element] = [node.textContent?.trim() ?? "", node.parentElement];
+      const range = document.createRange();
+      range.selectNodeContents(node);
+      const place = range.getBoundingClientRect();
+      // A formula has its own small letters, and the options of a closed select are not drawn.
+      if (!words || !element || !place.width || element.closest("math, option")) continue;
+      const drawing = element.closest("svg");
+      const box = drawing?.getBoundingClientRect();
+      const enlarged = box && drawing ? box.width / drawing.viewBox.baseVal.width : 1;
+      found.push({ size: enlarged * Number.parseFloat(getComputedStyle(element).fontSize), words });
+      if (box && (place.left < box.left - 1 || place.right > box.right + 1)) cut.push(words);
+    }
+    const [least] = found.sort((a, b) => a.size - b.size);
+    return { smallest: least && least.size < 18 ? `${least.size} px: ${least.words}` : "", cut };
+  });
+
+test("text of a slide can be read from the last row, and no axis label is cut", LONG, async ({ lab, page }) => {
+  await page.setViewportSize({ width: 1280, height: 720 });
+  for (const state of LESSONS) {
+    await open(page, `at=${state}&slides`);
+    await expect(page.locator(".learn-slide .learn-figure")).toHaveAttribute("aria-busy", "false");
+    await expect.poll(() => textOf(page), { message: state }).toEqual({ smallest: "", cut: [] });
   }
   expect(lab.complaints).toEqual([]);
 });
@@ -118,7 +152,15 @@ test("slides turn by keys, leave the sliders theirs, and end by escape", async (
   await slider.focus();
   await page.keyboard.press("ArrowRight");
   await expect(slider).toHaveValue("0.32");
-  await page.keyboard.press("PageUp");
+  // After a drag of the slider they turn slides again, and Space does not scroll the page behind.
+  const drag = async (input: Locator) => {
+    const box = (await input.boundingBox()) ?? { x: 0, y: 0, width: 0, height: 0 };
+    await page.mouse.click(box.x + 0.8 * box.width, box.y + 0.5 * box.height);
+  };
+  await drag(slider);
+  await page.keyboard.press("Space");
+  expect(await page.evaluate(() => scrollY)).toBe(0);
+  await page.keyboard.press("ArrowLeft");
   await expect(
     slides.getByRole("heading", { name: say("lessons.grey.title", "One grey light is not enough") }),
   ).toBeVisible();

@@ -4,7 +4,7 @@ import { make } from "../dom";
 import { phrase } from "../words";
 
 /** Elements that use the arrow keys themselves. */
-const MOVED_BY_ARROWS = "input, select, textarea";
+const MOVED_BY_ARROWS = "input:not([type=checkbox]), select, textarea";
 
 export interface Slide {
   article: HTMLElement;
@@ -46,6 +46,10 @@ export class Slides {
       make("div", { class: "learn-slide-bar" }, ...this.#turns.map(({ button }) => button), whole, close),
     );
     this.element.addEventListener("keydown", (event) => this.#key(event));
+    // After a drag of a slider the arrow keys turn slides again; a slider that the Tab key reached keeps them.
+    this.element.addEventListener("pointerup", ({ target }) => {
+      if (target instanceof HTMLInputElement && target.type === "range") this.#title()?.focus({ preventScroll: true });
+    });
     this.element.addEventListener("close", () => {
       if (document.fullscreenElement) void document.exitFullscreen();
       onClose();
@@ -67,7 +71,11 @@ export class Slides {
     this.#holder.replaceChildren(article);
     this.#holder.scrollTop = 0;
     // A removed control loses the focus, and then the keys would have no target.
-    article.querySelector("h2")?.focus();
+    this.#title()?.focus();
+  }
+
+  #title(): HTMLElement | null {
+    return this.#holder.querySelector("h2");
   }
 
   close(): void {

@@ -48,7 +48,7 @@ export function* lambert(values: Values): Generator<Drawing> {
       ...pictures.map(({ panel }) => panel),
       plot(
         { key: "law", title: "Lambert's law", alt: "Intensity against the angle between normal and lamp: a cosine." },
-        "angle to the lamp, °",
+        "angle, °",
         "intensity",
         [{ name: "intensity", ink: "light", points: law() }],
         { at: degreesOf(level), range: [0, 1] },

@@ -82,7 +82,7 @@ export function* orders(values: Values): Generator<Drawing> {
           title: "One lamp by nine numbers",
           alt: "Intensity against the angle to the lamp: true, by nine numbers, and by nine numbers for its logarithm.",
         },
-        "angle to the lamp, °",
+        "angle, °",
         "intensity",
         [
           { name: "true", ink: "truth", points: curve(intensity) },

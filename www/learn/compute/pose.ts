@@ -160,7 +160,7 @@ function drawing(values: Values, made: Sample, state: State, curve: number[]): D
           title: "Residual against the error of the pose",
           alt: "The residual is smallest where the pose is right.",
         },
-        "error of the pose, °",
+        "error, °",
         "residual",
         [{ name: "residual", ink: "pose", points: [...curve], dots: true }],
         { at: numberOf(values, "offset"), domain: ENDS, range: [0, MOST_RESIDUAL[String(values.light)] ?? 1] },

@@ -105,7 +105,7 @@ export function* prior(values: Values): Generator<Drawing> {
           title: "Error against the share given (Figure 5)",
           alt: "Mean error of the normals against the share of pixels with a prior.",
         },
-        "share with a prior, %",
+        "share, %",
         "error, °",
         [{ name: "normals", ink: "prior", points: [...curve], dots: true }],
         { at: share, domain: [0, 100], range: [0, 40] },
