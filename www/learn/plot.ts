@@ -14,6 +14,8 @@ const heightOf = (width: number): number =>
 const MARGIN = { left: 40, top: 8, right: 14, bottom: 36 };
 /** Height of the type for which the margins are set, px; with larger type, on slides, everything is enlarged. */
 const TYPE = 11;
+/** Smallest distance between the numbers of the horizontal axis, with room for four characters. */
+const LEAST_ROOM = 28;
 /** Number of ticks on an axis of a given length, each with room for its number. */
 const marks = (length: number, room: number): number => Math.max(2, Math.min(6, Math.floor(length / room)));
 
@@ -100,12 +102,16 @@ export class Plot {
       box.left + ((value - across.least) / (across.most - across.least)) * (box.right - box.left);
     const toY = (value: number) => box.bottom - ((value - up.least) / (up.most - up.least)) * (box.bottom - box.top);
     const parts: SVGElement[] = [];
-    for (const value of ticks(across, marks(box.right - box.left, 55))) {
+    const columns = ticks(across, marks(box.right - box.left, 55));
+    // Numbers that would touch are left out.
+    const numbered = Math.ceil(LEAST_ROOM / (toX(columns[1] ?? NaN) - toX(columns[0] ?? NaN))) || 1;
+    columns.forEach((value, index) => {
+      parts.push(svg("path", { class: "grid", d: `M${toX(value)} ${box.top}V${box.bottom}` }));
+      if (index % numbered > 0) return;
       parts.push(
-        svg("path", { class: "grid", d: `M${toX(value)} ${box.top}V${box.bottom}` }),
         svg("text", { class: "tick", x: toX(value), y: box.bottom + 13, "text-anchor": "middle" }, label(value)),
       );
-    }
+    });
     for (const value of ticks(up, marks(box.bottom - box.top, 36))) {
       parts.push(
         svg("path", { class: "grid", d: `M${box.left} ${toY(value)}H${box.right}` }),
