@@ -6,8 +6,8 @@ const TOUCHES = ["pointermove", "pointerdown", "keydown", "wheel"] as const;
 
 export interface Stand {
   isPlaying(): boolean;
-  /** Plays the run of this address, wherever the last visitor has gone. */
-  play(hash: string): void;
+  /** Shows this address as it was at first, wherever the last visitor has gone, and plays the run of a place that has one. */
+  play(hash: string, isTouched: boolean): void;
 }
 
 export function keepPlaying({ isPlaying, play }: Stand): void {
@@ -16,12 +16,18 @@ export function keepPlaying({ isPlaying, play }: Stand): void {
   const { hash } = location;
   const seconds = Number(asked) > 0 ? Number(asked) : SILENCE;
   let last = performance.now();
+  let isTouched = false;
   const note = () => (last = performance.now());
-  for (const touch of TOUCHES) addEventListener(touch, note, { passive: true });
+  const touched = () => {
+    isTouched = true;
+    note();
+  };
+  for (const touch of TOUCHES) addEventListener(touch, touched, { passive: true });
   setInterval(() => {
     if (isPlaying()) note();
     if (performance.now() - last < 1000 * seconds) return;
     note();
-    play(hash);
+    play(hash, isTouched);
+    isTouched = false;
   }, 500);
 }

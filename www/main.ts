@@ -361,7 +361,13 @@ addEventListener("hashchange", ({ newURL }) => {
 await nextTask();
 keepPlaying({
   isPlaying: () => player.playing,
-  play: (hash) => {
+  play: (hash, isTouched) => {
+    if (placeOf(hash) === "learn") {
+      // Lessons keep settings, guesses and the place in the text, which only a new page forgets.
+      if (!isTouched) return;
+      history.replaceState(null, "", hash);
+      return location.reload();
+    }
     // This address has to differ from the present one, from which "play" is removed as soon as the run plays.
     location.hash = placeOf(hash) === "lab" && !asksToPlay(hash) ? [hash || "#", "play"].join("&") : hash;
   },

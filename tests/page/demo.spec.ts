@@ -181,6 +181,19 @@ test("a stand plays by itself again after some silence, wherever the last visito
   expect(lab.complaints).toEqual([]);
 });
 
+test("a stand shows a lesson as it was at first, whatever the last visitor has set", async ({ lab, page }) => {
+  await page.goto("./?kiosk=3#learn&at=grey");
+  const turn = page.locator('.learn-figure input[name="turn"]');
+  await expect(turn).toHaveValue("60");
+  await turn.press("ArrowRight");
+  await expect(turn).toHaveValue("61");
+  await page.getByRole("link", { name: "Three colours", exact: true }).click();
+  await expect(page.getByRole("heading", { name: "Three colours" })).toBeVisible();
+  await expect(turn).toHaveValue("60");
+  await expect(page).toHaveURL(/\?kiosk=3#learn&at=grey$/);
+  expect(lab.complaints).toEqual([]);
+});
+
 test("the light can be dragged on a laptop's first screen, whatever the verdict says", async ({ lab, page }) => {
   await page.setViewportSize({ width: 1280, height: 720 });
   await lab.visit("size=32");
