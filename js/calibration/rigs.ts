@@ -64,11 +64,11 @@ async function rounds(found: Segmentation, { signal, onProgress }: SuggestOption
   }
 }
 
-export async function suggest(
-  { width, height, data }: Pick<ColorImage, "width" | "height" | "data">,
-  marks: Uint8Array,
-  given: SuggestOptions,
-): Promise<MaskSuggestion> {
+type Picture = Pick<ColorImage, "width" | "height" | "data">;
+
+export async function suggest(image: Picture, marks: Uint8Array, given: SuggestOptions): Promise<MaskSuggestion> {
+  // An image may have other members, such as a camera; one that is missing has none, which the check reports.
+  const { width, height, data } = (image ?? {}) as Picture;
   picture({ width, height, data }, "image");
   array(Uint8Array)(marks, "marks");
   options(given, "options");
