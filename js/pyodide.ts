@@ -14,10 +14,9 @@ import {
   sampleRig as rig,
 } from "../target/rigs/wasm-bindgen/bimodal_stereo_rigs.js";
 import { across } from "./border.js";
-import { checkCheckOptions, checkedCandidates, checkedFrames, checkedPose } from "./calibration/check.js";
+import { checkCheckOptions, checkedCandidates, checkedFrames, checkedPose, twelve } from "./calibration/check.js";
 import { loadNow } from "./engine.js";
 import { BimodalError } from "./errors.js";
-import type { PoseMembers } from "./matrices.js";
 import type {
   CheckFrame,
   CheckFrameInput,
@@ -48,8 +47,6 @@ export function start(method: BufferSource, check: BufferSource, rigs: BufferSou
   startCheck({ module: new WebAssembly.Module(check) });
   startRigs({ module: new WebAssembly.Module(rigs) });
 }
-
-const twelve = ({ rotation, translation }: PoseMembers): number[] => [...rotation, ...translation];
 
 export function checkCalibration(
   frames: CheckFrameInput[],
@@ -82,8 +79,11 @@ export function projectFrame(frame: CheckFrameInput, pose: PoseInput): FrameOver
   return across(() => overlay(view, Float64Array.from(twelve(checkedPose(pose))))) as FrameOverlay;
 }
 
-export const sampleRig = ({ kind, seed = 0, frame = 0, noise }: RigRequest): RigSample =>
-  across(() => rig(kind, seed, frame, noise));
+export function sampleRig({ kind, seed = 0, frame = 0, noise, motion }: RigRequest): RigSample {
+  // Python gives null for no motion.
+  const moved = motion ? Float64Array.from(twelve(checkedPose(motion, "motion"))) : undefined;
+  return across(() => rig(kind, seed, frame, noise, moved));
+}
 
 export const samplePair = (kind: PairKind): PairSample => across(() => pair(kind));
 
