@@ -40,7 +40,7 @@ const SEARCHES = [
   "resolutions",
   "rig_laws",
   "scene_laws",
-  "told_start",
+  "initial_pose",
 ];
 const WITHOUT_SEARCHES = [...SEARCHES.flatMap((name) => ["--skip", `${name}::`]), "--skip", "::long::"];
 /** The library's tests that read no files, compiled for wasm. */

@@ -83,7 +83,7 @@ const MOST_SAMPLES: usize = 4096;
 const OUTLIERS: f64 = 0.01;
 
 /// Right is red, up is green, towards the camera is blue: the frame's y points down and its z away.
-pub(crate) fn paint_normals(normals: &Normals, rgba: &mut Vec<u8>) {
+pub(crate) fn draw_normals(normals: &Normals, rgba: &mut Vec<u8>) {
     let Normals { x, y, z } = normals;
     let byte = |value: f32| (0.5 * LAST as f32 * (1.0 + value)).round() as u8;
     let pixels = x
@@ -99,7 +99,7 @@ pub(crate) fn paint_normals(normals: &Normals, rgba: &mut Vec<u8>) {
 ///
 /// # Errors
 /// A range that is empty or not finite.
-pub(crate) fn paint_numbers(values: &[f32], range: Option<[f64; 2]>, map: ColourMap, rgba: &mut Vec<u8>) -> Result<()> {
+pub(crate) fn draw_numbers(values: &[f32], range: Option<[f64; 2]>, map: ColourMap, rgba: &mut Vec<u8>) -> Result<()> {
     let [from, to] = match range {
         Some(range) => checked(range)?,
         None => automatic(values),
@@ -151,7 +151,7 @@ mod tests {
         ];
         for (map, colours) in ends {
             let mut rgba = vec![];
-            paint_numbers(&[-7.0, 128.0, 300.0, f32::NAN], Some([0.0, 255.0]), map, &mut rgba).unwrap();
+            draw_numbers(&[-7.0, 128.0, 300.0, f32::NAN], Some([0.0, 255.0]), map, &mut rgba).unwrap();
             for (pixel, [r, g, b]) in rgba.chunks(4).zip(colours) {
                 for (found, wanted) in pixel.iter().zip([r, g, b, 255u8]) {
                     assert!(found.abs_diff(wanted) <= 2, "{map:?}: {pixel:?} for {:?}", [r, g, b]);
@@ -175,14 +175,14 @@ mod tests {
     fn a_normal_towards_the_camera_is_blue() {
         let normals = Normals { x: vec![0.0, 1.0, f32::NAN], y: vec![0.0; 3], z: vec![-1.0, 0.0, 0.0] };
         let mut rgba = vec![];
-        paint_normals(&normals, &mut rgba);
+        draw_normals(&normals, &mut rgba);
         assert_eq!(rgba, [128, 128, 255, 255, 255, 128, 128, 255, 0, 0, 0, 0]);
     }
 
     #[test]
     fn a_range_has_a_width() {
         for range in [[1.0, 1.0], [2.0, 1.0], [f64::NAN, 1.0], [0.0, f64::INFINITY]] {
-            let error = paint_numbers(&[1.0], Some(range), ColourMap::Viridis, &mut vec![]).unwrap_err();
+            let error = draw_numbers(&[1.0], Some(range), ColourMap::Viridis, &mut vec![]).unwrap_err();
             assert!(error.to_string().contains("options.range"), "{error}");
         }
     }

@@ -121,7 +121,8 @@ pub struct StepReport {
     pub objective: Objective,
     /// Share of the valid depth pixels that have a correspondence.
     pub overlap: f64,
-    /// Share of the correspondences whose surfaces are within three medians of each other.
+    /// Share of the visible depth points that lie within three medians of the image surface; points too far away to
+    /// correspond count as visible.
     pub inliers: f64,
     /// Robust mean of the log-colour residual.
     pub residual: f64,

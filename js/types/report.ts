@@ -52,7 +52,7 @@ export interface StepReport {
   };
   /** Share of valid depth pixels with a correspondence. */
   overlap: number;
-  /** Share of the correspondences within the robust scale. */
+  /** Share of the visible depth points that lie within three medians of the image surface. */
   inliers: number;
   /** Robust mean log-colour residual. */
   residual: number;

@@ -180,7 +180,7 @@ class StepReport:
     ``reason``: the reason as a ``code`` for programs and its numbers; ``message``: the same in words.
     ``rivals``: other poses that fit the image equally well.
     ``rotation_change``: change of the rotation, degrees.
-    ``overlap``: share of valid depth pixels with a correspondence; ``inliers``: share of those within the robust scale.
+    ``overlap``: share of valid depth pixels with a correspondence; ``inliers``: share of the visible points within three medians of the surface.
     ``residual``: robust mean of the log-colour residual.
     ``milliseconds``: wall time of each stage in the last step. With ``workers`` the stages overlap, and it has the time of
         the whole "iteration".

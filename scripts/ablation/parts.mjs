@@ -5,12 +5,12 @@
 import { Failure } from "../shell.mjs";
 
 const CONTRAST = "src/pose/contrast";
-const PAINTED = "src/estimator/finder/local_contrast.rs";
+const LOCAL_CONTRAST = "src/estimator/finder/local_contrast.rs";
 
 const objective = (from, to) => ({ file: `${CONTRAST}/objective.rs`, from, to });
-const LIMBS = [
-  objective("const LIMB_WEIGHT: f64 = 1.0;", "const LIMB_WEIGHT: f64 = 0.0;"),
-  objective("const SETTLING_LIMB_WEIGHT: f64 = 0.1;", "const SETTLING_LIMB_WEIGHT: f64 = 0.0;"),
+const CONTOURS = [
+  objective("const CONTOUR_WEIGHT: f64 = 1.0;", "const CONTOUR_WEIGHT: f64 = 0.0;"),
+  objective("const SETTLING_CONTOUR_WEIGHT: f64 = 0.1;", "const SETTLING_CONTOUR_WEIGHT: f64 = 0.0;"),
 ];
 
 /** `what` completes the phrase "without ..". */
@@ -25,8 +25,8 @@ export const PARTS = [
     what: "the removal of albedo at edges before local contrast is compared",
     changes: [
       {
-        file: PAINTED,
-        from: "let image = sharp.as_ref().unwrap_or(&pair.image).without_paint().map(Box::new);",
+        file: LOCAL_CONTRAST,
+        from: "let image = sharp.as_ref().unwrap_or(&pair.image).without_albedo_steps().map(Box::new);",
         to: "let image: Option<Box<ColourView>> = None;",
       },
     ],
@@ -41,13 +41,13 @@ export const PARTS = [
   {
     name: "contrast",
     what: "registration by local contrast (photometric registration with a single albedo decides)",
-    changes: [{ file: PAINTED, from: "pair.options.registration == Registration::Joint", to: "false" }],
+    changes: [{ file: LOCAL_CONTRAST, from: "pair.options.registration == Registration::Joint", to: "false" }],
   },
   {
     name: "outline",
     what: "the terms that keep occluding contours on the silhouette and points inside it",
     changes: [
-      ...LIMBS,
+      ...CONTOURS,
       {
         file: "src/pose/silhouette.rs",
         from: "const OUTSIDE_WEIGHT: f64 = 3.0;",
@@ -55,7 +55,7 @@ export const PARTS = [
       },
     ],
   },
-  { name: "limbs", what: "the term that keeps occluding contours on the silhouette", changes: LIMBS },
+  { name: "limbs", what: "the term that keeps occluding contours on the silhouette", changes: CONTOURS },
   {
     name: "size",
     what: "the prior on the apparent size, in a registration and in the ranking",
@@ -120,20 +120,20 @@ export const PARTS = [
   {
     name: "confirmed",
     what: "photometric confirmation of the pose by local contrast",
-    changes: [{ file: PAINTED, from: "is_plain(pair, plain, &contrast)", to: "false" }],
+    changes: [{ file: LOCAL_CONTRAST, from: "is_plain(pair, plain, &contrast)", to: "false" }],
   },
   {
     name: "sizes",
     what: "initial poses of three sizes (only the size that follows from the units)",
     changes: [
-      { file: PAINTED, from: "const SIZES: [f64; 3] = [0.84, 1.0, 1.19];", to: "const SIZES: [f64; 1] = [1.0];" },
+      { file: LOCAL_CONTRAST, from: "const SIZES: [f64; 3] = [0.84, 1.0, 1.19];", to: "const SIZES: [f64; 1] = [1.0];" },
     ],
   },
   {
     name: "hues",
     what: "the sharpening of chromaticity that JPEG has blurred",
     changes: [
-      { file: PAINTED, from: "let sharp = pair.image.with_sharp_hues();", to: "let sharp: Option<ColourView> = None;" },
+      { file: LOCAL_CONTRAST, from: "let sharp = pair.image.with_sharp_chromaticity();", to: "let sharp: Option<ColourView> = None;" },
     ],
   },
 ];

@@ -187,8 +187,9 @@ impl CalibrationCheck {
     fn find_starts(&mut self) {
         let initial = self.best.initial;
         let units = self.scene.units(&initial);
-        let (rims, states) = search::starts(&self.scene, &initial);
-        let start = |state| Start { round: Round::from(state, initial), rims: rims.clone(), score: 0.0 };
+        let (discontinuities, states) = search::starts(&self.scene, &initial);
+        let start =
+            |state| Start { round: Round::from(state, initial), discontinuities: discontinuities.clone(), score: 0.0 };
         let mut starts: Vec<Start> = states.into_iter().map(start).collect();
         let others = self.candidates.iter().skip(1).map(|candidate| candidate.1);
         for state in others.chain([State::at(initial.pose.inverse())]) {

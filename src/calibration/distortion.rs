@@ -39,7 +39,7 @@ fn score(scene: &mut Scene, round: &Round, lens: Lens, planes: &[Vec<Planes>]) -
 
 fn score_from(scene: &mut Scene, round: &Round, lens: Lens, planes: &[Vec<Planes>]) -> f64 {
     scene.frames.iter_mut().for_each(|frame| frame.camera.lens = lens);
-    let mut start = Start { round: *round, rims: vec![], score: 0.0 };
+    let mut start = Start { round: *round, discontinuities: vec![], score: 0.0 };
     for (sigma, planes) in SIGMAS.iter().zip(planes) {
         scene.find_anew(&mut start);
         scene.approach(&mut start, sigma * scene.scale, planes);

@@ -14,11 +14,11 @@
 //! narrow ones. Each round finds the edges anew and takes a Gauss-Newton step with the responsibilities (expectation
 //! maximisation).
 
+use super::discontinuities::{self, Discontinuity};
 use super::evidence::{Share, Tiles};
 use super::frame::{Frame, Projection};
 use super::patches::Sight;
 use super::planes::Planes;
-use super::rims::{self, Rim};
 use super::unknowns::{BIAS, SIDES, State, Units, Vector, add_square};
 use crate::numeric::quantile;
 use crate::view::Size;
@@ -45,7 +45,7 @@ const LEAST_BLUR: f64 = 0.7;
 /// The image edges near one depth discontinuity.
 #[derive(Clone)]
 struct Profile {
-    rim: Rim,
+    discontinuity: Discontinuity,
     /// Derivative of u with respect to the unknowns.
     row: Vector,
     /// Standard deviation s of the position at which the near surface ends, pixels.
@@ -69,53 +69,69 @@ pub(super) fn blur(sigma: f64) -> f64 {
 
 impl EdgeField {
     /// The depth discontinuities that the colour camera sees, at most `most`.
-    pub fn rims(frame: &Frame, projection: &Projection, most: usize) -> Vec<Rim> {
-        let mut rims = rims::find(frame, projection);
-        let found = rims.len();
-        keep(&mut rims, frame.grid, most);
-        let kept = rims.len() as f64 / found.max(1) as f64;
-        rims.iter_mut().for_each(|rim| rim.in_gap = 1.0 + kept * (rim.in_gap - 1.0));
-        rims
+    pub fn discontinuities(frame: &Frame, projection: &Projection, most: usize) -> Vec<Discontinuity> {
+        let mut discontinuities = discontinuities::find(frame, projection);
+        let found = discontinuities.len();
+        keep(&mut discontinuities, frame.grid, most);
+        let kept = discontinuities.len() as f64 / found.max(1) as f64;
+        discontinuities
+            .iter_mut()
+            .for_each(|discontinuity| discontinuity.in_gap = 1.0 + kept * (discontinuity.in_gap - 1.0));
+        discontinuities
     }
 
     /// Depth discontinuities found at one state, moved to where another state projects them.
-    pub fn moved(frame: &Frame, rims: &[Rim], found: &State, state: &State) -> Vec<Rim> {
+    pub fn moved(frame: &Frame, discontinuities: &[Discontinuity], found: &State, state: &State) -> Vec<Discontinuity> {
         let camera = state.camera(&frame.camera);
-        let place = |state: &State, rim: &Rim| {
-            let [x, y, z] = state.pose.apply(frame.point(rim.index)?).into();
+        let place = |state: &State, discontinuity: &Discontinuity| {
+            let [x, y, z] = state.pose.apply(frame.point(discontinuity.index)?).into();
             camera.project([x, y, z])
         };
-        let moved = |rim: &Rim| {
-            let (to, from) = (place(state, rim)?, place(found, rim)?);
-            Some(Rim { pixel: [0, 1].map(|k| rim.pixel[k] + to[k] - from[k]), ..*rim })
+        let moved = |discontinuity: &Discontinuity| {
+            let (to, from) = (place(state, discontinuity)?, place(found, discontinuity)?);
+            Some(Discontinuity { pixel: [0, 1].map(|k| discontinuity.pixel[k] + to[k] - from[k]), ..*discontinuity })
         };
-        rims.iter().filter_map(moved).collect()
+        discontinuities.iter().filter_map(moved).collect()
     }
 
     /// Projects the discontinuities by `state` and finds the image edges near them, on planes that are blurred for this
     /// `sigma`.
-    pub fn new(Sight { frame, planes }: Sight<'_>, rims: &[Rim], state: &State, units: &Units, sigma: f64) -> Self {
+    pub fn new(
+        Sight { frame, planes }: Sight<'_>,
+        discontinuities: &[Discontinuity],
+        state: &State,
+        units: &Units,
+        sigma: f64,
+    ) -> Self {
         let blur = blur(sigma);
         let camera = state.camera(&frame.camera);
         let widest = WIDEST * planes.size.width as f64 / 640.0;
         let tiles = Tiles::new(planes.size);
-        let profile = |rim: &Rim| {
-            let point = state.pose.apply(frame.point(rim.index)?);
+        let profile = |discontinuity: &Discontinuity| {
+            let point = state.pose.apply(frame.point(discontinuity.index)?);
             let (_, rows) = units.rows(&point, &camera)?;
-            let mut row = rows[0] * rim.normal[0] + rows[1] * rim.normal[1];
-            row.fixed_rows_mut::<SIDES>(BIAS).copy_from_slice(&State::sides(rim.normal));
-            let bias = state.bias_along(rim.normal);
-            let start = [0, 1].map(|k| rim.pixel[k] + bias * rim.normal[k]);
+            let mut row = rows[0] * discontinuity.normal[0] + rows[1] * discontinuity.normal[1];
+            row.fixed_rows_mut::<SIDES>(BIAS).copy_from_slice(&State::sides(discontinuity.normal));
+            let bias = state.bias_along(discontinuity.normal);
+            let start = [0, 1].map(|k| discontinuity.pixel[k] + bias * discontinuity.normal[k]);
             // The variance of a uniform distribution over the gap adds to that of the edges.
-            let of_gap = rim.gap / EVEN;
+            let of_gap = discontinuity.gap / EVEN;
             let sigma = sigma.hypot(of_gap);
             // Neighbours in one gap share its error: the variance of their mean is that of this many independent ones.
-            let weight = 1.0 / (1.0 + (rim.in_gap - 1.0) * (of_gap / sigma).powi(2));
+            let weight = 1.0 / (1.0 + (discontinuity.in_gap - 1.0) * (of_gap / sigma).powi(2));
             let window = (WINDOW * sigma).max(widest);
-            let edges = edges(planes, start, rim.normal, window, blur)?;
-            Some(Profile { rim: *rim, row, sigma, window, weight, tile: tiles.of(rim.pixel), edges })
+            let edges = edges(planes, start, discontinuity.normal, window, blur)?;
+            Some(Profile {
+                discontinuity: *discontinuity,
+                row,
+                sigma,
+                window,
+                weight,
+                tile: tiles.of(discontinuity.pixel),
+                edges,
+            })
         };
-        Self { profiles: rims.iter().filter_map(profile).collect() }
+        Self { profiles: discontinuities.iter().filter_map(profile).collect() }
     }
 
     /// Adds the log likelihood and its gradient at the state of the field, tile by tile. The curvature is that of the
@@ -152,13 +168,13 @@ impl EdgeField {
     }
 
     /// The discontinuities whose edges were looked for.
-    pub fn all(&self) -> impl Iterator<Item = &Rim> {
-        self.profiles.iter().map(|profile| &profile.rim)
+    pub fn all(&self) -> impl Iterator<Item = &Discontinuity> {
+        self.profiles.iter().map(|profile| &profile.discontinuity)
     }
 
     /// The same edges with other derivatives, without the discontinuities that have none.
-    pub fn carried(&self, row: impl Fn(&Rim) -> Option<Vector>) -> Self {
-        let carried = |profile: &Profile| Some(Profile { row: row(&profile.rim)?, ..profile.clone() });
+    pub fn carried(&self, row: impl Fn(&Discontinuity) -> Option<Vector>) -> Self {
+        let carried = |profile: &Profile| Some(Profile { row: row(&profile.discontinuity)?, ..profile.clone() });
         Self { profiles: self.profiles.iter().filter_map(carried).collect() }
     }
 
@@ -174,19 +190,19 @@ impl EdgeField {
 
 /// Keeps at most `most` discontinuities, evenly spread. Each pixel of the raster has a fixed rank. A discontinuity that
 /// appears therefore replaces only one other.
-fn keep(rims: &mut Vec<Rim>, grid: Size, most: usize) {
-    if rims.len() <= most {
+fn keep(discontinuities: &mut Vec<Discontinuity>, grid: Size, most: usize) {
+    if discontinuities.len() <= most {
         return;
     }
     // The fractional parts of multiples of these irrational numbers fill the unit interval evenly along any line of the
     // raster (Roberts 2018, the sequence R2).
-    let rank = |rim: &Rim| {
-        let (column, row) = grid.position(rim.index);
+    let rank = |discontinuity: &Discontinuity| {
+        let (column, row) = grid.position(discontinuity.index);
         (0.754_877_666_246_692_8 * column as f64 + 0.569_840_290_998_053_3 * row as f64).fract() as f32
     };
-    let mut ranks: Vec<f32> = rims.iter().map(rank).collect();
-    let limit = quantile(&mut ranks, most as f64 / rims.len() as f64);
-    rims.retain(|rim| rank(rim) < limit);
+    let mut ranks: Vec<f32> = discontinuities.iter().map(rank).collect();
+    let limit = quantile(&mut ranks, most as f64 / discontinuities.len() as f64);
+    discontinuities.retain(|discontinuity| rank(discontinuity) < limit);
 }
 
 /// Offsets and shares of the strongest edges along a normal; `None` if the discontinuity lies off the image.

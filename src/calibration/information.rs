@@ -101,8 +101,8 @@ mod tests {
         0.5 + 0.25 * (0.41 * x + 0.003 * x * y).sin() + 0.2 * (0.53 * y - 0.004 * x * x).cos()
     }
 
-    /// A painted plane as the camera sees it, with a point for each pixel that stays on the image.
-    fn painted(intensity: Option<&dyn Fn(f32) -> f32>) -> Frame {
+    /// A textured plane as the camera sees it, with a point for each pixel that stays on the image.
+    fn textured(intensity: Option<&dyn Fn(f32) -> f32>) -> Frame {
         let camera = Pinhole { fx: FOCAL, fy: FOCAL, cx: 31.5, cy: 23.5, lens: Lens::None };
         let margin = FARTHEST as usize + 1;
         let point = |index: usize| {
@@ -140,12 +140,12 @@ mod tests {
     }
 
     #[test]
-    fn paint_is_found_at_the_right_pose_whatever_the_curve_of_the_intensity() {
-        let plain = values(&painted(None));
+    fn a_texture_is_found_at_the_right_pose_whatever_the_curve_of_the_intensity() {
+        let plain = values(&textured(None));
         let curves: [&dyn Fn(f32) -> f32; 3] =
             [&|grey| 200.0 * grey, &|grey| -grey.powi(3), &|grey| (grey - 0.5).abs()];
         for (index, curve) in curves.into_iter().enumerate() {
-            let found = values(&painted(Some(curve)));
+            let found = values(&textured(Some(curve)));
             // The information that the intensity adds.
             let added: Vec<f64> = found.iter().zip(&plain).map(|(found, plain)| found - plain).collect();
             let next = added[1..].iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -156,8 +156,8 @@ mod tests {
 
     #[test]
     fn only_the_order_of_intensities_counts_and_unknown_ones_count_nowhere() {
-        let linear = values(&painted(Some(&|grey| grey)));
-        assert_eq!(values(&painted(Some(&|grey| (9.0 * grey).exp()))), linear);
-        assert_eq!(values(&painted(Some(&|_| f32::NAN))), values(&painted(None)));
+        let linear = values(&textured(Some(&|grey| grey)));
+        assert_eq!(values(&textured(Some(&|grey| (9.0 * grey).exp()))), linear);
+        assert_eq!(values(&textured(Some(&|_| f32::NAN))), values(&textured(None)));
     }
 }

@@ -11,7 +11,7 @@
 //! | `ahead` | the viewing direction of a cloud's scanner |
 //! | `unseen` | leaves out the points that the colour camera cannot see |
 //! | `sampling` | gathers sparse depth maps into cells |
-//! | `rims`, `edges` | depth edges, and their log likelihood on image edges |
+//! | `discontinuities`, `edges` | depth edges, and their log likelihood on image edges |
 //! | `surface`, `patches` | samples of the depth map with normals, in groups |
 //! | `intensity` | intensities of a scanner's returns as levels of equal count |
 //! | `information`, `shading`, `silhouette`, `differences` | cues over samples, finite differences |
@@ -30,6 +30,7 @@ mod check;
 mod conclusion;
 mod cue;
 mod differences;
+mod discontinuities;
 mod distortion;
 mod distribution;
 mod edges;
@@ -51,7 +52,6 @@ mod reason;
 mod registration;
 mod report;
 mod rereading;
-mod rims;
 mod sampling;
 mod search;
 mod sensitivity;

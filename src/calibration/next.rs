@@ -11,6 +11,7 @@ use std::fmt;
 use nalgebra::{Rotation3, Vector3};
 
 use super::cue::Cue;
+use super::discontinuities::Discontinuity;
 use super::distribution::{PoseMatrix, VARIANCE};
 use super::edges::EdgeField;
 use super::evidence::{Evidence, Share, Tiles};
@@ -18,7 +19,6 @@ use super::frame::{Frame, Projection};
 use super::patches::Sight;
 use super::planes::Planes;
 use super::registration::{Findings, Round, Scene};
-use super::rims::Rim;
 use super::unknowns::{BIAS, POSE, SIDES, State, Units, Vector};
 use super::verdict::{ORDER, UNSEEN_DEGREES, UNSEEN_METRES};
 use crate::numeric::quantile;
@@ -159,10 +159,11 @@ impl<'a> Hypothesis<'a> {
                 Evidence { shares: evidence.shares[range.clone()].to_vec() }.add_to(&mut others, *of_cue);
             }
         }
-        let rims = EdgeField::rims(frame, &Projection::new(frame, &round.seen_from), scene.most_rims());
-        let rims = EdgeField::moved(frame, &rims, &round.seen_from, &round.state);
+        let discontinuities =
+            EdgeField::discontinuities(frame, &Projection::new(frame, &round.seen_from), scene.most_discontinuities());
+        let discontinuities = EdgeField::moved(frame, &discontinuities, &round.seen_from, &round.state);
         let sight = Sight { frame, planes: planes.get(index)? };
-        let field = EdgeField::new(sight, &rims, &round.state, &findings.units, round.sigma);
+        let field = EdgeField::new(sight, &discontinuities, &round.state, &findings.units, round.sigma);
         let is_told = weight > 0.0 && field.len() > 0;
         is_told.then_some(Self { frame, round, units: &findings.units, field, weight, others, tiles: range.len() })
     }
@@ -182,7 +183,8 @@ impl<'a> Hypothesis<'a> {
             motions.push((NextMotion::Down, about(Vector3::x(), -angle)));
             motions.push((NextMotion::Turned, about(Vector3::z(), std::f64::consts::FRAC_PI_2)));
         }
-        let mut depths: Vec<f32> = self.field.all().filter_map(|rim| Some(self.place(rim)?.z as f32)).collect();
+        let mut depths: Vec<f32> =
+            self.field.all().filter_map(|discontinuity| Some(self.place(discontinuity)?.z as f32)).collect();
         let distance = f64::from(quantile(&mut depths, 0.1));
         if (1.0 - NEARER) * distance >= NEAREST {
             let translation = Vector3::new(0.0, 0.0, -NEARER * distance);
@@ -192,14 +194,14 @@ impl<'a> Hypothesis<'a> {
     }
 
     /// Position of a depth edge in the colour camera's frame.
-    fn place(&self, rim: &Rim) -> Option<Vector3<f64>> {
-        Some(self.round.state.pose.apply(self.frame.point(rim.index)?))
+    fn place(&self, discontinuity: &Discontinuity) -> Option<Vector3<f64>> {
+        Some(self.round.state.pose.apply(self.frame.point(discontinuity.index)?))
     }
 
     /// All evidence with that of the frame after a motion of its scene.
     fn total(&self, total: &Evidence, motion: &Similarity) -> Option<Evidence> {
         let mut shares = vec![Share::none(); self.tiles];
-        self.field.carried(|rim| self.row(rim, motion)).evidence(&mut shares);
+        self.field.carried(|discontinuity| self.row(discontinuity, motion)).evidence(&mut shares);
         let mut moved = self.others.clone();
         Evidence { shares }.add_to(&mut moved, self.weight);
         let mut all = total.clone();
@@ -209,10 +211,10 @@ impl<'a> Hypothesis<'a> {
 
     /// Derivative of the position of a depth edge after a motion, times the root of the edge's relative length on the
     /// image: twice the length has twice the curvature, and twice the variance of the slope. `None` off the image.
-    fn row(&self, rim: &Rim, motion: &Similarity) -> Option<Vector> {
+    fn row(&self, discontinuity: &Discontinuity, motion: &Similarity) -> Option<Vector> {
         let camera = self.round.state.camera(&self.frame.camera);
-        let point = self.place(rim)?;
-        let [x, y] = rim.normal;
+        let point = self.place(discontinuity)?;
+        let [x, y] = discontinuity.normal;
         let along = Vector3::new(-y / camera.fx, x / camera.fy, 0.0) * point.z;
         let ([left, top], rows) = self.units.rows(&motion.apply(point), &camera)?;
         let size = self.frame.planes.size;

@@ -1,9 +1,9 @@
 //! A frame with the points and depth edges of a pose over its image.
 
 use super::check::rigid;
+use super::discontinuities;
 use super::frame::Projection;
 use super::input::RigView;
-use super::rims;
 use crate::error::Result;
 use crate::pose::Similarity;
 
@@ -39,6 +39,10 @@ pub fn overlay(view: RigView, pose: &Similarity) -> Result<Overlay> {
         points.extend([original(column), original(row), projection.positions[index][2]]);
         positions.extend(projection.positions[index]);
     }
-    let edges = rims::find(&frame, &projection);
-    Ok(Overlay { points, positions, edges: edges.iter().flat_map(|rim| rim.pixel.map(original)).collect() })
+    let edges = discontinuities::find(&frame, &projection);
+    Ok(Overlay {
+        points,
+        positions,
+        edges: edges.iter().flat_map(|discontinuity| discontinuity.pixel.map(original)).collect(),
+    })
 }

@@ -9,12 +9,12 @@ use nalgebra::Vector3;
 
 use super::cue::Cue;
 use super::differences::differences;
+use super::discontinuities::Discontinuity;
 use super::edges::{EdgeField, blur};
 use super::evidence::{Evidence, Share, Tiles, Traces};
 use super::frame::{Frame, Projection};
 use super::patches::{Patches, Sight, group};
 use super::planes::Planes;
-use super::rims::Rim;
 use super::surface::{self, Sample};
 use super::surfaces::{LogLikelihood, log_likelihood};
 use super::unknowns::{BIAS, FOCAL, Matrix, SIDES, State, Units, Vector, solve};
@@ -25,7 +25,7 @@ pub(super) const SIGMAS: [f64; 4] = [4.0, 2.8, 1.9, 1.3];
 /// How many poses proceed after each level, the best by score.
 pub(super) const SURVIVORS: [usize; 4] = [10, 6, 4, 3];
 /// Maximum number of depth discontinuities, over all frames, that score an initial pose.
-const MOST_RIMS_OF_STARTS: usize = 1200;
+const MOST_DISCONTINUITIES_OF_STARTS: usize = 1200;
 /// Rounds at each level.
 pub(super) const ROUNDS: usize = 3;
 /// Maximum number of rounds with all cues. The objective is rough: more rounds would not settle, but wander.
@@ -42,8 +42,8 @@ const LONGEST: f64 = 3.0;
 /// Blur of the image for the cues over surfaces, pixels: about the size of a pixel of the depth map.
 const SURFACE_BLUR: f32 = 1.2;
 /// Maximum numbers of depth discontinuities and samples, for all frames together and for a single one.
-const MOST_RIMS: usize = 6000;
-const MOST_RIMS_OF_ONE: usize = 1500;
+const MOST_DISCONTINUITIES: usize = 6000;
+const MOST_DISCONTINUITIES_OF_ONE: usize = 1500;
 const MOST_SAMPLES: usize = 24000;
 const MOST_SAMPLES_OF_ONE: usize = 8000;
 /// Maximum number of points, over all frames, that represent the extent of the scene.
@@ -102,14 +102,14 @@ impl Round {
 
 /// The depth discontinuities and the samples that are visible from a state.
 struct Seen {
-    rims: Vec<Vec<Rim>>,
+    discontinuities: Vec<Vec<Discontinuity>>,
     patches: Vec<Patches>,
 }
 
 /// An initial pose during its registration, with the depth discontinuities that are seen.
 pub(super) struct Start {
     pub round: Round,
-    pub rims: Vec<Vec<Rim>>,
+    pub discontinuities: Vec<Vec<Discontinuity>>,
     pub score: f64,
 }
 
@@ -194,19 +194,19 @@ impl Scene {
     }
 
     /// Maximum number of depth discontinuities of a frame.
-    pub fn most_rims(&self) -> usize {
-        MOST_RIMS_OF_ONE.min(MOST_RIMS / self.frames.len())
+    pub fn most_discontinuities(&self) -> usize {
+        MOST_DISCONTINUITIES_OF_ONE.min(MOST_DISCONTINUITIES / self.frames.len())
     }
 
     fn seen(&self, state: &State) -> Seen {
-        let most = self.most_rims();
-        let (mut rims, mut patches) = (vec![], vec![]);
+        let most = self.most_discontinuities();
+        let (mut discontinuities, mut patches) = (vec![], vec![]);
         for (frame, samples) in self.frames.iter().zip(&self.samples) {
             let projection = Projection::new(frame, state);
-            rims.push(EdgeField::rims(frame, &projection, most));
+            discontinuities.push(EdgeField::discontinuities(frame, &projection, most));
             patches.push(Patches::new(samples, &projection, frame));
         }
-        Seen { rims, patches }
+        Seen { discontinuities, patches }
     }
 
     /// The log likelihood of one of the cues by tiles, with its derivatives at the state of a round.
@@ -215,8 +215,9 @@ impl Scene {
         for (index, frame) in self.frames.iter().enumerate() {
             if cue == Cue::Edges {
                 let sight = Sight { frame, planes: &planes[index] };
-                let rims = EdgeField::moved(frame, &seen.rims[index], &round.seen_from, &round.state);
-                add_edges(sight, &rims, round, units, &mut evidence);
+                let discontinuities =
+                    EdgeField::moved(frame, &seen.discontinuities[index], &round.seen_from, &round.state);
+                add_edges(sight, &discontinuities, round, units, &mut evidence);
                 continue;
             }
             let sight = Sight { frame, planes: &self.surface_planes[index] };
@@ -277,9 +278,9 @@ impl Scene {
             };
             let mut evidence = Evidence::default();
             let moved = Round { state: *state, ..*round };
-            for ((frame, planes), rims) in self.frames.iter().zip(planes).zip(&seen.rims) {
-                let rims = EdgeField::moved(frame, rims, &round.seen_from, state);
-                add_edges(Sight { frame, planes }, &rims, &moved, &findings.units, &mut evidence);
+            for ((frame, planes), discontinuities) in self.frames.iter().zip(planes).zip(&seen.discontinuities) {
+                let discontinuities = EdgeField::moved(frame, discontinuities, &round.seen_from, state);
+                add_edges(Sight { frame, planes }, &discontinuities, &moved, &findings.units, &mut evidence);
             }
             let back = findings.units.between(&round.initial, state);
             let prior = 0.5 * back.dot(&(findings.prior * back));
@@ -294,8 +295,8 @@ impl Scene {
             let state = start.round.state;
             let units = self.units(&state);
             let (mut evidence, mut count) = (Evidence::default(), 0.0);
-            for ((frame, planes), rims) in self.frames.iter().zip(planes).zip(&start.rims) {
-                let moved = EdgeField::moved(frame, rims, &start.round.seen_from, &state);
+            for ((frame, planes), discontinuities) in self.frames.iter().zip(planes).zip(&start.discontinuities) {
+                let moved = EdgeField::moved(frame, discontinuities, &start.round.seen_from, &state);
                 count += add_edges(Sight { frame, planes }, &moved, &start.round, &units, &mut evidence);
             }
             let mean = evidence.value() / f64::max(count, 1.0);
@@ -312,21 +313,21 @@ impl Scene {
     /// A start whose visibility is computed at its own state.
     pub fn start(&self, state: State, initial: State) -> Start {
         let round = Round { seen_from: state, ..Round::from(state, initial) };
-        Start { round, rims: self.rims(&state, MOST_RIMS_OF_STARTS), score: 0.0 }
+        Start { round, discontinuities: self.discontinuities(&state, MOST_DISCONTINUITIES_OF_STARTS), score: 0.0 }
     }
 
     /// Finds the depth discontinuities of a start anew if it moved.
     pub fn find_anew(&self, start: &mut Start) {
-        if self.look(&mut start.round) || start.rims.is_empty() {
-            start.rims = self.rims(&start.round.seen_from, MOST_RIMS_OF_STARTS);
+        if self.look(&mut start.round) || start.discontinuities.is_empty() {
+            start.discontinuities = self.discontinuities(&start.round.seen_from, MOST_DISCONTINUITIES_OF_STARTS);
         }
     }
 
     /// The depth discontinuities of all frames as a state sees them.
-    pub fn rims(&self, state: &State, most: usize) -> Vec<Vec<Rim>> {
+    pub fn discontinuities(&self, state: &State, most: usize) -> Vec<Vec<Discontinuity>> {
         self.frames
             .iter()
-            .map(|frame| EdgeField::rims(frame, &Projection::new(frame, state), most / self.frames.len()))
+            .map(|frame| EdgeField::discontinuities(frame, &Projection::new(frame, state), most / self.frames.len()))
             .collect()
     }
 
@@ -368,9 +369,15 @@ const SURFACE_TRUST: f64 = 0.25;
 const SCORE_PRIOR: f64 = 0.01;
 
 /// Adds the evidence of a frame's edges, and returns the number of independent depth discontinuities on its image.
-fn add_edges(sight: Sight<'_>, rims: &[Rim], round: &Round, units: &Units, evidence: &mut Evidence) -> f64 {
+fn add_edges(
+    sight: Sight<'_>,
+    discontinuities: &[Discontinuity],
+    round: &Round,
+    units: &Units,
+    evidence: &mut Evidence,
+) -> f64 {
     let mut shares = vec![Share::none(); Tiles::new(sight.planes.size).count()];
-    let field = EdgeField::new(sight, rims, &round.state, units, round.sigma);
+    let field = EdgeField::new(sight, discontinuities, &round.state, units, round.sigma);
     field.evidence(&mut shares);
     evidence.shares.extend(shares);
     field.weight()

@@ -32,7 +32,7 @@ impl Rereading {
         let start = |reading: Reading| {
             let state = State::at(reading.of(&candidate.pose)?);
             let round = Round::from(state, state);
-            scene.is_seen(&state).then(|| (reading, Start { round, rims: vec![], score: 0.0 }))
+            scene.is_seen(&state).then(|| (reading, Start { round, discontinuities: vec![], score: 0.0 }))
         };
         let starts = Reading::ALL.into_iter().filter_map(start).collect();
         Self { optima, starts, level: 0, index: 0, planes: scene.planes(SIGMAS[0] * scene.scale) }

@@ -10,10 +10,10 @@
 //! score = mean over discontinuities of s - PRIOR_WEIGHT / 2 * squared distance in sigmas of the prior,
 //! s = |n . grad I| / (|grad I| + mean of |grad I| in the surroundings + FAINTEST)
 
+use super::discontinuities::Discontinuity;
 use super::frame::Frame;
 use super::planes::Planes;
 use super::registration::Scene;
-use super::rims::Rim;
 use super::unknowns::{Matrix, State, UNKNOWNS, Units, Vector, add_square, spectral};
 use crate::numeric::eigen::symmetric_eigen;
 
@@ -25,7 +25,7 @@ const REACH: f64 = 1.5;
 /// Maximum number of places, which takes a few tenths of a second; the pace grows until the lattice has no more.
 const MOST_PLACES: f64 = 6e4;
 /// Maximum number of depth discontinuities, over all frames, that are compared with image edges.
-const MOST_RIMS: usize = 400;
+const MOST_DISCONTINUITIES: usize = 400;
 /// Number of initial poses besides the candidate itself.
 const STARTS: usize = 16;
 /// Least distance between two initial poses, paces.
@@ -102,12 +102,14 @@ struct Lattice {
 type Place = [i8; UNKNOWNS];
 
 /// The depth discontinuities that are visible from `state`, and initial poses near it, of which `state` is the first.
-pub(super) fn starts(scene: &Scene, state: &State) -> (Vec<Vec<Rim>>, Vec<State>) {
+pub(super) fn starts(scene: &Scene, state: &State) -> (Vec<Vec<Discontinuity>>, Vec<State>) {
     let units = scene.units(state);
-    let rims = scene.rims(state, MOST_RIMS);
-    let rows: Vec<(usize, Rim, [Vector; 2])> = rows(&scene.frames, state, &units, &rims);
+    let discontinuities = scene.discontinuities(state, MOST_DISCONTINUITIES);
+    let rows: Vec<(usize, Discontinuity, [Vector; 2])> = rows(&scene.frames, state, &units, &discontinuities);
     let mut pace = PACE * scene.scale;
-    let Some(lattice) = Lattice::new(&rows, &scene.prior(&units), &mut pace) else { return (rims, vec![*state]) };
+    let Some(lattice) = Lattice::new(&rows, &scene.prior(&units), &mut pace) else {
+        return (discontinuities, vec![*state]);
+    };
     let marks: Vec<Mark> = rows.iter().map(|row| lattice.mark(row)).collect();
     let maps: Vec<EdgeMap> = scene.frames.iter().map(|frame| EdgeMap::new(&frame.planes, pace)).collect();
     let step = |place: &Place| {
@@ -115,25 +117,30 @@ pub(super) fn starts(scene: &Scene, state: &State) -> (Vec<Vec<Rim>>, Vec<State>
         units.step(state, &parts.sum())
     };
     let states = lattice.best(&maps, &marks).iter().map(step).collect();
-    (rims, states)
+    (discontinuities, states)
 }
 
 /// Derivatives of the pixel of each discontinuity with respect to the unknowns.
-fn rows(frames: &[Frame], state: &State, units: &Units, rims: &[Vec<Rim>]) -> Vec<(usize, Rim, [Vector; 2])> {
-    let of_frame = |(index, (frame, rims)): (usize, (&Frame, &Vec<Rim>))| -> Vec<_> {
+fn rows(
+    frames: &[Frame],
+    state: &State,
+    units: &Units,
+    discontinuities: &[Vec<Discontinuity>],
+) -> Vec<(usize, Discontinuity, [Vector; 2])> {
+    let of_frame = |(index, (frame, discontinuities)): (usize, (&Frame, &Vec<Discontinuity>))| -> Vec<_> {
         let camera = state.camera(&frame.camera);
-        let row = |rim: &Rim| {
-            let (_, rows) = units.rows(&state.pose.apply(frame.point(rim.index)?), &camera)?;
-            Some((index, *rim, rows))
+        let row = |discontinuity: &Discontinuity| {
+            let (_, rows) = units.rows(&state.pose.apply(frame.point(discontinuity.index)?), &camera)?;
+            Some((index, *discontinuity, rows))
         };
-        rims.iter().filter_map(row).collect()
+        discontinuities.iter().filter_map(row).collect()
     };
-    frames.iter().zip(rims).enumerate().flat_map(of_frame).collect()
+    frames.iter().zip(discontinuities).enumerate().flat_map(of_frame).collect()
 }
 
 impl Lattice {
     /// `pace` is in pixels, and grows if the lattice would have too many places.
-    fn new(rows: &[(usize, Rim, [Vector; 2])], prior: &Matrix, pace: &mut f64) -> Option<Self> {
+    fn new(rows: &[(usize, Discontinuity, [Vector; 2])], prior: &Matrix, pace: &mut f64) -> Option<Self> {
         let mut squares = Matrix::zeros();
         rows.iter().flat_map(|(_, _, rows)| rows).for_each(|row| add_square(&mut squares, row, 1.0));
         let motion = squares / (rows.len() as f64).max(1.0);
@@ -155,10 +162,10 @@ impl Lattice {
         Some(Self { steps, sigmas, reach })
     }
 
-    fn mark(&self, (frame, rim, rows): &(usize, Rim, [Vector; 2])) -> Mark {
+    fn mark(&self, (frame, discontinuity, rows): &(usize, Discontinuity, [Vector; 2])) -> Mark {
         let narrow = |pair: [f64; 2]| pair.map(|value| value as f32);
         let motion = std::array::from_fn(|k| [0, 1].map(|axis| rows[axis].dot(&self.steps[k]) as f32));
-        Mark { frame: *frame, pixel: narrow(rim.pixel), normal: narrow(rim.normal), motion }
+        Mark { frame: *frame, pixel: narrow(discontinuity.pixel), normal: narrow(discontinuity.normal), motion }
     }
 
     /// The best places that are not neighbours, after the centre.
@@ -236,7 +243,7 @@ mod tests {
             let units = Units::new(&points, &camera);
             let row = |point: &Vector3<f64>| {
                 let (pixel, rows) = units.rows(point, &camera)?;
-                Some((0, Rim { index: 0, pixel, normal: [1.0, 0.0], gap: 1.0, in_gap: 1.0 }, rows))
+                Some((0, Discontinuity { index: 0, pixel, normal: [1.0, 0.0], gap: 1.0, in_gap: 1.0 }, rows))
             };
             let rows: Vec<_> = points.iter().filter_map(row).collect();
             let mut pace = PACE;

@@ -16,7 +16,7 @@ const FARTHEST_MILLIMETRES: f64 = 50.0;
 /// Number of offsets to each side.
 const OFFSETS: i32 = 8;
 /// Maximum number of depth discontinuities of a frame.
-const MOST_RIMS: usize = 400;
+const MOST_DISCONTINUITIES: usize = 400;
 
 /// Names of the axes in the order of the unknowns.
 pub(super) const AXES: [&str; POSE] = ["rx", "ry", "rz", "tx", "ty", "tz"];
@@ -79,13 +79,14 @@ pub(super) fn curves(
 /// The log likelihood by edges of one frame at the given states.
 fn edges_along(sight: Sight<'_>, round: &Round, units: &Units, states: &[State]) -> Vec<f64> {
     let Sight { frame, planes } = sight;
-    let rims = EdgeField::rims(frame, &Projection::new(frame, &round.state), MOST_RIMS);
+    let discontinuities =
+        EdgeField::discontinuities(frame, &Projection::new(frame, &round.state), MOST_DISCONTINUITIES);
     let value = |state: &State| {
-        let moved = EdgeField::moved(frame, &rims, &round.state, state);
+        let moved = EdgeField::moved(frame, &discontinuities, &round.state, state);
         let field = EdgeField::new(Sight { frame, planes }, &moved, state, units, round.sigma);
         let mut shares = vec![Share::none(); Tiles::new(planes.size).count()];
         field.evidence(&mut shares);
-        shares.iter().map(|share| share.value).sum::<f64>() * rims.len() as f64 / field.len().max(1) as f64
+        shares.iter().map(|share| share.value).sum::<f64>() * discontinuities.len() as f64 / field.len().max(1) as f64
     };
     states.iter().map(value).collect()
 }

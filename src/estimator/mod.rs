@@ -45,7 +45,7 @@ use run::{History, Run};
 use solution::{Accepted, Solution};
 pub use stages::RefinementTask;
 use stages::{
-    Inputs, LightStage, PaintStage, RefinementStage, Registered, Registering, RegistrationStage, ShapeStage, Stages,
+    AlbedoStage, Inputs, LightStage, RefinementStage, Registered, Registering, RegistrationStage, ShapeStage, Stages,
 };
 pub use workers::Worker;
 
@@ -111,7 +111,7 @@ impl Estimator {
             run: if pair.options.start == Start::Search { Run::Preparing(None) } else { Run::Iterating(Stage::Light) },
             stages: Stages {
                 light: LightStage::new(pixels),
-                paint: PaintStage::new(),
+                albedo: AlbedoStage::new(),
                 shape,
                 registration,
                 refinement,
@@ -234,8 +234,8 @@ impl Estimator {
     /// Light (Eq. 2). The light that photometric registration found with the pose replaces the fit, and the light found
     /// with a varying albedo replaces both.
     fn fit_light(&mut self) -> Result<()> {
-        self.find_paint();
-        let colours = self.stages.paint.colours(&self.pair);
+        self.find_albedo();
+        let colours = self.stages.albedo.colours(&self.pair);
         let fitted = self.stages.light.fit(&self.pair, colours, &self.solution, &self.correspondences)?;
         if let Some(light) = fitted {
             self.solution.light.light = light;
@@ -243,20 +243,20 @@ impl Estimator {
         if let Some(found) = self.stages.registration.found_by_colours() {
             (self.solution.light.light, self.solution.light.exposure) = (found.light, found.exposure);
         }
-        if let Some(painted) = self.stages.paint.found() {
-            self.solution.light = painted.light;
+        if let Some(found) = self.stages.albedo.found() {
+            self.solution.light = found.light;
         }
         Ok(())
     }
 
     /// Finds the albedo once the pose has settled, or if pose and albedo are found in turn, unless it is already known for
     /// this pose.
-    fn find_paint(&mut self) {
+    fn find_albedo(&mut self) {
         let Solution { pose, .. } = &self.solution;
-        if self.stages.registration.asks_for_paint(&self.pair, pose) && !self.stages.paint.knows(&self.pair, pose) {
+        if self.stages.registration.requires_albedo(&self.pair, pose) && !self.stages.albedo.knows(&self.pair, pose) {
             let normals = self.stages.registration.measured_normals(&self.pair);
             self.stages.light.bring_normals(&self.pair, normals, pose, &self.correspondences);
-            self.stages.paint.find(&self.pair, pose, self.stages.light.depth_normals());
+            self.stages.albedo.find(&self.pair, pose, self.stages.light.depth_normals());
         }
     }
 
@@ -266,7 +266,7 @@ impl Estimator {
             self.pair.known_light().is_some() && self.stages.registration.found_by_colours().is_none();
         let inputs = Inputs::of(
             &self.pair,
-            &self.stages.paint,
+            &self.stages.albedo,
             &self.stages.light,
             &self.correspondences,
             self.report.iteration,
@@ -281,7 +281,7 @@ impl Estimator {
         let light = self.solution.light.total();
         let inputs = Inputs::of(
             &self.pair,
-            &self.stages.paint,
+            &self.stages.albedo,
             &self.stages.light,
             &self.correspondences,
             self.report.iteration,
@@ -298,12 +298,12 @@ impl Estimator {
         }
         let inputs = Inputs::of(
             &self.pair,
-            &self.stages.paint,
+            &self.stages.albedo,
             &self.stages.light,
             &self.correspondences,
             self.report.iteration,
         );
-        match self.stages.registration.register(inputs, &self.stages.paint, &self.solution)? {
+        match self.stages.registration.register(inputs, &self.stages.albedo, &self.solution)? {
             Registering::Done(registered) => self.finish_registration(registered.map(|registered| *registered)),
             Registering::Finding(finder) => self.find(finder),
         }
@@ -363,7 +363,7 @@ impl Estimator {
     fn refine(&mut self) {
         let inputs = Inputs::of(
             &self.pair,
-            &self.stages.paint,
+            &self.stages.albedo,
             &self.stages.light,
             &self.correspondences,
             self.report.iteration,

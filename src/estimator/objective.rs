@@ -153,8 +153,8 @@ pub fn residuals(
     let load = |planes: &[Vec<f32>; 3]| [0, 1, 2].map(|channel: usize| Lanes::load(&planes[channel], start as isize));
     let mut log = load(&image.log);
     if let Some(albedo) = albedo {
-        let paint = load(albedo);
-        log = [log[0] - paint[0], log[1] - paint[1], log[2] - paint[2]];
+        let albedo = load(albedo);
+        log = [log[0] - albedo[0], log[1] - albedo[1], log[2] - albedo[2]];
     }
     square_residual(log, light, normals).sqrt()
 }

@@ -24,7 +24,7 @@ const MOST_UNKNOWNS: usize = COEFFICIENTS + 3 * MOST_REGIONS;
 /// Degrees of freedom of Student's t: the usual choice of robust regression.
 const DEGREES: f64 = 4.0;
 /// Standard deviation of the prior over log offsets: most materials reflect 4 to 90 percent.
-const PAINT_SPREAD: f64 = 1.0;
+const ALBEDO_SPREAD: f64 = 1.0;
 /// Maximum rounds of expectation maximisation for each number of albedos, set on ten photographs
 /// (docs/lab/thresholds.md).
 const ROUNDS: usize = 14;
@@ -163,7 +163,7 @@ impl Mixture {
             for k in 0..self.regions {
                 let row = COEFFICIENTS + 3 * k + channel;
                 let mass = scale * sums.mass[class][k];
-                system.matrix[row][row] = mass + 1.0 / (PAINT_SPREAD * PAINT_SPREAD);
+                system.matrix[row][row] = mass + 1.0 / (ALBEDO_SPREAD * ALBEDO_SPREAD);
                 system.right[row] = scale * sums.offset[channel][k];
                 for i in (0..HARMONICS).filter(|_| !prior.is_known) {
                     system.matrix[row][light + i] = scale * sums.cross[class][k][i];

@@ -6,13 +6,13 @@ mod fit;
 mod harmonics;
 mod lamp;
 mod mixture;
-mod paint;
 mod prior;
+mod varying_albedo;
 
 pub use fit::{LightFit, LightFitter};
 pub use harmonics::Light;
 pub(crate) use harmonics::{HARMONICS, Polynomial, basis, basis_gradient, falling_by_turns};
 pub use lamp::{BasRelief, Lamp, second_order};
-pub use paint::{Paint, PaintFitter};
 pub(crate) use prior::Coefficients;
 pub use prior::{COEFFICIENTS, CoefficientMatrix, LightGaussian, LightPrior};
+pub use varying_albedo::{AlbedoFitter, VaryingAlbedo};

@@ -161,7 +161,8 @@ impl Correspondences {
         self.count
     }
 
-    /// Share of these whose distance from the image surface is within three medians, or unknown.
+    /// Share of the visible measured points whose distance from the image surface is within three medians, or unknown.
+    /// Points dropped because of their distance are visible as well.
     #[must_use]
     pub const fn inliers(&self) -> f64 {
         self.inliers
@@ -216,24 +217,27 @@ impl Correspondences {
     fn accept_near(&mut self, problem: &CorrespondenceProblem<'_>, median: f32) {
         let follows = (problem.spreads * f64::from(median)).max(LEAST_DISTANCE * problem.pixel_length);
         let threshold = problem.distance.unwrap_or(follows) as f32;
-        let inlier = (INLIER_SPREADS * median).min(threshold);
+        let inlier = INLIER_SPREADS * median;
         self.depth_of_pixel.fill(-1);
         // From here on, `of_pixel` holds the squared distance between the centre of each pixel and the pixel's point.
         self.visible.of_pixel.fill(f32::INFINITY);
         (self.count, self.inliers) = (0, 0.0);
+        let mut visible = 0_usize;
         for index in 0..self.of_point.len() {
             let (column, row) = (self.visible.column[index], self.visible.row[index]);
             let Some(pixel) = problem.image.size.nearest(column, row) else { continue };
             // A point over a pixel without a surface has no distance and stays.
             let distance = self.of_point[index];
+            let is_measured = !problem.depth.depth()[index].is_nan();
+            if is_measured {
+                visible += 1;
+                self.inliers += f64::from(u8::from(distance.is_nan() || distance <= inlier));
+            }
             if distance > threshold {
                 self.visible.drop(index);
                 continue;
             }
-            if !problem.depth.depth()[index].is_nan() {
-                self.count += 1;
-                self.inliers += f64::from(u8::from(distance.is_nan() || distance <= inlier));
-            }
+            self.count += usize::from(is_measured);
             let off = from_centre(column).powi(2) + from_centre(row).powi(2);
             let nearest = &mut self.visible.of_pixel[pixel];
             if off < *nearest && problem.depth_normals.is_valid(index) {
@@ -241,7 +245,7 @@ impl Correspondences {
                 self.depth_of_pixel[pixel] = i32::try_from(index).unwrap_or(-1);
             }
         }
-        self.inliers /= self.count.max(1) as f64;
+        self.inliers /= visible.max(1) as f64;
     }
 }
 

@@ -4,7 +4,7 @@
 //! |---|---|---|---|---|
 //! | `search/` | search before Algorithm 1: candidate poses without an initial pose | log likelihood relative to a constant colour | rotation, scale, translation in the image | sweep over all rotations, correlation by FFT, local ascent |
 //! | `photometric/` | photometric registration, beyond the paper | robust residuals of log colours + prior of the light | pose and light | Gauss-Newton, the light eliminated; instrumental variables |
-//! | `outline/` | registration from silhouettes, beyond the paper, for varying albedo | depth discontinuities against the image's mask and edges | pose without scale, and the edge bias | Gauss-Newton |
+//! | `silhouettes/` | registration from silhouettes, beyond the paper, for varying albedo | depth discontinuities against the image's mask and edges | pose without scale, and the edge bias | Gauss-Newton |
 //! | `contrast/` | registration by local contrast, for varying albedo | robust residuals with local means removed, silhouette | pose and light | Gauss-Newton, the light eliminated; many initial poses |
 //! | `icp` | Eq. 12: the depth points onto the image surface | robust point-to-plane distance | pose | nearest neighbours and Gauss-Newton, alternating |
 //! | `ransac` | Eq. 13 and 14: consensus of pairs over the linear model P -> A P + t | truncated squared distance | the twelve numbers theta | samples of four pairs, then linear least squares |
@@ -34,7 +34,6 @@ mod icp;
 mod increment;
 mod jackknife;
 mod neighbours;
-mod outline;
 mod photometric;
 mod prior;
 mod ransac;
@@ -42,6 +41,7 @@ mod residuals;
 mod sandwich;
 mod search;
 mod silhouette;
+mod silhouettes;
 mod similarity;
 mod spline_image;
 mod sums;
@@ -54,7 +54,6 @@ pub(crate) use contrast::{ContrastOutcome, ContrastProblem, ContrastReport, Cont
 pub use correspondence::{CorrespondenceProblem, Correspondences};
 pub use icp::{Icp, IcpOptions, IcpProblem, IcpReport, IcpTermination, Metric, Pair};
 pub(crate) use increment::rotation_vector;
-pub(crate) use outline::{Outline, OutlineProblem, OutlineReport};
 pub(crate) use photometric::COARSEST_NEAR;
 pub use photometric::{Photometric, PhotometricOptions, PhotometricProblem, PhotometricReport, PhotometricTermination};
 pub use prior::PosePrior;
@@ -62,5 +61,6 @@ pub use ransac::{RansacOptions, RansacReport, ransac};
 pub use search::{Candidate, Progress, Search, SearchProblem};
 pub(crate) use search::{Hypothesis, ImageGrid, SearchFinding, SearchTask, TaskResults};
 pub(crate) use silhouette::{SLACK, Silhouette};
+pub(crate) use silhouettes::{SilhouetteProblem, SilhouetteRegistration, SilhouetteReport};
 pub use similarity::Similarity;
 pub use uncertainty::{Axis, Direction, Information, Uncertainty, Unknown};

@@ -35,7 +35,7 @@ type Shade = [f32; 4];
 
 impl ColourView {
     /// This view with its chromaticity as sharp as its brightness; `None` if it already is.
-    pub(crate) fn with_sharp_hues(&self) -> Option<Self> {
+    pub(crate) fn with_sharp_chromaticity(&self) -> Option<Self> {
         let mut shades: Vec<Shade> = (0..self.size.len()).map(|index| shade(self.log_at(index))).collect();
         if softness(self.size, &shades, 0..3) >= SOFT * softness(self.size, &shades, 3..4) {
             return None;
@@ -127,7 +127,7 @@ mod tests {
     const SIDE: usize = 40;
 
     /// Two albedos of one brightness gradient with 1 % noise, side by side; chromaticity drifts over `drift` pixels.
-    fn two_paints(drift: f32) -> ColourView {
+    fn two_albedos(drift: f32) -> ColourView {
         let mut dice = noise::white_noise(3);
         let mut log = [(); 3].map(|()| vec![f32::NAN; SIDE * SIDE]);
         for index in 0..SIDE * SIDE {
@@ -144,8 +144,8 @@ mod tests {
 
     #[test]
     fn hues_that_drift_become_as_sharp_as_brightness() {
-        let (sharp, soft) = (two_paints(0.5), two_paints(4.0));
-        let again = soft.with_sharp_hues().expect("hue is softer than brightness");
+        let (sharp, soft) = (two_albedos(0.5), two_albedos(4.0));
+        let again = soft.with_sharp_chromaticity().expect("hue is softer than brightness");
         let off = |view: &ColourView| -> f32 {
             let apart = |index: usize| {
                 let [a, b] = [view, &sharp].map(|view| shade(view.log_at(index)));
@@ -162,6 +162,6 @@ mod tests {
 
     #[test]
     fn what_is_sharp_is_left_alone() {
-        assert!(two_paints(0.5).with_sharp_hues().is_none());
+        assert!(two_albedos(0.5).with_sharp_chromaticity().is_none());
     }
 }

@@ -289,10 +289,10 @@ impl ColourSamples {
 
 /// The given transfer, or else the default: floats are linear, 8 bit is sRGB, and 16 bit is sRGB exactly if widened
 /// from 8 bit.
-pub(crate) fn transfer_of(samples: &ColourSamples, told: Option<Transfer>) -> Transfer {
+pub(crate) fn transfer_of(samples: &ColourSamples, given: Option<Transfer>) -> Transfer {
     /// An 8-bit level widened to 16 bit is a multiple of 257.
     const WIDENED: u16 = 257;
-    match (samples, told) {
+    match (samples, given) {
         (ColourSamples::RgbLinear(_), _) => Transfer::Linear,
         (_, Some(transfer)) => transfer,
         (ColourSamples::Rgba8(_), None) => Transfer::Srgb,

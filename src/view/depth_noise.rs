@@ -83,9 +83,9 @@ impl DepthNoise {
         let all = variance.sqrt();
         let is_white = white > LEAST_WHITE * all;
         let sigma = if is_white { white } else { all };
-        let told = Self { sigma, roughness: wander.sqrt(), is_white };
+        let noise = Self { sigma, roughness: wander.sqrt(), is_white };
         // White noise is certain; other noise may be relief unless its window is wide.
-        if is_white || told.smoothing() > LEAST_SMOOTHING { told } else { Self::default() }
+        if is_white || noise.smoothing() > LEAST_SMOOTHING { noise } else { Self::default() }
     }
 
     /// Whether the map shows noise.

@@ -1,5 +1,6 @@
 //! The input: sizes, masks, cameras, one colour image and one depth map, checked once (docs/method/views.md).
 
+mod albedo_steps;
 mod camera;
 mod chroma;
 mod colour;
@@ -14,11 +15,10 @@ mod flying_pixels;
 mod gaussian;
 mod half_resolution;
 mod heights;
+mod hollow;
 mod lens;
-mod limbs;
 mod mask;
 pub mod normals;
-mod paint;
 mod pinhole;
 mod raster;
 mod segmentation;
@@ -32,8 +32,8 @@ pub(crate) use colour::{to_srgb, transfer_of};
 pub use depth::{DepthMap, DepthSamples, DepthView};
 pub use depth_noise::DepthNoise;
 pub(crate) use gaussian::Gaussian;
+pub(crate) use hollow::is_hollow;
 pub use lens::Lens;
-pub(crate) use limbs::is_hollow;
 pub(crate) use pinhole::FARTHEST;
 pub use pinhole::Pinhole;
 pub use raster::Size;

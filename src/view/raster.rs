@@ -184,12 +184,12 @@ mod tests {
     #[test]
     fn the_rim_has_the_colours_of_its_known_neighbours() {
         let size = Size { width: 2, height: 2 };
-        let rim = [1.0, f32::NAN, 3.0, f32::NAN];
-        assert!(size.bilinear(&rim, 0.25, 0.5).is_nan());
-        assert_eq!(size.bilinear(&rim, 0.0, 0.5), 2.0);
-        assert_eq!(size.bilinear_of_known(&rim, 0.25, 0.5), 2.0);
-        assert_eq!(size.bilinear_of_known(&rim, 0.0, 0.5), 2.0);
+        let discontinuity = [1.0, f32::NAN, 3.0, f32::NAN];
+        assert!(size.bilinear(&discontinuity, 0.25, 0.5).is_nan());
+        assert_eq!(size.bilinear(&discontinuity, 0.0, 0.5), 2.0);
+        assert_eq!(size.bilinear_of_known(&discontinuity, 0.25, 0.5), 2.0);
+        assert_eq!(size.bilinear_of_known(&discontinuity, 0.0, 0.5), 2.0);
         assert!(size.bilinear_of_known(&[f32::NAN; 4], 0.5, 0.5).is_nan());
-        assert!(size.bilinear_of_known(&rim, -0.1, 0.5).is_nan());
+        assert!(size.bilinear_of_known(&discontinuity, -0.1, 0.5).is_nan());
     }
 }

@@ -10,12 +10,12 @@ mod common;
 #[cfg(not(target_arch = "wasm32"))]
 mod fuzz_corpus;
 mod image_model;
+mod initial_pose;
 mod initialisation;
 mod loop_laws;
 mod loop_synthetic;
 mod normals;
 mod opening;
-mod paint;
 mod painted;
 mod pose_angles;
 mod pose_correspondence;
@@ -42,5 +42,5 @@ mod surface_reference;
 mod surface_vase;
 #[cfg(feature = "rayon")]
 mod threads;
-mod told_start;
 mod uncertainty;
+mod varying_albedo;

@@ -54,6 +54,23 @@ fn vector(values: [f32; 3]) -> Vector3<f64> {
 }
 
 #[test]
+fn dropped_pairs_count_against_the_share_of_inliers() {
+    let mut views = views(0.0);
+    let placed: Vec<usize> =
+        (0..views.image_points.len()).filter(|&index| views.image_points.is_valid(index)).collect();
+    // Three medians of these distances exceed a pixel, and every fifth point of the surface lies far beyond them.
+    for (k, &index) in placed.iter().enumerate() {
+        let [x, y, z] = views.image_points.get(index);
+        let off = if k % 5 == 0 { 30.0 } else { [-1.0, 1.0][k % 2] };
+        views.image_points.set(index, [x, y, z + off]);
+    }
+    let found = update(&views, &views.sample.pose, None);
+    assert!((found.inliers() - 0.8).abs() < 0.03, "{}", found.inliers());
+    let near = update(&views, &views.sample.pose, Some(0.01));
+    assert!((near.inliers() - 0.8).abs() < 0.03, "the accepted distance does not change it: {}", near.inliers());
+}
+
+#[test]
 fn pairs_at_the_true_pose_are_the_same_place() {
     for beta in [0.0, 20.0, 40.0, -60.0, 80.0] {
         let views = views(beta);

@@ -46,7 +46,7 @@ impl Estimator {
     /// Objective of the working solution over the evaluation points.
     pub(in crate::estimator) fn objective(&self) -> Objective {
         let light = self.solution.light.total();
-        let colours = self.stages.paint.colours(&self.pair);
+        let colours = self.stages.albedo.colours(&self.pair);
         objective::evaluate(
             &self.pair,
             self.accepted.evaluated(),
@@ -84,8 +84,8 @@ impl Estimator {
     /// after an iteration that changed the pose.
     fn settle(&mut self) {
         let Self { pair, stages, accepted, solution, scratch, settling, report, .. } = self;
-        let Stages { paint, registration, .. } = stages;
-        let stands = registration.keeps(pair, &solution.pose) && paint.knows(pair, &solution.pose);
+        let Stages { albedo, registration, .. } = stages;
+        let stands = registration.keeps(pair, &solution.pose) && albedo.knows(pair, &solution.pose);
         if stands && report.iteration >= crate::shape::STARTS {
             settling.advance(settling::movements(pair, accepted, solution, &mut scratch.spare));
         } else {
@@ -100,8 +100,8 @@ impl Estimator {
 
     /// Measures overlap, inliers and residuals of the current correspondences.
     pub(in crate::estimator) fn measure(&mut self) {
-        let Self { pair, stages: Stages { paint, .. }, solution, correspondences, scratch, .. } = self;
-        let residual = self.residuals.measure(pair, paint, solution, correspondences, &mut scratch.spare);
+        let Self { pair, stages: Stages { albedo, .. }, solution, correspondences, scratch, .. } = self;
+        let residual = self.residuals.measure(pair, albedo, solution, correspondences, &mut scratch.spare);
         self.report.residual = residual.unwrap_or(self.report.residual);
         self.report.overlap = correspondences.count() as f64 / pair.depth.valid().max(1) as f64;
         self.report.inliers = correspondences.inliers();

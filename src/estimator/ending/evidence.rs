@@ -2,7 +2,7 @@
 //! answer.
 
 use crate::options::{Registration, Shading};
-use crate::pose::{ContrastReport, Direction, OutlineReport, PhotometricReport};
+use crate::pose::{ContrastReport, Direction, PhotometricReport, SilhouetteReport};
 use crate::reason::Reason;
 
 use crate::estimator::finder::Staying;
@@ -110,7 +110,7 @@ impl PhotometricEvidence {
 
 impl SilhouetteEvidence {
     /// Evidence from a registration by silhouettes.
-    pub fn of(found: &OutlineReport) -> Self {
+    pub fn of(found: &SilhouetteReport) -> Self {
         Self {
             sigma: found.uncertainty.largest_rotation(),
             weakest: found.uncertainty.weakest,

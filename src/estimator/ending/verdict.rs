@@ -256,7 +256,7 @@ mod tests {
             ),
             ("a large sigma", photometric(PhotometricEvidence { sigma: 6.0, ..SURE }), lost, turned(6.0)),
             (
-                "paint",
+                "albedo",
                 photometric(PhotometricEvidence { unexplained: 0.4, ..SURE }),
                 lost,
                 Some(Reason::Unexplained { percent: 40.0 }),

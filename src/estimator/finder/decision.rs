@@ -1,6 +1,6 @@
 //! The finder's decision: a pose, and the method that it rests on.
 
-use crate::pose::{ContrastReport, OutlineReport, PhotometricReport, Similarity};
+use crate::pose::{ContrastReport, PhotometricReport, SilhouetteReport, Similarity};
 use crate::reason::FoundBy;
 
 /// The decision.
@@ -17,7 +17,7 @@ pub enum Method {
     /// The albedo varies: the pose is from local contrast.
     Contrast(Box<ContrastReport>),
     /// The albedo varies: the pose is from silhouettes.
-    Silhouettes(Box<OutlineReport>),
+    Silhouettes(Box<SilhouetteReport>),
     /// No pose near the initial one fits the image better, so that one is kept.
     Initial(Staying),
     /// Nothing could be registered.

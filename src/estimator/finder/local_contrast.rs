@@ -69,8 +69,8 @@ pub struct CleanedImage {
 impl CleanedImage {
     /// Cleans a pair's image.
     pub fn new(pair: &ViewPair) -> Self {
-        let sharp = pair.image.with_sharp_hues();
-        let image = sharp.as_ref().unwrap_or(&pair.image).without_paint().map(Box::new);
+        let sharp = pair.image.with_sharp_chromaticity();
+        let image = sharp.as_ref().unwrap_or(&pair.image).without_albedo_steps().map(Box::new);
         Self { image, was_soft: sharp.is_some() }
     }
 

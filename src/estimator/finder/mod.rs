@@ -50,7 +50,7 @@ mod trust_region;
 use nalgebra::Matrix3;
 
 use crate::error::Result;
-use crate::pose::{ContrastSearch, ImageGrid, OutlineReport, PhotometricReport, Similarity};
+use crate::pose::{ContrastSearch, ImageGrid, PhotometricReport, SilhouetteReport, Similarity};
 use crate::reason::Activity;
 
 use super::gauge;
@@ -91,7 +91,7 @@ struct Near {
     region: TrustRegion,
     /// The pose registered from the initial one, if it leaves no more than the image's own noise.
     noisy: Option<Similarity>,
-    silhouettes: Option<Box<OutlineReport>>,
+    silhouettes: Option<Box<SilhouetteReport>>,
 }
 
 /// The current phase.
@@ -343,7 +343,7 @@ impl Finder {
 }
 
 /// The decision for silhouettes, or else for the best registration.
-fn everywhere_by(silhouettes: Option<OutlineReport>, Choice { best, rivals }: Choice) -> Decision {
+fn everywhere_by(silhouettes: Option<SilhouetteReport>, Choice { best, rivals }: Choice) -> Decision {
     match (silhouettes, best) {
         (Some(found), _) => Decision { by: Method::Silhouettes(Box::new(found)), rivals: Some(Vec::new()) },
         (None, Some(best)) => Decision { by: Method::Photometric(best), rivals: Some(rivals) },
@@ -371,7 +371,7 @@ impl Scope {
 impl Near {
     /// Whether to repeat the registrations near the initial pose: once, and only if a single albedo does not explain the image.
     fn begins_again(&self, pair: &ViewPair, colours: &PhotometricRegistration, choice: &Choice) -> bool {
-        let is_explained = choice.best.as_ref().is_some_and(|best| !silhouettes::is_painted(pair, best));
+        let is_explained = choice.best.as_ref().is_some_and(|best| !silhouettes::has_varying_albedo(pair, best));
         !colours.is_kept_near() && !is_explained && self.region.prior(pair).is_some()
     }
 
@@ -395,7 +395,7 @@ impl Near {
         let silhouettes = self.silhouettes.take();
         // If the albedo varies, a photometric pose counts less than silhouettes when it hardly fits or is less certain.
         let is_trusted = |best: &PhotometricReport| match &silhouettes {
-            Some(_) if !silhouettes::is_painted(pair, best) => true,
+            Some(_) if !silhouettes::has_varying_albedo(pair, best) => true,
             Some(found) => {
                 !pair.residuals(best).is_unexplained()
                     && best.uncertainty.largest_rotation() <= found.uncertainty.largest_rotation()

@@ -9,7 +9,7 @@
 use crate::diagnosis::{Alternative, Diagnosis};
 use crate::error::Result;
 use crate::estimator::pair::ViewPair;
-use crate::pose::{COARSEST_NEAR, ImageGrid, OutlineReport, PhotometricReport, Search, Similarity};
+use crate::pose::{COARSEST_NEAR, ImageGrid, PhotometricReport, Search, SilhouetteReport, Similarity};
 
 use super::candidates::{Candidates, NEARBY, search};
 use super::local_optima::{Choice, LocalOptima, Origin, RegisteredCandidate};
@@ -43,7 +43,7 @@ pub struct Nearby {
     /// Where the registration from the initial pose ended, if within tolerance.
     plain: Option<Box<PhotometricReport>>,
     optima: Option<LocalOptima>,
-    silhouettes: Option<Box<OutlineReport>>,
+    silhouettes: Option<Box<SilhouetteReport>>,
     search: Option<Search>,
 }
 
@@ -63,13 +63,13 @@ impl Nearby {
 
     /// Repeats the registrations near the initial pose, because a single albedo did not explain the image. They start
     /// from that pose and from the one that silhouettes found.
-    pub fn again(pair: &ViewPair, region: TrustRegion, silhouettes: Option<Box<OutlineReport>>) -> Self {
+    pub fn again(pair: &ViewPair, region: TrustRegion, silhouettes: Option<Box<SilhouetteReport>>) -> Self {
         let step = Step::FromInitial { level: COARSEST_NEAR };
         Self { step, silhouettes, ..Self::new(pair, region, None) }
     }
 
     /// The pose from silhouettes, if they constrain it.
-    pub fn silhouettes(&mut self) -> Option<Box<OutlineReport>> {
+    pub fn silhouettes(&mut self) -> Option<Box<SilhouetteReport>> {
         self.silhouettes.take()
     }
 

@@ -5,13 +5,15 @@ use crate::diagnosis::{Alternative, Diagnosis};
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
 use crate::options::Registration;
-use crate::pose::{Angles, Outline, OutlineProblem, OutlineReport, PhotometricReport, PosePrior, Similarity};
+use crate::pose::{
+    Angles, PhotometricReport, PosePrior, SilhouetteProblem, SilhouetteRegistration, SilhouetteReport, Similarity,
+};
 use crate::view::Normals;
 
 /// A registration with fewer depth discontinuities, or a larger noise of their distances to the silhouette (pixels), is
 /// ignored.
-const FEWEST_RIMS: usize = 40;
-const LARGEST_RIM_NOISE: f64 = 6.0;
+const FEWEST_DISCONTINUITIES: usize = 40;
+const LARGEST_DISCONTINUITY_NOISE: f64 = 6.0;
 /// Angles in degrees by which the starts are turned about y and x if there is no initial pose.
 const TURNS: [f64; 3] = [0.0, -32.0, 32.0];
 const TILTS: [f64; 3] = [0.0, -24.0, 24.0];
@@ -22,32 +24,32 @@ const ANYWHERE_ACROSS: f64 = 0.12;
 const ANYWHERE_ALONG: f64 = 0.08;
 
 /// Whether the photometric residuals show varying albedo, so that silhouettes decide if they can.
-pub fn is_painted(pair: &ViewPair, found: &PhotometricReport) -> bool {
+pub fn has_varying_albedo(pair: &ViewPair, found: &PhotometricReport) -> bool {
     pair.residuals(found).diagnose(Alternative::Silhouettes) == Diagnosis::VaryingAlbedo
 }
 
 /// The pose near an initial one, if silhouettes fit it better.
-pub fn near(pair: &ViewPair, normals: &Normals, told: PosePrior) -> Option<OutlineReport> {
-    let problem = OutlineProblem { image: &pair.image, depth: &pair.depth, normals, prior: told };
-    let mut outline = Outline::new(&problem);
-    let staying = outline.judge(&problem, &told.pose).cost;
-    let found = outline.register(&problem, &told.pose);
+pub fn near(pair: &ViewPair, normals: &Normals, initial: PosePrior) -> Option<SilhouetteReport> {
+    let problem = SilhouetteProblem { image: &pair.image, depth: &pair.depth, normals, prior: initial };
+    let mut registration = SilhouetteRegistration::new(&problem);
+    let staying = registration.judge(&problem, &initial.pose).cost;
+    let found = registration.register(&problem, &initial.pose);
     Some(found).filter(|found| is_seen(found) && found.cost < staying)
 }
 
 /// Whether silhouettes are tried if nothing is known about the pose; `found` is the best pose under a single albedo.
 pub fn are_called_for(pair: &ViewPair, found: Option<&PhotometricReport>) -> bool {
-    pair.options.registration == Registration::Joint && found.is_none_or(|found| is_painted(pair, found))
+    pair.options.registration == Registration::Joint && found.is_none_or(|found| has_varying_albedo(pair, found))
 }
 
 /// Finds the pose if nothing is known about it, in slices: the best of several rotations at the centre of the image's
 /// object.
 pub struct Anywhere {
-    outline: Outline,
+    registration: SilhouetteRegistration,
     prior: PosePrior,
     /// The remaining starts, the next one last.
     starts: Vec<Similarity>,
-    best: Option<OutlineReport>,
+    best: Option<SilhouetteReport>,
 }
 
 impl Anywhere {
@@ -58,17 +60,18 @@ impl Anywhere {
         let starts = TURNS.into_iter().flat_map(|beta| TILTS.map(|alpha| turned(Angles { alpha, beta, gamma: 0.0 })));
         let mut starts: Vec<_> = starts.collect();
         starts.reverse();
-        let outline = Outline::new(&OutlineProblem { image: &pair.image, depth: &pair.depth, normals, prior });
-        Some(Self { outline, prior, starts, best: None })
+        let registration =
+            SilhouetteRegistration::new(&SilhouetteProblem { image: &pair.image, depth: &pair.depth, normals, prior });
+        Some(Self { registration, prior, starts, best: None })
     }
 
     /// Registers from the next start; returns whether all are done.
     pub fn advance(&mut self, pair: &ViewPair, normals: &Normals) -> bool {
         let Some(start) = self.starts.pop() else { return true };
-        let problem = OutlineProblem { image: &pair.image, depth: &pair.depth, normals, prior: self.prior };
-        let found = self.outline.register(&problem, &start);
+        let problem = SilhouetteProblem { image: &pair.image, depth: &pair.depth, normals, prior: self.prior };
+        let found = self.registration.register(&problem, &start);
         // Among equals, the first stays.
-        let is_better = |best: &OutlineReport| found.cost.total_cmp(&best.cost).is_lt();
+        let is_better = |best: &SilhouetteReport| found.cost.total_cmp(&best.cost).is_lt();
         if is_seen(&found) && self.best.as_ref().is_none_or(is_better) {
             self.best = Some(found);
         }
@@ -76,7 +79,7 @@ impl Anywhere {
     }
 
     /// The best registration so far that constrains the pose.
-    pub fn best(&mut self) -> Option<OutlineReport> {
+    pub fn best(&mut self) -> Option<SilhouetteReport> {
         self.best.take()
     }
 }
@@ -93,6 +96,6 @@ pub fn placed_by_middles(pair: &ViewPair, pose: Similarity, degrees: f64) -> Opt
     Some(PosePrior { pose, rotation: degrees.to_radians(), across, along })
 }
 
-fn is_seen(found: &OutlineReport) -> bool {
-    found.rims >= FEWEST_RIMS && found.noise <= LARGEST_RIM_NOISE
+fn is_seen(found: &SilhouetteReport) -> bool {
+    found.discontinuities >= FEWEST_DISCONTINUITIES && found.noise <= LARGEST_DISCONTINUITY_NOISE
 }

@@ -5,7 +5,7 @@ use nalgebra::Matrix3;
 use crate::estimator::objective;
 use crate::estimator::pair::ViewPair;
 use crate::estimator::solution::Solution;
-use crate::estimator::stages::PaintStage;
+use crate::estimator::stages::AlbedoStage;
 use crate::light::{Light, Polynomial};
 use crate::numeric::{LANES, Lanes, quantile};
 use crate::pose::Correspondences;
@@ -32,13 +32,13 @@ impl PixelResiduals {
     pub fn measure(
         &mut self,
         pair: &ViewPair,
-        paint: &PaintStage,
+        albedo: &AlbedoStage,
         solution: &Solution,
         correspondences: &Correspondences,
         spare: &mut Vec<f32>,
     ) -> Option<f64> {
-        let light = Polynomial::of(&shading_light(paint, solution));
-        let albedo = paint.found().map(|found| &found.albedo);
+        let light = Polynomial::of(&shading_light(albedo, solution));
+        let albedo = albedo.found().map(|found| &found.albedo);
         let seen = SeenNormals::new(pair, solution, correspondences);
         spare.clear();
         for start in (0..self.0.len()).step_by(LANES) {
@@ -86,18 +86,18 @@ impl<'a> SeenNormals<'a> {
 }
 
 /// The light of the shading, with exposure and tint.
-fn shading_light(paint: &PaintStage, solution: &Solution) -> Light {
-    solution.light.total().tinted(paint.found().map_or([0.0; 3], |found| found.tint))
+fn shading_light(albedo: &AlbedoStage, solution: &Solution) -> Light {
+    solution.light.total().tinted(albedo.found().map_or([0.0; 3], |found| found.tint))
 }
 
 /// Log shading of each image pixel, R, G, B interleaved, as predicted for [`PixelResiduals`]. NaN off the mask.
 pub fn shading(
     pair: &ViewPair,
-    paint: &PaintStage,
+    albedo: &AlbedoStage,
     solution: &Solution,
     correspondences: &Correspondences,
 ) -> Vec<f32> {
-    let light = shading_light(paint, solution);
+    let light = shading_light(albedo, solution);
     let seen = SeenNormals::new(pair, solution, correspondences);
     let of_pixel = |(pixel, &inside): (usize, &bool)| {
         let normal = if inside { seen.of_pixel(pixel).0 } else { [f32::NAN; 3] };

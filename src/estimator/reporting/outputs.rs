@@ -68,11 +68,11 @@ impl Estimator {
     /// A range that is empty or not finite.
     pub fn draw(&self, layer: Layer, range: Option<[f64; 2]>, map: ColourMap, rgba: &mut Vec<u8>) -> Result<Size> {
         match layer {
-            Layer::Normals => picture::paint_normals(&self.image_normals(), rgba),
-            Layer::RefinedNormals => picture::paint_normals(self.depth_normals(), rgba),
-            Layer::Depth => picture::paint_numbers(&self.image_depth(), range, map, rgba)?,
-            Layer::Residual => picture::paint_numbers(&self.residual(), range, map, rgba)?,
-            Layer::Refined => picture::paint_numbers(self.refined_depth(), range, map, rgba)?,
+            Layer::Normals => picture::draw_normals(&self.image_normals(), rgba),
+            Layer::RefinedNormals => picture::draw_normals(self.depth_normals(), rgba),
+            Layer::Depth => picture::draw_numbers(&self.image_depth(), range, map, rgba)?,
+            Layer::Residual => picture::draw_numbers(&self.residual(), range, map, rgba)?,
+            Layer::Refined => picture::draw_numbers(self.refined_depth(), range, map, rgba)?,
         }
         let image = || self.pair.way.as_ref().map_or(self.image().size, WorkingSize::full);
         Ok(match layer {
@@ -102,7 +102,7 @@ impl Estimator {
     #[must_use]
     pub fn albedo(&self) -> Vec<f32> {
         let mask = &self.pair.image.mask;
-        self.carried(match self.stages.paint.found() {
+        self.carried(match self.stages.albedo.found() {
             Some(found) => {
                 (0..mask.len()).flat_map(|pixel| [0, 1, 2].map(|channel: usize| found.albedo[channel][pixel])).collect()
             }
@@ -114,7 +114,7 @@ impl Estimator {
     /// [`albedo`](Self::albedo) and shading is [`residual`](Self::residual).
     #[must_use]
     pub fn shading(&self) -> Vec<f32> {
-        self.carried(measurement::shading(&self.pair, &self.stages.paint, &self.solution, &self.correspondences))
+        self.carried(measurement::shading(&self.pair, &self.stages.albedo, &self.solution, &self.correspondences))
     }
 
     /// Converts the report of the last stage to the caller's units.

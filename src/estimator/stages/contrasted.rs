@@ -1,14 +1,14 @@
 //! Alternates between pose and albedo if the albedo varies (docs/method/registration.md).
 //!
 //! The search by contrast can remove only the albedo that shows at edges, because it has no pose yet. Under the pose of
-//! the search, the light stage finds more of the albedo: a palette and gradual changes ([`PaintStage`]). This albedo is
+//! the search, the light stage finds more of the albedo: a palette and gradual changes ([`AlbedoStage`]). This albedo is
 //! removed, and the contrast is registered once more. The new pose then gives a new albedo. These two steps alternate
 //! for a few rounds (coordinate descent).
 //!
 //! Limits: cast shadows are mistaken for albedo, so a round counts only if shading explains more of the remainder than
 //! before.
 
-use super::paint::PaintStage;
+use super::albedo::AlbedoStage;
 use crate::estimator::finder::{PhotometricRegistration, TrustRegion};
 use crate::estimator::pair::ViewPair;
 use crate::pose::{ContrastReport, Similarity, register_again};
@@ -45,12 +45,12 @@ impl Contrasted {
         &mut self,
         pair: &ViewPair,
         colours: &PhotometricRegistration,
-        paint: &PaintStage,
+        albedo: &AlbedoStage,
         region: Option<&TrustRegion>,
     ) -> Option<Similarity> {
         let rounds = self.rounds.checked_sub(1)?;
         self.rounds = 0;
-        let image = paint.without_albedo(pair)?;
+        let image = albedo.without_albedo(pair)?;
         let (pose, objective) = register_again(&colours.contrast_problem(pair, &image), &self.report.pose)?;
         let is_allowed = region.is_none_or(|region| region.holds(pair, &pose));
         if !is_allowed || objective >= self.objective {

@@ -1,6 +1,6 @@
 //! The light stage (Eq. 2): fits the light to the depth view's normals under the current pose.
 
-use super::paint::PaintStage;
+use super::albedo::AlbedoStage;
 use crate::diagnosis::MIXED_NOISE;
 use crate::error::Result;
 use crate::estimator::pair::ViewPair;
@@ -27,12 +27,12 @@ impl<'a> Inputs<'a> {
     /// The input of an iteration, numbered from zero.
     pub fn of(
         pair: &'a ViewPair,
-        paint: &'a PaintStage,
+        albedo: &'a AlbedoStage,
         fitted: &'a LightStage,
         correspondences: &'a Correspondences,
         iteration: u32,
     ) -> Self {
-        Self { pair, colours: paint.colours(pair), fitted, correspondences, is_first: iteration == 0 }
+        Self { pair, colours: albedo.colours(pair), fitted, correspondences, is_first: iteration == 0 }
     }
 }
 

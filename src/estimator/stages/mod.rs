@@ -4,18 +4,18 @@
 //! [`ViewPair`]: super::pair::ViewPair
 //! [`Solution`]: super::solution::Solution
 
+mod albedo;
 mod contrasted;
 mod correspondences;
 mod light;
-mod paint;
 mod refinement;
 mod registration;
 mod shape;
 mod surfaces;
 
+pub use albedo::AlbedoStage;
 pub use correspondences::correspondence_problem;
 pub use light::{Inputs, LightStage};
-pub use paint::PaintStage;
 pub use refinement::{RefinementStage, RefinementTask, terms_from_numbers};
 pub use registration::{Decided, Registered, Registering, RegistrationStage};
 pub use shape::ShapeStage;
@@ -23,7 +23,7 @@ pub use shape::ShapeStage;
 /// All stages of an iteration, in order, except that the albedo is fitted only under a settled pose.
 pub struct Stages {
     pub light: LightStage,
-    pub paint: PaintStage,
+    pub albedo: AlbedoStage,
     pub shape: ShapeStage,
     pub registration: RegistrationStage,
     pub refinement: RefinementStage,

@@ -6,13 +6,13 @@ use crate::estimator::pair::ViewPair;
 use crate::estimator::solution::Solution;
 use crate::light::Light;
 use crate::options::{Registration, Start};
-use crate::pose::{OutlineReport, PhotometricReport, Similarity, Uncertainty};
+use crate::pose::{PhotometricReport, SilhouetteReport, Similarity, Uncertainty};
 use crate::reason::Reason;
 use crate::view::Normals;
 
+use super::albedo::AlbedoStage;
 use super::contrasted::Contrasted;
 use super::light::Inputs;
-use super::paint::PaintStage;
 use super::surfaces::{Matched, SurfaceRegistration};
 
 /// Result of a registration: a pose, and what was found with it.
@@ -36,7 +36,7 @@ impl Registered {
         Self { pose, light: None, exposure: None, uncertainty: None, improved: true, rivals: None }
     }
 
-    fn by_outlines(found: &OutlineReport) -> Self {
+    fn by_silhouettes(found: &SilhouetteReport) -> Self {
         Self { uncertainty: Some(found.uncertainty.clone()), ..Self::of_pose(found.pose) }
     }
 }
@@ -56,7 +56,7 @@ pub struct RegistrationStage {
 pub enum Decided {
     Photometric,
     Contrast(Box<Contrasted>),
-    Silhouettes(Box<OutlineReport>),
+    Silhouettes(Box<SilhouetteReport>),
     /// No better pose was found; the initial pose stays.
     Initial(Staying),
 }
@@ -130,7 +130,7 @@ impl RegistrationStage {
                 return Ok(None);
             }
             Method::Silhouettes(found) => {
-                let registered = Registered::by_outlines(&found);
+                let registered = Registered::by_silhouettes(&found);
                 self.decided = Some(Decided::Silhouettes(found));
                 registered
             }
@@ -188,7 +188,7 @@ impl RegistrationStage {
     }
 
     /// Whether the albedo is to be fitted under `pose`: the pose has settled, or waits only for the albedo.
-    pub fn asks_for_paint(&self, pair: &ViewPair, pose: &Similarity) -> bool {
+    pub fn requires_albedo(&self, pair: &ViewPair, pose: &Similarity) -> bool {
         matches!(self.decided, Some(Decided::Contrast(_))) || self.keeps(pair, pose)
     }
 
@@ -197,7 +197,7 @@ impl RegistrationStage {
     pub fn register(
         &mut self,
         inputs: Inputs<'_>,
-        paint: &PaintStage,
+        albedo: &AlbedoStage,
         solution: &Solution,
     ) -> Result<Registering, Reason> {
         let pair = inputs.pair;
@@ -206,7 +206,7 @@ impl RegistrationStage {
             Registration::Joint if self.region.is_some() && self.decided.is_none() => {
                 self.register_initial(pair, &solution.pose)
             }
-            Registration::Joint => self.register_colours(pair, paint, &solution.pose).map(Registering::of),
+            Registration::Joint => self.register_colours(pair, albedo, &solution.pose).map(Registering::of),
             Registration::Icp => {
                 let Matched { mut pose, mut improved, uncertainty } = self.surfaces.register(inputs, solution)?;
                 if self.region.as_ref().is_some_and(|region| !region.holds(pair, &pose)) {
@@ -242,14 +242,14 @@ impl RegistrationStage {
     fn register_colours(
         &mut self,
         pair: &ViewPair,
-        paint: &PaintStage,
+        albedo: &AlbedoStage,
         start: &Similarity,
     ) -> Result<Option<Registered>, Reason> {
         let Some(colours) = &mut self.colours else { return Ok(None) };
         match &mut self.decided {
             Some(Decided::Initial(_) | Decided::Silhouettes(_)) => Ok(None),
             Some(Decided::Contrast(found)) => {
-                let pose = found.follow(pair, colours, paint, self.region.as_ref());
+                let pose = found.follow(pair, colours, albedo, self.region.as_ref());
                 Ok(pose.map(|pose| Registered::of_pose(with_gauge_of(pair, pose, start))))
             }
             Some(Decided::Photometric) | None => {

@@ -59,12 +59,12 @@ impl Estimator {
         // The worker's image still contains the albedo.
         let is_known = self.report.status == Status::Running
             && !self.settling.keeps_depth()
-            && self.stages.paint.found().is_none()
+            && self.stages.albedo.found().is_none()
             && self.stages.registration.keeps(&self.pair, &self.solution.pose);
         if is_known {
             let inputs = Inputs::of(
                 &self.pair,
-                &self.stages.paint,
+                &self.stages.albedo,
                 &self.stages.light,
                 &self.correspondences,
                 self.report.iteration,

@@ -21,13 +21,13 @@ use crate::pose::spline_image::SplineImage;
 /// Robust scale of points off the mask, pixels.
 const BESIDE_SCALE: f64 = 3.0;
 /// Weight of the distance between occluding contour and silhouette.
-const LIMB_WEIGHT: f64 = 1.0;
+const CONTOUR_WEIGHT: f64 = 1.0;
 /// Robust scale of the distance between occluding contour and silhouette, pixels. It is tighter than [`BESIDE_SCALE`], because
 /// contours inside the mask, where one part of the object hides another, do not belong to the silhouette.
-const LIMB_SCALE: f64 = 1.5;
+const CONTOUR_SCALE: f64 = 1.5;
 /// Weight of the same distance during the instrumental rounds. Silhouettes bring the pose close, but their bias of part of a pixel would
 /// then pull it off (docs/lab/thresholds.md).
-const SETTLING_LIMB_WEIGHT: f64 = 0.1;
+const SETTLING_CONTOUR_WEIGHT: f64 = 0.1;
 /// Weight of ln^2 of the apparent size relative to the initial one: 20 % more costs about a sixth of the contrast.
 /// Without it a registration slides to where the object is small.
 const SIZE_WEIGHT: f64 = 5.0;
@@ -259,7 +259,7 @@ impl Objective {
         }
         self.values.copy_from_slice(&self.seen_values);
         level.means.remove(&mut self.values);
-        self.unexplained(&state.light) + self.outlines(problem, &state.pose) + self.size_term(problem, &state.pose)
+        self.unexplained(&state.light) + self.silhouettes(problem, &state.pose) + self.size_term(problem, &state.pose)
     }
 
     /// E with an additional term that holds the scale near that of the units, if it is free.
@@ -283,24 +283,24 @@ impl Objective {
     }
 
     /// Cost of points off the mask, and of the occluding contour off its border.
-    fn outlines(&self, problem: &ContrastProblem<'_>, pose: &Similarity) -> f64 {
+    fn silhouettes(&self, problem: &ContrastProblem<'_>, pose: &Similarity) -> f64 {
         let rho = |u: f64, scale: f64| robust::rho(u * u, (u / scale).powi(2));
         let beside = |sample: &super::samples::Sample| match problem.place(pose, &sample.point) {
             Some(place) => rho((self.silhouette.at(place).0 - SLACK).max(0.0) / self.unit, BESIDE_SCALE),
             None => BESIDE_SCALE.powi(2),
         };
-        let limb = |point: &Vector3<f64>| match problem.place(pose, point) {
-            Some(place) => rho(self.silhouette.signed_at(place).0 / self.unit, LIMB_SCALE),
-            None => LIMB_SCALE.powi(2),
+        let cost = |point: &Vector3<f64>| match problem.place(pose, point) {
+            Some(place) => rho(self.silhouette.signed_at(place).0 / self.unit, CONTOUR_SCALE),
+            None => CONTOUR_SCALE.powi(2),
         };
         let beside: f64 = self.samples.list.iter().map(beside).sum();
-        let limbs: f64 = self.seen.limbs.iter().map(limb).sum();
-        OUTSIDE_WEIGHT * beside / self.samples.list.len() as f64 + self.limb_weight() * limbs
+        let contour: f64 = self.seen.contour.iter().map(cost).sum();
+        OUTSIDE_WEIGHT * beside / self.samples.list.len() as f64 + self.contour_weight() * contour
     }
 
     /// Weight of one contour point. It grows with the stride, because wider strides yield fewer points.
-    fn limb_weight(&self) -> f64 {
-        let weight = if self.has_instruments { SETTLING_LIMB_WEIGHT } else { LIMB_WEIGHT };
+    fn contour_weight(&self) -> f64 {
+        let weight = if self.has_instruments { SETTLING_CONTOUR_WEIGHT } else { CONTOUR_WEIGHT };
         weight * self.samples.stride as f64 / self.border
     }
 
@@ -318,7 +318,9 @@ impl Objective {
             self.prediction.predict(problem, samples, visible, &level.shades, (&state.pose, &state.light));
         }
         self.enter_samples(problem, level, frame, state);
-        self.for_each_outline(problem, frame, &state.pose, |_, row, off, weight| equations.add_row(row, off, weight));
+        self.for_each_silhouette(problem, frame, &state.pose, |_, row, off, weight| {
+            equations.add_row(row, off, weight)
+        });
         self.values.copy_from_slice(&self.seen_values);
         level.means.remove(&mut self.values);
         level.means.remove(&mut self.derivatives);
@@ -358,14 +360,14 @@ impl Objective {
 
     /// Calls `visit` with position, derivative, residual and weight of each point off the mask and of each contour
     /// point.
-    pub fn for_each_outline(
+    pub fn for_each_silhouette(
         &self,
         problem: &ContrastProblem<'_>,
         frame: &Frame,
         pose: &Similarity,
         mut visit: impl FnMut([f64; 2], &PoseVector, f64, f64),
     ) {
-        let (beside, limb) = (OUTSIDE_WEIGHT / self.samples.list.len() as f64, self.limb_weight());
+        let (beside, contour) = (OUTSIDE_WEIGHT / self.samples.list.len() as f64, self.contour_weight());
         for sample in &self.samples.list {
             let Some((place, by_pose)) = by_pose(problem, &pose.apply(sample.point), frame) else { continue };
             let (distance, slope) = self.silhouette.at(place);
@@ -375,12 +377,12 @@ impl Objective {
                 visit(place, &row, off, beside * robust::weight((off / BESIDE_SCALE).powi(2)));
             }
         }
-        for point in &self.seen.limbs {
+        for point in &self.seen.contour {
             let Some((place, by_pose)) = by_pose(problem, &pose.apply(*point), frame) else { continue };
             let (distance, slope) = self.silhouette.signed_at(place);
             let off = distance / self.unit;
             let row = (slope[0] * by_pose[0] + slope[1] * by_pose[1]) / self.unit;
-            visit(place, &row, off, limb * robust::weight((off / LIMB_SCALE).powi(2)));
+            visit(place, &row, off, contour * robust::weight((off / CONTOUR_SCALE).powi(2)));
         }
     }
 

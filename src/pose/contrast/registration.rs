@@ -353,7 +353,7 @@ mod tests {
     }
 
     #[test]
-    fn soft_paint_biases_less_by_instruments() {
+    fn smooth_albedo_biases_less_by_instruments() {
         let scenes: Vec<_> = (1..=6).map(|seed| views(&texture(seed, 0.06))).collect();
         let mean = |rounds| scenes.iter().map(|scene| off(scene, rounds)).sum::<f64>() / scenes.len() as f64;
         let (descent, instruments) = (mean(0), mean(20));
@@ -369,7 +369,7 @@ mod tests {
     }
 
     #[test]
-    fn an_outline_that_does_not_fit_widens_sigmas() {
+    fn a_silhouette_that_does_not_fit_widens_sigmas() {
         let views = views(&texture(9, 0.03));
         let mask = &views.0.mask;
         // Four pixels are cut off the mask alone on two sides: their pulls cancel, and the image is the same.
@@ -383,7 +383,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cloud_that_shrinks_onto_bare_paint_ranks_behind_one_that_shading_explains() {
+    fn a_cloud_that_shrinks_onto_bare_albedo_ranks_behind_one_that_shading_explains() {
         let (centre, bare) = ((SIDE - 1) as f64 / 2.0, 13.0);
         // Shading and soft albedo, except for a label in the middle with hardly any contrast.
         let (mut image, depth) = views(&texture(7, 0.12));

@@ -24,7 +24,7 @@ pub(super) struct Seen {
     facing: Vec<f64>,
     /// Points of the depth view where the surface turns away from the image's camera; they have to lie on the
     /// silhouette.
-    pub limbs: Vec<Vector3<f64>>,
+    pub contour: Vec<Vector3<f64>>,
 }
 
 impl Seen {
@@ -39,7 +39,7 @@ impl Seen {
             cell,
             visible: vec![false; count],
             facing: vec![0.0; count],
-            limbs: Vec::with_capacity(count),
+            contour: Vec::with_capacity(count),
         }
     }
 
@@ -64,7 +64,7 @@ impl Seen {
             self.visible[k] =
                 self.facing[k] < -LEAST_FACING && nearest.is_some_and(|nearest| point.z <= nearest + tolerance);
         }
-        self.find_limbs(samples);
+        self.find_contour(samples);
     }
 
     fn at(&self, [column, row]: [f64; 2]) -> Option<f64> {
@@ -83,13 +83,13 @@ impl Seen {
     }
 
     /// Finds where the facing changes its sign between neighbours on one surface.
-    fn find_limbs(&mut self, samples: &Samples) {
-        self.limbs.clear();
+    fn find_contour(&mut self, samples: &Samples) {
+        self.contour.clear();
         for &pair in &samples.neighbours {
             let [a, b] = pair.map(|k| k as usize);
             let (here, there) = (self.facing[a], self.facing[b]);
             if (here < 0.0) != (there < 0.0) && samples.distance(pair) < JUMP * samples.step {
-                self.limbs.push(samples.list[a].point.lerp(&samples.list[b].point, here / (here - there)));
+                self.contour.push(samples.list[a].point.lerp(&samples.list[b].point, here / (here - there)));
             }
         }
     }

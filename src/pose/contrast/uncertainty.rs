@@ -40,13 +40,13 @@ impl Linearised<'_> {
             contrast[row / tile * across + column / tile] += score;
         });
         let tile = tile * samples.stride;
-        let (across, mut outline) = tiles(size, tile);
+        let (across, mut silhouette) = tiles(size, tile);
         let inside = |place: f64, length: usize| (place.round().max(0.0) as usize).min(length - 1) / tile;
-        self.objective.for_each_outline(self.problem, self.frame, &self.state.pose, |place, row, off, weight| {
+        self.objective.for_each_silhouette(self.problem, self.frame, &self.state.pose, |place, row, off, weight| {
             let at = inside(place[1], size.height) * across + inside(place[0], size.width);
-            outline[at].axpy(weight * off, row, 1.0);
+            silhouette[at].axpy(weight * off, row, 1.0);
         });
-        [contrast, outline]
+        [contrast, silhouette]
     }
 }
 
@@ -54,9 +54,9 @@ impl Linearised<'_> {
 /// it does to the information, because its errors are as real as those of the contrast. Student's correction is
 /// omitted, because the jackknife has one.
 fn covariance(linearised: &Linearised<'_>, held: &[bool; UNKNOWNS]) -> PoseMatrix {
-    let [contrast, outline] = linearised.tiles();
+    let [contrast, silhouette] = linearised.tiles();
     let mut scores = Scores::of(contrast.iter());
-    scores.add(outline.iter());
+    scores.add(silhouette.iter());
     let mut matrix = linearised.reduced.matrix;
     fix_unknowns(&mut matrix, held);
     scores.covariance(inverse(&matrix).as_ref(), 1.0, held)

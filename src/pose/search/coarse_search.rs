@@ -84,9 +84,9 @@ impl Search {
 
     /// Restricts the search to rotations within `degrees` of a given pose, and takes the distance from that pose. To be
     /// called before the first slice.
-    pub(crate) fn narrow(&mut self, told: &Similarity, degrees: f64) {
-        self.matcher.place_at(told);
-        self.sweep.narrow(&told.rotation, degrees);
+    pub(crate) fn narrow(&mut self, initial: &Similarity, degrees: f64) {
+        self.matcher.place_at(initial);
+        self.sweep.narrow(&initial.rotation, degrees);
         self.swept = TaskResults::new(self.sweep.slices());
     }
 

@@ -39,8 +39,8 @@ impl Geometry {
     }
 
     /// Takes the distance of the centre from a given pose.
-    pub fn place_at(&mut self, told: &Similarity, cloud: &Cloud) {
-        self.distance = self.distance.map(|_| told.apply(cloud.centre).z);
+    pub fn place_at(&mut self, initial: &Similarity, cloud: &Cloud) {
+        self.distance = self.distance.map(|_| initial.apply(cloud.centre).z);
     }
 
     /// Whether the distance varies instead of the scale, as it does behind a pinhole.

@@ -59,8 +59,8 @@ impl Matcher {
     }
 
     /// Takes the distance from a given pose.
-    pub fn place_at(&mut self, told: &Similarity) {
-        self.geometry.place_at(told, &self.cloud);
+    pub fn place_at(&mut self, initial: &Similarity) {
+        self.geometry.place_at(initial, &self.cloud);
     }
 
     /// Whether the distance varies instead of the scale.

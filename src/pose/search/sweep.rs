@@ -35,11 +35,11 @@ impl Sweep {
     }
 
     /// Restricts the sweep to rotations within `degrees` of a given one, and adds that one.
-    pub fn narrow(&mut self, told: &Matrix3<f64>, degrees: f64) {
+    pub fn narrow(&mut self, initial: &Matrix3<f64>, degrees: f64) {
         let least_trace = 1.0 + 2.0 * degrees.min(180.0).to_radians().cos();
         self.rotations.retain(|turn| turn.trace() >= least_trace);
-        self.rotations.iter_mut().for_each(|turn| *turn *= told);
-        self.rotations.push(*told);
+        self.rotations.iter_mut().for_each(|turn| *turn *= initial);
+        self.rotations.push(*initial);
     }
 
     /// The apparent sizes of the sweep.

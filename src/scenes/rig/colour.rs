@@ -47,7 +47,7 @@ pub fn radiance(
             }
             let mut arriving = sky.1;
             light.add_lamps(hit.point, hit.normal, &mut arriving);
-            let albedo = stage.paints[stage.triangles[hit.triangle].paint as usize].albedo(hit.point);
+            let albedo = stage.albedos[stage.triangles[hit.triangle].albedo as usize].albedo(hit.point);
             (0..3).for_each(|k| sum[k] += arriving[k] * albedo[k]);
         }
         (0..3).for_each(|k| value[k] = (sum[k] / (SAMPLES * SAMPLES) as f64) as f32);

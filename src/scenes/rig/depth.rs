@@ -159,7 +159,7 @@ fn smooth_noise(size: Size, chance: &mut Chance) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenes::rig::paint::Paint;
+    use crate::scenes::rig::pattern::Albedo;
     use crate::scenes::rig::solids::Solid;
     use crate::view::{Lens, Pinhole};
 
@@ -239,7 +239,7 @@ mod tests {
             for (half, z) in [(2.0, 1.6), (0.15, 0.8)] {
                 let face =
                     Solid::face(Vector3::new(-half, -half, z), 2.0 * half * Vector3::x(), 2.0 * half * Vector3::y());
-                stage.put(&face, &still, Paint::plain(&still, &mut Chance::of_stream(1, 2)));
+                stage.put(&face, &still, Albedo::plain(&still, &mut Chance::of_stream(1, 2)));
             }
             let seen = look(&stage, &still, &rig);
             let dark: Vec<usize> = (0..SIZE.width).filter(|&column| !seen.is_lit[SIZE.index(column, 75)]).collect();

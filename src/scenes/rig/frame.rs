@@ -184,7 +184,7 @@ mod tests {
                     let Some(hit) = rays.hit(&stage, &view, &hits, sample) else { continue };
                     let mut expected = light.sky(hit.normal);
                     light.add_lamps(world, hit.normal, &mut expected);
-                    let albedo = stage.paints[stage.triangles[hit.triangle].paint as usize].albedo(world);
+                    let albedo = stage.albedos[stage.triangles[hit.triangle].albedo as usize].albedo(world);
                     let close = (0..3).all(|k| {
                         let (found, expected) = (f64::from(linear[3 * pixel + k]), expected[k] * albedo[k]);
                         (found - expected).abs() < 0.03 * expected

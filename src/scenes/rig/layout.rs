@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use nalgebra::{Rotation3, Unit, Vector3};
 
-use super::paint::Paint;
+use super::pattern::Albedo;
 use super::sheet::sheet;
 use super::solids::{Solid, icosahedron, prism, torus};
 use super::stage::Stage;
@@ -91,8 +91,8 @@ fn any_turn(chance: &mut Chance) -> Rotation3<f64> {
 }
 
 impl Stage {
-    fn put_painted(&mut self, solid: &Solid, size: f64, placement: &Similarity, chance: &mut Chance) {
-        self.put(solid, placement, Paint::random(size, placement, chance));
+    fn put_patterned(&mut self, solid: &Solid, size: f64, placement: &Similarity, chance: &mut Chance) {
+        self.put(solid, placement, Albedo::random(size, placement, chance));
     }
 
     /// A wall at `distance` in front of the rig, turned about the vertical by `angle`.
@@ -112,12 +112,12 @@ impl Stage {
     }
 
     fn put_background(&mut self, solid: &Solid, placement: &Similarity, chance: &mut Chance) {
-        let paint = if chance.uniform() < 0.4 {
-            Paint::plain(placement, chance)
+        let albedo = if chance.uniform() < 0.4 {
+            Albedo::plain(placement, chance)
         } else {
-            Paint::random(0.8, placement, chance)
+            Albedo::random(0.8, placement, chance)
         };
-        self.put(solid, placement, paint);
+        self.put(solid, placement, albedo);
     }
 }
 
@@ -190,7 +190,7 @@ fn objects(chance: &mut Chance) -> Layout {
         if placed.iter().any(|(other, radius)| (other - place).norm() < radius + 0.55 * size) {
             continue;
         }
-        stage.put_painted(&solid, size, &at(turn, place), chance);
+        stage.put_patterned(&solid, size, &at(turn, place), chance);
         placed.push((place, 0.55 * size));
     }
     let farthest = placed.iter().map(|(place, radius)| place.z + radius).fold(0.0, f64::max);
@@ -223,9 +223,12 @@ fn crumpled(chance: &mut Chance) -> Layout {
     let target = Vector3::new(chance.between([-0.1, 0.1]), chance.between([-0.06, 0.06]), distance);
     let placement = at(turn, target);
     // Users are advised to choose a sheet of one colour; some sheets are printed nevertheless.
-    let paint =
-        if chance.uniform() < 0.6 { Paint::plain(&placement, chance) } else { Paint::random(0.4, &placement, chance) };
-    stage.put(&solid, &placement, paint);
+    let albedo = if chance.uniform() < 0.6 {
+        Albedo::plain(&placement, chance)
+    } else {
+        Albedo::random(0.4, &placement, chance)
+    };
+    stage.put(&solid, &placement, albedo);
     let angle = chance.between([-0.35, 0.35]);
     let farthest = stage.points.iter().map(|point| point.z).fold(0.0, f64::max);
     stage.put_wall(farthest + chance.between(BACKGROUND) + ASIDE * angle.abs().tan(), angle, chance);
@@ -254,7 +257,7 @@ fn boxes(chance: &mut Chance) -> Layout {
         let base = under.map(|(_, _, top)| *top).fold(0.0, f64::max);
         let middle = Vector3::new(place[0], below - base - 0.5 * sides.y, place[1]);
         let placement = at(yaw(chance.between([0.0, PI])), middle);
-        stage.put_painted(&Solid::cuboid(sides), sides.max(), &placement, chance);
+        stage.put_patterned(&Solid::cuboid(sides), sides.max(), &placement, chance);
         piled.push((place, radius, base + sides.y));
     }
     Layout { stage, view: view(pitch, chance), target: Vector3::new(0.0, below - 0.1, ahead) }
@@ -276,7 +279,7 @@ fn room(chance: &mut Chance) -> Layout {
     for (corner, a, b) in [(back, across, up), (left, along, up), (right, along, up), (floor, across, along)] {
         stage.put_background(&Solid::face(corner, a, b), &placement, chance);
     }
-    stage.put(&Solid::face(left, across, along), &placement, Paint::plain(&placement, chance));
+    stage.put(&Solid::face(left, across, along), &placement, Albedo::plain(&placement, chance));
     for _ in 0..5 + chance.below(5) {
         let sides = Vector3::new(chance.between([0.3, 1.1]), chance.between([0.35, 1.7]), chance.between([0.3, 0.6]));
         let z = chance.between([1.6, end - 0.2]);
@@ -285,11 +288,11 @@ fn room(chance: &mut Chance) -> Layout {
         let place = Vector3::new(chance.between([-0.6, 0.6]) * z.min(half / 0.6), below - 0.5 * sides.y, z);
         let own = yaw(if chance.uniform() < 0.6 { 0.0 } else { chance.between([-0.8, 0.8]) });
         let put = |place: Vector3<f64>, own: Rotation3<f64>| at(turn * own, turn * place);
-        stage.put_painted(&Solid::cuboid(sides), sides.max(), &put(place, own), chance);
+        stage.put_patterned(&Solid::cuboid(sides), sides.max(), &put(place, own), chance);
         let size = chance.between([0.15, 0.35]);
         let (thing, half_height) = body(size, chance);
         let top = Vector3::new(place.x, below - sides.y - half_height, place.z);
-        stage.put_painted(&thing, size, &put(top, yaw(chance.between([0.0, PI]))), chance);
+        stage.put_patterned(&thing, size, &put(top, yaw(chance.between([0.0, PI]))), chance);
     }
     Layout { stage, view: view(chance.between([0.1, 0.35]), chance), target: Vector3::new(0.0, 0.5, 2.5) }
 }
@@ -300,17 +303,17 @@ mod tests {
 
     /// Smallest distance along z between the things in front of the wall and the wall, and the number of things.
     fn clearance(stage: &Stage) -> (f64, usize) {
-        let corners = |paint: usize| {
-            let own = stage.triangles.iter().filter(move |triangle| triangle.paint as usize == paint);
+        let corners = |albedo: usize| {
+            let own = stage.triangles.iter().filter(move |triangle| triangle.albedo as usize == albedo);
             own.flat_map(|triangle| triangle.corners).map(|corner| corner as usize)
         };
-        let reaches = |paint: usize, axis: usize| corners(paint).any(|corner| stage.points[corner][axis] < -2.5);
-        let wall = (0..stage.paints.len()).find(|&paint| reaches(paint, 1)).expect("a wall");
+        let reaches = |albedo: usize, axis: usize| corners(albedo).any(|corner| stage.points[corner][axis] < -2.5);
+        let wall = (0..stage.albedos.len()).find(|&albedo| reaches(albedo, 1)).expect("a wall");
         let first = corners(wall).next().expect("a corner");
         let (point, normal) = (stage.points[first], stage.normals[first]);
-        let things: Vec<usize> = (0..stage.paints.len()).filter(|&paint| !reaches(paint, 0)).collect();
+        let things: Vec<usize> = (0..stage.albedos.len()).filter(|&albedo| !reaches(albedo, 0)).collect();
         let gap = |corner: usize| normal.dot(&(point - stage.points[corner])) / normal.z;
-        let least = things.iter().flat_map(|&paint| corners(paint)).map(gap).fold(f64::INFINITY, f64::min);
+        let least = things.iter().flat_map(|&albedo| corners(albedo)).map(gap).fold(f64::INFINITY, f64::min);
         (least, things.len())
     }
 

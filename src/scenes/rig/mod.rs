@@ -2,7 +2,7 @@
 //! outputs of both sensors (docs/lab/protocols.md).
 //!
 //! [`render`] draws cameras and extrinsics from the seed and a scene from seed and frame (`layout`, of `solids` and
-//! `sheet`, with `paint`), and passes the scene through two z-buffers (`raster`) to both sensors (`colour`, `depth`).
+//! `sheet`, with `pattern`), and passes the scene through two z-buffers (`raster`) to both sensors (`colour`, `depth`).
 
 mod cameras;
 mod colour;
@@ -10,8 +10,8 @@ mod depth;
 mod frame;
 mod illumination;
 mod layout;
-mod paint;
 mod pair;
+mod pattern;
 mod raster;
 mod sheet;
 mod solids;

@@ -9,7 +9,7 @@ use super::cameras::Rig;
 use super::colour::{SAMPLES, develop, radiance};
 use super::depth::{look, measure};
 use super::illumination::Illumination;
-use super::paint::{Paint, Pattern};
+use super::pattern::{Albedo, Pattern};
 use super::raster::{NOTHING, Rays};
 use super::solids::{Solid, torus};
 use super::stage::Stage;
@@ -38,7 +38,7 @@ const PROJECTOR: f64 = 0.06;
 const SEED: u64 = 6;
 #[derive(Clone, Copy)]
 enum Stream {
-    Paint,
+    Albedo,
     Light,
     Image,
     Sensor,
@@ -151,7 +151,7 @@ pub struct RenderedPair {
 pub fn render_pair(kind: PairKind) -> Result<RenderedPair> {
     let recipe = kind.recipe();
     let chance = |stream: Stream| Chance::of_stream(SEED, 8 * kind as u64 + stream as u64);
-    let stage = stage(&kind.solid()?, recipe.pattern, &mut chance(Stream::Paint));
+    let stage = stage(&kind.solid()?, recipe.pattern, &mut chance(Stream::Albedo));
     let rig = rig(&recipe);
     let view = at_distance(DISTANCE);
     let placement = rig.pose.inverse().after(&view);
@@ -162,7 +162,7 @@ pub fn render_pair(kind: PairKind) -> Result<RenderedPair> {
     let seen = look(&stage, &placement, &rig);
     let depth_rays = Rays::new(&rig.depth, rig.depth_size, 1);
     let met = depth_rays.meet(&stage, &placement);
-    let is_object = |triangle: u32| triangle != NOTHING && stage.triangles[triangle as usize].paint == OBJECT;
+    let is_object = |triangle: u32| triangle != NOTHING && stage.triangles[triangle as usize].albedo == OBJECT;
     let whole_pixel = |index: usize| {
         let (column, row) = rig.colour_size.position(index);
         (0..SAMPLES * SAMPLES).all(|part| {
@@ -183,18 +183,18 @@ pub fn render_pair(kind: PairKind) -> Result<RenderedPair> {
     })
 }
 
-/// Index of the object's paint on its stage.
+/// Index of the object's albedo on its stage.
 const OBJECT: u32 = 0;
 
 /// The object about the origin, in front of a plain wall.
 fn stage(object: &Solid, pattern: Pattern, chance: &mut Chance) -> Stage {
     let mut stage = Stage::default();
     let here = Similarity::identity();
-    stage.put(object, &here, Paint::with(pattern, HEIGHT, &here, chance));
+    stage.put(object, &here, Albedo::with(pattern, HEIGHT, &here, chance));
     let side = 4.0;
     let wall = Solid::face(Vector3::new(-0.5 * side, -0.5 * side, 0.0), side * Vector3::x(), side * Vector3::y());
     let behind = Similarity { translation: Vector3::new(0.0, 0.0, WALL), ..here };
-    stage.put(&wall, &behind, Paint::plain(&behind, chance));
+    stage.put(&wall, &behind, Albedo::plain(&behind, chance));
     stage
 }
 

@@ -225,7 +225,7 @@ mod tests {
 
     use super::*;
     use crate::scenes::flaws::Chance;
-    use crate::scenes::rig::paint::Paint;
+    use crate::scenes::rig::pattern::Albedo;
     use crate::scenes::rig::solids::Solid;
 
     const SIZE: Size = Size { width: 160, height: 120 };
@@ -237,8 +237,8 @@ mod tests {
         let mut stage = Stage::default();
         let placement = Similarity { translation: Vector3::new(0.2, 0.1, 1.3), ..Similarity::identity() };
         let face = Solid::face(Vector3::new(-4.0, -4.0, 0.0), 8.0 * Vector3::x(), 8.0 * Vector3::y());
-        let paint = Paint::plain(&placement, &mut Chance::of_stream(1, 1));
-        stage.put(&face, &placement, paint);
+        let albedo = Albedo::plain(&placement, &mut Chance::of_stream(1, 1));
+        stage.put(&face, &placement, albedo);
         let rotation = Rotation3::from_euler_angles(0.3, -0.4, 0.1).into_inner();
         (camera, stage, Similarity { scale: 1.0, rotation, translation: Vector3::new(0.1, -0.05, 0.2) })
     }
@@ -292,8 +292,8 @@ mod tests {
                 Vector3::new(chance.between([-0.5, 0.6]), chance.between([-0.3, 0.4]), chance.between([0.7, 1.3]));
             let turn = Rotation3::from_euler_angles(chance.between([0.0, 3.0]), chance.between([0.0, 3.0]), 0.0);
             let place = Similarity { scale: 1.0, rotation: turn.into_inner(), translation: spot };
-            let paint = Paint::plain(&place, &mut chance);
-            stage.put(&Solid::cuboid(Vector3::new(0.2, 0.1, 0.15)), &place, paint);
+            let albedo = Albedo::plain(&place, &mut chance);
+            stage.put(&Solid::cuboid(Vector3::new(0.2, 0.1, 0.15)), &place, albedo);
         }
         let rays = Rays::new(&camera, SIZE, 1);
         let hits = rays.meet(&stage, &placement);

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::paint::Paint;
+use super::pattern::Albedo;
 use super::solids::Solid;
 use crate::pose::Similarity;
 
@@ -13,27 +13,27 @@ pub struct Stage {
     /// Unit normals, one for each point, on either side of the surface.
     pub normals: Vec<Vector3<f64>>,
     pub triangles: Vec<Triangle>,
-    pub paints: Vec<Paint>,
+    pub albedos: Vec<Albedo>,
 }
 
 #[derive(Clone, Copy, Debug)]
 pub struct Triangle {
     pub corners: [u32; 3],
-    pub paint: u32,
+    pub albedo: u32,
 }
 
 impl Stage {
-    pub fn put(&mut self, solid: &Solid, placement: &Similarity, paint: Paint) {
+    pub fn put(&mut self, solid: &Solid, placement: &Similarity, albedo: Albedo) {
         let first = self.points.len();
         self.points.extend(solid.points.iter().map(|&point| placement.apply(point)));
         self.normals.extend(solid.normals.iter().map(|normal| placement.rotation * normal));
-        let paint_index = self.paints.len() as u32;
-        self.paints.push(paint);
+        let albedo_index = self.albedos.len() as u32;
+        self.albedos.push(albedo);
         self.triangles.extend(
-            solid
-                .triangles
-                .iter()
-                .map(|corners| Triangle { corners: corners.map(|corner| (first + corner) as u32), paint: paint_index }),
+            solid.triangles.iter().map(|corners| Triangle {
+                corners: corners.map(|corner| (first + corner) as u32),
+                albedo: albedo_index,
+            }),
         );
     }
 }

@@ -97,10 +97,10 @@ impl ShadingSolver {
     #[must_use]
     pub fn new() -> Self {
         let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
-        let rim = f64::from(LARGEST_N_Z);
+        let discontinuity = f64::from(LARGEST_N_Z);
         let directions: Vec<[f32; 3]> = (0..DIRECTIONS)
             .map(|index| {
-                let z = rim + (-1.0 - rim) * (index as f64 + 0.5) / DIRECTIONS as f64;
+                let z = discontinuity + (-1.0 - discontinuity) * (index as f64 + 0.5) / DIRECTIONS as f64;
                 let radius = (1.0 - z * z).sqrt();
                 let (sin, cos) = (golden * index as f64).sin_cos();
                 [radius * cos, radius * sin, z].map(|value| value as f32)

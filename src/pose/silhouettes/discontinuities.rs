@@ -1,4 +1,4 @@
-//! Depth discontinuities (`Rim`): the points of the depth map on the object's silhouette under a pose.
+//! Depth discontinuities (`Discontinuity`): the points of the depth map on the object's silhouette under a pose.
 //!
 //! Method: draws the points on a raster of cells as wide as the spacing of the points, nearest first. Discontinuities
 //! are the points of covered cells next to empty or much farther ones. The end of the data is not always the end of the
@@ -8,7 +8,7 @@
 
 use nalgebra::Vector3;
 
-use super::problem::OutlineProblem;
+use super::problem::SilhouetteProblem;
 use crate::pose::similarity::Similarity;
 use crate::view::Size;
 
@@ -25,7 +25,7 @@ const TURNING_WEIGHT: f64 = 0.5;
 
 /// A depth discontinuity: a point of the depth map on the object's silhouette.
 #[derive(Clone, Copy)]
-pub struct Rim {
+pub struct Discontinuity {
     pub index: u32,
     pub weight: f64,
     /// Outward unit normal in the image.
@@ -35,7 +35,7 @@ pub struct Rim {
 }
 
 /// Finds depth discontinuities; owns its memory.
-pub struct Rims {
+pub struct Discontinuities {
     raster: Size,
     /// Width of a cell in image pixels.
     cell: f64,
@@ -44,7 +44,8 @@ pub struct Rims {
     depths: Vec<f32>,
     /// Sharpness of the depth map's own edge at each point; zero inside.
     sharpness: Vec<f32>,
-    pub rims: Vec<Rim>,
+    /// The discontinuities under the present pose.
+    pub found: Vec<Discontinuity>,
 }
 
 /// Reach, in cells, of the neighbourhood that determines the normal of a discontinuity.
@@ -52,8 +53,8 @@ const AROUND: usize = 5;
 /// Marks a cell without a point.
 const BARE: u32 = u32::MAX;
 
-impl Rims {
-    pub fn new(problem: &OutlineProblem<'_>) -> Self {
+impl Discontinuities {
+    pub fn new(problem: &SilhouetteProblem<'_>) -> Self {
         let (image, depth) = (problem.image, problem.depth);
         let inside = image.mask.iter().filter(|&&inside| inside).count();
         let cell = (inside as f64 / depth.valid().max(1) as f64).sqrt().max(1.0);
@@ -63,25 +64,25 @@ impl Rims {
             owners: vec![BARE; raster.len()],
             depths: vec![f32::INFINITY; raster.len()],
             sharpness: (0..depth.size.len()).map(|index| sharpness(problem, index)).collect(),
-            rims: Vec::new(),
+            found: Vec::new(),
             raster,
             cell,
         }
     }
 
     /// Finds the discontinuities under a pose. `pixels` are the image positions of the points, NaN where missing.
-    pub fn update(&mut self, problem: &OutlineProblem<'_>, pose: &Similarity, pixels: &[[f32; 2]]) {
+    pub fn update(&mut self, problem: &SilhouetteProblem<'_>, pose: &Similarity, pixels: &[[f32; 2]]) {
         self.draw(problem, pose, pixels);
-        self.rims.clear();
+        self.found.clear();
         let eye = pose.inverse().translation;
         for cell in 0..self.raster.len() {
             let owner = self.owners[cell];
             if owner == BARE || !self.raster.neighbours(cell).any(|beside| self.is_beyond(cell, beside)) {
                 continue;
             }
-            let weight = f64::from(self.sharpness[owner as usize]).max(limb(problem, pose, &eye, owner as usize));
+            let weight = f64::from(self.sharpness[owner as usize]).max(contour(problem, pose, &eye, owner as usize));
             let Some((normal, is_outer)) = self.outward(cell).filter(|_| weight > 0.0) else { continue };
-            self.rims.push(Rim { index: owner, weight, normal, is_outer });
+            self.found.push(Discontinuity { index: owner, weight, normal, is_outer });
         }
     }
 
@@ -119,7 +120,7 @@ impl Rims {
         at.is_some_and(|cell| self.owners[cell] != BARE)
     }
 
-    fn draw(&mut self, problem: &OutlineProblem<'_>, pose: &Similarity, pixels: &[[f32; 2]]) {
+    fn draw(&mut self, problem: &SilhouetteProblem<'_>, pose: &Similarity, pixels: &[[f32; 2]]) {
         self.owners.fill(BARE);
         self.depths.fill(f32::INFINITY);
         let [along, shift] = [pose.scale * pose.rotation.row(2).transpose(), Vector3::repeat(pose.translation.z)];
@@ -138,7 +139,7 @@ impl Rims {
 }
 
 /// Sharpness of the depth map's own edge at a point; zero inside and at the frame, where the map is cut off.
-fn sharpness(problem: &OutlineProblem<'_>, index: usize) -> f32 {
+fn sharpness(problem: &SilhouetteProblem<'_>, index: usize) -> f32 {
     let depth = problem.depth;
     if !depth.points.is_valid(index) {
         return 0.0;
@@ -157,14 +158,14 @@ fn sharpness(problem: &OutlineProblem<'_>, index: usize) -> f32 {
 }
 
 /// Weight of a surface that turns away from the colour camera at `eye`.
-fn limb(problem: &OutlineProblem<'_>, pose: &Similarity, eye: &Vector3<f64>, index: usize) -> f64 {
+fn contour(problem: &SilhouetteProblem<'_>, pose: &Similarity, eye: &Vector3<f64>, index: usize) -> f64 {
     let is_parallel = problem.image.camera.is_orthographic();
     let sight = if is_parallel { pose.rotation.tr_mul(&Vector3::z()) } else { problem.point(index) - eye };
     TURNING_WEIGHT * (1.0 - cosine(problem, index, &sight) / TURNED_AWAY).max(0.0)
 }
 
 /// |cosine| between normal and ray; one without a normal.
-fn cosine(problem: &OutlineProblem<'_>, index: usize, sight: &Vector3<f64>) -> f64 {
+fn cosine(problem: &SilhouetteProblem<'_>, index: usize, sight: &Vector3<f64>) -> f64 {
     let normal = Vector3::from(problem.normals.get(index).map(f64::from));
     let cosine = normal.dot(sight).abs() / sight.norm();
     if cosine.is_nan() { 1.0 } else { cosine }

@@ -6,20 +6,20 @@
 
 use crate::estimator::pair::ViewPair;
 use crate::estimator::solution::ExposedLight;
-use crate::light::{Paint, PaintFitter};
+use crate::light::{AlbedoFitter, VaryingAlbedo};
 use crate::pose::Similarity;
 use crate::view::{ColourView, Normals};
 
 /// Fits the albedo; owns the result.
-pub struct PaintStage {
-    fitter: PaintFitter,
+pub struct AlbedoStage {
+    fitter: AlbedoFitter,
     /// The pose under which it was fitted.
     pose: Option<Similarity>,
-    found: Option<FoundPaint>,
+    found: Option<FittedAlbedo>,
 }
 
 /// A light and the albedo under it, pixel by pixel.
-pub struct FoundPaint {
+pub struct FittedAlbedo {
     pub light: ExposedLight,
     /// Offset of log S in R, G, B under a known light, whose colour may differ from the image's; zero if the light was
     /// estimated.
@@ -31,9 +31,9 @@ pub struct FoundPaint {
     colours: ColourView,
 }
 
-impl PaintStage {
+impl AlbedoStage {
     pub fn new() -> Self {
-        Self { fitter: PaintFitter::new(), pose: None, found: None }
+        Self { fitter: AlbedoFitter::new(), pose: None, found: None }
     }
 
     /// Whether the albedo was fitted under this pose; t_z of an orthographic image is ignored as a gauge.
@@ -48,13 +48,13 @@ impl PaintStage {
     /// Fits the albedo under `pose`, with the measured `normals` of the image's pixels.
     pub fn find(&mut self, pair: &ViewPair, pose: &Similarity, normals: &Normals) {
         let prior = (&pair.prior, pair.options.weights.light);
-        let paint = self.fitter.fit(normals, pair.log(), prior, pair.known_light());
+        let found = self.fitter.fit(normals, pair.log(), prior, pair.known_light());
         self.pose = Some(*pose);
-        self.found = paint.map(|paint| FoundPaint::of(pair, normals, &paint));
+        self.found = found.map(|found| FittedAlbedo::of(pair, normals, &found));
     }
 
     /// The varying albedo, if there is any.
-    pub const fn found(&self) -> Option<&FoundPaint> {
+    pub const fn found(&self) -> Option<&FittedAlbedo> {
         self.found.as_ref()
     }
 
@@ -62,8 +62,8 @@ impl PaintStage {
     pub fn without_albedo(&self, pair: &ViewPair) -> Option<ColourView> {
         let albedo = &self.found.as_ref()?.albedo;
         let mut image = pair.image.clone();
-        for (log, paint) in image.log.iter_mut().flatten().zip(albedo.iter().flatten()) {
-            *log -= paint;
+        for (log, albedo) in image.log.iter_mut().flatten().zip(albedo.iter().flatten()) {
+            *log -= albedo;
         }
         Some(image)
     }
@@ -74,15 +74,15 @@ impl PaintStage {
     }
 }
 
-impl FoundPaint {
-    fn of(pair: &ViewPair, normals: &Normals, paint: &Paint) -> Self {
+impl FittedAlbedo {
+    fn of(pair: &ViewPair, normals: &Normals, found: &VaryingAlbedo) -> Self {
         let mut albedo = [(); 3].map(|()| vec![f32::NAN; pair.image.size.len()]);
         let mut colours = pair.image.clone();
-        let light = paint.light();
+        let light = found.light();
         let (mut mean, mut count) = ([0.0; 3], 0.0);
         for pixel in (0..pair.image.size.len()).filter(|&pixel| pair.image.mask[pixel]) {
             let shading = normals.is_valid(pixel).then(|| light.shade(normals.get(pixel).map(f64::from)));
-            let found = paint.of_pixel(pair.image.log_at(pixel).map(f64::from), shading);
+            let found = found.of_pixel(pair.image.log_at(pixel).map(f64::from), shading);
             count += 1.0;
             for channel in 0..3 {
                 albedo[channel][pixel] = found.fine[channel] as f32;
@@ -91,7 +91,7 @@ impl FoundPaint {
             }
         }
         let mean = mean.map(|sum| sum / f64::max(count, 1.0));
-        let (light, tint) = split(pair, paint, mean);
+        let (light, tint) = split(pair, found, mean);
         for channel in 0..3 {
             albedo[channel].iter_mut().for_each(|log| *log -= mean[channel] as f32);
             let shift = (mean[channel] - tint[channel]) as f32;
@@ -102,8 +102,8 @@ impl FoundPaint {
 }
 
 /// The light with the `mean` of the albedo. A known light takes its exposure, and its colour becomes the tint.
-fn split(pair: &ViewPair, paint: &Paint, mean: [f64; 3]) -> (ExposedLight, [f64; 3]) {
-    let total = paint.light().tinted(mean);
+fn split(pair: &ViewPair, found: &VaryingAlbedo, mean: [f64; 3]) -> (ExposedLight, [f64; 3]) {
+    let total = found.light().tinted(mean);
     let Some(&light) = pair.known_light() else { return (ExposedLight { light: total, exposure: 0.0 }, [0.0; 3]) };
     let offsets = total.offsets_to(&light);
     let exposure = offsets.iter().sum::<f64>() / 3.0;

@@ -2,9 +2,9 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::discontinuities::Discontinuities;
 use super::edges::{Edge, Edges, LEVELS};
-use super::problem::{OutlineProblem, OutlineReport};
-use super::rims::Rims;
+use super::problem::{SilhouetteProblem, SilhouetteReport};
 use crate::numeric::eigen::symmetric_eigen;
 use crate::numeric::{quantile, robust};
 use crate::pose::increment::{
@@ -17,7 +17,7 @@ use crate::pose::uncertainty::{Direction, describe};
 use crate::view::extent;
 
 /// Weight of the distance between depth discontinuities and silhouette.
-const RIM_WEIGHT: f64 = 1.0;
+const DISCONTINUITY_WEIGHT: f64 = 1.0;
 /// Weight of silhouette pixels without a depth point.
 const BARE_WEIGHT: f64 = 0.3;
 /// Weight of the distance between depth discontinuities and edges of the image, which may be print (docs/lab/thresholds.md).
@@ -34,9 +34,9 @@ const ROUNDS: usize = 6;
 const STEPS: usize = 3;
 /// Damping as a share of the diagonal.
 const DAMPING: f64 = 1e-3;
-/// Maximum number of points that are tested against the mask, and of silhouette pixels and discontinuities.
+/// Maximum number of points that are tested against the mask, and of border pixels and discontinuities.
 const MOST_POINTS: usize = 4000;
-const MOST_OUTLINE: usize = 1000;
+const MOST_BORDER: usize = 1000;
 /// The last robust scale.
 const FINEST: f64 = SCALES[SCALES.len() - 1];
 /// Length of silhouette, in pixels, whose errors count as one.
@@ -53,33 +53,33 @@ const UNSEEN: f64 = 0.8;
 const EDGE_BIAS: usize = SCALE;
 
 /// Registers from silhouettes; owns its memory.
-pub struct Outline {
+pub struct SilhouetteRegistration {
     /// Present if the image has a mask.
     silhouette: Option<Silhouette>,
     edges: Edges,
     /// The edge beside each discontinuity, if there is one.
     matches: Vec<Option<([f64; 2], Edge)>>,
     /// Pixels of the mask next to a pixel off it.
-    outline: Vec<[f64; 2]>,
-    rims: Rims,
+    border: Vec<[f64; 2]>,
+    discontinuities: Discontinuities,
     /// Image positions of the depth points.
     pixels: Vec<[f32; 2]>,
     /// Points that are tested against the mask.
     sample: Vec<u32>,
-    /// Uncovered silhouette pixels, and the discontinuity nearest to each.
+    /// Uncovered border pixels, and the discontinuity nearest to each.
     bare: Vec<([f64; 2], u32)>,
     middle: Vector3<f64>,
     size: f64,
 }
 
-impl Outline {
-    pub fn new(problem: &OutlineProblem<'_>) -> Self {
+impl SilhouetteRegistration {
+    pub fn new(problem: &SilhouetteProblem<'_>) -> Self {
         let (image, depth) = (problem.image, problem.depth);
         let object = &image.whole.object;
         let is_masked = object.contains(&false);
-        let is_outline = |index: usize| object[index] && image.size.neighbours(index).any(|beside| !object[beside]);
-        let all: Vec<usize> = (0..image.size.len()).filter(|&index| is_outline(index)).collect();
-        let every = all.len().div_ceil(MOST_OUTLINE).max(1);
+        let is_border = |index: usize| object[index] && image.size.neighbours(index).any(|beside| !object[beside]);
+        let all: Vec<usize> = (0..image.size.len()).filter(|&index| is_border(index)).collect();
+        let every = all.len().div_ceil(MOST_BORDER).max(1);
         let place = |index: usize| {
             let (column, row) = image.size.position(index);
             [column as f64, row as f64]
@@ -92,8 +92,8 @@ impl Outline {
             silhouette: is_masked.then(|| Silhouette::new(image.size, object)),
             edges: Edges::new(image.size, &image.whole.grey),
             matches: Vec::new(),
-            outline: all.into_iter().step_by(every).map(place).collect(),
-            rims: Rims::new(problem),
+            border: all.into_iter().step_by(every).map(place).collect(),
+            discontinuities: Discontinuities::new(problem),
             pixels: vec![[f32::NAN; 2]; depth.size.len()],
             sample: valid.into_iter().step_by(thinned).collect(),
             bare: Vec::new(),
@@ -103,34 +103,34 @@ impl Outline {
     }
 
     /// Registers from the pose `start`.
-    pub fn register(&mut self, problem: &OutlineProblem<'_>, start: &Similarity) -> OutlineReport {
-        let (mut pose, mut loss) = (*start, 0.0);
+    pub fn register(&mut self, problem: &SilhouetteProblem<'_>, start: &Similarity) -> SilhouetteReport {
+        let (mut pose, mut bias) = (*start, 0.0);
         for (stage, scale) in SCALES.into_iter().enumerate() {
             for _ in 0..ROUNDS {
                 self.freeze(problem, &pose);
-                self.match_edges(stage.checked_sub(SCALES.len() - LEVELS.len()), loss);
+                self.match_edges(stage.checked_sub(SCALES.len() - LEVELS.len()), bias);
                 for _ in 0..STEPS {
                     let frame = self.frame(&pose);
-                    let sums = self.sums(problem, &pose, loss, scale);
+                    let sums = self.sums(problem, &pose, bias, scale);
                     let Some(step) = damped_step(sums.symmetric(), sums.gradient, DAMPING, &[false; UNKNOWNS]) else {
                         break;
                     };
-                    loss += step[EDGE_BIAS];
+                    bias += step[EDGE_BIAS];
                     let mut change = step;
                     change[SCALE] = 0.0;
                     pose = frame.change(&change).after(&pose).orthonormal();
                 }
             }
         }
-        self.report(problem, pose, loss)
+        self.report(problem, pose, bias)
     }
 
     fn frame(&self, pose: &Similarity) -> Frame {
         Frame { centre: pose.apply(self.middle), length: pose.scale * self.size }
     }
 
-    /// Finds the image positions of the points, the discontinuities, and the uncovered silhouette pixels.
-    fn freeze(&mut self, problem: &OutlineProblem<'_>, pose: &Similarity) {
+    /// Finds the image positions of the points, the discontinuities, and the uncovered border pixels.
+    fn freeze(&mut self, problem: &SilhouetteProblem<'_>, pose: &Similarity) {
         let image = problem.image;
         for index in 0..self.pixels.len() {
             let place = if problem.depth.points.is_valid(index) {
@@ -140,31 +140,32 @@ impl Outline {
             };
             self.pixels[index] = place.map_or([f32::NAN; 2], |place| place.map(|at| at as f32));
         }
-        self.rims.update(problem, pose, &self.pixels);
+        self.discontinuities.update(problem, pose, &self.pixels);
         self.bare.clear();
-        let every = self.rims.rims.len().div_ceil(MOST_OUTLINE).max(1);
-        for &place in self.outline.iter().filter(|place| !self.rims.covers(**place)) {
+        let every = self.discontinuities.found.len().div_ceil(MOST_BORDER).max(1);
+        for &place in self.border.iter().filter(|place| !self.discontinuities.covers(**place)) {
             let distance = |index: u32| {
                 let [column, row] = self.pixels[index as usize];
                 (f64::from(column) - place[0]).powi(2) + (f64::from(row) - place[1]).powi(2)
             };
-            let rims = self.rims.rims.iter().step_by(every).map(|rim| rim.index);
-            if let Some(nearest) = rims.min_by(|&a, &b| distance(a).total_cmp(&distance(b))) {
+            let discontinuities =
+                self.discontinuities.found.iter().step_by(every).map(|discontinuity| discontinuity.index);
+            if let Some(nearest) = discontinuities.min_by(|&a, &b| distance(a).total_cmp(&distance(b))) {
                 self.bare.push((place, nearest));
             }
         }
     }
 
     /// Matches the discontinuities to edges on a level of the image; clears the matches without a level.
-    fn match_edges(&mut self, level: Option<usize>, loss: f64) {
+    fn match_edges(&mut self, level: Option<usize>, bias: f64) {
         self.matches.clear();
         let Some(level) = level else { return };
-        let Self { rims, pixels, edges, matches, .. } = self;
-        matches.extend(rims.rims.iter().map(|rim| {
-            let [column, row] = pixels[rim.index as usize].map(f64::from);
-            let place = [column + loss * rim.normal[0], row + loss * rim.normal[1]];
-            let edge = edges.nearest(level, place, rim.normal)?;
-            let at = [0, 1].map(|axis| place[axis] + edge.offset * rim.normal[axis]);
+        let Self { discontinuities, pixels, edges, matches, .. } = self;
+        matches.extend(discontinuities.found.iter().map(|discontinuity| {
+            let [column, row] = pixels[discontinuity.index as usize].map(f64::from);
+            let place = [column + bias * discontinuity.normal[0], row + bias * discontinuity.normal[1]];
+            let edge = edges.nearest(level, place, discontinuity.normal)?;
+            let at = [0, 1].map(|axis| place[axis] + edge.offset * discontinuity.normal[axis]);
             Some((at, edge))
         }));
     }
@@ -172,7 +173,7 @@ impl Outline {
     /// Derivatives of a point's image position by the unknowns.
     fn rows(
         &self,
-        problem: &OutlineProblem<'_>,
+        problem: &SilhouetteProblem<'_>,
         pose: &Similarity,
         index: usize,
     ) -> Option<([f64; 2], [PoseVector; 2])> {
@@ -190,118 +191,126 @@ impl Outline {
     /// Residual of a point against the silhouette.
     fn against_mask(
         &self,
-        problem: &OutlineProblem<'_>,
+        problem: &SilhouetteProblem<'_>,
         pose: &Similarity,
-        loss: f64,
+        bias: f64,
         index: usize,
     ) -> Option<(f64, PoseVector)> {
         let (pixel, [across, down]) = self.rows(problem, pose, index)?;
         let (distance, [right, low]) = self.silhouette.as_ref()?.smoothly_signed_at(pixel);
         let mut row = right * across + low * down;
         row[EDGE_BIAS] = 1.0;
-        Some((distance + loss, row))
+        Some((distance + bias, row))
     }
 
-    fn sums(&self, problem: &OutlineProblem<'_>, pose: &Similarity, loss: f64, scale: f64) -> Sums {
+    fn sums(&self, problem: &SilhouetteProblem<'_>, pose: &Similarity, bias: f64, scale: f64) -> Sums {
         let mut sums = Sums::new();
         let share = OUTSIDE_WEIGHT / self.sample.len().max(1) as f64;
         for &index in &self.sample {
-            if let Some((residual, row)) = self.against_mask(problem, pose, loss, index as usize)
+            if let Some((residual, row)) = self.against_mask(problem, pose, bias, index as usize)
                 && residual > SLACK
             {
                 sums.add(&row, residual - SLACK, share, scale);
             }
         }
-        self.add_edges(problem, pose, loss, scale, &mut sums);
-        self.add_rims(problem, pose, loss, scale, &mut sums);
-        let share = BARE_WEIGHT / self.outline.len().max(1) as f64;
+        self.add_edges(problem, pose, bias, scale, &mut sums);
+        self.add_discontinuities(problem, pose, bias, scale, &mut sums);
+        let share = BARE_WEIGHT / self.border.len().max(1) as f64;
         for &(place, index) in &self.bare {
             let Some((pixel, [across, down])) = self.rows(problem, pose, index as usize) else { continue };
             let offset = [pixel[0] - place[0], pixel[1] - place[1]];
             let distance = offset[0].hypot(offset[1]);
-            let residual = distance - SLACK - loss;
+            let residual = distance - SLACK - bias;
             if residual > 0.0 {
                 let mut row = (offset[0] * across + offset[1] * down) / distance;
                 row[EDGE_BIAS] = -1.0;
                 sums.add(&row, residual, share, scale);
             }
         }
-        self.add_prior(problem, pose, loss, &mut sums);
+        self.add_prior(problem, pose, bias, &mut sums);
         sums
     }
 
-    fn add_rims(&self, problem: &OutlineProblem<'_>, pose: &Similarity, loss: f64, scale: f64, sums: &mut Sums) {
-        let rims = || self.rims.rims.iter().filter(|rim| rim.is_outer);
-        let total: f64 = rims().map(|rim| rim.weight).sum();
-        for rim in rims() {
-            if let Some((residual, row)) = self.against_mask(problem, pose, loss, rim.index as usize) {
-                sums.add(&row, residual, RIM_WEIGHT * rim.weight / total, scale);
+    fn add_discontinuities(
+        &self,
+        problem: &SilhouetteProblem<'_>,
+        pose: &Similarity,
+        bias: f64,
+        scale: f64,
+        sums: &mut Sums,
+    ) {
+        let discontinuities = || self.discontinuities.found.iter().filter(|discontinuity| discontinuity.is_outer);
+        let total: f64 = discontinuities().map(|discontinuity| discontinuity.weight).sum();
+        for discontinuity in discontinuities() {
+            if let Some((residual, row)) = self.against_mask(problem, pose, bias, discontinuity.index as usize) {
+                sums.add(&row, residual, DISCONTINUITY_WEIGHT * discontinuity.weight / total, scale);
             }
         }
     }
 
-    fn add_edges(&self, problem: &OutlineProblem<'_>, pose: &Similarity, loss: f64, scale: f64, sums: &mut Sums) {
-        let total: f64 = self.rims.rims.iter().map(|rim| rim.weight).sum();
-        for (rim, found) in self.rims.rims.iter().zip(&self.matches) {
+    fn add_edges(&self, problem: &SilhouetteProblem<'_>, pose: &Similarity, bias: f64, scale: f64, sums: &mut Sums) {
+        let total: f64 = self.discontinuities.found.iter().map(|discontinuity| discontinuity.weight).sum();
+        for (discontinuity, found) in self.discontinuities.found.iter().zip(&self.matches) {
             if let Some((at, edge)) = found
-                && let Some((pixel, [across, down])) = self.rows(problem, pose, rim.index as usize)
+                && let Some((pixel, [across, down])) = self.rows(problem, pose, discontinuity.index as usize)
             {
-                let [right, low] = rim.normal;
+                let [right, low] = discontinuity.normal;
                 let mut row = right * across + low * down;
                 row[EDGE_BIAS] = 1.0;
-                let residual = right * (pixel[0] - at[0]) + low * (pixel[1] - at[1]) + loss;
-                sums.add(&row, residual, EDGE_WEIGHT * rim.weight * edge.strength / total, scale);
+                let residual = right * (pixel[0] - at[0]) + low * (pixel[1] - at[1]) + bias;
+                sums.add(&row, residual, EDGE_WEIGHT * discontinuity.weight * edge.strength / total, scale);
             }
         }
     }
 
-    fn add_prior(&self, problem: &OutlineProblem<'_>, pose: &Similarity, loss: f64, sums: &mut Sums) {
+    fn add_prior(&self, problem: &SilhouetteProblem<'_>, pose: &Similarity, bias: f64, sums: &mut Sums) {
         problem.prior.for_each(self.middle, pose, &self.frame(pose), |row, residual| {
             sums.add(row, residual, PRIOR_WEIGHT, f64::INFINITY);
         });
         let mut row = PoseVector::zeros();
         row[EDGE_BIAS] = 1.0 / EDGE_BIAS_SIGMA;
-        sums.add(&row, loss / EDGE_BIAS_SIGMA, PRIOR_WEIGHT, f64::INFINITY);
+        sums.add(&row, bias / EDGE_BIAS_SIGMA, PRIOR_WEIGHT, f64::INFINITY);
     }
 
     /// The report on a pose and its edge bias.
-    fn report(&mut self, problem: &OutlineProblem<'_>, pose: Similarity, loss: f64) -> OutlineReport {
+    fn report(&mut self, problem: &SilhouetteProblem<'_>, pose: Similarity, bias: f64) -> SilhouetteReport {
         self.freeze(problem, &pose);
-        self.match_edges(Some(LEVELS.len() - 1), loss);
-        let noise = self.noise(problem, &pose, loss);
+        self.match_edges(Some(LEVELS.len() - 1), bias);
+        let noise = self.noise(problem, &pose, bias);
         let mut data = Sums::new();
-        self.add_rims(problem, &pose, loss, FINEST, &mut data);
-        self.add_edges(problem, &pose, loss, FINEST, &mut data);
-        let independent = self.rims.rims.len() as f64 * self.rims.cell() / CORRELATED_LENGTH;
+        self.add_discontinuities(problem, &pose, bias, FINEST, &mut data);
+        self.add_edges(problem, &pose, bias, FINEST, &mut data);
+        let independent = self.discontinuities.found.len() as f64 * self.discontinuities.cell() / CORRELATED_LENGTH;
         let mut information =
-            data.matrix * (independent / ((RIM_WEIGHT + EDGE_WEIGHT) * (SIGMA_INFLATION * noise).powi(2)));
+            data.matrix * (independent / ((DISCONTINUITY_WEIGHT + EDGE_WEIGHT) * (SIGMA_INFLATION * noise).powi(2)));
         let mut prior = Sums::new();
-        self.add_prior(problem, &pose, loss, &mut prior);
+        self.add_prior(problem, &pose, bias, &mut prior);
         information += prior.matrix / PRIOR_WEIGHT;
         information.fill_upper_triangle_with_lower_triangle();
         let frame = self.frame(&pose);
         let mut covariance = inverse(&information).unwrap_or_else(|| PoseMatrix::identity() * UNKNOWN.powi(2));
         clear_unknowns(&mut covariance, &std::array::from_fn(|k| k == EDGE_BIAS));
         let (weakest, share) = weakest_turn(&covariance, problem.prior.rotation);
-        OutlineReport {
+        SilhouetteReport {
             uncertainty: describe(&covariance, &frame, &pose, [false, true], weakest),
             unseen: share > UNSEEN,
-            cost: self.sums(problem, &pose, loss, FINEST).cost,
-            rims: self.rims.rims.len(),
+            cost: self.sums(problem, &pose, bias, FINEST).cost,
+            discontinuities: self.discontinuities.found.len(),
             pose,
             noise,
         }
     }
 
     /// The report on a given pose, without an edge bias.
-    pub fn judge(&mut self, problem: &OutlineProblem<'_>, pose: &Similarity) -> OutlineReport {
+    pub fn judge(&mut self, problem: &SilhouetteProblem<'_>, pose: &Similarity) -> SilhouetteReport {
         self.report(problem, *pose, 0.0)
     }
 
     /// Robust standard deviation of the discontinuities about silhouette and edges.
-    fn noise(&self, problem: &OutlineProblem<'_>, pose: &Similarity, loss: f64) -> f64 {
-        let rims = self.rims.rims.iter().filter(|rim| rim.is_outer);
-        let against_mask = rims.filter_map(|rim| self.against_mask(problem, pose, loss, rim.index as usize));
+    fn noise(&self, problem: &SilhouetteProblem<'_>, pose: &Similarity, bias: f64) -> f64 {
+        let discontinuities = self.discontinuities.found.iter().filter(|discontinuity| discontinuity.is_outer);
+        let against_mask = discontinuities
+            .filter_map(|discontinuity| self.against_mask(problem, pose, bias, discontinuity.index as usize));
         let mut residuals: Vec<f32> = against_mask.map(|(residual, _)| residual.abs() as f32).collect();
         residuals.extend(self.matches.iter().flatten().map(|(_, edge)| edge.offset.abs() as f32));
         if residuals.is_empty() {

@@ -5,7 +5,7 @@
 //! the colours by more than its four unknowns would by chance. A tile of neighbouring pixels counts once, because
 //! errors of shading are alike within it. A single albedo means none: the light then explains everything.
 //!
-//! The only inputs are log colours and the normals of the same pixels; see [`PaintFitter::fit`].
+//! The only inputs are log colours and the normals of the same pixels; see [`AlbedoFitter::fit`].
 //!
 //! Limits: albedo of one chromaticity whose lightness follows the shading counts as shading, and a large cast shadow
 //! with a sharp border may count as an albedo of the same chromaticity.
@@ -36,7 +36,7 @@ const LIGHTNESS_SHARE: f64 = 0.5;
 
 /// A light and the albedos under it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Paint {
+pub struct VaryingAlbedo {
     mixture: Mixture,
     /// The mixture with the scales for pixels without a normal, of whose shading only mean and variance are known.
     unseen: Mixture,
@@ -55,7 +55,7 @@ pub struct Paint {
 
 /// Log albedo of one pixel, R, G, B: that of its region, and with the variation inside the region.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PaintOfPixel {
+pub struct PixelAlbedo {
     /// Offset of the pixel's albedo; between albedos, the mean by probability.
     pub region: [f64; 3],
     /// The offset `region` plus the part of the residual that seems to be albedo.
@@ -64,11 +64,11 @@ pub struct PaintOfPixel {
 
 /// Fits palettes; owns the memory of its samples.
 #[derive(Clone, Debug, Default)]
-pub struct PaintFitter {
+pub struct AlbedoFitter {
     samples: Vec<Sample>,
 }
 
-impl PaintFitter {
+impl AlbedoFitter {
     /// Allocates the memory of the samples.
     #[must_use]
     pub fn new() -> Self {
@@ -84,7 +84,7 @@ impl PaintFitter {
         log: [&[f32]; 3],
         (prior, weight): (&LightPrior, f64),
         known: Option<&Light>,
-    ) -> Option<Paint> {
+    ) -> Option<VaryingAlbedo> {
         let centre = self.gather(normals, log, known);
         if self.samples.len() < FEWEST_SAMPLES {
             return None;
@@ -101,10 +101,10 @@ impl PaintFitter {
         let axes = Axes::of_shading(known.unwrap_or(&white.light(&Axes::WHITE)), normals);
         self.turn(Some(&Axes::WHITE), &axes);
         let mixture = self.choose(&prior(&axes), tiles)?;
-        Some(self.paint(mixture, axes, centre, known.copied()))
+        Some(self.found(mixture, axes, centre, known.copied()))
     }
 
-    fn paint(&self, mixture: Mixture, axes: Axes, centre: [f64; 3], known: Option<Light>) -> Paint {
+    fn found(&self, mixture: Mixture, axes: Axes, centre: [f64; 3], known: Option<Light>) -> VaryingAlbedo {
         let (mut mean_shading, mut squares, count) = ([0.0; 3], [0.0; 3], self.samples.len() as f64);
         for sample in &self.samples {
             let (unshaded, known) =
@@ -127,7 +127,7 @@ impl PaintFitter {
         let share = |mixture: &Mixture, c: usize| variance[c] / (variance[c] + mixture.scales[c] * mixture.scales[c]);
         let gains = [LIGHTNESS_SHARE * share(&mixture, 0), share(&mixture, 1), share(&mixture, 2)];
         let unseen_gains = [0.0, share(&unseen, 1), share(&unseen, 2)];
-        Paint { mixture, unseen, axes, known, centre, mean_shading, gains, unseen_gains }
+        VaryingAlbedo { mixture, unseen, axes, known, centre, mean_shading, gains, unseen_gains }
     }
 
     /// Collects evenly spread pixels that have both a normal and a colour. Returns the mean colour (R, G, B), which is
@@ -179,7 +179,7 @@ fn count_of(normals: &Normals, log: &[f32]) -> usize {
     (0..normals.len()).filter(|&pixel| normals.is_valid(pixel) && !log[pixel].is_nan()).count()
 }
 
-impl Paint {
+impl VaryingAlbedo {
     /// Number of albedos, two or more.
     #[cfg(test)]
     pub const fn regions(&self) -> usize {
@@ -195,7 +195,7 @@ impl Paint {
     /// The albedo of a pixel, given its log colour and its shading under [`light`](Self::light). Without a shading,
     /// chromaticity alone decides.
     #[must_use]
-    pub fn of_pixel(&self, log: [f64; 3], shading: Option<[f64; 3]>) -> PaintOfPixel {
+    pub fn of_pixel(&self, log: [f64; 3], shading: Option<[f64; 3]>) -> PixelAlbedo {
         let (mixture, gains) = match shading {
             Some(_) => (&self.mixture, &self.gains),
             None => (&self.unseen, &self.unseen_gains),
@@ -206,7 +206,7 @@ impl Paint {
         let (responsibilities, _) = mixture.responsibilities(unshaded, gains[0] > 0.0);
         let region = mixture.mean_offset(&responsibilities);
         let fine = std::array::from_fn(|c| region[c] + gains[c] * (unshaded[c] - region[c]));
-        PaintOfPixel { region: self.axes.back(region), fine: self.axes.back(fine) }
+        PixelAlbedo { region: self.axes.back(region), fine: self.axes.back(fine) }
     }
 }
 
@@ -216,7 +216,7 @@ mod tests {
     use crate::numeric::random::Random;
 
     /// Normals of a dome, 60x60, and their log colours under `light`, with `noise` and the albedo of each pixel.
-    fn dome(light: &Light, noise: f64, paint: impl Fn(usize, usize) -> [f64; 3]) -> (Normals, [Vec<f32>; 3]) {
+    fn dome(light: &Light, noise: f64, albedo: impl Fn(usize, usize) -> [f64; 3]) -> (Normals, [Vec<f32>; 3]) {
         let side = 60;
         let mut random = Random::new(3, 0);
         let mut gaussian = || (0..12).map(|_| random.word() as f64 / u32::MAX as f64).sum::<f64>() - 6.0;
@@ -230,17 +230,17 @@ mod tests {
             }
             let normal = [x, y, -(1.0 - x * x - y * y).sqrt()];
             normals.set(index, normal.map(|value| value as f32));
-            let (shade, paint) = (light.shade(normal), paint(column, row));
+            let (shade, albedo) = (light.shade(normal), albedo(column, row));
             for channel in 0..3 {
-                log[channel][index] = (shade[channel] + paint[channel] + noise * gaussian()) as f32;
+                log[channel][index] = (shade[channel] + albedo[channel] + noise * gaussian()) as f32;
             }
         }
         (normals, log)
     }
 
-    fn fit(normals: &Normals, log: &[Vec<f32>; 3], known: Option<&Light>) -> Option<Paint> {
+    fn fit(normals: &Normals, log: &[Vec<f32>; 3], known: Option<&Light>) -> Option<VaryingAlbedo> {
         let log = log.each_ref().map(Vec::as_slice);
-        PaintFitter::new().fit(normals, log, (&LightPrior::natural(), 1e-6), known)
+        AlbedoFitter::new().fit(normals, log, (&LightPrior::natural(), 1e-6), known)
     }
 
     /// Stripes of three albedos, log units.
@@ -251,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn one_paint_is_none_whatever_the_noise() {
+    fn a_single_albedo_is_none_whatever_the_noise() {
         let light = LightPrior::natural().mean().exposed(0.7);
         for noise in [0.0, 0.01, 0.1, 0.3] {
             let (normals, log) = dome(&light, noise, |_, _| [0.4, -0.1, 0.2]);
@@ -264,13 +264,13 @@ mod tests {
         let light = LightPrior::natural().mean().exposed(0.7);
         let (normals, log) = dome(&light, 0.02, stripes);
         for known in [None, Some(&light)] {
-            let paint = fit(&normals, &log, known).expect("three paints");
-            let found = paint.light();
+            let albedo = fit(&normals, &log, known).expect("three albedos");
+            let found = albedo.light();
             let usable = || (0..normals.len()).filter(|&pixel| normals.is_valid(pixel));
             let off = |pixel: usize| {
                 let colours = [0, 1, 2].map(|c: usize| f64::from(log[c][pixel]));
                 let shading = found.shade(normals.get(pixel).map(f64::from));
-                let [region, truth] = [paint.of_pixel(colours, Some(shading)).region, stripes(pixel % 60, 0)];
+                let [region, truth] = [albedo.of_pixel(colours, Some(shading)).region, stripes(pixel % 60, 0)];
                 [0, 1, 2].map(|c: usize| region[c] - truth[c])
             };
             // Up to one common offset, which belongs to the light.
@@ -278,23 +278,23 @@ mod tests {
             for channel in 0..3 {
                 let mean = usable().map(|pixel| off(pixel)[channel]).sum::<f64>() / count;
                 let error = usable().map(|pixel| (off(pixel)[channel] - mean).powi(2)).sum::<f64>() / count;
-                assert!(error.sqrt() < 0.02, "channel {channel}: {} of {} paints", error.sqrt(), paint.regions());
+                assert!(error.sqrt() < 0.02, "channel {channel}: {} of {} albedos", error.sqrt(), albedo.regions());
             }
         }
     }
 
     #[test]
-    fn hue_alone_tells_the_paint_where_there_is_no_normal() {
+    fn chromaticity_alone_tells_the_albedo_where_there_is_no_normal() {
         let light = LightPrior::natural().mean();
         let (normals, log) = dome(&light, 0.02, stripes);
-        let paint = fit(&normals, &log, None).expect("three paints");
-        let light = paint.light();
+        let albedo = fit(&normals, &log, None).expect("three albedos");
+        let light = albedo.light();
         let mut same = 0;
         let usable = || (0..normals.len()).filter(|&pixel| normals.is_valid(pixel));
         for pixel in usable() {
             let colours = [0, 1, 2].map(|c: usize| f64::from(log[c][pixel]));
             let [with, without] = [Some(light.shade(normals.get(pixel).map(f64::from))), None]
-                .map(|shading| paint.of_pixel(colours, shading).region);
+                .map(|shading| albedo.of_pixel(colours, shading).region);
             same += usize::from((0..3).all(|c| (with[c] - without[c]).abs() < 0.1));
         }
         assert!(same as f64 > 0.9 * usable().count() as f64, "{same} of {}", usable().count());

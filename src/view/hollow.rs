@@ -12,7 +12,7 @@ use super::{Normals, Size};
 const BEYOND: isize = 2;
 /// Outward component of a normal above which a border pixel lies on an occluding contour: the surface has turned away
 /// by 37 degrees.
-const TURNED: f32 = 0.6;
+const LEAST_OUTWARD: f32 = 0.6;
 /// Ratio of inward to outward contour pixels above which a map counts as hollow. Set on random scenes, their mirrored
 /// versions and a capture of a bowl (docs/lab/thresholds.md). Solid objects have inward contour pixels where the map
 /// lacks the far part of a surface that is seen from the side.
@@ -33,8 +33,8 @@ pub fn is_hollow(size: Size, depths: &[f32], normals: &Normals) -> bool {
             continue;
         }
         let along = (normals.x[index] * x + normals.y[index] * y) / length;
-        inward += usize::from(along < -TURNED);
-        outward += usize::from(along > TURNED);
+        inward += usize::from(along < -LEAST_OUTWARD);
+        outward += usize::from(along > LEAST_OUTWARD);
     }
     inward >= FEWEST && inward as f64 > HOLLOW * outward as f64
 }
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_limbs_is_not_judged() {
+    fn what_has_no_contour_is_not_judged() {
         assert!(!judged(|x, y| if x.abs() < 15.0 && y.abs() < 15.0 { 100.0 + 0.3 * x } else { f32::NAN }));
         // A bowl that fills the frame has its border outside.
         assert!(!judged(|x, y| 100.0 - ball(x, y, 40.0)));

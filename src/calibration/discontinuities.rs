@@ -23,7 +23,7 @@ const FEWEST_NEIGHBOURS: usize = 4;
 
 /// A point of a depth discontinuity.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Rim {
+pub(super) struct Discontinuity {
     /// Index of the near pixel in the depth map.
     pub index: usize,
     /// Position at which the near surface ends on the image: in the middle of the gap.
@@ -39,17 +39,19 @@ pub(super) struct Rim {
 }
 
 /// All depth discontinuities that the colour camera sees.
-pub(super) fn find(frame: &Frame, projection: &Projection) -> Vec<Rim> {
+pub(super) fn find(frame: &Frame, projection: &Projection) -> Vec<Discontinuity> {
     let is_near = |index: &usize| !depth(projection, *index).is_nan() && !projection.is_hidden[*index];
-    let mut found: Vec<Rim> = vec![];
+    let mut found: Vec<Discontinuity> = vec![];
     let mut directions = vec![usize::MAX; frame.grid.len()];
     for index in (0..frame.grid.len()).filter(is_near) {
-        if let Some((rim, direction)) = rim(frame, projection, index) {
+        if let Some((discontinuity, direction)) = discontinuity(frame, projection, index) {
             directions[index] = direction;
-            found.push(rim);
+            found.push(discontinuity);
         }
     }
-    found.iter_mut().for_each(|rim| rim.in_gap = count_in_gap(frame, &directions, rim.index) as f64);
+    found
+        .iter_mut()
+        .for_each(|discontinuity| discontinuity.in_gap = count_in_gap(frame, &directions, discontinuity.index) as f64);
     found
 }
 
@@ -207,7 +209,7 @@ impl Gap {
 }
 
 /// Position and normal of the depth discontinuity at a near pixel, and the direction on the raster in which it ends the nearest.
-fn rim(frame: &Frame, projection: &Projection, index: usize) -> Option<(Rim, usize)> {
+fn discontinuity(frame: &Frame, projection: &Projection, index: usize) -> Option<(Discontinuity, usize)> {
     let ends = ends_before_farther(frame, projection, index);
     let centre = projection.pixels[index];
     if centre[0].is_nan() || ends == [None; 4] {
@@ -221,7 +223,7 @@ fn rim(frame: &Frame, projection: &Projection, index: usize) -> Option<(Rim, usi
     let normal = normal.map(|value| value / length);
     let Gap { direction, gap } = Gap::of(&ends, normal, |[x, y]| [a * x + b * y, c * x + d * y])?;
     let pixel = [0, 1].map(|k| f64::from(centre[k]) + 0.5 * gap * normal[k]);
-    Some((Rim { index, pixel, normal, gap, in_gap: 1.0 }, direction))
+    Some((Discontinuity { index, pixel, normal, gap, in_gap: 1.0 }, direction))
 }
 
 #[cfg(test)]
@@ -234,7 +236,7 @@ mod tests {
 
     /// The discontinuities that a camera at the depth camera's place sees, on cells of a raster of 64 by 48 rays with
     /// this depth along them.
-    fn seen(cell: [usize; 2], depth: impl Fn([f64; 2]) -> f64) -> Vec<Rim> {
+    fn seen(cell: [usize; 2], depth: impl Fn([f64; 2]) -> f64) -> Vec<Discontinuity> {
         let camera = Pinhole { fx: 60.0, fy: 60.0, cx: 31.5, cy: 23.5, lens: Lens::None };
         let size = Size { width: 64, height: 48 };
         let grid = Size { width: size.width / cell[0], height: size.height / cell[1] };
@@ -275,18 +277,25 @@ mod tests {
         for rows in [1, 2, 4] {
             // Half a pixel off the centres, so that no sample lies on the boundary.
             let found = seen([1, rows], |[x, y]| if 60.0 * (x + y) < -0.5 { 1.0 } else { 3.0 });
-            let inner: Vec<_> = found.iter().filter(|rim| (8.0..40.0).contains(&rim.pixel[1])).collect();
+            let inner: Vec<_> =
+                found.iter().filter(|discontinuity| (8.0..40.0).contains(&discontinuity.pixel[1])).collect();
             assert!(inner.len() >= 25, "{rows}: {}", inner.len());
-            let off = |rim: &&Rim| (rim.pixel[0] - 31.5 + rim.pixel[1] - 23.5 + 0.5) * 0.5_f64.sqrt();
+            let off = |discontinuity: &&Discontinuity| {
+                (discontinuity.pixel[0] - 31.5 + discontinuity.pixel[1] - 23.5 + 0.5) * 0.5_f64.sqrt()
+            };
             let mean = inner.iter().map(off).sum::<f64>() / inner.len() as f64;
             assert!(mean.abs() < 0.35, "{rows}: {mean}");
-            let outside = inner.iter().filter(|rim| off(rim).abs() > 0.5 * rim.gap + 0.1).count();
+            let outside =
+                inner.iter().filter(|discontinuity| off(discontinuity).abs() > 0.5 * discontinuity.gap + 0.1).count();
             assert!(outside == 0, "{rows}: {outside} of {}", inner.len());
             // Rows of the raster are this far apart along the normal; a normal that is fitted to few samples errs.
             let spacing = rows as f64 * 0.5_f64.sqrt();
-            let mean = inner.iter().map(|rim| rim.gap).sum::<f64>() / inner.len() as f64;
-            assert!(mean < 1.05 * spacing && inner.iter().all(|rim| rim.gap <= rows as f64), "{rows}: {mean}");
-            let nearest = inner.iter().filter(|rim| rim.gap < 0.8 * spacing).count();
+            let mean = inner.iter().map(|discontinuity| discontinuity.gap).sum::<f64>() / inner.len() as f64;
+            assert!(
+                mean < 1.05 * spacing && inner.iter().all(|discontinuity| discontinuity.gap <= rows as f64),
+                "{rows}: {mean}"
+            );
+            let nearest = inner.iter().filter(|discontinuity| discontinuity.gap < 0.8 * spacing).count();
             assert!(rows == 1 || nearest >= inner.len() / rows - 1, "{rows}: {nearest} of {}", inner.len());
         }
     }
@@ -295,13 +304,17 @@ mod tests {
     fn a_straight_boundary_along_the_raster_has_many_in_one_gap() {
         let found = seen([1, 4], |[_, y]| if y < 0.1 { 1.0 } else { 3.0 });
         assert!(found.len() > 50, "{}", found.len());
-        let inner = found.iter().filter(|rim| (12.0..52.0).contains(&rim.pixel[0]));
-        assert!(inner.clone().all(|rim| rim.in_gap == 17.0), "{:?}", inner.map(|rim| rim.in_gap).collect::<Vec<_>>());
+        let inner = found.iter().filter(|discontinuity| (12.0..52.0).contains(&discontinuity.pixel[0]));
+        assert!(
+            inner.clone().all(|discontinuity| discontinuity.in_gap == 17.0),
+            "{:?}",
+            inner.map(|discontinuity| discontinuity.in_gap).collect::<Vec<_>>()
+        );
         let oblique = seen([1, 1], |[x, y]| if 60.0 * (x + y) < -0.5 { 1.0 } else { 3.0 });
         assert!(
-            oblique.iter().all(|rim| rim.in_gap < 3.0),
+            oblique.iter().all(|discontinuity| discontinuity.in_gap < 3.0),
             "{:?}",
-            oblique.iter().map(|rim| rim.in_gap).collect::<Vec<_>>()
+            oblique.iter().map(|discontinuity| discontinuity.in_gap).collect::<Vec<_>>()
         );
     }
 
@@ -311,12 +324,17 @@ mod tests {
             let found = seen([columns, 1], |[x, _]| if x.abs() < 0.2 { 1.0 } else { 3.0 });
             // Both sides of the box are found in nearly all rows. Above and below, the raster ends.
             assert!(found.len() >= 90, "{columns}: {}", found.len());
-            for rim in found.into_iter().filter(|rim| (2.5..44.5).contains(&rim.pixel[1])) {
-                assert!((rim.gap - columns as f64).abs() < 0.05 * columns as f64, "{columns}: {}", rim.gap);
-                let side = (rim.pixel[0] - 31.5).signum();
-                assert!((rim.normal[0] - side).abs() < 1e-6);
+            for discontinuity in found.into_iter().filter(|discontinuity| (2.5..44.5).contains(&discontinuity.pixel[1]))
+            {
+                assert!(
+                    (discontinuity.gap - columns as f64).abs() < 0.05 * columns as f64,
+                    "{columns}: {}",
+                    discontinuity.gap
+                );
+                let side = (discontinuity.pixel[0] - 31.5).signum();
+                assert!((discontinuity.normal[0] - side).abs() < 1e-6);
                 // The box ends between 0.2 and the next sample of the wall.
-                let beyond = rim.pixel[0] * side - 31.5 * side - 12.0;
+                let beyond = discontinuity.pixel[0] * side - 31.5 * side - 12.0;
                 assert!(beyond.abs() <= columns as f64, "{columns}: {beyond}");
             }
         }

@@ -9,7 +9,7 @@ use crate::view::{ColourView, DepthView, Normals};
 
 /// Two views whose silhouettes have to agree.
 #[derive(Clone, Copy)]
-pub struct OutlineProblem<'a> {
+pub struct SilhouetteProblem<'a> {
     pub image: &'a ColourView,
     pub depth: &'a DepthView,
     /// Normals of the depth view's points.
@@ -20,7 +20,7 @@ pub struct OutlineProblem<'a> {
 
 /// Result of a registration from silhouettes.
 #[derive(Clone, Debug)]
-pub struct OutlineReport {
+pub struct SilhouetteReport {
     pub pose: Similarity,
     /// Robust standard deviation of the depth discontinuities about silhouette and edges, pixels.
     pub noise: f64,
@@ -30,10 +30,10 @@ pub struct OutlineReport {
     /// The objective at the finest scale.
     pub cost: f64,
     /// Number of depth discontinuities.
-    pub rims: usize,
+    pub discontinuities: usize,
 }
 
-impl OutlineProblem<'_> {
+impl SilhouetteProblem<'_> {
     pub(super) fn point(&self, index: usize) -> Vector3<f64> {
         Vector3::from(self.depth.points.get(index).map(f64::from))
     }

@@ -19,7 +19,7 @@ use crate::numeric::quantile;
 /// Difference of chromaticity (log colours less the channels' mean) above which two neighbours have an edge of albedo
 /// between them, log units; four sigmas of the noise are added. No shading of a smooth surface reaches it. No other
 /// value was tried.
-const HUE_STEP: f32 = 0.06;
+const CHROMATICITY_STEP: f32 = 0.06;
 /// The same limit for brightness (the channels' mean), log units. No other value was tried.
 const LOG_STEP: f32 = 0.22;
 /// Smallest number of pixels of a region.
@@ -31,16 +31,16 @@ const FEWEST_PAIRS: usize = 3;
 /// Widest border of mixed pixels between two regions.
 const WIDEST_BORDER: usize = 3;
 /// The albedo counts as varying if at least this share of the pixels lies outside the largest region.
-const LEAST_PAINT: f64 = 0.03;
+const LEAST_ALBEDO: f64 = 0.03;
 /// Weight that ties each region to the mean, in pairs of pixels: it matters only for regions without borders.
 const LOOSE_TIE: f64 = 1e-3;
 
 /// Regions share one albedo if their chromaticities (log colours less the channels' mean) differ by less than this, log
-/// units, and their brightness by less than [`ONE_BRIGHTNESS`].
-const ONE_HUE: f64 = 0.1;
+/// units, and their brightness by less than [`SAME_BRIGHTNESS`].
+const SAME_CHROMATICITY: f64 = 0.1;
 /// The same bound for brightness (the channels' mean), log units: edges of the relief between regions shift brightness,
 /// but hardly chromaticity.
-const ONE_BRIGHTNESS: f64 = 0.4;
+const SAME_BRIGHTNESS: f64 = 0.4;
 /// Number of rounds in which albedos are joined and compared again. A comparison takes all borders between two albedos
 /// together.
 const PALETTE_ROUNDS: usize = 2;
@@ -55,10 +55,10 @@ const NONE: u32 = u32::MAX;
 impl ColourView {
     /// This view without the albedo that shows at its edges; `None` if there is no such albedo.
     #[must_use]
-    pub(crate) fn without_paint(&self) -> Option<Self> {
+    pub(crate) fn without_albedo_steps(&self) -> Option<Self> {
         let mut regions = Regions::new(self);
         let painted = regions.pixels() - regions.sizes.first().copied().unwrap_or(0);
-        if regions.sizes.len() < 2 || (painted as f64) < LEAST_PAINT * regions.pixels() as f64 {
+        if regions.sizes.len() < 2 || (painted as f64) < LEAST_ALBEDO * regions.pixels() as f64 {
             return None;
         }
         let mut offsets = regions.offsets(self);
@@ -85,15 +85,15 @@ impl ColourView {
         let step: [f32; 3] = std::array::from_fn(|channel| self.log[channel][b] - self.log[channel][a]);
         let mean = step.iter().sum::<f32>() / 3.0;
         let hue = step.iter().fold(0.0, |most, value| f32::max(most, (value - mean).abs()));
-        hue > HUE_STEP + noise || mean.abs() > LOG_STEP + noise
+        hue > CHROMATICITY_STEP + noise || mean.abs() > LOG_STEP + noise
     }
 }
 
 /// Whether two log albedos count as one.
-fn is_one_paint(a: &[f64; 3], b: &[f64; 3]) -> bool {
+fn is_one_albedo(a: &[f64; 3], b: &[f64; 3]) -> bool {
     let off: [f64; 3] = std::array::from_fn(|channel| a[channel] - b[channel]);
     let brightness = off.iter().sum::<f64>() / 3.0;
-    brightness.abs() < ONE_BRIGHTNESS && off.iter().all(|value| (value - brightness).abs() < ONE_HUE)
+    brightness.abs() < SAME_BRIGHTNESS && off.iter().all(|value| (value - brightness).abs() < SAME_CHROMATICITY)
 }
 
 /// The border between two regions.
@@ -149,14 +149,14 @@ impl Regions {
 
     /// Merges all regions of the same albedo, given the log albedo of each.
     fn join(&mut self, offsets: &[Vec<f64>; 3]) {
-        let paint = |region: usize| offsets.each_ref().map(|channel| channel[region]);
+        let offset = |region: usize| offsets.each_ref().map(|channel| channel[region]);
         let mut palette: Vec<(usize, [f64; 3])> = Vec::new();
         let mut sizes: Vec<usize> = Vec::new();
         let mut names = Vec::with_capacity(self.sizes.len());
         for (region, &size) in self.sizes.iter().enumerate() {
-            let known = palette.iter().find(|(_, known)| is_one_paint(known, &paint(region))).map(|(name, _)| *name);
+            let known = palette.iter().find(|(_, known)| is_one_albedo(known, &offset(region))).map(|(name, _)| *name);
             let name = known.unwrap_or_else(|| {
-                palette.push((sizes.len(), paint(region)));
+                palette.push((sizes.len(), offset(region)));
                 sizes.push(0);
                 sizes.len() - 1
             });
@@ -271,8 +271,8 @@ mod tests {
 
     const SIDE: usize = 48;
 
-    /// A ball under a soft lamp with 1 % noise; `paint` is its log albedo by position.
-    fn ball(paint: impl Fn(usize, usize) -> [f64; 3]) -> ColourView {
+    /// A ball under a soft lamp with 1 % noise; `albedo` is its log albedo by position.
+    fn ball(albedo: impl Fn(usize, usize) -> [f64; 3]) -> ColourView {
         let mut dice = noise::white_noise(5);
         let (mut data, mut mask) = (Vec::new(), Vec::new());
         for index in 0..SIDE * SIDE {
@@ -280,7 +280,7 @@ mod tests {
             let [x, y] = [column, row].map(|place| (place as f64 - 23.5) / 22.0);
             mask.push(u8::from(x * x + y * y < 1.0));
             let shade = [0.5 * x - 0.3 * y, 0.4 * x - 0.3 * y, 0.3 * x - 0.35 * y];
-            let log = paint(column, row);
+            let log = albedo(column, row);
             data.extend((0..3).map(|channel| (shade[channel] + log[channel] + 0.01 * dice()).exp() as f32));
         }
         let samples = ColourSamples::RgbLinear(data);
@@ -289,14 +289,14 @@ mod tests {
     }
 
     fn checks(column: usize, row: usize) -> [f64; 3] {
-        let paints = [[0.0, 0.0, 0.0], [-0.9, 0.2, 0.3], [0.1, -0.8, 0.2], [-1.0, -1.0, -1.0]];
-        paints[(column / 9 + 3 * (row / 7)) % 4]
+        let albedos = [[0.0, 0.0, 0.0], [-0.9, 0.2, 0.3], [0.1, -0.8, 0.2], [-1.0, -1.0, -1.0]];
+        albedos[(column / 9 + 3 * (row / 7)) % 4]
     }
 
     #[test]
     fn painted_squares_are_brought_to_one_level() {
         let (bare, painted) = (ball(|_, _| [0.0; 3]), ball(checks));
-        let clean = painted.without_paint().expect("there is paint");
+        let clean = painted.without_albedo_steps().expect("the albedo varies");
         for channel in 0..3 {
             let off: Vec<f64> = (0..SIDE * SIDE)
                 .filter(|&index| clean.mask[index])
@@ -312,9 +312,9 @@ mod tests {
     }
 
     #[test]
-    fn without_paint_there_is_nothing_to_take_away() {
-        assert!(ball(|_, _| [0.0; 3]).without_paint().is_none());
+    fn with_a_single_albedo_there_is_nothing_to_take_away() {
+        assert!(ball(|_, _| [0.0; 3]).without_albedo_steps().is_none());
         // A gradual change is no edge either.
-        assert!(ball(|column, _| [0.01 * column as f64, 0.0, 0.0]).without_paint().is_none());
+        assert!(ball(|column, _| [0.01 * column as f64, 0.0, 0.0]).without_albedo_steps().is_none());
     }
 }

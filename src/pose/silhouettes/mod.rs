@@ -20,17 +20,17 @@
 //! | file | content |
 //! |---|---|
 //! | `edges` | edges of the image across a line |
-//! | `rims` | depth discontinuities: points of the depth map on the object's silhouette under a pose |
+//! | `discontinuities` | depth discontinuities: points of the depth map on the object's silhouette under a pose |
 //! | `problem` | input and output |
-//! | `registration` | the rounds: [`Outline`] |
+//! | `registration` | the rounds: [`SilhouetteRegistration`] |
 //!
 //! Limits: the image needs a mask that was not drawn from the depth map and whose border lies inside the frame.
 //! Rotations that do not change the silhouette (of a bowl about its axis) keep their initial value.
 
+mod discontinuities;
 mod edges;
 mod problem;
 mod registration;
-mod rims;
 
-pub use problem::{OutlineProblem, OutlineReport};
-pub use registration::Outline;
+pub use problem::{SilhouetteProblem, SilhouetteReport};
+pub use registration::SilhouetteRegistration;

@@ -28,7 +28,7 @@ pub enum Pattern {
 
 /// The albedo of one thing.
 #[derive(Clone, Debug)]
-pub struct Paint {
+pub struct Albedo {
     pattern: Pattern,
     colours: [[f64; 3]; 3],
     /// Rotation from the world to the cells of the pattern.
@@ -37,7 +37,7 @@ pub struct Paint {
     seed: u32,
 }
 
-impl Paint {
+impl Albedo {
     /// A random albedo for a thing of this size in metres, which `placement` puts into the world.
     pub fn random(size: f64, placement: &Similarity, chance: &mut Chance) -> Self {
         let pattern = if chance.uniform() < PLAIN_SHARE {
