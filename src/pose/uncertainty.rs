@@ -15,6 +15,7 @@ use nalgebra::Vector3;
 
 use super::increment::{
     Frame, PoseMatrix, PoseVector, SCALE, TRANSLATION_Z, UNKNOWN, UNKNOWNS, clear_unknowns, fix_unknowns,
+    rotation_vector,
 };
 use super::similarity::Similarity;
 use crate::numeric::eigen::{Eigen, symmetric_eigen};
@@ -142,6 +143,22 @@ impl Uncertainty {
     /// Sigma of the rotation about its least certain axis, degrees.
     pub(crate) fn largest_rotation(&self) -> f64 {
         self.rotation_degrees.into_iter().fold(0.0, f64::max)
+    }
+
+    /// Adds the spread of other ends about `pose`: registrations that fit the image equally well from other initial
+    /// poses.
+    pub(crate) fn add_spread(&mut self, pose: &Similarity, ends: &[Similarity]) {
+        let count = ends.len().max(1) as f64;
+        let spread =
+            |off: &dyn Fn(&Similarity) -> f64| (ends.iter().map(|end| off(end).powi(2)).sum::<f64>() / count).sqrt();
+        let turned = |axis: usize| spread(&|end| rotation_vector(&(end.rotation * pose.rotation.transpose()))[axis]);
+        let moved = |axis: usize| spread(&|end| end.translation[axis] - pose.translation[axis]);
+        for axis in 0..3 {
+            let sigma = &mut self.rotation_degrees[axis];
+            *sigma = sigma.hypot(turned(axis).to_degrees()).min(LARGEST_SIGMA);
+            self.translation[axis] = self.translation[axis].map(|sigma| sigma.hypot(moved(axis)));
+        }
+        self.scale = self.scale.map(|sigma| sigma.hypot(spread(&|end| end.scale - pose.scale)));
     }
 
     /// Adds the uncertainty of the focal lengths. Stretching a relief by some share turns its normals by at most half

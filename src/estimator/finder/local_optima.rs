@@ -66,9 +66,17 @@ pub struct LocalOptimum {
     gain: f64,
     /// Number of registrations that ended here.
     support: u32,
+    /// The end of each registration, and its noise.
+    ends: Vec<(Similarity, f64)>,
 }
 
 impl LocalOptimum {
+    /// Ends of other registrations that fit the image as well as the best one.
+    fn equal_ends(&self) -> Vec<Similarity> {
+        let most = RIVAL_NOISE * self.registered.noise;
+        self.ends.iter().filter(|(_, noise)| *noise <= most).map(|(pose, _)| *pose).collect()
+    }
+
     fn is_apart(&self, other: &Self) -> bool {
         self.registered.pose.degrees_to(&other.registered.pose) >= SAME_OPTIMUM
     }
@@ -93,13 +101,22 @@ pub struct Choice {
     pub best: Option<Box<PhotometricReport>>,
     /// Poses that the data cannot distinguish from the best, best first.
     pub rivals: Vec<Similarity>,
+    /// Where registrations of the same optimum ended. Their spread adds to the sigmas of the best pose.
+    pub ends: Vec<Similarity>,
 }
 
 impl Choice {
     /// The choice of a ranking whose best optimum has its report.
     pub fn of(Ranking { best, rivals }: Ranking) -> Self {
-        let best = best.filter(|best| best.origin != Origin::Initial).and_then(|best| best.registered.report);
-        Self { best, rivals }
+        let Some(best) = best.filter(|best| best.origin != Origin::Initial) else {
+            return Self { best: None, rivals, ends: Vec::new() };
+        };
+        let ends = best.equal_ends();
+        let mut report = best.registered.report;
+        if let Some(report) = &mut report {
+            report.uncertainty.add_spread(&report.pose, &ends);
+        }
+        Self { best: report, rivals, ends }
     }
 }
 
@@ -131,11 +148,15 @@ impl LocalOptima {
         match self.optima.iter_mut().find(is_same) {
             Some(known) => {
                 known.support += 1;
+                known.ends.push((registered.pose, registered.noise));
                 if gain > known.gain {
-                    *known = LocalOptimum { origin, registered, gain, support: known.support };
+                    (known.origin, known.registered, known.gain) = (origin, registered, gain);
                 }
             }
-            None => self.optima.push(LocalOptimum { origin, registered, gain, support: 1 }),
+            None => {
+                let ends = vec![(registered.pose, registered.noise)];
+                self.optima.push(LocalOptimum { origin, registered, gain, support: 1, ends });
+            }
         }
     }
 
@@ -203,6 +224,7 @@ mod tests {
     use nalgebra::{Rotation3, Vector3};
 
     use super::*;
+    use crate::pose::{Axis, Direction, Uncertainty, Unknown};
 
     /// An optimum at this angle about z, with its visible points and its noise.
     fn optimum(degrees: f64, visible: f64, noise: f64) -> LocalOptimum {
@@ -210,7 +232,7 @@ mod tests {
         let pose = Similarity { rotation, ..Similarity::identity() };
         let registered = RegisteredCandidate { pose, visible, noise, report: None };
         let gain = visible.powf(THIRD) * (1.0 / noise).ln();
-        LocalOptimum { origin: Origin::Candidate(degrees as usize), registered, gain, support: 2 }
+        LocalOptimum { origin: Origin::Candidate(degrees as usize), registered, gain, support: 2, ends: Vec::new() }
     }
 
     fn winner(optima: &[LocalOptimum], noise: f64) -> (Option<Origin>, usize) {
@@ -235,6 +257,34 @@ mod tests {
             (Some(Origin::Candidate(40)), 1)
         );
         assert_eq!(winner(&[large, optimum(0.0, 400.0, 0.0099)], 0.01), (Some(Origin::Candidate(40)), 0));
+    }
+
+    #[test]
+    fn registrations_that_end_apart_at_one_optimum_widen_its_sigmas() {
+        let mut all = LocalOptima::new(
+            4,
+            Residuals { noise: 0.0, covariance: None, image_noise: 0.0, spread: 1.0 },
+        );
+        let mut enter = |degrees: f64, noise: f64| {
+            let registered = optimum(degrees, 900.0, noise).registered;
+            all.enter(Origin::Candidate(0), registered);
+        };
+        // The last end fits worse and does not count.
+        [(0.0, 0.01), (1.0, 0.011), (-1.0, 0.012), (2.0, 0.02)].map(|(degrees, noise)| enter(degrees, noise));
+        let Ranking { best, .. } = all.ranked();
+        let ends = best.expect("an optimum").equal_ends();
+        assert_eq!(ends.len(), 3);
+        let mut uncertainty = Uncertainty {
+            rotation_degrees: [0.1; 3],
+            translation: [Some(0.1), Some(0.1), None],
+            scale: None,
+            weakest: Direction { unknown: Unknown::Rotation, axis: Axis::Z },
+        };
+        uncertainty.add_spread(&ends[0], &ends);
+        let expected = (0.01 + 2.0 / 3.0_f64).sqrt();
+        let [x, y, z] = uncertainty.rotation_degrees;
+        assert!(x == 0.1 && y == 0.1 && (z - expected).abs() < 1e-9, "{x} {y} {z}");
+        assert_eq!(uncertainty.translation, [Some(0.1), Some(0.1), None]);
     }
 
     #[test]

@@ -261,7 +261,11 @@ impl Finder {
         let Some(mut choice) = choice else { return Ok(Next::Phase(Phase::Candidates(candidates))) };
         let mut looked_at = candidates.poses();
         if let Scope::Everywhere(Some(opening)) = &mut self.scope {
-            looked_at.iter_mut().chain(&mut choice.rivals).for_each(|pose| *pose = opening.pose_out(pose));
+            looked_at
+                .iter_mut()
+                .chain(&mut choice.rivals)
+                .chain(&mut choice.ends)
+                .for_each(|pose| *pose = opening.pose_out(pose));
             choice.best = choice.best.map(|best| opening.report_out(best));
         }
         self.diagnose(pair, memory, choice, looked_at)
@@ -276,13 +280,14 @@ impl Finder {
         mut looked_at: Vec<Similarity>,
     ) -> Result<Next> {
         self.chosen = choice;
-        let colours = &*PhotometricRegistration::prepared(memory, pair);
+        let colours = PhotometricRegistration::prepared(memory, pair);
+        colours.keep_ends(std::mem::take(&mut self.chosen.ends));
         let Some(cleaned) = local_contrast::cleaned(pair, colours, self.chosen.best.as_deref()) else {
             return self.decide(pair, memory, None);
         };
         let starts = match &self.scope {
             Scope::Everywhere(_) => {
-                let Choice { best, rivals } = &self.chosen;
+                let Choice { best, rivals, .. } = &self.chosen;
                 looked_at.extend(best.iter().map(|best| best.pose).chain(rivals.iter().copied()));
                 local_contrast::of_all_sizes(pair, &looked_at)
             }
@@ -343,7 +348,7 @@ impl Finder {
 }
 
 /// The decision for silhouettes, or else for the best registration.
-fn everywhere_by(silhouettes: Option<SilhouetteReport>, Choice { best, rivals }: Choice) -> Decision {
+fn everywhere_by(silhouettes: Option<SilhouetteReport>, Choice { best, rivals, .. }: Choice) -> Decision {
     match (silhouettes, best) {
         (Some(found), _) => Decision { by: Method::Silhouettes(Box::new(found)), rivals: Some(Vec::new()) },
         (None, Some(best)) => Decision { by: Method::Photometric(best), rivals: Some(rivals) },
@@ -380,7 +385,7 @@ impl Near {
         &mut self,
         pair: &ViewPair,
         colours: &mut PhotometricRegistration,
-        Choice { best, rivals }: Choice,
+        Choice { best, rivals, .. }: Choice,
         found: Option<Decision>,
     ) -> Result<Decision> {
         let region = &self.region;

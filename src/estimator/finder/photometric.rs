@@ -42,6 +42,8 @@ pub struct PhotometricRegistration {
     is_coarse: bool,
     /// An initial pose near which registrations are held, if a single albedo does not explain the image from there.
     near: Option<PosePrior>,
+    /// Where registrations of the finder's optimum ended; their spread adds to the sigmas.
+    ends: Vec<Similarity>,
     /// The last registration.
     found: Option<PhotometricReport>,
 }
@@ -98,6 +100,7 @@ impl PhotometricRegistration {
         Self {
             photometric: Photometric::new(&sharp.problem(pair, is_scale_held(pair), None)),
             near: None,
+            ends: Vec::new(),
             is_coarse: sharp.noise > LARGEST_NOISE && pair.known_light().is_some(),
             sharp,
             found: None,
@@ -179,6 +182,11 @@ impl PhotometricRegistration {
         self.found.as_ref().is_some_and(|found| !found.sampled && free(&found.pose) == free(pose))
     }
 
+    /// Keeps where registrations of the optimum ended that the finder has chosen.
+    pub fn keep_ends(&mut self, ends: Vec<Similarity>) {
+        self.ends = ends;
+    }
+
     /// The best pose near `start`. A registration that starts where the last one ended is not repeated: the measured
     /// normals do not change, so neither would its end.
     pub fn register(&mut self, pair: &ViewPair, start: &Similarity) -> Result<&PhotometricReport> {
@@ -190,7 +198,12 @@ impl PhotometricRegistration {
         };
         let found = match self.found.take().filter(|_| is_done) {
             Some(found) => found,
-            None => self.register_anew(pair, start, &PhotometricOptions { first_level, ..options(pair) })?,
+            None => {
+                let mut found =
+                    self.register_anew(pair, start, &PhotometricOptions { first_level, ..options(pair) })?;
+                found.uncertainty.add_spread(&found.pose, &self.ends);
+                found
+            }
         };
         Ok(self.found.insert(found))
     }
