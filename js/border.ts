@@ -1,4 +1,4 @@
-/** Code that every .wasm of the package needs: it compiles the module, and every call into wasm goes through it. */
+/** Code that all .wasm files of the package share: it compiles the module, and every call into wasm goes through it. */
 import { BimodalError, translate } from "./errors.js";
 import { nodeModule } from "./node.js";
 import type { WasmSource } from "./types/index.js";

@@ -22,7 +22,7 @@ export interface StereoPair {
   depth: DepthMapInput;
 }
 
-/** Where the elements find their files; those left out are beside the module. */
+/** The addresses of the elements' files. A missing address stands for the file beside the module. */
 export interface Places {
   /** The .wasm: its address, its bytes or the compiled module. */
   wasm?: string | URL | BufferSource | WebAssembly.Module;
@@ -32,7 +32,7 @@ export interface Places {
   figureThread?: string | URL;
 }
 
-/** Says where the files of all elements of the page are; call it before the first element is in the document. */
+/** Sets the addresses of the files of all elements of the page. Call it before the first element is in the document. */
 export declare function configure(places: Places): void;
 
 /** The values under a lesson's figure: numbers and words. */
@@ -51,7 +51,7 @@ export interface StatusDetail {
 
 /** The detail of a `status` event of `<bimodal-figure>`. */
 export interface StateDetail {
-  /** The new state, as the attribute has it. */
+  /** The new state, in the form of the attribute. */
   readonly state: string;
 }
 
@@ -69,7 +69,7 @@ export interface StereoEvents {
 
 /** The events of `<bimodal-figure>`; none of them bubbles. */
 export interface FigureEvents {
-  /** A drawing has arrived; some lessons draw several on the way to the last. */
+  /** A drawing has arrived; some lessons send several drawings before the last one. */
   step: CustomEvent<FigureResult>;
   /** The state has changed, by an attribute or by the visitor. */
   status: CustomEvent<StateDetail>;
@@ -99,7 +99,7 @@ export interface BimodalStereoElement extends HTMLElement {
   pair: StereoPair | undefined;
   /** Options of the estimator; setting them restarts the run. */
   options: Options;
-  /** The scene of `sample`, beside its surface; setting it restarts the run. */
+  /** The scene of `sample` except its surface; setting it restarts the run. */
   scene: Partial<SampleRequest>;
   /** The report of the last step; `undefined` before the first. */
   readonly report: StepReport | undefined;
@@ -150,7 +150,7 @@ export interface BimodalFigureElement extends HTMLElement {
 }
 
 /**
- * Both elements for JSX; `Common` is what every element of the framework takes. For React 19:
+ * Both elements for JSX; `Common` holds the attributes that the framework accepts on every element. For React 19:
  * `declare module "react" { namespace JSX { interface IntrinsicElements extends ElementsInJsx<React.HTMLAttributes<HTMLElement>> {} } }`
  */
 export interface ElementsInJsx<Common = unknown> {

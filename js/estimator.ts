@@ -26,13 +26,13 @@ import { SearchWorkers } from "./workers/search.js";
 /** Smallest number of depth pixels for which a refinement worker is worth its messages: a refinement then takes some milliseconds. */
 const LEAST_SHARED = 96 * 96;
 
-/** Whether the canvas is the page's or a worker's; where there are no canvases there is no context either. */
+/** Whether a value is the 2D context of a canvas of a page or a worker. Environments without canvases have no context. */
 function isContext(value: unknown): boolean {
   const { CanvasRenderingContext2D: Own, OffscreenCanvasRenderingContext2D: Offscreen } = globalThis;
   return (Own !== undefined && value instanceof Own) || (Offscreen !== undefined && value instanceof Offscreen);
 }
 
-/** An input as a plain object. It is checked before this for unknown keys, and afterwards for inherited members. */
+/** An input as a plain object. Its own members are checked before the conversion, and inherited members after it. */
 function checked<T, Plain>(check: (value: unknown) => void, plain: (input: T) => Plain, input: T): Plain {
   check(input);
   const own = plain(input);
@@ -393,7 +393,7 @@ export class Estimator {
     return this.#finish(this.#refinementWorker.answer);
   }
 
-  /** The rest of a step, with what the refinement worker has made. */
+  /** The rest of a step, with the result of the refinement worker. */
   #finish(answer: Refinement | undefined): StepReport {
     this.#take(answer);
     return this.#after(this.#call((raw) => raw.step()));

@@ -62,7 +62,7 @@ pub struct StartTolerance {
 
 impl Default for StartTolerance {
     fn default() -> Self {
-        // Registrations converge from this far off.
+        // Registrations converge from initial poses that are this far off.
         Self { degrees: 30.0, distance: None }
     }
 }

@@ -54,7 +54,7 @@ const BLIND_DISPARITY = 2047;
 const percent = (share: number): string => `${(100 * share).toFixed(1)} %`;
 
 interface Values extends Extent {
-  /** A sample of them, in order. */
+  /** A sample of the values, in ascending order. */
   sample: Float64Array;
 }
 

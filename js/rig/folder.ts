@@ -222,7 +222,7 @@ const checkOptions = object({ unit: metresPerUnit, size: pixelSize, frames: fram
 interface Sorted {
   pictures: NamedFile[];
   texts: NamedFile[];
-  /** The coefficients of lenses alone. */
+  /** Files that hold only the coefficients of a lens. */
   lenses: LensFile[];
   /** All other files. */
   others: NamedFile[];

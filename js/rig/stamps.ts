@@ -78,7 +78,7 @@ function ofSet(names: string[], [pattern, time, step]: Form): { times: number[];
   return isGood && times.every(Number.isFinite) ? { times, step: only } : undefined;
 }
 
-/** The times in the names of colour images and depth maps; undefined where they have none that tells the frames apart. */
+/** The times in the names of colour images and depth maps; undefined where they have none that distinguishes the frames. */
 export function timesOf(colours: string[], depths: string[]): Times | undefined {
   const [ours, theirs] = [colours.map(timeOf), depths.map(timeOf)];
   const isTime = (time: number | undefined): time is number => time !== undefined;

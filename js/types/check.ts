@@ -103,11 +103,11 @@ export interface CandidateReport {
   pixels: number;
   /** 95 % interval of `pixels`. */
   interval: [number, number];
-  /** Probability of a distance from the estimate at least this large if the candidate were right. */
+  /** Probability that a right candidate is at least this far from the estimate. */
   probability: number;
 }
 
-/** The frame that would determine the least certain unknown best, and by how much; computed from the evidence of a frame of the check. */
+/** The frame that would determine the least certain unknown best, and the sigma to expect. It is computed from the evidence of one frame of the check. */
 export interface NextFrame {
   /** The least certain unknown: a rotation about x, y, z through the scene's centre, or a translation along them, in the colour frame. */
   axis: "rx" | "ry" | "rz" | "tx" | "ty" | "tz";
@@ -117,11 +117,11 @@ export interface NextFrame {
   frame: string;
   /** Where the scene is in the next frame: nearer, aside by a quarter of the image's width, or rotated by 90 degrees. */
   motion: "nearer" | "left" | "right" | "up" | "down" | "turned";
-  /** The same as a pose: where each point of the scene goes, in the colour camera's frame, metres. */
+  /** The same as a pose: the motion of the scene's points in the colour camera's frame, metres. */
   pose: Pose;
   /** Sigma with this frame added to those of the check, degrees or millimetres. */
   expected: number;
-  /** All of it in words. */
+  /** The proposal in words. */
   message: string;
 }
 

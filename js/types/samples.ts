@@ -129,7 +129,7 @@ export interface RigRequest {
   frame?: number;
   /** Factor for the noise of both sensors. Default 1. */
   noise?: number;
-  /** Where each point of the scene goes, in the colour camera's frame, metres. Default: nowhere. */
+  /** Motion of the scene's points in the colour camera's frame, metres. Default: no motion. */
   motion?: PoseInput;
 }
 

@@ -13,7 +13,8 @@ export interface Refinement {
 }
 
 /**
- * Longest wait for an answer, milliseconds: a refinement of the largest views takes half of it. After that the estimator continues alone.
+ * Longest wait for an answer, milliseconds: a refinement of the largest views takes half of this time. After that the estimator continues
+ * alone.
  */
 const LONGEST_WAIT = 2000;
 

@@ -9,7 +9,7 @@ export interface Tasks {
   accept(result: Float64Array): void;
 }
 
-/** Tasks in a worker's queue: enough for about ten milliseconds, during which its estimator's thread may be busy. */
+/** Number of tasks in a worker's queue, enough for about ten milliseconds, during which its estimator's thread may be busy. */
 const QUEUE = 3;
 
 interface SearchWorker {

@@ -45,7 +45,7 @@ class CandidateReport:
     ``off_axes``: the same by axis, from the estimate to the candidate: degrees about x, y, z, then millimetres along them.
     ``pixels``, ``interval``: expected reprojection error at the scene's depth, pixels of the colour image, and its 95 %
         interval.
-    ``probability``: probability of a distance from the estimate at least this large if the candidate were right.
+    ``probability``: probability that a right candidate is at least this far from the estimate.
     """
 
     verdict: str
@@ -88,8 +88,10 @@ class NextFrame(NamedTuple):
     """The frame that would determine the least certain unknown best.
 
     ``axis``: this unknown, "rx", "ry", "rz" about the scene's centre or "tx", "ty", "tz", in the colour frame. ``sigma``: its present sigma, degrees
-    or millimetres; ``expected``: the sigma with this frame added. ``motion``: where the scene of ``frame`` is then: "nearer", "left", "right",
-    "up", "down" or "turned"; ``pose``: the same as a motion of its points, colour frame, metres. ``message``: all of it in words.
+    or millimetres; ``expected``: the sigma with this frame added. ``motion``: the place of the scene of ``frame`` in
+    the next frame: "nearer", "left", "right",
+    "up", "down" or "turned"; ``pose``: the same as a motion of its points, colour frame, metres. ``message``: the
+    proposal in words.
     """
 
     axis: str

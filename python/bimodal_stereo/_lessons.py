@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 # The largest logarithm of a colour or coordinate of a normal; the squares of larger numbers carry no information.
 FARTHEST = 1e6
 LARGEST_SIDE = 512
-# Slopes and stretches of a depth beyond this leave no shape to be seen.
+# Largest slope and stretch of a depth; beyond it no shape is visible.
 STEEPEST = 1e3
 
 

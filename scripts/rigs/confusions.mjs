@@ -66,7 +66,7 @@ const inUnit = (factor) => depth((view) => ({ ...view, unit: factor * unitOf(vie
 const turned = (quarters) => (view) => rotated(view, quarters, false);
 const mirrored = (view) => rotated(view, 0, true);
 
-/** By name: the mistake, and the readings that name it. Where intrinsics are symmetric, a turn of a picture is theirs, too. */
+/** By name: the mistake, and the readings that name it. With symmetric intrinsics, a rotated picture is the same as a rotated camera. */
 export const CONFUSIONS = {
   inverse: [(rig) => ({ ...rig, pose: inverse(rig.pose) }), ["inverse"]],
   "rotation transposed": [withRotation(transpose), ["transposed-rotation"]],
@@ -174,7 +174,7 @@ const withoutPlaces = ({ place: _, from: __, ...view }) => view;
 const named = ({ reading, code, warnings }) =>
   reading ?? (code === "doubtful" && warnings[0].code === "unusual-depths" ? "unit" : undefined);
 
-/** The reading that each mistake is named as, on each rig; mistakes that move the scene by less than passes are left out. */
+/** The reading that names each mistake, on each rig. Mistakes that move the scene by less than the largest passing error are left out. */
 export async function confused(rigs, names, { check, progress }) {
   const rows = [];
   for (const rig of rigs) {

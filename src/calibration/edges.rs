@@ -1,8 +1,8 @@
 //! Depth edges on image edges: the log likelihood of the positions of image edges, given the projected depth
 //! discontinuities.
 //!
-//! Along the normal of each depth discontinuity the image has edges at offsets u_k with strengths a_k. One of them
-//! belongs to the discontinuity, except with probability e. Each is chosen in proportion to its strength, and its
+//! Along the normal of each depth discontinuity the image has edges at offsets u_k with strengths a_k. With probability
+//! 1 - e one of them belongs to the discontinuity. The probability of an edge is proportional to its strength, and its
 //! position deviates by the edge bias d of its side and by normal noise s:
 //!
 //! l = sum over discontinuities of log(e / 2 L + (1 - e) sum_k p_k N(u + d - u_k; s)),

@@ -26,7 +26,7 @@ const LEVELS_OF_A_BYTE: u16 = 255;
 /// Share of neighbours that differ by a tenth of their depth above which a depth map is probably not one.
 const ROUGH_SHARE: f64 = 0.25;
 const ROUGH_JUMP: f32 = 0.1;
-/// An image whose intensities differ by less than this, of 1, is blank.
+/// An image is blank if its intensities, 0 .. 1, differ by less than this.
 const BLANK: f32 = 0.02;
 /// Minimum number of depths in a frame.
 const FEWEST_DEPTHS: usize = 200;

@@ -71,7 +71,7 @@ pub enum CheckReason {
         /// Error of the estimate.
         pixels: f64,
     },
-    /// Consistent but for a warning about the input.
+    /// Consistent, but with a warning about the input.
     Doubtful {
         /// The first warning.
         warning: Box<Warning>,

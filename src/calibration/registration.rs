@@ -28,7 +28,7 @@ pub(super) const SURVIVORS: [usize; 4] = [10, 6, 4, 3];
 const MOST_RIMS_OF_STARTS: usize = 1200;
 /// Rounds at each level.
 pub(super) const ROUNDS: usize = 3;
-/// Maximum number of rounds with all cues. The objective is rough: more rounds would not settle, but wander.
+/// Maximum number of rounds with all cues. The objective is rough, so more rounds would not settle.
 pub(super) const MOST_SETTLING: usize = 8;
 /// Maximum number of times that a step with all cues is halved.
 const MOST_HALVINGS: usize = 5;

@@ -83,7 +83,7 @@ pub struct CandidateReport {
     /// Expected reprojection error of the candidate.
     #[cfg_attr(feature = "serde", serde(flatten))]
     pub health: Health,
-    /// Probability of a distance at least this large if the candidate is right.
+    /// Probability that a right candidate is at least this far from the estimate.
     pub probability: f64,
 }
 

@@ -41,7 +41,7 @@ pub struct ShadedImage<'a> {
     pub lamp: Lamp,
 }
 
-/// Whether the surface around a singular point is taken for a bump or for a dent; the picture does not say.
+/// Whether the surface around a singular point is taken for a bump or for a dent, which the picture does not show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     /// Nearer in the middle.

@@ -1,5 +1,5 @@
-// Folders in which names tell cameras and calibrations apart: several cameras around a LiDAR, a calibration for each frame, binned pictures,
-// topics of Kalibr, and quaternions of a LiDAR.
+// Folders in which names distinguish cameras and calibrations: several cameras around a LiDAR, a calibration for each frame, binned
+// pictures, topics of Kalibr, and quaternions of a LiDAR.
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import { readRigFolder } from "../../pkg/rig.js";

@@ -83,7 +83,7 @@ test("calibrations from a file, pasted and typed in; inverted twice they are wha
   await page.getByRole("button", { name: "Add what I pasted" }).click();
   await expect(words.nth(1)).toContainText("10.0 mm below");
   await expect(page.locator(".rig-candidate .rig-notes li")).toHaveCount(0);
-  // A guessed unit is said beside its calibration.
+  // A guessed unit is shown beside its calibration.
   await page.getByLabel("Or paste it in any of these formats").fill("1 0 0 25\n0 1 0 0\n0 0 1 0\n0 0 0 1");
   await page.getByRole("button", { name: "Add what I pasted" }).click();
   await expect(page.locator(".rig-candidate").nth(2)).toContainText("was guessed to be in millimetres");

@@ -1,6 +1,6 @@
 /** Lines of equal value in a raster, for drawing them over its picture. */
 
-/** The two ends of a line within a cell of four pixels, by which of its corners are above the level: pairs of sides. */
+/** The sides of a cell of four pixels between which a line runs, in pairs, for each combination of corners above the level. */
 const SIDES: readonly (readonly number[])[] = [
   [],
   [3, 0],

@@ -23,7 +23,7 @@ export async function rendererFor(canvas: HTMLCanvasElement, hooks: CloudsHooks)
   // Creating a thread blocks the page, so it is a separate task.
   await nextTask();
   const thread = new Thread(hooks);
-  // The thread tries, not the page: a request for WebGL waits for the browser's graphics process.
+  // The thread and not the page tests for WebGL, because the test waits for the browser's graphics process.
   if (await thread.ask("can you draw?")) return elsewhere(thread, canvas);
   thread.end();
   return here(canvas, hooks);

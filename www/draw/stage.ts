@@ -71,7 +71,7 @@ export class CloudStage {
   readonly #image = new Sheet(1);
   readonly #depth = new Sheet(0.85);
   readonly #pinned = { image: new Sheet(1), depth: new Sheet(0.85), isShown: false };
-  /** All sheets of each run. */
+  /** Both surfaces of each run. */
   readonly #runs = { now: new Group(), pinned: new Group() };
   #wipe = 0;
   #sight: Sight | undefined;

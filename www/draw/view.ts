@@ -66,7 +66,7 @@ export class View {
       // A finger must be lifted before the value under it can be read.
       if (pointerType !== "touch") this.#point(null);
     });
-    // Announced when moved by keys; with a pointer the announcements would never end.
+    // A value is announced only if keys moved the probe; with a pointer the announcements would never end.
     this.#canvas.addEventListener("focus", () => this.#readout.setAttribute("role", "status"));
     this.#canvas.addEventListener("blur", () => {
       this.#readout.removeAttribute("role");

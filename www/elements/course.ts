@@ -9,7 +9,7 @@ type Curve = Pick<PlotPanel, "key" | "title" | "alt" | "y" | "range"> & {
   value(report: StepReport): number;
 };
 
-/** With the smallest range of each, so that the last digits of a run that has converged do not fill the picture. */
+/** The curves with the smallest range of each axis, so that the last digits of a run that has converged do not fill the picture. */
 const CURVES: readonly Curve[] = [
   {
     key: "residual",

@@ -85,7 +85,7 @@ const REPORT_EVERY = 200;
 
 type Bound = { end(): void };
 
-/** Members that follow the kernel; the element takes one that is equal to its own as no change. */
+/** Members that follow the kernel. The element ignores a value that is equal to its own. */
 function follow(model: Model, element: object, names: Record<string, (value: unknown) => unknown>): Bound {
   const ends = Object.entries(names).map(([name, convert]) => {
     const own = name.replace(/^_/, "");

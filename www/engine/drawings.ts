@@ -65,7 +65,7 @@ export class ViewPainter {
     this.#picture = paintPicture(picture(image, this.#cuts.image));
   }
 
-  /** The colour image as it came. */
+  /** The colour image as supplied. */
   given(): Painted {
     return this.#canvases.image.picture(this.#picture).take();
   }

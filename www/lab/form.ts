@@ -172,7 +172,7 @@ const REST = 200;
 function numbers(field: NumberField, id: string, change: Change): Built {
   // The library checks the numbers and has better messages than the browser, so the inputs have no limits.
   const exact = make("input", { id, type: "number", step: "any", inputmode: "decimal", placeholder: field.empty });
-  // Like a slider that has stopped: a run that was playing plays again.
+  // This counts as a slider that has stopped, so a run that was playing plays again.
   const read = (input: HTMLInputElement) => change(input.value === "" ? null : input.valueAsNumber, true);
   exact.addEventListener("change", () => read(exact));
   if (!field.slider) return { inputs: [exact], show: (value) => (exact.value = value === null ? "" : String(value)) };

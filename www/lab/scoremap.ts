@@ -50,7 +50,7 @@ export class ScoreMap {
     mark(best[0] ?? 0, best[1] ?? 0, ["#000", "#fff"]);
     if (truth) mark(truth.angles.alpha, truth.angles.beta, ["#fff", "#d55e00"]);
     this.#figure.hidden = false;
-    // Where many score alike, the best one is the best by chance, which the colours cannot show.
+    // If many rotations have nearly the best score, chance decides which one is best. The colours cannot show this.
     const others = rows.filter(([, , , score = 0]) => score >= NEAR * (best[3] ?? 0)).length - 1;
     const rings = `white ring: best${truth ? "; orange: true" : ""}`;
     const alike = others === 0 ? "none" : String(others);

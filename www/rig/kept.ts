@@ -1,6 +1,7 @@
 /**
- * Keeps a rig over a reload: the requests that read its files, with these, and beside them one record of what the visitor chose and of the
- * last verdict. A reload restores it in its own tab; other tabs offer it. Frames of a robot exist only in the worker and are not kept.
+ * Keeps a rig over a reload. It stores the requests that read the files, together with the files, and one record of the visitor's choices
+ * and the last verdict. A reload restores it in its own tab; other tabs offer it. Frames of a robot exist only in the worker and are not
+ * kept.
  */
 
 import { change, reasonOf, records } from "../database";
@@ -122,7 +123,7 @@ export class Kept {
 
   async #keep(): Promise<void> {
     const { items, busy, live } = this.#rig;
-    // A change follows once these have ended.
+    // Another change follows when these activities end, and the rig is stored then.
     if (busy || live.isRunning || items.some(({ state }) => state === "reading")) return;
     if (!this.#isUsed) return this.#forget();
     try {

@@ -111,7 +111,7 @@ export class Live {
       }
       this.#become(this.#isStopping ? "connected" : "done");
     } catch (error) {
-      // A lost connection has changed the number of the turn.
+      // If the connection was lost, a newer turn has already shown the reason.
       if (isMine()) this.#become("connected", this.#isStopping || wasCancelled(error) ? "" : messageOf(error));
     }
   }

@@ -38,7 +38,7 @@ export class VerdictStep {
   );
   readonly #card = make("div", { class: "rig-card rig-verdict-box", hidden: true });
   readonly #results = make("div", { class: "rig-results", hidden: true });
-  /** In reading order; on wide screens the pictures are beside both. */
+  /** The two columns are in reading order; on wide screens the pictures stand beside them. */
   readonly #first = make("div", { class: "rig-column" });
   readonly #last = make("div", { class: "rig-column" });
   readonly #overlay: Overlay;

@@ -96,7 +96,7 @@ function marked(bytes: Uint8Array): Marked {
   return { ...size, orientation, profile: joined };
 }
 
-/** The decoder's message; its type errors, which say nothing about the file, get another one. */
+/** The decoder's message. Type errors of the decoder say nothing about the file and get another message. */
 function reasonOf(error: unknown): string {
   if (error instanceof TypeError || error instanceof RangeError) return "its segments contradict each other";
   return error instanceof Error ? error.message : String(error);
@@ -125,7 +125,7 @@ export async function byBrowser(bytes: Uint8Array, format: string, check = check
 
 const hasBrowser = (): boolean => typeof createImageBitmap === "function" && typeof OffscreenCanvas === "function";
 
-/** Three of four channels; the image is opaque. */
+/** Keeps three of four channels, because the image is opaque. */
 function withoutAlpha(picture: Picture): Picture {
   const { width, height, data } = picture;
   const out = new Uint8Array(3 * width * height);

@@ -21,7 +21,7 @@ const MOST = 200;
 
 const COMMENT = /(?:^|[\s,;{])(?:#|\/\/|%|;|\/\*)([^\n]{1,200})/gm;
 const SUBJECT = /\b(?:translations?|units?|t|tvec|positions?|lengths?|baselines?|distances?|extrinsics?|poses?|all)\b/i;
-/** Comments about other lengths. */
+/** Comments about lengths other than translations. */
 const OTHERS = /depth|focal|pixel|sensor|board|square|tag|marker|pattern|rotation only/i;
 const UNIT =
   /(?:\b(?:in|are|is|unit|units|as)|[:=([])\s*\[?\(?\s*(mm|cm|dm|m|inch(?:es)?|(?:milli|centi|deci)?met(?:er|re)s?)\b/i;

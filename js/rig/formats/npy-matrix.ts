@@ -47,7 +47,7 @@ export function lensArray(bytes: Uint8Array): number[] | undefined {
 }
 
 /**
- * Largest number of numbers in an array of a calibration: matrices of 16 and lenses of 14, and motions of the views that it was made from.
+ * Largest number of numbers in an array of a calibration. A matrix has 16 and a lens 14; the motions of the views that were used have more.
  */
 const MOST_NUMBERS = 400;
 /** Largest number of bytes of such an archive; a picture beside the matrices takes more. */

@@ -238,7 +238,7 @@ const BIN = 0.02 * DEGREE;
 const BLURRED = 2;
 /** Smallest ratio of the height of a cluster to that of the highest ones; it is low, because rays into the sky do not return. */
 const LEAST_CLUSTER = 0.05;
-/** Bins that count as the highest ones. */
+/** Number of bins that count as the highest ones. */
 const HIGHEST_BINS = 5 * FEWEST_ROWS;
 /** Largest ratio of the height of a valley between two clusters to that of the lower cluster. */
 const VALLEY = 0.5;
