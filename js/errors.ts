@@ -63,7 +63,7 @@ export interface ErrorDetails {
    * numbers suggest another kind of file, and the option `as` overrides that.
    */
   readonly problem?: "too-large" | "picture" | "disparity" | "kind";
-  /** For the problem "kind", what the name or the numbers of the file suggest. The text has no remedy. */
+  /** For the problem "kind", the kind of file that the name or the numbers suggest, in words without a remedy. */
   readonly finding?: string;
   /** Columns of the file's picture, if the size is the problem. */
   readonly width?: number;

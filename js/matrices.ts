@@ -62,7 +62,7 @@ export function determinant(r: Numbers): number {
 export function anglesOf(r: Numbers): Pose["angles"] {
   const degrees = 180 / Math.PI;
   const beta = Math.atan2(at(r, 2), Math.hypot(at(r, 0), at(r, 1)));
-  // At the pole only alpha + gamma is determined; all of it is assigned to alpha.
+  // At the pole only alpha + gamma is determined; the whole sum is assigned to alpha.
   const locked = Math.hypot(at(r, 0), at(r, 1)) < 1e-9;
   const alpha = locked ? Math.atan2(at(r, 7), at(r, 4)) : Math.atan2(-at(r, 5), at(r, 8));
   return {

@@ -66,7 +66,7 @@ function defaultOf(source, type, field) {
   return value === undefined ? [] : [{ name: `${type}::${field}`, value, text: textOf(comment) }];
 }
 
-/** What the code says about a row's constant. */
+/** The value and the meaning of a row's constant in the code. */
 export function lookUp(name, path, read = (path) => existsSync(inRoot(path)) && readFileSync(inRoot(path), "utf8")) {
   const source = read(path);
   if (!source) throw new Failure(`${DOCUMENT}: "${path}" of \`${name}\` is not a file.`);

@@ -69,7 +69,7 @@ pub enum Alternative {
     LocalContrast,
     /// Registration by silhouettes, behind a pinhole.
     Silhouettes,
-    /// The same shape in another unit of depth.
+    /// Registration of the same shape in another unit of depth.
     DepthUnit,
 }
 
@@ -153,13 +153,13 @@ mod tests {
 
     /// Noise, covariance, the image's own noise and spread; the diagnosis for each alternative.
     const TABLE: [([f64; 4], [Diagnosis; 3]); 9] = [
-        // Renders with noise, without, and with 3 % of it.
+        // Renders with noise, without noise, and with 3 % of noise.
         ([0.010, 0.0005, 0.011, 0.4], [Explained, Explained, Explained]),
         ([0.004, 0.0015, 0.000, 0.4], [Explained, Explained, ModelError]),
         ([0.030, 0.0043, 0.031, 0.3], [Explained, Explained, ModelError]),
         // Noisy normals: more than noise, without spatial covariance.
         ([0.034, 0.0040, 0.010, 0.3], [ModelError, ModelError, ModelError]),
-        // The same under a strong light.
+        // Noisy normals under a strong light.
         ([0.100, 0.0040, 0.010, 0.9], [ModelError, ModelError, ModelError]),
         // Cast shadows in a picture of shading.
         ([0.030, 0.0100, 0.010, 0.3], [VaryingAlbedo, ModelError, ModelError]),

@@ -16,7 +16,7 @@ const STRAY: f64 = 0.01;
 const USUAL: f64 = 8.0;
 /// Share of values for which a rule about their last digits must hold.
 const NEARLY_ALL: f64 = 0.99;
-/// The same share for SUN RGB-D, whose depths beyond 8.19 m wrap into the low bits.
+/// Such a share for SUN RGB-D, whose depths beyond 8.19 m wrap into the low bits.
 const MOSTLY: f64 = 0.9;
 /// With fewer distinct depths, the map was made by hand, and its round numbers say nothing about the unit.
 const MANY_VALUES: usize = 16;

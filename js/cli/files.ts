@@ -55,7 +55,7 @@ export interface Input {
   notes: string[];
 }
 
-/** What each file was read as, with a hash that identifies the file later. */
+/** A description of each file that was read, with a hash that identifies the file later. */
 export function inputsOf(readings: Reading[], files: NamedFile[]): Input[] {
   const bytes = new Map(files.map((each) => [each.name, each.bytes]));
   const seen = new Map<string, Input>();

@@ -68,7 +68,7 @@ function spread<T>(all: T[], most: number): T[] {
   );
 }
 
-/** What is known about the depth maps before they are read. */
+/** Facts about the depth maps that are known before they are read. */
 interface Known {
   /** Metres per stored unit, given or in a file. */
   unit: number | undefined;
@@ -300,7 +300,7 @@ const placeOfFrame = (): ReaderWarning =>
     "It is named like a picture and does not name the frames of its pose, so it may be the pose of the camera in the world. It was read as the pose from the depth camera to the colour camera. If that is right, name it depth_to_color.txt, otherwise pose/0.txt or the like.",
   );
 
-/** What the texts of a folder hold: cameras, what relates them, and the unit of the depth maps; `own` has the texts of single frames. */
+/** The contents of a folder's texts: cameras, the poses between them, and the unit of the depth maps; `own` has the texts of single frames. */
 async function calibrationOf({ texts, others, lenses }: Sorted, frames: ReadonlySet<string>, reader: FolderReader) {
   const found: TextOfFrame[] = [];
   let depthUnit: number | undefined;

@@ -8,7 +8,7 @@ import type { TextOfFrame } from "./perframe.js";
 import type { NamedCamera } from "./types.js";
 import { type ReaderWarning, ofFile } from "./warnings.js";
 
-/** Words that say no more than that a file is a camera's. */
+/** Words that state only that a file belongs to a camera. */
 const PLAIN = new Set(["camera", "cam", "calib", "calibration", "params", "parameters", "matrix"]);
 
 /** The folder of a file and the camera that its name refers to, without the words for intrinsics and lenses. */

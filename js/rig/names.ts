@@ -1,4 +1,4 @@
-/** Names of files: their parts, what the files of one frame have in common, and time stamps. */
+/** Names of files: their parts, the common part of the files of one frame, and time stamps. */
 
 export const base = (name: string): string => name.slice(name.lastIndexOf("/") + 1);
 /** Endings in two parts: COLMAP's depth maps keep the whole name of their image, and nuScenes' points are not PCD. */
@@ -15,7 +15,7 @@ const common = (name: string): string =>
 /** A path without the parts that say which file of a frame it is. */
 export const commonPath = (name: string): string => common(folderOf(name) + stem(name));
 
-/** What the names of one frame's files have in common: letters of any script, in either case, and numbers without leading zeros. */
+/** The common part of the names of one frame's files: letters of any script, in either case, and numbers without leading zeros. */
 export function key(name: string): string {
   const words = common(stem(name))
     .toLowerCase()

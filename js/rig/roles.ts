@@ -1,5 +1,5 @@
 /**
- * What a picture holds according to its file name and the folders around it, the innermost first.
+ * The content of a picture according to its file name and the folders around it, the innermost first.
  *
  * Limits: names are English and those of common tools; if a name says nothing, the content decides.
  */
@@ -21,7 +21,7 @@ export type Role =
 /** Whole words only: "displayed" is not a disparity, "undistorted" not a distance. */
 const whole = (words: string): RegExp => new RegExp(`(?<![a-z])(?:${words})(?![a-z])`);
 
-/** What a picture holds besides colours and depths; these words have priority over "depth" and "colour" in the same name. */
+/** Contents of pictures other than colours and depths; these words have priority over "depth" and "colour" in the same name. */
 const SPECIAL: [Role, RegExp][] = [
   ["mask", /mask|segm/],
   ["confidence", whole("conf|confs|conf ?maps?|confidences?|confidence ?maps?|certainty|uncertainty|uncertainties")],
@@ -78,7 +78,7 @@ function common(segment: string): Role | undefined {
 export const isKittiDepth = (name: string): boolean =>
   /(?<![a-z])(?:proj_depth|velodyne_raw|groundtruth_depth)(?![a-z])/i.test(name);
 
-/** What a file's name says about its content; undefined if it says nothing. */
+/** The content that a file's name states; undefined if it states none. */
 export function roleOf(name: string): Role | undefined {
   if (isKittiDepth(name)) return "depth";
   const [own = "", folder = "", ...outer] = name.split("/").map(plain).reverse();

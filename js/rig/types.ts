@@ -1,4 +1,4 @@
-/** The types of what the readers of rig files return. */
+/** The types of the readers' results. */
 import type { CheckFrame, Mask, Pinhole, Pose } from "../types/index.js";
 import type { InverseDepth } from "./inverse.js";
 import type { Scan } from "./lidar/scan.js";

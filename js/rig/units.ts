@@ -66,7 +66,7 @@ function unitsIn(text: string): number[] {
   return found.filter(isUnit);
 }
 
-/** What the texts of a folder say about the unit of its depth maps; undefined if they say nothing or contradict each other. */
+/** The unit of a folder's depth maps that its texts state; undefined if they state none or contradict each other. */
 export function unitBeside(
   texts: NamedFile[],
   warnings: ReaderWarning[],

@@ -117,7 +117,7 @@ export interface NextFrame {
   frame: string;
   /** Where the scene is in the next frame: nearer, aside by a quarter of the image's width, or rotated by 90 degrees. */
   motion: "nearer" | "left" | "right" | "up" | "down" | "turned";
-  /** The same as a pose: the motion of the scene's points in the colour camera's frame, metres. */
+  /** The motion of the scene as a pose in the colour camera's frame, metres. */
   pose: Pose;
   /** Sigma with this frame added to those of the check, degrees or millimetres. */
   expected: number;

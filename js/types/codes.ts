@@ -45,7 +45,7 @@ export type CheckCode =
   | "no-candidate"
   | "doubtful";
 
-/** Codes for what looks wrong about the input. */
+/** Codes of warnings about the input. */
 export type WarningCode =
   | "blank-image"
   | "intrinsics-guessed"
@@ -57,5 +57,5 @@ export type WarningCode =
   | "fits-inverted"
   | "lens-left-out";
 
-/** Codes for what the environment lacks and an estimator does without. */
+/** Codes of features that the environment lacks; an estimator works without them. */
 export type EstimatorWarningCode = "workers-unavailable";

@@ -24,7 +24,7 @@ export interface RestoreOptions {
   signal?: AbortSignal;
 }
 
-/** Something that the environment lacks and that the estimator does without. */
+/** A warning that the environment lacks a feature; the estimator works without it. */
 export interface EstimatorWarning {
   /** Stable, for programs. */
   code: EstimatorWarningCode;

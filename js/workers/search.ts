@@ -19,8 +19,8 @@ interface SearchWorker {
 }
 
 /**
- * Workers affect only how long a search takes: if none can be started, or one fails, the estimator does all of it. Messages pass whenever
- * the estimator's thread lets events through. The workers last as long as the search.
+ * Workers affect only how long a search takes: if none can be started, or one fails, the estimator does the whole search. Messages pass
+ * whenever the estimator's thread lets events through. The workers last as long as the search.
  */
 export class SearchWorkers {
   #workers: SearchWorker[] = [];

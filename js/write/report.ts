@@ -15,7 +15,7 @@ export type { Picture, ReportInput };
 /** A name and its value. */
 export type Entry = readonly [name: string, value: string];
 
-/** What the report of a run shows. */
+/** The contents of the report of a run. */
 export interface RunReport {
   /** How to rate the outcome; "open" if the evidence neither supports nor contradicts it. */
   tone: "good" | "open" | "wrong";

@@ -105,7 +105,7 @@ export function registered(files) {
 }
 
 /**
- * The same frame with its cloud in another frame of reference, so that neither the identity nor the authors' pose is the answer.
+ * A frame with its cloud in another frame of reference, so that neither the identity nor the authors' pose is the answer.
  * Clouds are transformed point by point; nothing is rendered, so no depth is interpolated.
  */
 export function hide(frame, motion) {

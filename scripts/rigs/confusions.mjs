@@ -1,4 +1,4 @@
-// What people confuse in the files of a rig, and whether the first sentence of a check names it.
+// Common mistakes in the files of a rig, and whether the first sentence of a check names them.
 import { IDENTITY, aboutAxis, offBy, product, transpose, turn } from "../../protocols/rotations.mjs";
 import { project, ray } from "../captures/lens.mjs";
 import { chance, inverse, moved, percent, poseOf, quantile, wrong } from "./draws.mjs";
@@ -170,7 +170,7 @@ const bare = ({ frames }) =>
   frames.map((frame) => ({ ...frame, image: withoutPlaces(frame.image), depth: withoutPlaces(frame.depth) }));
 const withoutPlaces = ({ place: _, from: __, ...view }) => view;
 
-/** What the first sentence of a report names: a reading, or the unit of the depths. */
+/** The mistake that the first sentence of a report names: a reading, or the unit of the depths. */
 const named = ({ reading, code, warnings }) =>
   reading ?? (code === "doubtful" && warnings[0].code === "unusual-depths" ? "unit" : undefined);
 

@@ -61,7 +61,7 @@ pub struct NextFrame {
     pub frame: String,
     /// How it was moved.
     pub motion: NextMotion,
-    /// The same as a pose: the motion of the scene's points, colour camera's frame, metres.
+    /// The motion of the scene as a pose in the colour camera's frame, metres.
     pub pose: Similarity,
     /// Sigma with this frame added to those of the check, degrees or millimetres.
     pub expected: f64,

@@ -1,6 +1,6 @@
 //! Other readings of a candidate: the conventions in which files of extrinsics are commonly misread.
 //!
-//! A candidate that the frames contradict may be right in another convention. Each reading of it is a pose.
+//! A candidate that the frames contradict may be right in another convention. Each reading of the candidate is a pose.
 
 use std::fmt;
 

@@ -184,9 +184,10 @@ struct Gap {
 }
 
 impl Gap {
-    /// A step s at an angle to the normal covers |s| cos of it. The gap follows from the mean of the inverse squares of
-    /// these lengths, weighted by the fourth power of the cosine. The nearest sample beyond counts most. A sample in
-    /// the direction of the boundary, which only noise puts beyond it, has a cosine near zero and hardly counts.
+    /// A step s at an angle a to the normal covers |s| cos a along the normal. The gap follows from the mean of the
+    /// inverse squares of these lengths, weighted by the fourth power of the cosine. The nearest sample beyond counts
+    /// most. A sample in the direction of the boundary, which only noise puts beyond it, has a cosine near zero and
+    /// hardly counts.
     fn of(ends: &[Option<[f64; 2]>; 4], normal: [f64; 2], on_image: impl Fn([f64; 2]) -> [f64; 2]) -> Option<Self> {
         let (mut precision, mut weights, mut best) = (0.0, 0.0, (0.0, 0));
         for (direction, step) in ends.iter().enumerate() {

@@ -14,9 +14,9 @@
 use crate::numeric::{noise, quantile};
 use crate::view::Size;
 
-/// Spans of the fit in pixels. A sensor's noise is correlated over two or three pixels, so a span of one shows too
-/// little of it. Over wider spans the differences of small objects stop growing, like noise. Set on busts of 64x64 with
-/// white noise (docs/lab/thresholds.md).
+/// Spans of the fit in pixels. A sensor's noise is correlated over two or three pixels, so a span of one pixel shows
+/// too little of the noise. Over wider spans the differences of small objects stop growing, like noise. Set on busts of
+/// 64x64 with white noise (docs/lab/thresholds.md).
 const SPANS: [usize; 3] = [2, 3, 4];
 /// Spans whose growth distinguishes noise from a surface.
 const GROWTH_SPANS: [usize; 2] = [1, 2];
@@ -32,9 +32,9 @@ const KEPT_VARIANCE: f64 = 0.438;
 const FEWEST: usize = 1000;
 const MOST: usize = 1 << 16;
 
-/// Noise counts as white if fourth differences of neighbours see at least this share of it. They see less of the noise
-/// in quantised and laterally smoothed maps. If the steps of a quantised map are as narrow as pixels, its noise is
-/// white. Set on ten surfaces (docs/lab/thresholds.md).
+/// Noise counts as white if fourth differences of neighbours see at least this share of the noise. They see less of the
+/// noise in quantised and laterally smoothed maps. If the steps of a quantised map are as narrow as pixels, its noise
+/// is white. Set on ten surfaces (docs/lab/thresholds.md).
 const LEAST_WHITE: f64 = 0.75;
 /// A map whose noise is not white is smoothed if lambda exceeds this: a window of lambda^(1/4) = 0.8 pixels. Noise with
 /// a smaller lambda cannot be distinguished from relief, and a narrower window smooths nothing. Set on busts of 64x64

@@ -119,7 +119,7 @@ impl Normals {
 }
 
 impl DepthView {
-    /// The same for a depth view. An organised cloud keeps its frame.
+    /// Such an origin for a depth view. An organised cloud keeps its frame.
     pub(crate) fn half_origin(&self) -> Option<Vector3<f64>> {
         half_origin(self.size, self.camera.is_orthographic() && !self.organised)
     }

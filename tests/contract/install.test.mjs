@@ -101,7 +101,7 @@ test("types resolve for Node and for bundlers, without help from other type pack
      export const written = (report: CheckReport): WrittenPose => writePose(report.estimate, "kalibr", context);
      export const page = (report: CheckReport): string => reportHtml(report, [{ title: "", dataUrl: "" }], { made: new Date(0) });
      export const ply: Uint8Array = writeClouds([{ points: new Float32Array(3) }]);
-     // @ts-expect-error a format that is none
+     // @ts-expect-error a format that does not exist
      export const none = (report: CheckReport): WrittenPose => writePose(report.estimate, "urdf");
      const image: ColorImage = decodeColour(new Uint8Array());
      const depth: DepthMap = { ...decodeDepth(new ArrayBuffer(0)), mask: decodeMask(new Uint8Array()).data };

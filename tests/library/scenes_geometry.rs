@@ -157,7 +157,7 @@ fn the_pose_carries_the_depth_view_onto_the_surface() {
     }
 }
 
-/// The same on the bust, which has hidden parts: points visible in the image lie on the image's own depth.
+/// The same test on the bust, which has hidden parts: points visible in the image lie on the image's own depth.
 #[test]
 fn visible_points_of_the_bust_land_on_the_image_view() {
     let scene = Scene::new(&surface("bust").expect("a name")).expect("a surface");

@@ -111,7 +111,7 @@ export function depthTiff(name = "d.tif"): Upload {
   return bytes(name, head, strip, directory);
 }
 
-/** The same as points in rows and columns; missing depths have no point. */
+/** The ball as points in rows and columns; missing depths have no point. */
 export function cloudPly(name = "d.ply"): Upload {
   const points = Float32Array.from({ length: 3 * SIDE * SIDE }, (_, at) => {
     const i = Math.floor(at / 3);

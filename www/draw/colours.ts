@@ -40,7 +40,7 @@ export function colourAt(map: MapName, share: number): [number, number, number] 
 export const gradient = (map: MapName): string =>
   `linear-gradient(to right, ${STOPS[map].map((stop) => `#${stop}`).join(", ")})`;
 
-/** The same as whole pixels, in the byte order of all machines that browsers run on. */
+/** The colours of a map as whole pixels, in the byte order of all machines that browsers run on. */
 const whole = (table: Uint8ClampedArray): Uint32Array =>
   Uint32Array.from(
     { length: 256 },

@@ -37,7 +37,7 @@ export interface OwnFiles {
 export type SampleSource = { kind: "sample"; request: SampleRequest; turn: { alpha: number; beta: number } };
 /** The input to show; a saved run continues where it stopped. */
 export type Source = SampleSource | { kind: "files"; files: OwnFiles } | { kind: "saved"; file: File };
-/** The same for the worker, with the files read. */
+/** The input for the worker, after the files have been read. */
 export type Input = Exclude<Source, { kind: "files" }> | { kind: "pair"; pair: Pair };
 
 /**

@@ -23,7 +23,7 @@ export interface Cut {
   height: number;
 }
 
-/** The part of the view for which `inside` holds, or all of it if it holds nowhere. An object in a corner is then still drawn large. */
+/** The part of the view for which `inside` holds, or the whole view if it holds nowhere. An object in a corner is then still drawn large. */
 export function cutOf(width: number, height: number, inside: (index: number) => boolean): Cut {
   let [left, top, right, bottom] = [width, height, -1, -1];
   for (let row = 0, index = 0; row < height; row++) {

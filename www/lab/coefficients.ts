@@ -10,7 +10,7 @@ export interface CoefficientHooks {
   onLight(patch: Settings, done: boolean, gesture: object): void;
 }
 
-/** Harmonics of one channel, and what each multiplies: x right, y down, z away. */
+/** Harmonics of one channel as functions of the normal: x right, y down, z away. */
 const PER_CHANNEL = 9;
 const ORDERS = [
   { name: "Order 0: brightness", of: [[0, "1"]] },

@@ -70,7 +70,7 @@ export async function drawMask(image: File, take: (mask: File | undefined) => vo
   });
 }
 
-/** The same for a depth map, of which a range of depths can be used. */
+/** Opens the tool for a depth map, of which a range of depths can be used. */
 export async function drawDepthMask(depth: File, take: (mask: File | undefined) => void): Promise<void> {
   tool ??= new MaskTool();
   const { shown, suggest } = silhouettes();

@@ -70,7 +70,7 @@ function ofMasks({ masks }: Facts): Expectation[] {
   return found;
 }
 
-/** One camera, or two views of it that are aligned: the true pose is then no rotation. */
+/** Both views come from one camera or from two aligned ones, so that the true pose is no rotation. */
 const isRegistered = ({ colour, depth, focal }: Facts): boolean => {
   const [columns, rows] = sides(colour);
   const [width, height] = sides(depth);

@@ -3,7 +3,7 @@
 import type { Stage } from "../../pkg/index.js";
 import { make } from "../dom";
 
-/** What the explanations depend on. */
+/** Properties of the run on which the explanations depend. */
 export interface Method {
   shading: "surface" | "pixel";
   registration: "joint" | "icp" | "fixed";

@@ -23,7 +23,7 @@ import {
   type ViewName,
 } from "../engine/protocol";
 
-/** What the pictures request from the worker; hidden pictures request nothing. */
+/** The requests of the pictures to the worker; hidden pictures request nothing. */
 export interface GalleryHooks {
   look(look: Look): Promise<Drawings | undefined>;
   probe(asked: Asked): Promise<Probed | undefined>;

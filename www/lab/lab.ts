@@ -73,7 +73,7 @@ export class Lab {
   readonly #messages: Messages;
   #origin: Origin = "sample";
   readonly #record = new RunRecord();
-  /** The input that was requested last, accepted or not, or what it lacked. */
+  /** The input that was requested last, whether or not it was accepted, or the parts that it lacked. */
   #wanted: Source | string = "";
   /** The input on the screen, to be opened again if the worker has lost it. */
   #good: { source: Source; settings: Settings } | undefined;
@@ -278,7 +278,7 @@ export class Lab {
         this.#forget();
         await this.#show(frame);
       } else if (!(await this.#open(source, options, turn))) return;
-      // Includes what the page has filled in by itself.
+      // Includes the values that the page has filled in by itself.
       this.#good = { source, settings: turn === this.#turn ? this.store.settings : settings };
       if (turn === this.#turn) this.#notices.settle();
     } catch (error) {
@@ -389,7 +389,7 @@ export class Lab {
     this.#transport.show(playing, isIdle && notice?.cause ? notice.words : "");
   }
 
-  /** Shows an error beside the field that it concerns; what was on the screen stays usable. */
+  /** Shows an error beside the field that it concerns; the run on the screen stays usable. */
   async #fail(error: unknown): Promise<void> {
     this.player.pause();
     this.#notices.fail(this.#messages.fail(error));

@@ -58,7 +58,7 @@ export class Kept {
   readonly #rig: Rig;
   /** Called with how the files are kept, in words. */
   readonly #onWords: (words: string) => void;
-  /** What the database holds of this rig. */
+  /** The records of this rig in the database. */
   #stored = new Map<string, Read>();
   #owner = crypto.randomUUID() as string;
   #timer: ReturnType<typeof setTimeout> | undefined;

@@ -78,7 +78,7 @@ export interface Candidate {
   pose: Pose;
   /** The file that the candidate came from; removing the file also removes the candidate. */
   file?: number;
-  /** What the reader guessed about pasted text. */
+  /** The reader's guesses about pasted text. */
   guessed?: ReaderWarning[];
 }
 

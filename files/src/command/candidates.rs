@@ -19,7 +19,7 @@ pub struct Candidates {
     pub cameras: Vec<PathBuf>,
 }
 
-/// The refusal of a file of poses between a sensor and what carries it or what it looks at.
+/// The error about a file of poses between a sensor and its carrier or its target.
 fn of_carriers(path: &Path, pose: &NamedPose) -> Problem {
     let [from, to] = [&pose.names.from, &pose.names.to].map(|name| name.as_deref().unwrap_or("another frame"));
     let words = format!(

@@ -2,8 +2,8 @@
  * The calibration of an Azure Kinect: the JSON of the device, which an .mkv recording has as an attachment, and the print of the SDK's
  * example.
  *
- * The JSON's numbers are fractions of the whole sensor. The images of a mode are a crop of it, which may be binned, so that one set of
- * numbers gives a camera for each mode; the size of the images selects one. As in the SDK, pixel centres have integer coordinates.
+ * The JSON's numbers are fractions of the whole sensor. The images of a mode are a crop of the sensor, which may be binned, so that one
+ * set of numbers gives a camera for each mode; the size of the images selects one. As in the SDK, pixel centres have integer coordinates.
  */
 import { badFile } from "../../errors.js";
 import { BROWN_NAMES, type RawCamera } from "./cameras.js";

@@ -181,7 +181,7 @@ export class Motions {
     return true;
   }
 
-  /** The numbers of a rotation, and what the names of its members specify. */
+  /** The numbers of a rotation, and the properties that the names of its members specify. */
   #rotationParts(value: unknown): (Matrix & { said: Attributes; isMatrix: boolean }) | undefined {
     const isMatrix = isNode(value) && value.data !== undefined;
     const four = parts(value, ["x", "y", "z", "w"]) ?? parts(value, ["qx", "qy", "qz", "qw"]);

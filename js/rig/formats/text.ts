@@ -159,7 +159,7 @@ async function ofXml(text: string): Promise<Read> {
   return (await products()).productOfXml(root) ?? searched(plainXml(root), "XML", text);
 }
 
-/** The cameras and poses of a text, with the name of its format; the file's name supplies what the text leaves open. */
+/** The cameras and poses of a text, with the name of its format; the file's name supplies frames that the text leaves open. */
 export async function readText(text: string, file: string): Promise<Read> {
   const { isBare = false, ...found } = await ofContent(text);
   asFisheye(found.cameras, found.warnings, `${file.replace(/^.*[/\\]/, "")}\n${text}`);

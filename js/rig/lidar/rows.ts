@@ -30,7 +30,7 @@ const MOST_ROWS = 512;
 const FEWEST_POINTS = 20;
 /** Largest ratio of the median distance of points from their cones to the distance of neighbouring cones; points without rows have 0.25. */
 const FITTING = 0.15;
-/** The same limit if the rows come from rings or from turns, which are rows even if their cones fit poorly. */
+/** The same ratio for rows that come from rings or from turns, which are rows even if their cones fit poorly. */
 const FITTING_RINGS = 0.5;
 /** Largest number of points on which this ratio is measured. */
 const LOOKED_AT = 50_000;

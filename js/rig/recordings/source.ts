@@ -1,6 +1,6 @@
 /**
- * The interface of containers: tracks, and what was recorded on them within a span of time. Only the parts that are needed are read, since a
- * recording may be larger than memory.
+ * The interface of containers: tracks, and the data that was recorded on them within a span of time. Only the parts that are needed are
+ * read, since a recording may be larger than memory.
  */
 import type { NamedCamera, NamedPose, ReadOptions, RigReading } from "../types.js";
 import type { ReaderWarning } from "../warnings.js";

@@ -9,7 +9,7 @@ import { fault, like, oneOf } from "./built.js";
 /** Width and height in pixels. */
 export type Size = readonly [width: number, height: number];
 
-/** What is known about the rig besides the pose; it is written if the format has a place for it. */
+/** Properties of the rig besides the pose; they are written if the format has a place for them. */
 export interface RigContext {
   /** The colour camera. */
   colour?: PinholeInput | undefined;

@@ -104,7 +104,7 @@ impl Matcher {
         Candidate { pose, score: hypothesis.score }
     }
 
-    /// Draws the rotated cloud as a template. Returns whether enough of it is visible.
+    /// Draws the rotated cloud as a template. Returns whether enough of the cloud is visible.
     fn draw(&mut self, rotation: &Matrix3<f64>, size: f64) -> bool {
         self.template.draw(&self.cloud, rotation, &self.geometry.projection(size, self.target.cell));
         if self.template.visible < FEWEST_CELLS {

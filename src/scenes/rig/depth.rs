@@ -26,7 +26,7 @@ const LATERAL: f64 = 0.5;
 /// (Kinect).
 const DISPARITY: f64 = 580.0 * 0.075;
 const DISPARITY_STEP: f64 = 0.125;
-/// Cosine between surface and line of sight up to which no light returns, and from which all of it does.
+/// Cosine between surface and line of sight up to which no light returns, and from which on all light returns.
 const GRAZING: [f64; 2] = [0.08, 0.18];
 /// Relative jump of depth between neighbours that counts as a discontinuity.
 const RIM: f64 = 0.03;

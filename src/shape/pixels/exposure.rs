@@ -17,8 +17,8 @@ use crate::view::Normals;
 /// Largest number of pixels, and number of directions on the hemisphere, for the first exposure: enough for two digits.
 const MOST_PIXELS: usize = 400;
 const DIRECTIONS: usize = 300;
-/// The first exposure is the best of a grid: its step in log units (a parabola then reduces the error to a fifth of
-/// it), and the number of steps to either side of equal medians.
+/// The first exposure is the best of a grid: its step in log units (a parabola then reduces the error to a fifth of the
+/// step), and the number of steps to either side of equal medians.
 const GRID_STEP: f64 = 0.05;
 const GRID_STEPS: i32 = 60;
 /// Robust scale of the grid's objective in log units.

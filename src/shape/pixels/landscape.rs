@@ -13,8 +13,8 @@ use crate::light::{Light, Polynomial};
 use crate::numeric::{LANES, Lanes, Mask};
 use crate::view::Normals;
 
-/// Two ends of descents closer than this (3 degrees) are one minimum: a descent stops within a tenth of a degree of it,
-/// and minima of a quadratic form of second order are tens of degrees apart.
+/// Two ends of descents closer than this (3 degrees) are one minimum: a descent stops within a tenth of a degree of the
+/// minimum, and minima of a quadratic form of second order are tens of degrees apart.
 const SAME: f32 = 0.05;
 
 /// A local minimum of a pixel's objective.
