@@ -57,7 +57,7 @@ export interface StateDetail {
 
 /** The events of `<bimodal-stereo>`; none of them bubbles. */
 export interface StereoEvents {
-  /** After each iteration and each slice of the search. */
+  /** Sent after each iteration and each slice of the search. */
   step: CustomEvent<StepReport>;
   /** The status has changed. */
   status: CustomEvent<StatusDetail>;

@@ -189,7 +189,7 @@ export function readSmall(bytes: Uint8Array, most: number): { axes: number[]; va
   return { axes, values: header.byColumns ? inRows(values, height, width, 1) : values };
 }
 
-/** Two or three planes without negative values are not a cloud; with values above 1 they are not colours either. */
+/** Two or three planes without negative values are not a cloud. If values exceed 1, they are not colours. */
 const isStack = (data: Pixels): boolean =>
   !data.some((value) => value < 0) && data.some((value) => value > 1 && value < Infinity);
 

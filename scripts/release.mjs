@@ -56,7 +56,7 @@ const locked =
 
 /** The change of each file. */
 const FILES = {
-  // Once for all members, and once where the command line depends on the library.
+  // The version stands in two places: for all members, and where the command line depends on the library.
   "Cargo.toml": (text, { version }) =>
     replaced(
       "Cargo.toml",

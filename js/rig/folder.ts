@@ -300,7 +300,7 @@ const placeOfFrame = (): ReaderWarning =>
     "It is named like a picture and does not name the frames of its pose, so it may be the pose of the camera in the world. It was read as the pose from the depth camera to the colour camera. If that is right, name it depth_to_color.txt, otherwise pose/0.txt or the like.",
   );
 
-/** The contents of a folder's texts: cameras, the poses between them, and the unit of the depth maps; `own` has the texts of single frames. */
+/** What a folder's texts give: cameras, poses between them and the unit of the depth maps. `own` has the texts of single frames. */
 async function calibrationOf({ texts, others, lenses }: Sorted, frames: ReadonlySet<string>, reader: FolderReader) {
   const found: TextOfFrame[] = [];
   let depthUnit: number | undefined;

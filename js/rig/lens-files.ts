@@ -9,15 +9,15 @@ export interface LensFile {
   values: Numbers;
 }
 
-/** Names of files of a lens's coefficients alone. */
+/** Names of files that hold only the coefficients of a lens. */
 const LENS_FILE = /(?:^|[_.-])(?:d|(?:camera[_-]?)?dist(?:ortion)?(?:[_-]?coeff?\w*)?|coeffs?)(?=[_.-])/i;
 const isLensFile = (path: string): boolean => LENS_FILE.test(path.replace(/^.*[/\\]/, ""));
 
-/** How many coefficients OpenCV's lenses have. */
+/** Possible numbers of coefficients of OpenCV's lenses. */
 const COUNTS = [4, 5, 8, 12, 14];
 const LONGEST = 4000;
 
-/** The numbers of a text of numbers alone, with or without a name before them, or of the one matrix of OpenCV's YAML. */
+/** The numbers of a text that holds only numbers, with or without a name before them, or of the one matrix in OpenCV's YAML. */
 function written(text: string): Numbers | undefined {
   const [only, ...others] = [...text.matchAll(/\bdata:\s*\[([^\]]*)\]/g)];
   if (others.length > 0) return undefined;

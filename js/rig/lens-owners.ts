@@ -1,4 +1,4 @@
-/** Which camera a lens in a separate file belongs to: the one whose file has a name like it. Loaded where a folder has such files. */
+/** Finds the camera to which a lens in a separate file belongs: its file has a similar name. Loaded if a folder has such files. */
 import { BimodalError } from "../errors.js";
 import { cameraOf } from "./formats/cameras.js";
 import { isIntrinsics, isLens, wordsOf } from "./formats/names.js";
@@ -18,7 +18,7 @@ function owner(path: string): string {
   return `${folderOf(path)}${words.join(" ")}`;
 }
 
-/** Gives each lens to the one camera without distortion whose file has a name like it, and returns what was read from each file. */
+/** Gives each lens to the camera without distortion whose file has a similar name, and returns what was read from each file. */
 export function giveLenses(
   lenses: readonly LensFile[],
   texts: readonly TextOfFrame[],

@@ -347,7 +347,7 @@ export function sayUnpaired(pictures: NamedFile[], warnings: ReaderWarning[]): v
 
 export function pairsOf(pictures: NamedFile[], warnings: ReaderWarning[]): Pairs {
   const found = sorted(pictures, warnings);
-  // By times alone, pictures of different cameras would alternate.
+  // Sorted only by time, pictures of different cameras would alternate.
   const areStamped = [...found.colours, ...found.depths].every(({ name }) => timeOf(name) !== undefined);
   const single = areStamped ? ofOneCamera(found, warnings) : undefined;
   if (single !== undefined) return single;

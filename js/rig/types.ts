@@ -36,7 +36,7 @@ export interface NamedCamera {
   width?: number;
   /** Rows of its pictures, where the file gives them. */
   height?: number;
-  /** The pictures that it took, where the file says so; "both" where depth maps are registered to its colour images. */
+  /** The kind of pictures that it took, if the file states it; "both" if depth maps are registered to its colour images. */
   takes?: "colour" | "depth" | "both";
 }
 

@@ -107,7 +107,7 @@ export interface CandidateReport {
   probability: number;
 }
 
-/** The frame that would determine the least certain unknown best, and the sigma to expect. It is computed from the evidence of one frame of the check. */
+/** The frame that would best determine the least certain unknown, and the sigma to expect, from the evidence of one frame. */
 export interface NextFrame {
   /** The least certain unknown: a rotation about x, y, z through the scene's centre, or a translation along them, in the colour frame. */
   axis: "rx" | "ry" | "rz" | "tx" | "ty" | "tz";

@@ -10,7 +10,7 @@ const DEGREE = Math.PI / 180;
 /** The largest error that passes, pixels of an image 640 wide. */
 const PASSES = 3.5;
 
-/** A mistake in the pose alone, which `change` makes of a rotation and a translation. */
+/** A mistake that affects only the pose: `change` applies it to a rotation and a translation. */
 const ofPose = (change) => (rig) => ({ ...rig, pose: poseOf(...change(rig.pose)) });
 /** A mistake in how the colour images or depth maps are stored or described. */
 const ofView = (view, change) => (rig) => ({

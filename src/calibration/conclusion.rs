@@ -219,7 +219,7 @@ impl CalibrationCheck {
     }
 }
 
-/// Whether the distribution of the estimate alone left the verdict open.
+/// Whether only the distribution of the estimate left the verdict open.
 const fn is_open(reason: &CheckReason) -> bool {
     matches!(reason, CheckReason::TooClose(_) | CheckReason::Unconstrained { .. } | CheckReason::GuessedCamera { .. })
 }

@@ -176,7 +176,7 @@ impl<'a> Hypothesis<'a> {
         };
         let mut motions =
             vec![(NextMotion::Left, about(Vector3::y(), -angle)), (NextMotion::Right, about(Vector3::y(), angle))];
-        // A scanner is often on a vehicle, which neither tilts nor rolls.
+        // A scanner is often mounted on a vehicle, which cannot tilt or roll.
         if !self.frame.is_cloud {
             motions.push((NextMotion::Up, about(Vector3::x(), angle)));
             motions.push((NextMotion::Down, about(Vector3::x(), -angle)));

@@ -274,7 +274,7 @@ mod tests {
     #[test]
     fn an_oblique_boundary_lies_within_the_gap_of_each_of_its_samples() {
         for rows in [1, 2, 4] {
-            // Half a pixel off the centres, so that no sample lies on the boundary.
+            // Samples lie half a pixel off the centres, so that none lies on the boundary.
             let found = seen([1, rows], |[x, y]| if 60.0 * (x + y) < -0.5 { 1.0 } else { 3.0 });
             let inner: Vec<_> = found.iter().filter(|rim| (8.0..40.0).contains(&rim.pixel[1])).collect();
             assert!(inner.len() >= 25, "{rows}: {}", inner.len());

@@ -109,7 +109,7 @@ mod tests {
     use super::*;
     use nalgebra::Rotation3;
 
-    /// The fit with a ridge depends on the normals by the products of their harmonics alone.
+    /// The fit with a ridge depends on the normals only by the products of their harmonics.
     #[test]
     fn products_of_harmonics_do_not_depend_on_the_axes() {
         let normals = [[0.0, 0.0, -1.0], [0.6, 0.0, -0.8], [-0.2, 0.9, -0.4], [0.5, -0.5, 0.7]].map(Vector3::from);

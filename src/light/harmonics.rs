@@ -79,7 +79,8 @@ impl Light {
     #[must_use]
     pub fn turned(&self, rotation: &Matrix3<f64>) -> Self {
         Self(self.0.map(|l| {
-            // The quadratic form of the normal alone; the zz entry excludes what the unit length moves to the constant.
+            // The quadratic form of the normal without the constant. The unit length of the normal moves a part of the
+            // zz entry to the constant.
             let (xx, zz) = (C1 * l[8], C3 * l[6]);
             #[rustfmt::skip]
             let form = Matrix3::new(
@@ -99,7 +100,7 @@ impl Light {
         }))
     }
 
-    /// The growth of log S of R, G and B from `other`, a light that differs in colour alone.
+    /// The growth of log S of R, G and B from `other`, a light that differs only in colour.
     #[must_use]
     pub fn offsets_to(&self, other: &Self) -> [f64; 3] {
         std::array::from_fn(|channel| C4 * (self.0[channel][0] - other.0[channel][0]))

@@ -299,7 +299,7 @@ mod tests {
         };
         let mut found = sure.clone();
         found.add_focal_length(0.8);
-        // Half of half a percent, and four millimetres at 0.8 m.
+        // The bounds are a quarter of a percent, and four millimetres at 0.8 m.
         assert!((found.rotation_degrees[0] - 0.1432).abs() < 1e-4, "{found:?}");
         assert_eq!(found.rotation_degrees[2], LARGEST_SIGMA);
         assert_eq!(found.translation[..2], sure.translation[..2]);

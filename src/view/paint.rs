@@ -190,7 +190,7 @@ impl Regions {
                 }
                 let mut change = 0.0_f64;
                 for (offset, &(sum, weight)) in offsets.iter_mut().zip(&sums) {
-                    // Halfway, because a full step of all regions at once would oscillate between two of them for ever.
+                    // Each region takes half of its step: full steps of all regions at once would oscillate for ever.
                     let next = 0.5 * (*offset + sum / weight);
                     change = change.max((next - *offset).abs());
                     *offset = next;
@@ -314,7 +314,7 @@ mod tests {
     #[test]
     fn without_paint_there_is_nothing_to_take_away() {
         assert!(ball(|_, _| [0.0; 3]).without_paint().is_none());
-        // A gradual change is no edge either.
+        // A gradual change is not an edge.
         assert!(ball(|column, _| [0.01 * column as f64, 0.0, 0.0]).without_paint().is_none());
     }
 }

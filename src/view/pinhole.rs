@@ -52,7 +52,7 @@ impl Pinhole {
     }
 
     /// Column and row of a point; `None` behind the camera, beyond the fold of its lens, and at the camera's centre. A
-    /// fisheye sees points beside and behind it as far as its lens does not fold.
+    /// fisheye also sees points beside and behind it, up to the angle at which its lens folds.
     #[must_use]
     pub fn project(&self, point: [f64; 3]) -> Option<[f64; 2]> {
         let [x, y] = self.lens.project(point)?;

@@ -88,7 +88,7 @@ describe("a large image beside a coarse depth map", () => {
     for (let c = 0; c < 3; c++) {
       const expected = (linear(60 + 10 * c) + linear(180 + 10 * c)) / 2;
       const code = expected <= 0.0031308 ? 12.92 * expected : 1.055 * expected ** (1 / 2.4) - 0.055;
-      // Half a level of 16 bits, and the single precision of the table.
+      // The errors are half a level of 16 bits and the single precision of the table.
       close([small.data[4 * 700 + c]], [65535 * code], 1);
     }
     assert.equal(

@@ -25,7 +25,7 @@ const inFile = grey16(disparities.map((value) => Math.round(256 * value)));
 
 test("disparities become metres by focal length times baseline, and holes stay holes", async () => {
   const reading = await read("disp.png", inFile, { as: "depth", inverse: { numerator: 256 * NUMERATOR } });
-  // Half a level of disparity corresponds to z^2 / (2 * 7680) metres.
+  // The rounding error, half a level of disparity, corresponds to z^2 / (2 * 7680) metres.
   close(metres(reading), depths, 1.5 ** 2 / (2 * 7680));
   assert.deepEqual(reading.guessed, []);
   assert.equal(reading.depth.unit, 1);
@@ -33,7 +33,7 @@ test("disparities become metres by focal length times baseline, and holes stay h
   // Without the option the name is refused, and the error names the remedy for programs.
   await refusedFile(read("disp.png", inFile), "disp.png", /the option `inverse`/);
   await assert.rejects(read("disp.png", inFile), ({ details }) => details.problem === "disparity");
-  // The option alone makes it a depth map, whatever the name.
+  // The option makes the file a depth map, whatever its name.
   assert.equal((await read("x.png", inFile, { inverse: { numerator: 7680 } })).kind, "depth");
 });
 

@@ -91,7 +91,7 @@ fn the_search_comes_in_slices_and_says_how_far_it_is() {
     assert_eq!((report.stage, report.iteration), (Stage::Refinement, 1));
 }
 
-/// A ball looks the same from everywhere, and a uniform image has no information: neither pose may be called found.
+/// A ball looks the same from everywhere, and a uniform image has no information, so no pose may be reported as found.
 #[test]
 fn what_cannot_be_known_is_not_claimed() {
     let ball: Vec<f32> = (0..256 * 256)

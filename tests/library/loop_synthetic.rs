@@ -101,8 +101,8 @@ fn squares(depth: &[f32], truth: &[f32], counts: impl Fn(usize) -> bool) -> Vec<
     indices.map(|index| f64::from(depth[index] - truth[index]).powi(2)).collect()
 }
 
-/// Refinement alone: the pose is known and fixed. Returns the depth's error before, divided by its error after,
-/// as root mean squares over the pixels with measured depth.
+/// Tests only the refinement: the pose is known and fixed. Returns the depth's error before, divided by its error
+/// after, as root mean squares over the pixels with measured depth.
 fn refinement_gain(name: &str, scene: &Scene, light: Light) -> f64 {
     let [mut before, mut after, mut holes] = [const { Vec::new() }; 3];
     for seed in SEEDS {

@@ -96,7 +96,7 @@ fn a_plane_is_exact_up_to_its_borders() {
 
 #[test]
 fn spheres_are_second_order() {
-    // Twice the resolution of the same scene: errors away from the occluding contour are four times smaller.
+    // At twice the resolution, errors away from the occluding contour are four times smaller.
     let error = |side: usize, perspective: bool| {
         let size = size(side, side);
         let camera = if perspective { pinhole(size) } else { Camera::Orthographic };

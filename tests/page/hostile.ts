@@ -41,7 +41,7 @@ export function withTexts({ buffer, ...file }: Upload): Upload {
     chunk("iTXt", Buffer.from(`Author\0\0\0\0\0${EVIL_TEXT}`, "latin1")),
     chunk("eXIf", exif()),
   ];
-  // After the signature and the header.
+  // The position after the signature and the header.
   return { ...file, buffer: Buffer.concat([buffer.subarray(0, 33), ...texts, buffer.subarray(33)]) };
 }
 

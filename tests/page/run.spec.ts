@@ -96,7 +96,7 @@ test(
     await messages.hold("advance", 1);
     await page.keyboard.press(" ");
     await expect(lab.iteration).toHaveText("1");
-    // Through two other places, neither of which ends the run.
+    // Visits two other places; the run continues.
     await page.locator("#to-learn").click();
     await page.locator("#to-tables").click();
     await expect(page.locator("#lab")).toBeHidden();

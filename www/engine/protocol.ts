@@ -234,7 +234,7 @@ export interface Calls {
   reset: { request: { options: LabOptions; look: Look }; reply: Frame };
   look: { request: { look: Look }; reply: Drawings };
   probe: { request: { side: Side; pixel: Pixel }; reply: Probed };
-  /** Runs steps until the time is up, at least one; a stage is always run alone. */
+  /** Runs at least one step, and more until the time is up. A stage is run without any other. */
   advance: { request: { by: "step" | "stage"; milliseconds: number; look: Look }; reply: Frame };
 }
 

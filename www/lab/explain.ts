@@ -288,7 +288,7 @@ const stages: Readonly<Record<Stage, (method: Method) => Text>> = {
 
 function shown({ title, formula, words, source }: Text): HTMLElement[] {
   const equation = make("div", { class: "equation" });
-  // Markup of this file alone.
+  // Markup that is made only in this file.
   if (formula) equation.innerHTML = formula;
   return [
     make("h2", {}, title),

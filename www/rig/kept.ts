@@ -113,7 +113,7 @@ export class Kept {
     return items.length + candidates.length > 0 || busy !== "";
   }
 
-  /** The files alone; what was chosen for them is left to the visitor. */
+  /** Restores only the files; the visitor chooses their roles again. */
   async #readAgain(reads: Iterable<Read>): Promise<void> {
     for (const { kind, ask } of reads) {
       if (kind === "read") await this.#rig.add([{ name: ask.name, blob: ask.blob }]);

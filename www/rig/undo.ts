@@ -19,7 +19,7 @@ interface Step {
   where: Where;
   /** Whether the removed item has been restored in another way. */
   isMoot(): boolean;
-  /** Later items have higher numbers. */
+  /** Number of an item; later items have higher numbers. */
   last: number;
   /** Whether everything was removed, so that later items belong to another rig. */
   isWhole: boolean;

@@ -73,7 +73,7 @@ const isUsual = ({ from, to }: { from: string; to: string }): boolean =>
 
 /**
  * The poses of a file. A single pose without frames takes the frames in the file's name, except the default from depth to colour. With
- * `isBare` the file holds only numbers, so its name may say that it is a camera's pose in the world, or name one end alone.
+ * `isBare` the file holds only numbers, so its name may mean a camera's pose in the world, or name only one of the two frames.
  */
 export function withEnds(
   poses: readonly NamedPose[],

@@ -78,7 +78,8 @@ const turnsAxes = (values: Numbers): boolean => {
 };
 
 /**
- * Whether angles are degrees: the file says so, they are too large for radians, or only as degrees are they a rotation that a rig can have.
+ * Whether angles are degrees: the file states it, they are too large for radians, or only in degrees do they give a possible rotation of
+ * a rig.
  */
 function areDegrees(values: Numbers, { angle }: Attributes): boolean {
   if (angle !== undefined) return angle === "degrees";

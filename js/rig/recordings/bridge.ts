@@ -172,7 +172,7 @@ function socketOf(address: string): WebSocket {
   }
 }
 
-/** Connects and waits for the topics, which the server sends at once. A server without topics sends its name alone. */
+/** Connects and waits for the topics, which the server sends at once. A server without topics sends only its name. */
 export async function connect(written: string): Promise<Bridge> {
   const address = addressOf(written);
   const socket = socketOf(address);

@@ -49,7 +49,7 @@ function kalibrDistortion({ model, distortion }: Camera): { word: string; coeffi
   return { word: "radtan", coefficients: padded(distortion, 4) };
 }
 
-/** Intrinsics without their distortion would be read as a camera without distortion, so both are written or neither. */
+/** Both are written or none, because readers take intrinsics without distortion for those of a camera that has none. */
 function kalibrCamera(camera: Camera | undefined, name: string, notes: string[]): string[] {
   const leftOut = (why: string): string[] => {
     notes.push(why);

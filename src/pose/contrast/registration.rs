@@ -56,7 +56,7 @@ pub struct ContrastEffort {
 impl ContrastEffort {
     /// Down to the sharp image.
     pub const FULL: Self = Self { first_level: 1, last_level: 0, rounds: 14, instrument_rounds: 0 };
-    /// On the blurred image alone: enough to see whether an initial pose deserves more work.
+    /// Registers only on the blurred image, which shows whether an initial pose deserves more work.
     pub const COARSE: Self = Self { first_level: 1, last_level: 1, rounds: 3, instrument_rounds: 0 };
 }
 

@@ -1,5 +1,5 @@
-//! Terms of the pose alone, in addition to the image residuals, about an initial pose that is trusted to some degree:
-//! the object's points have to lie on the image's mask, and a Gaussian holds the pose.
+//! Two terms of the pose, in addition to the image residuals, near an initial pose that is trusted to some degree: the
+//! object's points have to lie on the image's mask, and a Gaussian holds the pose.
 //!
 //! A point off the mask is a residual like any other. Far off, it costs a fixed share of the square of the robust
 //! scale, which is the cost of a point whose colours do not fit at all. Pixels of the mask that no point covers cost
@@ -196,7 +196,7 @@ mod tests {
                 step[k] = by;
                 cost(&FRAME.change(&step).after(&pose))
             };
-            // Half of the derivative of the cost; the derivative of the distance is taken over several pixels.
+            // Half of the derivative of the cost. The derivative of the distance is a difference over several pixels.
             let slope = (moved(small) - moved(-small)) / (4.0 * small);
             let off = (gradient[k] - slope).abs();
             assert!(off < 0.2 * gradient.norm(), "{k}: {} {slope}", gradient[k]);

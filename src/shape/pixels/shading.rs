@@ -17,7 +17,7 @@ use crate::view::Normals;
 /// The data for the unknown normals: all slices have one length, with one element for each pixel.
 #[derive(Clone, Copy)]
 pub struct ShadingProblem<'a> {
-    /// log S of R, G, B; a pixel with NaN depends on its prior alone.
+    /// log S of R, G, B; a pixel with NaN depends only on its prior.
     pub log: [&'a [f32]; 3],
     /// The other view's normals in this frame, NaN where it has none.
     pub prior: &'a Normals,
