@@ -6,7 +6,7 @@ const TOUCHES = ["pointermove", "pointerdown", "keydown", "wheel"] as const;
 
 export interface Stand {
   isPlaying(): boolean;
-  /** Returns to the first state of this address, wherever the last visitor has gone. If that part of the page has a run, plays it. */
+  /** Returns to the first state of this address, whatever part of the page is shown. If this part has a run, it is played. */
   play(hash: string, isTouched: boolean): void;
 }
 

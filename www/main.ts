@@ -368,7 +368,7 @@ keepPlaying({
       history.replaceState(null, "", hash);
       return location.reload();
     }
-    // This address has to differ from the present one, from which "play" is removed as soon as the run plays.
+    // With "play" the new address differs from the present one, from which that word is removed as soon as the run plays.
     location.hash = placeOf(hash) === "lab" && !asksToPlay(hash) ? [hash || "#", "play"].join("&") : hash;
   },
 });

@@ -97,7 +97,7 @@ const ofLog = Uint8ClampedArray.from(
   (_, step) => 255 * Math.exp((-REACH * step) / (STEPS - 1) / 2.2),
 );
 
-/** Logarithms of linear colours; `white` is one as well. */
+/** Draws logarithms of linear colours; `white` is the logarithm of the white level. */
 export function paintLog({ width, height, data }: Raster, white: number): ImageData {
   const factor = (STEPS - 1) / REACH;
   const image = new ImageData(width, height);

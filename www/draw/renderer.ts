@@ -5,7 +5,7 @@ import { nextTask } from "../dom";
 import type { Asked, Change, Told } from "./stage";
 
 export interface Renderer {
-  /** Resolves when that is done. */
+  /** Resolves when the change is drawn. */
   draw(change: Change): Promise<void>;
   end(): void;
 }
@@ -13,7 +13,7 @@ export interface Renderer {
 export interface CloudsHooks {
   /** WebGL was suspended, or has returned. */
   onLost(lost: boolean): void;
-  /** Nothing more will be drawn. */
+  /** The thread has ended, and nothing more will be drawn. */
   onGone(): void;
 }
 

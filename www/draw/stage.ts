@@ -35,7 +35,7 @@ export interface Sight {
   projection: number[];
 }
 
-/** The parts that change; the others stay. */
+/** A change of the scene: absent parts stay as they are. */
 export interface Change {
   surfaces?: Record<Side, Surface>;
   sight?: Sight;
@@ -53,7 +53,7 @@ export interface Change {
 
 export interface PinnedSurfaces {
   surfaces: Record<Side, Surface>;
-  /** The `swing` of the pinned run. */
+  /** The transformation `swing` of the pinned run. */
   swing: number[];
 }
 

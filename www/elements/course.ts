@@ -36,7 +36,7 @@ export class Course {
   readonly #points = CURVES.map((): number[] => []);
 
   take(report: StepReport): void {
-    // The search has no iterations.
+    // Reports of the search belong to no iteration.
     if (report.stage === "search") return;
     for (const [at, { value }] of CURVES.entries()) this.#points[at]?.push(report.iteration, value(report));
   }

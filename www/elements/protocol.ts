@@ -1,4 +1,4 @@
-/** The messages between `<bimodal-stereo>` and its thread. Both sides import this file and nothing else of each other. */
+/** The messages between `<bimodal-stereo>` and its thread. Both sides import this file and no other file of the other side. */
 
 import type { StereoPair } from "../../pkg/elements.js";
 import type { Options, SampleRequest, StepReport, WasmSource } from "../../pkg/index.js";

@@ -32,13 +32,13 @@ interface Pending {
 export interface EngineHooks {
   /** Called with the number of bytes of the module that have arrived. */
   onLoad(bytes: number): void;
-  /** The worker is gone, and with it the input that it held; calls under way are rejected with the same error. */
+  /** The worker has ended and its input is lost. Pending calls are rejected with the same error. */
   onLost(error: EngineError): void;
 }
 
 export class Engine {
   #worker: Worker | undefined;
-  /** Before its first answer a worker is still loading; to replace it then would only load everything again. */
+  /** Before its first answer a worker is still loading. Replacing it then would only load everything again. */
   #loaded = false;
   #pending = new Map<number, Pending>();
   /** Called when nothing is pending any more. */

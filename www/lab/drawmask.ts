@@ -17,7 +17,7 @@ async function maskFile(image: File, width: number, height: number, data: Uint8A
   });
 }
 
-/** The mask at the size of its image. */
+/** Scales the mask to the size of its image. */
 async function fileOf({ width, height, data }: Paint, image: File): Promise<File> {
   const { width: columns = width, height: rows = height } = await lookAt(image);
   const full = new Uint8Array(columns * rows);

@@ -3,7 +3,7 @@
 import { make } from "../dom";
 import { svg } from "./parts";
 
-/** Two cameras and a scene in front of them, seen from above; the caption has the words. */
+/** Two cameras and a scene in front of them, seen from above. The caption explains the drawing. */
 function drawing(...scene: SVGElement[]): SVGElement {
   const camera = (x: number, kind: string) =>
     svg(

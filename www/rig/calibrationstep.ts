@@ -18,7 +18,7 @@ const TURNS: Record<By, readonly string[]> = {
 
 /** Distance of two cameras, metres, above which a wrong unit or a pose in the world is likelier than a rig. */
 const FAR = 0.5;
-/** Such a distance of a LiDAR and a camera on one vehicle, metres. */
+/** The same limit for a LiDAR and a camera on one vehicle, metres. */
 const FAR_ON_VEHICLE = 3;
 
 export class CalibrationStep {

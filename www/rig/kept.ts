@@ -12,9 +12,9 @@ import type { Read } from "./session";
 const STATE = "state";
 /** Milliseconds without a change after which the rig is stored. */
 const REST = 300;
-/** In the storage of this tab: which stored rig is its own. */
+/** Key in the storage of this tab; its value names the tab's own rig. */
 const MINE = "kept-rig";
-/** The name of this file contains a hash of its content: another version of the page may hold other things. */
+/** The name of this file contains a hash of its content. Another version of the page may store other records. */
 const VERSION = import.meta.url;
 
 type Lists = Pick<Rig, "items" | "frames" | "candidates" | "cues" | "notes" | "arranged" | "run" | "history">;
@@ -31,7 +31,7 @@ interface State {
   lists: Lists;
 }
 
-/** Forbidden storage keeps nothing. */
+/** If the browser forbids storage, nothing is kept. */
 function ownerHere(): string | null {
   try {
     return sessionStorage.getItem(MINE);
@@ -56,7 +56,7 @@ async function found(): Promise<{ state: State; reads: Map<string, Read> } | und
 
 export class Kept {
   readonly #rig: Rig;
-  /** Called with how the files are kept, in words. */
+  /** Called with a sentence about how the files are kept. */
   readonly #onWords: (words: string) => void;
   /** The records of this rig in the database. */
   #stored = new Map<string, Read>();
@@ -123,7 +123,7 @@ export class Kept {
 
   async #keep(): Promise<void> {
     const { items, busy, live } = this.#rig;
-    // Another change follows when these activities end, and the rig is stored then.
+    // The rig is stored after these activities, because each ends with another change.
     if (busy || live.isRunning || items.some(({ state }) => state === "reading")) return;
     if (!this.#isUsed) return this.#forget();
     try {

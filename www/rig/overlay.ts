@@ -17,9 +17,9 @@ interface Stop {
   pose: Pose;
 }
 
-/** Steps of the slider from one calibration to the next. */
+/** Number of slider steps from one calibration to the next. */
 const WAY = 20;
-/** Distinct from all depth colours, and from most objects. */
+/** A colour that differs from all depth colours and from most objects. */
 const EDGE = [255, 60, 190] as const;
 /** Ratio of the point size to the mean distance of points, so that sparse regions are covered. */
 const OVERLAP = 1.2;

@@ -200,7 +200,7 @@ export class VerdictStep {
       ...(isUsable(run) ? [{ value: "", label: "found" }] : []),
       ...(run.estimateOnly ? [] : Object.keys(run.candidates)).map((name) => ({ value: name, label: name })),
     ];
-    // The visitor's calibration is the default choice, unless it is off.
+    // The visitor's calibration is the initial choice, unless the verdict is "off".
     const isKept = !run.estimateOnly && run.report.verdict !== "off";
     const isConfirmed = !run.estimateOnly && run.report.verdict === "consistent";
     const wish = this.#wish;
