@@ -25,7 +25,7 @@ function sourceOf(where: () => WasmSource): WasmSource {
   }
 }
 
-/** The code of a .wasm. Its address may be unknown, so it is determined here. */
+/** The code of a .wasm. If the caller gives no address, it is determined here. */
 export async function compile(where: () => WasmSource): Promise<WebAssembly.Module> {
   const wasm = sourceOf(where);
   if (wasm instanceof WebAssembly.Module) return wasm;

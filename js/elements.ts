@@ -39,7 +39,7 @@ export declare function configure(places: Places): void;
 export interface FigureResult {
   /** The numbers, by the names of the lesson's readouts. */
   readonly numbers: Readonly<Record<string, number>>;
-  /** The values that are words, such as the status of a run. */
+  /** The words, such as the status of a run, by the names of the lesson's readouts. */
   readonly words: Readonly<Record<string, string>>;
 }
 
@@ -81,19 +81,19 @@ export interface FigureEvents {
 
 /** `<bimodal-stereo>`: finds the pose between an image and a depth map, one iteration per frame, and shows it. */
 export interface BimodalStereoElement extends HTMLElement {
-  /** Address of the colour image; empty without one. It reflects the attribute, as do all strings here. */
+  /** Address of the colour image; empty without one. All strings here reflect the attributes. */
   image: string;
   /** Address of the depth map, PNG or .npy; empty without one. */
   depth: string;
   /** Address of the depth map's mask; empty for none. */
   mask: string;
-  /** Pixels (or metres) per stored number of the depth map; `undefined` for the default. */
+  /** Pixels or metres per stored number of the depth map; `undefined` for the default. */
   unit: number | undefined;
   /** A rendered surface to use instead of files, such as "bust"; empty for none. */
   sample: string;
   /** Whether the run waits for `play()` or `step()`. */
   paused: boolean;
-  /** Whether both surfaces and the curves of the run are shown as well. */
+  /** Whether both surfaces and the curves of the run are also shown. */
   charts: boolean;
   /** A pair as arrays, instead of addresses; setting it restarts the run. */
   pair: StereoPair | undefined;

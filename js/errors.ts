@@ -25,12 +25,12 @@ export class BimodalError extends Error {
   readonly code: ErrorCode;
   /** The input at fault, as a path in the contract, e.g. "depth.camera.fx". */
   declare readonly field?: string;
-  /** Index into the field's array, where one entry is at fault. */
+  /** Index into the field's array, if one entry is at fault. */
   declare readonly index?: number;
-  /** The number at fault, where a single one is. */
+  /** The number at fault, if there is only one. */
   declare readonly value?: number;
 
-  /** The values in the message; for a file `file`, `reason` and, where it matters, `problem`. */
+  /** The values in the message. For a file they are `file`, `reason` and, if it is known, `problem`. */
   declare readonly details?: ErrorDetails;
 
   constructor(code: ErrorCode, message: string, field?: string, options?: BimodalErrorOptions) {

@@ -1,5 +1,5 @@
 /**
- * Colour images from any source that a program has: addresses and files, elements and bitmaps of a page, bytes.
+ * Reads colour images from addresses, files, bytes, and elements and bitmaps of a page.
  *
  * The readers for rigs read files. They keep 16 bits, follow colour profiles and orientation, and are loaded with the first file. The
  * browser reads all other formats.
@@ -75,7 +75,7 @@ async function decoded(bytes: Uint8Array, name: string, signal: AbortSignal | un
   return reading.image as ColorImage;
 }
 
-/** A file by the browser's decoders. */
+/** Decodes a file in the browser. */
 async function shown(bytes: Uint8Array, name: string): Promise<ColorImage> {
   try {
     return await drawn(new Blob([bytes as Uint8Array<ArrayBuffer>]));

@@ -98,7 +98,7 @@ export function poseOf(value: unknown, field: string): unknown {
   if (!isObject(value) || !("matrix" in value)) return value;
   const { matrix, ...members } = value;
   if (matrix === undefined) return members;
-  // A reported pose has both members. If its rotation was changed, the rotation counts.
+  // A reported pose has angles and a rotation. If the caller changed the rotation, the rotation counts.
   if ("rotation" in value && value.rotation !== undefined) return Object.hasOwn(value, "matrix") ? members : value;
   if (!isMatrix(matrix)) throw wrong(`${field}.matrix`, "a 4x4 matrix", matrix);
   return { ...members, ...ofMatrix4(matrix as Matrix4, `${field}.matrix`) };

@@ -66,7 +66,7 @@ export function single({ width, height, channels, data }: Raster<Pixels>): Pixel
   return levels;
 }
 
-/** Whatever is neither zero nor transparent belongs to the object. */
+/** Pixels that are neither zero nor transparent belong to the object. */
 export function toMask(raster: Raster<Pixels>): Mask {
   const { width, height, channels, data } = raster;
   const opaque = alphaMask(raster);

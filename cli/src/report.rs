@@ -203,7 +203,7 @@ fn text(value: &impl Serialize, layout: Layout) -> String {
         Layout::Lines => serde_json::to_string_pretty(value),
         Layout::OneLine => serde_json::to_string(value),
     };
-    // Cannot fail: it holds only strings and numbers, and its keys are names.
+    // Serialising cannot fail, because the value holds only strings and numbers, and its keys are names.
     made.expect("can be written") + "\n"
 }
 

@@ -13,7 +13,7 @@ import type {
   PoseInput,
 } from "../types/index.js";
 
-/** Milliseconds between two pauses for events. The page stays responsive, and the messages take a hundredth of the time. */
+/** Milliseconds between two pauses for events. The page stays responsive, and the pauses take a hundredth of the time. */
 const SLICE = 30;
 
 // Written as one expression, because bundlers look for exactly this form to include the file.

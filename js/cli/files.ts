@@ -6,7 +6,7 @@ import type { NamedFile, Reading } from "../rig/types.js";
 import { reasonOf } from "../errors.js";
 import { Mistake } from "./arguments.js";
 
-/** Largest number of bytes in a folder, because all files are read: some hundreds of pairs. */
+/** Largest number of bytes in a folder, because all files are read: enough for some hundreds of pairs. */
 const MOST_BYTES = 2 ** 31;
 
 export const file = (path: string, name = path): NamedFile => ({
@@ -51,7 +51,7 @@ export interface Input {
   says: string;
   sha256: string;
   bytes: number;
-  /** The codes of its warnings, including guesses. */
+  /** The codes of the warnings about the file, including guesses. */
   notes: string[];
 }
 

@@ -55,7 +55,7 @@ const owners = once(() => import("./lens-owners.js"));
 /** Files that are neither pictures nor calibrations and can be ignored. */
 const IGNORED =
   /(^|\/)(\.|__MACOSX|thumbs\.db|readme|licen[cs]e|copying|source\.txt|changelog)|\.(md|html?|py|mjs|js)$/i;
-/** A path outside the folder belongs to a file given by an option. */
+/** A path outside the folder is that of a file given by an option. */
 const ELSEWHERE = /^(?:\/|\.\.\/|[a-z]:\/)/i;
 const LISTS = /(^|\/)(rgb|depth|associat\w*|accelerometer|groundtruth|times?(tamps)?)\.(txt|csv)$/i;
 
@@ -417,7 +417,7 @@ function inOrderOf(pictures: NamedFile[], all: readonly Reading[]): Reading[] {
   return [true, false].flatMap((first) => all.filter(({ name }) => isPicture.has(name) === first));
 }
 
-/** The folder with the cameras and poses of these texts, too. */
+/** Adds the cameras and poses of these texts to a folder. */
 const withTexts = ({ cameras, poses, ...folder }: RigFolder, texts: TextOfFrame[]): RigFolder => ({
   ...folder,
   cameras: [...cameras, ...texts.flatMap((text) => text.cameras)],

@@ -34,7 +34,7 @@ export function lensOf({ name, bytes }: NamedFile): LensFile | undefined {
   return values !== undefined && COUNTS.includes(values.length) ? { file: name, values } : undefined;
 }
 
-/** The warning of a lens that was not used, with the reason if there is one beside its name. */
+/** The warning about a lens that was not used, with the reason if it is known. */
 export const unused = (file: string, reason = ""): ReaderWarning =>
   ofFile(
     file,
@@ -44,7 +44,7 @@ export const unused = (file: string, reason = ""): ReaderWarning =>
     ),
   );
 
-/** The lens of a file that could not be read is missing from its camera. */
+/** If a file of a lens could not be read, its camera lacks the lens. */
 export function doubtLenses(warnings: ReaderWarning[]): void {
   for (const { code, file } of [...warnings])
     if (code === "file-left-out" && file !== undefined && isLensFile(file)) warnings.push(unused(file));

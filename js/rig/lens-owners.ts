@@ -41,7 +41,7 @@ export function giveLenses(
   });
 }
 
-/** Puts the lens into the camera; returns the warnings about it, or why it cannot be used. */
+/** Puts the lens into the camera. Returns the warnings about the lens, or why it cannot be used. */
 function bend(camera: NamedCamera, { values }: LensFile): ReaderWarning[] | BimodalError {
   const said: ReaderWarning[] = [];
   const { fx, fy, cx, cy } = camera.camera;

@@ -9,12 +9,12 @@ export interface Tasks {
   accept(result: Float64Array): void;
 }
 
-/** Number of tasks in a worker's queue, enough for about ten milliseconds, during which its estimator's thread may be busy. */
+/** Number of tasks in a worker's queue: enough for about ten milliseconds, in which the estimator's thread may be busy. */
 const QUEUE = 3;
 
 interface SearchWorker {
   handle: WorkerHandle;
-  /** Tasks that were sent to it and are not answered yet. */
+  /** Tasks that were sent to the worker and are not answered yet. */
   queued: number;
 }
 

@@ -61,12 +61,12 @@ test("bundled for browsers it carries its files along, and asks for nothing of N
   };
   const { output } = await build({
     ...{ root: folder, configFile: false, logLevel: "warn", customLogger: logger, worker: { format: "es" } },
-    // This warning about slow plugins depends on how busy the machine is.
+    // This warning about slow plugins depends on the load of the machine.
     build: { write: false, rollupOptions: { input: join(folder, "page.js"), checks: { bundlerTimings: false } } },
   });
   assert.deepEqual(warnings, []);
   const bundled = output.map(({ fileName }) => fileName.replace(/^assets\/|-[\w-]{8}(?=\.)/g, "")).sort();
-  // The check's files are emitted although this page never loads them: their addresses are resolved before the unused code is removed.
+  // The check's files are emitted although this page never loads them, because their addresses are resolved before unused code is removed.
   const wasm = ["", "_check", "_rigs", "_scalar"].map((which) => `bimodal_stereo${which}_bg.wasm`);
   const files = [...wasm, "page.js", "thread.js"];
   assert.deepEqual(bundled, files);

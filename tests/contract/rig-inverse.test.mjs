@@ -1,4 +1,5 @@
-// Disparities and inverse depths, for which larger is nearer, are read as depths with the option `inverse`. 16-bit masks are not depths.
+// Disparities and inverse depths, which are larger for nearer surfaces, are read as depths with the option `inverse`. 16-bit masks are
+// not depths.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { close, codes, metres, read, refusedFile } from "./rig-support.mjs";
@@ -49,7 +50,7 @@ test("without the factor the median depth is the longer side of the map, and tha
   const reading = await read("d.png", inFile, { inverse: {} });
   const found = metres(reading).filter((value) => value > 0);
   assert.ok(Math.abs([...found].sort((a, b) => a - b)[found.length >> 1] / WIDTH - 1) < 0.01);
-  // All depths are right up to one factor.
+  // All depths are right up to a common factor.
   const ratios = metres(reading).flatMap((value, at) => (value > 0 ? [value / depths[at]] : []));
   assert.ok(Math.max(...ratios) / Math.min(...ratios) < 1.001);
   assert.deepEqual(reading.guessed, ["unit"]);

@@ -78,7 +78,7 @@ const depths16 = (isLittle: boolean): Buffer => {
 /** The depth map of `depthPng` as other programs save it. */
 export const depthPgm = (name = "d.pgm"): Upload => bytes(name, `P5\n${SIDE} ${SIDE}\n65535\n`, depths16(false));
 export function depthPfm(name = "d.pfm"): Upload {
-  // From the bottom row up, with the low byte first.
+  // The rows from the bottom up, with the low byte first.
   const rows = Float32Array.from({ length: SIDE * SIDE }, (_, i) =>
     depthAt((SIDE - 1 - Math.floor(i / SIDE)) * SIDE + (i % SIDE)),
   );

@@ -1,4 +1,4 @@
-//! Files that are not read: recognised by their first bytes, with advice.
+//! Files that are not read. They are recognised by their first bytes and reported with advice.
 
 /// First bytes of picture formats that are not supported, with advice.
 const PICTURES: [(usize, &[u8], &str); 7] = [

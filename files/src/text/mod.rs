@@ -69,7 +69,7 @@ fn placed(mut found: Calibration, path: &str) -> Calibration {
     found
 }
 
-/// Content of a text, with its format; the file's name may say what its numbers are.
+/// Content of a text, with its format; the file's name may state the meaning of its numbers.
 pub fn read_text(text: &str, path: &str) -> Result<Calibration, Reason> {
     let text = text.trim_start_matches('\u{feff}').trim();
     if text.is_empty() {

@@ -11,7 +11,7 @@ import { Findings, flat } from "./findings.js";
 import { isNode, type Node, type Numbers, nodesOf, numberOf } from "./numbers.js";
 import { chained, inverseOf, poseOf, rotationOf } from "./poses.js";
 
-/** From the SDK: the size of the binned sensor, the first pixel of the crop, and the size of the images. */
+/** Each mode, from the SDK: the size of the binned sensor, the first pixel of the crop, and the size of the images. */
 type Mode = [binned: [number, number], crop: [number, number], size: [number, number]];
 const COLOUR: Mode[] = [
   [

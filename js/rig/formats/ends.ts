@@ -11,7 +11,7 @@ export type PoseNames = Omit<NamedPose, "pose">;
 /** Names of poses of a camera in the world: ARKit, Blender, NeRF, trajectories. */
 const OF_WORLD =
   /\b(?:(?:camera|cam|c|local|object|view) ?(?:to|2) ?(?:world|w)|poses?|matrix world|location|camera transform)\b/;
-/** Names of their inverses. */
+/** Names of the inverses of such poses. */
 const TO_CAMERA =
   /\b(?:(?:world|w) ?(?:to|2) ?(?:camera|cam|c|view)|view matrix|(?:world|camera) view(?: transform)?)\b/;
 

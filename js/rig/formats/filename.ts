@@ -63,7 +63,7 @@ function ofWorldName(path: string): Frames | undefined {
 /** Names of extrinsics of a single camera, such as ScanNet's "extrinsic_color": they name one end and no direction. */
 const ONE_END =
   /^(?:extrinsics?[_-](?:colou?r|rgb|depth|ir|cam(?:era)?)\d*|(?:colou?r|rgb|depth|ir|cam(?:era)?)\d*[_-]extrinsics?)$/i;
-/** Whether a bare pose has such a name and is not the identity. */
+/** Whether a pose without frames has such a name and is not the identity. */
 const namesOneEnd = (path: string, { pose }: NamedPose): boolean =>
   ONE_END.test(path.replace(/^.*[/\\]/, "").replace(/\.[a-z]{1,5}$/i, "")) && isMoved(pose);
 

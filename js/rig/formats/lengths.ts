@@ -1,6 +1,6 @@
 /**
- * Units of translations: the unit that a file's comments state, and a warning if a translation is longer than the cameras of a rig are
- * apart.
+ * Units of translations: the unit that a file's comments state, and a warning if a translation is longer than the usual distance of a
+ * rig's cameras.
  *
  * Limit: rigs whose cameras are farther apart have to state the unit.
  */
@@ -41,7 +41,7 @@ export function unitInComments(text: string): number | undefined {
 
 const says = (length: number, unit: number): string => `${Number((1000 * length * unit).toPrecision(3))} mm`;
 
-/** Adds a warning where a translation without a unit is longer than the sensors of a rig are apart. */
+/** Adds a warning if a translation without a unit is longer than the usual distance of a rig's sensors. */
 export function checkLength({ name, from = "", to = "", pose }: NamedPose, warnings: ReaderWarning[]): void {
   const frames = `${from} ${to} ${name ?? ""}`;
   if (FAR.test(frames)) return;

@@ -1,4 +1,4 @@
-/** The package has no type declarations. */
+/** Declares the package, which has no types of its own. */
 declare module "lerc" {
   const lerc: {
     decode(

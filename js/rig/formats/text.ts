@@ -104,7 +104,7 @@ async function searched(value: unknown, format: string, text: string): Promise<R
 async function ofTable({ rows, isSeries }: { rows: Node[]; isSeries: boolean }, text: string): Promise<Read> {
   const named = Object.fromEntries(rows.map((row, at) => [isSeries ? `pose ${at + 1}` : `row ${at + 1}`, row]));
   const found = await searched(named, isSeries ? "a table of poses" : "a table", text);
-  // All rows have the same columns, so one warning per code is enough.
+  // All rows have the same columns, so one warning for each code is enough.
   return { ...found, warnings: [...new Map([...found.warnings].reverse().map((each) => [each.code, each])).values()] };
 }
 
@@ -122,7 +122,7 @@ function ofNotes(text: string): Read | undefined {
   return { ...found, format: "numbers with labels" };
 }
 
-/** Signs of YAML: its directive, the matrices of OpenCV, and lists of members. */
+/** Properties that show YAML: its directive, the matrices of OpenCV, and lists of members. */
 const IS_YAML = /^%YAML|!!opencv-matrix|^\s*- \w+:\s*$/m;
 /** YAML, or else numbers with labels. */
 async function ofYaml(text: string): Promise<Read> {

@@ -49,7 +49,7 @@ function paceOf(azimuths: number[]): number | undefined {
   for (let from = 0; from + WINDOW <= steps.length; from += WINDOW / 2) {
     const window = steps.slice(from, from + WINDOW);
     if (!window.every((step) => step < GAP * usual)) continue;
-    // A step of twice the usual length spans a pulse without a return.
+    // A step of twice the usual length contains a pulse without a return.
     const pulses = window.reduce((sum, step) => sum + Math.max(1, Math.round(step / usual)), 0);
     means.push(window.reduce((sum, step) => sum + step, 0) / pulses);
   }

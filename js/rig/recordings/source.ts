@@ -27,7 +27,7 @@ export interface Track {
   unread?: string;
 }
 
-/** How a shot is read; `turn` turns the axes of a cloud. */
+/** Decodes the shot; `turn` turns the axes of a cloud. */
 export interface ShotOptions extends ReadOptions {
   turn?: Turn;
 }

@@ -1,7 +1,7 @@
 /** Checks the input of writers by name, because readers of the written file would trust wrong contents. */
 import { BimodalError, type ErrorCode, refused } from "../../errors.js";
 
-/** `value` is the refused value, and `index` the number of the entry. */
+/** `value` is the refused value, and `index` the position of the entry. */
 export const fault = (
   code: ErrorCode,
   field: string,
@@ -15,7 +15,7 @@ export function oneOf(words: readonly string[], value: unknown, field: string): 
     throw fault("option", field, `"${String(value)}" is unknown; known: ${words.join(", ")}`, { value });
 }
 
-/** Describes lists by one entry, objects by their members, and objects with arbitrary names by "*"; other members are not checked. */
+/** An example has one entry of a list, the members of an object, and "*" for arbitrary names. Other members are not checked. */
 export type Example = readonly Example[] | { readonly [name: string]: Example };
 
 /** Checks that the lists and objects of an example are present. */

@@ -14,7 +14,7 @@ function matrix(name: string, height: number, width: number, values: readonly nu
   ];
 }
 
-/** The names are those of OpenCV's calibration sample; the words for the model, which OpenCV omits, are those of ROS. */
+/** The names are those of OpenCV's calibration sample. OpenCV omits the model, so it has ROS's words. */
 function opencvCamera(camera: Camera | undefined, name: string): string[] {
   if (camera === undefined) return [];
   const { fx, fy, cx, cy, distortion, model, size } = camera;

@@ -92,7 +92,7 @@ ${ticks(first, last).map((tick) => html`<path class="grid" d="M${x(tick)} ${top}
 ${lines.map(({ series, curve: found }) => html`<path class="series s${series}" d="${path(found, x, y)}"/>`)}
 ${lines.map(({ series, curve: { best, from, to } }) => {
   if (from === undefined && to === undefined) return undefined;
-  // The marks are below each other under the axis, so that none hides another.
+  // The marks are in separate lines under the axis, so that none hides another.
   const level = Number(y(0)) + 2 + between * series;
   return html`<path class="width s${series}" d="M${x(from ?? first)} ${level}H${x(to ?? last)}"/><path class="best s${series}" d="M${x(best)} ${y(0)}l-${mark} -${2 * mark}h${2 * mark}z"/>`;
 })}
