@@ -34,7 +34,7 @@ function parsed() {
 export async function drawn(api, names, folder) {
   mkdirSync(folder, { recursive: true });
   for (const name of names) {
-    // Imported late: before the set-up there are no node_modules.
+    // Imported late, because before the set-up there are no node_modules.
     const { [name]: draw } = await import(`./figures/${name}.mjs`);
     const text = await draw(api);
     const path = join(folder, `${name}.svg`);

@@ -9,7 +9,7 @@ const DISTANCE = 0.8;
 /** Rays are searched over this range before and behind the body's middle (metres), in this many strides. */
 const REACH = 0.18;
 const STRIDES = 60;
-/** Bisections of a stride: enough for the precision of a double. */
+/** Number of bisections of a stride, enough for the precision of a double. */
 const BISECTIONS = 50;
 /** Step of the central differences for normals, half axes. */
 const STEP = 1e-5;

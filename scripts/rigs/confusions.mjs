@@ -51,7 +51,7 @@ const OTHER_SIZES = {
   other: [320, 240],
 };
 const otherSize = (view) => resized(view, OTHER_SIZES[`${view.width}x${view.height}`] ?? OTHER_SIZES.other, 0);
-/** Heights are kept, and the sides cut off or added: the narrow stream of a wide sensor. */
+/** The height is kept, and the sides are cut off or added, as in the narrow stream of a wide sensor. */
 const otherShape = (view) => resized(view, view.width * 3 === view.height * 4 ? [1920, 1080] : [640, 480], 1);
 const lengths = ({ data, ...view }) => ({
   ...view,
@@ -66,7 +66,7 @@ const inUnit = (factor) => depth((view) => ({ ...view, unit: factor * unitOf(vie
 const turned = (quarters) => (view) => rotated(view, quarters, false);
 const mirrored = (view) => rotated(view, 0, true);
 
-/** By name: the mistake, and the readings that name it. With symmetric intrinsics, a rotated picture is the same as a rotated camera. */
+/** Mistakes and the readings that name them. With symmetric intrinsics, a rotated picture is the same as a rotated camera. */
 export const CONFUSIONS = {
   inverse: [(rig) => ({ ...rig, pose: inverse(rig.pose) }), ["inverse"]],
   "rotation transposed": [withRotation(transpose), ["transposed-rotation"]],
@@ -231,7 +231,7 @@ export function printRight(rows) {
   for (const { rig, said, code } of misnamed) console.log(`  ${rig}: ${said} (${code})`);
 }
 
-/** Errors of candidates that are off, but not misread: their least and greatest, evenly drawn on a logarithmic scale. */
+/** Smallest and largest errors of candidates that are off, but not misread. Errors are drawn evenly on a logarithmic scale. */
 const OFF = { degrees: [1, 10], millimetres: [10, 100] };
 
 /** The reading that a check names for candidates that are merely off. */

@@ -23,7 +23,7 @@ export const poseOf = (rotation, translation) => ({ scale: 1, rotation, translat
 export const moved = ({ rotation, translation }, point) =>
   turn(rotation, point).map((value, k) => value + translation[k]);
 
-/** The composition: first `inner`, then `outer`. */
+/** The motion that applies `inner` first, then `outer`. */
 export const after = (outer, inner) => poseOf(product(outer.rotation, inner.rotation), moved(outer, inner.translation));
 
 export function inverse({ rotation, translation }) {

@@ -33,7 +33,7 @@ const EVEN: f64 = 3.464_101_615_137_754_6;
 const WINDOW: f64 = 3.0;
 /// Maximum number of edges in a profile; the strongest are kept.
 const MOST_EDGES: usize = 12;
-/// Edges below this strength are noise. The strength is the norm over the channels of differences of encoded intensities.
+/// Strength below which edges are noise: the norm over the channels of differences of encoded intensities.
 const FAINTEST: f32 = 0.012;
 /// Smallest factor on the curvature of the bound. The factor varies from round to round, and a small one would make
 /// steps diverge.
@@ -62,7 +62,7 @@ pub(super) struct EdgeField {
     profiles: Vec<Profile>,
 }
 
-/// Blur of the image, in pixels, for edges whose positions are known to within `sigma` pixels.
+/// Blur of the image, in pixels, for edges whose positions have an error of `sigma` pixels.
 pub(super) fn blur(sigma: f64) -> f64 {
     (BLUR * sigma).max(LEAST_BLUR)
 }
@@ -78,7 +78,7 @@ impl EdgeField {
         rims
     }
 
-    /// Depth discontinuities found at one state, moved to where another state projects them.
+    /// Depth discontinuities that were found at one state, moved to their projections under another state.
     pub fn moved(frame: &Frame, rims: &[Rim], found: &State, state: &State) -> Vec<Rim> {
         let camera = state.camera(&frame.camera);
         let place = |state: &State, rim: &Rim| {
@@ -109,7 +109,8 @@ impl EdgeField {
             // The variance of a uniform distribution over the gap adds to that of the edges.
             let of_gap = rim.gap / EVEN;
             let sigma = sigma.hypot(of_gap);
-            // Neighbours in one gap share its error: the variance of their mean is that of this many independent ones.
+            // Neighbours in one gap share its error. The variance of their mean is that of this many independent
+            // discontinuities.
             let weight = 1.0 / (1.0 + (rim.in_gap - 1.0) * (of_gap / sigma).powi(2));
             let window = (WINDOW * sigma).max(widest);
             let edges = edges(planes, start, rim.normal, window, blur)?;
@@ -151,7 +152,7 @@ impl EdgeField {
         shares.iter_mut().for_each(|share| share.curvature *= left);
     }
 
-    /// The discontinuities whose edges were looked for.
+    /// The discontinuities for which edges were searched.
     pub fn all(&self) -> impl Iterator<Item = &Rim> {
         self.profiles.iter().map(|profile| &profile.rim)
     }

@@ -5,7 +5,7 @@
 
 import type { Page } from "@playwright/test";
 
-/** Kinds of messages to the worker of the Lab and to that of the readers, or a cell of the tables. Messages with clouds to draw have no kind. */
+/** Kinds of messages to the worker of the Lab or of the readers, or a cell of the tables. Messages with clouds to draw have no kind. */
 type Kind = "catalogue" | "open" | "reset" | "advance" | "look" | "probe" | "read" | "pair" | "cell";
 
 interface Box {

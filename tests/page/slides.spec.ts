@@ -109,7 +109,7 @@ test("the browser's Back turns a slide back, then leads to the lesson, and Forwa
   await page.goForward();
   await expect(slides).toBeVisible();
   await expect(heading(say("lessons.pixel.title", "What a pixel shows"))).toBeVisible();
-  // A visit to the Lab from the slides ends at the lesson itself.
+  // After a visit to the Lab, Learn shows the lesson and not its slides.
   await page.goto("./#size=32");
   await lab.reaches("ready");
   await page.locator("#to-learn").click();

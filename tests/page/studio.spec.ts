@@ -228,7 +228,7 @@ test("a slider acts when it rests, and what had been played plays again", LONG, 
   await page.getByRole("button", { name: "Redo" }).click();
   await expect.poll(() => lab.fingerprint("Colour")).not.toBe(before);
   await lab.reaches("converged");
-  // A typed number also plays.
+  // A typed number plays like a change of the slider.
   await exact.fill("0");
   await exact.press("Enter");
   await expect.poll(() => lab.fingerprint("Colour")).toBe(before);
