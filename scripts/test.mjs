@@ -137,7 +137,7 @@ async function firefoxPage(program) {
   });
 }
 
-/** Tests of the second engine, if it is installed: a smoke test of every part of the page by Playwright, and the wasm tests by geckodriver. */
+/** Tests of the second engine, if installed: a smoke test of every part of the page by Playwright, and the wasm tests by geckodriver. */
 async function secondEngine() {
   const found = firefox();
   const page = await firefoxPage(found.firefox);

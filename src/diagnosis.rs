@@ -41,8 +41,8 @@ const SHARE_OF_SPREAD: f64 = 0.05;
 /// No other unit of depth is tried if residuals are at most this multiple of the image's noise, and their spatial
 /// covariance is at most [`UNIT_COVARIANCE`].
 pub const UNIT_NOISE: f64 = 1.25;
-/// Residuals beyond this multiple of the image's own noise are errors of the model: shadows, print, a lamp too sharp
-/// for nine harmonics.
+/// Residuals beyond this multiple of the image's own noise are errors of the model, such as shadows, print, or a lamp
+/// too sharp for nine harmonics.
 const MODEL_NOISE: f64 = 2.0;
 /// Largest share of the spread of the log image that a trusted pose may leave unexplained.
 pub const LARGEST_UNEXPLAINED: f64 = 0.3;
@@ -62,7 +62,7 @@ pub struct Residuals {
     pub spread: f64,
 }
 
-/// The method that would be tried if a single albedo does not explain the image.
+/// The method that is tried if a single albedo does not explain the image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Alternative {
     /// Registration by local contrast, for an orthographic image.
@@ -105,7 +105,7 @@ impl Residuals {
         }
     }
 
-    /// Whether the residuals hardly exceed the image's own noise, whatever their spatial covariance.
+    /// Whether the residuals hardly exceed the image's own noise, whatever their spatial covariance is.
     #[must_use]
     pub fn is_noise(&self) -> bool {
         self.noise <= (NOISE_OF_IMAGE * self.image_noise).max(SHARE_OF_SPREAD * self.spread)
@@ -157,7 +157,7 @@ mod tests {
         ([0.010, 0.0005, 0.011, 0.4], [Explained, Explained, Explained]),
         ([0.004, 0.0015, 0.000, 0.4], [Explained, Explained, ModelError]),
         ([0.030, 0.0043, 0.031, 0.3], [Explained, Explained, ModelError]),
-        // Noisy normals: more than noise, without spatial covariance.
+        // Noisy normals leave more than noise, without spatial covariance.
         ([0.034, 0.0040, 0.010, 0.3], [ModelError, ModelError, ModelError]),
         // Noisy normals under a strong light.
         ([0.100, 0.0040, 0.010, 0.9], [ModelError, ModelError, ModelError]),

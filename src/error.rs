@@ -22,7 +22,7 @@ pub enum ErrorKind {
     Degenerate,
     /// The input would take more memory than a page may use.
     Memory,
-    /// A documented feature that this build does not offer.
+    /// The build lacks a documented feature.
     Unsupported,
 }
 

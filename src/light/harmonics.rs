@@ -74,8 +74,8 @@ impl Light {
         self
     }
 
-    /// The light after a rotation of its lamps: under it a rotated normal has the colour that the normal has under this
-    /// light.
+    /// The light after a rotation of its lamps, under which a rotated normal has the colour that the normal has under
+    /// this light.
     #[must_use]
     pub fn turned(&self, rotation: &Matrix3<f64>) -> Self {
         Self(self.0.map(|l| {

@@ -12,7 +12,7 @@
 
 use super::vector::{add_scaled, dot};
 
-/// A and M of a linear system.
+/// The matrices A and M of a linear system.
 pub(crate) trait System {
     /// Computes product = A direction.
     fn apply(&mut self, direction: &[f32], product: &mut [f32]);

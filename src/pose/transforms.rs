@@ -25,7 +25,7 @@ use nalgebra::{Isometry3, Matrix4, Rotation3, Similarity3, Translation3, UnitQua
 use super::similarity::Similarity;
 use crate::error::{Error, ErrorKind, Result};
 
-/// Largest difference of a scale from one in a rigid motion: rounding of a few products.
+/// Largest difference of a scale from one in a rigid motion, the rounding error of a few products.
 const UNIT_TOLERANCE: f64 = 1e-9;
 /// Largest difference of the last row of a matrix from 0, 0, 0, 1.
 const ROW_TOLERANCE: f64 = 1e-9;

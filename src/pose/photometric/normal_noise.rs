@@ -3,7 +3,7 @@
 //! (docs/method/registration.md).
 //!
 //! Residuals and derivatives depend on the normals through linear functions of the harmonics. One matrix therefore
-//! suffices: the same sum over the harmonics alone.
+//! suffices, the same sum over pairs of harmonics.
 
 use nalgebra::SMatrix;
 
