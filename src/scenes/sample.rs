@@ -153,7 +153,7 @@ pub enum DepthData {
     Cloud {
         /// Points in the depth camera's frame.
         points: Points,
-        /// The normals face the camera of the grid.
+        /// Unit normals, which face the camera of the grid.
         normals: Normals,
     },
 }
