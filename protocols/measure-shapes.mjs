@@ -33,7 +33,7 @@ export async function measureIterations(cell, { sample, Estimator }, library) {
     let { report } = estimator;
     while (report.status === "running") {
       report = estimator.step();
-      // The limit counts iterations, and slices of the search are none.
+      // Only iterations count, not slices of the search.
       if (report.iteration === (iterations.at(-1)?.iteration ?? 0)) continue;
       iterations.push({
         iteration: report.iteration,

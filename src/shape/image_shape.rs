@@ -50,7 +50,7 @@ pub struct ImageShapeSolver {
     pixels: ShadingSolver,
     /// Created by the first integration.
     integrator: Option<Integrator>,
-    /// Present if the surface is solved as a whole.
+    /// The solver of the surface as a whole, if it is used.
     surface: Option<ImageSurfaceSolver>,
 }
 

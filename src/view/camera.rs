@@ -156,7 +156,7 @@ mod tests {
     use super::*;
     use crate::view::Lens;
 
-    /// Largest distance between a pixel and the projection of its ray, pixels: far below the rounding of points in f32.
+    /// Largest distance between a pixel and the projection of its ray, pixels, far below the rounding of points in f32.
     const RETURN_DISTANCE: f64 = 1e-6;
 
     #[test]

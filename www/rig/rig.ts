@@ -399,7 +399,7 @@ export class Rig implements RigState {
     return units.length > 2 ? [`the unit of ${units.length} depth maps`] : units.map((name) => `the unit of ${name}`);
   }
 
-  /** Whether a picture of a folder has a camera of its own frame, and the visitor has chosen no other. */
+  /** Whether a picture of a folder has a camera that belongs to its frame, and the visitor has chosen no other. */
   #hasOwn(side: Side, file: number): boolean {
     return this.item(file)?.summary?.hasOwnCamera === true && !this.cameras[side].chosen;
   }

@@ -1,4 +1,4 @@
-/** Declares the package, which has no types of its own. */
+/** Declares the package, which contains no types. */
 declare module "lerc" {
   const lerc: {
     decode(

@@ -54,7 +54,7 @@ const EDGE_BIAS: usize = SCALE;
 
 /// Registers from silhouettes; owns its memory.
 pub struct Outline {
-    /// Present if the image has a mask.
+    /// The image's silhouette, if the image has a mask.
     silhouette: Option<Silhouette>,
     edges: Edges,
     /// The edge beside each discontinuity, if there is one.

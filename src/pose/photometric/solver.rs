@@ -45,7 +45,7 @@ pub struct Photometric {
     /// The image whose gradients are the instrumental variables.
     instruments: SplineImage,
     pub(super) points: VisiblePoints,
-    /// Present once a problem has an initial pose.
+    /// The terms about an initial pose, once a problem has one.
     near: Option<Box<Near>>,
     pub(super) tiles: Tiles,
     /// log S at the points, as long as the pose does not change.

@@ -38,7 +38,7 @@ pub struct Matcher {
     cloud: Cloud,
     target: Target,
     template: Template,
-    /// Present if the light is known.
+    /// The colours of a known light, if the light is known.
     prediction: Option<Prediction>,
     correlator: Correlator,
 }
