@@ -58,7 +58,7 @@ pub fn words(found: &Outcome) -> String {
     }
     line!(
         text,
-        "\noverlap {:.0} % of the depth points, {:.0} % of these inliers; {} of log colour is left unexplained",
+        "\noverlap {:.0} % of the depth points, of which {:.0} % are inliers; residual {} in log colour",
         100.0 * report.overlap,
         100.0 * report.inliers,
         digits(report.residual, 3)

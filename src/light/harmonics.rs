@@ -47,7 +47,7 @@ impl Light {
         match flat.iter().position(|value| !value.is_finite() || value.abs() > LARGEST_COEFFICIENT) {
             None => Ok(()),
             Some(index) => {
-                let message = format!("must be finite and within {} either way", Brief(LARGEST_COEFFICIENT));
+                let message = format!("must be a number from -{0} to {0}", Brief(LARGEST_COEFFICIENT));
                 Err(Error::new(ErrorKind::Range, field, message).at(index).value(flat[index]))
             }
         }

@@ -214,7 +214,7 @@ mod tests {
             change(&mut covariance);
             LightPrior::new(&[mean; COEFFICIENTS], &covariance).unwrap_err().to_string()
         };
-        assert_eq!(refused(f64::NAN, |_| ()), "prior.mean[0]: must be finite and within 100 either way (got NaN)");
+        assert_eq!(refused(f64::NAN, |_| ()), "prior.mean[0]: must be a number from -100 to 100 (got NaN)");
         assert_eq!(refused(0.0, |c| c[(1, 1)] = f64::INFINITY), "prior.covariance: must be finite");
         assert_eq!(refused(0.0, |c| c[(0, 1)] = 0.1), "prior.covariance: must be symmetric");
         assert_eq!(refused(0.0, |c| c[(2, 2)] = -1.0), "prior.covariance: must be positive definite");
