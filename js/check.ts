@@ -121,7 +121,7 @@ const LONGEST_WORD = 60;
 export const brief = (given: string): string =>
   given.length > LONGEST_WORD ? `${given.slice(0, LONGEST_WORD)}..` : given;
 
-/** One of some words. */
+/** Checks that a value is one of some words. */
 export const word =
   (...words: readonly string[]): Check =>
   (value, field) => {

@@ -114,7 +114,7 @@ fn searched(value: &Value, format: &str) -> Result<Calibration, Reason> {
 }
 
 fn json(text: &str) -> Result<Value, Reason> {
-    // Python writes these three, which JSON does not allow; no value of a calibration may be one of them.
+    // Python writes these three words, which JSON does not allow. They are not valid values of a calibration.
     static NONE: names::Pattern = names::Pattern::new(|| names::pattern(r"-?\bInfinity\b|\bNaN\b"));
     let plain = NONE.replace_all(text, "null");
     serde_json::from_str(&plain).map_err(|error| format!("this JSON is damaged or cut off ({error})"))

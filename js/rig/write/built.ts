@@ -9,13 +9,13 @@ export const fault = (
   { value, index }: { value?: unknown; index?: number } = {},
 ): BimodalError => new BimodalError(code, `${field}: ${words}`, field, refused(value, index));
 
-/** One of some words. */
+/** Checks that a value is one of some words. */
 export function oneOf(words: readonly string[], value: unknown, field: string): void {
   if (!words.some((word) => word === value))
     throw fault("option", field, `"${String(value)}" is unknown; known: ${words.join(", ")}`, { value });
 }
 
-/** An example has one entry of a list, the members of an object, and "*" for arbitrary names. Other members are not checked. */
+/** In an example, a list has one entry, and "*" stands for arbitrary names of members. Members that it lacks are not checked. */
 export type Example = readonly Example[] | { readonly [name: string]: Example };
 
 /** Checks that the lists and objects of an example are present. */

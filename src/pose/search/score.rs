@@ -25,7 +25,7 @@ const RIDGE_OF_WEIGHT: f64 = 1e-4;
 /// Smallest number of cells of an overlap. Nine harmonics fit any colours of nine cells.
 pub const FEWEST_CELLS: f32 = 12.0;
 
-/// Products of the harmonics over some cells.
+/// Sums over some cells of the products of the harmonics.
 pub type Gram = SMatrix<f64, HARMONICS, HARMONICS>;
 
 /// Balanced colours of a known light at every cell of a template, without their mean along the exposure.
