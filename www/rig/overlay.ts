@@ -279,7 +279,7 @@ function paint(layer: HTMLCanvasElement, { points, edges }: Projection, what: Wh
   return { min, max };
 }
 
-/** In the memory layout of a canvas: red first, opaque. */
+/** The colours have the memory layout of a canvas, red first, and are opaque. */
 const packed = ([r, g, b]: readonly [number, number, number]): number =>
   new Uint32Array(new Uint8Array([r, g, b, 255]).buffer)[0] ?? 0;
 

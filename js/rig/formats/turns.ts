@@ -31,7 +31,7 @@ const between = (a: Numbers, b: Numbers): number => Math.hypot(...a.map((value, 
 /** Cosine of 45 degrees; within this angle a direction is nearer to an axis than to any other. */
 const NEAR = Math.SQRT1_2;
 
-/** Whether a camera is upright on a LiDAR or a vehicle (x forward, z up) and looks forward, by its rotation from there or the inverse. */
+/** Whether a camera is upright on a LiDAR or a vehicle (x forward, z up) and looks forward. Its rotation or the inverse may be given. */
 const looksForward = (r: Numbers): boolean =>
   ((r[5] ?? 0) < -NEAR && (r[6] ?? 0) > NEAR) || ((r[7] ?? 0) < -NEAR && (r[2] ?? 0) > NEAR);
 
