@@ -147,7 +147,7 @@ export class VerdictStep {
 
   #tell(share: number, message: string): void {
     this.#progress.value = share;
-    // Read out by screen readers when it changes; the share changes all the time.
+    // Screen readers read this text when it changes, so the share is not in it, which changes all the time.
     if (this.#status.textContent !== message) this.#status.textContent = message;
   }
 

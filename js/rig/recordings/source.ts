@@ -23,7 +23,7 @@ export interface Track {
   kind: TrackKind;
   /** Messages or blocks. */
   count: number;
-  /** Why it cannot be read. */
+  /** The reason why the track cannot be read. */
   unread?: string;
 }
 
