@@ -147,7 +147,7 @@ export class VerdictStep {
 
   #tell(share: number, message: string): void {
     this.#progress.value = share;
-    // Screen readers read this text when it changes, so the share is not in it, which changes all the time.
+    // Screen readers read this text when it changes, so it does not contain the share, which changes all the time.
     if (this.#status.textContent !== message) this.#status.textContent = message;
   }
 
