@@ -1,4 +1,4 @@
-/** The report with what the readers add to it, and its text for a terminal. */
+/** The report with the additions of the readers, and its text for a terminal. */
 import type { ReaderWarning } from "../rig/warnings.js";
 import type { CheckReport } from "../types/index.js";
 

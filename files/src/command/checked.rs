@@ -18,7 +18,7 @@ pub struct Said {
     pub json: Value,
 }
 
-/// The result of a check, with what the readers add to it.
+/// The result of a check, with the additions of the readers.
 pub struct Checked {
     pub report: CheckReport,
     pub verdict: CheckVerdict,
