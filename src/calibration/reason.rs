@@ -167,7 +167,7 @@ impl fmt::Display for CheckReason {
             Self::NoCandidate { pixels } => {
                 write!(f, "No candidate was given; the estimate is good to {} px.", Fixed(*pixels, 1))
             }
-            Self::Doubtful { warning, reason } => write!(f, "Settled, but check: {warning} {reason}"),
+            Self::Doubtful { warning, reason } => write!(f, "Looks right, see warnings: {warning} {reason}"),
         }
     }
 }
@@ -356,7 +356,7 @@ mod tests {
         let doubtful =
             CheckReason::Doubtful { warning: Box::new(warning), reason: Box::new(CheckReason::NoPoseOnImage) };
         assert_eq!(doubtful.code(), "doubtful");
-        assert!(doubtful.to_string().starts_with("Settled, but check: frame 1: "), "{doubtful}");
+        assert!(doubtful.to_string().starts_with("Looks right, see warnings: frame 1: "), "{doubtful}");
     }
 
     #[cfg(feature = "serde")]

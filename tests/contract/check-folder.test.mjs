@@ -114,7 +114,7 @@ describe("exit codes", () => {
     ]) {
       const { status, stdout } = check(...args, "--json", "guessed.json");
       assert.equal(status, 2);
-      assert.match(stdout, /^UNDECIDED: Settled, but check: (one of the check's|two.json: a guess) /);
+      assert.match(stdout, /^UNDECIDED: Looks right, see warnings: (one of the check's|two.json: a guess) /);
       assert.equal(JSON.parse(readFileSync(join(root, "guessed.json"), "utf8")).verdict, "undecided");
     }
     assert.doesNotMatch(check("off", "--calibration", "one.json").stdout, /Settled/);
