@@ -1,4 +1,4 @@
-/** Code that every .wasm of the package needs: it compiles the module, and every call into wasm goes through it. */
+/** Code that all .wasm files of the package share: it compiles the module, and every call into wasm goes through it. */
 import { BimodalError, translate } from "./errors.js";
 import { nodeModule } from "./node.js";
 import type { WasmSource } from "./types/index.js";
@@ -25,7 +25,7 @@ function sourceOf(where: () => WasmSource): WasmSource {
   }
 }
 
-/** The code of a .wasm. Its address may be unknown, so it is determined here. */
+/** The code of a .wasm. If the caller gives no address, it is determined here. */
 export async function compile(where: () => WasmSource): Promise<WebAssembly.Module> {
   const wasm = sourceOf(where);
   if (wasm instanceof WebAssembly.Module) return wasm;

@@ -5,7 +5,7 @@
 import { BimodalError, refused } from "./errors.js";
 import type { NumberRow } from "./rows.js";
 
-/** Checks one value; `field` is its path in the contract. */
+/** A check of one value; `field` is its path in the contract. */
 export type Check = (value: unknown, field: string) => void;
 export type Shape = Readonly<Record<string, Check>>;
 
@@ -17,7 +17,7 @@ function kind(value: unknown): string {
   return typeof value;
 }
 
-/** `index` is that of the wrong entry, if only one entry has another type. */
+/** `index` is the position of the wrong entry, if only one entry has another type. */
 export const wrong = (field: string, expected: string, value: unknown, index?: number) =>
   new BimodalError("type", `${field}: must be ${expected}, not ${kind(value)}`, field, refused(value, index));
 
@@ -34,7 +34,7 @@ function range({ kind, min, above, max, below, unit = "" }: NumberRow): string {
   const what = kind === "number" ? "a finite number" : "a whole number";
   // A unit follows a number, but not the word "zero".
   const end = unit && (max ?? below ?? above ?? min) ? ` ${unit}` : "";
-  // A number between two limits is always finite.
+  // The test also refuses NaN and infinities.
   if (min && max) return `${kind === "number" ? "a number" : what} from ${min} to ${max}${end}`;
   const named = (limit: number) => (limit === 0 ? "zero" : `${limit}`);
   const from = above !== undefined ? ` above ${named(above)}` : min !== undefined ? `, ${named(min)} or above` : "";
@@ -121,7 +121,7 @@ const LONGEST_WORD = 60;
 export const brief = (given: string): string =>
   given.length > LONGEST_WORD ? `${given.slice(0, LONGEST_WORD)}..` : given;
 
-/** One of some words. */
+/** Checks that a value is one of some words. */
 export const word =
   (...words: readonly string[]): Check =>
   (value, field) => {
@@ -180,7 +180,7 @@ export const object =
     }
   };
 
-/** The numerics count in 32 bits and would read a larger number wrongly; their limits are far lower. */
+/** The numerics count in 32 bits and would misread a larger number. Their own limits are far lower. */
 export const side = ranged({ kind: "side", min: 0, max: 2 ** 32 - 1 });
 
 /** An image and a depth map without their cameras. */

@@ -22,7 +22,7 @@ export interface StereoPair {
   depth: DepthMapInput;
 }
 
-/** Where the elements find their files; those left out are beside the module. */
+/** The addresses of the elements' files. A missing address stands for the file beside the module. */
 export interface Places {
   /** The .wasm: its address, its bytes or the compiled module. */
   wasm?: string | URL | BufferSource | WebAssembly.Module;
@@ -32,14 +32,14 @@ export interface Places {
   figureThread?: string | URL;
 }
 
-/** Says where the files of all elements of the page are; call it before the first element is in the document. */
+/** Sets the addresses of the files of all elements of the page. Call it before the first element is in the document. */
 export declare function configure(places: Places): void;
 
 /** The values under a lesson's figure: numbers and words. */
 export interface FigureResult {
   /** The numbers, by the names of the lesson's readouts. */
   readonly numbers: Readonly<Record<string, number>>;
-  /** The values that are words, such as the status of a run. */
+  /** The words, such as the status of a run, by the names of the lesson's readouts. */
   readonly words: Readonly<Record<string, string>>;
 }
 
@@ -51,13 +51,13 @@ export interface StatusDetail {
 
 /** The detail of a `status` event of `<bimodal-figure>`. */
 export interface StateDetail {
-  /** The new state, as the attribute has it. */
+  /** The new state, in the form of the attribute. */
   readonly state: string;
 }
 
 /** The events of `<bimodal-stereo>`; none of them bubbles. */
 export interface StereoEvents {
-  /** After each iteration and each slice of the search. */
+  /** Sent after each iteration and each slice of the search. */
   step: CustomEvent<StepReport>;
   /** The status has changed. */
   status: CustomEvent<StatusDetail>;
@@ -69,7 +69,7 @@ export interface StereoEvents {
 
 /** The events of `<bimodal-figure>`; none of them bubbles. */
 export interface FigureEvents {
-  /** A drawing has arrived; some lessons draw several on the way to the last. */
+  /** A drawing has arrived; some lessons send several drawings before the last one. */
   step: CustomEvent<FigureResult>;
   /** The state has changed, by an attribute or by the visitor. */
   status: CustomEvent<StateDetail>;
@@ -81,25 +81,25 @@ export interface FigureEvents {
 
 /** `<bimodal-stereo>`: finds the pose between an image and a depth map, one iteration per frame, and shows it. */
 export interface BimodalStereoElement extends HTMLElement {
-  /** Address of the colour image; empty without one. It reflects the attribute, as do all strings here. */
+  /** Address of the colour image; empty without one. All strings here reflect the attributes. */
   image: string;
   /** Address of the depth map, PNG or .npy; empty without one. */
   depth: string;
   /** Address of the depth map's mask; empty for none. */
   mask: string;
-  /** Pixels (or metres) per stored number of the depth map; `undefined` for the default. */
+  /** Pixels or metres per stored number of the depth map; `undefined` for the default. */
   unit: number | undefined;
   /** A rendered surface to use instead of files, such as "bust"; empty for none. */
   sample: string;
   /** Whether the run waits for `play()` or `step()`. */
   paused: boolean;
-  /** Whether both surfaces and the curves of the run are shown as well. */
+  /** Whether both surfaces and the curves of the run are also shown. */
   charts: boolean;
   /** A pair as arrays, instead of addresses; setting it restarts the run. */
   pair: StereoPair | undefined;
   /** Options of the estimator; setting them restarts the run. */
   options: Options;
-  /** The scene of `sample`, beside its surface; setting it restarts the run. */
+  /** The scene of `sample` except its surface; setting it restarts the run. */
   scene: Partial<SampleRequest>;
   /** The report of the last step; `undefined` before the first. */
   readonly report: StepReport | undefined;
@@ -150,7 +150,7 @@ export interface BimodalFigureElement extends HTMLElement {
 }
 
 /**
- * Both elements for JSX; `Common` is what every element of the framework takes. For React 19:
+ * Both elements for JSX; `Common` holds the attributes that the framework accepts on every element. For React 19:
  * `declare module "react" { namespace JSX { interface IntrinsicElements extends ElementsInJsx<React.HTMLAttributes<HTMLElement>> {} } }`
  */
 export interface ElementsInJsx<Common = unknown> {

@@ -31,7 +31,7 @@ export function load(where: () => WasmSource): Promise<void> {
   return loading;
 }
 
-/** The same at once, where nothing can wait. */
+/** Loads the compiled module synchronously, for callers that cannot wait. */
 export function loadNow(compiled: WebAssembly.Module): void {
   ({ memory } = glue.initSync({ module: compiled }));
   module = compiled;
@@ -63,7 +63,7 @@ export function explained(error: unknown): unknown {
   return new BimodalError("memory", message, "image", { cause: error });
 }
 
-/** The generated bindings; only once they are loaded. */
+/** The generated bindings. It is an error to call this before the module is loaded. */
 export function bindings(): typeof glue {
   compiled();
   return glue;

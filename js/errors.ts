@@ -25,12 +25,12 @@ export class BimodalError extends Error {
   readonly code: ErrorCode;
   /** The input at fault, as a path in the contract, e.g. "depth.camera.fx". */
   declare readonly field?: string;
-  /** Index into the field's array, where one entry is at fault. */
+  /** Index into the field's array, if one entry is at fault. */
   declare readonly index?: number;
-  /** The number at fault, where a single one is. */
+  /** The number at fault, if there is only one. */
   declare readonly value?: number;
 
-  /** The values in the message; for a file `file`, `reason` and, where it matters, `problem`. */
+  /** The values in the message. For a file they are `file`, `reason` and, if it is known, `problem`. */
   declare readonly details?: ErrorDetails;
 
   constructor(code: ErrorCode, message: string, field?: string, options?: BimodalErrorOptions) {
@@ -63,7 +63,7 @@ export interface ErrorDetails {
    * numbers suggest another kind of file, and the option `as` overrides that.
    */
   readonly problem?: "too-large" | "picture" | "disparity" | "kind";
-  /** For the problem "kind", what the name or the numbers of the file suggest. The text has no remedy. */
+  /** For the problem "kind", the kind of file that the name or the numbers suggest, in words without a remedy. */
   readonly finding?: string;
   /** Columns of the file's picture, if the size is the problem. */
   readonly width?: number;

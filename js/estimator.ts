@@ -23,16 +23,16 @@ import type { Views } from "./workers/messages.js";
 import { RefinementWorker, type Refinement } from "./workers/refinement.js";
 import { SearchWorkers } from "./workers/search.js";
 
-/** Smallest number of depth pixels for which a refinement worker is worth its messages: a refinement then takes some milliseconds. */
+/** Smallest number of depth pixels for which a refinement worker saves time: a refinement then takes some milliseconds. */
 const LEAST_SHARED = 96 * 96;
 
-/** Whether the canvas is the page's or a worker's; where there are no canvases there is no context either. */
+/** Whether a value is the 2D context of a canvas of a page or a worker. Environments without canvases have no context. */
 function isContext(value: unknown): boolean {
   const { CanvasRenderingContext2D: Own, OffscreenCanvasRenderingContext2D: Offscreen } = globalThis;
   return (Own !== undefined && value instanceof Own) || (Offscreen !== undefined && value instanceof Offscreen);
 }
 
-/** An input as a plain object. It is checked before this for unknown keys, and afterwards for inherited members. */
+/** An input as a plain object. Its own members are checked before the conversion, and inherited members after it. */
 function checked<T, Plain>(check: (value: unknown) => void, plain: (input: T) => Plain, input: T): Plain {
   check(input);
   const own = plain(input);
@@ -60,7 +60,7 @@ export class Estimator {
   #broken = false;
   /** The options of the current loop. */
   #options: PlainOptions;
-  /** Copies: the caller may change the pair before it is saved or sent to a worker. */
+  /** Copies, because the caller may change the pair before it is saved or sent to a worker. */
   readonly #pair: Views;
   #warnings: EstimatorWarning[] = [];
   /** Whether anything has been run since the start, and how many slices of the search this thread has done. */
@@ -186,7 +186,7 @@ export class Estimator {
     return this.#call((raw) => raw.imageNormals());
   }
 
-  /** Depth of the image view, w*h, NaN outside the mask; median zero where the view is orthographic. */
+  /** Depth of the image view, w*h, NaN outside the mask. If the view is orthographic, the median is zero. */
   imageDepth(): Float32Array {
     return this.#call((raw) => raw.imageDepth());
   }
@@ -319,7 +319,7 @@ export class Estimator {
     const estimator = unusable(() => new Estimator(image, depth, options));
     try {
       yield* estimator.#repeat(reached);
-      // How many slices a search has completed depends on the number of threads that share it.
+      // The number of slices that a search has completed depends on the number of threads that share it.
       const isWithinSearch = reached.stage === "search" && !reached.ended;
       if (!isWithinSearch && checksumOf(estimator) !== found) throw otherNumbers();
       return estimator;
@@ -379,7 +379,7 @@ export class Estimator {
     } while (report.status === "running" && !isThere());
   }
 
-  /** As `step`, but one slice of a search around an initial pose, which `step` does as a whole. */
+  /** As `step`, but a search around an initial pose is done in slices; `step` does it as a whole. */
   #advance(): StepReport {
     if (this.#refinementWorker?.answer) return this.step();
     return this.#after(this.#call((raw) => raw.advance()));
@@ -393,7 +393,7 @@ export class Estimator {
     return this.#finish(this.#refinementWorker.answer);
   }
 
-  /** The rest of a step, with what the refinement worker has made. */
+  /** The rest of a step, with the result of the refinement worker. */
   #finish(answer: Refinement | undefined): StepReport {
     this.#take(answer);
     return this.#after(this.#call((raw) => raw.step()));

@@ -40,7 +40,7 @@ function read(file: Bytes): Raster<Pixels> {
   }
 }
 
-/** A colour image: PNG, or .npy of rows x columns (x 3 or 4), floats being linear. */
+/** A colour image: PNG, or .npy of rows x columns (x 3 or 4). Floats are linear. */
 export const decodeColour = (file: Bytes): ColorImage => toColour(read(file));
 
 /**

@@ -1,5 +1,5 @@
 /**
- * Colour images from any source that a program has: addresses and files, elements and bitmaps of a page, bytes.
+ * Reads colour images from addresses, files, bytes, and elements and bitmaps of a page.
  *
  * The readers for rigs read files. They keep 16 bits, follow colour profiles and orientation, and are loaded with the first file. The
  * browser reads all other formats.
@@ -16,7 +16,7 @@ const checkOptions = object({ signal });
 const isImageData = (source: unknown): source is ImageData =>
   typeof ImageData !== "undefined" && source instanceof ImageData;
 
-/** Letters before a colon: one alone is a drive of Windows. */
+/** A scheme: at least two letters before a colon, because a single letter is a drive of Windows. */
 const SCHEME = /^[a-z][a-z\d+.-]+:/i;
 
 async function fetched(address: string | URL, signal: AbortSignal | undefined): Promise<Uint8Array> {
@@ -57,7 +57,7 @@ async function bytesOf(source: ImageSource, signal: AbortSignal | undefined): Pr
 
 /** The name of a source in errors if the source is a file: a path, an address, or the name of a page's `File`. */
 function nameOf(source: ImageSource): string {
-  // An address may hold the whole picture.
+  // A data address holds the whole picture and would be too long for a message.
   if (typeof source === "string" || source instanceof URL)
     return /^data:/i.test(String(source)) ? brief(String(source)) : String(source);
   return typeof File !== "undefined" && source instanceof File ? source.name : "image";
@@ -75,7 +75,7 @@ async function decoded(bytes: Uint8Array, name: string, signal: AbortSignal | un
   return reading.image as ColorImage;
 }
 
-/** A file by the browser's decoders. */
+/** Decodes a file in the browser. */
 async function shown(bytes: Uint8Array, name: string): Promise<ColorImage> {
   try {
     return await drawn(new Blob([bytes as Uint8Array<ArrayBuffer>]));

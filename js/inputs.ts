@@ -66,7 +66,7 @@ const nameOr =
     if (typeof value !== "string") other(value, field);
   };
 
-/** A check of the value that a matrix is converted to. */
+/** Checks the value to which a matrix is converted. */
 const of =
   (members: (value: unknown, field: string) => unknown, check: Check): Check =>
   (value, field) =>

@@ -29,7 +29,7 @@ const landscape = object(
   ["log", "light"],
 );
 
-/** Slopes and stretches of a depth beyond these leave no shape to be seen. */
+/** Largest slope and stretch of a depth; beyond them no shape is visible. */
 const factor = ranged({ kind: "number", min: -1e3, max: 1e3 });
 const values = array(Float32Array);
 const strips = object(

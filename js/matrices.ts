@@ -62,7 +62,7 @@ export function determinant(r: Numbers): number {
 export function anglesOf(r: Numbers): Pose["angles"] {
   const degrees = 180 / Math.PI;
   const beta = Math.atan2(at(r, 2), Math.hypot(at(r, 0), at(r, 1)));
-  // At the pole only alpha + gamma is determined; all of it is assigned to alpha.
+  // At the pole only alpha + gamma is determined; the whole sum is assigned to alpha.
   const locked = Math.hypot(at(r, 0), at(r, 1)) < 1e-9;
   const alpha = locked ? Math.atan2(at(r, 7), at(r, 4)) : Math.atan2(-at(r, 5), at(r, 8));
   return {
@@ -98,7 +98,7 @@ export function poseOf(value: unknown, field: string): unknown {
   if (!isObject(value) || !("matrix" in value)) return value;
   const { matrix, ...members } = value;
   if (matrix === undefined) return members;
-  // A reported pose has both members. If its rotation was changed, the rotation counts.
+  // A reported pose has angles and a rotation. If the caller changed the rotation, the rotation counts.
   if ("rotation" in value && value.rotation !== undefined) return Object.hasOwn(value, "matrix") ? members : value;
   if (!isMatrix(matrix)) throw wrong(`${field}.matrix`, "a 4x4 matrix", matrix);
   return { ...members, ...ofMatrix4(matrix as Matrix4, `${field}.matrix`) };

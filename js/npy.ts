@@ -52,7 +52,7 @@ const KINDS: Record<string, Kind> = {
   b1: { size: 1, read: (memory, count) => new Uint8Array(memory, 0, count) },
 };
 
-/** Types that a raster does not have become 32-bit floats. */
+/** Types that a raster cannot have become 32-bit floats. */
 function pixelsOf(stored: Stored): Pixels {
   if (stored instanceof Uint8Array || stored instanceof Uint16Array || stored instanceof Float32Array) return stored;
   if (stored instanceof BigInt64Array || stored instanceof BigUint64Array) return Float32Array.from(stored, Number);
@@ -108,13 +108,13 @@ function axesOf(listed: string): number[] {
     .split(",")
     .map((part) => part.trim())
     .filter((part) => part !== "");
-  // Digits only: Number() would also accept "2.5", "-2" and "0x2".
+  // The pattern accepts only digits, because Number() would also accept "2.5", "-2" and "0x2".
   if (!parts.every((axis) => /^[0-9]+$/.test(axis) && Number(axis) > 0))
     throw bad(`this .npy file has the shape (${listed.trim()}); whole numbers above zero are needed`);
   return parts.map(Number);
 }
 
-/** Rows, columns and channels of some axes; those of length 1 around an image are ignored. */
+/** Rows, columns and channels of an array. Axes of length 1 around an image are ignored. */
 function shapeOf(all: readonly number[]): Shape {
   const axes = all.slice();
   // Batch and channel of a tensor.
@@ -166,7 +166,7 @@ function headerOf(bytes: Uint8Array): Header {
   return { type, kind, isBigEndian: order === ">", byColumns: columns === "True", axes, end };
 }
 
-/** This many elements, in the order in which they are stored. */
+/** Reads this many elements in their stored order. */
 function elementsOf(bytes: Uint8Array, { kind, isBigEndian, end }: Header, count: number): Stored {
   // A copy, because typed arrays need aligned memory; the slice of a Node Buffer would be only a view.
   const body = new Uint8Array(bytes.subarray(end));
@@ -189,7 +189,7 @@ export function readSmall(bytes: Uint8Array, most: number): { axes: number[]; va
   return { axes, values: header.byColumns ? inRows(values, height, width, 1) : values };
 }
 
-/** Two or three planes without negative values are not a cloud; with values above 1 they are not colours either. */
+/** Two or three planes without negative values are not a cloud. If values exceed 1, they are not colours. */
 const isStack = (data: Pixels): boolean =>
   !data.some((value) => value < 0) && data.some((value) => value > 1 && value < Infinity);
 

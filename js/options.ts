@@ -149,7 +149,7 @@ export const OPTIONS: RowsOf<PlainOptions> = {
       hint: "A run whose rotation is less certain than this (one sigma) ends as ambiguous.",
     },
   },
-  /** A larger number is probably a typing error. */
+  /** More iterations are probably a typing error. */
   maxIterations: {
     kind: "whole",
     min: 1,
@@ -174,7 +174,7 @@ export const OPTIONS: RowsOf<PlainOptions> = {
   workers: { kind: "whole", min: 1, max: 16, default: 1 },
 };
 
-/** All but `surface` and `light`, whose names only the built module knows. */
+/** The rows of all members except `surface` and `light`, whose names only the built module knows. */
 export const SAMPLE: RowsOf<Omit<SampleRequest, "surface" | "light">> = {
   size: { ...side, default: 64 },
   height: side,

@@ -35,7 +35,7 @@ interface Parts {
   pixels: Uint8Array;
 }
 
-/** The chunks that matter, and the compressed pixels in one array. */
+/** The chunks that the reader uses, and the compressed pixels in one array. */
 function parts(bytes: Uint8Array): Parts {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   const kept = new Map<string, Uint8Array>();
@@ -136,7 +136,7 @@ function unfilter(filter: number, row: Uint8Array, above: Uint8Array | undefined
   }
 }
 
-/** From left, above and left above; Paeth's takes whichever is nearest to a + b - c. */
+/** Predicts from the neighbours left, above and left above. Paeth's filter takes the one nearest to a + b - c. */
 function predicted(filter: number, a: number, b: number, c: number): number {
   if (filter < 3) return filter === 0 ? 0 : filter === 1 ? a : b;
   if (filter === 3) return (a + b) >> 1;
@@ -195,7 +195,7 @@ function pixelsOf(found: Parts, head: Header, bytes: Uint8Array): Raster<Uint8Ar
   const { width, height, bits, channels, type } = head;
   const data = samples(bytes, head);
   if (type === INDEXED) return { width, height, ...ofPalette(data, found) };
-  // With fewer than 8 bits, full white is 1, 3 or 15.
+  // White is 1, 3 or 15 if there are fewer than 8 bits.
   const scale = bits < 8 ? 255 / (2 ** bits - 1) : 1;
   return { width, height, channels, data: scale === 1 ? data : data.map((level) => level * scale) };
 }

@@ -80,7 +80,7 @@ export function projectFrame(frame: CheckFrameInput, pose: PoseInput): FrameOver
 }
 
 export function sampleRig({ kind, seed = 0, frame = 0, noise, motion }: RigRequest): RigSample {
-  // Python gives null for no motion.
+  // Python passes null if there is no motion.
   const moved = motion ? Float64Array.from(twelve(checkedPose(motion, "motion"))) : undefined;
   return across(() => rig(kind, seed, frame, noise, moved));
 }

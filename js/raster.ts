@@ -26,7 +26,7 @@ function spread<T extends Pixels>(
   return to;
 }
 
-/** 255 where a pixel is at least half opaque; nothing where there is no alpha or all of it is. */
+/** 255 where a pixel is at least half opaque; undefined without alpha, or if all pixels are opaque. */
 function alphaMask({ width, height, channels, data }: Raster<Pixels>): Uint8Array | undefined {
   if (!hasAlpha(channels) || data instanceof Float32Array) return undefined;
   const half = data instanceof Uint16Array ? 0x8000 : 0x80;
@@ -66,7 +66,7 @@ export function single({ width, height, channels, data }: Raster<Pixels>): Pixel
   return levels;
 }
 
-/** Whatever is neither zero nor transparent belongs to the object. */
+/** Pixels that are neither zero nor transparent belong to the object. */
 export function toMask(raster: Raster<Pixels>): Mask {
   const { width, height, channels, data } = raster;
   const opaque = alphaMask(raster);

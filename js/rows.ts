@@ -19,7 +19,7 @@ export interface PageField {
 interface Common {
   /** The value if the member is absent; without a default it is derived from the data. */
   readonly default?: number | string | boolean;
-  /** The words that are accepted instead, each with its name on the page. */
+  /** The words that are accepted instead of a number, each with its name on the page. */
   readonly words?: Readonly<Record<string, string>>;
 }
 
@@ -82,7 +82,7 @@ type Kind<V> = [V] extends [never]
           ? MatrixRow
           : ObjectRow & { readonly members: RowsOf<V> };
 
-/** Ties a row to the type of its member: the same kind, all of its words, and a valid default. */
+/** Lets the compiler compare a row with the type of its member: kind, words, and a valid default. */
 export type RowOf<T> = Kind<Exclude<T, string>> &
   ([Words<T>] extends [never] ? unknown : { readonly words: Readonly<Record<Words<T>, string>> }) & {
     readonly default?: Extract<T, number | string | boolean>;

@@ -1,7 +1,7 @@
 /**
  * A run as bytes, for `Estimator.save` and `restore`. The views, the options and the number of stages that have been run determine a run to
- * the bit, however the steps were sliced and whatever the number of threads. The file therefore holds these, with a checksum of the results
- * that tells whether they were reproduced. Restoring takes as long as the run, but the format does not change with every stage.
+ * the bit, however the steps were sliced and whatever the number of threads. The file therefore holds these, with a checksum that shows
+ * whether the results were reproduced. Restoring takes as long as the run, but the format does not change with every stage.
  *
  * Sixteen bytes of name and format, the header's length (32 bits, little-endian), the header (JSON), the arrays one after the other, CRC-32
  * of all that.
@@ -13,7 +13,7 @@ import type { ColorImage, DepthMap, Options, Stage, StepReport } from "./types/i
 
 /** The progress of a run. */
 export interface Reached {
-  /** Whether anything has been run; before that the report names no stage of this run. */
+  /** Whether anything has been run. Before the first step, the report names no stage of this run. */
   begun: boolean;
   stage: Stage;
   iteration: number;
@@ -36,7 +36,7 @@ const NAME = "bimodal-stereo\n";
 const FORMAT = 1;
 /** Name and format. */
 const MARK = NAME.length + 1;
-/** A 32-bit number: the header's length, the checksum. */
+/** A 32-bit number, for the header's length and the checksum. */
 const WORD = 4;
 /** Largest number of bytes in a header: options hold at most 800 numbers of 25 characters each. */
 const LONGEST_HEADER = 65_536;

@@ -1,4 +1,4 @@
-// The project's aims, computed from the rows of the tables and nothing else.
+// The project's aims, computed only from the rows of the tables.
 import { FOUND_WITHIN, coverage3, isConfidentlyWrong, isFlagged, isFound, isFoundOrFlagged } from "./counts.mjs";
 import { IMAGES } from "./reals.mjs";
 import { CONDITIONS } from "./conditions.mjs";

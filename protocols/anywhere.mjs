@@ -37,7 +37,7 @@ export function drawScene(dice, { surfaces, naturals }, gaussian) {
   };
 }
 
-/** Random scene number `seed`; `changes` make a variant of it. */
+/** The random scene number `seed`, changed by `changes`. */
 const randomCell = (kit, seed, { id = "random", row = {}, options = {}, ...changes } = {}) => ({
   id: `${id}/${seed}`,
   kind: "random",

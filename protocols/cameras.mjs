@@ -7,7 +7,7 @@ import { judged, optionsOf, withRun } from "./runs.mjs";
 
 const SCENES = 60;
 const QUICK_SCENES = 3;
-/** Half the diagonal field of view, degrees: that of a phone's camera. */
+/** Half the diagonal field of view of a phone's camera, degrees. */
 const HALF_FIELD = 35;
 /** Sigmas of shot noise at full signal and of read noise, shares of full signal: a small sensor indoors. */
 const SHOT = 0.02;

@@ -9,7 +9,7 @@ const LAMPS = ["lab_light01", "lab_light05", "lab_light09"];
 const OFF = 8;
 const LARGE = 128;
 
-/** The changes of each condition; the aims refer to its kind. */
+/** The changes that make each condition; the aims refer to the kind of a condition. */
 export const CONDITIONS = [
   { condition: "initial pose 8 degrees off", kind: "told", changes: { photograph: "lab_diffuse", off: OFF } },
   { condition: "three lamps", kind: "lamps", changes: { lamps: LAMPS }, objects: UNDER_LAMPS },

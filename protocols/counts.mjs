@@ -1,11 +1,11 @@
-// Defines found, flagged and confidently wrong poses, and counts them.
+// Defines poses that are found, flagged or confidently wrong, and counts them.
 import { mean, median, share } from "./numbers.mjs";
 
 /** A pose within this many degrees counts as found. */
 export const FOUND_WITHIN = 3;
 
 export const isFound = ({ degrees }) => typeof degrees === "number" && degrees < FOUND_WITHIN;
-/** Flagged as uncertain: by the status, or by rivals of a pose that did not converge. */
+/** Whether the report flags the pose as uncertain, by the status or by rivals of a pose that did not converge. */
 export const isFlagged = ({ status, rivals }) =>
   status === "ambiguous" || status === "lost" || (status === "max-iterations" && rivals > 0);
 export const isConfidentlyWrong = (row) => !isFound(row) && !isFlagged(row);

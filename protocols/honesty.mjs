@@ -1,4 +1,4 @@
-// Inputs that are worse than they claim, or not what they claim: does the report notice? Random scenes, nothing known.
+// Inputs that are worse than they claim, or not what they claim, to test whether the report notices. Random scenes, nothing known.
 import { drawScene } from "./anywhere.mjs";
 import { chance } from "./numbers.mjs";
 import { randomRow } from "./counts.mjs";
@@ -39,7 +39,7 @@ const logUniform = (dice, [low, high]) => Math.exp(dice.uniform(Math.log(low), M
 const pixelsOf = ({ width, height }) => Array.from({ length: width * height }, (_, index) => index);
 const brightest = ({ data }, index) => Math.max(data[3 * index], data[3 * index + 1], data[3 * index + 2]);
 
-/** The level that this share of the object's pixels does not reach. */
+/** The level below which this share of the object's pixels lies. */
 function level(image, share) {
   const levels = pixelsOf(image)
     .filter((index) => image.mask[index])

@@ -41,7 +41,7 @@ function transformed(block, inverse) {
         for (let from = 0; from < BLOCK; from++) {
           sum += values[line * BLOCK + from] * (inverse ? COSINES[from][to] : COSINES[to][from]);
         }
-        // Transposed, so that the second pass transforms the columns.
+        // The result is transposed, so that the second pass transforms the columns.
         next[to * BLOCK + line] = sum;
       }
     }

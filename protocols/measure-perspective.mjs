@@ -32,7 +32,7 @@ function startOff(truth, { degrees, metres }, name) {
   return { scale: 1, rotation, translation: truth.translation.map((value, axis) => value + shift[axis]) };
 }
 
-/** Errors of the object's middle and of its rotation, in the image plane and out of it. */
+/** Errors of the object's middle and of its rotation, within the image plane and perpendicular to it. */
 function offsets(pose, truth, middle) {
   const [x, y, z] = moved(pose, middle).map((value, axis) => 1000 * (value - moved(truth, middle)[axis]));
   const turned = offBy(pose.rotation, truth.rotation);
@@ -79,7 +79,7 @@ export async function measureCapture(cell, api, library) {
   return run(cell, api, { image, depth: cell.turned === 0 ? depth : seenFrom(depth, cell.turned, truth), truth });
 }
 
-/** A statue's colour and depth; the library has the true pose. */
+/** A pair of a statue's colour image and depth map, whose true pose the library has. */
 export async function measureStatue(cell, api, library) {
   const { view, ...pair } = library.statue(cell.pair);
   return { view, ...(await run(cell, api, pair)) };

@@ -46,7 +46,7 @@ function changing(api, change, seed) {
   return { ...api, Estimator };
 }
 
-/** How far each change rotates the pose, and whether by less than its sigma, the norm of the axes' sigmas. `measure` runs any cell. */
+/** The rotation of the pose by each change, and whether it is below the norm of the axes' sigmas. `measure` runs any cell. */
 export async function measurePerturbed({ id, of }, api, library, measure) {
   const plain = await measure(of, api, library);
   const sigma = plain.sigmas ? Math.hypot(...plain.sigmas) : null;

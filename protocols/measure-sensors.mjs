@@ -8,7 +8,7 @@ import { optionsOf, withRun } from "./runs.mjs";
 export const SENSOR = { focalLength: 580, baseline: 0.075, steps: 8 };
 /** Width and distance of the objects, metres, and the share of their view that they span. */
 const OBJECT = { width: 0.2, distance: 0.8, span: 230 / 256 };
-/** Noise of the scans in pixel lengths, its lateral blur in pixels, and the depth steps; noise of log S. */
+/** Noise of the scans in pixel lengths, its lateral blur in pixels, the depth steps, and the noise of log S. */
 const SCAN = { noise: 0.7, blur: 0.8, step: 0.8, colour: 0.01 };
 /** Blur of the mitten's truth, pixels: the truth has the same depth steps as the frames. */
 const TRUTH_BLUR = 1.5;
@@ -41,7 +41,7 @@ export function blurred({ width, height, data }, sigma) {
   return Float64Array.from(data, (value, index) => (Number.isFinite(value) ? values[index] / shares[index] : NaN));
 }
 
-/** Errors before and after refinement, over measured pixels with a truth. */
+/** Errors before and after refinement, over measured pixels whose true depth is known. */
 async function refined(api, image, depth, truth, unit, options) {
   const known = [...truth.keys()].filter(
     (index) => Number.isFinite(truth[index]) && depth.data[index] > 0 && (!depth.mask || depth.mask[index]),

@@ -4,7 +4,7 @@ import { angleBetween, degreesBetween } from "./rotations.mjs";
 import { requestOf } from "./scenes.mjs";
 import { judged, optionsOf, withRun } from "./runs.mjs";
 
-/** Larger than any distance in a view: a given prior applies however wrong the surface still is. */
+/** A distance beyond any in a view, so that a given prior applies however wrong the surface still is. */
 const ANYWHERE = 1e6;
 
 /** Root mean square depth error, up to a constant that parallel rays do not determine. */
@@ -33,7 +33,7 @@ export async function measureIterations(cell, { sample, Estimator }, library) {
     let { report } = estimator;
     while (report.status === "running") {
       report = estimator.step();
-      // Slices of the search are not iterations.
+      // Only iterations count, not slices of the search.
       if (report.iteration === (iterations.at(-1)?.iteration ?? 0)) continue;
       iterations.push({
         iteration: report.iteration,
@@ -68,7 +68,7 @@ export async function measureShading(cell, api, library) {
     ...optionsOf({ ...cell.options, start: "truth" }, made),
     ...(none ? { lambda: { prior: 0 } } : {}),
     correspondenceDistance: ANYWHERE,
-    // Trimming would remove single pixels.
+    // Trimming is off, because it would remove single pixels.
     trim: false,
   };
   return withRun(api, { image: made.image, depth }, options, (report, estimator, milliseconds) => ({

@@ -1,4 +1,4 @@
-// Random numbers from a seed, and the statistics of the tables. Independent of the platform.
+// Random numbers from a seed and the statistics of the tables, the same on every platform.
 
 /** Random numbers that are the same everywhere: sfc32, seeded by splitmix. */
 export function chance(seed) {

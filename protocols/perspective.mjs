@@ -39,7 +39,7 @@ export function meshOf(width, points, jump) {
   const normals = points.map(() => [0, 0, 0]);
   for (const corners of triangles) {
     const [a, b, c] = corners.map((corner) => points[corner]);
-    // Points towards the raster's camera, by the winding; its length is twice the area.
+    // By the winding, the normal points towards the raster's camera. Its length is twice the area.
     const normal = cross(minus(c, a), minus(b, a));
     for (const corner of corners) normals[corner] = plus(normals[corner], normal);
   }

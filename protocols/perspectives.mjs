@@ -50,7 +50,7 @@ const DISTANCE = 0.8;
 const DEPTH_NOISE = 0.0005;
 const SIZE = { width: 160, height: 120 };
 
-/** A scene of two pinhole cameras without its seed. */
+/** The members of a scene of two pinhole cameras, except its seed. */
 export const PINHOLE = { size: SIZE, height: HEIGHT, distance: DISTANCE, noise: NOISE, depthNoise: DEPTH_NOISE };
 
 const pinholeCell = (kit, seed, degrees) => ({

@@ -6,7 +6,7 @@ import { seedOf } from "./numbers.mjs";
 /** Side of a view in the paper. */
 const SMALL = 32;
 const SIZES = [128, 64];
-/** With the light known, which the paper requires. */
+/** The light is known, as the paper requires. */
 const TOLD = { ...FROM_ANYWHERE, light: "known", scale: 1 };
 
 /** Both readings of the paper's protocol: "2A" the bare grid, "2B" what a camera sees. */
@@ -95,7 +95,7 @@ export const table2B = {
   cells: (kit, quick) => (quick ? quick2B(kit) : full2B(kit)),
 };
 
-/** Figure 6 runs along a row of Table 2: in the paper's reading, and next to it as a camera sees it. */
+/** Figure 6 is a row of Table 2, in the paper's reading and beside it as a camera sees the scene. */
 const FIGURE_6_BETA = 40;
 
 export const figure6 = {

@@ -37,7 +37,7 @@ export function offBy(found, truth) {
   const axis = [r[7] - r[5], r[2] - r[6], r[3] - r[1]];
   const sine = Math.hypot(...axis) / 2;
   const angle = Math.atan2(sine, (r[0] + r[4] + r[8] - 1) / 2) / DEGREE;
-  // Near half a turn the differences no longer determine the axis; no table needs it there.
+  // Near half a turn the differences no longer determine the axis, but no table has such an error.
   return axis.map((part) => (sine > 0 ? (part / (2 * sine)) * angle : 0));
 }
 

@@ -40,7 +40,7 @@ export const FROM_ANYWHERE = {
 
 /** Objects of `mit_berkeley`. */
 export const OBJECTS = ["raccoon", "frog2", "squirrel", "turtle"];
-/** The same and six more, all with measured albedo. */
+/** These surfaces and six more, all with measured albedo. */
 export const PAINTED = [...OBJECTS, "deer", "panther", "sun", "paper1", "cup1", "teabag1"];
 export const BUILT_IN = ["bust", "vase", "ripples"];
 

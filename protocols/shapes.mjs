@@ -61,7 +61,7 @@ export const figure5 = {
     ),
 };
 
-/** Seeds to average over (docs/lab/protocols.md): a single draw shows its noise as much as the method. */
+/** Seeds to average over (docs/lab/protocols.md), because a single draw shows its noise as much as the method. */
 const REFINEMENT_SEEDS = [1, 2, 3, 4, 5];
 const DEPTH_NOISE = 0.5;
 const HOLES = 0.1;

@@ -68,7 +68,7 @@ function parsed() {
   }
 }
 
-/** The loop itself: stages, complete runs, random scenes, and the memory after the largest run. */
+/** Measures the loop itself: stages, complete runs, random scenes, and the memory after the largest run. */
 async function loops(sides, made, plan) {
   const found = { samples: [], ends: [], converged: [], searches: [], memory: undefined };
   for (const size of plan.sizes) {
@@ -96,7 +96,7 @@ async function loops(sides, made, plan) {
   return found;
 }
 
-/** The work around the loop in a browser. */
+/** Measures the work around the loop in a browser. */
 async function around(chromium, address, side, made, plan) {
   const startScene = made.plain(STARTED);
   const startUp = { size: STARTED, times: await startUps(chromium, address, startScene, plan.samples) };

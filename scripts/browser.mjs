@@ -40,7 +40,7 @@ const SHELL = "chromium-headless-shell";
 
 /**
  * The browser of the page's tests: the one that CHROMIUM names, or the headless shell, which is installed when run as root on Debian.
- * Without it, the tests use the whole Chromium, which only takes longer.
+ * If the shell is missing, the tests use the whole Chromium, which takes longer.
  */
 export async function headless() {
   if (!process.env.CHROMIUM && !inPath(SHELL) && canInstall()) {

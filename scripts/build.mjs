@@ -80,7 +80,7 @@ function manifest() {
       "./write": { types: "./write/index.d.ts", default: "./write.js" },
       "./rig-write": { types: "./rig/write/index.d.ts", default: "./rig-write.js" },
       "./elements": { types: "./elements.d.ts", default: "./elements.js" },
-      // By path, for bundlers that need to know these files.
+      // These files are exported by path, for bundlers that need to know them.
       ...Object.fromEntries([...THREADS, ...ALL.map(({ file }) => file)].map((file) => [`./${file}`, `./${file}`])),
       "./package.json": "./package.json",
     },
@@ -154,7 +154,7 @@ async function facade() {
     // The code splitting below needs this setting; leaving it implicit gives a warning.
     preserveEntrySignatures: "allow-extension",
   });
-  // A separate file: users who only check a rig share it with the loop and download nothing of the loop's bindings.
+  // This separate file is shared with the loop, so that users who only check a rig do not download the loop's bindings.
   const codeSplitting = {
     groups: [{ name: "border", test: /js\/(border|breathe|node)\.ts$/ }],
     includeDependenciesRecursively: false,
@@ -170,7 +170,7 @@ async function facade() {
 
 /** The types reachable from the entries; the others stay inside, including those of the generated bindings. */
 async function declarations() {
-  // Imported late, like the bundler: before the set-up there are no node_modules.
+  // Imported late, like the bundler, because before the set-up there are no node_modules.
   const { reachable } = await import("./imports.mjs");
   const all = inRoot("target/declarations");
   rmSync(all, { recursive: true, force: true });

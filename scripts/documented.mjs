@@ -22,7 +22,7 @@ const DECLARATIONS = [
 ];
 
 const isCommented = (node) => {
-  // The comment of a constant belongs to its statement.
+  // A constant has its comment at its statement.
   const carrier = ts.isVariableDeclaration(node) ? node.parent.parent : node;
   return ts.getJSDocCommentsAndTags(carrier).length > 0;
 };

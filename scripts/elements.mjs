@@ -41,7 +41,7 @@ export async function bundleElements(notices) {
     plugins: [packageBeside, styles, lessonsThread, notices],
     preserveEntrySignatures: "allow-extension",
   });
-  // A prefix, because the package has files of common names such as errors.js.
+  // The files have a prefix, because the package has files with common names such as errors.js.
   await bundle.write({ dir: inRoot("pkg"), format: "esm", chunkFileNames: "elements-[name].js" });
   await bundle.close();
 }

@@ -1,6 +1,9 @@
-// npm run figures: draws the figures of the documents from rendered scenes; each run gives the same files. [FOLDER] docs/figures by default
-//   --only a,b these alone terms.svg what an occluding contour, a depth discontinuity, a tile of the covariance and local contrast are
-//   stages.svg what goes into a run, and what each stage makes of it verdicts.svg the three verdicts of the check of a calibration
+// npm run figures: draws the figures of the documents from rendered scenes; each run gives the same files.
+//   [FOLDER]       docs/figures by default
+//   --only a,b     only these figures
+//   terms.svg      an occluding contour, a depth discontinuity, a tile of the covariance, and local contrast
+//   stages.svg     the inputs of a run, and the result of each stage
+//   verdicts.svg   the three verdicts of the check of a calibration
 import { mkdirSync, realpathSync, writeFileSync } from "node:fs";
 import { join, relative, resolve } from "node:path";
 import { parseArgs } from "node:util";
@@ -31,7 +34,7 @@ function parsed() {
 export async function drawn(api, names, folder) {
   mkdirSync(folder, { recursive: true });
   for (const name of names) {
-    // Imported late: before the set-up there are no node_modules.
+    // Imported late, because before the set-up there are no node_modules.
     const { [name]: draw } = await import(`./figures/${name}.mjs`);
     const text = await draw(api);
     const path = join(folder, `${name}.svg`);

@@ -10,7 +10,7 @@ export const LIST = "www/rig/supported.ts";
 
 /** The exports of some sources that Node cannot load as they are. */
 export async function loaded(source) {
-  // Imported late: before the set-up there are no node_modules.
+  // Imported late, because before the set-up there are no node_modules.
   const { build } = await import("esbuild");
   const stdin = { contents: source, resolveDir: inRoot("js"), loader: "ts" };
   const { outputFiles } = await build({ stdin, bundle: true, format: "esm", write: false, logLevel: "error" });

@@ -2,9 +2,9 @@
 // them.
 //
 // For each frame it prints how many points the camera sees, the share of them that the range image holds (aim: 99 %), the mean distance of
-// a point to its pixel's ray in units of the sampling (the distance of neighbouring rays; aim: a half) and in units of a column alone. A
-// FOLDER is one of KITTI's object detection (velodyne, image_2, calib), of OpenCalib or of nuScenes' samples, or holds such folders; without
-// a FOLDER, those in ../shared/data are read.
+// a point to its pixel's ray in units of the sampling (the distance of neighbouring rays; aim: a half) and in units of a column. A FOLDER
+// is one of KITTI's object detection (velodyne, image_2, calib), of OpenCalib or of nuScenes' samples, or holds such folders; without a
+// FOLDER, those in ../shared/data are read.
 //
 // --json FILE  one row for each frame
 // --ranks N    how often N wrong candidates of each size rank worse than the calibration, also by others' costs (scripts/lidar/ranks.mjs)

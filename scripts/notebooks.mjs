@@ -13,7 +13,7 @@ async function install() {
   await once(VENV, ".venv-stamp", stamp([REQUIREMENTS]), async () => {
     say("notebooks: an environment with JupyterLab and marimo");
     await must("python3", ["-m", "venv", "--clear", inRoot(VENV)]);
-    // Most of its modules are never imported, so compiling them would take longer than the tests.
+    // The modules are not compiled at installation: most are never imported, and compiling all would take longer than the tests.
     await pip(inRoot(VENV), "install", "--no-compile", "--requirement", REQUIREMENTS);
   });
   const installed = () => pip(inRoot(VENV), "install", "--force-reinstall", "--no-deps", ...wheels());

@@ -36,7 +36,7 @@ function settings() {
 /** Every crate of an artefact, with the licences chosen for it, including macros and their dependencies. */
 async function about({ manifest, builds }, config) {
   const out = join(FOLDER, `${manifest.replaceAll(/\W/g, "-")}.json`);
-  // Offline: it reads what is compiled and queries no server for other people's corrections of licences.
+  // It works offline: it reads what is compiled and does not ask a server for corrections of licences.
   const args = ["generate", "--format", "json", "--locked", "--offline", "--fail", "--config", config];
   await must(tool("cargo-about"), [
     ...args,

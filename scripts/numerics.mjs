@@ -113,7 +113,7 @@ export async function allNumerics() {
   const isMade = [NUMERICS_MARK, ...made].every((path) => existsSync(inRoot(path)));
   if (isMade && readFileSync(inRoot(NUMERICS_MARK), "utf8") === wanted) return;
   rmSync(inRoot(NUMERICS_MARK), { force: true });
-  // Builds that share crates run one after the other; the others, and what follows a compilation, run beside them.
+  // Builds that share crates run one after the other. Other builds, and all steps after a compilation, run beside them.
   const cratesOf = ({ target, crates = target }) => crates;
   const groups = [...new Set(ALL.map(cratesOf))].map((folder) => ALL.filter((each) => cratesOf(each) === folder));
   await Promise.all(

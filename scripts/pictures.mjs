@@ -112,7 +112,7 @@ function shaded({ width, height, camera }, metres) {
   };
 }
 
-/** A photographed object; if its pose is not found, from the true pose. */
+/** The pictures of a photographed object. If its pose is not found, the run starts from the true pose. */
 async function photographed(api, data, surface) {
   const made = api.sample(requestOf({ surface, light: "A", size: SIZE, angles: { beta: BETA } }, data));
   const image = onto(SIZE, data.photograph(surface, "lab_diffuse"), made);

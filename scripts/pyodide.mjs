@@ -10,13 +10,13 @@ import { filesBelow, inRoot, say, script } from "./shell.mjs";
 export const PYODIDE_WHEELS = "target/python/pyodide";
 const PACKAGE = "python/bimodal_stereo";
 const MODULES = ["bimodal_stereo_bg.wasm", "bimodal_stereo_check_bg.wasm", "bimodal_stereo_rigs_bg.wasm"];
-/** Pyodide's platforms of two years. Not "any", because pip would install this wheel where a native one is missing. */
+/** Pyodide's platforms of two years. The tag is not "any", because pip would install this wheel where a native one is missing. */
 const PLATFORMS = "pyodide_2025_0_wasm32.pyemscripten_2026_0_wasm32";
 
 /** One script without imports, which Pyodide evaluates. */
 async function adapter() {
   const { rolldown } = await import("rolldown");
-  // Nothing is beside the script, and nothing needs it.
+  // No file is beside the script, and the script needs none.
   const transform = { define: { "import.meta.url": "undefined" } };
   const bundle = await rolldown({ input: inRoot("js/pyodide.ts"), platform: "browser", external: /^node:/, transform });
   const options = { format: "iife", name: "bimodalStereo", codeSplitting: false, minify: true };

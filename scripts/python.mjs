@@ -65,7 +65,7 @@ export async function install() {
   });
 }
 
-/** Format, lints, types and tests; the first that fails ends it. */
+/** Checks format, lints, types and tests, and stops at the first failure. */
 export async function python() {
   const reason = missing();
   if (reason !== undefined) {
@@ -78,7 +78,7 @@ export async function python() {
   const guard = inRoot("target/python/guard");
   const steps = [
     ["cargo", "fmt", "--check", ...manifest],
-    // With the release profile, for which pip has already compiled the macros.
+    // The build has the release profile, for which pip has already compiled the macros.
     ["cargo", "clippy", "--release", "--locked", ...manifest, "--", "-D", "warnings"],
     // This file needs only the standard library, so the test does not link Python.
     ["rustc", "--edition", "2024", "--test", "python/src/guard.rs", "-o", guard],

@@ -6,7 +6,7 @@ import { inRoot } from "./shell.mjs";
 /** Other people's data, never part of the project. */
 const DATA = inRoot("../shared/data");
 
-/** Kinect v1, the nominal values of the data set's authors. */
+/** A Kinect v1 with the nominal values of the data set's authors. */
 export const KINECT = { fx: 525, fy: 525, cx: 319.5, cy: 239.5 };
 const MILLIMETRE = 0.001;
 

@@ -56,7 +56,7 @@ const locked =
 
 /** The change of each file. */
 const FILES = {
-  // Once for all members, and once where the command line depends on the library.
+  // The version stands in two places: for all members, and where the command line depends on the library.
   "Cargo.toml": (text, { version }) =>
     replaced(
       "Cargo.toml",
@@ -64,7 +64,7 @@ const FILES = {
       /^(bimodal-stereo(?:-files)? = .*version = )"=.+"/gm,
       `$1"=${version}"`,
     ),
-  // A separate workspace, so that builds for browsers never see it.
+  // The Python package is a separate workspace, so that builds for browsers never include it.
   "python/Cargo.toml": (text, { version }) => replaced("python/Cargo.toml", text, VERSION, `version = "${version}"`),
   ...Object.fromEntries(["Cargo.lock", "python/Cargo.lock", "fuzz/Cargo.lock"].map((name) => [name, locked(name)])),
   "CITATION.cff": (text, { version, date }) =>

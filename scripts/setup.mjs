@@ -43,8 +43,9 @@ async function wasmBindgen() {
   const version = /name = "wasm-bindgen"\nversion = "(.+)"/.exec(readFileSync(inRoot("Cargo.lock"), "utf8"))[1];
   if (ask(tool("wasm-bindgen"), ["--version"]) === `wasm-bindgen ${version}`) return;
   say(`wasm-bindgen ${version}: compiling its command-line tools (1 to 2 minutes, once)`);
-  // Without --locked, because the lock file of some releases names a yanked crate. Not optimised, which halves the compile time of a tool
-  // that runs for a second. Without default features, which are TLS: its tests talk to a driver on this machine.
+  // The tool is built without --locked, because the lock file of some releases names a yanked crate. It is not optimised, which halves
+  // the compile time of a tool that runs for a second. It has no default features, which are TLS, because its tests talk to a driver on
+  // this machine.
   const wanted = ["--no-default-features", "--bin", "wasm-bindgen", "--bin", "wasm-bindgen-test-runner"];
   await must(
     "cargo",
@@ -73,7 +74,7 @@ export async function setup() {
   const start = performance.now();
   checkNode();
   await toolchain();
-  // One waits for the compiler, the other for the network.
+  // Both run at once, because one waits for the compiler and the other for the network.
   await Promise.all([wasmBindgen(), nodeModules()]);
   say(`set up (${seconds(start)})`);
 }

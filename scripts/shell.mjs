@@ -9,7 +9,7 @@ import { fileURLToPath } from "node:url";
 export const root = resolve(dirname(fileURLToPath(import.meta.url)), "..");
 export const inRoot = (...parts) => join(root, ...parts);
 
-/** A failure that the reader can fix; its message suffices. */
+/** A failure that the reader can fix, for which the message suffices. */
 export class Failure extends Error {}
 
 /** The output so far of a task that runs beside others. */

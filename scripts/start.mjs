@@ -27,18 +27,18 @@ await script(async () => {
   const port = wantedPort();
   await setup();
   await build();
-  // Imported late: before the set-up there are no node_modules.
+  // Imported late, because before the set-up there are no node_modules.
   const { createServer } = await import("vite");
   const server = await createServer({
     root: inRoot("www"),
     plugins: [notices],
-    // A numeric address: "localhost" may be IPv6 only, which excludes other clients.
+    // The address is numeric, because "localhost" may be IPv6 only, which excludes other clients.
     server: { host: "127.0.0.1", port: port ?? FIRST_PORT, strictPort: port !== undefined },
   });
   try {
     await server.listen();
   } catch (error) {
-    // Otherwise its file watchers keep the process alive.
+    // Without this, the file watchers would keep the process alive.
     await server.close();
     throw new Failure(error.message);
   }

@@ -28,7 +28,7 @@ const cargo =
  * also chooses their crates' features, and cargo keeps only one build of the library: a build with another choice discards it.
  */
 const LIBRARY = ["-p", "bimodal-stereo"];
-/** A test in a browser runs to its end as well; the runner's own limit is twenty seconds. */
+/** A test in a browser may also run to its end; the runner's own limit is twenty seconds. */
 const PATIENCE = { WASM_BINDGEN_TEST_TIMEOUT: "1800" };
 /** Modules of `tests/library` with searches and sweeps: they always run natively, and as wasm only with `--long`. */
 const SEARCHES = [
@@ -137,7 +137,7 @@ async function firefoxPage(program) {
   });
 }
 
-/** The second engine, if installed: a smoke test of every place by Playwright, and the wasm tests by geckodriver. */
+/** Tests of the second engine, if installed: a smoke test of every part of the page by Playwright, and the wasm tests by geckodriver. */
 async function secondEngine() {
   const found = firefox();
   const page = await firefoxPage(found.firefox);
@@ -159,7 +159,7 @@ function deny() {
 const HANGS = 1_800_000;
 const contract = () => {
   const files = matching(["tests/contract"], /\.test\.mjs$/);
-  // At least two files at once; Node's own default is one on two processors.
+  // At least two files run at once; Node's own default is one on two processors.
   return watch(
     process.execPath,
     [
@@ -237,9 +237,8 @@ function notRun(output) {
 const EITHER = -1;
 
 /**
- * In the order of running. The two lanes run in parallel: cargo's in one, what needs the package in the other, which alone builds the page.
- * The lane that ends first takes the parts that may run in either.
- * Parts that are `long` run with `--long` or by name.
+ * The parts in the order of running. Two lanes run in parallel: cargo's, and that of parts that need the package, which also builds the
+ * page. The lane that ends first takes the parts that may run in either. Parts that are `long` run with `--long` or by name.
  */
 const PARTS = [
   { name: "format", run: cargo("fmt", "--check") },
@@ -340,7 +339,7 @@ async function inTurn(parts, run) {
   return results;
 }
 
-/** Runs consecutive parts with lanes in parallel, the others alone. */
+/** Runs consecutive parts that have lanes in parallel, and the others one by one. */
 async function attemptAll(parts) {
   const first = parts.findIndex(isInLane);
   const ofLane = (lane) => parts.filter((part) => part.lane === lane);

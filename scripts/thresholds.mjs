@@ -36,7 +36,7 @@ const textOf = (comment = "") =>
 /** The first sentence: a full stop before a capital letter ends it. */
 const firstSentence = (text) => /^.*?(?<!\bEq)\.(?= [A-Z`]|$)/.exec(text)?.[0] ?? text;
 
-/** An expression as people write it: 20000 for 20_000_usize, 2 for 2.0, the numbers of an array. */
+/** An expression in the form of the page: 20000 for 20_000_usize, 2 for 2.0, the numbers of an array. */
 export function formatted(expression) {
   const plain = expression
     .replaceAll(/\s+/g, " ")
@@ -66,7 +66,7 @@ function defaultOf(source, type, field) {
   return value === undefined ? [] : [{ name: `${type}::${field}`, value, text: textOf(comment) }];
 }
 
-/** What the code says about a row's constant. */
+/** The value and the meaning of a row's constant in the code. */
 export function lookUp(name, path, read = (path) => existsSync(inRoot(path)) && readFileSync(inRoot(path), "utf8")) {
   const source = read(path);
   if (!source) throw new Failure(`${DOCUMENT}: "${path}" of \`${name}\` is not a file.`);
@@ -81,7 +81,7 @@ export function lookUp(name, path, read = (path) => existsSync(inRoot(path)) && 
 
 export const HEAD = "| constant | file | value | meaning | set on | held out |";
 
-/** The lines of the page's tables: `row` if a line has a constant, the line alone otherwise. */
+/** The lines of the page's tables, each with its `row` if it has a constant. */
 function linesOf(page) {
   let inTable = false;
   return page.split("\n").map((line) => {
@@ -99,7 +99,7 @@ function linesOf(page) {
 /** The rows of the page: name and file of each. */
 export const rowsOf = (page) => linesOf(page).flatMap(({ row }) => (row ? [row] : []));
 
-/** The page with both columns as `look` finds them. */
+/** The page with both columns filled in by `look`. */
 export const filled = (page, look = lookUp) =>
   linesOf(page)
     .map(({ line, row }) => {
@@ -109,7 +109,7 @@ export const filled = (page, look = lookUp) =>
     })
     .join("\n");
 
-/** The page without both columns: what people wrote. */
+/** The page without both columns, that is, the text that people wrote. */
 export const handWritten = (page) => filled(page, () => ({ value: "", meaning: "" }));
 
 const sourcesBelow = (folder) =>

@@ -18,7 +18,7 @@ const withoutReaders = {
   },
 };
 
-/** Each of these is one file, because a script in a blob finds nothing beside itself. */
+/** Each of these is one file, because a script in a blob has no files beside it. */
 const SCRIPTS = {
   widget: "www/elements/widget.ts",
   "stereo-thread": "www/elements/thread.ts",

@@ -41,8 +41,8 @@ const SHARE_OF_SPREAD: f64 = 0.05;
 /// No other unit of depth is tried if residuals are at most this multiple of the image's noise, and their spatial
 /// covariance is at most [`UNIT_COVARIANCE`].
 pub const UNIT_NOISE: f64 = 1.25;
-/// Residuals beyond this multiple of the image's own noise are errors of the model: shadows, print, a lamp too sharp
-/// for nine harmonics.
+/// Residuals beyond this multiple of the image's own noise are errors of the model, such as shadows, print, or a lamp
+/// too sharp for nine harmonics.
 const MODEL_NOISE: f64 = 2.0;
 /// Largest share of the spread of the log image that a trusted pose may leave unexplained.
 pub const LARGEST_UNEXPLAINED: f64 = 0.3;
@@ -62,14 +62,14 @@ pub struct Residuals {
     pub spread: f64,
 }
 
-/// The method that would be tried if a single albedo does not explain the image.
+/// The method that is tried if a single albedo does not explain the image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Alternative {
     /// Registration by local contrast, for an orthographic image.
     LocalContrast,
     /// Registration by silhouettes, behind a pinhole.
     Silhouettes,
-    /// The same shape in another unit of depth.
+    /// Registration of the same shape in another unit of depth.
     DepthUnit,
 }
 
@@ -105,7 +105,7 @@ impl Residuals {
         }
     }
 
-    /// Whether the residuals hardly exceed the image's own noise, whatever their spatial covariance.
+    /// Whether the residuals hardly exceed the image's own noise, whatever their spatial covariance is.
     #[must_use]
     pub fn is_noise(&self) -> bool {
         self.noise <= (NOISE_OF_IMAGE * self.image_noise).max(SHARE_OF_SPREAD * self.spread)
@@ -153,13 +153,13 @@ mod tests {
 
     /// Noise, covariance, the image's own noise and spread; the diagnosis for each alternative.
     const TABLE: [([f64; 4], [Diagnosis; 3]); 9] = [
-        // Renders with noise, without, and with 3 % of it.
+        // Renders with noise, without noise, and with 3 % of noise.
         ([0.010, 0.0005, 0.011, 0.4], [Explained, Explained, Explained]),
         ([0.004, 0.0015, 0.000, 0.4], [Explained, Explained, ModelError]),
         ([0.030, 0.0043, 0.031, 0.3], [Explained, Explained, ModelError]),
-        // Noisy normals: more than noise, without spatial covariance.
+        // Noisy normals leave more than noise, without spatial covariance.
         ([0.034, 0.0040, 0.010, 0.3], [ModelError, ModelError, ModelError]),
-        // The same under a strong light.
+        // Noisy normals under a strong light.
         ([0.100, 0.0040, 0.010, 0.9], [ModelError, ModelError, ModelError]),
         // Cast shadows in a picture of shading.
         ([0.030, 0.0100, 0.010, 0.3], [VaryingAlbedo, ModelError, ModelError]),

@@ -10,11 +10,11 @@ use crate::text::Brief;
 #[strum(serialize_all = "kebab-case")]
 #[non_exhaustive]
 pub enum ErrorKind {
-    /// Two sizes that must agree do not, or a size is outside its bounds.
+    /// Two sizes do not agree, or a size is outside its bounds.
     Size,
     /// A number lies outside its allowed range or is not finite.
     Range,
-    /// A required value is absent, or two exclusive ones are both present.
+    /// A required value is missing, or two values exclude each other.
     Missing,
     /// The input is well formed but contains nothing usable (no usable pixel, no valid depth).
     Empty,
@@ -22,7 +22,7 @@ pub enum ErrorKind {
     Degenerate,
     /// The input would take more memory than a page may use.
     Memory,
-    /// A documented feature that this build does not offer.
+    /// The build lacks a documented feature.
     Unsupported,
 }
 

@@ -41,15 +41,15 @@ pub enum Start {
     Pose {
         /// R.
         rotation: Matrix3<f64>,
-        /// s; `None`: the ratio of the units of both views. Not used if [`Options::scale`] is given, nor behind a pinhole,
-        /// where s is that scale or 1.
+        /// s; `None`: the ratio of the units of both views. It is not used if [`Options::scale`] is given or the view
+        /// has a pinhole, where s is that scale or 1.
         scale: Option<f64>,
         /// t; `None`: the centroid of the depth points projects onto the centre of the image's mask.
         translation: Option<Vector3<f64>>,
     },
 }
 
-/// How far from a given initial pose the answer may lie.
+/// The region around a given initial pose in which the answer may lie.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct StartTolerance {
@@ -62,7 +62,7 @@ pub struct StartTolerance {
 
 impl Default for StartTolerance {
     fn default() -> Self {
-        // Registrations converge from this far off.
+        // Registrations converge from initial poses with this error.
         Self { degrees: 30.0, distance: None }
     }
 }
@@ -95,11 +95,11 @@ pub enum Shading {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Weights {
-    /// lambda_2 of Eq. 6: how strongly a normal follows that of the other view.
+    /// lambda_2 of Eq. 6: the weight of the other view's normal.
     pub prior: f64,
-    /// lambda_3 of Eq. 6: how strongly a normal is kept at unit length.
+    /// lambda_3 of Eq. 6: the weight of the unit length of a normal.
     pub unit: f64,
-    /// lambda_L of Eq. 2: how strongly the light follows the prior over lights.
+    /// lambda_L of Eq. 2: the weight of the prior over lights.
     pub light: f64,
     /// lambda_g2 of Eq. 17: the shape prior of the refinement.
     pub refinement: f64,
@@ -107,7 +107,7 @@ pub struct Weights {
 
 impl Default for Weights {
     fn default() -> Self {
-        // light: 1e-6 admits colourful lights that occur in no landscape; it is noise^2 / pixels at 64x64.
+        // For the light, 1e-6 admits colourful lights that occur in no landscape. It is noise^2 / pixels at 64x64.
         Self { prior: 0.05, unit: 1.0, light: 1e-6, refinement: 0.01 }
     }
 }
@@ -127,7 +127,7 @@ pub struct Options {
     pub prior: Option<LightGaussian>,
     /// Initial pose.
     pub start: Start,
-    /// How far from a given initial pose the photometric registration may end.
+    /// The region around a given initial pose in which the photometric registration may end.
     pub start_tolerance: StartTolerance,
     /// Scale of the pose: `None` is free, `Some(s)` is held.
     #[cfg_attr(feature = "serde", serde(with = "serialised::free_or_held"))]
@@ -180,9 +180,10 @@ impl Default for Options {
     }
 }
 
-/// If a term weighs a million times as much as the colours, a 32-bit sum keeps hardly a digit of the colours.
+/// Largest weight of a term: at a million times the weight of the colours, a 32-bit sum keeps hardly a digit of the
+/// colours.
 const LARGEST_WEIGHT: f64 = 1e6;
-/// More iterations than anyone would wait for; guards against typing errors.
+/// Largest number of iterations, more than anyone would wait for, to catch typing errors.
 const MOST_ITERATIONS: u32 = 100_000;
 
 impl Options {
@@ -284,7 +285,7 @@ mod tests {
             trim: false,
         };
         for options in [options, Options::default(), Options::paper()] {
-            // Not through text, because reading it rounds the last digit.
+            // The options do not pass through text, because reading text rounds the last digit.
             let plain = serde_json::to_value(&options).unwrap();
             assert_eq!(serde_json::from_value::<Options>(plain).unwrap(), options);
         }

@@ -21,7 +21,7 @@ pub enum Layer {
 }
 
 impl Layer {
-    /// In the order of the data flow.
+    /// All layers in the order of the data flow.
     pub const ALL: [Self; 5] = [Self::Normals, Self::Depth, Self::Residual, Self::Refined, Self::RefinedNormals];
 
     /// The name in JavaScript.
@@ -72,7 +72,7 @@ impl ColourMap {
     }
 }
 
-/// Number of colours of a map: as many as a channel has values.
+/// Number of colours of a map, one for each value of a channel.
 const STEPS: usize = 256;
 const LAST: f64 = (STEPS - 1) as f64;
 const OPAQUE: u8 = 255;
@@ -82,7 +82,7 @@ const MOST_SAMPLES: usize = 4096;
 /// Share of the values below and above an automatic range, so that single outliers do not flatten everything else.
 const OUTLIERS: f64 = 0.01;
 
-/// Right is red, up is green, towards the camera is blue: the frame's y points down and its z away.
+/// Red is to the right, green up, and blue towards the camera. The frame's y points down and its z away.
 pub(crate) fn draw_normals(normals: &Normals, rgba: &mut Vec<u8>) {
     let Normals { x, y, z } = normals;
     let byte = |value: f32| (0.5 * LAST as f32 * (1.0 + value)).round() as u8;
@@ -95,7 +95,7 @@ pub(crate) fn draw_normals(normals: &Normals, rgba: &mut Vec<u8>) {
     rgba.extend(pixels);
 }
 
-/// Values outside `range` take its end colours. Without a range, it covers all values except a hundredth at either end.
+/// Values outside `range` take its end colours. The default range covers all values except a hundredth at either end.
 ///
 /// # Errors
 /// A range that is empty or not finite.

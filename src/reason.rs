@@ -6,7 +6,7 @@ use crate::error::Error;
 use crate::pose::Direction;
 use crate::text::{Brief, Fixed};
 
-/// Why a run ended as it did, why its answer is not to be trusted, or the outcome of the last step of a running one.
+/// Why a run ended, why its answer cannot be trusted, or the outcome of the last step of a run that continues.
 ///
 /// Its [`code`](Reason::code) is stable; its [`Display`](fmt::Display) is the message for people, and may change.
 #[derive(Clone, Debug, PartialEq, strum::IntoStaticStr, strum::VariantNames)]
@@ -49,7 +49,7 @@ pub enum Reason {
         /// Number of those iterations.
         iterations: u32,
     },
-    /// The cap on iterations was reached.
+    /// The maximum number of iterations was reached.
     IterationCap {
         /// The cap.
         iterations: u32,
@@ -83,8 +83,8 @@ pub enum Reason {
         /// The least certain direction.
         weakest: Direction,
     },
-    /// As [`AlbedoVaries`](Self::AlbedoVaries), and the silhouettes do not constrain one direction at all. The pose
-    /// keeps its initial value in that direction.
+    /// As [`AlbedoVaries`](Self::AlbedoVaries), but the silhouettes do not constrain one direction at all, in which the
+    /// pose keeps its initial value.
     SilhouetteBlind {
         /// The direction that keeps its initial value.
         weakest: Direction,
@@ -120,7 +120,7 @@ pub enum Reason {
         /// Removed share of the depths.
         percent: f64,
     },
-    /// The pose was searched for in a whole frame without a mask.
+    /// The search used a whole frame without a mask.
     MissingImageMask,
     /// The relief fits the image better in another unit.
     OtherUnit {
@@ -160,7 +160,7 @@ pub enum Activity {
     Registering,
     /// Comparing local contrast, because a single albedo does not fit the image.
     ComparingContrast,
-    /// Comparing silhouettes, for the same reason.
+    /// Comparing silhouettes, because a single albedo does not fit the image.
     ComparingSilhouettes,
 }
 
@@ -193,7 +193,7 @@ impl From<Error> for Reason {
     }
 }
 
-/// Sigma, in degrees, from which on a decimal is meaningless.
+/// Smallest sigma, degrees, for which a decimal is meaningless.
 const COARSE: f64 = 5.0;
 /// Beginning of the message for every pose from silhouettes.
 const BY_SILHOUETTES: &str = "pose from silhouettes, because a single albedo does not fit the image";

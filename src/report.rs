@@ -60,7 +60,7 @@ pub enum Status {
     Running,
     /// The rotation has settled.
     Converged,
-    /// The cap on iterations was reached first.
+    /// The maximum number of iterations was reached first.
     MaxIterations,
     /// The data allow other poses as well.
     Ambiguous,
@@ -82,7 +82,7 @@ impl Status {
     }
 }
 
-/// The terms of Eq. 1, each a robust mean, so that image sizes do not matter.
+/// The terms of Eq. 1, each a robust mean, so that they do not depend on the image's size.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(into = "serialised::Energy"))]
 pub struct Objective {

@@ -74,7 +74,7 @@ fn write(f: &mut fmt::Formatter<'_>, value: f64, digits: u64, decimals: u32) -> 
         f.write_str("-")?;
     }
     if value.is_infinite() {
-        // JavaScript writes infinity in this way, too.
+        // JavaScript also writes infinity in this way.
         return f.write_str("Infinity");
     }
     let unit = 10_u64.pow(decimals);
@@ -94,7 +94,7 @@ mod tests {
         for value in [0.0, 0.04, 0.96, 1.5, -2.26, 12.345, 99.99, 1234.0, 1e12] {
             for decimals in 0..5_u32 {
                 let expected = format!("{value:.width$}", width = decimals as usize);
-                // A tie in binary digits need not be one in decimal digits.
+                // A tie in binary digits need not be a tie in decimal digits.
                 let found = Fixed(value, decimals).to_string();
                 let apart = (found.parse::<f64>().unwrap() - expected.parse::<f64>().unwrap()).abs();
                 assert!(

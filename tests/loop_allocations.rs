@@ -16,7 +16,7 @@ const COUNTED: u32 = 4;
 fn fewest(request: &SampleRequest, known: bool) -> [usize; Stage::ALL.len()] {
     let sample = Scene::new(&surface("bust").expect("a name")).and_then(|scene| scene.sample(request)).expect("a pair");
     let light = if known { LightSource::Known(sample.light) } else { LightSource::Estimate };
-    // An unreachable threshold keeps the loop running.
+    // The threshold cannot be reached, so the loop keeps running.
     let options = Options { light, stop_degrees: f64::MIN_POSITIVE, ..Options::paper() };
     let mut estimator = Estimator::new(sample.colour_image(), &sample.depth_map(), options).expect("good input");
     estimator.step();

@@ -24,7 +24,7 @@ fn later_integrations_allocate_nothing() {
     let mut integrator = Integrator::new(size, &mask).expect("a mask");
     let least = (0..5)
         .map(|round| {
-            // Each time, other pixels are unknown and form other components.
+            // In each trial, other pixels are unknown and form other components.
             p[500 + 100 * round..540 + 100 * round].fill(f32::NAN);
             let before = ALLOCATIONS.load(Ordering::Relaxed);
             integrator.integrate(&p, &q, None, &options, &mut z).expect("sizes agree");

@@ -2,7 +2,7 @@
 
 const NAME = "bimodal-stereo";
 const STORES = ["own-files", "rig"] as const;
-/** Rises with each store that is added. */
+/** The version of the database, which rises with each store that is added. */
 const VERSION = 2;
 
 type StoreName = (typeof STORES)[number];
@@ -32,7 +32,7 @@ export async function change(name: StoreName, work: (store: IDBObjectStore) => v
       transaction.onabort = transaction.onerror = () =>
         reject(transaction.error ?? new Error("the browser's storage failed"));
     });
-    end.catch(() => {}); // reported once, whichever comes first
+    end.catch(() => {}); // The first failure, of the work or of the transaction, is reported.
     work(transaction.objectStore(name));
     await end;
   } finally {

@@ -11,7 +11,7 @@ export function make<K extends keyof HTMLElementTagNameMap>(
   const element = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
     if (value === undefined || value === false) continue;
-    // The page's own policy would refuse it as an attribute.
+    // The page's content security policy forbids the attribute `style`.
     if (name === "style") element.style.cssText = String(value);
     else element.setAttribute(name, value === true ? "" : String(value));
   }
@@ -28,7 +28,7 @@ export function byId<T extends HTMLElement>(id: string, type: abstract new () =>
 
 /** Colours, cached until the theme changes, because each query may make the browser restyle the whole page. */
 const inks = new Map<string, string>();
-/** In the head, which has no layout. It stays there, because adding and removing it would restyle the page. */
+/** An element from which colours are read. It stays in the head, which has no layout, because adding it anew would restyle the page. */
 const inkwell = document.head.appendChild(make("i"));
 
 /** A colour token as the browser computes it, for canvases that cannot read custom properties. */

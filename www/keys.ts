@@ -7,7 +7,7 @@ const pressable = "button, a, summary, label, input";
 
 const KEY = "bimodal-stereo.keys";
 
-/** Whether the visitor wants them, because single keys interfere with speech input. */
+/** Whether the visitor wants shortcuts. Single keys interfere with speech input. */
 export function areKeysOn(): boolean {
   try {
     return localStorage.getItem(KEY) !== "off";

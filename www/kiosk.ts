@@ -1,12 +1,12 @@
 /** The page on a stand: with ?kiosk in its address it plays by itself again once nobody has touched it for a while. */
 
-/** Seconds of silence, unless the address says another number: ?kiosk=30. */
+/** Seconds without input, unless the address states another number, as ?kiosk=30 does. */
 const SILENCE = 60;
 const TOUCHES = ["pointermove", "pointerdown", "keydown", "wheel"] as const;
 
 export interface Stand {
   isPlaying(): boolean;
-  /** Shows this address as it was at first, wherever the last visitor has gone, and plays the run of a place that has one. */
+  /** Returns to the first state of this address, whatever part of the page is shown. If this part has a run, it is played. */
   play(hash: string, isTouched: boolean): void;
 }
 

@@ -204,7 +204,7 @@ const places: Record<Place, { main: HTMLElement; link: HTMLAnchorElement; title:
 const labOnly = [byId("bar", HTMLElement), byId("skip", HTMLElement), byId("skip-takeaway", HTMLElement)];
 
 function show(place: Place): void {
-  // What was saved elsewhere is no longer news.
+  // A message about a file that was saved in another part of the page is removed.
   if (document.body.dataset.place !== place) report("");
   document.body.dataset.place = place;
   for (const [name, { main, link, title }] of Object.entries(places)) {
@@ -308,7 +308,7 @@ document.addEventListener("drop", (event) => {
   event.preventDefault();
   const files = [...(event.dataTransfer?.files ?? [])];
   if (files.length === 0 || placeOf(location.hash) !== "lab") return;
-  // The short path shows what has arrived itself.
+  // The short path shows the new files by itself.
   if (!document.querySelector("dialog.first-run[open]")) drawer.open = true;
   if (isSample()) choose("files");
   void lab.own.drop(files);
@@ -368,7 +368,7 @@ keepPlaying({
       history.replaceState(null, "", hash);
       return location.reload();
     }
-    // This address has to differ from the present one, from which "play" is removed as soon as the run plays.
+    // With "play" the new address differs from the present one, from which that word is removed as soon as the run plays.
     location.hash = placeOf(hash) === "lab" && !asksToPlay(hash) ? [hash || "#", "play"].join("&") : hash;
   },
 });

@@ -6,7 +6,7 @@ const NAMED = /^#(learn|tables|rig)(?=&|$)/;
 
 export const placeOf = (hash: string): Place => (NAMED.exec(hash)?.[1] as Place | undefined) ?? "lab";
 
-/** Whether one figure of Learn is shown alone, for example in a frame of another page. */
+/** Whether the page shows only one figure of Learn, for example in a frame of another page. */
 export const isEmbedded = (hash: string): boolean =>
   placeOf(hash) === "learn" && new URLSearchParams(hash.replace(/^#/, "")).has("embed");
 

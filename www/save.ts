@@ -6,7 +6,7 @@ export function saveJson(name: string, content: string, value: unknown): void {
   saves.dispatchEvent(new CustomEvent("saved", { detail: `${name}: ${content}` }));
 }
 
-/** Has an event "saved" for each file of numbers that was handed over, with its name and content in words. */
+/** Sends an event "saved" for each saved file of numbers, with its name and its content in words. */
 export const saves = new EventTarget();
 
 export function saveBlob(name: string, blob: Blob): void {

@@ -64,7 +64,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE")]
     image_mask: Option<PathBuf>,
 
-    /// The same for the depth map
+    /// A picture of the depth map's size that marks the object in the same way
     #[arg(long, value_name = "FILE")]
     depth_mask: Option<PathBuf>,
 
@@ -80,7 +80,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE")]
     light: Option<PathBuf>,
 
-    /// The prior over lights, replacing that over natural ones, if the light is estimated: JSON with "mean", 27
+    /// If the light is estimated, a prior over lights that replaces the one over natural lights: JSON with "mean", 27
     /// numbers, and "covariance", 27x27 numbers
     #[arg(long, value_name = "FILE", conflicts_with = "light")]
     light_prior: Option<PathBuf>,
@@ -94,7 +94,7 @@ pub struct Arguments {
     #[arg(long, value_name = "WAY", default_value = "joint", value_parser = registration)]
     registration: Registration,
 
-    /// How the shape of the image is found: surface (as a whole) or pixel (each pixel alone, as in the paper)
+    /// How the shape of the image is found: surface (as a whole) or pixel (each pixel by itself, as in the paper)
     #[arg(long, value_name = "WAY", default_value = "surface", value_parser = shading)]
     shading: Shading,
 
@@ -122,7 +122,7 @@ pub enum Input {
 }
 
 impl Arguments {
-    /// A pair or a folder; the masks of a folder are in it.
+    /// A pair or a folder, which contains its masks.
     pub fn input(&self) -> Result<Input> {
         match self.input.as_slice() {
             [folder] if folder.is_dir() => {

@@ -52,7 +52,7 @@ impl Cameras {
             return Ok(Found::default());
         }
         let [image_corner, depth_corner] = [read_corner(&files.image)?, read_corner(&files.depth)?];
-        // The cameras of crops are those of the whole frames, whose sizes are not stated.
+        // Crops have the cameras of whole frames, whose sizes are not stated.
         let is_crop = image_corner.is_some() || depth_corner.is_some();
         let cameras: Vec<NamedCamera> = all
             .iter()

@@ -75,7 +75,7 @@ fn run(arguments: Arguments) -> Result<Code> {
     }
 }
 
-/// A problem that ends the program; also printed to the standard output if that is JSON.
+/// Reports a problem that ends the program, also on the standard output if that is JSON.
 fn printed(problem: Problem, files: Option<&Files>, is_json: bool) -> Problem {
     let text = || report::json_of_problem(None, files, &problem, report::Layout::Lines);
     let said = if is_json { print(&text()) } else { Ok(()) };

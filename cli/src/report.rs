@@ -58,7 +58,7 @@ pub fn words(found: &Outcome) -> String {
     }
     line!(
         text,
-        "\noverlap {:.0} % of the depth points, {:.0} % of these inliers; {} of log colour is left unexplained",
+        "\noverlap {:.0} % of the depth points, of which {:.0} % are inliers; residual {} in log colour",
         100.0 * report.overlap,
         100.0 * report.inliers,
         digits(report.residual, 3)
@@ -203,7 +203,7 @@ fn text(value: &impl Serialize, layout: Layout) -> String {
         Layout::Lines => serde_json::to_string_pretty(value),
         Layout::OneLine => serde_json::to_string(value),
     };
-    // Cannot fail: it holds only strings and numbers, and its keys are names.
+    // Serialising cannot fail, because the value holds only strings and numbers, and its keys are names.
     made.expect("can be written") + "\n"
 }
 

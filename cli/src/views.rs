@@ -167,7 +167,7 @@ fn of(raster: &Raster, samples: DepthSamples, unit: Option<f64>, camera: Option<
 /// Whole numbers of a depth camera in metres.
 fn integer_depths(mut data: Vec<u16>, given: Option<f64>, said: &mut Said) -> (Vec<u16>, Option<f64>) {
     if data.contains(&u16::MAX) {
-        // 16-bit sensors store this where they see nothing.
+        // 16-bit sensors store this number where they see nothing.
         data.iter_mut().filter(|value| **value == u16::MAX).for_each(|value| *value = 0);
         said.note("65535 treated as holes");
     }
@@ -180,7 +180,7 @@ fn integer_depths(mut data: Vec<u16>, given: Option<f64>, said: &mut Said) -> (V
     (data, Some(unit))
 }
 
-/// Floats; renderers write 1e10 where nothing was seen.
+/// Converts floats; renderers write 1e10 where nothing was seen.
 fn float_depths(
     mut data: Vec<f32>,
     given: Option<f64>,

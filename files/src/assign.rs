@@ -11,8 +11,8 @@ use crate::warning::Warning;
 static COLOUR: Pattern = Pattern::new(|| pattern(r"(?i)colou?r|rgb|\bhr\b"));
 static DEPTH: Pattern = Pattern::new(|| pattern(r"(?i)depth|dpt|\bir\b|infra|tof|\blr\b"));
 
-/// The cameras of colour images and of depth maps of these sizes, as indices into the list, with a warning if that was
-/// a guess. If `is_cloud`, depth maps need no camera.
+/// The cameras of colour images and of depth maps of these sizes, as indices into the list, with a warning if the
+/// choice was a guess. If `is_cloud`, depth maps need no camera.
 pub fn assigned(
     cameras: &[NamedCamera],
     [image, depth]: [[usize; 2]; 2],

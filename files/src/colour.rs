@@ -54,7 +54,7 @@ pub fn stored(raster: &Raster) -> String {
     format!("{}x{}, {}-bit{float} {channels}", raster.width, raster.height, raster.bits)
 }
 
-/// Size and kind with the notes on how it was read.
+/// Size and kind with the notes on how the raster was read.
 pub fn says(raster: &Raster) -> String {
     let notes = raster.encoding.into_iter().map(Into::into).chain(raster.notes.iter().cloned());
     [stored(raster)].into_iter().chain(notes).collect::<Vec<_>>().join(", ")

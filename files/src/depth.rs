@@ -8,11 +8,11 @@ use crate::text::numbers::{fixed, precise};
 use crate::unit::{FARTHEST, NEAREST, Sample, Unit, turned_back};
 use crate::warning::Warnings;
 
-/// Share of holes that gives a warning.
+/// Smallest share of holes that causes a warning.
 const MANY_HOLES: f64 = 0.4;
 /// Renderers write 1e10 where nothing was seen.
 const BEYOND: f32 = 1e9;
-/// A value from here on means that nothing was seen.
+/// Smallest value that means that nothing was seen.
 const LARGEST: f64 = 1e12;
 
 /// A depth map as read.
@@ -55,7 +55,7 @@ fn of_integers(raster: &Raster, given: Option<f64>) -> Result<Depth, String> {
     let mut notes = raster.notes.clone();
     let mut data = raster.map_pixels(|pixel| pixel[0]);
     if data.contains(&u16::MAX) {
-        // 16-bit sensors store this where they see nothing.
+        // 16-bit sensors store this number where they see nothing.
         data.iter_mut().filter(|value| **value == u16::MAX).for_each(|value| *value = 0);
         notes.push("65535 treated as holes".into());
     }

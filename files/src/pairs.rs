@@ -1,7 +1,6 @@
 //! Finds the pairs of a folder, like js/rig/folder.ts: by time stamps (TUM RGB-D), by similar names, or by their order.
 //!
-//! Limits: pictures whose names do not say which is which are not opened, and at least one of a pair must be named as a
-//! depth map.
+//! Limits: pictures are not opened to find out their kind, and at least one of a pair must be named as a depth map.
 
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -34,7 +33,7 @@ static MASK: LazyLock<Regex> = LazyLock::new(|| pattern("(?i)mask|segm"));
 static COLOUR: LazyLock<Regex> = LazyLock::new(|| pattern("(?i)colou?r|rgb|image|img"));
 static KINDS: LazyLock<Regex> =
     LazyLock::new(|| pattern("(?i)depth|dpt|colou?r|rgb|image|img|mask|crop|registered|aligned"));
-/// Names of pictures, whatever the files contain: reading them reports what is wrong.
+/// Names of pictures, whatever the files contain; their readers report faults.
 static PICTURE: LazyLock<Regex> = LazyLock::new(|| pattern(r"(?i)\.(png|jpe?g|npy)$"));
 static ENDING: LazyLock<Regex> = LazyLock::new(|| pattern(r"(?i)\.[a-z0-9]{1,5}$"));
 
@@ -45,7 +44,7 @@ pub struct Files {
     pub depth: PathBuf,
     pub image_mask: Option<PathBuf>,
     pub depth_mask: Option<PathBuf>,
-    /// Belongs to the view of the same size.
+    /// The mask belongs to the view of the same size.
     pub any_mask: Option<PathBuf>,
     /// Metres for each stored number, if the folder states it.
     pub unit: Option<f64>,
@@ -177,7 +176,7 @@ fn natural(name: &str) -> Vec<(String, u64, String)> {
     PIECES.find_iter(name).map(|found| piece(found.as_str())).collect()
 }
 
-/// A name without the parts that say which file of a frame it is.
+/// A name without the parts that distinguish the files of a frame.
 fn common(name: &str) -> String {
     KINDS.replace_all(&ENDING.replace(name, ""), " ").into_owned()
 }

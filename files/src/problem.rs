@@ -10,7 +10,7 @@ pub type Result<T> = std::result::Result<T, Problem>;
 pub struct Problem {
     pub code: &'static str,
     pub field: String,
-    /// Where the reason begins in the message, after a file's name.
+    /// Position in the message, after a file's name, at which the reason begins.
     reason: usize,
     message: String,
 }

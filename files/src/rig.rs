@@ -21,7 +21,7 @@ use crate::warning::{Warning, Warnings};
 
 /// Number of pairs that are read by default.
 const FRAMES: usize = 20;
-/// Largest number of bytes in a folder, since most files are read: some hundreds of pairs.
+/// Largest number of bytes in a folder, since most files are read: enough for some hundreds of pairs.
 const MOST_BYTES: u64 = 2 << 30;
 /// Number of first bytes, which identify pictures.
 const HEAD: u64 = 512;
@@ -73,7 +73,7 @@ pub struct RigFolder {
 /// The cameras and poses of one file.
 ///
 /// # Errors
-/// With the file and the reason, if it is not a text or holds neither.
+/// With the file and the reason, if it is not a text or holds no camera and no pose.
 pub fn read_calibration(path: &Path) -> Result<Calibration> {
     let bytes = read::whole(path)?;
     let found = match text::text_of(&bytes) {
@@ -137,7 +137,7 @@ struct Reader {
 }
 
 impl Reader {
-    /// A file's content, recording its description and warnings; or `None`, with a warning.
+    /// A file's content, whose description and warnings are recorded; `None` with a warning if it cannot be read.
     fn read<T>(
         &mut self,
         (name, path): (&str, &Path),
@@ -251,7 +251,7 @@ pub fn says(found: &Calibration) -> String {
     format!("{}: {}", found.format, words::in_words(found))
 }
 
-/// Evenly spread, with the first and the last.
+/// Evenly spread items, including the first and the last.
 fn spread(all: Vec<Pair>, most: usize) -> Vec<Pair> {
     if all.len() <= most {
         return all;
@@ -285,7 +285,7 @@ fn grouped(warnings: Vec<Warning>) -> Vec<Warning> {
     kinds.iter().flat_map(of_kind).collect()
 }
 
-/// Warns if the depth maps were read with different units, since each one's unit is guessed separately.
+/// Warns if the depth maps were read with different units, since the unit of each map is guessed separately.
 fn check_units(frames: &[RigView], warnings: &mut Vec<Warning>) {
     let mut units: Vec<f64> = Vec::new();
     for unit in frames.iter().map(|frame| frame.unit.unwrap_or(1.0)) {
@@ -356,7 +356,7 @@ pub fn read_rig_folder(folder: &Path, options: &FolderOptions) -> Result<RigFold
     let frames: Vec<RigView> = chosen.iter().filter_map(|pair| reader.frame(folder, pair, options.unit)).collect();
     let (mut cameras, mut poses) = (Vec::new(), Vec::new());
     for (name, path) in named.chain(texts.into_iter().filter(|(name, _)| !is_list(name))) {
-        // A pose named like a frame is the camera's position then, and does not relate two cameras.
+        // A pose named like a frame is the camera's pose at that moment and does not relate two cameras.
         if POSE.is_match(&name) && keys.contains(&key(&POSE.replace_all(&name, ""))) {
             continue;
         }

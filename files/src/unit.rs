@@ -9,18 +9,17 @@ use crate::text::numbers::brief;
 /// Range of depths that a camera is expected to see, metres.
 pub const NEAREST: f64 = 0.1;
 pub const FARTHEST: f64 = 20.0;
-/// Share of stray depths beyond the range up to which the unit is not questioned.
+/// Largest share of depths outside the range that does not cause a warning about the unit.
 const STRAY: f64 = 0.01;
-/// Indoor sensors with integer depths see half of their depths nearer than this, metres; beyond it, the unit is not the
-/// millimetre.
+/// Largest median depth of indoor sensors with integer depths, metres; beyond it, the unit is not the millimetre.
 const USUAL: f64 = 8.0;
 /// Share of values for which a rule about their last digits must hold.
 const NEARLY_ALL: f64 = 0.99;
 /// The same share for SUN RGB-D, whose depths beyond 8.19 m wrap into the low bits.
 const MOSTLY: f64 = 0.9;
-/// With fewer distinct depths, the map was made by hand, and its round numbers say nothing about the unit.
+/// Smallest number of distinct depths of a measured map; round numbers of a map made by hand do not show the unit.
 const MANY_VALUES: usize = 16;
-/// A value from here on means that nothing was seen.
+/// Smallest value that means that nothing was seen.
 const LARGEST: f64 = 1e12;
 /// Largest number of values in a quantile.
 const SAMPLE: usize = 65_536;
@@ -30,7 +29,7 @@ const SAMPLE: usize = 65_536;
 pub struct Unit {
     pub metres: f64,
     pub is_guessed: bool,
-    /// The reason for the guess, as the values show it; may be empty.
+    /// The evidence for the guess among the values; may be empty.
     why: &'static str,
 }
 
@@ -119,8 +118,8 @@ impl Sample {
         Unit::guessed(if self.median() > FARTHEST { 0.001 } else { 1.0 }, "")
     }
 
-    /// Whether half of some whole numbers without a unit are so large that they are a camera's millimetres rather than
-    /// pixels of an object.
+    /// Whether at least half of some whole numbers without a unit are too large to be pixels of an object, so that they
+    /// are a camera's millimetres.
     pub fn looks_like_millimetres(&self) -> bool {
         self.is_varied() && self.median() > 1000.0 * NEAREST
     }
@@ -142,7 +141,7 @@ impl Sample {
         (beyond > STRAY).then_some(beyond)
     }
 
-    /// A warning about depths in that unit, if there is reason for one.
+    /// A warning about depths in that unit, if they are implausible.
     pub fn warning(&self, metres: f64) -> Option<String> {
         let share = 100.0 * self.beyond(metres)?;
         Some(format!("{share:.1} % of the depths are outside {NEAREST} to {FARTHEST} m: is the unit right?"))
@@ -168,7 +167,7 @@ mod tests {
         assert_eq!(unit(700..900), 0.001);
         assert_eq!(unit((700..900).map(|value| 5 * value)), 0.0002);
         assert_eq!(unit(9001..9300), 0.0002);
-        // A few values made by hand: their round numbers say nothing.
+        // Round numbers of a few values that were made by hand do not show the unit.
         assert_eq!(unit([1000, 1005, 1010].into_iter()), 0.001);
     }
 

@@ -137,7 +137,7 @@ pub fn matrix_text(pose: &Similarity) -> String {
     (0..4).map(line).collect()
 }
 
-/// Nine coefficients each of red, green and blue, one channel a line.
+/// Nine coefficients each of red, green and blue, one channel per line.
 pub fn light_csv(light: &[f64]) -> String {
     let names: Vec<String> = (1..=9).map(|index| format!("L{index}")).collect();
     let line = |(channel, values): (&str, &[f64])| {
@@ -175,6 +175,6 @@ pub fn pose_json(report: &StepReport, length: Length) -> String {
     );
     let message = reason.as_ref().map(Reason::to_string);
     let told = Told { about, unit: length.symbol(), pose, status: *status, message, reason, uncertainty };
-    // Cannot fail: it holds only strings and numbers, and its keys are names.
+    // Serialising cannot fail, because the value holds only strings and numbers, and its keys are names.
     serde_json::to_string_pretty(&told).expect("can be written") + "\n"
 }

@@ -111,7 +111,7 @@ fn xml_realsense_and_colmap() {
     camera(&realsense, 0, [525.0, 526.0, 319.5, 239.5], Lens::Brown(BROWN));
     pose(&realsense, [Some("Depth"), Some("Color")]);
     assert_eq!(realsense.warnings.0[0].code, "lens-approximated");
-    // COLMAP counts from the corner of the first pixel.
+    // COLMAP measures from the corner of the first pixel.
     camera(&found("# list\n1 PINHOLE 640 480 525 526 320 240\n"), 0, [525.0, 526.0, 319.5, 239.5], Lens::None);
 }
 

@@ -44,7 +44,7 @@ const frame = object(
 const cue = word("shading", "edges", "information", "silhouette");
 const cues: Check = (value, field) => {
   if (!Array.isArray(value)) throw wrong(field, "a list of cues", value);
-  // `forEach` would pass over holes.
+  // `forEach` would skip the holes of a list.
   for (const [index, one] of value.entries()) cue(one, `${field}[${index}]`);
   if (value.length === 0) throw new BimodalError("size", `${field}: needs at least one cue`, field);
 };

@@ -27,7 +27,7 @@ export async function checkCalibration(
   return check(frames, candidates, options);
 }
 
-/** Projects the depth points and depth edges of a frame into its image with a pose. */
+/** Projects the depth points and depth edges of a frame into its image under a pose. */
 export async function projectFrame(frame: CheckFrameInput, pose: PoseInput): Promise<FrameOverlay> {
   const { project } = await import("./run.js");
   return project(frame, pose);
@@ -46,7 +46,7 @@ export async function samplePair(kind: PairKind): Promise<PairSample> {
 }
 
 /**
- * Suggests the mask of an object in an 8-bit RGBA image. `marks` says of each pixel, in OpenCV's order: 0 background, 1 object, 2 probably
+ * Suggests the mask of an object in an 8-bit RGBA image. `marks` has OpenCV's number for each pixel: 0 background, 1 object, 2 probably
  * background, 3 probably object. Does not need `init()`, and runs in slices.
  */
 export async function suggestMask(

@@ -67,7 +67,7 @@ async function rounds(found: Segmentation, { signal, onProgress }: SuggestOption
 type Picture = Pick<ColorImage, "width" | "height" | "data">;
 
 export async function suggest(image: Picture, marks: Uint8Array, given: SuggestOptions): Promise<MaskSuggestion> {
-  // An image may have other members, such as a camera; one that is missing has none, which the check reports.
+  // An image may have other members, such as a camera. A missing image has no members, which the check reports.
   const { width, height, data } = (image ?? {}) as Picture;
   picture({ width, height, data }, "image");
   array(Uint8Array)(marks, "marks");

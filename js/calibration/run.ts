@@ -13,7 +13,7 @@ import type {
   PoseInput,
 } from "../types/index.js";
 
-/** Milliseconds between two pauses for events. The page stays responsive, and the messages take a hundredth of the time. */
+/** Milliseconds between two pauses for events. The page stays responsive, and the pauses take a hundredth of the time. */
 const SLICE = 30;
 
 // Written as one expression, because bundlers look for exactly this form to include the file.
@@ -49,7 +49,7 @@ export async function check(
     }
     const report = run.report();
     if (!report) throw new BimodalError("internal", "checkCalibration: ended without a report", "checkCalibration");
-    // Maps of names are returned in alphabetical order; the first candidate is the one being checked.
+    // wasm returns maps in alphabetical order of their names; here the candidate being checked comes first.
     return {
       ...report,
       candidates: Object.fromEntries(names.map((name) => [name, report.candidates[name]])) as CheckReport["candidates"],

@@ -2,7 +2,7 @@
 import { parseArgs } from "node:util";
 import type { CheckCue } from "../types/index.js";
 
-/** A mistake of the user, of which only the message is printed. The code and the field are those of the contract's errors. */
+/** A mistake of the user; only its message is printed. The code and the field are those of the contract's errors. */
 export class Mistake extends Error {
   readonly code: "option" | "file";
   readonly field: string;

@@ -21,8 +21,7 @@ function betweenSensors(all: NamedPose[], field: string, warnings: Judged[]): Na
 }
 
 /**
- * The error about a file whose poses relate a sensor to what carries it or to what it looks at. They are not extrinsics between two
- * sensors.
+ * The error about a file whose poses relate a sensor to its carrier or to its target. They are not extrinsics between two sensors.
  */
 function ofBody(file: string, poses: NamedPose[]): Mistake {
   const { name, from, to } = poses[0] as NamedPose;

@@ -25,7 +25,7 @@ async function modules() {
 }
 type Modules = Awaited<ReturnType<typeof modules>>;
 
-/** Runs the check under a bar; an interrupt ends it. */
+/** Runs the check with a progress bar; an interrupt ends it. */
 async function checked(
   { checkCalibration }: Modules,
   frames: Parameters<Modules["checkCalibration"]>[0],
@@ -111,7 +111,7 @@ async function write(
   const { whole } = outcome;
   const inputs = outcome.inputs.map(({ name, says, sha256 }) => ({ name, says, sha256 }));
   const json = () => `${JSON.stringify({ ...whole, inputs }, null, 2)}\n`;
-  // Opened first, so that an output file that cannot be written does not waste a check.
+  // The output files are opened before the check, so that a file that cannot be written is reported at once.
   (args.json === "-" ? process.stderr : process.stdout).write(textOf(whole));
   if (args.json !== undefined && args.json !== "-") writeFileSync(args.json, json());
   if (args.report !== undefined)

@@ -6,7 +6,7 @@ import type { NamedFile, Reading } from "../rig/types.js";
 import { reasonOf } from "../errors.js";
 import { Mistake } from "./arguments.js";
 
-/** Largest number of bytes in a folder, because all files are read: some hundreds of pairs. */
+/** Largest number of bytes in a folder, because all files are read: enough for some hundreds of pairs. */
 const MOST_BYTES = 2 ** 31;
 
 export const file = (path: string, name = path): NamedFile => ({
@@ -51,11 +51,11 @@ export interface Input {
   says: string;
   sha256: string;
   bytes: number;
-  /** The codes of its warnings, including guesses. */
+  /** The codes of the warnings about the file, including guesses. */
   notes: string[];
 }
 
-/** What each file was read as, with a hash that identifies the file later. */
+/** A description of each file that was read, with a hash that identifies the file later. */
 export function inputsOf(readings: Reading[], files: NamedFile[]): Input[] {
   const bytes = new Map(files.map((each) => [each.name, each.bytes]));
   const seen = new Map<string, Input>();

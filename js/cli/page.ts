@@ -1,4 +1,4 @@
-/** What the HTML report contains besides the numbers: the overlay, the files, the options, the versions, the command. */
+/** The contents of the HTML report besides the numbers: the overlay, the files, the options, the versions, the command. */
 import { createHash } from "node:crypto";
 import { readFileSync } from "node:fs";
 import { basename } from "node:path";

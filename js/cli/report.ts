@@ -1,4 +1,4 @@
-/** The report with what the readers add to it, and its text for a terminal. */
+/** The report with the additions of the readers, and its text for a terminal. */
 import type { ReaderWarning } from "../rig/warnings.js";
 import type { CheckReport } from "../types/index.js";
 
@@ -28,7 +28,7 @@ export function capped(report: CheckReport, all: Judged[]): Whole {
   const doubt = distinct.find(({ isDoubt }) => isDoubt !== false);
   const warnings = distinct.map(({ isDoubt: _, ...plain }) => plain);
   if (report.verdict !== "consistent" || doubt === undefined) return { ...report, warnings };
-  const reason = `Settled, but check: ${doubt.message} ${report.reason}`;
+  const reason = `Looks right, see warnings: ${doubt.message} ${report.reason}`;
   return { ...report, warnings, verdict: "undecided", code: "doubtful", reason };
 }
 

@@ -18,7 +18,7 @@ export interface ReadText {
   reading: Extract<RigReading, { kind: "cameras" | "poses" }>;
 }
 
-/** The places of the cameras, "file:index", the poses with their files, and what was guessed. */
+/** The places of the cameras, "file:index", the poses with their files, and the guesses. */
 export interface Arranged {
   cameras: { colour?: string; depth?: string };
   poses: (NamedPose & { file?: number })[];
@@ -28,7 +28,7 @@ export interface Arranged {
 /** Codes of warnings that the page's forms show by themselves. */
 const GIVEN = new Set(["colour-camera-missing", "depth-camera-missing", "camera-size", "principal-point"]);
 
-/** What the frames and texts describe together. */
+/** The cameras and poses that the frames and texts describe together. */
 export function arranged(read: ReadFrame[], texts: ReadText[]): Arranged {
   const warnings: ReaderWarning[] = [];
   const frames = read.map(

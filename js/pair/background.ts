@@ -1,7 +1,7 @@
 /** Whether an image without a mask shows more than an object in front of black. */
 import type { ColorImage } from "../types/index.js";
 
-/** Share of the pixels along the frame's sides that are not black, above which the background is taken to be visible. */
+/** The background counts as visible if more than this share of the pixels along the frame's sides is not black. */
 const VISIBLE = 0.25;
 /** Darkest usable levels of a run (src/view/colour.rs), as shares of the largest; linear floats have none. */
 const BLACK = { 8: 4 / 255, 16: 64 / 65_535 } as const;

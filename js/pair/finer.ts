@@ -1,4 +1,4 @@
-/** The whole factor by which an image is finer than a run can use beside its depth map: the rule of src/view/working_size.rs, rounded down. */
+/** The whole factor by which an image is finer than a run can use with its depth map: that of src/view/working_size.rs, rounded down. */
 import type { ColorImage, DepthMap } from "../types/index.js";
 
 /** Images of more pixels are scaled down before the run: drawing and keeping results of that size takes longer than the run. */

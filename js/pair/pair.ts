@@ -1,4 +1,4 @@
-/** Makes the input of a run from the visitor's files, with notes about what was guessed or changed, by field. */
+/** Makes the input of a run from the visitor's files, with notes about guesses and changes, by field. */
 import { BimodalError } from "../errors.js";
 import { nameOf } from "../rig/guess.js";
 import type { DepthReading, RigReading } from "../rig/types.js";
@@ -10,7 +10,7 @@ import { reducedDepth, reducedImage } from "./reduce.js";
 /** Longest side that a run takes. */
 const LONGEST = 4096;
 
-/** The files that were read, and what the visitor entered about them. */
+/** The files that were read, and the visitor's entries about them. */
 export interface Parts {
   colour: Extract<RigReading, { kind: "colour" }>;
   depth: DepthReading & { name: string; measured?: { range: [number, number] } };
@@ -27,13 +27,13 @@ export interface Parts {
 export interface Pair {
   image: ColorImage;
   depth: DepthMap;
-  /** What was guessed or changed, in words, by field. */
+  /** Guesses and changes, in words, by field. */
   notes: Record<string, string>;
   /** The unit from the file or guessed from its values, if none was given. */
   unit?: number;
 }
 
-/** Reports what is done to a large picture. */
+/** Reports how a large picture is reduced. */
 type Say = (words: string) => void;
 type Notes = Pair["notes"];
 

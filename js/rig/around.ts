@@ -1,6 +1,6 @@
 /**
- * The cameras around a LiDAR, by the names of their pictures: nuScenes' samples/CAM_FRONT/, Argoverse's ring_front_center/, or one picture of
- * each beside the scan.
+ * The cameras around a LiDAR, by the names of their pictures: nuScenes' samples/CAM_FRONT/, Argoverse's ring_front_center/, or one
+ * picture of each camera beside the scan.
  */
 import { base, folderOf, stem } from "./names.js";
 import type { NamedCamera, NamedPose } from "./types.js";

@@ -44,7 +44,7 @@ function taking(cameras: NamedCamera[], side: Side): NamedCamera[] {
   return cameras.filter((each) => takes(each, side)).sort((a, b) => rank(a) - rank(b));
 }
 
-/** Chooses one camera of a side: one of this size, else one without a size, else one of the same view, else the first. */
+/** Chooses one camera of a side: one with this size, else one without a size, else one with the same view, else the first. */
 const ofSize = (cameras: NamedCamera[], size: Size): NamedCamera | undefined =>
   cameras.find((each) => fits(each, size)) ??
   cameras.find(unsized) ??
@@ -88,7 +88,7 @@ function shared(only: NamedCamera, image: Size, depth: Size, warnings: ReaderWar
   return pair;
 }
 
-/** Whether a principal point lies as near to the middle of the picture as a usual lens puts it: within a fifth of the sides. */
+/** Whether a principal point is as near to the middle of the picture as that of a usual lens: within a fifth of the sides. */
 const isCentred = ({ camera: { cx, cy } }: NamedCamera, { width, height }: Size): boolean =>
   Math.abs(cx / width - 0.5) < 0.2 && Math.abs(cy / height - 0.5) < 0.2;
 
@@ -207,7 +207,7 @@ function align(folder: RigFolder, colour: NamedCamera, why: string): void {
 }
 
 /**
- * If no pose leads from the depth camera or the LiDAR to the colour camera, the chain through frames that several poses share comes first.
+ * If no pose leads from the depth camera or the LiDAR to the colour camera, puts the chain of poses through shared frames first.
  */
 function relate({ poses }: RigFolder, colour: string | undefined, depth: string | undefined): void {
   const isDirect = poses.some(({ from, to }) => {

@@ -18,6 +18,6 @@ export function cameraFromFieldOfView(width: number, height: number, degrees: nu
       refused(degrees),
     );
   const focal = width / 2 / Math.tan((degrees * Math.PI) / 360);
-  // Pixel centres are whole numbers, so that the image reaches from -1/2 to width - 1/2.
+  // Pixel centres are whole numbers, so the image reaches from -1/2 to width - 1/2.
   return { fx: focal, fy: focal, cx: (width - 1) / 2, cy: (height - 1) / 2 };
 }

@@ -1,4 +1,4 @@
-/** A raster as a colour image or a mask, with warnings where it looks like something else. */
+/** Converts a raster to a colour image or a mask, with warnings if it looks like something else. */
 import { hasColour, toColour, toMask } from "../raster.js";
 import { isGrey } from "./depth.js";
 import type { Picture } from "./formats/picture.js";
@@ -55,7 +55,7 @@ function levelsOf({ data, channels }: Picture, most: number): number[] | undefin
   let last: number | undefined;
   for (let at = 0; at < data.length; at += channels) {
     const level = data[at] ?? 0;
-    // Neighbours mostly have the same level, and looking it up in a set is slow.
+    // The level of the last pixel is compared first, because neighbours mostly have the same level and a set is slow.
     if (level === last) continue;
     last = level;
     levels.add(level);
@@ -99,7 +99,7 @@ export function looksLikeSoftMask(picture: Picture, ofName: boolean): boolean {
 
 /** The largest number of an object's label. */
 const MOST_LABELS = 64;
-/** In a picture of fewer pixels, few different levels do not suggest labels. */
+/** Smallest number of pixels of a picture in which few different levels suggest labels. */
 const FEWEST_PIXELS = 1000;
 
 /** Whether a 16-bit picture holds only a few small numbers, which are labels rather than a depth camera's millimetres. */

@@ -35,7 +35,7 @@ import { type ReaderWarning, warning } from "./warnings.js";
 
 type Depth = Unnamed<DepthReading>;
 
-/** Share of missing pixels from which on there is a warning. */
+/** Smallest share of missing pixels that causes a warning. */
 const MANY_HOLES = 0.4;
 /** Share of the depths that may be out of range without a warning: a few stray depths are no evidence against the unit. */
 const STRAY = 0.01;
@@ -54,7 +54,7 @@ const BLIND_DISPARITY = 2047;
 const percent = (share: number): string => `${(100 * share).toFixed(1)} %`;
 
 interface Values extends Extent {
-  /** A sample of them, in order. */
+  /** A sample of the values, in ascending order. */
   sample: Float64Array;
 }
 
@@ -83,7 +83,7 @@ function doubts({ sample, ...extent }: Values, unit: Unit, valid: number, range:
   return warnings;
 }
 
-/** The reading of a depth map or a cloud; `stored` names how its numbers are stored. */
+/** The reading of a depth map or a cloud; `stored` describes the format of its numbers. */
 function reading(
   { width, height, notes, warnings }: Pick<Picture, "width" | "height" | "notes" | "warnings">,
   depth: Depth["depth"],
@@ -133,7 +133,7 @@ function roughness(data: Uint16Array, width: number, swap: boolean): number {
 /** Factor by which the other byte order must be smoother to be used. */
 const CLEARLY = 8;
 
-/** The samples in the right order of bytes: the format stores the high byte first, and some programs write it last. */
+/** Puts the samples into the right order of bytes. The format stores the high byte first, but some programs write it last. */
 function inOrder(picture: Picture, data: Uint16Array, warnings: ReaderWarning[]): Uint16Array {
   if (picture.format !== "PGM" || picture.bits !== 16) return data;
   if (roughness(data, picture.width, false) <= CLEARLY * roughness(data, picture.width, true)) return data;
@@ -203,7 +203,7 @@ function ofFloats(picture: Picture, stored: Float32Array, given: number | undefi
 const RELATIVE =
   "Its numbers are inverse depths, known up to a factor only. The median depth was set to the longer side of the map, in pixels, which suits a view without a camera; for metres give the numerator (focal length * baseline).";
 
-/** A map of numbers that are larger where a surface is nearer. */
+/** A map whose numbers are larger where a surface is nearer. */
 function ofInverse(
   picture: Picture,
   stored: Exclude<Pixels, Uint8Array>,
@@ -245,7 +245,7 @@ export function cloudDepth(cloud: Cloud, { unit: given }: ReadOptions): Depth {
   return reading(cloud, depth, "an organised cloud", { ...extent, sample }, unit);
 }
 
-/** The first channels of all pixels. */
+/** The first three channels of all pixels. */
 const every = (data: Float32Array, channels: number, kept: number): Float32Array =>
   data.filter((_, at) => at % channels < kept);
 

@@ -55,7 +55,7 @@ const owners = once(() => import("./lens-owners.js"));
 /** Files that are neither pictures nor calibrations and can be ignored. */
 const IGNORED =
   /(^|\/)(\.|__MACOSX|thumbs\.db|readme|licen[cs]e|copying|source\.txt|changelog)|\.(md|html?|py|mjs|js)$/i;
-/** A path outside the folder belongs to a file given by an option. */
+/** A path outside the folder is that of a file given by an option. */
 const ELSEWHERE = /^(?:\/|\.\.\/|[a-z]:\/)/i;
 const LISTS = /(^|\/)(rgb|depth|associat\w*|accelerometer|groundtruth|times?(tamps)?)\.(txt|csv)$/i;
 
@@ -68,7 +68,7 @@ function spread<T>(all: T[], most: number): T[] {
   );
 }
 
-/** What is known about the depth maps before they are read. */
+/** Facts about the depth maps that are known before they are read. */
 interface Known {
   /** Metres per stored unit, given or in a file. */
   unit: number | undefined;
@@ -222,7 +222,7 @@ const checkOptions = object({ unit: metresPerUnit, size: pixelSize, frames: fram
 interface Sorted {
   pictures: NamedFile[];
   texts: NamedFile[];
-  /** The coefficients of lenses alone. */
+  /** Files that hold only the coefficients of a lens. */
   lenses: LensFile[];
   /** All other files. */
   others: NamedFile[];
@@ -300,7 +300,7 @@ const placeOfFrame = (): ReaderWarning =>
     "It is named like a picture and does not name the frames of its pose, so it may be the pose of the camera in the world. It was read as the pose from the depth camera to the colour camera. If that is right, name it depth_to_color.txt, otherwise pose/0.txt or the like.",
   );
 
-/** What the texts of a folder hold: cameras, what relates them, and the unit of the depth maps; `own` has the texts of single frames. */
+/** What a folder's texts give: cameras, poses between them and the unit of the depth maps. `own` has the texts of single frames. */
 async function calibrationOf({ texts, others, lenses }: Sorted, frames: ReadonlySet<string>, reader: FolderReader) {
   const found: TextOfFrame[] = [];
   let depthUnit: number | undefined;
@@ -417,7 +417,7 @@ function inOrderOf(pictures: NamedFile[], all: readonly Reading[]): Reading[] {
   return [true, false].flatMap((first) => all.filter(({ name }) => isPicture.has(name) === first));
 }
 
-/** The folder with the cameras and poses of these texts, too. */
+/** Adds the cameras and poses of these texts to a folder. */
 const withTexts = ({ cameras, poses, ...folder }: RigFolder, texts: TextOfFrame[]): RigFolder => ({
   ...folder,
   cameras: [...cameras, ...texts.flatMap((text) => text.cameras)],

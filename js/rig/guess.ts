@@ -60,7 +60,7 @@ export interface Extent {
   farthest: number;
 }
 
-/** The extent of `values[offset + i * step]`. */
+/** The number and the range of the values `values[offset + i * step]`. */
 export function extentOf(values: ArrayLike<number>, step = 1, offset = 0): Extent {
   const found: Extent = { count: 0, nearest: Infinity, farthest: 0 };
   for (let at = offset; at < values.length; at += step) {

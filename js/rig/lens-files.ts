@@ -9,15 +9,15 @@ export interface LensFile {
   values: Numbers;
 }
 
-/** Names of files of a lens's coefficients alone. */
+/** Names of files that hold only the coefficients of a lens. */
 const LENS_FILE = /(?:^|[_.-])(?:d|(?:camera[_-]?)?dist(?:ortion)?(?:[_-]?coeff?\w*)?|coeffs?)(?=[_.-])/i;
 const isLensFile = (path: string): boolean => LENS_FILE.test(path.replace(/^.*[/\\]/, ""));
 
-/** How many coefficients OpenCV's lenses have. */
+/** Possible numbers of coefficients of OpenCV's lenses. */
 const COUNTS = [4, 5, 8, 12, 14];
 const LONGEST = 4000;
 
-/** The numbers of a text of numbers alone, with or without a name before them, or of the one matrix of OpenCV's YAML. */
+/** The numbers of a text that holds only numbers, with or without a name before them, or of the one matrix in OpenCV's YAML. */
 function written(text: string): Numbers | undefined {
   const [only, ...others] = [...text.matchAll(/\bdata:\s*\[([^\]]*)\]/g)];
   if (others.length > 0) return undefined;
@@ -34,7 +34,7 @@ export function lensOf({ name, bytes }: NamedFile): LensFile | undefined {
   return values !== undefined && COUNTS.includes(values.length) ? { file: name, values } : undefined;
 }
 
-/** The warning of a lens that was not used, with the reason if there is one beside its name. */
+/** The warning about a lens that was not used, with the reason if it is known. */
 export const unused = (file: string, reason = ""): ReaderWarning =>
   ofFile(
     file,
@@ -44,7 +44,7 @@ export const unused = (file: string, reason = ""): ReaderWarning =>
     ),
   );
 
-/** The lens of a file that could not be read is missing from its camera. */
+/** If a file of a lens could not be read, its camera lacks the lens. */
 export function doubtLenses(warnings: ReaderWarning[]): void {
   for (const { code, file } of [...warnings])
     if (code === "file-left-out" && file !== undefined && isLensFile(file)) warnings.push(unused(file));

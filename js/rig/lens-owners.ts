@@ -1,4 +1,4 @@
-/** Which camera a lens in a separate file belongs to: the one whose file has a name like it. Loaded where a folder has such files. */
+/** Finds the camera to which a lens in a separate file belongs: its file has a similar name. Loaded if a folder has such files. */
 import { BimodalError } from "../errors.js";
 import { cameraOf } from "./formats/cameras.js";
 import { isIntrinsics, isLens, wordsOf } from "./formats/names.js";
@@ -8,7 +8,7 @@ import type { TextOfFrame } from "./perframe.js";
 import type { NamedCamera } from "./types.js";
 import { type ReaderWarning, ofFile } from "./warnings.js";
 
-/** Words that say no more than that a file is a camera's. */
+/** Words that state only that a file belongs to a camera. */
 const PLAIN = new Set(["camera", "cam", "calib", "calibration", "params", "parameters", "matrix"]);
 
 /** The folder of a file and the camera that its name refers to, without the words for intrinsics and lenses. */
@@ -18,7 +18,7 @@ function owner(path: string): string {
   return `${folderOf(path)}${words.join(" ")}`;
 }
 
-/** Gives each lens to the one camera without distortion whose file has a name like it, and returns what was read from each file. */
+/** Gives each lens to the camera without distortion whose file has a similar name, and returns what was read from each file. */
 export function giveLenses(
   lenses: readonly LensFile[],
   texts: readonly TextOfFrame[],
@@ -41,7 +41,7 @@ export function giveLenses(
   });
 }
 
-/** Puts the lens into the camera; returns the warnings about it, or why it cannot be used. */
+/** Puts the lens into the camera. Returns the warnings about the lens, or why it cannot be used. */
 function bend(camera: NamedCamera, { values }: LensFile): ReaderWarning[] | BimodalError {
   const said: ReaderWarning[] = [];
   const { fx, fy, cx, cy } = camera.camera;

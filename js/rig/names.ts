@@ -1,4 +1,4 @@
-/** Names of files: their parts, what the files of one frame have in common, and time stamps. */
+/** Names of files: their parts, the common part of the files of one frame, and time stamps. */
 
 export const base = (name: string): string => name.slice(name.lastIndexOf("/") + 1);
 /** Endings in two parts: COLMAP's depth maps keep the whole name of their image, and nuScenes' points are not PCD. */
@@ -7,15 +7,15 @@ export const stem = (name: string): string =>
   DOUBLE.test(name) ? base(name).replace(DOUBLE, "") : base(name).replace(/\.[a-z0-9]{1,5}$/i, "");
 export const folderOf = (name: string): string => name.slice(0, name.length - base(name).length);
 
-/** A name without the part that says which file of a frame it is. */
+/** A name without the part that distinguishes the files of a frame. */
 const common = (name: string): string =>
   name
     .normalize("NFC")
     .replace(/(?:depth|dpt|colou?r|rgb|image|img|mask|crop|registered|aligned)(?:(?:_?maps?|s)(?![a-z]))?/gi, " ");
-/** A path without the parts that say which file of a frame it is. */
+/** A path without the parts that distinguish the files of a frame. */
 export const commonPath = (name: string): string => common(folderOf(name) + stem(name));
 
-/** What the names of one frame's files have in common: letters of any script, in either case, and numbers without leading zeros. */
+/** The common part of the names of one frame's files: letters of any script, in either case, and numbers without leading zeros. */
 export function key(name: string): string {
   const words = common(stem(name))
     .toLowerCase()
@@ -25,8 +25,8 @@ export function key(name: string): string {
 }
 
 /**
- * Words that say what a file holds rather than to which frame it belongs. Depths of a stereo camera are the left
- * camera's, so that "left" is the colour image's and "right" is not.
+ * Words that say what a file holds rather than to which frame it belongs. Depths of a stereo camera are in the left camera's view, so
+ * "left" names a colour image of the frame and "right" does not.
  */
 const LOOSE = new Set(
   "raw frame frames photo picture pic map maps groundtruth gt velodyne lidar cloud points scan sparse dense filtered z16 png distance to plane linear z cam camera ir infra infrared tof undistorted rectified rect vis left meter metre".split(

@@ -92,7 +92,7 @@ function shared(one: string, other: string): number {
   return at < 0 ? ours.length : at;
 }
 
-/** Selects, from a frame's colour images in several folders, those that belong to the depth map: by role, number and side. */
+/** Selects the colour images that belong to the depth map from a frame's images in several folders, by role, number and side. */
 function nearest(depth: NamedFile, colours: NamedFile[]): NamedFile[] {
   const lowest = Math.min(...colours.map(({ name }) => Number(numberOfFolder(name) ?? Infinity)));
   const rules = [
@@ -110,7 +110,7 @@ function nearest(depth: NamedFile, colours: NamedFile[]): NamedFile[] {
   }, colours);
 }
 
-/** Selects, from colour images that may belong to several depth maps of one name, those of this depth map, by folder. */
+/** Selects the colour images of this depth map, by folder, if several depth maps have the same name. */
 function ownOf(depth: NamedFile, others: NamedFile[], colours: NamedFile[]): NamedFile[] {
   if (others.length === 0) return colours;
   const like = colours.filter(({ name }) => commonPath(name) === commonPath(depth.name));
@@ -160,7 +160,7 @@ function alternatives(depths: NamedFile[]): NamedFile[][] {
   return [...groups.values()];
 }
 
-/** The depth maps of other groups. */
+/** Depth maps that belong to other groups. */
 const firstsOf = (groups: NamedFile[][], own: NamedFile): NamedFile[] =>
   groups.flatMap(([first]) => (first && first !== own ? [first] : []));
 
@@ -210,7 +210,7 @@ function byNames({ colours, depths, masks }: Sorted, warnings: ReaderWarning[], 
 /** Factor by which the frames of a pair must be nearer in time to each other than to other frames. */
 const CLEARLY = 4;
 
-/** How far apart in time two frames of a pair may be. */
+/** Largest difference in time between the two frames of a pair. */
 function apartOf({ colours, depths }: Times): number {
   const order = [...depths].sort((a, b) => a - b);
   const gaps = order.slice(1).map((time, at) => time - (order[at] ?? NaN));
@@ -347,7 +347,7 @@ export function sayUnpaired(pictures: NamedFile[], warnings: ReaderWarning[]): v
 
 export function pairsOf(pictures: NamedFile[], warnings: ReaderWarning[]): Pairs {
   const found = sorted(pictures, warnings);
-  // By times alone, pictures of different cameras would alternate.
+  // Sorted only by time, pictures of different cameras would alternate.
   const areStamped = [...found.colours, ...found.depths].every(({ name }) => timeOf(name) !== undefined);
   const single = areStamped ? ofOneCamera(found, warnings) : undefined;
   if (single !== undefined) return single;

@@ -16,8 +16,8 @@ const HOW: Record<RangeImage["how"], string> = {
 };
 
 /**
- * Points count as coordinates of a map if the median of their distances exceeds the first number, in units of the file, and the spread of
- * the distances is below the second one, as a share of this median.
+ * Points count as coordinates of a map if the median of their distances, in units of the file, exceeds the first number, and the spread
+ * of the distances as a share of this median is below the second one.
  */
 const [FAR_OFF, NARROWLY] = [10_000, 0.05];
 
@@ -30,7 +30,7 @@ function checkSensor(sorted: Float64Array): void {
     );
 }
 
-/** A warning where the points were measured at different times. */
+/** A warning if the points were measured at different times. */
 function timed({ times }: Scan): ReaderWarning[] {
   if (times === undefined) return [];
   let [least, most] = [Infinity, -Infinity];

@@ -140,13 +140,13 @@ async function content({ name, bytes }: NamedFile, options: ReadOptions): Promis
   const picture = await PICTURES[kind](bytes, options);
   const { scan, format, notes, warnings } = picture;
   if (scan) return ofCloud({ format, scan, isMetric: false, notes, warnings }, options);
-  // The name of an array from an archive is the array's own.
+  // An array of an archive has its own name.
   return ofPicture(picture.name ?? name, picture, options);
 }
 
 function reasonOf(error: unknown): string {
   if (error instanceof BimodalError) return error.message;
-  // A DataView throws a RangeError for an offset beyond its end.
+  // A file that was cut off: a DataView throws a RangeError for an offset beyond its end.
   if (error instanceof RangeError) return "it is cut off or damaged: an offset in it lies beyond its end";
   return `it is damaged or cut off (${error instanceof Error ? error.message : String(error)})`;
 }

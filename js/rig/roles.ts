@@ -1,7 +1,7 @@
 /**
- * What a picture holds according to its file name and the folders around it, the innermost first.
+ * The content of a picture according to its file name and the folders around it, the innermost first.
  *
- * Limits: names are English and those of common tools; if a name says nothing, the content decides.
+ * Limits: only English names and those of common tools are known; for other names the content decides.
  */
 
 /** "rendering": a picture for people, such as colour-mapped depths. "view": the second of two cameras of the same kind. */
@@ -18,10 +18,10 @@ export type Role =
   | "radar"
   | "rendering";
 
-/** Whole words only: "displayed" is not a disparity, "undistorted" not a distance. */
+/** Only whole words count: "displayed" is not a disparity, and "undistorted" is not a distance. */
 const whole = (words: string): RegExp => new RegExp(`(?<![a-z])(?:${words})(?![a-z])`);
 
-/** What a picture holds besides colours and depths; these words have priority over "depth" and "colour" in the same name. */
+/** Contents of pictures other than colours and depths; these words have priority over "depth" and "colour" in the same name. */
 const SPECIAL: [Role, RegExp][] = [
   ["mask", /mask|segm/],
   ["confidence", whole("conf|confs|conf ?maps?|confidences?|confidence ?maps?|certainty|uncertainty|uncertainties")],
@@ -51,7 +51,7 @@ const COLOUR = whole("colou?rs?|rgbs?");
 /** Words that, in names of folders, mean colour images, but in names of files mean any kind. */
 const PICTURES = whole("images?|imgs?|photos?|pictures?|frames?");
 
-/** In lower case, with spaces between words that only capitals separate. */
+/** The name in lower case, with spaces between words that only capitals separate. */
 const plain = (segment: string): string =>
   segment
     .replace(/\.[a-z0-9]{1,5}$/i, "")
@@ -74,11 +74,11 @@ function common(segment: string): Role | undefined {
   return CLOUD.test(segment) ? "cloud" : undefined;
 }
 
-/** KITTI's depth maps are in folders that are named after those of its images; no file says that they have 256 units to the metre. */
+/** KITTI's depth maps are in folders that are named after those of its images. No file states their 256 units per metre. */
 export const isKittiDepth = (name: string): boolean =>
   /(?<![a-z])(?:proj_depth|velodyne_raw|groundtruth_depth)(?![a-z])/i.test(name);
 
-/** What a file's name says about its content; undefined if it says nothing. */
+/** The content that a file's name states; undefined if it states none. */
 export function roleOf(name: string): Role | undefined {
   if (isKittiDepth(name)) return "depth";
   const [own = "", folder = "", ...outer] = name.split("/").map(plain).reverse();

@@ -1,8 +1,8 @@
 /**
  * Time stamps in names that have other numbers as well: counters, sizes, dates.
  *
- * All names of a set must have the same words and the same form of stamp. The stamps say which frames belong together only where they are
- * finer than half the time between two frames.
+ * All names of a set must have the same words and the same form of stamp. Stamps show which frames belong together only if they are finer
+ * than half the time between two frames.
  */
 import { folderOf, stem, timeOf } from "./names.js";
 
@@ -25,13 +25,13 @@ const FORMS: Form[] = [
       fraction(digits),
     ([, , , , , , , digits]) => stepOf(digits),
   ],
-  // Seconds since 1970 and their fraction: 1700000000.033, 1700000000_004000000
+  // Seconds since 1970 with their fraction: 1700000000.033, 1700000000_004000000.
   [
     new RegExp(String.raw`(?<!\d)([1-3]\d{9})[-_.]${FRACTION}(?![-_.]?\d)`),
     ([seconds, digits]) => Number(seconds) + fraction(digits),
     ([, digits]) => stepOf(digits),
   ],
-  // Milliseconds, microseconds or nanoseconds since 1970
+  // Milliseconds, microseconds or nanoseconds since 1970.
   [
     /(?<!\d)([1-3]\d{9})(\d{3}|\d{6}|\d{9})(?![-_.]?\d)/,
     ([seconds, digits]) => Number(seconds) + fraction(digits),
@@ -42,7 +42,7 @@ const FORMS: Form[] = [
     ([ticks, unit = ""]) => Number(ticks) * (TICK[unit] ?? NaN),
     ([, unit = ""]) => TICK[unit] ?? NaN,
   ],
-  // SUN3D: a counter, then microseconds since the start
+  // SUN3D's counter, then microseconds since the start.
   [/(?<!\d)\d+[-_](\d{9,15})$/, ([ticks]) => Number(ticks) * 1e-6, () => 1e-6],
 ];
 
@@ -78,7 +78,7 @@ function ofSet(names: string[], [pattern, time, step]: Form): { times: number[];
   return isGood && times.every(Number.isFinite) ? { times, step: only } : undefined;
 }
 
-/** The times in the names of colour images and depth maps; undefined where they have none that tells the frames apart. */
+/** The times in the names of colour images and depth maps; undefined where they have none that distinguishes the frames. */
 export function timesOf(colours: string[], depths: string[]): Times | undefined {
   const [ours, theirs] = [colours.map(timeOf), depths.map(timeOf)];
   const isTime = (time: number | undefined): time is number => time !== undefined;

@@ -1,6 +1,6 @@
 /** What the values of neighbouring pixels reveal: depths of a LiDAR are scattered, and images vary from pixel to pixel. */
 
-/** Fewer pixels are not conclusive. */
+/** Smallest number of valid pixels for a decision. */
 const FEWEST = 1000;
 
 /** Largest share of valid pixels in a projected scan. */
@@ -20,7 +20,7 @@ export function isScattered(data: ArrayLike<number>, width: number): boolean {
   return valid > 0 && valid < SPARSE * data.length && beside < ALONE * valid;
 }
 
-/** No surface makes a pixel differ from the mean of its neighbours by more than this share, except at edges. */
+/** On a surface, a pixel differs from the mean of its neighbours by less than this share, except at edges. */
 const CHANGE = 0.04;
 /** Share of pixels with such a difference above which values are those of an image. A depth map has a tenth of this share. */
 const MANY = 0.3;

@@ -1,5 +1,5 @@
 /**
- * Extrinsics that are for a LiDAR's cloud in a camera's axes (x right, y down, z forward), although the cloud itself has a LiDAR's axes (x
+ * Extrinsics for a LiDAR's cloud in a camera's axes (x right, y down, z forward), although the cloud itself has a LiDAR's axes (x
  * forward, z up).
  *
  * With such extrinsics the camera would look along the axis that points up in the cloud, so they cannot be for the cloud as it is. They are
@@ -11,7 +11,7 @@ import { isOptical } from "./scan.js";
 import type { CheckFrame, NamedPose } from "./types.js";
 import { type ReaderWarning, warning } from "./warnings.js";
 
-/** Cosine of 45 degrees: nearer to an axis than to any other. */
+/** Cosine of 45 degrees; within this angle a direction is nearer to an axis than to any other. */
 const NEAR = Math.SQRT1_2;
 /** Frames that are neither a camera's (as the target of a pose) nor a scanner's (as its source). */
 const NO_CAMERA = /velo|lidar|laser|imu|gps|ins|world|map|base|ego|vehicle|body/i;

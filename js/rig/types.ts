@@ -1,4 +1,4 @@
-/** The types of what the readers of rig files return. */
+/** The types of the readers' results. */
 import type { CheckFrame, Mask, Pinhole, Pose } from "../types/index.js";
 import type { InverseDepth } from "./inverse.js";
 import type { Scan } from "./lidar/scan.js";
@@ -6,7 +6,7 @@ import type { ReaderWarning } from "./warnings.js";
 
 export type { CheckFrame, InverseDepth, Mask, Pinhole, Pose, ReaderWarning, Scan };
 
-/** A file as it was dropped or read; the name may hold a path, "depth/0001.png". */
+/** A file as it was dropped or read. The name may contain a path, such as "depth/0001.png". */
 export interface NamedFile {
   /** Name or path; it distinguishes depth from colour if the content does not. */
   name: string;
@@ -32,11 +32,11 @@ export interface NamedCamera {
   name?: string;
   /** The intrinsics, pixels. */
   camera: Pinhole;
-  /** Columns of its pictures, where the file gives them. */
+  /** Columns of its pictures, if the file gives them. */
   width?: number;
-  /** Rows of its pictures, where the file gives them. */
+  /** Rows of its pictures, if the file gives them. */
   height?: number;
-  /** The pictures that it took, where the file says so; "both" where depth maps are registered to its colour images. */
+  /** The kind of pictures that it took, if the file states it; "both" if depth maps are registered to its colour images. */
   takes?: "colour" | "depth" | "both";
 }
 
@@ -93,7 +93,7 @@ export type RigReading = Reading &
         cameras: NamedCamera[];
         /** In the order of the file; those between a depth and a colour camera first. */
         poses: NamedPose[];
-        /** Metres per stored unit of the depth maps beside the file, where the file gives it. */
+        /** Metres per stored unit of the depth maps beside the file, if the file gives it. */
         depthUnit?: number;
       }
     | {

@@ -1,7 +1,7 @@
 /**
  * The unit of depth maps and the size of raw ones, if a text beside them states it, found by the names that programs use for these numbers.
  *
- * Limits: a number is recognised by its name alone, whatever the format of the text.
+ * Limits: a number is recognised only by its name, whatever the format of the text.
  */
 import { base, folderOf, stem } from "./names.js";
 import { textOf } from "./formats/decode.js";
@@ -55,7 +55,7 @@ function unitsIn(text: string): number[] {
     for (const [, value = "", word] of text.matchAll(pattern)) found.push(of(Number(value), word));
   };
   add(named(TO_THE_METRE), (value) => 1 / value);
-  // librealsense's settings say micrometres.
+  // librealsense's settings give micrometres.
   add(named(METRES), (value, word = "") => value * (METRES_OF[word] ?? (value >= 1 ? 1e-6 : 1)));
   add(named(EITHER), ofScale);
   if (/["']?\bfx["']?\s*[:=]/.test(text)) add(OF_CAMERA, (value) => (value >= LEAST_SCALE ? 1 / value : NaN));
@@ -66,7 +66,7 @@ function unitsIn(text: string): number[] {
   return found.filter(isUnit);
 }
 
-/** What the texts of a folder say about the unit of its depth maps; undefined if they say nothing or contradict each other. */
+/** The unit of a folder's depth maps that its texts state; undefined if they state none or contradict each other. */
 export function unitBeside(
   texts: NamedFile[],
   warnings: ReaderWarning[],

@@ -17,7 +17,7 @@ export type ReaderCode =
   | "point-times"
   | "lidar-axes"
   | "pose-turned"
-  // Colour images and masks
+  // Codes about colour images and masks.
   | "files-swapped"
   | "image-turned"
   | "colour-profile-ignored"

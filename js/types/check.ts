@@ -41,7 +41,7 @@ export type CheckCue = "shading" | "edges" | "information" | "silhouette";
 export interface CheckOptions {
   /** The cues to use. Default: all. */
   cues?: CheckCue[];
-  /** Threads that may be used, 1 to 16; at present one is used. The result does not depend on it. */
+  /** Number of threads that may be used, 1 to 16. At present one is used; the result does not depend on the number. */
   workers?: number;
   /** Ends the check; the promise is rejected with its reason. */
   signal?: AbortSignal;
@@ -58,7 +58,7 @@ export interface Warning {
   code: WarningCode;
   /** The warning as a sentence. */
   message: string;
-  /** The input that it is about, as a path in the contract. */
+  /** The input that the warning is about, as a path in the contract. */
   field?: string;
   [detail: string]: unknown;
 }
@@ -103,11 +103,11 @@ export interface CandidateReport {
   pixels: number;
   /** 95 % interval of `pixels`. */
   interval: [number, number];
-  /** Probability of a distance from the estimate at least this large if the candidate were right. */
+  /** Probability that a right candidate is at least this far from the estimate. */
   probability: number;
 }
 
-/** The frame that would determine the least certain unknown best, and by how much; computed from the evidence of a frame of the check. */
+/** The frame that would best determine the least certain unknown, and the sigma to expect, from the evidence of one frame. */
 export interface NextFrame {
   /** The least certain unknown: a rotation about x, y, z through the scene's centre, or a translation along them, in the colour frame. */
   axis: "rx" | "ry" | "rz" | "tx" | "ty" | "tz";
@@ -115,13 +115,13 @@ export interface NextFrame {
   sigma: number;
   /** Name of the frame with which the next one is compared. */
   frame: string;
-  /** Where the scene is in the next frame: nearer, aside by a quarter of the image's width, or rotated by 90 degrees. */
+  /** The place of the scene in the next frame: nearer, aside by a quarter of the image's width, or rotated by 90 degrees. */
   motion: "nearer" | "left" | "right" | "up" | "down" | "turned";
-  /** The same as a pose: where each point of the scene goes, in the colour camera's frame, metres. */
+  /** The motion of the scene as a pose in the colour camera's frame, metres. */
   pose: Pose;
   /** Sigma with this frame added to those of the check, degrees or millimetres. */
   expected: number;
-  /** All of it in words. */
+  /** The proposal in words. */
   message: string;
 }
 
@@ -135,7 +135,7 @@ export interface CheckReport {
   reason: string;
   /** With the code "misread", the convention in which the candidate fits. */
   reading?: CheckReading;
-  /** What was guessed or looks wrong. With any of them the verdict is not "consistent". */
+  /** What was guessed or looks wrong. With any warning the verdict is not "consistent". */
   warnings: Warning[];
   /** The extrinsics that fit best, scale 1: P_colour = R P_depth + t, metres. */
   estimate: Pose;
@@ -145,7 +145,7 @@ export interface CheckReport {
   middle: [number, number, number];
   /** 36 numbers, row-major: a rotation vector in rad about the scene's centre, then a translation in m, in the colour frame. */
   covariance: number[];
-  /** Factor to the assumed focal length, and the sigma of its logarithm, if no colour camera was given. */
+  /** Ratio of the estimated focal length to the assumed one, and the sigma of its logarithm, if no colour camera was given. */
   focal?: [number, number];
   /** Expected reprojection error of the estimate at the scene's depth, pixels of the colour image, and its 95 % interval. */
   health: {

@@ -1,6 +1,6 @@
-/** The codes of ends, verdicts and warnings; docs/codes.md has cause and remedy of each. */
+/** The codes of ends, verdicts and warnings; docs/codes.md has cause and remedy of each code. */
 
-/** Why a run ended as it did, or the outcome of the last step of a run that continues; docs/codes.md has cause and remedy of each. */
+/** Why a run ended, or the outcome of the last step of a run that continues; docs/codes.md has cause and remedy of each code. */
 export type ReasonCode =
   | "searching"
   | "search-done"
@@ -28,7 +28,7 @@ export type ReasonCode =
   | "behind-camera"
   | "stage-failed";
 
-/** Why a verdict is what it is; docs/codes.md has cause and remedy of each. */
+/** The reason of a verdict; docs/codes.md has cause and remedy of each code. */
 export type CheckCode =
   | "within-tolerance"
   | "nothing-against"
@@ -45,7 +45,7 @@ export type CheckCode =
   | "no-candidate"
   | "doubtful";
 
-/** Codes for what looks wrong about the input. */
+/** Codes of warnings about the input. */
 export type WarningCode =
   | "blank-image"
   | "intrinsics-guessed"
@@ -57,5 +57,5 @@ export type WarningCode =
   | "fits-inverted"
   | "lens-left-out";
 
-/** Codes for what the environment lacks and an estimator does without. */
+/** Codes of features that the environment lacks; an estimator works without them. */
 export type EstimatorWarningCode = "workers-unavailable";

@@ -24,13 +24,13 @@ export interface RestoreOptions {
   signal?: AbortSignal;
 }
 
-/** Something that the environment lacks and that the estimator does without. */
+/** A warning that the environment lacks a feature; the estimator works without it. */
 export interface EstimatorWarning {
   /** Stable, for programs. */
   code: EstimatorWarningCode;
   /** The warning as a sentence. */
   message: string;
-  /** The input that it is about, as a path in the contract. */
+  /** The input that the warning is about, as a path in the contract. */
   field?: string;
 }
 
@@ -39,7 +39,7 @@ export type Layer = "normals" | "depth" | "residual" | "refined" | "refinedNorma
 
 /** How `Estimator.draw` maps numbers to colours. Normals have a fixed mapping. */
 export interface DrawOptions {
-  /** The numbers at the ends of the map. Default: the range of the layer without the lowest and the highest one per cent. */
+  /** The numbers at the ends of the map. Default: the range of the layer without its lowest and its highest percent. */
   range?: readonly [number, number];
   /** Default "viridis". */
   map?: "viridis" | "magma";

@@ -27,7 +27,7 @@ export interface ColorImageInput extends Omit<ColorImage, "camera"> {
   camera?: PinholeInput;
 }
 
-/** One depth map of the same object from another view: `data` or `points`, exactly one of the two. */
+/** One depth map of the same object from another view. It has either `data` or `points`. */
 export interface DepthMap {
   /** Columns, 1 to 4096. */
   width: number;
@@ -39,9 +39,9 @@ export interface DepthMap {
   camera?: Pinhole;
   /** Metres (or pixels, orthographic) per stored unit; default 1, and 0.001 for a Uint16Array with a camera. */
   unit?: number;
-  /** Depth along z. Zero, negative, NaN, and 1e12 or more are holes: shift a relative depth above zero. */
+  /** Depth along z. Zero, negative numbers, NaN, and 1e12 or more are holes, so shift a relative depth above zero. */
   data?: Float32Array | Uint16Array;
-  /** An organised cloud, 3*w*h interleaved, NaN where missing; 1e12 or more is missing, too. */
+  /** An organised cloud, 3*w*h interleaved. Points that are NaN, or 1e12 or more, are missing. */
   points?: Float32Array;
   /**
    * For the check of a calibration: the strength of the return at each pixel, or any other quantity that depends on the surface's

@@ -20,11 +20,11 @@ export interface PixelLandscapeRequest {
 
 /** The objective of one pixel over all normals that a camera can see (Eq. 6). */
 export interface PixelLandscape {
-  /** Seen from the camera: n_x grows with the column, n_y with the row, both from -1 to 1; NaN where no normal is. */
+  /** The objective, seen from the camera: n_x grows with the column, n_y with the row, both from -1 to 1; NaN without a normal. */
   objective: Float32Array;
-  /** The lowest first, five numbers each: unit normal, objective, share of all directions whose descent ends there. */
+  /** The minima, the lowest first, five numbers each: unit normal, objective, share of all directions whose descent ends there. */
   minima: Float32Array;
-  /** Normals from step to step of one descent, three numbers each. */
+  /** The normals after each step of one descent, three numbers each. */
   path: Float32Array;
 }
 
@@ -50,7 +50,7 @@ export interface StripsRequest {
   lamp: ArrayLike<number>;
   /** Column and row of a spot at which the surface faces the lamp. */
   centre: ArrayLike<number>;
-  /** Whether the surface there is taken for a dent. Default false: a bump. */
+  /** Whether the surface at the spot is assumed to be a dent. Default false: a bump. */
   dent?: boolean;
   /** Strips, 0 .. 360. Default 24. */
   count?: number;

@@ -6,7 +6,7 @@ import type { Matrix4 } from "./cameras.js";
  * beta lies within -90 .. 90; given angles may be anything from -360 to 360.
  */
 export interface Pose {
-  /** Size of the colour view's object relative to the depth view's, above zero; 1 between two metric cameras. */
+  /** Size of the object in the colour view relative to its size in the depth view, above zero; 1 between two metric cameras. */
   scale: number;
   /** 3x3 row by row, orthonormal, nine numbers. */
   rotation: number[];
@@ -21,7 +21,7 @@ export interface Pose {
     /** About z, degrees, -180 to 180. */
     gamma: number;
   };
-  /** The whole pose as a 4x4 matrix, four rows of four numbers: scale * rotation beside the translation, 0 0 0 1 below. */
+  /** The whole pose as a 4x4 matrix, four rows of four numbers: scale * rotation beside the translation, with 0 0 0 1 below. */
   matrix: number[][];
 }
 

@@ -12,7 +12,7 @@ export type Status = "running" | "converged" | "max-iterations" | "ambiguous" | 
 export interface Uncertainty {
   /** About x, y and z of the colour view, degrees. */
   rotationDegrees: number[];
-  /** Along x, y and z of the colour view, in its units; `null` where the views do not determine it. */
+  /** Along x, y and z of the colour view, in its units; `null` if the views do not determine it. */
   translation: (number | null)[];
   /** Sigma of the scale itself; `null` if the scale is fixed. */
   scale: number | null;
@@ -29,7 +29,7 @@ export interface Reason {
 
 /** The state of a run after a step. */
 export interface StepReport {
-  /** Iterations that are complete, from 0. */
+  /** Number of complete iterations, from 0. */
   iteration: number;
   /** The stage that ran last. */
   stage: Stage;
@@ -62,9 +62,9 @@ export interface StepReport {
   message?: string;
   /** Why the run ended, or the outcome of the last step. */
   reason?: Reason;
-  /** Other poses that fit the data as well, best first; only where the status is "ambiguous". */
+  /** Other poses that fit the data equally well, best first, if the status is "ambiguous". */
   rivals?: Pose[];
-  /** Present once the loop has ended with a pose. */
+  /** The sigmas, once the loop has ended with a pose. */
   uncertainty?: Uncertainty;
   /** Wall time of each stage in the last step. */
   milliseconds: Record<string, number>;

@@ -102,11 +102,11 @@ export interface Sample {
   image: ColorImage;
   /** The depth map, or with the protocol "grid" the organised cloud. */
   depth: DepthMap;
-  /** The 27 coefficients that it was rendered with. */
+  /** The 27 coefficients of the light with which it was rendered. */
   light: Float64Array;
   /** The true pose. */
   pose: Pose;
-  /** The truth to measure against, NaN outside the masks. */
+  /** The true values of the results, NaN outside the masks. */
   truth: {
     /** 3*w*h interleaved, image view. */
     imageNormals: Float32Array;
@@ -129,7 +129,7 @@ export interface RigRequest {
   frame?: number;
   /** Factor for the noise of both sensors. Default 1. */
   noise?: number;
-  /** Where each point of the scene goes, in the colour camera's frame, metres. Default: nowhere. */
+  /** Motion of the scene's points in the colour camera's frame, metres. Default: no motion. */
   motion?: PoseInput;
 }
 
@@ -170,7 +170,7 @@ export interface MaskSuggestion {
   mask: Uint8Array;
   /** Share of the image that is the object, from 0 to 1. */
   share: number;
-  /** Number of rounds that it took. */
+  /** Number of rounds that the suggestion took. */
   rounds: number;
   /** Share of the pixels that the last round changed, from 0 to 1; below 0.001 unless all twelve rounds were needed. */
   changed: number;

@@ -3,17 +3,18 @@ import type { PlainOptions } from "../options.js";
 import { READY, type WorkerAnswer, type Views, type WorkerHandle } from "./messages.js";
 import { startWorker } from "./start.js";
 
-/** A refinement to be computed: the number of the shape that it starts from, numbers, and rasters one after the other. */
+/** A refinement to be computed: the number of its initial shape, other numbers, and the rasters one after the other. */
 export type RefinementTask = [shape: number, numbers: Float64Array, planes: Float32Array];
 
-/** A finished refinement: the number of the shape that it started from, and the new shape. */
+/** A finished refinement: the number of its initial shape, and the new shape. */
 export interface Refinement {
   shape: number;
   planes: Float32Array;
 }
 
 /**
- * Longest wait for an answer, milliseconds: a refinement of the largest views takes half of it. After that the estimator continues alone.
+ * Longest wait for an answer, milliseconds: a refinement of the largest views takes half of this time. After that the estimator continues
+ * alone.
  */
 const LONGEST_WAIT = 2000;
 
@@ -29,7 +30,7 @@ export class RefinementWorker {
   #failed = false;
   /** Whether it has read the pair. */
   #ready = false;
-  /** The shape that the refinement under way started from. */
+  /** The shape from which the current refinement started. */
   #asked: number | undefined;
   /** The shape that the worker has. */
   #held: number | undefined;
@@ -41,7 +42,7 @@ export class RefinementWorker {
     this.#unavailable = unavailable;
   }
 
-  /** Prepares for a loop, unless it is under way. */
+  /** Starts the worker of a loop, unless it has been started. */
   begin(options: PlainOptions): void {
     if (this.#worker || this.#failed) return;
     const worker = startWorker(this.#pair, options, this.#unavailable);
@@ -114,7 +115,7 @@ export class RefinementWorker {
     this.#resume();
   }
 
-  /** Releases the callers that wait for the answer. */
+  /** Releases the callers that are waiting for the answer. */
   #resume(): void {
     const waiting = this.#waiting;
     this.#waiting = [];

@@ -9,18 +9,18 @@ export interface Tasks {
   accept(result: Float64Array): void;
 }
 
-/** Tasks in a worker's queue: enough for about ten milliseconds, during which its estimator's thread may be busy. */
+/** Number of tasks in a worker's queue: enough for about ten milliseconds, in which the estimator's thread may be busy. */
 const QUEUE = 3;
 
 interface SearchWorker {
   handle: WorkerHandle;
-  /** Tasks that were sent to it and are not answered yet. */
+  /** Tasks that were sent to the worker and are not answered yet. */
   queued: number;
 }
 
 /**
- * Workers affect only how long a search takes: if none can be started, or one fails, the estimator does all of it. Messages pass whenever
- * the estimator's thread lets events through. The workers last as long as the search.
+ * Workers affect only how long a search takes: if none can be started, or one fails, the estimator does the whole search. Messages pass
+ * whenever the estimator's thread lets events through. The workers last as long as the search.
  */
 export class SearchWorkers {
   #workers: SearchWorker[] = [];

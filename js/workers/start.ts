@@ -63,7 +63,7 @@ function foreignWorker(thread: URL): Worker {
 }
 
 function ownWorker(): Worker {
-  // Written out in one piece: bundlers look for exactly this form to include the file.
+  // Written as one expression, because bundlers look for exactly this form to include the file.
   return new Worker(new URL("./thread.js", import.meta.url), { type: "module" });
 }
 
@@ -84,16 +84,16 @@ function spawnInBrowser(): WorkerHandle {
 }
 
 function spawnInNode({ Worker }: typeof import("node:worker_threads")): WorkerHandle {
-  // This is not the URL above again, because bundlers would include the file twice. Nor is it import.meta.url alone, which webpack replaces
-  // with the path on the machine that bundles.
+  // The URL above is not repeated, because bundlers would include the file twice. import.meta.url by itself is not used, because webpack
+  // replaces it with the path on the machine that bundles.
   const file = new URL("thread.js", wasmUrl());
-  // Without the program's own flags, because with `node -e TEXT` the worker would run TEXT as well.
+  // The worker does not get the program's own flags, because with `node -e TEXT` it would also run TEXT.
   const worker = new Worker(file, { execArgv: [] });
   return {
     post: (order, transfer) => worker.postMessage(order, transfer),
     onAnswer: (handler) => {
       worker.on("message", handler);
-      // Adding a listener refs the worker again, and a program would not end before its workers.
+      // A new listener keeps the program alive as long as its workers, so the worker is released again.
       worker.unref();
     },
     onFailure: (handler) => worker.on("error", handler).on("exit", () => handler("it ended")),

@@ -31,7 +31,7 @@ export const text: Check = (value, field) => {
   if (typeof value !== "string") throw wrong(field, "a string", value);
 };
 
-/** This many finite numbers. */
+/** Checks that a value is a list of this many finite numbers. */
 const finite =
   (count: number): Check =>
   (value, field) => {

@@ -15,7 +15,7 @@ function kindOf(data: NpyData): string {
   return data instanceof Uint16Array ? "<u2" : "|u1";
 }
 
-/** Rows x columns, or rows x columns x channels. */
+/** The shape: rows x columns, or rows x columns x channels. */
 export function writeNpy(raster: Raster<NpyData>): Uint8Array<ArrayBuffer> {
   checkRaster(raster, "raster", Float32Array, Float64Array, Uint16Array, Uint8Array);
   const { width, height, channels, data } = raster;

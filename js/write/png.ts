@@ -18,7 +18,7 @@ type Samples = Uint8Array | Uint8ClampedArray | Uint16Array;
 
 /** Pixels to be written; without `channels` their number follows from the length of the data, so that a `ColorImage` can be passed. */
 export type PngInput = Omit<Raster<Samples>, "channels"> & {
-  /** 1 grey, 2 grey and alpha, 3 RGB, 4 RGBA. */
+  /** Number of channels: 1 grey, 2 grey and alpha, 3 RGB, 4 RGBA. */
   channels?: number;
 };
 
@@ -102,7 +102,7 @@ export async function writePng(
   view.setUint32(0, width);
   view.setUint32(4, height);
   head.set([8 * data.BYTES_PER_ELEMENT, type], 8);
-  // Latin-1, with a zero only after the name; any other character becomes a question mark.
+  // Text in Latin-1, with a zero only after the name. Any other character becomes a question mark.
   const remarks = Object.entries(texts).map(([name, words]) => {
     const plain = (text: string) => text.replace(/[^\x20-\x7e]/g, "?");
     return chunk("tEXt", new TextEncoder().encode(`${plain(name)}\0${plain(words)}`));

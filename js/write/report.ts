@@ -15,9 +15,9 @@ export type { Picture, ReportInput };
 /** A name and its value. */
 export type Entry = readonly [name: string, value: string];
 
-/** What the report of a run shows. */
+/** The contents of the report of a run. */
 export interface RunReport {
-  /** How to rate the outcome; "open" if the evidence neither supports nor contradicts it. */
+  /** The rating of the outcome; "open" if the evidence neither supports nor contradicts it. */
   tone: "good" | "open" | "wrong";
   /** The outcome in one or two words: "converged". */
   status: string;
@@ -71,7 +71,7 @@ function poseSection({ pose, truth, unit }: Checked): Markup {
     ]),
   ];
   const columns = truth ? COLUMNS : COLUMNS.slice(0, 2);
-  // An orthographic image does not determine the distance of the object, so there is no true value.
+  // An orthographic image does not determine the distance of the object, so this number has no true value.
   const isFree = (name: string) => unit === "px" && name === "Translation z";
   const line = ([name, read]: (typeof rows)[number]) =>
     html`<tr><th scope="row">${name}</th>${cell("Found", read(pose))}${truth ? cell("True", isFree(name) ? "free" : read(truth)) : undefined}</tr>`;

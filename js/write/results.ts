@@ -19,7 +19,7 @@ export interface Extent {
 
 /** Floats of a view, as `Estimator` returns them. */
 export interface FloatRaster extends Extent {
-  /** Row by row; three numbers per pixel for normals, else one. */
+  /** The numbers row by row: three per pixel for normals, else one. */
   data: Float32Array;
 }
 
@@ -128,7 +128,7 @@ export interface DepthPng {
   says: string;
 }
 
-/** Rounded to 32-bit floats. */
+/** Depths from this number, rounded to a 32-bit float, are missing. */
 const MISSING = Math.fround(1e12);
 /** A depth that the contract accepts; all others are holes. */
 const isThere = (value: number): boolean => value > 0 && value < MISSING;
@@ -138,7 +138,7 @@ const isThere = (value: number): boolean => value > 0 && value < MISSING;
  * from a hole; behind a camera no depth is valid.
  */
 function checkDepths(data: Float32Array, unit: Unit): void {
-  // The coarsest step of either unit is 1.
+  // The coarsest step is one metre or one pixel.
   const at = data.findIndex((value) => (unit === "px" && value < 0) || (isThere(value) && Math.round(value) > LARGEST));
   if (at < 0) return;
   const value = data[at] ?? NaN;

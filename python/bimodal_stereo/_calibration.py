@@ -45,7 +45,7 @@ class CandidateReport:
     ``off_axes``: the same by axis, from the estimate to the candidate: degrees about x, y, z, then millimetres along them.
     ``pixels``, ``interval``: expected reprojection error at the scene's depth, pixels of the colour image, and its 95 %
         interval.
-    ``probability``: probability of a distance from the estimate at least this large if the candidate were right.
+    ``probability``: probability that a right candidate is at least this far from the estimate.
     """
 
     verdict: str
@@ -68,7 +68,7 @@ class CueReport(NamedTuple):
 
 
 class FrameReport(NamedTuple):
-    """A frame's share of the evidence, 0 .. 1, and a note."""
+    """A frame's share of the evidence, 0 .. 1, and a note about its fault."""
 
     name: str
     share: float
@@ -85,11 +85,13 @@ class Sensitivity(NamedTuple):
 
 
 class NextFrame(NamedTuple):
-    """The frame that would determine the least certain unknown best.
+    """The frame that would best determine the least certain unknown.
 
     ``axis``: this unknown, "rx", "ry", "rz" about the scene's centre or "tx", "ty", "tz", in the colour frame. ``sigma``: its present sigma, degrees
-    or millimetres; ``expected``: the sigma with this frame added. ``motion``: where the scene of ``frame`` is then: "nearer", "left", "right",
-    "up", "down" or "turned"; ``pose``: the same as a motion of its points, colour frame, metres. ``message``: all of it in words.
+    or millimetres; ``expected``: the sigma with this frame added. ``motion``: the place of the scene of ``frame`` in
+    the next frame: "nearer", "left", "right",
+    "up", "down" or "turned"; ``pose``: the same as a motion of its points, colour frame, metres. ``message``: the
+    proposal in words.
     """
 
     axis: str
@@ -112,7 +114,8 @@ class CheckReport:
     ``overlap``: share of the depth points that the estimate puts onto the image, 0 .. 1.
     ``middle``: (3,), the centre of the scene in the colour frame, metres.
     ``covariance``: (6, 6), of a rotation vector in rad about the middle, then of a translation in m.
-    ``focal``: factor to the assumed focal length, and the sigma of its logarithm, if no colour camera was given.
+    ``focal``: ratio of the estimated focal length to the assumed one, and the sigma of its logarithm, if no colour
+    camera was given.
     ``pixels``, ``interval``: expected reprojection error of the estimate, and its 95 % interval.
     ``next``: the frame to take next, or ``None`` without depth edges or if the colour camera is a guess.
     """
@@ -197,7 +200,7 @@ class FrameOverlay:
 
 
 def project_frame(frame: CheckFrame, pose: PoseInput) -> FrameOverlay:
-    """Projects the depth points and depth edges of a frame into its image with a pose.
+    """Projects the depth points and depth edges of a frame into its image under a pose.
 
     pose: extrinsics, P_colour = rotation @ P_depth + translation in metres: a 4x4 matrix, or ``rotation`` and ``translation``.
     """

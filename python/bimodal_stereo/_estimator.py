@@ -38,7 +38,7 @@ class Estimator:
         self._own = _native.Estimator(image, depth, options)
         # The input that `save` writes, as it was at the time of the call.
         self._image, self._depth, self._options = _saved.copied(image), _saved.copied(depth), _saved.text(options)
-        # Held between `reset` and `save`, because the options must be those of the run.
+        # Keeps `reset` and `save` apart, because saved options must be those of the run.
         self._lock = Lock()
 
     def step(self) -> StepReport:

@@ -26,7 +26,7 @@ class ReaderWarning:
 
 @dataclass(frozen=True)
 class NamedCamera:
-    """A camera of a file, with its name and the size (width, height) of its images where the file states them."""
+    """A camera of a file, with its name and the size (width, height) of its images if the file states them."""
 
     name: Optional[str]
     camera: Pinhole
@@ -35,7 +35,8 @@ class NamedCamera:
 
 @dataclass(frozen=True, eq=False)
 class NamedPose:
-    """P_target = rotation @ P_source + translation, metres, with the names of the pose and of its frames where the file states them."""
+    """P_target = rotation @ P_source + translation, metres, with the names of the pose and of its frames if the file
+    states them."""
 
     name: Optional[str]
     source: Optional[str]

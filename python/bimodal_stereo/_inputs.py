@@ -113,7 +113,7 @@ def keywords(given: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def whole(value: Any, field: str, least: int) -> int:
-    """A whole number, also one of numpy."""
+    """A whole number of Python or numpy."""
     try:
         made = index(value)
     except TypeError as error:
@@ -142,7 +142,7 @@ def packed(made: NDArray[Any], kind: Any) -> NDArray[Any]:
 
 
 def singles(made: NDArray[Any]) -> NDArray[np.float32]:
-    # Numbers beyond 32 bits become infinite, which is a hole or no colour.
+    # Numbers beyond 32 bits become infinite, which marks a hole or a pixel without colour.
     with np.errstate(over="ignore"):
         return packed(made, np.float32)
 
@@ -177,7 +177,8 @@ def size(data: NDArray[Any]) -> dict[str, int]:
 
 
 def colours(data: NDArray[Any], field: str) -> NDArray[Any]:
-    """The colours as RGBA if they are integers, or as RGB if they are floats. Floats of transparent pixels become zero, which is no colour."""
+    """The colours as RGBA if they are integers, or as RGB if they are floats. Floats of transparent pixels become zero,
+    which marks a pixel without colour."""
     if data.dtype.kind == "f":
         rgb = singles(data[..., :3])
         return rgb if data.shape[2] == 3 else singles(np.where(data[..., 3:] > 0, rgb, 0))
@@ -224,7 +225,8 @@ def map_of(value: Any, field: str, shape: Sequence[Optional[int]]) -> NDArray[np
 
 
 def depths(data: NDArray[Any], field: str) -> NDArray[Any]:
-    """Floats as 32 bits, integers as 16 bits: some readers give the levels of a 16-bit file as 32."""
+    """Converts floats to 32 bits and integers to 16 bits, because some readers return the levels of a 16-bit file in 32
+    bits."""
     if data.dtype.kind == "f":
         return singles(data)
     if data.dtype.kind == "b":

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 # The largest logarithm of a colour or coordinate of a normal; the squares of larger numbers carry no information.
 FARTHEST = 1e6
 LARGEST_SIDE = 512
-# Slopes and stretches of a depth beyond this leave no shape to be seen.
+# Largest slope and stretch of a depth; beyond it no shape is visible.
 STEEPEST = 1e3
 
 
@@ -28,9 +28,10 @@ STEEPEST = 1e3
 class PixelLandscape:
     """The objective of one pixel over all normals that a camera can see (Eq. 6), float32.
 
-    ``objective``: (side, side), seen from the camera: n_x grows with the column, n_y with the row, both from -1 to 1; NaN where no normal is.
-    ``minima``: (n, 5), the lowest first: unit normal, objective, share of all directions whose descent ends there. ``path``: (m, 3), normals
-    from step to step of one descent.
+    ``objective``: (side, side), seen from the camera: n_x grows with the column, n_y with the row, both from -1 to 1;
+    NaN without a normal.
+    ``minima``: (n, 5), the lowest first: unit normal, objective, share of all directions whose descent ends there.
+    ``path``: (m, 3), the normals after each step of one descent.
     """
 
     objective: Singles
@@ -145,8 +146,9 @@ def characteristic_strips(
 ) -> list[Singles]:
     """Characteristic strips (Horn 1970) of a picture of albedo 1 under one lamp of strength 1, from a bright spot outward.
 
-    intensity: (h, w), NaN outside the object. lamp: (3,), the direction to it. centre: column and row of the bright spot. dent: whether the
-    spot is taken for a dent. count: strips, 0 .. 360. Each strip is (n, 3), float32: column, row and depth in pixels.
+    intensity: (h, w), NaN outside the object. lamp: (3,), the direction to it. centre: column and row of the bright
+    spot. dent: whether the surface at the spot is assumed to be a dent. count: strips, 0 .. 360. Each strip is (n, 3),
+    float32: column, row and depth in pixels.
     """
     made = _inputs.shaped(array(intensity, "intensity", "float32"), "intensity", (None, None))
     given = {"lamp": three(lamp, "lamp", 3), "centre": three(centre, "centre", 2), "dent": dent, "count": _inputs.whole(count, "count", 0)}

@@ -31,8 +31,8 @@ class PairSample:
 
 @dataclass(frozen=True, eq=False)
 class MaskSuggestion:
-    """A suggested ``mask``, (h, w) of bool, the ``share`` of the image that is the object, the ``rounds`` that it took, and the share of the
-    pixels that the last one ``changed``."""
+    """A suggested ``mask``, (h, w) of bool, the ``share`` of the image that is the object, the number of ``rounds``,
+    and the share of the pixels that the last round ``changed``."""
 
     mask: NDArray[np.bool_]
     share: float

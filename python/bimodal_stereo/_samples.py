@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Truth:
-    """The truth to measure against, NaN outside the masks: normals (h, w, 3) and depths (h, w) of both views, float32."""
+    """The true values of the results, NaN outside the masks: normals (h, w, 3) and depths (h, w) of both views,
+    float32."""
 
     image_normals: Singles
     image_depth: Singles

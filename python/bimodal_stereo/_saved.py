@@ -1,8 +1,8 @@
 """A run as bytes, for ``Estimator.save`` and ``Estimator.restore``.
 
 The views, the options and the number of stages that have been run determine a run to the bit, however the
-steps were sliced. The file therefore holds these, with a checksum of the results that tells whether they were
-reproduced. Restoring takes as long as the run, but the format does not change with every stage.
+steps were sliced. The file therefore holds these, with a checksum that shows whether the results were reproduced.
+Restoring takes as long as the run, but the format does not change with every stage.
 
 The layout is that of the JavaScript package (js/saved.ts) with another format number: native code and
 WebAssembly differ in their last digits, so neither can continue the other's run to the bit. Sixteen bytes of
@@ -28,9 +28,9 @@ FORMAT = 129
 FOREIGN = 128
 MARK = len(NAME) + 1
 WORD = 4
-# Most bytes of a header: options hold at most 800 numbers, of 25 characters each.
+# Largest number of bytes in a header: options hold at most 800 numbers of 25 characters each.
 LONGEST_HEADER = 65_536
-# Most bytes in all: two views of 4096 pixels on a side with all members have 0.7 GB.
+# Largest number of bytes in all: two views of 4096 pixels on a side with all members have 0.7 GB.
 MOST_BYTES = 2**30
 
 KINDS = {"uint8": "u1", "uint16": "<u2", "float32": "<f4"}
@@ -46,7 +46,7 @@ View = dict[str, Any]
 
 
 class Saved(NamedTuple):
-    """The content of a file. ``reached``: how far the run has come; ``found``: the checksum of its results."""
+    """The content of a file. ``reached``: the progress of the run; ``found``: the checksum of its results."""
 
     image: View
     depth: View

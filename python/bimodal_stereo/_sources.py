@@ -1,6 +1,6 @@
 """Converts files, and the pictures, cameras and poses of other packages, to arrays and dictionaries.
 
-No other package is imported: an object is recognised by the package that its type comes from.
+No other package is imported, because an object is recognised by the package of its type.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ def matrix(value: Any, side: int, field: str) -> NDArray[np.float64]:
 
 
 def pose(value: Any, field: str) -> Any:
-    """The members of a pose that is given by them, or by a 4x4 matrix."""
+    """The members of a pose that is given by members or by a 4x4 matrix."""
     if value is None or isinstance(value, str):
         return value
     if not isinstance(value, Mapping) and not is_dataclass(value):
@@ -78,7 +78,8 @@ def pose(value: Any, field: str) -> Any:
 
 
 def camera(value: Any, field: str) -> Any:
-    """The members of a camera that is given by them, by its matrix K, by ``{"K": .., "distortion": ..}``, or as Open3D has it."""
+    """The members of a camera that is given by members, by its matrix K, by ``{"K": .., "distortion": ..}``, or as an
+    object of Open3D."""
     if value is None or is_dataclass(value):
         return plain(value)
     if package(value) == "open3d":
@@ -107,7 +108,7 @@ def of_matrix(value: Any, field: str) -> dict[str, float]:
 
 
 def package(value: Any) -> str:
-    """The package that a value's type comes from."""
+    """The name of the package that defines a value's type."""
     return type(value).__module__.partition(".")[0]
 
 
@@ -143,7 +144,7 @@ def read(reader: Callable[..., Made], path: Any, field: Optional[str], *others: 
 
 
 def colours(value: Any, transfer: Optional[str], field: Optional[str] = None) -> tuple[Any, Optional[str]]:
-    """The pixels of a file or a picture, and how they encode intensity where that is known."""
+    """The pixels of a file or a picture, and their encoding of intensity if it is known."""
     if not is_path(value):
         return picture(value), transfer
     found = read(_native.read_image, value, field)

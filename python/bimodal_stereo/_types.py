@@ -78,7 +78,7 @@ class ColorImage:
 
 @dataclass(frozen=True, eq=False)
 class DepthMap:
-    """One depth map of the same object from another view: ``data`` or ``points``, exactly one of the two.
+    """One depth map of the same object from another view. It has either ``data`` or ``points``.
 
     ``data``: (h, w), depth along z, an image of Pillow or Open3D, or the path of a PNG or .npy file. Zero, negative, NaN,
         and 1e12 or more are holes.
@@ -87,7 +87,7 @@ class DepthMap:
     ``unit``: metres (or pixels, orthographic) per stored unit; default 1, and 0.001 for integers with a camera. For a file
         with a camera it is guessed, with a ``BimodalWarning``.
     ``normals``: (h, w, 3), unit normals that replace those computed from the depth.
-    ``intensity``: (h, w), for the check of a calibration alone: the strength of the return at each pixel, or any other
+    ``intensity``: (h, w), only for the check of a calibration: the strength of the return at each pixel, or any other
         quantity that depends on the surface's reflectivity, increasing or decreasing; NaN where unknown. Only its rank is
         used.
     """
@@ -166,7 +166,7 @@ class Uncertainty:
 
     @classmethod
     def _of(cls, raw: Mapping[str, Any]) -> Uncertainty:
-        # Converted to floats, `None` becomes NaN.
+        # The conversion to floats turns `None` into NaN.
         arrays = {name: np.array(raw[key], float) for name, key in (("rotation_degrees", "rotationDegrees"), ("translation", "translation"))}
         return made(cls, raw, **arrays)
 

@@ -76,7 +76,7 @@ def packed(view: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def numbered(report: Mapping[str, Any]) -> dict[str, Any]:
-    """A report whose unknown numbers are NaN again, which JSON lacks."""
+    """A report in which unknown numbers are NaN again, because JSON has no NaN."""
 
     def known(members: Mapping[str, Any], *names: str) -> dict[str, Any]:
         return {name: np.nan if members[name] is None else members[name] for name in names}
@@ -92,7 +92,8 @@ class _Element(AnyWidget):
     error = Dict().tag(sync=True)
 
     def __init__(self, **traits: Any) -> None:
-        # Set here and not in the class, so that an installation without the files fails where a widget is made.
+        # The files are set here and not in the class, so that an installation without them fails only when a widget is
+        # made.
         super().__init__(_esm=content("widget.js").decode(), **traits)
         self.on_msg(self._answer)
 
@@ -120,8 +121,8 @@ class Figure(_Element):
 class Lab(_Element):
     """A run with its image, normals, light, both surfaces and curves.
 
-    ``image``, ``depth`` and ``options`` are those of ``Estimator``. ``status`` is that of the report; ``paused`` can be set, and ``charts``
-    says whether surfaces and curves are shown. The options ``workers`` are the browser's own.
+    ``image``, ``depth`` and ``options`` are those of ``Estimator``. ``status`` is that of the report; ``paused`` can be
+    set, and ``charts`` tells whether surfaces and curves are shown. The options ``workers`` are the browser's own.
     """
 
     _pair = Dict().tag(sync=True)

@@ -58,7 +58,8 @@ def translated(error: Any) -> BaseException:
 
 
 def known(value: Any) -> Any:
-    """``None`` for what JavaScript lacks: undefined, and in newer versions of Pyodide null as an object of its own."""
+    """``None`` for the values that JavaScript uses for missing ones: undefined, and null, which newer versions of
+    Pyodide pass as an object."""
     return None if type(value).__name__ == "JsNull" else value
 
 
@@ -70,12 +71,12 @@ def called(function: Any, *arguments: Any) -> Any:
 
 
 def members(given: Mapping[str, Any]) -> Any:
-    """An object of JavaScript; attributes of the proxy would lose names such as ``new``."""
+    """An object of JavaScript. Attributes of the proxy cannot have names such as ``new``."""
     return Object.fromEntries(to_js([to_js([name, value]) for name, value in given.items()]))
 
 
 def plain(value: Any) -> Any:
-    """A value for JavaScript: members that are not given are left out, arrays are copied and flat."""
+    """A value for JavaScript: absent members are left out, and arrays are copied and flattened."""
     if isinstance(value, Mapping):
         return members({camel(name): plain(member) for name, member in value.items() if member is not None})
     if isinstance(value, np.ndarray):
@@ -188,7 +189,7 @@ class Estimator:
 
 
 def scene(keywords: dict[str, Any]) -> dict[str, Any]:
-    """A request of a scene, whose own heights JavaScript takes with their size."""
+    """A request of a scene. JavaScript takes the heights of a surface together with their size."""
     surface = keywords["surface"]
     if not isinstance(surface, np.ndarray):
         return keywords

@@ -37,7 +37,7 @@ pub fn refused(error: &bimodal_stereo::Error) -> PyErr {
     refused_at(spelled(error.field()), error)
 }
 
-/// The same, with another path of the field.
+/// An error of the crate, with another path of the field.
 pub fn refused_at(field: String, error: &bimodal_stereo::Error) -> PyErr {
     let message = error.to_string();
     let message = message.strip_prefix(error.field()).map_or(message.clone(), |rest| format!("{field}{rest}"));
@@ -49,7 +49,7 @@ pub fn outcome<R>(result: Result<bimodal_stereo::Result<R>, BrokenOff>) -> PyRes
     unbroken(result)?.map_err(|error| refused(&error))
 }
 
-/// The same for a call that cannot be refused.
+/// The result of a guarded call that cannot be refused.
 pub fn unbroken<R>(result: Result<R, BrokenOff>) -> PyResult<R> {
     let of = |code: &str, message: String| BimodalError::new_err((code.to_owned(), message, None::<String>));
     result.map_err(|broken| match broken {

@@ -167,7 +167,7 @@ impl Estimator {
     fn reset(&self, py: Python<'_>, keywords: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
         let workers = keywords.map(options::workers).transpose()?.flatten();
         if workers.is_some_and(|count| count != self.workers) {
-            let message = "are those that the estimator was made with; make a new estimator to change them";
+            let message = "cannot change after the estimator was made; make a new one";
             return Err(failure("option", "workers", message));
         }
         let options = keywords.map(options::options).transpose()?;

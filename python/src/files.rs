@@ -135,7 +135,7 @@ pub fn read_depth(py: Python<'_>, path: PathBuf, unit: Option<f64>, is_metric: b
     Ok(dict)
 }
 
-/// True where a picture is neither zero nor transparent.
+/// A mask that is true where a picture is neither zero nor transparent.
 #[pyfunction]
 pub fn read_mask(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyAny>> {
     let raster = raster(py, &path)?;

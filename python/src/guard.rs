@@ -4,7 +4,7 @@ use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Mutex;
 
-/// Why a call returned nothing.
+/// The reason why a call returned nothing.
 #[derive(Debug, PartialEq)]
 pub enum BrokenOff {
     /// It panicked with this message.
@@ -15,7 +15,7 @@ pub enum BrokenOff {
 
 /// Runs work that should never panic.
 pub fn guarded<R>(work: impl FnOnce() -> R) -> Result<R, BrokenOff> {
-    // Nothing that the work touched is used afterwards: it is dropped, or behind a poisoned lock.
+    // Values that the work touched are not used afterwards: they are dropped, or behind a poisoned lock.
     catch_unwind(AssertUnwindSafe(work)).map_err(|payload| BrokenOff::Now(text(&*payload)))
 }
 
@@ -32,7 +32,7 @@ impl<T> Guarded<T> {
         Self(Mutex::new(value))
     }
 
-    /// Works on the value. The lock is taken inside, so that a panic poisons it.
+    /// Runs work on the value. The lock is taken inside, so that a panic poisons the lock.
     pub fn call<R>(&self, work: impl FnOnce(&mut T) -> R) -> Result<R, BrokenOff> {
         guarded(|| {
             let mut value = self.0.lock().map_err(|_| BrokenOff::Earlier)?;

@@ -86,15 +86,15 @@ pub fn depth(value: &Bound<'_, PyAny>) -> PyResult<DepthMap> {
 
 pub const POSE: [&str; 5] = ["scale", "rotation", "translation", "angles", "matrix"];
 
-/// The given parts of a pose.
+/// The parts of a pose that are given.
 pub struct GivenPose {
     pub scale: Option<f64>,
     pub rotation: Option<Matrix3<f64>>,
     pub translation: Option<Vector3<f64>>,
 }
 
-/// A pose from its members. Without a rotation, a 4x4 matrix gives all of them; without either, angles give the
-/// rotation.
+/// A pose from its members. Without a rotation, a 4x4 matrix gives all members. If the matrix is also missing, angles
+/// give the rotation.
 pub fn pose(pose: &Members<'_>) -> PyResult<GivenPose> {
     let rows = pose.numbers::<9>("rotation")?;
     if let (None, Some(entries)) = (rows, pose.numbers::<16>("matrix")?) {

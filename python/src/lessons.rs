@@ -104,7 +104,7 @@ pub fn shade_lamp<'py>(py: Python<'py>, keywords: &Bound<'py, PyAny>) -> Array<'
     array(py, shaded, [count])
 }
 
-/// Normals, albedo and lamp of what looks the same from the front.
+/// Normals, albedo and lamp of a surface that looks the same from the front.
 #[pyfunction]
 pub fn bas_relief<'py>(py: Python<'py>, keywords: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyDict>> {
     let given = Members::new(keywords, "", &["normals", "lamp", "stretch", "right", "down"])?;

@@ -70,7 +70,7 @@ impl<'py> Members<'py> {
         self.typed(name, "a string")
     }
 
-    /// The value that one of some words stands for.
+    /// The value for which one of some words stands.
     pub fn word<T: Copy>(&self, name: &str, words: &[(&str, T)]) -> PyResult<Option<T>> {
         let Some(given) = self.text(name)? else { return Ok(None) };
         let found = words.iter().find(|(word, _)| *word == given).map(|&(_, value)| value);

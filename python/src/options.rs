@@ -68,7 +68,7 @@ const REGISTRATIONS: [(&str, Registration); 3] =
     [("joint", Registration::Joint), ("icp", Registration::Icp), ("fixed", Registration::Fixed)];
 const SHADINGS: [(&str, Shading); 2] = [("surface", Shading::Surface), ("pixel", Shading::Pixel)];
 
-/// A word given instead of a value.
+/// A word in place of a value.
 fn word_of(given: &Members<'_>, name: &str) -> PyResult<Option<String>> {
     Ok(given.get(name)?.and_then(|value| value.extract().ok()))
 }

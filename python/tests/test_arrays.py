@@ -1,4 +1,5 @@
-"""How arrays are read: the same numbers in another type, order or wrapping give the same bits at the start, others do not."""
+"""Reading of arrays: equal numbers in another type, order or wrapping give the same bits at the start, other numbers do
+not."""
 
 import numpy as np
 import pytest
@@ -129,7 +130,7 @@ def test_clouds_are_points_row_by_row(scene, near):
     points[np.isnan(depth)] = np.nan
     cloud = near(depth=bimodal.DepthMap(points=points, mask=scene.depth.mask))
     inside = np.isfinite(depth)
-    # Up to the noise, which is removed from maps.
+    # The depths agree up to the noise, which is removed from maps.
     np.testing.assert_allclose(cloud.refined_depth()[inside], depth[inside], atol=0.1)
     np.testing.assert_allclose(cloud.points("depth")[:, :2], near().points("depth")[:, :2], atol=0.1)
     wide = points.astype(np.float64)

@@ -144,13 +144,13 @@ def test_options_have_the_same_ranges_and_words(near):
 
 
 def judged(row):
-    """Values, each with whether the row accepts it: its words, and both sides of its limits."""
+    """Values of a row, and whether it accepts each of them: its words, and numbers on both sides of its limits."""
     yield from ((word, True) for word in row.get("words", {}))
     if row["kind"] not in ("number", "whole"):
         return
     step = 1 if row["kind"] == "whole" else 1e-9
     for end, outward, inclusive in [("min", -1, True), ("max", 1, True), ("above", -1, False), ("below", 1, False)]:
-        # Beyond this, a step is lost in rounding; a seed has 64 bits here.
+        # Beyond this number, rounding loses a step of one. In Python a seed has 64 bits.
         if abs(row.get(end, 1e9)) < 1e9:
             yield row[end], inclusive
             yield row[end] + outward * step * max(1, abs(row[end])) * (1 if inclusive else -1), not inclusive

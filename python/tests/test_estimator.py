@@ -100,7 +100,8 @@ def test_reset_begins_anew(near):
 
 
 def test_other_threads_run_during_a_step(scene):
-    """Independent of time: if a step kept the lock, the other thread would only continue after all steps."""
+    """The test does not depend on time: if a step kept the lock, the other thread would only continue after all
+    steps."""
     steps = 20_000
     estimator = bimodal.Estimator(scene.image, scene.depth)
     stop = threading.Event()
@@ -114,7 +115,7 @@ def test_other_threads_run_during_a_step(scene):
         done.append(count)
 
     interval = sys.getswitchinterval()
-    # Longer than the test, so that a thread yields only voluntarily.
+    # The interval is longer than the test, so that a thread yields only voluntarily.
     sys.setswitchinterval(1000)
     try:
         thread = threading.Thread(target=work)

@@ -23,7 +23,7 @@ def levels(scene):
 
 
 def inside_of(scene):
-    """A mask that cannot be derived from the colours, of which black ones are left out anyway."""
+    """A mask that cannot be derived from the colours; black pixels are left out in any case."""
     inside = np.array(scene.image.mask)
     inside[:, :14] = False
     return inside
@@ -114,7 +114,7 @@ def test_pictures_of_pillow_are_arrays(levels, scene, of_views):
 
 
 class OfOpen3D:
-    """Has the interface of Open3D's images and cameras: a buffer, and a matrix."""
+    """A stand-in with the interface of Open3D's images and cameras: a buffer, and a matrix."""
 
     def __init__(self, data):
         self.data, self.intrinsic_matrix = data, data
@@ -188,7 +188,7 @@ def test_extrinsics_are_matrices(rig):
     np.testing.assert_array_equal(expected.points[:, 2], expected.positions[:, 2])
     camera = rig.image.camera.K @ expected.positions.T
     off = np.abs(camera[:2] / camera[2] - expected.points[:, :2].T)
-    # Up to the lens.
+    # The cameras are equal except for the lens.
     assert np.median(off) < 5
     refused(lambda: bimodal.project_frame(frame, 2 * rig.pose.matrix), "range", "pose.matrix")
     refused(lambda: bimodal.check_calibration([frame], {"mine": np.eye(3)}), "size", "candidates.mine")

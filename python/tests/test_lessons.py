@@ -47,7 +47,7 @@ def test_the_lowest_minimum_of_a_pixel_is_the_normal_that_shaded_it():
     assert np.isnan(found.objective[0, 0]) and (np.diff(found.minima[:, 3]) >= 0).all()
     np.testing.assert_allclose(found.minima[0, :3], normal, atol=1e-2)
     np.testing.assert_allclose(found.path[0], [0, 0, -1], atol=1e-6)
-    # A heavy prior pulls the answer to itself.
+    # A heavy prior determines the answer.
     drawn = bimodal.pixel_landscape(log, "colourful", prior=[0, 0, -1], weight=1e4, robust=False, start=normal, side=0)
     assert drawn.objective.shape == (0, 0)
     np.testing.assert_allclose(drawn.minima[0, :3], [0, 0, -1], atol=1e-2)

@@ -50,7 +50,7 @@ export function rowsOf(sets, variants) {
   };
 }
 
-/** Cells that a part makes worse and cells that it makes better. Cells whose pose is wrong with and without the part count as neither. */
+/** Numbers of cells that a part makes worse and better. Cells whose pose is wrong with and without the part are not counted. */
 export function effects(all, { part, rows }) {
   const off = new Map(rows.map((row) => [row.id, row]));
   const pairs = known(all.rows).map((row) => ({ id: row.id, on: row, off: off.get(row.id) }));
@@ -80,7 +80,7 @@ export function text(sets, variants) {
   ];
 }
 
-/** As Markdown: photographs line by line, the other sets by their footers. */
+/** The table as Markdown: photographs line by line, the other sets by their footers. */
 export function markdown(sets, variants) {
   const { head, blocks, sizes } = rowsOf(sets, variants);
   const [all, ...others] = variants;

@@ -39,7 +39,7 @@ export function built(part) {
   return { wasm, gzipped: gzipSync(readFileSync(inRoot(wasm))).length };
 }
 
-/** The same, after a build if the sources or the part have changed. */
+/** Path and gzipped size of the .wasm, which is built first if the sources or the part have changed. */
 export async function variant(part) {
   if (!built(part)) {
     const start = performance.now();

@@ -48,7 +48,7 @@ function everything(estimator, { image, depth, middle }) {
   const pixels = { image: pixelOf(image, middle), depth: pixelOf(depth, middle) };
   return {
     report,
-    // Older packages do not report it.
+    // Older packages do not report the registration.
     endedBy: report.status === "running" ? undefined : estimator.registeredBy,
     light: [...estimator.light()],
     pixel: pixels.image,

@@ -6,7 +6,7 @@ import { LIMITS, codeOf, differ, largest, listsApart, relative } from "./compare
 const POSE = 6;
 const DEGREE = 180 / Math.PI;
 
-/** Sigmas in degrees and millimetres, and correlations: the entries of a covariance are too small to compare with other numbers. */
+/** Sigmas in degrees and millimetres, and correlations, because the entries of a covariance are too small for a comparison. */
 function spreadOf(covariance) {
   const sigmas = Array.from({ length: POSE }, (_, k) => Math.sqrt(covariance[(POSE + 1) * k]));
   const correlations = covariance.map((value, at) => value / (sigmas[Math.floor(at / POSE)] * sigmas[at % POSE]));

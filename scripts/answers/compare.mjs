@@ -8,19 +8,19 @@ import { degreesBetween } from "../../protocols/rotations.mjs";
 export const LIMITS = {
   /** Rotations of the pose and of its rivals. */
   degrees: 1e-6,
-  /** Relative. It moves a point 80 pixels from the middle as far as a height may move. */
+  /** Relative limit of the scale. It moves a point 80 pixels from the middle as far as a height may move. */
   scale: 1e-7,
   translation: 1e-5,
   /** `imageDepth` and `refinedDepth`. */
   heights: 1e-5,
   /** `imageNormals` and `depthNormals`. */
   normals: 1e-5,
-  /** Coefficients, and residuals of log S. */
+  /** Limit of coefficients and of residuals of log S. */
   light: 1e-5,
   residual: 1e-5,
   /** `points` of both views. */
   points: 1e-5,
-  /** Relative: objective terms, overlap, inliers, residual, sigmas. The last change of the rotation, in degrees, counts under `degrees`. */
+  /** Relative limit of objective terms, overlap, inliers, residual and sigmas. The last change of the rotation has the limit `degrees`. */
   report: 1e-5,
 };
 /** Factor on the limits of results with a given reason (reasons.mjs): 1e-3 degrees. */
@@ -96,8 +96,8 @@ function disagreements(before, after) {
 }
 
 /**
- * Compares two answers, or two figures of answers. `rasterApart(a, b)` is the largest difference of two rasters where both have values,
- * or Infinity if different pixels have values; `pairsApart(a, b)` describes how the correspondences differ, if they do.
+ * Compares two answers, or two figures of answers. `rasterApart(a, b)` is the largest difference of two rasters, or Infinity if different
+ * pixels have values. `pairsApart(a, b)` describes the differences of the correspondences, if there are any.
  */
 export function compare(before, after, { rasterApart, pairsApart }) {
   const [a, b] = [before.report, after.report];
@@ -132,7 +132,7 @@ export const WHOLE = {
     let most = 0;
     for (let index = 0; index < a.length; index++) {
       if (Number.isNaN(a[index]) !== Number.isNaN(b[index])) return Infinity;
-      // NaN where neither has a value, so the comparison is false.
+      // The difference is NaN where no answer has a value, so the comparison is false.
       const difference = apart(a[index], b[index]);
       if (difference > most) most = difference;
     }

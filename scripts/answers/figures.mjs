@@ -22,7 +22,7 @@ const hash = ({ buffer, byteOffset, byteLength }) =>
     .digest("hex")
     .slice(0, 8);
 
-/** Which pixels have values, how many, their mean and spread, and samples. */
+/** The pixels that have values, with their number, mean, spread and samples. */
 function rasterFigure(values, count) {
   const there = values.filter((value) => !Number.isNaN(value));
   const pattern = hash(Uint8Array.from(values, (value) => (Number.isNaN(value) ? 0 : 1)));

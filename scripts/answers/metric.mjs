@@ -3,13 +3,13 @@
 import { IDENTITY, aboutAxis, transpose, turn } from "../../protocols/rotations.mjs";
 import { chance } from "../../protocols/numbers.mjs";
 
-/** Half axes of the body and its distance from either camera, metres. */
+/** Half axes of the body and its distance from each camera, metres. */
 const HALF_AXES = [0.1, 0.12, 0.1];
 const DISTANCE = 0.8;
 /** Rays are searched over this range before and behind the body's middle (metres), in this many strides. */
 const REACH = 0.18;
 const STRIDES = 60;
-/** Bisections of a stride: enough for the precision of a double. */
+/** Number of bisections of a stride, enough for the precision of a double. */
 const BISECTIONS = 50;
 /** Step of the central differences for normals, half axes. */
 const STEP = 1e-5;

@@ -79,7 +79,7 @@ function beforeWall({ data, mask, ...image }) {
   return { ...image, mask, data: data.map((value, index) => (mask[Math.floor(index / 3)] ? value : wall[index % 3])) };
 }
 
-/** Adds varying albedo in patches or stripes, by a seed. */
+/** Adds varying albedo in patches or stripes, which a seed determines. */
 const painted = ({ data, ...image }, { seed, stripes = false }) => {
   const colours = data.slice();
   paint(colours, image.width, chance(seed), stripes);

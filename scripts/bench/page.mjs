@@ -97,7 +97,7 @@ export async function playing(chromium, address) {
   await page.addInitScript(watch);
   await page.goto(`${address}/site/#size=${PLAYED_SIZE}`);
   await page.waitForSelector('#status[data-state="ready"]', { timeout: 60_000 });
-  // By then, scripts that load late have loaded.
+  // After this time, scripts that load late have loaded.
   await page.waitForTimeout(2000);
   await page.evaluate(() => Object.values(window.benchSeen).forEach((list) => (list.length = 0)));
   await page.keyboard.press("Space");

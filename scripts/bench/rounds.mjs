@@ -3,7 +3,7 @@ import { Failure, say } from "../shell.mjs";
 
 /** Iterations before the steady state: the surface first tries three initialisations (STARTS in src/shape/heights/starts.rs). */
 const WARMING = 3;
-/** An unreachable limit of iterations, so that runs go to their end. */
+/** A limit of iterations that is never reached, so that runs go to their end. */
 const TO_THE_END = 1000;
 
 /** The times of one kind of stage in a run. */
@@ -46,7 +46,7 @@ class Samples {
     this.#steady.push(...steady.slice(0, Math.max(1, steady.length - 1)));
   }
 
-  /** Only for runs without a search: after a search, the first iteration skips the registration too. */
+  /** This holds only for runs without a search, because after a search the first iteration also skips the registration. */
   addRegistration(run) {
     this.#registrations.push(...timesOf(run, ({ stage, iteration }) => stage === "registration" && iteration === 0));
     this.#preparations.push(run.preparation);
@@ -85,8 +85,8 @@ export async function stages(sides, scene, { size, least }) {
   for (const side of sides) await side.open(scene);
   const samples = new Map(sides.map((side) => [side.where, new Samples()]));
   const lacks = (what) => sides.some(({ where }) => samples.get(where)[what] < least);
-  // The first runs are not counted, because a browser compiles during them. They start at the true pose. The smallest views do not
-  // determine the pose from the image: there the loop ends early, and steady iterations have to follow a search.
+  // The first runs are not counted, because a browser compiles during them. They start at the true pose. In the smallest views the image
+  // does not determine the pose. Their loop ends early, so steady iterations have to follow a search.
   let start = "near";
   for (const side of sides) {
     const { iterations } = await side.run({ start, most: WARMING + 1 });

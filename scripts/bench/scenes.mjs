@@ -7,7 +7,7 @@ import { chance } from "../../protocols/numbers.mjs";
 import { NOISE, kit, requestOf } from "../../protocols/scenes.mjs";
 
 const FOLDER = "target/bench/scenes";
-/** Side of a relief, samples: of Mozart and of the built-in surfaces. */
+/** Side of the relief of Mozart and of the built-in surfaces, samples. */
 const RELIEF_SIDE = 256;
 /** Heights below this are background (docs/lab/protocols.md), samples. */
 const FLOOR = 5;

@@ -3,7 +3,7 @@ import { spawn } from "node:child_process";
 import { createInterface } from "node:readline";
 import { Failure, inRoot } from "../shell.mjs";
 
-/** No sandbox, as in containers; no graphics card, as on test machines; no background traffic of the browser. */
+/** The browser has no sandbox, as in containers, no graphics card, as on test machines, and no background traffic. */
 const FLAGS = [
   "--no-sandbox",
   "--enable-unsafe-swiftshader",
@@ -21,7 +21,7 @@ export async function launch(executablePath) {
 export async function openPage(chromium, address) {
   const context = await chromium.newContext({ viewport: { width: 1280, height: 800 } });
   const page = await context.newPage();
-  // Runs may take any time.
+  // There is no time limit, because runs may take long.
   page.setDefaultTimeout(0);
   await page.goto(address);
   return { page, close: () => context.close() };

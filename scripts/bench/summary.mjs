@@ -8,7 +8,7 @@ export const quantiles = (times) => ({ median: median(times), p10: quantile(time
 
 export const pixelsOf = (size) => sidesOf(size).reduce((width, height) => width * height);
 
-/** Smallest view for the growth of time, pixels: in smaller ones the fixed cost of a step dominates. */
+/** Smallest view for the growth of time, pixels, because in smaller ones the fixed cost of a step dominates. */
 const GROWTH_FROM = 64 * 64;
 
 /** Slope of a least-squares line through the points. */
@@ -153,7 +153,7 @@ export function aims({
     ["wasm against native, worst step", most(ratios), "x", 1.8],
     ["growth of a step with the pixels", growth.step, "", 1.1],
     ["page playing 640x480: tasks over 50 ms", playing?.longTasks.length ?? null, "", 0],
-    // At least 55 frames a second.
+    // The aim is at least 55 frames a second.
     ["page playing 640x480: mean frame", playing ? 1000 / playing.framesPerSecond : null, "ms", 1000 / 55],
     ["memory after a run at 640x480", bytesPerPixel, "B/px", 220],
     ["wasm, gzipped", kilo(wasmGzipBytes), "kB", WASM_BUDGET / 1000],

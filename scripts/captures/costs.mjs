@@ -10,13 +10,13 @@ import { moved } from "../rigs/draws.mjs";
 import { project } from "./lens.mjs";
 
 const LEVELS = 16;
-/** A point farther than the nearest in its cell by more than this is hidden: metres, and share of its depth. */
+/** A point is hidden if it is farther than the nearest point in its cell by more than this, in metres and as a share of its depth. */
 const HIDDEN = { metres: 0.015, share: 0.02 };
-/** Side of a cell, pixels: more than the spacing of points on one surface. */
+/** Side of a cell, pixels, above the spacing of points on one surface. */
 const CELL = 3;
-/** Pixels to each side for a normal's differences: more than the steps of a quantised map. */
+/** Pixels to each side over which a normal's differences are taken, above the steps of a quantised map. */
 const REACH = 3;
-/** Canny: blur in pixels, share of pixels below the upper threshold, lower over upper threshold (MATLAB's values for the two). */
+/** Canny's blur in pixels, and MATLAB's share of pixels below the upper threshold and ratio of the lower to the upper threshold. */
 const CANNY = { blur: 1.4, below: 0.7, ratio: 0.4 };
 /** Largest distance that is counted, in pixels. An edge farther away belongs to another object. */
 const FARTHEST = 20;

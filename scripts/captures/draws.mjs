@@ -50,7 +50,7 @@ export async function toldOff(check, frames, error, { seed, about = "camera", op
   const { truth, centre } = behind[0];
   const told = wrong(truth, error, random.direction, about === "middle" ? centre : undefined);
   const report = await check(behind.map(checkFrame), { told }, options);
-  // `correction` is a more accurate pose where the authors' pose is known to be off: X, colour frame, applied after the authors' pose.
+  // `correction` improves an authors' pose that is known to be off. It is a pose in the colour frame, applied after the authors' pose.
   const better = correction ? after(correction, truth) : truth;
   return {
     error,
@@ -61,12 +61,12 @@ export async function toldOff(check, frames, error, { seed, about = "camera", op
   };
 }
 
-/** 1 if the wrong one is worse, 0 if it is better, one half for a tie or a missing value. */
+/** The rank is 1 if the wrong candidate is worse, 0 if it is better, and one half for a tie or a missing value. */
 export const beats = (right, wrong) => (right === wrong || Number.isNaN(right - wrong) ? 0.5 : Number(wrong > right));
 
 /**
- * Ranks the true candidate against wrong ones. None of these is the first candidate, on which the prior is centred: that is a third pose,
- * off by `start`. Our measures are the Mahalanobis distance from the estimate and the report's pixels.
+ * Ranks the true candidate against wrong ones. The first candidate, on which the prior is centred, is another pose that is off by
+ * `start`. The project's measures are the Mahalanobis distance from the estimate and the report's pixels.
  */
 export async function ranked(check, frame, { start, errors, each, seed, about }) {
   const random = chance(seed);

@@ -1,6 +1,6 @@
 // Brown's lens with five coefficients, in OpenCV's order, for costs computed outside the package.
 
-/** Rounds of the fixed-point iteration: enough to invert a lens of k1 = 0.2 to a thousandth of a pixel. */
+/** Rounds of the fixed-point iteration, enough to invert a lens of k1 = 0.2 to a thousandth of a pixel. */
 const ROUNDS = 30;
 
 function bent([x, y], [k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0]) {

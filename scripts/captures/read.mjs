@@ -45,7 +45,7 @@ export function nyu(files) {
   return sight(name, frames[0], pose);
 }
 
-/** Camera and depth of frame `from`, colours of frame `to`; the pose follows from the camera's two poses in the room. */
+/** The depth map of frame `from` with the colour image of frame `to`. The pose follows from the camera's two poses in the room. */
 export function sevenScenes(from, to, { decodeColour, decodeDepth }) {
   const read = (number, kind) => bytes("seven_scenes", `frame-000${number}.${kind}`);
   const [[fx, , cx], [, fy, cy]] = numbers(bytes("seven_scenes", "camera-intrinsics.txt"));
@@ -105,7 +105,7 @@ export function registered(files) {
 }
 
 /**
- * The same frame with its cloud in another frame of reference, so that neither the identity nor the authors' pose is the answer.
+ * A frame with its cloud in another frame of reference, so that the answer differs from the identity and from the authors' pose.
  * Clouds are transformed point by point; nothing is rendered, so no depth is interpolated.
  */
 export function hide(frame, motion) {

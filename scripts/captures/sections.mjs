@@ -67,11 +67,11 @@ const withFocal = (frame, focal) => ({
   ...frame,
   image: { ...frame.image, camera: { ...frame.image.camera, fx: focal, fy: focal } },
 });
-/** Kinect v1: the nominal focal length of its colour camera is 525 pixels; 585 is that of its depth camera. */
+/** Nominal focal lengths of a Kinect v1: 525 pixels for the colour camera and 585 for the depth camera. */
 const [WRITTEN, NOMINAL] = [585, 525];
 const MOMENTS = [150, 160, 190];
 
-/** Colour and depth of one moment under several focal lengths: the offset between the cameras that each implies. */
+/** The offset between the cameras that each of several focal lengths implies, from colour and depth of one moment. */
 async function focals({ check, files, progress }) {
   const rows = [];
   for (const moment of MOMENTS) {

@@ -9,13 +9,13 @@ const OFF = [
   { degrees: 0, millimetres: 20 },
   { degrees: 1, millimetres: 0 },
 ];
-/** A candidate that comes first, so that the prior is not about the truth. */
+/** A candidate that comes first, so that the prior is not centred on the truth. */
 const FIRST = { degrees: 3, millimetres: 20 };
 /** The 95 % quantile of chi-squared with six degrees of freedom. */
 const INSIDE = 12.59;
 const nameOf = ({ degrees, millimetres }) => (degrees > 0 ? `${degrees} deg` : `${millimetres} mm`);
 const count = (rows, test) => `${rows.filter(test).length} of ${rows.length}`;
-/** Constants were chosen on every second capture; the others took no part. */
+/** Constants were chosen on every second capture, not on the others. */
 const halfOf = (index) => (index % 2 === 0 ? "tuning" : "held-out");
 const captures = (files) => [nyu(files), ...registered(files)].map((frame, index) => ({ frame, half: halfOf(index) }));
 
@@ -32,7 +32,7 @@ async function judged(check, behind, random, first) {
   };
 }
 
-/** Each capture behind hidden motions, with the makers' calibration as the candidate that is checked and as another one. */
+/** Each capture behind hidden motions. The makers' calibration is once the candidate that is checked and once another one. */
 export async function truths({ check, files, number, progress }) {
   const rows = [];
   for (const { frame, half } of captures(files)) {

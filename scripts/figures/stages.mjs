@@ -23,7 +23,7 @@ const JUMP = 6;
 const RESIDUAL = 0.3;
 const LOG_RANGE = 2;
 
-/** The pose before the run: the views lie over each other as they are. */
+/** The pose before the run, which lays the views over each other as they are. */
 const BEFORE = { scale: 1, rotation: IDENTITY, translation: [0, 0, 0] };
 
 /** Mean log shading of the depth map's surface in the image, after projection by a pose; NaN where nothing projects. */

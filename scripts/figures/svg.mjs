@@ -44,7 +44,7 @@ export function placed({ box, address }, x, y, width, shapes = []) {
 export const strokes = (segments, colour, width) =>
   `<path d="${segments.map(([x1, y1, x2, y2]) => `M${short(x1)} ${short(y1)}L${short(x2)} ${short(y2)}`).join("")}" stroke="${colour}" stroke-width="${width}" stroke-linecap="round" fill="none"/>`;
 
-/** Points as squares with sides of this size. */
+/** Draws points as squares with sides of this size. */
 export const dots = (points, colour, size) =>
   `<path d="${points.map(([x, y]) => `M${short(x - size / 2)} ${short(y - size / 2)}h${size}v${size}h${-size}z`).join("")}" fill="${colour}"/>`;
 

@@ -18,7 +18,7 @@ const JUMP = 8;
 const WINDOW = 5;
 const BESIDE = 15;
 
-/** How dark the albedo is at a pixel, from 0 to 1. */
+/** The darkness of the albedo at a pixel, from 0 to 1. */
 function stained({ width }, index) {
   const [x, y] = [index % width, Math.floor(index / width)].map((at, axis) => (2 * Math.PI * at) / WAVES[axis]);
   return (1 + Math.sin(x + Math.sin(y)) * Math.sin(y)) / 2;
@@ -98,7 +98,7 @@ const spread = (values) => {
   return 1.4826 * median([...finite].map((value) => Math.abs(value - middle)));
 };
 
-/** The logarithm of two spreads' ratio: that of the local contrast, and that of its difference from the predicted shading. */
+/** The logarithm of the ratio of two spreads: that of the local contrast, and that of its difference from the predicted shading. */
 function gain(size, { seen, predicted }) {
   const [contrast, shading] = [seen, predicted].map((values) => normalised(size, values));
   const left = contrast.map((value, at) => value - shading[at]);

@@ -1,12 +1,12 @@
 // The part of the package that has run so far, by V8's precise coverage; it guides the fuzzer.
 import { Session } from "node:inspector/promises";
 
-/** V8 lists the ranges of a function that did not run; the rest of the function did. */
+/** V8 lists the ranges of a function that did not run. The rest of the function has run. */
 export class Coverage {
   #session = new Session();
   /** For each function, the characters of its text that have run. */
   #ran = new Map();
-  /** The last growth: arrays and indices. */
+  /** The last growth, as arrays and indices. */
   #last = [];
   /** Number of characters of all functions that have run. */
   count = 0;

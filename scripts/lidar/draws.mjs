@@ -1,6 +1,6 @@
 // Checks LiDAR frames with two kinds of candidates, the data set's calibration and poses with a known error, each with and without the
-// intensities. The data set's calibration counts as true. All draws but the first keep three fifths of the range image's columns, from a
-// random one on.
+// intensities. The data set's calibration counts as true. All draws but the first keep three fifths of the range image's columns,
+// starting at a random one.
 import { mahalanobis, offset, chance, poseOf, quantile, sizes, wrong } from "../rigs/draws.mjs";
 import { seedOf } from "../captures/draws.mjs";
 import { say } from "../shell.mjs";
@@ -50,7 +50,7 @@ export async function drawn(check, { frame, image, range }, count) {
   return rows;
 }
 
-/** How often candidates were "off" and the calibration lay inside 95 %, and the error of the estimates. */
+/** The shares of candidates that were "off" and of calibrations inside 95 %, and the error of the estimates. */
 export function printDrawn(rows) {
   for (const error of Object.keys(ERRORS))
     for (const intensity of [false, true]) {

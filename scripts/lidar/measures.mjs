@@ -9,7 +9,7 @@ function sees({ rotation, translation, camera, width, height }) {
   return (point) => {
     const [x, y, z] = [0, 1, 2].map((row) => dot(rotation.slice(3 * row, 3 * row + 3), point) + translation[row]);
     if (!(z > 0.05)) return false;
-    // Far off the axis, a lens with so few coefficients folds back into the picture.
+    // A lens with so few coefficients folds points far off the axis back into the picture.
     if (Math.abs(camera.fx * (x / z)) > width || Math.abs(camera.fy * (y / z)) > height) return false;
     const [column, row] = project(camera, [x, y, z]);
     return column > -0.5 && column < width - 0.5 && row > -0.5 && row < height - 0.5;
@@ -45,7 +45,7 @@ function atRay(image, pixel, point) {
   const angle = Math.atan(rows[above].tangent) - Math.atan(rows[below].tangent);
   const across = Math.hypot(right, forward) * step;
   const down = (Math.hypot(...from) * angle) / Math.max(1, below - above);
-  // The side of a square of the pixel's area.
+  // The spacing is the side of a square of the pixel's area.
   return { distance, sampling: Math.sqrt(across * Math.max(0, down)), across };
 }
 

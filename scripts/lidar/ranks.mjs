@@ -24,7 +24,7 @@ const MEASURES = {
 };
 const called = ({ degrees, millimetres }) => (degrees > 0 ? `${degrees} deg` : `${millimetres} mm`);
 
-/** One row for each of `count` wrong candidates of each size; a measure's value is 1 where it ranks that one worse, one half for a tie. */
+/** One row for each of `count` wrong candidates of each size. A measure is 1 if it ranks the wrong candidate worse, and 0.5 for a tie. */
 export async function ranked(check, { frame, image, range }, count) {
   if (count === 0) return [];
   const random = chance(seedOf(`${frame.name} ranks`, 0));

@@ -7,14 +7,14 @@ import { NOTICES } from "./text.mjs";
 /** Wheels and command lines are also built for other systems; none of them adds crates. */
 const NATIVE = ["x86_64-unknown-linux-gnu", "aarch64-apple-darwin"].map((target) => [`--target=${target}`]);
 
-/** What is compiled, in which builds and with which arguments, and the file with the notices of its crates. */
+/** The artefacts, each with its builds, their arguments, and the file with the notices of its crates. */
 export const ARTEFACTS = [
   {
     file: NOTICES,
     title: "The sources of bimodal-stereo hold no code of others. Contained in its .wasm files:",
     manifest: "Cargo.toml",
     crate: "bimodal-stereo",
-    // As one argument each, so that the arguments of all builds can be merged without repetition.
+    // Each option is one argument, so that the arguments of all builds can be merged without repetition.
     builds: ALL.map(({ features = [] }) => [`--target=${WASM}`, features.join("=")].filter(Boolean)),
   },
   {

@@ -3,7 +3,7 @@ import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { Failure, ask, inRoot } from "../shell.mjs";
 
-/** Its crates on the systems that artefacts are built for; the page also lists those of other systems and of its build. */
+/** Crates of the library on the systems for which artefacts are built. The page also lists those of other systems and of its build. */
 const LINKED = ["cfg-if", "dlmalloc", "foldhash", "gimli", "hashbrown", "libc", "rustc-demangle"];
 /** Names of licence files in order of preference. */
 const TEXTS = ["LICENSE-MIT", "LICENSE"];

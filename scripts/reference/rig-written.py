@@ -78,7 +78,7 @@ def kalibr(path):
 
 
 def ros2(path):
-    """The line, parsed as a shell does; tf2 has P_parent = R P_child + t."""
+    """The line, parsed as in a shell; tf2 has P_parent = R P_child + t."""
     words = shlex.split(path.read_text(), comments=True)
     assert words[:4] == ["ros2", "run", "tf2_ros", "static_transform_publisher"]
     parser = argparse.ArgumentParser()
@@ -117,7 +117,7 @@ def realsense(path):
 
 
 def cloud(path):
-    """The cloud by two readers; Open3D ignores the label."""
+    """Two readers read the cloud; Open3D ignores the label."""
     read = o3d.io.read_point_cloud(str(path))
     vertices = PlyData.read(str(path))["vertex"]
     points = np.stack([vertices[axis] for axis in "xyz"], axis=1)

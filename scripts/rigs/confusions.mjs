@@ -1,4 +1,4 @@
-// What people confuse in the files of a rig, and whether the first sentence of a check names it.
+// Common mistakes in the files of a rig, and whether the first sentence of a check names them.
 import { IDENTITY, aboutAxis, offBy, product, transpose, turn } from "../../protocols/rotations.mjs";
 import { project, ray } from "../captures/lens.mjs";
 import { chance, inverse, moved, percent, poseOf, quantile, wrong } from "./draws.mjs";
@@ -10,7 +10,7 @@ const DEGREE = Math.PI / 180;
 /** The largest error that passes, pixels of an image 640 wide. */
 const PASSES = 3.5;
 
-/** A mistake in the pose alone, which `change` makes of a rotation and a translation. */
+/** A mistake that affects only the pose: `change` applies it to a rotation and a translation. */
 const ofPose = (change) => (rig) => ({ ...rig, pose: poseOf(...change(rig.pose)) });
 /** A mistake in how the colour images or depth maps are stored or described. */
 const ofView = (view, change) => (rig) => ({
@@ -51,7 +51,7 @@ const OTHER_SIZES = {
   other: [320, 240],
 };
 const otherSize = (view) => resized(view, OTHER_SIZES[`${view.width}x${view.height}`] ?? OTHER_SIZES.other, 0);
-/** Heights are kept, and the sides cut off or added: the narrow stream of a wide sensor. */
+/** The height is kept, and the sides are cut off or added, as in the narrow stream of a wide sensor. */
 const otherShape = (view) => resized(view, view.width * 3 === view.height * 4 ? [1920, 1080] : [640, 480], 1);
 const lengths = ({ data, ...view }) => ({
   ...view,
@@ -66,7 +66,7 @@ const inUnit = (factor) => depth((view) => ({ ...view, unit: factor * unitOf(vie
 const turned = (quarters) => (view) => rotated(view, quarters, false);
 const mirrored = (view) => rotated(view, 0, true);
 
-/** By name: the mistake, and the readings that name it. Where intrinsics are symmetric, a turn of a picture is theirs, too. */
+/** Mistakes and the readings that name them. With symmetric intrinsics, a rotated picture is the same as a rotated camera. */
 export const CONFUSIONS = {
   inverse: [(rig) => ({ ...rig, pose: inverse(rig.pose) }), ["inverse"]],
   "rotation transposed": [withRotation(transpose), ["transposed-rotation"]],
@@ -170,11 +170,11 @@ const bare = ({ frames }) =>
   frames.map((frame) => ({ ...frame, image: withoutPlaces(frame.image), depth: withoutPlaces(frame.depth) }));
 const withoutPlaces = ({ place: _, from: __, ...view }) => view;
 
-/** What the first sentence of a report names: a reading, or the unit of the depths. */
+/** The mistake that the first sentence of a report names: a reading, or the unit of the depths. */
 const named = ({ reading, code, warnings }) =>
   reading ?? (code === "doubtful" && warnings[0].code === "unusual-depths" ? "unit" : undefined);
 
-/** The reading that each mistake is named as, on each rig; mistakes that move the scene by less than passes are left out. */
+/** The reading that names each mistake, on each rig. Mistakes that move the scene by less than the largest passing error are left out. */
 export async function confused(rigs, names, { check, progress }) {
   const rows = [];
   for (const rig of rigs) {
@@ -231,7 +231,7 @@ export function printRight(rows) {
   for (const { rig, said, code } of misnamed) console.log(`  ${rig}: ${said} (${code})`);
 }
 
-/** Errors of candidates that are off, but not misread: their least and greatest, evenly drawn on a logarithmic scale. */
+/** Smallest and largest errors of candidates that are off, but not misread. Errors are drawn evenly on a logarithmic scale. */
 const OFF = { degrees: [1, 10], millimetres: [10, 100] };
 
 /** The reading that a check names for candidates that are merely off. */

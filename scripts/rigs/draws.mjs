@@ -23,7 +23,7 @@ export const poseOf = (rotation, translation) => ({ scale: 1, rotation, translat
 export const moved = ({ rotation, translation }, point) =>
   turn(rotation, point).map((value, k) => value + translation[k]);
 
-/** The composition: first `inner`, then `outer`. */
+/** The motion that applies `inner` first, then `outer`. */
 export const after = (outer, inner) => poseOf(product(outer.rotation, inner.rotation), moved(outer, inner.translation));
 
 export function inverse({ rotation, translation }) {
@@ -42,7 +42,7 @@ export function wrong(pose, { degrees, millimetres }, direction, centre = [0, 0,
   return { ...pose, ...after(poseOf(rotation, held), pose) };
 }
 
-/** A frame of which a share of the depths, drawn at random, or that many evenly spaced rows are kept. */
+/** A frame that keeps a random share of its depths, or only a number of evenly spaced rows. */
 export function thinned(frame, { keep, rings }) {
   if (keep === 1 && rings === Infinity) return frame;
   const { width, height, data } = frame.depth;

@@ -36,7 +36,7 @@ export function resized(view, [width, height], kept) {
   return { ...view, camera: { ...lens, fx: scale * fx, fy: scale * fy, cx: centre(cx, 0), cy: centre(cy, 1) } };
 }
 
-/** A frame whose depth map is what the colour camera sees: each sample covers the pixels up to its neighbours. */
+/** A frame whose depth map is registered to the colour image: each sample covers the pixels up to its neighbours. */
 export function registered({ image, depth, ...frame }, pose) {
   const { width, height, camera } = image;
   const unit = depth.unit ?? (depth.data instanceof Uint16Array ? 0.001 : 1);

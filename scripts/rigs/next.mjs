@@ -1,4 +1,4 @@
-// Whether the frame that a check proposes sharpens the calibration as much as predicted: it is rendered and added.
+// Tests whether the frame that a check proposes sharpens the calibration as much as predicted. The frame is rendered and added.
 import { percent, quantile } from "./draws.mjs";
 
 /** Largest factor between the predicted and the measured gain. */
@@ -20,7 +20,7 @@ function sigmaOf({ covariance, middle: own }, axis, middle) {
   return Math.sqrt(row.reduce((sum, a, i) => sum + row.reduce((inner, b, j) => inner + a * b * at(i, j), 0), 0));
 }
 
-/** A rig's proposal with its predicted and its measured gain: the sigma with one frame over that with two. */
+/** A rig's proposal with its predicted and its measured gain. The gain is the sigma with one frame divided by that with two. */
 export async function proposed({ checkCalibration, sampleRig }, { kind, seed }) {
   const { pose, ...first } = await sampleRig({ kind, seed });
   const one = await checkCalibration([first], { true: pose });

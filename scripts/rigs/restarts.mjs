@@ -1,4 +1,4 @@
-// The same frames checked from several first candidates: runs that are sure of themselves have to agree.
+// Checks the same frames from several first candidates. All decided verdicts have to agree.
 import { mahalanobis, offset, percent, sizes, wrong } from "./draws.mjs";
 
 /** Largest errors of the candidates. */

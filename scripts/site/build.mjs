@@ -11,9 +11,9 @@ const WORKER = "sw.js";
 const LICENCES = ["LICENSE-MIT", "LICENSE-APACHE"];
 
 /**
- * What the page may do: load only its own files, with no script or style in the document itself; compile .wasm. Pictures may be inline data
- * or blobs: the icon, and files that a visitor has opened. WebSockets may connect anywhere, since a visitor may enter the address of a
- * robot's bridge; nothing else on the page opens one. Other sites may embed the page in a frame.
+ * The policy of the page: it may load only its own files, with no script or style in the document itself, and compile .wasm. Pictures may
+ * be inline data or blobs: the icon, and files that a visitor has opened. WebSockets may connect anywhere, since a visitor may enter the
+ * address of a robot's bridge; nothing else on the page opens one. Other sites may embed the page in a frame.
  */
 export const POLICY = [
   "default-src 'none'",

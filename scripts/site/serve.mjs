@@ -22,7 +22,7 @@ function fileOf(url, below, folder) {
   return existsSync(path) && statSync(path).isFile() ? path : undefined;
 }
 
-/** Serves the folder and returns its address; port 0 is any free port. `headers` are for trying what a host may add. */
+/** Serves the folder and returns its address; port 0 is any free port. `headers` imitate those of a host. */
 export function serveSite({ port, below, folder = inRoot(SITE), headers = {} }) {
   const server = createServer(({ url }, response) => {
     const path = fileOf(url, below, folder);

@@ -30,7 +30,7 @@ function interruption() {
   return { signal: abort.signal, done: () => process.off("SIGINT", stop).off("SIGTERM", stop) };
 }
 
-/** `wasm` is a file to measure instead of the package's own. */
+/** `wasm` is a file to measure in place of the package's own. */
 export async function collect(tables, { quick, workers, wasm }) {
   const { lists, cells } = cellsOf(tables, quick);
   const journal = openJournal(wasm);

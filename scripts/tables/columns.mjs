@@ -5,7 +5,7 @@ export const DASH = "-";
 export const fixed = (value, digits = 3) =>
   typeof value === "number" && Number.isFinite(value) ? value.toFixed(digits) : DASH;
 export const percent = (value) => (typeof value === "number" ? `${(100 * value).toFixed(0)} %` : DASH);
-/** ? flagged as uncertain, ! wrong by more than 3 degrees without a flag. */
+/** The mark of a pose: "?" if it is flagged as uncertain, "!" if it is wrong by more than 3 degrees without a flag. */
 export const mark = (row) => (isFlagged(row) ? "?" : isConfidentlyWrong(row) ? "!" : "");
 
 /** Lists of words as columns, the first one left-aligned. */

@@ -8,7 +8,7 @@ import { readHeights } from "./npy.mjs";
 const DATA = inRoot("../shared/data");
 /** Rows of `natural_lights_114.csv`: an easy, a median and a hard one. */
 const NATURAL_LIGHTS = { A: 132, B: 214, C: 144 };
-/** Side of a relief, and the part of it that an object of `mit_berkeley` spans, samples. */
+/** Side of a relief, and the length that an object of `mit_berkeley` spans in the relief, samples. */
 const RELIEF_SIDE = 256;
 const OBJECT_SPAN = 230;
 /** Lowest height of such an object, samples; heights up to 5 are background. */

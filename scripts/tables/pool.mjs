@@ -4,8 +4,8 @@ import { inRoot } from "../shell.mjs";
 
 const CELLS = inRoot("scripts/tables/worker.mjs");
 /**
- * Largest number of tries of a cell: it fails if it has ended its process this many times. Processes, not threads: if Node itself crashes,
- * the others continue.
+ * Largest number of tries of a cell, which fails if it has ended its process this many times. Cells run in processes and not in threads,
+ * so that the others continue if Node itself crashes.
  */
 const MOST_TRIES = 2;
 

@@ -44,7 +44,7 @@ export function rgbd(rows) {
   ]);
 }
 
-/** Medians of rows by degrees between the views; how many ended farther off than they began, and where registration is worthwhile. */
+/** Medians of rows by degrees between the views, the number of rows that became worse, and where registration is worthwhile. */
 function statueLines(name, rows) {
   const count = (is) => `${rows.filter(is).length} of ${rows.length}`;
   const isWorse = ({ told, degrees, lateral }) => told !== null && degrees > told.degrees && lateral > told.lateral;

@@ -335,7 +335,7 @@ const SHOWS = {
   },
 };
 
-/** One table's lines; `open3d` gives the baseline's degrees for a row of Table 2B, where there are any. */
+/** The lines of one table; `open3d` gives the baseline's degrees for a row of Table 2B, if there are any. */
 export function show({ name, title, notes = [] }, rows, open3d = () => undefined) {
   const empty = rows.length === 0 || rows.cases === 0;
   return [

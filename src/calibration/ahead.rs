@@ -1,5 +1,5 @@
-//! The viewing direction of a cloud's scanner: depth cameras look along z, LiDARs along x or y of their vehicle, or all
-//! around.
+//! The viewing direction of a cloud's scanner. Depth cameras look along z, and LiDARs along x or y of their vehicle, or
+//! all around.
 //!
 //! The check works in the colour camera's frame, except where it measures the noise of the depth map and tests its
 //! plausibility. These need depths in the scanner's frame: the coordinate along the axis nearest to the mean direction,
@@ -9,7 +9,7 @@
 /// have a mean of length 0.75.
 const ALL_AROUND: f64 = 0.5;
 
-/// A direction along an axis of the cloud's frame, or all around.
+/// A direction along an axis of the cloud's frame, or all directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Ahead {
     Along { axis: usize, sign: f32 },

@@ -1,9 +1,9 @@
 //! The check from frames to report, one slice of work at a time.
 //!
-//! The initial poses are the candidates, the inverse of the first, and what the coarse search finds near the first. Each
-//! converges by its edges alone, and the best few are refined with all cues, together with every candidate that lies
-//! elsewhere. The best of these optima is the estimate, and its covariance judges the candidates. If the first candidate
-//! does not pass, it is registered again in other conventions.
+//! The initial poses are the candidates, the inverse of the first, and what the coarse search finds near the first.
+//! Each is registered only by its edges. The best few are refined with all cues, together with every candidate that
+//! lies elsewhere. The best of these optima is the estimate, and its covariance judges the candidates. If the first
+//! candidate does not pass, it is registered again in other conventions.
 
 use super::cue::Cue;
 use super::distortion;
@@ -27,12 +27,12 @@ use crate::pose::Similarity;
 const MOST_FRAMES: usize = 24;
 /// Maximum number of candidates.
 const MOST_CANDIDATES: usize = 16;
-/// Levels at which depth discontinuities are found anew: their visibility changes little in between.
+/// Levels at which depth discontinuities are found anew, because their visibility changes little in between.
 const FINDING_ANEW: [usize; 2] = [1, 3];
 /// The level at which candidates enter once more, with windows of a few pixels.
 const ENTERING: usize = 2;
 
-/// Largest deviation of an entry of a rotation from the nearest rotation: matrices of trackers drift by 1e-3.
+/// Largest deviation of an entry of a rotation from the nearest rotation; matrices of trackers drift by 1e-3.
 const ROTATION_TOLERANCE: f64 = 0.01;
 
 /// The initial pose of the search: the first candidate that puts points onto the image.
@@ -141,7 +141,7 @@ impl CalibrationCheck {
         }
     }
 
-    /// The report, once it is available.
+    /// The report; `None` until the check is complete.
     #[must_use]
     pub const fn report(&self) -> Option<&CheckReport> {
         self.report.as_ref()
@@ -202,7 +202,8 @@ impl CalibrationCheck {
         self.starts = starts;
     }
 
-    /// Candidates that are nearly right enter once more at a late level: wide windows would lead them away among texture.
+    /// Candidates that are nearly right enter once more at a late level, because wide windows would lead them away
+    /// among texture.
     fn enter_candidates(&mut self) {
         let initial = self.best.initial;
         let states = self.candidates.iter().map(|candidate| candidate.1);
@@ -349,7 +350,7 @@ pub(super) fn rigid(pose: &Similarity) -> Result<State> {
 
 /// Warns of translations that are probably in millimetres.
 fn warn_of_translations(candidates: &[(String, State)], warnings: &mut Vec<Warning>) {
-    /// Metres: larger than any rig.
+    /// A distance larger than any rig, metres.
     const FARTHEST_APART: f64 = 10.0;
     for (name, candidate) in candidates {
         let length = candidate.pose.translation.norm();

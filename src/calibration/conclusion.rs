@@ -60,8 +60,8 @@ impl CalibrationCheck {
         }
     }
 
-    /// The best optimum and those that the frames do not exclude. A candidate hardly ever agrees with the best optimum by
-    /// chance. If one agrees, only optima that fit about as well count.
+    /// The best optimum and those that the frames do not exclude. A candidate hardly ever agrees with the best optimum
+    /// by chance. If one agrees, only the optima that fit about as well as the best are kept.
     fn possible<'a>(&self, optima: &'a [Optimum], first: &Judge) -> Vec<&'a Optimum> {
         let state = optima[0].round.state;
         let agrees = |(name, candidate): &(String, State)| {
@@ -73,8 +73,8 @@ impl CalibrationCheck {
         std::iter::once(&optima[0]).chain(optima[1..].iter().filter(counts).filter(is_seen)).collect()
     }
 
-    /// Makes a candidate undecided if an optimum contradicts its verdict: "off" has to hold for each of them, and the
-    /// candidate itself has to fit worse than the best.
+    /// Makes a candidate undecided if an optimum contradicts its verdict: "off" has to hold for each optimum, and the
+    /// candidate itself has to fit worse than the best one.
     fn hear_other_optima(
         &self,
         reports: &mut [CandidateReport],
@@ -125,7 +125,8 @@ impl CalibrationCheck {
         }
     }
 
-    /// The distribution of the estimate over some optima, and its covariance in the units of the best, the first.
+    /// The distribution of the estimate over some optima, and its covariance in the units of the first optimum, which
+    /// is the best.
     pub(super) fn judge_of(&self, optima: &[&Optimum]) -> (Judge, Matrix) {
         let best = optima[0];
         let (state, units) = (best.round.state, best.findings.units);
@@ -219,7 +220,7 @@ impl CalibrationCheck {
     }
 }
 
-/// Whether the distribution of the estimate alone left the verdict open.
+/// Whether only the distribution of the estimate left the verdict open.
 const fn is_open(reason: &CheckReason) -> bool {
     matches!(reason, CheckReason::TooClose(_) | CheckReason::Unconstrained { .. } | CheckReason::GuessedCamera { .. })
 }

@@ -3,7 +3,7 @@
 use super::evidence::{Share, positive};
 use super::unknowns::{POSE, State, Units, Vector};
 
-/// Step in pixels: wide enough to step over the raster, narrow enough for a curvature.
+/// Step in pixels, wide compared with the raster and narrow enough for a curvature.
 const STEP: f64 = 1.0;
 
 /// Values and gradients of the tiles. Each used tile gets an equal part of the total curvature, because the curvature of

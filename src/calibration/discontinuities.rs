@@ -1,4 +1,4 @@
-//! Depth discontinuities: where a near surface ends in front of a farther one, in the colour camera's view.
+//! Depth discontinuities: places in the colour camera's view where a near surface ends in front of a farther one.
 //!
 //! A pixel of the depth map is on a discontinuity if the next pixel with a depth, along its row or column, lies clearly
 //! farther from the colour camera than the surface that continues from the pixels behind. The next pixel may lie beyond a hole: a depth camera that is offset from its projector
@@ -7,9 +7,9 @@
 
 use super::frame::{Frame, Projection};
 
-/// Distance in pixels of the depth map within which the next depth is looked for. Beside an object 0.3 m in front of its wall, a Kinect
-/// (baseline 75 mm) has a hole of 15 to 30 pixels. An object at half a metre in front of a wall at two metres has one of
-/// 60 pixels, and its discontinuities on that side are not found.
+/// Distance in pixels of the depth map within which the next depth is searched. Beside an object 0.3 m in front of its
+/// wall, a Kinect (baseline 75 mm) has a hole of 15 to 30 pixels. An object at half a metre in front of a wall at two
+/// metres has one of 60 pixels, and its discontinuities on that side are not found.
 const WIDEST_HOLE: usize = 40;
 /// Distances to the pixel on the near side from which the slope of the surface is measured, in the order of preference.
 /// Two pixels average the steps of a quantised map; the other distances serve if that pixel has no depth.
@@ -96,12 +96,12 @@ fn ends_before_farther(frame: &Frame, projection: &Projection, index: usize) -> 
         let at = |steps: isize| depth(projection, index.wrapping_add_signed(stride * steps));
         let mut steps = 1..=ahead.min(hole) as isize;
         let steps = steps.find(|&steps| !at(steps).is_nan())?;
-        // Most pixels stop here: a continued slope only reduces the distance.
+        // Most pixels end here, because a continued slope only reduces the distance.
         if at(steps) - here <= gap {
             return None;
         }
         let is_known = |&back: &isize| back as usize <= behind && !at(-back).is_nan();
-        // A single sample does not show whether the surface recedes like a floor.
+        // One sample does not show whether the surface recedes like a floor.
         let back = BEHIND.into_iter().find(is_known)?;
         // Planes are linear in the inverse depth.
         let slope = ((1.0 / here - 1.0 / at(-back)) / back as f64).min(0.0);
@@ -143,7 +143,7 @@ impl Neighbourhood {
                 let other = grid.index(column as usize, row as usize);
                 let is_near = (depth(projection, other) - here).abs() <= gap;
                 let offset = [right as f64, down as f64];
-                // Nearer pixels belong to something in front of the discontinuity.
+                // Nearer pixels belong to an object in front of the discontinuity.
                 let side = if is_near || depth(projection, other) < here { -1.0 } else { 1.0 };
                 (0..2).for_each(|k| sums.away[k] += side * offset[k]);
                 let pixel = projection.pixels[other];
@@ -178,7 +178,7 @@ impl Neighbourhood {
     }
 }
 
-/// Where the near surface ends along the normal, from the steps to the pixels beyond it.
+/// The place along the normal at which the near surface ends, from the steps to the pixels beyond it.
 struct Gap {
     /// The direction on the raster that is nearest to the normal.
     direction: usize,
@@ -186,9 +186,10 @@ struct Gap {
 }
 
 impl Gap {
-    /// A step s at an angle to the normal covers |s| cos of it. The gap follows from the mean of the inverse squares of
-    /// these lengths, weighted by the fourth power of the cosine. The nearest sample beyond counts most. A sample in
-    /// the direction of the boundary, which only noise puts beyond it, has a cosine near zero and hardly counts.
+    /// A step s at an angle a to the normal covers |s| cos a along the normal. The gap follows from the mean of the
+    /// inverse squares of these lengths, weighted by the fourth power of the cosine. The nearest sample beyond counts
+    /// most. A sample in the direction of the boundary, which only noise puts beyond it, has a cosine near zero and
+    /// hardly counts.
     fn of(ends: &[Option<[f64; 2]>; 4], normal: [f64; 2], on_image: impl Fn([f64; 2]) -> [f64; 2]) -> Option<Self> {
         let (mut precision, mut weights, mut best) = (0.0, 0.0, (0.0, 0));
         for (direction, step) in ends.iter().enumerate() {
@@ -208,7 +209,8 @@ impl Gap {
     }
 }
 
-/// Position and normal of the depth discontinuity at a near pixel, and the direction on the raster in which it ends the nearest.
+/// Position and normal of the depth discontinuity at a near pixel, and the direction on the raster in which the surface
+/// ends first.
 fn discontinuity(frame: &Frame, projection: &Projection, index: usize) -> Option<(Discontinuity, usize)> {
     let ends = ends_before_farther(frame, projection, index);
     let centre = projection.pixels[index];
@@ -275,7 +277,7 @@ mod tests {
     #[test]
     fn an_oblique_boundary_lies_within_the_gap_of_each_of_its_samples() {
         for rows in [1, 2, 4] {
-            // Half a pixel off the centres, so that no sample lies on the boundary.
+            // Samples lie half a pixel off the centres, so that none lies on the boundary.
             let found = seen([1, rows], |[x, y]| if 60.0 * (x + y) < -0.5 { 1.0 } else { 3.0 });
             let inner: Vec<_> =
                 found.iter().filter(|discontinuity| (8.0..40.0).contains(&discontinuity.pixel[1])).collect();
@@ -333,7 +335,7 @@ mod tests {
                 );
                 let side = (discontinuity.pixel[0] - 31.5).signum();
                 assert!((discontinuity.normal[0] - side).abs() < 1e-6);
-                // The box ends between 0.2 and the next sample of the wall.
+                // The box ends between x = 0.2 and the next sample of the wall.
                 let beyond = discontinuity.pixel[0] * side - 31.5 * side - 12.0;
                 assert!(beyond.abs() <= columns as f64, "{columns}: {beyond}");
             }

@@ -8,15 +8,15 @@ use super::planes::Planes;
 use super::registration::{Round, Scene, Start};
 use crate::view::Lens;
 
-/// Terms k1 that are tried: the smallest move the corner of a common image by ten pixels, the largest belong to wide
-/// lenses.
+/// Terms k1 that are tried. The smallest move the corner of a common image by ten pixels, and the largest belong to
+/// wide lenses.
 const TERMS: [f64; 6] = [-0.3, -0.15, -0.06, 0.06, 0.15, 0.3];
 /// Windows of edges, sigma in pixels of an image 640 wide. The first ones are wide, because a lens and its pose move
 /// together.
 const SIGMAS: [f64; 3] = [5.0, 2.5, 1.3];
-/// Gain in the mean log likelihood of a depth discontinuity from which a lens is reported: six times `SCORE_PRIOR`, the
-/// value of one sigma of the prior. A silhouette that fits badly fits some lens better, so small objects without
-/// distortion may exceed it as well (docs/lab/thresholds.md).
+/// Smallest gain in the mean log likelihood of a depth discontinuity for which a lens is reported: six times
+/// `SCORE_PRIOR`, the value of one sigma of the prior. A silhouette that fits badly fits some lens better, so small
+/// objects without distortion may exceed it as well (docs/lab/thresholds.md).
 const GAIN: f64 = 0.06;
 
 /// The term k1 that fits the edges clearly better than a camera without distortion.
@@ -31,7 +31,8 @@ pub(super) fn left_out(scene: &mut Scene, round: &Round) -> Option<f64> {
     (scores[best] > without + GAIN).then_some(TERMS[best])
 }
 
-/// Score from the estimate or from the initial pose, whichever ends better: a missing lens biases the estimate.
+/// The better score of two registrations, from the estimate and from the initial pose, because a missing lens biases
+/// the estimate.
 fn score(scene: &mut Scene, round: &Round, lens: Lens, planes: &[Vec<Planes>]) -> f64 {
     let initial = Round { state: round.initial, ..*round };
     score_from(scene, round, lens, planes).max(score_from(scene, &initial, lens, planes))

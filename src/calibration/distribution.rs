@@ -12,9 +12,9 @@ use crate::numeric::random::Random;
 /// Number of draws. Their quantiles have an error of about a twentieth of their sigma.
 const DRAWS: usize = 2000;
 const SEED: u64 = 1;
-/// Degrees of freedom of Student's t; no other number of the distribution was fitted (docs/lab/thresholds.md). Errors that a whole silhouette
-/// shares move its tiles alike, so their scatter is only an estimate of the error's size, in some scenes far too small.
-/// Three is the smallest whole number with a finite covariance.
+/// Degrees of freedom of Student's t; no other number of the distribution was fitted (docs/lab/thresholds.md). Errors
+/// that a whole silhouette shares move its tiles alike, so their scatter only estimates the size of the error. In some
+/// scenes it is far too small. Three is the smallest whole number with a finite covariance.
 pub(super) const DEGREES: f64 = 3.0;
 /// Ratio of the covariance of Student's distribution to its scale.
 pub(super) const VARIANCE: f64 = DEGREES / (DEGREES - 2.0);
@@ -103,7 +103,8 @@ mod tests {
     fn one_optimum_is_a_student_distribution() {
         let one = Distribution::new(vec![part(1.0, 0.0, 4.0)]);
         assert_eq!(one.covariance(), PoseMatrix::identity() * 12.0);
-        // Six times the F distribution of six and three degrees of freedom; its 95 % quantile is 8.94.
+        // The expected value is six times an F distribution of six and three degrees of freedom, whose 95 % quantile is
+        // 8.94.
         let at = |square: f64| PoseVector::from([(4.0 * square).sqrt(), 0.0, 0.0, 0.0, 0.0, 0.0]);
         let tail = one.probability(&at(6.0 * 8.94));
         assert!((tail - 0.05).abs() < 0.015, "{tail}");
@@ -115,7 +116,7 @@ mod tests {
         let two = Distribution::new(vec![part(3.0, 0.0, 1.0), part(1.0, 100.0, 1.0)]);
         let there = two.draws.iter().filter(|draw| (*draw - PoseVector::repeat(100.0)).norm() < 50.0).count();
         assert!((there as f64 / two.draws.len() as f64 - 0.25).abs() < 0.01, "{there}");
-        // Either pose is likely, but a pose between them is not, although it is nearer to the first.
+        // Both poses are likely, but a pose between them is not, although it is nearer to the first one.
         assert!(two.probability(&PoseVector::repeat(100.0)) > 0.2);
         assert!(two.probability(&PoseVector::repeat(50.0)) < 0.01);
         let variance = two.covariance()[(0, 0)];

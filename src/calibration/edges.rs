@@ -1,8 +1,8 @@
 //! Depth edges on image edges: the log likelihood of the positions of image edges, given the projected depth
 //! discontinuities.
 //!
-//! Along the normal of each depth discontinuity the image has edges at offsets u_k with strengths a_k. One of them
-//! belongs to the discontinuity, except with probability e. Each is chosen in proportion to its strength, and its
+//! Along the normal of each depth discontinuity the image has edges at offsets u_k with strengths a_k. With probability
+//! 1 - e one of them belongs to the discontinuity. The probability of an edge is proportional to its strength, and its
 //! position deviates by the edge bias d of its side and by normal noise s:
 //!
 //! l = sum over discontinuities of log(e / 2 L + (1 - e) sum_k p_k N(u + d - u_k; s)),
@@ -33,7 +33,7 @@ const EVEN: f64 = 3.464_101_615_137_754_6;
 const WINDOW: f64 = 3.0;
 /// Maximum number of edges in a profile; the strongest are kept.
 const MOST_EDGES: usize = 12;
-/// Edges below this strength are noise. The strength is the norm over the channels of differences of encoded intensities.
+/// Strength below which edges are noise: the norm over the channels of differences of encoded intensities.
 const FAINTEST: f32 = 0.012;
 /// Smallest factor on the curvature of the bound. The factor varies from round to round, and a small one would make
 /// steps diverge.
@@ -62,7 +62,7 @@ pub(super) struct EdgeField {
     profiles: Vec<Profile>,
 }
 
-/// Blur of the image, in pixels, for edges whose positions are known to within `sigma` pixels.
+/// Blur of the image, in pixels, for edges whose positions have an error of `sigma` pixels.
 pub(super) fn blur(sigma: f64) -> f64 {
     (BLUR * sigma).max(LEAST_BLUR)
 }
@@ -80,7 +80,7 @@ impl EdgeField {
         discontinuities
     }
 
-    /// Depth discontinuities found at one state, moved to where another state projects them.
+    /// Depth discontinuities that were found at one state, moved to their projections under another state.
     pub fn moved(frame: &Frame, discontinuities: &[Discontinuity], found: &State, state: &State) -> Vec<Discontinuity> {
         let camera = state.camera(&frame.camera);
         let place = |state: &State, discontinuity: &Discontinuity| {
@@ -117,7 +117,8 @@ impl EdgeField {
             // The variance of a uniform distribution over the gap adds to that of the edges.
             let of_gap = discontinuity.gap / EVEN;
             let sigma = sigma.hypot(of_gap);
-            // Neighbours in one gap share its error: the variance of their mean is that of this many independent ones.
+            // Neighbours in one gap share its error. The variance of their mean is that of this many independent
+            // discontinuities.
             let weight = 1.0 / (1.0 + (discontinuity.in_gap - 1.0) * (of_gap / sigma).powi(2));
             let window = (WINDOW * sigma).max(widest);
             let edges = edges(planes, start, discontinuity.normal, window, blur)?;
@@ -167,7 +168,7 @@ impl EdgeField {
         shares.iter_mut().for_each(|share| share.curvature *= left);
     }
 
-    /// The discontinuities whose edges were looked for.
+    /// The discontinuities for which edges were searched.
     pub fn all(&self) -> impl Iterator<Item = &Discontinuity> {
         self.profiles.iter().map(|profile| &profile.discontinuity)
     }

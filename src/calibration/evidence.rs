@@ -1,11 +1,11 @@
 //! A log likelihood with its derivatives, and the reliability of these.
 //!
-//! Neighbouring depth discontinuities and pixels share their errors, so a sum over them is a composite likelihood: its
-//! maximum is right, but its curvature is too large. The check estimates the information from the scene itself. It splits
-//! the sum into tiles of the image whose errors are independent. A cue is weighted by trace(H) / trace(J), with the
-//! curvature H and J = sum over tiles g g^T; this ratio would be one for a true likelihood (Pauli, Racugno and Ventura
-//! 2011). The covariance of the estimate is H^-1 plus the jackknife over tiles (Efron 1982), which unlike H^-1 J H^-1 is
-//! not overconfident if a few tiles hold most of the information.
+//! Neighbouring depth discontinuities and pixels share their errors, so a sum over them is a composite likelihood. Its
+//! maximum is right, but its curvature is too large. The check estimates the information from the scene itself. It
+//! splits the sum into tiles of the image whose errors are independent. A cue is weighted by trace(H) / trace(J), with
+//! the curvature H and J = sum over tiles g g^T; this ratio would be one for a true likelihood (Pauli, Racugno and
+//! Ventura 2011). The covariance of the estimate is H^-1 plus the jackknife over tiles (Efron 1982), which unlike H^-1
+//! J H^-1 is not overconfident if a few tiles hold most of the information.
 
 use std::ops::AddAssign;
 
@@ -13,8 +13,8 @@ use super::unknowns::{Matrix, UNKNOWNS, Vector, add_square, solve, spectral};
 use crate::numeric::eigen::symmetric_eigen;
 use crate::view::Size;
 
-/// Tiles along the longer side of an image: wide enough that errors of different tiles are independent, and many enough
-/// to estimate their scatter.
+/// Number of tiles along the longer side of an image. Tiles are so wide that their errors are independent, and so many
+/// that their scatter can be estimated.
 const TILES_ACROSS: usize = 10;
 
 /// A partition of an image into tiles.
@@ -94,7 +94,7 @@ impl Evidence {
         self.shares.iter().map(|share| share.curvature).sum()
     }
 
-    /// trace(H) and trace(J), with the gradients of tiles extrapolated to where their sum vanishes.
+    /// trace(H) and trace(J), with the gradients of tiles extrapolated to the point at which their sum vanishes.
     pub fn traces(&self) -> Traces {
         let curvature = self.curvature();
         let ridge = 1e-3 * curvature.trace().abs() / UNKNOWNS as f64 + f64::MIN_POSITIVE;

@@ -26,7 +26,7 @@ pub(super) struct Frame {
     pub name: String,
     pub planes: Planes,
     pub camera: Pinhole,
-    /// Where the object is in the image, if a mask was given.
+    /// The mask of the object in the image, if one was given.
     pub image_mask: Option<Vec<bool>>,
     /// Raster of the depth map.
     pub grid: Size,
@@ -45,11 +45,11 @@ pub(super) struct Frame {
     pub may_be_registered: bool,
     /// Width of a pixel of `planes` in pixels of the image as given.
     pub pixel: f64,
-    /// Standard deviation of 1 / z, 1 / m. It is about the same at all depths for cameras that measure disparities.
+    /// Standard deviation of 1 / z, in 1 / m. It is about the same at all depths for cameras that measure disparities.
     noise: f64,
 }
 
-/// Noise of the inverse depth of a raster of points. Planes stay planes in inverse depth, whatever their slope.
+/// Noise of the inverse depth of a raster of points. The inverse depth of a plane is linear, whatever its slope.
 fn noise(grid: Size, points: &[[f32; 3]]) -> f64 {
     let ahead = Ahead::of(points);
     let inverses: Vec<f32> = points.iter().map(|point| 1.0 / ahead.depth(point)).collect();
@@ -105,7 +105,7 @@ impl Frame {
                 .collect()
         });
         let Pinhole { fx, fy, cx, cy, lens } = self.camera;
-        // The centre of two pixels lies between them.
+        // The new centre lies between two old pixels.
         self.camera = Pinhole { fx: fx / 2.0, fy: fy / 2.0, cx: (cx - 0.5) / 2.0, cy: (cy - 0.5) / 2.0, lens };
         self.planes = to;
         self.pixel *= 2.0;
@@ -151,8 +151,7 @@ impl Projection {
     }
 }
 
-/// Which points are hidden, by a z-buffer. Its cells are so wide that the samples of a surface leave none of them
-/// empty.
+/// Which points are hidden, by a z-buffer. Its cells are so wide that the samples of a surface leave no cell empty.
 fn hidden(frame: &Frame, positions: &[[f32; 3]], pixels: &[[f32; 2]]) -> Vec<bool> {
     let cell = 2.0 * spacing(frame.grid, pixels).max(1.0);
     let size = frame.planes.size;

@@ -17,8 +17,8 @@ const PRINCIPAL_POINT: f64 = 0.02;
 const LENS: f64 = 0.1;
 const PARAMETERS: usize = 3;
 
-/// Motion of a scene, in pixels, that a guessed camera can explain: two sigmas of its principal point. An error below it
-/// cannot be distinguished from none.
+/// Motion of a scene, in pixels, that a guessed camera can explain: two sigmas of its principal point. A smaller error
+/// cannot be distinguished from zero.
 pub(super) fn explains(width: f64) -> f64 {
     2.0 * PRINCIPAL_POINT * width
 }

@@ -2,11 +2,12 @@
 //!
 //! The depth map is split into patches of similar normal and position. Under the right pose a patch shows few colours,
 //! because albedo and light vary less on a surface than in a scene; under a wrong pose its colours mix with those of
-//! its neighbours. The log likelihood compares colours given patches with colours alone. It is the sum over points and
-//! channels of log p(c | patch) / p(c), with both densities measured in the image under the same pose.
+//! its neighbours. The log likelihood compares the density of colours within patches with that of all colours. It is
+//! the sum over points and channels of log p(c | patch) / p(c), with both densities measured in the image under the
+//! same pose.
 //!
-//! If a scanner's intensities are known, their levels group the samples once more, with lightness as the channel:
-//! points of equal intensity look alike, whatever curve relates intensity to lightness (Koide, Oishi, Yokozuka and
+//! If a scanner's intensities are known, their levels are further groups of the samples, with lightness as the channel.
+//! Points of equal intensity look alike, whatever curve relates intensity to lightness (Koide, Oishi, Yokozuka and
 //! Banno 2023).
 //!
 //! Method: histograms with linear weights, so that finite differences are smooth.
@@ -15,7 +16,7 @@ use super::intensity::LEVELS;
 use super::patches::{PATCHES, Patches, Sight};
 use super::unknowns::State;
 
-/// Levels of a channel.
+/// Number of levels of a channel.
 const BINS: usize = 16;
 /// Initial count of each bin, which keeps the logarithm of an empty bin finite.
 const FLOOR: f64 = 0.5;
@@ -94,7 +95,7 @@ mod tests {
     /// Farthest shift, pixels.
     const FARTHEST: i32 = 3;
 
-    /// Grey values without a period.
+    /// Grey values that do not repeat.
     fn pattern(index: usize) -> f32 {
         let (column, row) = SIZE.position(index);
         let (x, y) = (column as f32, row as f32);

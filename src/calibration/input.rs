@@ -9,28 +9,28 @@ use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
 use crate::view::{ColourSamples, DepthSamples, Lens, Pinhole, Size, Transfer, to_srgb, transfer_of};
 
-/// Largest side of an image that is used at full size, pixels. Larger images are halved: a depth map determines no finer
-/// detail.
+/// Largest side of an image that is used at full size, pixels. Larger images are halved, because a depth map does not
+/// determine finer detail.
 const WIDEST: usize = 1000;
 /// Range of depth cameras, metres.
 const NEAREST: f32 = 0.1;
 const FARTHEST: f32 = 20.0;
 /// Largest usual median depth of organised clouds, metres; LiDARs produce such clouds as well.
 const FARTHEST_OF_CLOUDS: f32 = 200.0;
-/// Depth in metres from which on a value is missing, as in all depth maps: the square of larger ones overflows f32.
+/// Smallest depth that counts as missing, metres, as in all depth maps. The squares of larger depths overflow f32.
 const BEYOND: f32 = crate::view::FARTHEST as f32;
 /// Share of missing depths above which a depth map without a mask gets a warning.
 const MANY_HOLES: f64 = 0.4;
-/// Integer depths with a level above this one have more than 8 bits.
+/// Largest level of 8 bits; integer depths with a higher level have more bits.
 const LEVELS_OF_A_BYTE: u16 = 255;
 /// Share of neighbours that differ by a tenth of their depth above which a depth map is probably not one.
 const ROUGH_SHARE: f64 = 0.25;
 const ROUGH_JUMP: f32 = 0.1;
-/// An image whose intensities differ by less than this, of 1, is blank.
+/// Range of intensities, 0 .. 1, below which an image is blank.
 const BLANK: f32 = 0.02;
 /// Minimum number of depths in a frame.
 const FEWEST_DEPTHS: usize = 200;
-/// Focal length over the longer side of the image if no intrinsics are given: 62 degrees.
+/// Focal length divided by the longer side of the image if no intrinsics are given, a field of view of 62 degrees.
 const USUAL_FOCAL: f64 = 0.83;
 
 /// One pair of frames, not yet validated.
@@ -283,7 +283,7 @@ fn doubts(view: &RigView, grid: Size, points: &[[f32; 3]]) -> Vec<WarningKind> {
 mod tests {
     use super::*;
 
-    /// A tiny focal length puts points at infinity, and the estimate with them (a case of the fuzzer).
+    /// A tiny focal length puts points, and with them the estimate, at infinity (found by the fuzzer).
     #[test]
     fn points_beyond_all_distances_are_missing() {
         // The smaller focal length is not a valid one; the larger one is tiny, but valid.

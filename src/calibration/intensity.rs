@@ -6,13 +6,13 @@
 
 use crate::numeric::quantile;
 
-/// Levels of equal count: as many as a channel of the image has.
+/// Number of levels, as many as a channel of the image has.
 pub(super) const LEVELS: usize = 16;
 /// The level of a sample without intensity; no row of a table belongs to it.
 pub(super) const UNKNOWN: u8 = u8::MAX;
 
-/// The level of each intensity among all of them; equal intensities have one level. Taken over all samples of a frame, seen
-/// or not, it does not depend on the pose.
+/// The level of each intensity among all of them; equal intensities have one level. The levels are those of all samples
+/// of a frame, seen or not, so they do not depend on the pose.
 pub(super) fn levels(intensities: &[f32]) -> Vec<u8> {
     let mut known: Vec<f32> = intensities.iter().copied().filter(|value| value.is_finite()).collect();
     if known.is_empty() {

@@ -11,7 +11,7 @@ use super::unknowns::{FOCAL, POSE, State, UNKNOWNS, Vector};
 
 /// Spacing of the lattice of states at which visibility is computed, pixels of an image 640 wide.
 const SPACING: f64 = 1.0;
-/// Spacing of the states at which rounds end, pixels of an image 640 wide: less than a step that has converged. It is
+/// Spacing of the states at which rounds end, pixels of an image 640 wide, less than a step that has converged. It is
 /// an odd fraction of `SPACING`, so that no state lies halfway between two states at which visibility is computed.
 const RESOLUTION: f64 = SPACING / 127.0;
 
@@ -81,7 +81,7 @@ mod tests {
         assert!((one - step).amax() < 0.5 * RESOLUTION + 1e-6, "{}", one - step);
     }
 
-    /// A state that a round reaches, moved by rounding, is seen from the same state.
+    /// Rounding of the state that a round reaches does not change the state from which it is seen.
     #[test]
     fn rounding_does_not_choose_the_state_from_which_the_scene_is_seen() {
         let (scene, initial) = (scene(), State::at(Similarity::identity()));

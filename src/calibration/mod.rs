@@ -1,4 +1,4 @@
-//! Whether a calibration between a colour camera and a depth camera is right (docs/method/check.md).
+//! Checks a calibration between a colour camera and a depth camera (docs/method/check.md).
 //!
 //! The check takes frames of a rig and some candidates for its extrinsics. It returns an estimate with its covariance and
 //! a verdict on each candidate. It uses whole frames, because objects in front of a background carry most of the

@@ -1,10 +1,11 @@
-//! Where to look next: the one more frame that would determine the least certain unknown best.
+//! The frame to take next: the additional frame that would best determine the least certain unknown.
 //!
-//! Objective: the sigma of this unknown after one more frame. Method: the frame with the largest share of the evidence is
-//! moved as a whole in front of the rig. Its depth edges keep their offsets from the image edges, and thus the slope and the
-//! curvature of their log likelihoods along the normal; the derivatives of their pixels are those of the new place. The
-//! tiles of this frame join those of all others, and the covariance follows as that of a check. Limits: what would come
-//! into view is unknown, occlusions stay as they are, and the cues over surfaces keep their present contribution.
+//! Objective: the sigma of this unknown after one more frame. Method: the frame with the largest share of the evidence
+//! is moved as a whole in front of the rig. Its depth edges keep their offsets from the image edges, and thus the slope
+//! and the curvature of their log likelihoods along the normal; the derivatives of their pixels are those of the new
+//! place. The tiles of this frame join those of all others, and the covariance follows as that of a check. Limits:
+//! newly visible parts are unknown, occlusions stay as they are, and the cues over surfaces keep their present
+//! contribution.
 
 use std::fmt;
 
@@ -25,22 +26,22 @@ use crate::numeric::quantile;
 use crate::pose::{Similarity, Unknown};
 use crate::text::Fixed;
 
-/// Share of the image's width by which a scene moves aside, up or down: what was in the middle stays on the image.
+/// Share of the image's width by which a scene moves aside, up or down. The middle of the scene stays on the image.
 const ASIDE: f64 = 0.25;
 /// Share of the distance of the nearest tenth of the edges by which a scene comes nearer.
 const NEARER: f64 = 0.35;
-/// Least distance of the nearest tenth of the edges, metres: depth cameras measure nothing nearer.
+/// Least distance of the nearest tenth of the edges, metres, because depth cameras measure nothing nearer.
 const NEAREST: f64 = 0.4;
 
-/// How the scene of the next frame lies in front of the rig, compared with the scene of a frame of the check.
+/// The place of the scene of the next frame in front of the rig, relative to the scene of a frame of the check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
 pub enum NextMotion {
     /// Nearer to both cameras.
     Nearer,
-    /// Aside by a quarter of the image's width.
+    /// To the left by a quarter of the image's width.
     Left,
-    /// To the other side.
+    /// To the right by as much.
     Right,
     /// Up by as much.
     Up,
@@ -50,7 +51,7 @@ pub enum NextMotion {
     Turned,
 }
 
-/// The frame that would determine the least certain unknown best.
+/// The frame that would best determine the least certain unknown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NextFrame {
     /// The least certain unknown, about the scene's middle, in the colour camera's frame.
@@ -61,7 +62,7 @@ pub struct NextFrame {
     pub frame: String,
     /// How it was moved.
     pub motion: NextMotion,
-    /// The same as a pose: where each point of the scene goes, colour camera's frame, metres.
+    /// The motion of the scene as a pose in the colour camera's frame, metres.
     pub pose: Similarity,
     /// Sigma with this frame added to those of the check, degrees or millimetres.
     pub expected: f64,
@@ -112,7 +113,7 @@ pub(super) fn next(
     Some(NextFrame { axis: ORDER[axis], sigma, frame, motion, pose, expected })
 }
 
-/// Radians in degrees, metres in millimetres.
+/// Converts radians to degrees, and metres to millimetres.
 fn displayed(axis: usize, sigma: f64) -> f64 {
     if axis < 3 { sigma.to_degrees() } else { 1000.0 * sigma }
 }
@@ -124,7 +125,7 @@ fn weakest(covariance: &PoseMatrix) -> (usize, f64) {
     all.max_by(|a, b| (a.1 / unseen(a.0)).total_cmp(&(b.1 / unseen(b.0)))).unwrap_or((0, 0.0))
 }
 
-/// One of the frames, which is seen once more from elsewhere.
+/// One of the frames, which is seen once more from another place.
 struct Hypothesis<'a> {
     frame: &'a Frame,
     round: &'a Round,
@@ -177,7 +178,7 @@ impl<'a> Hypothesis<'a> {
         };
         let mut motions =
             vec![(NextMotion::Left, about(Vector3::y(), -angle)), (NextMotion::Right, about(Vector3::y(), angle))];
-        // A scanner is often on a vehicle, which neither tilts nor rolls.
+        // A scanner is often mounted on a vehicle, which cannot tilt or roll.
         if !self.frame.is_cloud {
             motions.push((NextMotion::Up, about(Vector3::x(), angle)));
             motions.push((NextMotion::Down, about(Vector3::x(), -angle)));
@@ -239,7 +240,8 @@ mod tests {
     const SIZE: Size = Size { width: 96, height: 72 };
     const FOCAL: f64 = 80.0;
 
-    /// A bright square 0.8 m away in front of a dark wall twice as far, in an image and a depth map of one raster.
+    /// A bright square at 0.8 m in front of a dark wall at twice this distance, in an image and a depth map of one
+    /// raster.
     fn square() -> Scene {
         let camera = Pinhole { fx: FOCAL, fy: FOCAL, cx: 47.5, cy: 35.5, lens: Lens::None };
         let is_near = |index: usize| {

@@ -1,12 +1,12 @@
 //! The poses at which the posterior has a maximum, ranked.
 //!
-//! A few poses survive the search, which compares edges alone. Each of them is refined with all cues, and so is each
+//! A few poses survive the search, which compares only edges. Each of them is refined with all cues, and so is each
 //! candidate that lies elsewhere. Their posteriors are compared with one set of weights of the cues, those of the best
 //! pose.
 //!
-//! The difference of two optima has to be clear and significant. The tiles of the images are independent, so
-//! their scatter gives the standard deviation of the difference (Vuong 1989): few tiles that disagree, as in a sparse map,
-//! decide nothing, however large their sum.
+//! The difference of two optima has to be clear and significant. The tiles of the images are independent, so their
+//! scatter gives the standard deviation of the difference (Vuong 1989). A few tiles that disagree, as in a sparse map,
+//! decide nothing, however large their sum is.
 
 use super::planes::Planes;
 use super::readings::Reading;
@@ -17,16 +17,16 @@ use super::verdict::Judge;
 /// Two poses count as the same if the scene moves by less than this between them, pixels of an image 640 wide.
 pub(super) const SAME_START: f64 = 1.5;
 
-/// A difference of this many standard deviations is significant: 95 % of a normal distribution lie within it.
+/// Standard deviations from which a difference is significant: 95 % of a normal distribution lie within them.
 const SIGNIFICANT: f64 = 1.96;
 
-/// A pose refined with all cues, and the findings there.
+/// A pose refined with all cues, and the evidence at this pose.
 pub(super) struct Optimum {
     pub round: Round,
     pub findings: Findings,
     /// Reading of the first candidate from which the registration began; `None` if it began elsewhere.
     pub reading: Option<Reading>,
-    /// How far the log posterior lies below that of the best optimum.
+    /// Difference of the log posterior from that of the best optimum.
     pub behind: f64,
     /// Standard deviation of `behind`.
     pub scatter: f64,
@@ -69,7 +69,7 @@ impl Optimum {
         self.is_equal() || self.behind <= SIGNIFICANT * self.scatter
     }
 
-    /// Sets how far this optimum lies behind the best, with the weights of the best's cues.
+    /// Sets the difference of this optimum from the best one, with the weights of the cues at the best one.
     fn compare(&mut self, best: &Fit, weights: &[f64]) {
         let own = Fit::of(&self.findings, weights);
         self.behind = best.posterior - own.posterior;
@@ -110,8 +110,8 @@ impl Fit {
         Self { by_tile, posterior }
     }
 
-    /// Standard deviation of the difference of two log likelihoods, a sum over independent tiles; those that show nothing do
-    /// not count.
+    /// Standard deviation of the difference of two log likelihoods, a sum over independent tiles. Tiles that show
+    /// nothing do not count.
     fn scatter(&self, other: &Self) -> f64 {
         let pairs = self.by_tile.iter().zip(&other.by_tile);
         let differences: Vec<f64> = pairs.map(|(a, b)| a - b).filter(|value| *value != 0.0).collect();
@@ -120,7 +120,7 @@ impl Fit {
     }
 }
 
-/// Sorts by posterior. All posteriors have the weights of one optimum, the one that is best with its own weights. A
+/// Sorts by posterior. All posteriors have the weights of one optimum, which is the best one with its own weights. A
 /// pose that puts no points onto the image has no weights with which others could be compared.
 pub(super) fn rank(optima: &mut [Optimum]) {
     let own = |optimum: &Optimum| Fit::of(&optimum.findings, &optimum.findings.weights()).posterior;

@@ -26,7 +26,7 @@ pub fn overlay(view: RigView, pose: &Similarity) -> Result<Overlay> {
     let (frame, _) = view.prepare(0, &mut vec![])?;
     let state = rigid(pose).map_err(|error| error.below("pose"))?;
     let projection = Projection::new(&frame, &state);
-    // From pixels of a halved image to those of the image as given.
+    // Converts pixels of a halved image to those of the image as given.
     let original = |value: f64| ((value + 0.5) * frame.pixel - 0.5) as f32;
     let size = frame.planes.size;
     let is_seen = |index: &usize| {

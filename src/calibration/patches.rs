@@ -8,7 +8,7 @@ use super::planes::Planes;
 use super::surface::Sample;
 use super::unknowns::State;
 
-/// Patches of a frame: about ten for each object of a scene.
+/// Number of patches of a frame, about ten for each object of a scene.
 pub(super) const PATCHES: usize = 48;
 /// Rounds of k-means.
 const ROUNDS: usize = 6;

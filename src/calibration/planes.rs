@@ -7,11 +7,11 @@
 use crate::pose::Silhouette;
 use crate::view::{Gaussian, Size};
 
-/// Reach of a Gaussian in sigmas; 1 % of its weight lies beyond.
+/// Reach of a Gaussian in sigmas, beyond which 1 % of its weight lies.
 const REACH: f64 = 2.6;
 
-/// Width of the margin around the mask that is still used, pixels of an image 640 wide: the object's own edges lie on the
-/// mask's border.
+/// Width of the margin around the mask that is still used, pixels of an image 640 wide, because the object's own edges
+/// lie on the mask's border.
 const MARGIN: f64 = 4.0;
 
 /// Three interleaved channels, 0 .. 1; NaN where the image is not used.
@@ -60,7 +60,7 @@ impl Planes {
         Self { size, pixels: (0..size.len()).map(mean).collect() }
     }
 
-    /// Bilinear values at a position; `None` outside the image and where it is not used.
+    /// Bilinear values at a position; `None` outside the image and the part of it that is used.
     pub fn at(&self, [column, row]: [f64; 2]) -> Option<[f32; 3]> {
         let Size { width, height } = self.size;
         let inside = column >= 0.0 && row >= 0.0 && column <= (width - 1) as f64 && row <= (height - 1) as f64;

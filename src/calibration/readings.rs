@@ -1,6 +1,6 @@
 //! Other readings of a candidate: the conventions in which files of extrinsics are commonly misread.
 //!
-//! A candidate that the frames contradict may be right in another convention. Each reading of it is a pose.
+//! A candidate that the frames contradict may be right in another convention. Each reading of the candidate is a pose.
 
 use std::fmt;
 
@@ -154,7 +154,7 @@ mod tests {
             (Reading::Inverse, truth.inverse()),
             (Reading::TransposedRotation, read(rotation.transpose(), translation)),
             (Reading::CameraCentre, read(rotation, truth.inverse().translation)),
-            // The file has w x y z, and x y z w was expected; and the other way round.
+            // One reading expects x y z w of a file with w x y z, and the other one the reverse.
             (Reading::ScalarFirst, read(of([z, w, x, y]), translation)),
             (Reading::ScalarLast, read(of([x, y, z, w]), translation)),
             (Reading::BodyFrames, read(body * rotation * body.transpose(), body * translation)),

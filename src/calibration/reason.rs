@@ -1,4 +1,4 @@
-//! The reason for each verdict, and warnings about the input: values with their numbers, which become sentences where
+//! The reason for each verdict, and warnings about the input. Both are values with numbers and become sentences where
 //! they leave the crate.
 
 use std::fmt;
@@ -71,7 +71,7 @@ pub enum CheckReason {
         /// Error of the estimate.
         pixels: f64,
     },
-    /// Consistent but for a warning about the input.
+    /// Consistent, but with a warning about the input.
     Doubtful {
         /// The first warning.
         warning: Box<Warning>,
@@ -167,7 +167,7 @@ impl fmt::Display for CheckReason {
             Self::NoCandidate { pixels } => {
                 write!(f, "No candidate was given; the estimate is good to {} px.", Fixed(*pixels, 1))
             }
-            Self::Doubtful { warning, reason } => write!(f, "Settled, but check: {warning} {reason}"),
+            Self::Doubtful { warning, reason } => write!(f, "Looks right, see warnings: {warning} {reason}"),
         }
     }
 }
@@ -277,8 +277,8 @@ impl WarningKind {
     }
 }
 
-/// Median depths, metres: above the first the unit is probably the millimetre, and below the second it is probably a
-/// thousand times too small.
+/// Limits of the median depth, metres. Above the first the unit is probably the millimetre, and below the second it is
+/// probably a thousand times too small.
 const MILLIMETRES: f64 = 100.0;
 const KILOMETRES: f64 = 0.02;
 
@@ -356,7 +356,7 @@ mod tests {
         let doubtful =
             CheckReason::Doubtful { warning: Box::new(warning), reason: Box::new(CheckReason::NoPoseOnImage) };
         assert_eq!(doubtful.code(), "doubtful");
-        assert!(doubtful.to_string().starts_with("Settled, but check: frame 1: "), "{doubtful}");
+        assert!(doubtful.to_string().starts_with("Looks right, see warnings: frame 1: "), "{doubtful}");
     }
 
     #[cfg(feature = "serde")]

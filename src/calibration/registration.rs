@@ -22,22 +22,22 @@ use super::unknowns::{BIAS, FOCAL, Matrix, SIDES, State, Units, Vector, solve};
 /// Sigma of edges at each level, pixels of an image 640 wide: it falls from the error that the coarse search leaves to
 /// the resolution of an image. It halves every two levels.
 pub(super) const SIGMAS: [f64; 4] = [4.0, 2.8, 1.9, 1.3];
-/// How many poses proceed after each level, the best by score.
+/// Number of poses that proceed after each level, the best by score.
 pub(super) const SURVIVORS: [usize; 4] = [10, 6, 4, 3];
 /// Maximum number of depth discontinuities, over all frames, that score an initial pose.
 const MOST_DISCONTINUITIES_OF_STARTS: usize = 1200;
 /// Rounds at each level.
 pub(super) const ROUNDS: usize = 3;
-/// Maximum number of rounds with all cues. The objective is rough: more rounds would not settle, but wander.
+/// Maximum number of rounds with all cues. The objective is rough, so more rounds would not settle.
 pub(super) const MOST_SETTLING: usize = 8;
 /// Maximum number of times that a step with all cues is halved.
 const MOST_HALVINGS: usize = 5;
-/// Decrease of the log posterior up to which a step is accepted: the objective is rough on the scale of a pixel, and a
-/// likelihood ratio of less than e is no evidence.
+/// Largest decrease of the log posterior with which a step is accepted. The objective is rough on the scale of a pixel,
+/// and a likelihood ratio of less than e is not evidence.
 const ROUGHNESS: f64 = 1.0;
 /// Move of the scene, in pixels, below which a step has converged.
 pub(super) const ARRIVED: f64 = 0.02;
-/// Longest step of a round with all cues, pixels: finite differences are valid no farther.
+/// Longest step of a round with all cues, pixels, up to which finite differences are valid.
 const LONGEST: f64 = 3.0;
 /// Blur of the image for the cues over surfaces, pixels: about the size of a pixel of the depth map.
 const SURFACE_BLUR: f32 = 1.2;
@@ -53,15 +53,15 @@ const MOST_POINTS: usize = 3000;
 /// hand are off by this much. The check finds larger errors too if the scene shows them.
 const PRIOR_DEGREES: f64 = 4.0;
 const PRIOR_METRES: f64 = 0.05;
-/// Share of the scene's points on the image below which a pose cannot be judged; even fields of view that hardly
-/// overlap share more.
+/// Share of the scene's points on the image below which a pose cannot be judged. Even fields of view that hardly
+/// overlap share more points.
 const LEAST_SEEN: f64 = 0.02;
 /// Sigma of the edge bias that all sides share, pixels.
 const PRIOR_BIAS: f64 = 1.0;
 /// Sigma of the change of the edge bias from side to side, pixels, if the maker may have registered the depth map. Such
 /// a registration shifts the depth edges, and no pose that is estimated from them can undo the shift.
 const PRIOR_SIDES: f64 = 0.5;
-/// Information that holds an unknown in place.
+/// Prior information that keeps an unknown constant.
 const HELD: f64 = 1e6;
 /// Sigma of ln f if the focal length is unknown.
 const PRIOR_FOCAL: f64 = 0.15;
@@ -310,20 +310,20 @@ impl Scene {
         }
     }
 
-    /// A start whose visibility is computed at its own state.
+    /// An initial pose whose visibility is computed at its own state.
     pub fn start(&self, state: State, initial: State) -> Start {
         let round = Round { seen_from: state, ..Round::from(state, initial) };
         Start { round, discontinuities: self.discontinuities(&state, MOST_DISCONTINUITIES_OF_STARTS), score: 0.0 }
     }
 
-    /// Finds the depth discontinuities of a start anew if it moved.
+    /// Finds the depth discontinuities of an initial pose anew if the pose moved.
     pub fn find_anew(&self, start: &mut Start) {
         if self.look(&mut start.round) || start.discontinuities.is_empty() {
             start.discontinuities = self.discontinuities(&start.round.seen_from, MOST_DISCONTINUITIES_OF_STARTS);
         }
     }
 
-    /// The depth discontinuities of all frames as a state sees them.
+    /// The depth discontinuities of all frames that a state sees.
     pub fn discontinuities(&self, state: &State, most: usize) -> Vec<Vec<Discontinuity>> {
         self.frames
             .iter()
@@ -364,8 +364,8 @@ impl Scene {
 /// still determines the pose.
 const SURFACE_TRUST: f64 = 0.25;
 
-/// Mean log likelihood of a depth discontinuity that counts as much as one sigma of the prior. Neighbouring
-/// discontinuities share errors, so that about a hundred of the thousands in a scene are independent.
+/// Change of the mean log likelihood of a depth discontinuity that counts as much as one sigma of the prior.
+/// Neighbouring discontinuities share errors, so that about a hundred of the thousands in a scene are independent.
 const SCORE_PRIOR: f64 = 0.01;
 
 /// Adds the evidence of a frame's edges, and returns the number of independent depth discontinuities on its image.

@@ -23,7 +23,7 @@ pub struct CueReport {
     pub cue: Cue,
     /// Share of the estimate's information, 0 .. 1.
     pub share: f64,
-    /// The inverse of the sigma of this cue alone, in pixels of the colour image.
+    /// The inverse of the sigma that this cue gives by itself, in pixels of the colour image.
     pub sharpness: f64,
 }
 
@@ -76,7 +76,7 @@ pub struct CheckReport {
     pub frames: Vec<FrameReport>,
     /// Curves by cue and axis.
     pub sensitivity: Vec<Sensitivity>,
-    /// The frame to take next, if the frames tell.
+    /// The frame to take next, if the evidence shows one.
     #[cfg_attr(
         feature = "serde",
         serde(skip_serializing_if = "Option::is_none", serialize_with = "super::serialised::in_words")

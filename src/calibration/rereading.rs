@@ -9,7 +9,7 @@ use super::readings::Reading;
 use super::registration::{ARRIVED, MOST_SETTLING, Round, SIGMAS, Scene, Start};
 use super::unknowns::State;
 
-/// How many readings proceed after each level, the best by score.
+/// Number of readings that proceed after each level, the best by score.
 const SURVIVORS: [usize; 4] = [6, 3, 2, 1];
 
 /// The readings under way.
@@ -18,7 +18,7 @@ pub(super) struct Rereading {
     optima: Vec<Optimum>,
     starts: Vec<(Reading, Start)>,
     level: usize,
-    /// Index of the next start.
+    /// Index of the next reading to register.
     index: usize,
     /// The images at this level.
     planes: Vec<Planes>,

@@ -9,7 +9,7 @@ use crate::view::Size;
 
 /// Cells grow along an axis until at least this share of the neighbours of cells with a sample hold a sample too.
 const COVERED: f64 = 0.6;
-/// Longest side of a cell, pixels: 16 rings in a map of 480 rows are 30 pixels apart.
+/// Longest side of a cell, pixels; 16 rings in a map of 480 rows are 30 pixels apart.
 const LARGEST_CELL: usize = 32;
 
 /// Whether each cell of a raster holds a sample.
@@ -122,7 +122,7 @@ mod tests {
     #[test]
     fn rings_are_gathered_along_columns_alone() {
         let [columns, rows] = cell(GRID, &plane(|index| GRID.position(index).1 % 9 == 4));
-        // At seven rows two of three cells have a ring in the next.
+        // If cells have seven rows, the next cell of two cells in three also has a ring.
         assert!(columns == 1 && (6..=9).contains(&rows), "{columns} {rows}");
     }
 

@@ -1,11 +1,11 @@
 //! The coarse search for initial poses: a lattice of possible errors of a candidate.
 //!
-//! The prior states how far a candidate may be off. The eigenvectors of J^T J in sigmas of the prior, with J the motion
-//! of the depth discontinuities, are the errors that move the image the most. Two of them are shifts of the image; one
-//! sigma of these moves it by tens of pixels. A rotation about the optical axis, a shift along it and an unknown focal
-//! length move it less, and rotations and shifts that cancel at one depth but not at another move it by a few pixels. A
-//! lattice covers all of them with the same pace in pixels, and discontinuities move on straight lines along its
-//! directions. The best places that are not neighbours become initial poses of the registration.
+//! The prior states the expected error of a candidate. The eigenvectors of J^T J in sigmas of the prior, with J the
+//! motion of the depth discontinuities, are the errors that move the image the most. Two of them are shifts of the
+//! image; one sigma of these moves it by tens of pixels. A rotation about the optical axis, a shift along it and an
+//! unknown focal length move it less, and rotations and shifts that cancel at one depth but not at another move it by a
+//! few pixels. A lattice covers all of these errors with the same pace in pixels, and discontinuities move on straight
+//! lines along its directions. The best places that are not neighbours become initial poses of the registration.
 //!
 //! score = mean over discontinuities of s - PRIOR_WEIGHT / 2 * squared distance in sigmas of the prior,
 //! s = |n . grad I| / (|grad I| + mean of |grad I| in the surroundings + FAINTEST)
@@ -22,7 +22,7 @@ use crate::numeric::eigen::symmetric_eigen;
 const PACE: f64 = 4.0;
 /// Half width of the lattice, sigmas of the prior.
 const REACH: f64 = 1.5;
-/// Maximum number of places, which takes a few tenths of a second; the pace grows until the lattice has no more.
+/// Maximum number of places, which take a few tenths of a second. If the lattice has more, the pace grows.
 const MOST_PLACES: f64 = 6e4;
 /// Maximum number of depth discontinuities, over all frames, that are compared with image edges.
 const MOST_DISCONTINUITIES: usize = 400;
@@ -30,14 +30,14 @@ const MOST_DISCONTINUITIES: usize = 400;
 const STARTS: usize = 16;
 /// Least distance between two initial poses, paces.
 const APART: f64 = 1.5;
-/// Sigma of the image's blur, paces: an edge is visible from half a pace away.
+/// Sigma of the image's blur, paces, so that an edge is visible from half a pace away.
 const BLUR: f64 = 0.5;
 /// Sigma of the surroundings of a gradient, paces.
 const AROUND: f64 = 2.0;
 /// Gradients weaker than this are noise: sum of three encoded channels, difference over two pixels.
 const FAINTEST: f32 = 0.03;
-/// Weight of the prior against the mean score: one sigma costs 0.01, which is what the score gains if one discontinuity
-/// in fifty lies on an edge with s = 0.5.
+/// Weight of the prior against the mean score. One sigma costs 0.01, the gain of the score if one discontinuity in
+/// fifty lies on an edge with s = 0.5.
 const PRIOR_WEIGHT: f64 = 0.02;
 
 /// Gradient of lightness relative to its surroundings.
@@ -71,7 +71,7 @@ impl EdgeMap {
     }
 
     fn at(&self, [column, row]: [f32; 2], normal: [f32; 2]) -> f32 {
-        // The nearest pixel: half a pixel is added, and the cast truncates.
+        // The position is rounded to the nearest pixel, because half a pixel is added and the cast truncates.
         let (column, row) = (column + 0.5, row + 0.5);
         if column < 0.0 || row < 0.0 || column >= self.width as f32 || row >= self.height as f32 {
             return 0.0;

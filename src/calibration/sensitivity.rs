@@ -27,7 +27,7 @@ pub(super) const AXES: [&str; POSE] = ["rx", "ry", "rz", "tx", "ty", "tz"];
 pub struct Sensitivity {
     /// The cue.
     pub cue: Cue,
-    /// rx, ry, rz about the scene's middle, tx, ty, tz; colour camera's frame.
+    /// rx, ry, rz about the scene's middle, or tx, ty, tz, in the colour camera's frame.
     pub axis: &'static str,
     /// Degrees or millimetres from the estimate.
     pub offsets: Vec<f64>,

@@ -10,11 +10,11 @@ use nalgebra::{SMatrix, SVector, Vector3};
 use super::patches::{PATCHES, Patches, Sight};
 use super::unknowns::State;
 
-/// Harmonics of degree 1 and 2; that of degree 0 is the mean of a patch.
+/// Number of harmonics of degrees 1 and 2; that of degree 0 is the mean of a patch.
 const HARMONICS: usize = 8;
 type Harmonics = SVector<f64, HARMONICS>;
 
-/// Added to intensities before the logarithm: the noise of a dark pixel of 8 bits.
+/// Number that is added to intensities before the logarithm, the noise of a dark pixel of 8 bits.
 const DARKEST: f32 = 0.02;
 /// Ridge of the fit of the light, as a share of its mean term, because a few planes do not determine the light.
 const RIDGE: f64 = 1e-3;
@@ -44,7 +44,7 @@ impl<'a> Shading<'a> {
     pub fn evaluate(&self, sight: &Sight, state: &State, out: &mut [f64]) {
         out.fill(0.0);
         for (residual, &tile) in self.residuals(sight, state).iter().zip(&self.patches.tiles) {
-            // A point off the image counts as the median does, so that a pose gains nothing by losing points.
+            // A point off the image counts like the median, so that a pose gains nothing by losing points.
             let square = residual.map_or(1.0, |residual| residual.norm_squared() / (self.scale * self.scale));
             out[tile as usize] -= (1.0 + square).ln();
         }
@@ -109,12 +109,12 @@ mod tests {
     use super::*;
     use nalgebra::Rotation3;
 
-    /// The fit with a ridge depends on the normals by the products of their harmonics alone.
+    /// The fit with a ridge depends on the normals only by the products of their harmonics.
     #[test]
     fn products_of_harmonics_do_not_depend_on_the_axes() {
         let normals = [[0.0, 0.0, -1.0], [0.6, 0.0, -0.8], [-0.2, 0.9, -0.4], [0.5, -0.5, 0.7]].map(Vector3::from);
         let normals = normals.map(|normal| normal.normalize());
-        // Axes swapped, and turned by any angle.
+        // The axes are swapped, and turned by an arbitrary angle.
         let quarter = std::f64::consts::FRAC_PI_2;
         for turn in [[quarter, 0.0, 0.0], [0.0, quarter, 0.0], [0.3, -1.1, 0.8]] {
             let turn = Rotation3::new(Vector3::from(turn));

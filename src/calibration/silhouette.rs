@@ -1,15 +1,15 @@
 //! Silhouette: the masked object lies on the image's mask, if both views have a mask.
 //!
 //! The log likelihood is minus half the sum over points of u^2 / (1 + u^2 / U^2), where u is the distance of a point
-//! outside the mask beyond a tolerance. By itself this would shrink the object into its mask; the cue of edges pulls its
-//! depth discontinuities to the mask's border from inside.
+//! outside the mask beyond a tolerance. By itself this cue would shrink the object into its mask. The cue of edges
+//! pulls the object's depth discontinuities to the mask's border from inside.
 
 use super::evidence::Tiles;
 use super::patches::{Patches, Sight};
 use super::unknowns::State;
 use crate::pose::{SLACK, Silhouette as MaskDistance};
 
-/// U, pixels: a point farther outside is an error of one of the masks.
+/// U, pixels; a point farther outside is an error of one of the masks.
 const OUTLIER: f64 = 6.0;
 
 /// The cue of one frame.

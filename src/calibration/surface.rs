@@ -7,7 +7,7 @@ use crate::numeric::eigen::symmetric_eigen;
 use super::frame::Frame;
 use super::intensity::{UNKNOWN, levels};
 
-/// Neighbours to each side in the fit of a plane: enough to average the steps of a quantised map.
+/// Number of neighbours to each side in the fit of a plane, enough to average the steps of a quantised map.
 const REACH: usize = 3;
 /// Minimum number of neighbours that determine a plane.
 const FEWEST: usize = 12;

@@ -13,7 +13,7 @@ use crate::numeric::eigen::Eigen;
 use crate::pose::{Similarity, rotation_vector};
 use crate::view::Pinhole;
 
-/// w (3), v (3), d (3), ln f.
+/// Number of unknowns: w (3), v (3), d (3), ln f.
 pub(super) const UNKNOWNS: usize = 10;
 /// Number of unknowns of the pose, which come first.
 pub(super) const POSE: usize = 6;

@@ -28,8 +28,8 @@ use crate::pose::{Axis, Unknown};
 /// Smallest share of the depth points that the estimate has to put onto the image before it may judge a candidate. The
 /// other points are not compared with anything, and a wrong pose can always fit a small part.
 pub(super) const LEAST_OVERLAP: f64 = 0.15;
-/// Largest reprojection error that passes, pixels of an image 640 wide: 0.4 degrees at a common focal length. Careful
-/// calibrations by hand reach this accuracy, and colours of points at depth discontinuities need it.
+/// Largest reprojection error that passes, pixels of an image 640 wide, or 0.4 degrees at a common focal length.
+/// Careful calibrations by hand reach this accuracy, and the colouring of points at depth discontinuities needs it.
 pub(super) const TOLERANCE: f64 = 3.5;
 /// Share of draws inside an interval.
 const INSIDE: f64 = 0.95;
@@ -83,7 +83,7 @@ pub struct CandidateReport {
     /// Expected reprojection error of the candidate.
     #[cfg_attr(feature = "serde", serde(flatten))]
     pub health: Health,
-    /// Probability of a distance at least this large if the candidate is right.
+    /// Probability that a right candidate is at least this far from the estimate.
     pub probability: f64,
 }
 
@@ -94,7 +94,7 @@ pub(super) struct Judge {
     motion: PoseMatrix,
     distribution: Distribution,
     tolerance: f64,
-    /// Errors below this many pixels may be those of a guessed camera.
+    /// Errors below this many pixels may come from a guessed camera.
     explained: f64,
     /// Expected error of the estimate.
     own: Health,
@@ -191,7 +191,7 @@ impl Judge {
         self.tolerance
     }
 
-    /// The error of a pose that puts hardly any point onto the image, about which nothing is known.
+    /// The unknown error of a pose that puts hardly any point onto the image.
     pub fn blind(width: f64) -> Health {
         Health { pixels: width, interval: [0.0, width] }
     }

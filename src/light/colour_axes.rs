@@ -42,7 +42,7 @@ impl Axes {
         if variance <= 0.0 {
             return Self::WHITE;
         }
-        // The second axis is any direction across the first; the third completes the frame.
+        // The second axis is any direction perpendicular to the first. The third completes the frame.
         let least = if first[0].abs() < first[1].abs() { 0 } else { 1 };
         let mut second: [f64; 3] = std::array::from_fn(|c| f64::from(c == least) - first[least] * first[c]);
         let length = second.iter().map(|value| value * value).sum::<f64>().sqrt();
@@ -54,7 +54,7 @@ impl Axes {
         Self([first, second, third])
     }
 
-    /// Coordinates of (R, G, B) along the axes.
+    /// The coordinates of (R, G, B) along the axes.
     #[inline(never)]
     pub fn along(&self, rgb: [f64; 3]) -> [f64; 3] {
         self.0.map(|row| row[0] * rgb[0] + row[1] * rgb[1] + row[2] * rgb[2])
@@ -103,7 +103,7 @@ impl AxesPrior {
     }
 }
 
-/// Axis of largest scatter and the scatter along it, by the power method; a few rounds suffice for a direction.
+/// Axis of largest scatter and the scatter along it, by the power method. A few rounds suffice for a direction.
 pub fn principal_axis(scatter: &[[f64; 3]; 3]) -> ([f64; 3], f64) {
     let mut axis = [0.5, 0.6, 0.62];
     let mut variance = 0.0;
@@ -155,7 +155,7 @@ mod tests {
         assert_eq!(Axes::of_shading(&Light([[0.0; HARMONICS]; 3]), normals()), Axes::WHITE);
     }
 
-    /// (L - mu)^T P (L - mu), up to terms that do not depend on L, is the same along any axes.
+    /// (L - mu)^T P (L - mu) is the same along any axes, up to terms that do not depend on L.
     #[test]
     fn the_prior_is_the_same_along_any_axes() {
         let prior = LightPrior::natural();

@@ -15,7 +15,7 @@ use crate::view::Normals;
 
 /// Maximum number of reweighting rounds; the weights settle in four to six (data not recorded).
 const ROUNDS: usize = 8;
-/// Relative change of the median residual below which the weights have settled; their scale follows that median.
+/// Relative change of the median residual below which the weights have settled. Their scale follows that median.
 const SETTLED: f64 = 0.01;
 /// Maximum number of pixels in the fit, evenly spread. There are 27 unknowns and three equations from each pixel, so
 /// noise averages out with far fewer; an object that fills just under half of 128x128 is used whole.
@@ -23,14 +23,15 @@ const MOST_PIXELS: usize = 8000;
 /// The robust scale in median residuals: 4.6 standard deviations of a channel under normal noise. Larger residuals keep
 /// less than a quarter of their weight.
 const SCALE_OF_MEDIAN: f64 = 3.0;
-/// Smallest robust scale in log units: the noise of a good 8-bit image. Exact colours would make the scale zero.
+/// Smallest robust scale in log units, the noise of a good 8-bit image. Exact colours would make the scale zero.
 pub(super) const SMALLEST_SCALE: f64 = 0.005;
-/// Number of pixels whose terms are summed in f32 before the sum is added to one in f64: few enough to keep six digits.
+/// Number of pixels whose terms are summed in f32 before the sum is added to one in f64, small enough to keep six
+/// digits.
 const SUMMANDS: usize = 256;
 /// Maximum number of times the prior's weight is raised tenfold until the equations of the light can be solved. Sums in
 /// f32 are off by up to a millionth, and on nearly flat relief a weak prior contributes less than that.
 const MOST_RAISES: i32 = 10;
-/// Products summed for each harmonic: with the nine harmonics, then with R, G, B.
+/// Number of products that are summed for each harmonic: those with the nine harmonics, then those with R, G, B.
 const COLUMNS: usize = HARMONICS + 3;
 
 /// A fitted light and how well it fits the image.
@@ -50,11 +51,11 @@ pub struct LightFitter {
     normals: Normals,
     /// log S minus `offset`.
     colours: [Vec<f32>; 3],
-    /// Mean of log S, subtracted so that f32 keeps more digits of the rest. It changes only the exposure, to which the
-    /// prior is blind.
+    /// Mean of log S, subtracted so that f32 keeps more digits of the rest. It changes only the exposure, which the
+    /// prior does not see.
     offset: f64,
     weights: Vec<f32>,
-    /// One for each pixel, without the padding.
+    /// A value for each pixel, without the padding.
     residuals: Vec<f32>,
     sorted: Vec<f32>,
 }
@@ -209,7 +210,7 @@ fn beyond_any(_: Error) -> Error {
 mod tests {
     use super::*;
 
-    /// Normals over the visible hemisphere and their colours under `light`, every tenth colour spoilt on request.
+    /// Normals over the visible hemisphere and their colours under `light`. On request every tenth colour is wrong.
     fn scene(light: &Light, spoilt: bool) -> (Normals, [Vec<f32>; 3]) {
         let count = 600;
         let mut normals = Normals::missing(count);

@@ -47,7 +47,7 @@ impl Light {
         match flat.iter().position(|value| !value.is_finite() || value.abs() > LARGEST_COEFFICIENT) {
             None => Ok(()),
             Some(index) => {
-                let message = format!("must be finite and within {} either way", Brief(LARGEST_COEFFICIENT));
+                let message = format!("must be a number from -{0} to {0}", Brief(LARGEST_COEFFICIENT));
                 Err(Error::new(ErrorKind::Range, field, message).at(index).value(flat[index]))
             }
         }
@@ -74,12 +74,13 @@ impl Light {
         self
     }
 
-    /// The light after a rotation of its lamps: under it a rotated normal has the colour that the normal has under this
-    /// light.
+    /// The light after a rotation of its lamps, under which a rotated normal has the colour that the normal has under
+    /// this light.
     #[must_use]
     pub fn turned(&self, rotation: &Matrix3<f64>) -> Self {
         Self(self.0.map(|l| {
-            // The quadratic form of the normal alone; the zz entry excludes what the unit length moves to the constant.
+            // The quadratic form of the normal without the constant. The unit length of the normal moves a part of the
+            // zz entry to the constant.
             let (xx, zz) = (C1 * l[8], C3 * l[6]);
             #[rustfmt::skip]
             let form = Matrix3::new(
@@ -99,7 +100,7 @@ impl Light {
         }))
     }
 
-    /// The growth of log S of R, G and B from `other`, a light that differs in colour alone.
+    /// The growth of log S of R, G and B from `other`, a light that differs only in colour.
     #[must_use]
     pub fn offsets_to(&self, other: &Self) -> [f64; 3] {
         std::array::from_fn(|channel| C4 * (self.0[channel][0] - other.0[channel][0]))

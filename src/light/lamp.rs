@@ -1,7 +1,7 @@
 //! One distant lamp and a matte surface: Lambert's law, the changes of shape that it does not show, and its approximation
 //! of second order. For lessons (www/learn); the estimate itself uses [`Light`](super::Light).
 //!
-//! Limits: attached shadows only. Cast shadows, and light from other parts of the surface, are left out.
+//! Limits: only attached shadows are included. Cast shadows, and light from other parts of the surface, are left out.
 
 use nalgebra::Vector3;
 
@@ -19,8 +19,8 @@ impl Lamp {
     }
 }
 
-/// The depth z becomes `stretch` z + `slopes` . (x, y): a generalised bas-relief transformation (Belhumeur, Kriegman and
-/// Yuille, 1999). A negative stretch makes a dent of a bump.
+/// The depth z becomes `stretch` z + `slopes` . (x, y): a generalised bas-relief transformation (Belhumeur, Kriegman
+/// and Yuille, 1999). A negative stretch turns a bump into a dent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BasRelief {
     /// Factor of the depth, not zero.

@@ -1,10 +1,11 @@
 //! Fits a light together with a palette of a given number of albedos (docs/method/image-model.md).
 //!
-//! log S = B(n) L + a_k + e: the light L of the image model and, for each pixel, one of a few log offsets a_k; which
-//! one is unknown. The error e has three coordinates. The first is along the colour direction in which the shading of
-//! this light varies most with the normal (lightness, under white lamps), and absorbs wrong normals and cast shadows.
-//! The other two contain hardly any such errors. Both parts have separate scales, so that chromaticity decides which
-//! albedo a pixel has wherever it can, and lightness where the shading fits well enough. Student's t makes both robust.
+//! log S = B(n) L + a_k + e: the light L of the image model and, for each pixel, one of a few log offsets a_k; the
+//! albedo of each pixel is unknown. The error e has three coordinates. The first is along the colour direction in which
+//! the shading of this light varies most with the normal (lightness, under white lamps), and absorbs wrong normals and
+//! cast shadows. The other two contain hardly any such errors. Both parts have separate scales. Chromaticity therefore
+//! decides the albedo of a pixel where it can, and lightness where the shading fits well enough. Student's t makes both
+//! robust.
 //!
 //! The solver is expectation maximisation: the probabilities of the albedos for each pixel, then L and all a_k in one
 //! weighted least squares. The prior over lights and another over albedos determine what the pixels leave open. A.
@@ -21,7 +22,7 @@ use crate::light::prior::COEFFICIENTS;
 pub const MOST_REGIONS: usize = 8;
 /// Maximum number of unknowns: a light, and three offsets for each albedo.
 const MOST_UNKNOWNS: usize = COEFFICIENTS + 3 * MOST_REGIONS;
-/// Degrees of freedom of Student's t: the usual choice of robust regression.
+/// Degrees of freedom of Student's t, the usual choice in robust regression.
 const DEGREES: f64 = 4.0;
 /// Standard deviation of the prior over log offsets: most materials reflect 4 to 90 percent.
 const ALBEDO_SPREAD: f64 = 1.0;
@@ -55,7 +56,7 @@ pub struct Mixture {
     pub likelihood: f64,
 }
 
-/// u = 1 + r^2 / (nu s^2), along the first axis and of the other two together.
+/// u = 1 + r^2 / (nu s^2), of the first axis, and of the other two axes together.
 #[inline(never)]
 fn spreads(residual: [f64; 3], scales: [f64; 3]) -> [f64; 2] {
     let [first, second, third] = [0, 1, 2].map(|axis: usize| (residual[axis] / scales[axis]).powi(2) / DEGREES);
@@ -109,7 +110,7 @@ impl Mixture {
         (densities, total / self.scales.iter().product::<f64>())
     }
 
-    /// Mean offset by the probabilities.
+    /// Mean offset, weighted by the probabilities.
     #[inline(never)]
     pub fn mean_offset(&self, responsibilities: &[f64; MOST_REGIONS]) -> [f64; 3] {
         std::array::from_fn(|c| (0..self.regions).map(|k| responsibilities[k] * self.offsets[k][c]).sum())

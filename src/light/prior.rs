@@ -19,7 +19,8 @@ pub type Coefficients = SVector<f64, COEFFICIENTS>;
 /// A matrix over these coefficients.
 pub type CoefficientMatrix = SMatrix<f64, COEFFICIENTS, COEFFICIENTS>;
 
-/// Largest difference of a covariance from its transpose, as a share of its largest entry: rounding to six digits.
+/// Largest difference of a covariance from its transpose, as a share of its largest entry, which allows for rounding to
+/// six digits.
 const ASYMMETRY: f64 = 1e-5;
 /// Largest precision: a standard deviation of one millionth, far below what any image determines.
 const MOST_PRECISION: f64 = 1e12;
@@ -171,7 +172,7 @@ mod tests {
         let mut light = Light([[0.0; HARMONICS]; 3]);
         light.0[1][4] = 3.0;
         assert!((prior.squared_distance(&light) - 9.0 / 4.0).abs() < 1e-12);
-        // A third of a brighter red is exposure.
+        // A third of the change of red is exposure.
         light.0[0][0] = 3.0;
         assert!((prior.squared_distance(&light) - (9.0 + 6.0) / 4.0).abs() < 1e-12);
     }
@@ -213,7 +214,7 @@ mod tests {
             change(&mut covariance);
             LightPrior::new(&[mean; COEFFICIENTS], &covariance).unwrap_err().to_string()
         };
-        assert_eq!(refused(f64::NAN, |_| ()), "prior.mean[0]: must be finite and within 100 either way (got NaN)");
+        assert_eq!(refused(f64::NAN, |_| ()), "prior.mean[0]: must be a number from -100 to 100 (got NaN)");
         assert_eq!(refused(0.0, |c| c[(1, 1)] = f64::INFINITY), "prior.covariance: must be finite");
         assert_eq!(refused(0.0, |c| c[(0, 1)] = 0.1), "prior.covariance: must be symmetric");
         assert_eq!(refused(0.0, |c| c[(2, 2)] = -1.0), "prior.covariance: must be positive definite");

@@ -3,7 +3,7 @@
 //!
 //! The Bayesian information criterion chooses the number of albedos. A further albedo has to raise the likelihood of
 //! the colours by more than its four unknowns would by chance. A tile of neighbouring pixels counts once, because
-//! errors of shading are alike within it. A single albedo means none: the light then explains everything.
+//! errors of shading are alike within it. A single albedo counts as none, because the light then explains everything.
 //!
 //! The only inputs are log colours and the normals of the same pixels; see [`AlbedoFitter::fit`].
 //!
@@ -26,7 +26,7 @@ const FEWEST_SAMPLES: usize = 100;
 /// Pixels that count as one for the evidence: tiles of 8x8, as for the uncertainty of a pose
 /// (docs/method/uncertainty.md).
 const TILE: f64 = 64.0;
-/// Maximum number of tiles: in a larger image the errors of shading form larger patches, not more of them.
+/// Maximum number of tiles, because in a larger image the errors of shading form larger patches, not more patches.
 const MOST_TILES: f64 = 125.0;
 /// Unknowns of one more albedo: its offset in three channels, and its share.
 const UNKNOWNS: f64 = 4.0;
@@ -53,7 +53,7 @@ pub struct VaryingAlbedo {
     unseen_gains: [f64; 3],
 }
 
-/// Log albedo of one pixel, R, G, B: that of its region, and with the variation inside the region.
+/// Log albedo of one pixel, R, G, B: that of its region, and that with the variation inside the region.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PixelAlbedo {
     /// Offset of the pixel's albedo; between albedos, the mean by probability.
@@ -76,8 +76,7 @@ impl AlbedoFitter {
     }
 
     /// Fits albedos to pixels with these `normals` (colour view's frame) and `log` colours, NaN where missing. `known`
-    /// is the light if it is known up to its exposure. `None` if a single albedo, which means none, fits the image
-    /// equally well.
+    /// is the light if it is known up to its exposure. `None` if a single albedo fits the image equally well.
     pub fn fit(
         &mut self,
         normals: &Normals,
@@ -273,7 +272,7 @@ mod tests {
                 let [region, truth] = [albedo.of_pixel(colours, Some(shading)).region, stripes(pixel % 60, 0)];
                 [0, 1, 2].map(|c: usize| region[c] - truth[c])
             };
-            // Up to one common offset, which belongs to the light.
+            // The albedos agree up to a common offset, which belongs to the light.
             let count = usable().count() as f64;
             for channel in 0..3 {
                 let mean = usable().map(|pixel| off(pixel)[channel]).sum::<f64>() / count;

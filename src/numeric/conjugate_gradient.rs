@@ -12,7 +12,7 @@
 
 use super::vector::{add_scaled, dot};
 
-/// A and M of a linear system.
+/// The matrices A and M of a linear system.
 pub(crate) trait System {
     /// Computes product = A direction.
     fn apply(&mut self, direction: &[f32], product: &mut [f32]);
@@ -41,7 +41,7 @@ pub(crate) struct Limits {
     pub iterations: u32,
     /// Error at which the solve ends.
     pub error: f64,
-    /// The same as a share of the initial error; the larger of the two limits applies.
+    /// Error at which the solve ends, as a share of the initial error; the larger of the two limits applies.
     pub relative_error: f64,
     /// The solve ends after an iteration that decreases twice the objective (x^T A x - 2 b^T x) by less than this.
     pub decrease: f64,

@@ -13,8 +13,9 @@
 //! integration, takes 5.9 ms instead of 2.9 at 640x480 with simd128 and rustfft's SIMD for WebAssembly, and 8.0 without
 //! the latter (Node 20). Without SIMD rustdct is faster (0.4 to 0.8 of the time), but current browsers load simd128.
 //!
-//! Limits: without a shift (s = 0) constants are in the null space. Then f has to sum to zero (its mean is ignored),
-//! and the solution has mean zero. Rounding: about 1e-6 of the largest height at 256x256 (f32 pixels, f64 pivots).
+//! Limits: without a shift (s = 0) constants are in the null space. The sum of f then has to be zero (its mean is
+//! ignored), and the solution has mean zero. Rounding: about 1e-6 of the largest height at 256x256 (f32 pixels, f64
+//! pivots).
 
 use std::f64::consts::PI;
 

@@ -12,9 +12,10 @@ use super::lanes::Real;
 /// Number of pixels that are processed at once.
 pub const DOUBLE_LANES: usize = if cfg!(all(target_arch = "wasm32", not(target_feature = "simd128"))) { 1 } else { 2 };
 
-/// Exponents below this one are raised to it, because 2^-1000 is as good as zero.
+/// Smallest exponent; smaller ones are raised to it, because 2^-1000 is practically zero.
 const LEAST_POWER: f64 = -1000.0;
-/// 1.5 2^52. Adding it to a number rounds that number to an integer, which the last bits of the sum then hold.
+/// 1.5 2^52. Adding this constant to a number rounds that number to an integer, which is then in the last bits of the
+/// sum.
 const ROUNDING: f64 = 6_755_399_441_055_744.0;
 /// Number of mantissa bits of an f64, below its exponent.
 const MANTISSA: u32 = 52;
@@ -151,7 +152,7 @@ mod arch {
 
     #[inline(always)]
     pub fn two(values: [f64; 2]) -> v128 {
-        // Cast as a whole, for the reason given in lanes.rs.
+        // The vector is cast as a whole, for the reason given in lanes.rs.
         bytemuck::cast(values)
     }
 

@@ -5,7 +5,7 @@
 use nalgebra::allocator::Allocator;
 use nalgebra::{Const, DefaultAllocator, DimDiff, DimSub, OMatrix, SymmetricEigen, U1};
 
-/// Cap on the iterations; a matrix takes two to three for each row.
+/// Maximum number of iterations; a matrix takes two to three for each row.
 const MOST_ROUNDS: usize = 200;
 
 /// Eigenvalues in no particular order, and their eigenvectors as columns.

@@ -66,7 +66,7 @@ impl Lanes {
     /// Four values from `start`, NaN beyond the ends.
     #[inline(always)]
     pub fn load(values: &[f32], start: isize) -> Self {
-        // As an unsigned number, a negative start lies beyond the last value.
+        // A negative start, read as an unsigned number, lies beyond the last value.
         match values.get(start as usize..).and_then(|values| values.first_chunk()) {
             Some(four) => Self::from(*four),
             None => Self::load_end(values, start),
@@ -254,7 +254,7 @@ mod arch {
 
     #[inline(always)]
     pub fn four(values: [f32; 4]) -> v128 {
-        // Assembled lane by lane, each number would be loaded and inserted separately.
+        // The vector is read as a whole, because otherwise each number would be loaded and inserted separately.
         bytemuck::cast(values)
     }
 

@@ -1,4 +1,4 @@
-//! Arithmetic, the lowest module: it knows nothing of images, lights or poses.
+//! Arithmetic. This lowest module knows nothing of images, lights or poses.
 //!
 //! [`lanes`] and [`doubles`] process several pixels side by side, with the macros of `elementwise`. [`vector`] sums
 //! over long vectors, [`eigen`] computes eigenvalues, [`order`] quantiles and thinning, [`robust`] robust weights,

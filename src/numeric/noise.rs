@@ -1,7 +1,7 @@
 //! Noise of a raster, estimated by the fourth differences of neighbours (docs/method/views.md).
 //!
 //! Fourth differences of a cubic vanish, so whatever deviates from a cubic through five neighbours counts as noise.
-//! Limits: so does texture that fine.
+//! Limits: texture that is as fine also counts as noise.
 
 use super::quantile;
 

@@ -7,7 +7,7 @@
 
 use super::Real;
 
-/// sigma = 1.4826 median |x| for a normal x: turns a median absolute deviation into a standard deviation.
+/// Ratio of the standard deviation to the median absolute deviation: sigma = 1.4826 median |x| for a normal x.
 pub(crate) const SIGMA_OF_MEDIAN: f64 = 1.4826;
 
 /// The robust scale s in standard deviations of the residuals. Residuals of three sigmas, beyond which hardly any are

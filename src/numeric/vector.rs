@@ -35,7 +35,8 @@ mod tests {
     #[cfg(target_arch = "wasm32")]
     use wasm_bindgen_test::wasm_bindgen_test as test;
 
-    /// Lengths around multiples of the number of partial sums, with whole numbers so that no order of summation rounds.
+    /// Tests lengths around multiples of the number of partial sums, with whole numbers so that no order of summation
+    /// rounds.
     #[test]
     fn sums_are_those_of_a_plain_loop() {
         for length in [0, 1, 7, 8, 9, 16, 21] {

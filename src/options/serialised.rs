@@ -31,7 +31,7 @@ impl From<GivenLight> for LightSource {
     fn from(given: GivenLight) -> Self {
         match given {
             GivenLight::Word(LightWord::Estimate) => Self::Estimate,
-            // `Options::validate` checks their range, because its errors name them.
+            // `Options::validate` checks the range of the numbers, because its errors name them.
             GivenLight::Numbers(flat) => Self::Known(Light(from_fn(|channel| from_fn(|k| flat[9 * channel + k])))),
         }
     }
@@ -53,7 +53,7 @@ pub enum StartWord {
     Identity,
 }
 
-/// A pose as far as it is known. The rotation, row by row, takes precedence over the angles.
+/// The known parts of a pose. The rotation, row by row, takes precedence over the angles.
 #[derive(Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct GivenPose {

@@ -7,7 +7,7 @@
 
 use nalgebra::Matrix3;
 
-/// Value of cos beta below which alpha and gamma turn about the same axis, so that only their sum is determined: beta
+/// Value of cos beta below which alpha and gamma turn about the same axis, so that only their sum is determined. Beta
 /// is then this many radians from +-90 degrees. By convention alpha is then zero.
 const POLE: f64 = 1e-6;
 
@@ -47,7 +47,7 @@ impl Angles {
         // what alpha loses.
         let (sine, cosine) = alpha.sin_cos();
         let gamma = (cosine * r[(1, 0)] + sine * r[(2, 0)]).atan2(cosine * r[(1, 1)] + sine * r[(2, 1)]);
-        // Adding zero turns negative zero, which reads like a result, into zero.
+        // Adding zero turns negative zero into zero, because a minus sign would look like a result.
         let degrees = |radians: f64| radians.to_degrees() + 0.0;
         Self { alpha: degrees(alpha), beta: degrees(beta), gamma: degrees(gamma) }
     }

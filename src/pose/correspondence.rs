@@ -46,7 +46,7 @@ pub struct CorrespondenceProblem<'a> {
     pub depth_points: &'a Points,
     /// Normals of the depth view, in its own frame.
     pub depth_normals: &'a Normals,
-    /// Points of the image surface; NaN as long as there is no surface, in which case visibility alone decides.
+    /// Points of the image surface; NaN as long as there is no surface, in which case only visibility decides.
     pub image_points: &'a Points,
     /// Normals of the image surface.
     pub image_normals: &'a Normals,
@@ -131,8 +131,8 @@ impl Correspondences {
         across().or_else(|| self.ends(pixel, self.image.width, row, self.image.height))
     }
 
-    /// The depth pixels on either side of a gap in a line of pixels that are `stride` apart. This pixel is number
-    /// `place` in the line.
+    /// The depth pixels on either side of a gap in a line of pixels that are `stride` apart. The pixel in the gap is
+    /// number `place` in the line.
     fn ends(&self, pixel: usize, stride: usize, place: usize, length: usize) -> Option<[usize; 2]> {
         let reach = 1..=self.widest_gap;
         let before =
@@ -219,7 +219,8 @@ impl Correspondences {
         let threshold = problem.distance.unwrap_or(follows) as f32;
         let inlier = INLIER_SPREADS * median;
         self.depth_of_pixel.fill(-1);
-        // From here on, `of_pixel` holds the squared distance between the centre of each pixel and the pixel's point.
+        // In the following lines, `of_pixel` holds the squared distance between the centre of each pixel and the
+        // pixel's point.
         self.visible.of_pixel.fill(f32::INFINITY);
         (self.count, self.inliers) = (0, 0.0);
         let mut visible = 0_usize;

@@ -1,4 +1,4 @@
-//! Damping of Gauss-Newton steps that have to lower an objective (Levenberg and Marquardt's method).
+//! Levenberg and Marquardt's damping of Gauss-Newton steps, which have to lower an objective.
 
 /// Initial damping, as a share of the diagonal.
 const FIRST: f64 = 1e-3;

@@ -4,7 +4,7 @@
 
 use crate::view::Size;
 
-/// Squared distance where there is no pixel of the kind: larger than any other.
+/// Squared distance if there is no pixel of the kind, larger than any other.
 const NOWHERE: f64 = 1e12;
 
 /// Squared distance from each pixel to the nearest pixel of a kind.

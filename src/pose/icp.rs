@@ -6,12 +6,12 @@
 //! point without a counterpart ends), those farther apart than a distance that shrinks with each iteration, and the
 //! farthest of the rest. The others are weighted by Geman and McClure's function of the residual.
 //!
-//! Point-to-plane distances hold a smooth object of free scale in place; with point-to-point distances alone it slides.
+//! Point-to-plane distances hold a smooth object of free scale in place; with only point-to-point distances it slides.
 //! A share of point-to-point distances that fades with the pairing distance widens the basin a little
 //! (docs/lab/experiments.md).
 //!
 //! Limits: from the identity, ICP registers a face that is rotated by up to 60 degrees, a nearly bare ellipsoid only up
-//! to 30. Beyond that it ends in a wrong rotation. [`Information`] flags many such ends but not all: they are local
+//! to 30. Beyond that it ends in a wrong rotation. [`Information`] flags many such ends, but not all. They are local
 //! optima, which only another initial pose reveals.
 
 use nalgebra::Vector3;
@@ -43,7 +43,7 @@ const LEAST_SCALE: f64 = 0.02;
 const SETTLED: f64 = 1e-5;
 /// The scale has diverged if it differs from the initial scale by more than this factor.
 const LARGEST_GROWTH: f64 = 4.0;
-/// Cap on the correlation of neighbouring residuals, at which 40000 pixels count as one.
+/// Largest correlation of neighbouring residuals, at which 40000 pixels count as one.
 const LARGEST_CORRELATION: f64 = 0.99;
 /// Maximum number of depth points, evenly spread: more of them take time but do not improve the accuracy.
 const MOST_POINTS: usize = 5_000;
@@ -61,7 +61,7 @@ pub struct IcpProblem<'a> {
     pub image_normals: &'a Normals,
     /// Raster of the image surface.
     pub image_size: Size,
-    /// The initial pose; its scale is held or the initial value s0.
+    /// The initial pose; its scale is held, or is the initial value s0.
     pub start: Similarity,
 }
 
@@ -81,11 +81,11 @@ pub struct IcpOptions {
     pub metric: Metric,
     /// Whether s keeps its initial value.
     pub scale_is_held: bool,
-    /// Initial pairing distance; `None` is the size of the object, right for an unknown pose.
+    /// Initial pairing distance; `None` is the size of the object, which suits an unknown pose.
     pub first_distance: Option<f64>,
     /// Final pairing distance.
     pub final_distance: f64,
-    /// Cap on the iterations.
+    /// Maximum number of iterations.
     pub most_iterations: u32,
 }
 
@@ -106,7 +106,7 @@ impl Default for IcpOptions {
 pub enum IcpTermination {
     /// The pose has settled at the final distance.
     Settled,
-    /// The cap on the iterations came first, usually because a few pairs alternate.
+    /// The maximum number of iterations came first, usually because a few pairs alternate.
     MostIterations,
 }
 
@@ -123,7 +123,8 @@ pub struct IcpReport {
     pub iterations: u32,
     /// Why it ended.
     pub termination: IcpTermination,
-    /// How well the pairs determine the pose; if it [is degenerate](Information::is_degenerate), they do not.
+    /// The information of the pairs about the pose; if it [is degenerate](Information::is_degenerate), they do not
+    /// determine the pose.
     pub information: Information,
 }
 

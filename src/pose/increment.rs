@@ -20,7 +20,7 @@ pub(crate) const UNKNOWNS: usize = 7;
 /// Indices of the translation along z and of the scale.
 pub(crate) const TRANSLATION_Z: usize = 5;
 pub(crate) const SCALE: usize = 6;
-/// Sigma of an undetermined direction, radians or object sizes: large enough to be recognised as "unknown".
+/// Sigma of an undetermined direction, radians or object sizes, large enough to be recognised as "unknown".
 pub(crate) const UNKNOWN: f64 = 1e3;
 /// A matrix over the unknowns.
 pub(crate) type PoseMatrix = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
@@ -95,7 +95,7 @@ pub(crate) struct NormalEquations {
     weight: f64,
 }
 
-/// Result of one step, dimensionless.
+/// Result of one step, in dimensionless numbers.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Increment {
     pub change: Similarity,
@@ -213,7 +213,7 @@ mod tests {
     #[test]
     fn a_rotation_vector_is_a_number_even_where_rounding_turns_nothing() {
         let mut is_raised = false;
-        // Up to half a turn; beyond that another vector describes the same rotation.
+        // The test covers up to half a turn, beyond which another vector describes the same rotation.
         for k in 0..1750 {
             let vector = Vector3::new(0.001, -0.0007, 0.0013) * f64::from(k);
             let rotation = Rotation3::new(vector).into_inner();

@@ -2,7 +2,7 @@
 //! (docs/method/uncertainty.md).
 //!
 //! Slowly varying albedo, ambient shadow and biased normals correlate over more than a tile, so the scores of tiles do
-//! not show them. They bias each part of the object differently, so the pose moves when a part is left out.
+//! not show these errors. They bias each part of the object differently, so the pose moves when a part is left out.
 //!
 //! M. Quenouille: "Notes on bias in estimation", Biometrika 43, 1956. J. Tukey: "Bias and confidence in not-quite large samples", Annals of
 //! Mathematical Statistics 29, 1958.

@@ -4,7 +4,7 @@ use kiddo::{ImmutableKdTree, SquaredEuclidean};
 
 use crate::view::Points;
 
-/// Coordinates beyond this have squared distances that overflow f32; such points count as missing.
+/// Largest coordinate. The squared distances of larger ones overflow f32, so such points count as missing.
 const LARGEST_COORDINATE: f32 = 1e15;
 
 /// The points of one surface in a tree. Missing points never enter it, and a missing query has no neighbour.

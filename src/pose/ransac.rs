@@ -6,7 +6,7 @@
 //! until they no longer change.
 //!
 //! The linear model shears and stretches, so on nearly flat parts it follows noise where a similarity would not. It
-//! therefore only decides which pairs the similarity is fitted to first.
+//! therefore only selects the pairs to which the similarity is first fitted.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -23,8 +23,8 @@ const MISSED: f64 = 1e-3;
 /// A sample is flat, and skipped, if its volume over the product of its three edges is below this. A ratio of 0.01
 /// amplifies noise at most a hundredfold.
 const LEAST_VOLUME: f64 = 1e-2;
-/// Points are flat if the ratio of their smallest to their largest variance is below this: a relief of 1 %. Nothing
-/// then determines one column of A.
+/// Ratio of the smallest to the largest variance of points below which they are flat, a relief of 1 %. One column of A
+/// is then not determined.
 const LEAST_THICKNESS: f64 = 1e-4;
 /// Maximum number of alternations of least squares and new inliers; two or three suffice.
 const MOST_REFITS: usize = 10;
@@ -36,7 +36,7 @@ pub struct RansacOptions {
     pub threshold: f64,
     /// Scale to hold; `None` leaves it free.
     pub scale: Option<f64>,
-    /// Cap on the samples.
+    /// Maximum number of samples.
     pub most_iterations: u32,
     /// Equal seeds give equal results.
     pub seed: u64,

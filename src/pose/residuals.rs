@@ -1,6 +1,6 @@
 //! Constants of residuals of log intensity that photometric registration and registration by local contrast share.
 
-/// Smallest assumed noise of log S, log units: 0.2 percent, the rounding of a good 8-bit image.
+/// Smallest assumed noise of log S, log units, or 0.2 percent, the rounding of a good 8-bit image.
 pub(super) const LEAST_NOISE: f64 = 0.002;
 /// Error of a normal, radians, at which its point has lost three quarters of its weight. On average errors act by their
 /// square: 0.1 rad shifts the pose by some tenths of a degree, whatever the light.

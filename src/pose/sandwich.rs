@@ -16,7 +16,7 @@ pub(super) struct Scores {
 }
 
 impl Scores {
-    /// From clusters that count as observations. Clusters with a score of zero are empty and do not count.
+    /// The sum over clusters that count as observations. Clusters with a score of zero are empty and do not count.
     pub fn of<'a>(clusters: impl Iterator<Item = &'a PoseVector>) -> Self {
         let mut scores = Self { spread: PoseMatrix::zeros(), count: 0.0 };
         scores.count = scores.add(clusters);
@@ -40,8 +40,8 @@ impl Scores {
         (self.count > free).then_some(self.count - free)
     }
 
-    /// The covariance, with sigmas enlarged by `growth`. Held unknowns have none. Without a gain or with too few
-    /// clusters everything is unknown.
+    /// The covariance, with sigmas enlarged by `growth`. Held unknowns have none. Without a gain, or with too few
+    /// clusters, all unknowns are undetermined.
     pub fn covariance(&self, gain: Option<&PoseMatrix>, growth: f64, held: &[bool; UNKNOWNS]) -> PoseMatrix {
         let mut covariance = match (gain, self.degrees_of_freedom(held)) {
             (Some(gain), Some(freedom)) => {
@@ -59,8 +59,8 @@ impl Scores {
 
 /// Ratio of three sigmas of Student's distribution to three of the normal one, because a spread estimated from few
 /// clusters is itself uncertain. Inverts an approximation of D. Wallace: "Bounds on normal approximations to Student's
-/// and the chi-square distributions", Annals of Mathematical Statistics 30, 1959. It is within 3 % from four degrees of
-/// freedom on, and never too small.
+/// and the chi-square distributions", Annals of Mathematical Statistics 30, 1959. With four or more degrees of freedom
+/// it is within 3 %, and it is never too small.
 pub(super) fn student_growth(degrees_of_freedom: f64) -> f64 {
     let sigmas = 3.0 * (8.0 * degrees_of_freedom + 3.0) / (8.0 * degrees_of_freedom + 1.0);
     (degrees_of_freedom * ((sigmas * sigmas / degrees_of_freedom).exp() - 1.0)).sqrt() / 3.0

@@ -1,10 +1,10 @@
-//! Distance of a position from an image's mask: exact at pixel centres, bilinear between them.
+//! Distance of a position from an image's mask, exact at pixel centres and bilinear between them.
 
 use super::distance_transform::squared_distances;
 use crate::view::Size;
 
-/// Distance off the mask that costs nothing, pixels: neither the size of a pixel nor the rounding of a mask is an
-/// error, and without this slack the silhouette would bias the pose.
+/// Distance off the mask that costs nothing, pixels. The size of a pixel and the rounding of a mask are not errors, and
+/// without this slack the silhouette would bias the pose.
 pub(crate) const SLACK: f64 = 0.7;
 /// Weight of points off the mask, relative to the other terms (local contrast, depth discontinuities).
 pub(super) const OUTSIDE_WEIGHT: f64 = 3.0;
@@ -73,7 +73,7 @@ impl Silhouette {
     }
 
     fn within(&self, [column, row]: [f64; 2]) -> [f64; 2] {
-        // `clamp` can panic with both limits in its message, which takes 8 kB of code for floats.
+        // `clamp` is not used, because its panic prints both limits, which takes 8 kB of code for floats.
         let within = |value: f64, length: usize| value.max(0.0).min((length - 1) as f64);
         [within(column, self.size.width), within(row, self.size.height)]
     }

@@ -7,7 +7,7 @@ use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
 use crate::numeric::eigen::symmetric_eigen;
 
-/// Largest difference of R^T R from the identity: rotations typed with five digits pass, anything worse is a mistake.
+/// Largest difference of R^T R from the identity. Rotations typed with five digits pass; anything worse is a mistake.
 const ROTATION_TOLERANCE: f64 = 1e-4;
 
 /// Smallest eigenvalue gap of a determined rotation: twice the sum of the second and the signed third of the normalised
@@ -15,7 +15,7 @@ const ROTATION_TOLERANCE: f64 = 1e-4;
 /// objects are above 1e-4.
 const RANK_TOLERANCE: f64 = 1e-9;
 
-/// Minimum number of pairs for a similarity: three are fitted so well that no residual reveals a mistake.
+/// Minimum number of pairs for a similarity. Three pairs are fitted so well that no residual reveals a mistake.
 pub(crate) const FEWEST_PAIRS: usize = 4;
 
 /// An active, right-handed similarity that transforms points of the depth view into the colour view.
@@ -110,7 +110,7 @@ impl Similarity {
         Self { scale, rotation, translation: target - scale * (rotation * centre) }
     }
 
-    /// The same pose with its rotation made orthonormal again, as after many products.
+    /// The same pose with its rotation made orthonormal again, for use after many products.
     #[must_use]
     pub fn orthonormal(&self) -> Self {
         Self { rotation: quaternion(&self.rotation).to_rotation_matrix().into_inner(), ..*self }
@@ -180,7 +180,7 @@ impl Similarity {
     }
 }
 
-/// The unit quaternion of a rotation; exact for half turns too.
+/// The unit quaternion of a rotation, which is exact also for half turns.
 fn quaternion(rotation: &Matrix3<f64>) -> UnitQuaternion<f64> {
     UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(*rotation))
 }

@@ -22,7 +22,7 @@ const POLE: f64 = -0.267_949_192_431_122_7;
 const HORIZON: usize = 14;
 /// Number of rings of pixels in the continuation: the spline on the mask depends on the last one by 0.268^8 = 3e-5.
 const RINGS: u8 = 8;
-/// Number of mirrored samples of a line: one before, two behind.
+/// Number of mirrored samples of a line: one before it, two behind it.
 const MIRRORED: usize = 3;
 
 /// Number of lanes for the three colours of a sample. With four pixels in a lane it is one, and the fourth number is
@@ -53,7 +53,7 @@ pub(super) struct ImagePoint {
 }
 
 impl SplineImage {
-    /// Splines through the Gaussian mean of a view's log S; `blur` is the sigma in pixels, zero for none.
+    /// Splines through the Gaussian mean of a view's log S; `blur` is the sigma in pixels, zero for no blur.
     pub fn new(view: &ColourView, blur: f64) -> Self {
         Self::over(&Arc::from(cells(view)), view.log_mean(), view, blur)
     }
@@ -70,7 +70,7 @@ impl SplineImage {
         fields.iter_mut().for_each(|field| filter(view.size, field));
         let [red, green, blue] = &fields;
         let samples = (view.size.width + MIRRORED) * (view.size.height + MIRRORED);
-        // One more, because the lanes of the last sample load one number beyond it.
+        // The line has one more number, because the lanes of the last sample load one number beyond it.
         let mut coefficients = Vec::with_capacity(samples + 1);
         mirrored(view.size.height).for_each(|row| {
             mirrored(view.size.width).for_each(|column| {
@@ -359,7 +359,7 @@ mod tests {
     #[test]
     fn gradients_are_the_difference_quotients() {
         let image = SplineImage::new(&view(), 1.0);
-        // Values are rounded to f32, so the difference over a smaller step would be rounding.
+        // Values are rounded to f32, so a difference over a smaller step would show only rounding.
         let small = 0.02;
         for [x, y] in [[20.3, 17.8], [25.0, 22.0], [30.1, 12.9], [9.4, 14.3]] {
             let point = image.at([x, y]).unwrap();

@@ -1,9 +1,9 @@
-//! Sums of a Gauss-Newton step of the pose alone over robust residuals.
+//! Sums over robust residuals for a Gauss-Newton step of the pose.
 
 use crate::numeric::robust;
 use crate::pose::increment::{PoseMatrix, PoseVector};
 
-/// Matrix, gradient and cost. With an infinite scale a residual costs its square.
+/// Matrix, gradient and cost. If the scale is infinite, a residual costs its square.
 pub(super) struct Sums {
     /// Lower triangle of the matrix.
     pub matrix: PoseMatrix,

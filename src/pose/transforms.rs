@@ -25,7 +25,7 @@ use nalgebra::{Isometry3, Matrix4, Rotation3, Similarity3, Translation3, UnitQua
 use super::similarity::Similarity;
 use crate::error::{Error, ErrorKind, Result};
 
-/// Largest difference of a scale from one in a rigid motion: rounding of a few products.
+/// Largest difference of a scale from one in a rigid motion, the rounding error of a few products.
 const UNIT_TOLERANCE: f64 = 1e-9;
 /// Largest difference of the last row of a matrix from 0, 0, 0, 1.
 const ROW_TOLERANCE: f64 = 1e-9;
@@ -107,11 +107,8 @@ impl TryFrom<Similarity> for Isometry3<f64> {
 impl TryFrom<Similarity3<f64>> for Similarity {
     type Error = Error;
 
-    /// The same transformation.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Range`] if the scaling is not positive, which nalgebra permits, or a number is not finite. The
-    /// field is a member of `similarity`.
+    /// The same transformation. /// /// # Errors [`ErrorKind::Range`] if the scaling is not positive, which nalgebra
+    /// permits, or a number is not finite. The field is a member of `similarity`.
     fn try_from(similarity: Similarity3<f64>) -> Result<Self> {
         let pose = Self { scale: similarity.scaling(), ..Self::from(similarity.isometry) };
         pose.validate("similarity")?;

@@ -1,4 +1,4 @@
-//! How well the matched surfaces determine the pose, and one sigma of each of its numbers.
+//! The information of matched surfaces about the pose, and one sigma of each number of the pose.
 //!
 //! The information is that of point-to-plane distances. A point that slides along its surface costs nothing, so a
 //! plane, a sphere or a cylinder has no information in the directions in which it slides onto itself. The matrix is
@@ -21,11 +21,10 @@ use super::similarity::Similarity;
 use crate::numeric::eigen::{Eigen, symmetric_eigen};
 use crate::view::Camera;
 
-/// Eigenvalues of the information, divided by its weight, count as zero below this. Dimensionless: the squared cosine
-/// between normals and motion. Faces and busts are above it, smooth surfaces of revolution below
-/// (docs/lab/thresholds.md).
+/// Eigenvalues of the information, divided by its weight, count as zero below this squared cosine between normals and
+/// motion. Faces and busts are above it, smooth surfaces of revolution below (docs/lab/thresholds.md).
 const LEAST_INFORMATION: f64 = 1e-4;
-/// Largest sigma of a rotation, degrees.
+/// Largest reported sigma of a rotation, degrees.
 const LARGEST_SIGMA: f64 = 180.0;
 /// Relative sigma of the focal lengths in files. Set on random pinhole pairs, with focal lengths wrong by 1 to 5 %, so
 /// that three sigmas cover the rotations (docs/lab/thresholds.md).
@@ -258,7 +257,7 @@ impl Information {
         std::array::from_fn(|k| (k == TRANSLATION_Z && gauge) || (k == SCALE && self.scale_is_held))
     }
 
-    /// Eigenvalues that chance leaves in J_n^T J_m without any shape: the noise of the normals, averaged over the
+    /// Eigenvalues that J_n^T J_m has by chance without any shape, from the noise of the normals, averaged over the
     /// pairs.
     fn floor(&self) -> f64 {
         LEAST_INFORMATION.max(self.normal_noise.powi(2) / (self.pairs.max(1) as f64).sqrt())
@@ -266,7 +265,7 @@ impl Information {
 }
 
 /// One sigma of each number of `pose` from the covariance of the seven unknowns about a centre. The two flags of
-/// `fixed` mark the z of the translation and the scale as having none.
+/// `fixed` mark the z of the translation and the scale as numbers without a sigma.
 pub(super) fn describe(
     covariance: &PoseMatrix,
     frame: &Frame,
@@ -316,7 +315,7 @@ mod tests {
         };
         let mut found = sure.clone();
         found.add_focal_length(0.8);
-        // Half of half a percent, and four millimetres at 0.8 m.
+        // The bounds are a quarter of a percent, and four millimetres at 0.8 m.
         assert!((found.rotation_degrees[0] - 0.1432).abs() < 1e-4, "{found:?}");
         assert_eq!(found.rotation_degrees[2], LARGEST_SIGMA);
         assert_eq!(found.translation[..2], sure.translation[..2]);

@@ -9,8 +9,8 @@ use super::similarity::Similarity;
 use crate::numeric::{LANES, Lanes, Mask, Real, dot};
 use crate::view::{Camera, ColourView, Normals, Points, Size};
 
-/// A point is hidden if it lies this many image pixels behind the nearest one. That is more than a steep slope drops
-/// between neighbours, and less than a nose stands out from a cheek.
+/// A point is hidden if it lies this many image pixels behind the nearest one. This is more than a steep slope drops
+/// between neighbours, and less than the height of a nose above a cheek.
 pub(super) const HIDDEN_BEHIND: f64 = 3.0;
 /// Smallest cosine between normal and ray of a visible point; at a more grazing angle no pixel is reliable.
 pub(super) const LEAST_FACING: f64 = 0.05;

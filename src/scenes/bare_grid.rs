@@ -11,7 +11,7 @@ use crate::light::Light;
 use crate::pose::Similarity;
 use crate::view::{Camera, Normals, Size};
 
-/// Every eighth sample of the relief is taken: 32 of 256.
+/// Step between samples of the relief that are taken: 32 of 256.
 const STRIDE: usize = 8;
 
 /// Image and organised cloud from samples 0, 8, 16, .. of the relief, with heights divided by 8.

@@ -28,7 +28,7 @@ const FEATURES: [Feature; 15] = [
     // Wings of the nose.
     ([-6.5, -17.5], [3.2, 3.4], 4.5),
     ([8.0, -17.7], [3.2, 3.4], 4.5),
-    // Between nose and mouth, around the mouth, under the lip.
+    // Folds between nose and mouth, around the mouth, and under the lip.
     ([0.8, -8.0], [2.2, 3.4], -1.4),
     ([0.5, 0.0], [12.0, 9.0], 3.2),
     ([0.5, 12.5], [9.0, 2.6], -3.4),

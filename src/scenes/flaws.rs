@@ -43,7 +43,7 @@ impl Chance {
 
     /// A whole number below `count`.
     pub(super) fn below(&mut self, count: usize) -> usize {
-        // The bias of the product is count / 2^53.
+        // The product has a bias of count / 2^53.
         (self.uniform() * count as f64) as usize
     }
 

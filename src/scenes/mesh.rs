@@ -11,8 +11,8 @@ use crate::view::{Gaussian, Size};
 const SMOOTHING: f64 = 1.0;
 /// Reach of the smoothing kernel in sigmas; samples beyond it would have weights below 1e-4.
 const SMOOTHING_REACH: f64 = 4.0;
-/// Largest difference of the heights in one triangle, in samples (docs/lab/protocols.md). Beyond it the grid jumps from
-/// one part of the object to another, with no surface in between.
+/// Largest difference of the heights in one triangle, in samples (docs/lab/protocols.md). A larger difference is a jump
+/// from one part of the object to another, without a surface in between.
 const LARGEST_JUMP: f64 = 12.0;
 
 /// Triangles with vertex normals. Unit: samples of the relief. Optical frame (x right, y down, z forward) with the
@@ -103,7 +103,7 @@ impl Mesh {
     }
 }
 
-/// Gaussian mean over the samples of the object alone, so that the background does not lower the object's border.
+/// Gaussian mean over only the samples of the object, so that the background does not lower the object's border.
 fn smooth(heights: &[f32], object: &[bool], size: Size) -> Vec<f64> {
     let [means] =
         Gaussian::new(size, SMOOTHING, SMOOTHING_REACH).means(|index| object[index], |_, index| heights[index]);
@@ -119,7 +119,8 @@ fn triangulate(heights: &[f64], object: &[bool], size: Size) -> Vec<[usize; 3]> 
             if ![a, b, c, d].iter().all(|&corner| object[corner]) {
                 continue;
             }
-            // Down before right, so that the cross product of the edges faces the camera.
+            // The vertex below comes before the one to the right, so that the cross product of the edges faces the
+            // camera.
             let cell = [[a, c, b], [b, c, d]];
             triangles.extend(cell.into_iter().filter(|corners| jump(heights, corners) <= LARGEST_JUMP));
         }

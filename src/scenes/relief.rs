@@ -8,7 +8,7 @@ use crate::view::Size;
 pub const SMALLEST_RELIEF: usize = 64;
 /// Largest side of a relief in samples: half a million triangles, the most that a page renders without a wait.
 pub const LARGEST_RELIEF: usize = 512;
-/// Largest height in samples: eight times the largest side, far beyond any relief, and exact in f32.
+/// Largest height in samples, eight times the largest side. It is far beyond any relief, and exact in f32.
 const LARGEST_HEIGHT: f32 = 4096.0;
 
 /// Side of the grid, in samples, for which the thresholds of the protocol (docs/lab/protocols.md) are stated.

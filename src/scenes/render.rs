@@ -6,8 +6,8 @@ use super::mesh::Mesh;
 use crate::pose::Similarity;
 use crate::view::{Camera, Normals, Size};
 
-/// How far outside a triangle a pixel centre may lie, in barycentric coordinates (no unit), so that rounding opens no
-/// crack between two triangles that share an edge. Rounding of f64 at 1024 pixels is 1e-13.
+/// Largest distance of a pixel centre outside a triangle that it still sees, in barycentric coordinates (no unit), so
+/// that rounding opens no crack between two triangles that share an edge. Rounding of f64 at 1024 pixels is 1e-13.
 pub(super) const EDGE_TOLERANCE: f64 = 1e-9;
 /// A triangle whose area is smaller than this, relative to the square of its longest edge in the ray plane, is seen
 /// edge on.
@@ -114,7 +114,7 @@ struct Corner {
 }
 
 impl Corner {
-    /// `None` behind the camera.
+    /// The corner of a point; `None` behind the camera.
     fn new(point: Vector3<f64>, normal: Vector3<f64>, view: &View) -> Option<Self> {
         let pixel = view.camera.project(view.size, point.into())?;
         let weight = if view.camera.is_orthographic() { 1.0 } else { 1.0 / point.z };

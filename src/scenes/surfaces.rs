@@ -1,4 +1,4 @@
-//! Procedural surfaces on the 256 grid: free of licences, with a known true shape.
+//! Procedural surfaces on the 256 grid, which need no licence and have a known true shape.
 
 use std::f64::consts::TAU;
 

@@ -1,8 +1,8 @@
 //! The shape of the colour view: normals of its pixels, a surface with these normals, and the normals once more, with
 //! the surface as a prior (docs/method/normals.md and docs/method/heights.md).
 //!
-//! The surface is found in one of two ways: by integration alone, as in the paper, or as a whole by heights from
-//! shading, for which the integrated surface is one of several starts.
+//! The surface is found by integration, as in the paper, or as a whole by heights from shading, for which the
+//! integrated surface is one of several starts.
 
 use super::heights::{HeightDomain, ImageSurfaceProblem, ImageSurfaceSolver, Scratch};
 use super::integration::{IntegrationOptions, Integrator, find_slopes};
@@ -11,7 +11,7 @@ use crate::error::Result;
 use crate::light::Light;
 use crate::view::{ColourView, Normals, normals};
 
-/// Least weight of the surface's own normals as a prior, in units of lambda_2: under natural light, the surface
+/// Least weight of the surface's own normals as a prior, in units of lambda_2. Under natural light, the surface
 /// determines more than a pixel's colours. Set on Mozart under the lights A, B, C without a depth view
 /// (docs/lab/thresholds.md).
 const LEAST_SURFACE_PRIOR: f64 = 0.1;
@@ -29,7 +29,7 @@ pub struct ImageShapeProblem<'a> {
     pub prior_weight: f64,
     /// lambda_3 of Eq. 6.
     pub unit_weight: f64,
-    /// Variance of the colours' residuals relative to its usual value: colours that even the light does not explain
+    /// Variance of the colours' residuals relative to its usual value. Colours that even the light does not explain
     /// weigh less, so priors weigh more.
     pub variance_inflation: f64,
 }
@@ -50,7 +50,7 @@ pub struct ImageShapeSolver {
     pixels: ShadingSolver,
     /// Created by the first integration.
     integrator: Option<Integrator>,
-    /// Present if the surface is solved as a whole.
+    /// The solver of the surface as a whole, if it is used.
     surface: Option<ImageSurfaceSolver>,
 }
 
@@ -73,12 +73,12 @@ impl ImageShapeSolver {
         self.surface.as_ref().map(ImageSurfaceSolver::domain)
     }
 
-    /// Normals of the pixels, each one alone (Eq. 6 to 9), starting from the current ones.
+    /// Normals of the pixels, each by itself (Eq. 6 to 9), starting from the current ones.
     pub fn solve_normals(&mut self, problem: &ImageShapeProblem<'_>, normals: &mut Normals) {
         self.pixels.solve(problem.shading(), problem.weights(problem.prior_weight), normals);
     }
 
-    /// Change of the exposure after [`solve_normals`](Self::solve_normals); `moved` is how far it is from the first
+    /// Change of the exposure after [`solve_normals`](Self::solve_normals); `moved` is its distance from the first
     /// exposure.
     pub fn exposure_step(problem: &ImageShapeProblem<'_>, normals: &Normals, moved: f64) -> f64 {
         pixels::exposure_step(problem.shading(), problem.weights(problem.prior_weight), normals, moved)

@@ -28,8 +28,8 @@ use crate::view::{ColourView, DepthView, Normals, depth_noise, normals};
 const SHADING_ERROR: f64 = 1.4;
 /// Error of the shading that discretisation adds, as a share of the colours' spread. Set on the same data.
 const DISCRETISATION: f64 = 0.065;
-/// Bounds of the weight of an anchor, squared log residual per squared pixel of height: whatever its noise, depth
-/// neither loses all weight nor overrides the colours.
+/// Bounds of the weight of an anchor, squared log residual per squared pixel of height. Whatever its noise, depth keeps
+/// some weight and does not override the colours.
 const ANCHOR_WEIGHTS: [f64; 2] = [1e-3, 10.0];
 /// Share of the resistance to bending that yields to colours if these determine the surface better than its roughness does. Set on
 /// Mozart at 64x64 under four lights and on photographs with quantised depth, which need all of the bending
@@ -132,7 +132,7 @@ impl Refiner {
         let options = IntegrationOptions { robustness: Robustness::Off, ..IntegrationOptions::default() };
         let anchors = Anchors { height: &scratch.spare, weight: AnchorWeight::PerPixel(&scratch.weight) };
         let [p, q] = &scratch.slopes;
-        // Needed only once, so the integrator's memory is not kept.
+        // The integrator is needed only once, so its memory is not kept.
         Integrator::new(view.size, &view.mask)?.integrate(p, q, Some(anchors), &options, depth)?;
         view.camera.depth_from_heights(depth);
         Ok(())
@@ -183,7 +183,7 @@ impl Refiner {
         normals::of_depth_into(view.size, view.camera, depth, normals);
     }
 
-    /// Eq. 17 for each pixel alone; an organised cloud, whose pixels have no rays, gets only this.
+    /// Eq. 17 for each pixel by itself. An organised cloud, whose pixels have no rays, gets only this step.
     fn refine_normals(&mut self, scratch: &mut Scratch, problem: RefinementProblem<'_>, normals: &mut Normals) {
         let RefinementTerms { light, rotation, weights, .. } = &problem.terms;
         let back = rotation.transpose();
@@ -234,8 +234,8 @@ fn sample_prior(problem: RefinementProblem<'_>, band: &Range<usize>, prior: &mut
     }
 }
 
-/// The map's own prior of its surface's second differences, relative to anchors of this weight. It yields to colours as
-/// far as these can be trusted.
+/// The map's own prior of its surface's second differences, relative to anchors of this weight. It yields to colours in
+/// proportion to their reliability.
 fn bending(anchor_weight: f32, [variance_inflation, explained]: [f64; 2], view: &DepthView) -> Bending {
     if !view.noise.is_visible() {
         return Bending::FREE;
@@ -244,7 +244,7 @@ fn bending(anchor_weight: f32, [variance_inflation, explained]: [f64; 2], view: 
     Bending { weight, scale: view.noise.crease() as f32, halving: HALVING_CONFIDENCE * variance_inflation as f32 }
 }
 
-/// (shading error / depth noise)^2: least squares weighs each by its variance.
+/// The weight is (shading error / depth noise)^2, because least squares weighs each by its variance.
 fn anchor_weight(shading_error: f64, view: &DepthView) -> f32 {
     if view.noise.is_visible() {
         return variance_ratio(shading_error, view.noise.sigma);
@@ -254,8 +254,8 @@ fn anchor_weight(shading_error: f64, view: &DepthView) -> f32 {
     variance_ratio(shading_error, depth_noise::white_noise(view.size, &heights))
 }
 
-/// The ratio of the variances, within bounds. Depth without measurable noise gets the largest weight, however exact the
-/// colours are.
+/// The ratio of the variances, limited by bounds. Depth without measurable noise gets the largest weight, however exact
+/// the colours are.
 fn variance_ratio(shading_error: f64, depth_noise: f64) -> f32 {
     let weight = if depth_noise > 0.0 { (shading_error / depth_noise).powi(2) } else { f64::INFINITY };
     weight.clamp(ANCHOR_WEIGHTS[0], ANCHOR_WEIGHTS[1]) as f32

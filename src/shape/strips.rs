@@ -15,13 +15,13 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::light::Lamp;
 use crate::view::Size;
 
-/// Radius of the first ring, pixels: the picture's curvature is measured within it.
+/// Radius of the first ring, pixels, within which the picture's curvature is measured.
 const RING: f64 = 3.0;
 /// Length of a step in the picture, pixels.
 const STEP: f64 = 0.25;
-/// Steps after which a strip ends in any case: it has crossed the largest picture then.
+/// Number of steps after which a strip ends in any case, because it has then crossed the largest picture.
 const MOST_STEPS: usize = 4096;
-/// The most strips of one call.
+/// Largest number of strips of one call.
 const MOST_STRIPS: usize = 360;
 /// Intensity, as a share of the lamp's strength, below which a slope is no longer determined by the picture.
 const DARKEST: f64 = 0.05;
@@ -41,12 +41,12 @@ pub struct ShadedImage<'a> {
     pub lamp: Lamp,
 }
 
-/// Whether the surface around a singular point is taken for a bump or for a dent; the picture does not say.
+/// Whether the surface around a singular point is assumed to be a bump or a dent, which the picture does not show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
-    /// Nearer in the middle.
+    /// The surface is nearer in the middle.
     Bump,
-    /// Farther in the middle.
+    /// The surface is farther in the middle.
     Dent,
 }
 
@@ -241,7 +241,7 @@ mod tests {
             for [x, y, z] in strips.iter().flatten().map(|point| point.map(f64::from)) {
                 farthest = farthest.max((x - MIDDLE).hypot(y - MIDDLE));
                 let expected = depth(x, y) - depth(bright[0], bright[1]);
-                // Two in a hundred of the radius; beyond, the ball is seen edge on.
+                // The tolerance is two percent of the radius; near its border the ball is seen edge on.
                 if (x - MIDDLE).hypot(y - MIDDLE) < 0.9 * RADIUS {
                     assert!((z - expected).abs() < 0.02 * RADIUS, "{lamp:?} at {x}, {y}: {z} {expected}");
                 }

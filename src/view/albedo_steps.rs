@@ -3,13 +3,13 @@
 //!
 //! Shading changes slowly from pixel to pixel; albedo changes abruptly, and mostly in chromaticity. Two neighbours
 //! therefore lie in different regions if their log colours differ by more than shading explains. The difference across
-//! their common border, minus the slope on either side, is the difference of their albedos; its median over the border
-//! counts. Least squares over all borders gives a log offset for each region, up to a common one.
+//! their common border, minus the slope on either side, is the difference of their albedos; the median over the border
+//! is used. Least squares over all borders gives a log offset for each region, up to a common one.
 //!
 //! E. Land, J. McCann: "Lightness and retinex theory", Journal of the Optical Society of America 61, 1971.
 //!
 //! Limits: gradual changes of albedo stay, and so do differences of albedo that no border shows. A sufficiently sharp
-//! edge of the relief looks like one of albedo. Regions of a few pixels, which mix two albedos, leave the mask.
+//! edge of the relief looks like an edge of albedo. Regions of a few pixels, which mix two albedos, leave the mask.
 
 use std::cmp::Reverse;
 
@@ -17,8 +17,8 @@ use super::ColourView;
 use crate::numeric::quantile;
 
 /// Difference of chromaticity (log colours less the channels' mean) above which two neighbours have an edge of albedo
-/// between them, log units; four sigmas of the noise are added. No shading of a smooth surface reaches it. No other
-/// value was tried.
+/// between them, log units; four sigmas of the noise are added. The shading of a smooth surface does not reach this
+/// limit. No other value was tried.
 const CHROMATICITY_STEP: f32 = 0.06;
 /// The same limit for brightness (the channels' mean), log units. No other value was tried.
 const LOG_STEP: f32 = 0.22;
@@ -32,13 +32,13 @@ const FEWEST_PAIRS: usize = 3;
 const WIDEST_BORDER: usize = 3;
 /// The albedo counts as varying if at least this share of the pixels lies outside the largest region.
 const LEAST_ALBEDO: f64 = 0.03;
-/// Weight that ties each region to the mean, in pairs of pixels: it matters only for regions without borders.
+/// Weight that ties each region to the mean, in pairs of pixels. It has an effect only on regions without borders.
 const LOOSE_TIE: f64 = 1e-3;
 
 /// Regions share one albedo if their chromaticities (log colours less the channels' mean) differ by less than this, log
 /// units, and their brightness by less than [`SAME_BRIGHTNESS`].
 const SAME_CHROMATICITY: f64 = 0.1;
-/// The same bound for brightness (the channels' mean), log units: edges of the relief between regions shift brightness,
+/// The same bound for brightness (the channels' mean), log units. Edges of the relief between regions shift brightness,
 /// but hardly chromaticity.
 const SAME_BRIGHTNESS: f64 = 0.4;
 /// Number of rounds in which albedos are joined and compared again. A comparison takes all borders between two albedos
@@ -99,16 +99,16 @@ fn is_one_albedo(a: &[f64; 3], b: &[f64; 3]) -> bool {
 /// The border between two regions.
 struct Border {
     regions: [usize; 2],
-    /// Number of pixel pairs along it.
+    /// Number of pixel pairs along the border.
     pairs: f64,
     /// log albedo of the second region minus that of the first.
     step: [f64; 3],
 }
 
-/// Regions, each with one albedo. At first they are connected.
+/// Regions, each with one albedo. At first each region is connected.
 struct Regions {
     of_pixel: Vec<u32>,
-    /// Pixel count of each, largest first.
+    /// Number of pixels of each region, largest first.
     sizes: Vec<usize>,
 }
 
@@ -190,7 +190,7 @@ impl Regions {
                 }
                 let mut change = 0.0_f64;
                 for (offset, &(sum, weight)) in offsets.iter_mut().zip(&sums) {
-                    // Halfway, because a full step of all regions at once would oscillate between two of them for ever.
+                    // Each region takes half of its step: full steps of all regions at once would oscillate for ever.
                     let next = 0.5 * (*offset + sum / weight);
                     change = change.max((next - *offset).abs());
                     *offset = next;
@@ -314,7 +314,7 @@ mod tests {
     #[test]
     fn with_a_single_albedo_there_is_nothing_to_take_away() {
         assert!(ball(|_, _| [0.0; 3]).without_albedo_steps().is_none());
-        // A gradual change is no edge either.
+        // A gradual change is not an edge.
         assert!(ball(|column, _| [0.01 * column as f64, 0.0, 0.0]).without_albedo_steps().is_none());
     }
 }

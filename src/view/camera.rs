@@ -5,10 +5,10 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::numeric::{Lanes, Real};
 use crate::view::Size;
 
-/// How a view maps points to pixels.
+/// The mapping from points to pixels of a view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Camera {
-    /// No intrinsics: x = column - (W-1)/2, y = row - (H-1)/2, depth in pixels.
+    /// Without intrinsics: x = column - (W-1)/2, y = row - (H-1)/2, depth in pixels.
     Orthographic,
     /// Known intrinsics: points are metric.
     Pinhole(Pinhole),
@@ -22,7 +22,7 @@ impl Camera {
         let [x, y, z] = point;
         match self {
             Self::Orthographic => Some([x + centre(size.width), y + centre(size.height)]),
-            // Depth is measured along z, so points beside and behind a fisheye have none.
+            // Depth is measured along z, so points beside and behind a fisheye have no depth.
             Self::Pinhole(pinhole) => pinhole.project(point).filter(|_| z > 0.0),
         }
     }
@@ -156,7 +156,7 @@ mod tests {
     use super::*;
     use crate::view::Lens;
 
-    /// Largest distance between a pixel and the projection of its ray, pixels: far below the rounding of points in f32.
+    /// Largest distance between a pixel and the projection of its ray, pixels, far below the rounding of points in f32.
     const RETURN_DISTANCE: f64 = 1e-6;
 
     #[test]

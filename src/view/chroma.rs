@@ -2,9 +2,9 @@
 //!
 //! JPEG stores colours at half the resolution of brightness, and a Bayer sensor has one colour a pixel. Where two
 //! albedos meet, brightness steps, but chromaticity drifts over three or four pixels through values that belong to
-//! neither. The image itself shows whether this is so: a step changes between two neighbours, whereas the change of a
-//! drift grows with the distance. Each pixel then takes the mean chromaticity of the window around it in which
-//! chromaticity and brightness vary least, which lies on its own side of the edge. Brightness stays unchanged.
+//! neither. The image itself shows this: a step changes between two neighbours, whereas the change of a drift grows
+//! with the distance. Each pixel then takes the mean chromaticity of the window around it in which chromaticity and
+//! brightness vary least, which lies on its own side of the edge. Brightness stays unchanged.
 //!
 //! M. Kuwahara et al.: "Processing of RI-angiocardiographic images", Digital Processing of Biomedical Images, 1976.
 //!
@@ -24,8 +24,8 @@ const SOFT: f64 = 0.85;
 const REACH: isize = 2;
 /// Smallest share of a window with known colours.
 const COVERED: f32 = 0.6;
-/// Weight of brightness relative to chromaticity in the variance of a window: shading varies brightness, albedo varies
-/// both.
+/// Weight of brightness relative to chromaticity in the variance of a window. Shading varies only brightness, and
+/// albedo varies both.
 const BRIGHTNESS: f32 = 0.5;
 /// Rounds of the filter. A single round leaves the middle of the drift.
 const ROUNDS: usize = 2;
@@ -56,7 +56,7 @@ impl ColourView {
         let mut log = [(); 3].map(|()| vec![f32::NAN; self.size.len()]);
         for index in (0..self.size.len()).filter(|&index| self.mask[index]) {
             let [r, g, b, bright] = shades[index];
-            // The mean chromaticity has a brightness itself.
+            // The brightness of the mean chromaticity is subtracted.
             let offset = bright - brightness([r, g, b]);
             (0..3).for_each(|channel| log[channel][index] = [r, g, b][channel] + offset);
         }

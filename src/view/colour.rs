@@ -47,15 +47,15 @@ pub struct ColourImage {
 pub struct ColourView {
     /// Size of the image.
     pub size: Size,
-    /// How points map to pixels.
+    /// The mapping from points to pixels.
     pub camera: Camera,
     /// Object pixels with usable colours.
     pub mask: Vec<bool>,
     /// log S of R, G, B; NaN off the mask.
     pub log: [Vec<f32>; 3],
-    /// How integers were decoded; floats are linear.
+    /// The encoding with which integers were decoded; floats are linear.
     pub transfer: Transfer,
-    /// The whole frame; empty in views that were derived from another.
+    /// The whole frame; empty in views that were derived from another view.
     pub whole: WholeFrame,
     log_spread: f64,
     log_noise: f64,
@@ -64,13 +64,13 @@ pub struct ColourView {
 /// The input of silhouettes and edges.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WholeFrame {
-    /// The caller's mask, with black and saturated pixels; everything if there is no mask.
+    /// The caller's mask, including black and saturated pixels; all pixels if there is no mask.
     pub object: Vec<bool>,
     /// Brightness as displayed, 0 .. 1 for integers, also outside the object; empty without intrinsics.
     pub grey: Vec<f32>,
 }
 
-/// Darkest usable 8-bit level: below it, one quantisation step exceeds a quarter of the intensity.
+/// Darkest usable 8-bit level, below which one quantisation step exceeds a quarter of the intensity.
 const DARKEST_LEVEL_8: u8 = 4;
 /// Darkest usable 16-bit level: level 4 of a 12-bit sensor, whose steps are 16 times coarser.
 const DARKEST_LEVEL_16: u16 = 64;
@@ -130,7 +130,7 @@ impl ColourView {
 
     /// A view of these logarithms, which are NaN off the mask.
     pub(super) fn of(size: Size, camera: Camera, mask: Vec<bool>, log: [Vec<f32>; 3], transfer: Transfer) -> Self {
-        // Computed once, because the preparation of every stage needs them.
+        // The logarithms are computed once, because the preparation of every stage needs them.
         let (log_spread, log_noise) = (spread_of(&log), noise_of(size, &log));
         Self { size, camera, mask, log, transfer, whole: WholeFrame::default(), log_spread, log_noise }
     }

@@ -6,7 +6,7 @@ use crate::view::Size;
 /// Distance in pixels over which neighbours of equal colour share their evidence. It is the width of the details that a
 /// mask keeps.
 pub const REACH: f32 = 5.0;
-/// Weight of a mark relative to that of a colour: a marked pixel keeps its mark.
+/// Weight of a mark relative to that of a colour, so large that a marked pixel keeps its mark.
 pub const MARKED: f32 = 1e4;
 
 /// The matrix of the quadratic sum.
@@ -33,7 +33,7 @@ impl Couplings {
                 count += 1;
             }
         }
-        // A picture of one colour has no differences; all its links are then one.
+        // A picture of one colour has no differences, so all its links have the weight one.
         let mean = (sum / count.max(1) as f64).max(f64::from(f32::MIN_POSITIVE)) as f32;
         let link = |axis: usize| {
             (0..size.len())
@@ -100,7 +100,7 @@ mod tests {
             product: &mut product,
         };
         solve(&mut couplings, limits, vectors);
-        // x_(k-1) - (2 + 1 / REACH^2) x_k + x_(k+1) = 0
+        // The shares satisfy x_(k-1) - (2 + 1 / REACH^2) x_k + x_(k+1) = 0.
         let half = 0.5 / (REACH * REACH);
         let ratio = 1.0 + half - (half * (2.0 + half)).sqrt();
         for step in 0..12 {

@@ -8,7 +8,7 @@ use crate::numeric::{Doubles, Real};
 
 /// Coefficients of a cubic in two variables.
 const TERMS: usize = 10;
-/// Relative damping of the normal equations: above the rounding of their sums.
+/// Relative damping of the normal equations, above the rounding error of their sums.
 const DAMPING: f64 = 1e-9;
 
 /// Number of sums of a^j b^k up to the sixth power, which are all products of a cubic's terms.

@@ -3,9 +3,9 @@
 //!
 //! The neighbours of a point are expressed in its tangent plane (a, b along it, w off it), and a cubic is fitted to
 //! them by weighted least squares. Its slope at the point corrects the normal, twice. The neighbours are those within
-//! two or three pixels (more under noise), whichever gives the smaller error. In the tangent plane, the surface near an
-//! occluding contour is as smooth as one that faces the camera. A depth z(x, y) has unbounded derivatives there, which
-//! bias central differences.
+//! two or three pixels, or more pixels under noise. The window with the smallest error is used. In the tangent plane,
+//! the surface near an occluding contour is as smooth as one that faces the camera. A depth z(x, y) has unbounded
+//! derivatives there, which bias central differences.
 //!
 //! The error of a normal follows from the residual of its cubic and the weight that determines its slopes. Neighbours
 //! beyond a depth discontinuity are excluded. If fewer remain than a cubic needs, the first normal stays with the error
@@ -27,11 +27,11 @@ const SIGMA: f64 = 0.75;
 /// stay below it (data not recorded).
 const NOISY: f32 = 0.06;
 /// Limit for a wider window in noisy views: the ratio of the mean square motion of the normals to the decrease of their
-/// squared errors, as the fits estimate them. Noise alone gives a ratio of 0.62, its share of the estimated square. The
+/// squared errors, as the fits estimate them. Pure noise gives a ratio of 0.62, its share of the estimated square. The
 /// rest is the squared bias of the wider window. Up to a ratio of 1.24, the sum of bias and noise falls. The limit is a
 /// little lower, because a registration averages noise over its points, but not bias.
 const MOST_MOVED: f64 = 1.1;
-/// Half width of the squares over which the motion of the normals is summed, in half widths of the window: overlapping
+/// Half width of the squares over which the motion of the normals is summed, in half widths of the window. Overlapping
 /// windows share their noise.
 const REACH: usize = 2;
 /// Largest |w| of a neighbour: half the distance along the plane plus 0.3 pixel lengths. Beyond it lies another part of
@@ -41,11 +41,11 @@ const LARGEST_OFFSET: f64 = 0.3;
 /// The same limit close to the point in noisy views, standard deviations of the depth's noise; the larger of both
 /// limits holds.
 const NOISE_OFFSETS: f64 = 3.0;
-/// Residuals up to this multiple of the estimated noise count as noise: the estimate errs by a sixth on steep or small
-/// views.
+/// Residuals up to this multiple of the estimated noise count as noise, because the estimate errs by a sixth on steep
+/// or small views.
 const NOISE_MARGIN: f64 = 1.25;
-/// Rounds from a first normal: the second starts from a normal that is accurate to a few hundredths of a radian. If the
-/// normal of a narrower window is that accurate, one round from it suffices.
+/// Number of rounds from a first normal. The second round starts from a normal that is accurate to a few hundredths of
+/// a radian. If the normal of a narrower window is that accurate, one round from it suffices.
 const ROUNDS: usize = 2;
 /// Error in radians below which a normal is accurate enough for a single round. Set on Mozart at 128x128
 /// (docs/lab/thresholds.md).
@@ -54,7 +54,7 @@ const CLOSE: f32 = 0.06;
 const LEAST_COSINE: f64 = 0.02;
 /// Largest |n_y| for which the tangents are constructed from the y axis.
 const LEVEL: f64 = 0.7;
-/// Error of a normal for which no cubic could be fitted, radians: that of a one-sided difference.
+/// Error of a normal for which no cubic could be fitted, radians, which is that of a one-sided difference.
 pub const UNFITTED: f32 = 0.3;
 
 /// Improves `normals` (unit, NaN where missing) of the organised `points` in place and writes each one's error in
@@ -62,8 +62,8 @@ pub const UNFITTED: f32 = 0.3;
 ///
 /// Each pixel takes the window of least error among those consistent with the narrower ones: a normal that moves by
 /// more than its previous error is biased by the wider window (Lepski's rule). In noisy views, noise moves normals
-/// anyway. If it is white, the surroundings of a pixel together show whether normals move by more than the noise
-/// explains; otherwise the error alone decides.
+/// anyway. If the noise is white, the surroundings of a pixel together show whether normals move by more than the noise
+/// explains. Otherwise only the error decides.
 pub fn improve(size: Size, points: &Points, normals: &mut Normals, error: &mut [f32], is_white: bool) -> f64 {
     let mut first = normals.clone();
     let (mut wide, mut wide_error) = (normals.clone(), vec![f32::NAN; error.len()]);
@@ -267,7 +267,7 @@ impl Band {
                 let [a, b, w] = [dot(axes[0], offset), dot(axes[1], offset), dot(axes[2], offset)];
                 let far = a * a + b * b;
                 let beyond = ((w * w).sqrt() - Doubles::splat(self.window.offset)).raised_to(0.0);
-                // NaN fails the comparison: a missing neighbour gets weight and position zero.
+                // NaN fails the comparison, so a missing neighbour gets weight and position zero.
                 let near = (beyond * beyond).at_most(slope * far);
                 let weight = near.keep((far * flatness).exp2());
                 moments.add(near.keep(Doubles::splat(1.0)), weight, near.keep(a), near.keep(b), near.keep(w));

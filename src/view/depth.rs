@@ -45,7 +45,7 @@ pub struct DepthMap {
 pub struct DepthView {
     /// Size of the map.
     pub size: Size,
-    /// How points map to pixels.
+    /// The mapping from points to pixels.
     pub camera: Camera,
     /// Object pixels, including holes that touch a depth.
     pub mask: Vec<bool>,
@@ -161,7 +161,7 @@ impl DepthView {
         }
     }
 
-    /// Moves the points along their rays to remove the noise of the map, unless that noise is white: cubics and
+    /// Moves the points along their rays to remove the noise of the map, unless that noise is white. Cubics and
     /// registration average white noise themselves, and smoothing would remove relief that they need.
     fn remove_noise(&mut self) {
         let mut depth = self.points.z.clone();
@@ -221,7 +221,7 @@ impl DepthMap {
         }
     }
 
-    /// Points in metres or pixels, NaN at holes; x and y also where there is no ray.
+    /// Points in metres or pixels, NaN at holes. Without a ray, x and y are also NaN.
     fn points(&self, size: Size, camera: Camera, unit: f64) -> Result<Points> {
         let (field, per_pixel, length) = match &self.samples {
             DepthSamples::Float(data) => ("depth.data", 1, data.len()),
@@ -244,7 +244,7 @@ impl DepthMap {
             };
             let (column, row) = size.position(index);
             let point = camera.point(size, [column as f64, row as f64], depth * unit).map(|value| value as f32);
-            // x and y may exceed the limit as well, if the focal length is tiny.
+            // If the focal length is tiny, x and y may also exceed the limit.
             if point[2] > 0.0 && !point.iter().any(|value| value.abs() >= FARTHEST as f32) {
                 points.set(index, point);
             }

@@ -3,25 +3,25 @@
 //!
 //! D_k = z(x - k) - 2 z(x) + z(x + k). A surface whose slope wanders, by innovations of variance c^2 a pixel, has var
 //! D_k = c^2 k (2 k^2 + 1) / 3. Noise has var D_k = 6 sigma^2 for every span wider than its correlation. Both therefore
-//! follow from a few spans by linear least squares, whatever causes the noise: white noise, noise that the sensor has
+//! follow from a few spans by linear least squares, whatever causes the noise. White noise, noise that the sensor has
 //! smoothed laterally, and the staircase of a quantised map all stop growing, while a surface never does. Fourth
 //! differences of neighbours (`numeric::noise`) see white noise, but not a staircase.
 //!
 //! All lengths are heights in pixels (`heights`). A depth sensor's noise grows with z^2, so that of f ln Z grows with
-//! z. Limits: relief that repeats within a few pixels stops growing as well; relief that grows too slowly over the
-//! first two spans counts as noise.
+//! z. Limits: relief that repeats within a few pixels also stops growing. Relief that grows too slowly over the first
+//! two spans counts as noise.
 
 use crate::numeric::{noise, quantile};
 use crate::view::Size;
 
-/// Spans of the fit in pixels. A sensor's noise is correlated over two or three pixels, so a span of one shows too
-/// little of it. Over wider spans the differences of small objects stop growing, like noise. Set on busts of 64x64 with
-/// white noise (docs/lab/thresholds.md).
+/// Spans of the fit in pixels. A sensor's noise is correlated over two or three pixels, so a span of one pixel shows
+/// too little of the noise. Over wider spans the differences of small objects stop growing, like noise. Set on busts of
+/// 64x64 with white noise (docs/lab/thresholds.md).
 const SPANS: [usize; 3] = [2, 3, 4];
 /// Spans whose growth distinguishes noise from a surface.
 const GROWTH_SPANS: [usize; 2] = [1, 2];
-/// Largest ratio var D_1 / var D_2 of a surface, that of a wandering slope: smoother surfaces have a smaller ratio, noise has a
-/// larger one.
+/// Largest ratio var D_1 / var D_2 of a surface, that of a wandering slope. Smoother surfaces have a smaller ratio, and
+/// noise has a larger one.
 const SURFACE_GROWTH: f64 = 1.0 / 6.0;
 /// Second differences beyond this quantile are excluded as depth discontinuities and creases. The factor corrects the
 /// variance of the others if they are normal: 1 - 2 q phi(q) / 0.8 with q = 1.2816.
@@ -32,9 +32,9 @@ const KEPT_VARIANCE: f64 = 0.438;
 const FEWEST: usize = 1000;
 const MOST: usize = 1 << 16;
 
-/// Noise counts as white if fourth differences of neighbours see at least this share of it. They see less of the noise
-/// in quantised and laterally smoothed maps. If the steps of a quantised map are as narrow as pixels, its noise is
-/// white. Set on ten surfaces (docs/lab/thresholds.md).
+/// Noise counts as white if fourth differences of neighbours see at least this share of the noise. They see less of the
+/// noise in quantised and laterally smoothed maps. If the steps of a quantised map are as narrow as pixels, its noise
+/// is white. Set on ten surfaces (docs/lab/thresholds.md).
 const LEAST_WHITE: f64 = 0.75;
 /// A map whose noise is not white is smoothed if lambda exceeds this: a window of lambda^(1/4) = 0.8 pixels. Noise with
 /// a smaller lambda cannot be distinguished from relief, and a narrower window smooths nothing. Set on busts of 64x64
@@ -51,7 +51,7 @@ pub struct DepthNoise {
     pub sigma: f64,
     /// Standard deviation of the change of the surface's slope from one pixel to the next.
     pub roughness: f64,
-    /// Whether neighbours share no noise: the staircase of a quantised map and laterally smoothed noise are not white.
+    /// Whether neighbours share no noise. The staircase of a quantised map and laterally smoothed noise are not white.
     pub is_white: bool,
 }
 
@@ -120,7 +120,7 @@ pub(crate) fn white_noise(size: Size, heights: &[f32]) -> f64 {
     noise::of_fourth_differences(&mut size.runs().map(fourth), 2 * size.len())
 }
 
-/// An upper bound of a raster's noise: relief within two pixels counts as noise.
+/// An upper bound of a raster's noise, in which relief within two pixels counts as noise.
 pub(crate) fn most(size: Size, values: &[f32]) -> f64 {
     variance_of_second_differences(size, values, SPANS[0], &mut vec![]).map_or(0.0, |variance| (variance / 6.0).sqrt())
 }
@@ -195,7 +195,8 @@ mod tests {
         }
     }
 
-    /// A box filter of three by three: neighbours share their noise, which differences of neighbours then do not show.
+    /// A box filter of three by three makes neighbours share their noise, so that differences of neighbours do not show
+    /// it.
     #[test]
     fn noise_smoothed_sideways_keeps_its_size() {
         let (mut heights, mut normal) = (body(), normal_numbers(9));

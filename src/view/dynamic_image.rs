@@ -27,7 +27,7 @@ impl TryFrom<&DynamicImage> for ColourImage {
     /// The picture's colours; grey pictures get three equal channels. Fully transparent pixels do not belong to the
     /// object.
     ///
-    /// Floats are linear. Integers are linear if the picture's colour space says so. Otherwise 8 bits are sRGB and 16
+    /// Floats are linear. Integers are linear if the picture's colour space is linear. Otherwise 8 bits are sRGB and 16
     /// bits are guessed ([`ColourImage::transfer`]), because the crate `image` labels every picture without a colour
     /// space as sRGB.
     ///
@@ -38,7 +38,7 @@ impl TryFrom<&DynamicImage> for ColourImage {
             Levels::Bytes(rgba) => ColourSamples::Rgba8(rgba),
             Levels::Words(rgba) => ColourSamples::Rgba16(rgba),
             Levels::Floats(rgba) => {
-                // These floats get no fourth channel, so zero marks an unused pixel.
+                // Floats have no fourth channel, so zero marks an unused pixel.
                 let colours = rgba.as_chunks().0.iter().map(|&[r, g, b, a]| if a > 0.0 { [r, g, b] } else { [0.0; 3] });
                 ColourSamples::RgbLinear(colours.flatten().collect())
             }
@@ -58,8 +58,8 @@ impl TryFrom<&DynamicImage> for ColourImage {
 impl TryFrom<&DynamicImage> for DepthMap {
     type Error = Error;
 
-    /// The picture's stored numbers, whatever its colour space. Zeros, fully transparent pixels and floats that are not
-    /// finite are holes. The unit is [`DepthMap::unit`]'s default until it is set.
+    /// The picture's stored numbers, whatever its colour space is. Zeros, fully transparent pixels and floats that are
+    /// not finite are holes. The unit is [`DepthMap::unit`]'s default until it is set.
     ///
     /// # Errors
     /// [`ErrorKind::Range`] with the first pixel whose channels differ, because such a picture is not a depth map.
@@ -68,7 +68,7 @@ impl TryFrom<&DynamicImage> for DepthMap {
         let samples = match levels("depth.data", picture)? {
             Levels::Bytes(rgba) => DepthSamples::Integer(grey(&rgba, |a, b| a == b)?.map(u16::from).collect()),
             Levels::Words(rgba) => DepthSamples::Integer(grey(&rgba, |a, b| a == b)?.collect()),
-            // Compared as bits, because a hole may be NaN, which equals nothing.
+            // The channels are compared as bits, because a hole may be NaN, which equals nothing.
             Levels::Floats(rgba) => {
                 DepthSamples::Float(grey(&rgba, |a: f32, b: f32| a.to_bits() == b.to_bits())?.collect())
             }
@@ -125,7 +125,7 @@ mod tests {
 
     use super::*;
 
-    /// Every 8-bit level, and as many 16-bit ones.
+    /// The test covers every 8-bit level, and as many 16-bit levels.
     fn grey_bytes() -> DynamicImage {
         ImageBuffer::from_fn(16, 16, |x, y| Luma([(16 * y + x) as u8])).into()
     }

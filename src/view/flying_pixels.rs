@@ -2,24 +2,24 @@
 //!
 //! The depth map is cut wherever neighbours differ by more than a multiple of the median step. A piece stays if it has
 //! enough pixels relative to the largest piece, and lies no farther in front of or behind it than the extent of that
-//! piece. Limits: an object with parts farther apart in depth than that loses the smaller parts; trimming can be
-//! switched off. The data used to set the constants are not recorded.
+//! piece. Limits: an object whose parts are farther apart in depth loses the smaller parts; trimming can be switched
+//! off. The data used to set the constants are not recorded.
 
 use crate::numeric::quantile;
 use crate::view::Size;
 use crate::view::mask::components;
 
-/// Neighbours are cut apart beyond this multiple of the median step between neighbours, so that steep but smooth
+/// Neighbours are separated beyond this multiple of the median step between neighbours, so that steep but smooth
 /// surfaces stay whole.
 const JUMP_STEPS: f32 = 12.0;
-/// Smallest cutting step in a metric view, as a share of the median depth: above the noise of consumer sensors at arm's
-/// length.
+/// Smallest step that separates neighbours in a metric view, as a share of the median depth, above the noise of
+/// consumer sensors at arm's length.
 const METRIC_JUMP: f32 = 0.015;
-/// Smallest cutting step in pixels: a slope of 76 degrees.
+/// Smallest step that separates neighbours, pixels, a slope of 76 degrees.
 const PIXEL_JUMP: f32 = 4.0;
-/// Smallest number of pixels of a piece that stays, as a share of the largest piece's.
+/// Smallest number of pixels of a kept piece, as a share of the number in the largest piece.
 const LEAST_SHARE: f64 = 0.05;
-/// Largest distance of a piece that stays in front of or behind the largest one, in extents of that one.
+/// Largest distance of a kept piece in front of or behind the largest piece, in extents of the largest piece.
 const REACH: f32 = 1.0;
 
 /// Whether each pixel belongs to the object. `depth` is NaN at holes; `focal_length`, in pixels, is `None` for an

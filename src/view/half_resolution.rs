@@ -37,7 +37,7 @@ impl Size {
         });
     }
 
-    /// The inverse: interpolates bilinearly between the pixels of the halved view that are not NaN.
+    /// The inverse of halving: interpolates bilinearly between the pixels of the halved view that are not NaN.
     pub(crate) fn double(self, coarse: &[f32], fine: &mut [f32]) {
         let half = self.halved();
         for (index, value) in fine.iter_mut().enumerate() {
@@ -119,7 +119,7 @@ impl Normals {
 }
 
 impl DepthView {
-    /// The same for a depth view. An organised cloud keeps its frame.
+    /// The origin of a halved depth view, given in this view's frame. An organised cloud keeps its frame.
     pub(crate) fn half_origin(&self) -> Option<Vector3<f64>> {
         half_origin(self.size, self.camera.is_orthographic() && !self.organised)
     }

@@ -13,7 +13,7 @@ impl Camera {
         }
     }
 
-    /// Converts heights to depths in place: the inverse.
+    /// Converts heights to depths in place.
     pub(crate) fn depth_from_heights(&self, field: &mut [f32]) {
         let Some(focal_length) = self.focal_length() else { return };
         for value in field {

@@ -1,23 +1,24 @@
-//! Detects a hollow depth map, such as a bowl seen from inside, or one stored so that larger means nearer.
+//! Detects a hollow depth map, such as a bowl seen from inside, or a map whose larger numbers are nearer.
 //!
 //! At the occluding contours of a solid object, where it turns away from the camera, the normals face outward. In a map
-//! with mirrored depths they face inward. The image cannot distinguish the two: mirrored depth gives the same image if
-//! light and pose are mirrored in depth as well.
+//! with mirrored depths they face inward. The image cannot distinguish the two, because mirrored depth gives the same
+//! image if light and pose are also mirrored in depth.
 //!
 //! Limits: a relief that ends before it turns away has no occluding contours and is not judged.
 
 use super::{Normals, Size};
 
-/// Distance, in pixels, at which pixels without depth are looked for: the normals of the last pixel are one-sided.
+/// Distance, in pixels, at which pixels without depth are searched, because the normals of the last pixel are
+/// one-sided.
 const BEYOND: isize = 2;
-/// Outward component of a normal above which a border pixel lies on an occluding contour: the surface has turned away
-/// by 37 degrees.
+/// Outward component of a normal above which a border pixel lies on an occluding contour. The surface has then turned
+/// away by 37 degrees.
 const LEAST_OUTWARD: f32 = 0.6;
 /// Ratio of inward to outward contour pixels above which a map counts as hollow. Set on random scenes, their mirrored
 /// versions and a capture of a bowl (docs/lab/thresholds.md). Solid objects have inward contour pixels where the map
 /// lacks the far part of a surface that is seen from the side.
 const HOLLOW: f64 = 1.5;
-/// Fewer contour pixels are not judged.
+/// Smallest number of contour pixels for a verdict.
 const FEWEST: usize = 12;
 
 /// Directions of the eight pixels that are checked for depth.

@@ -3,10 +3,10 @@
 use crate::error::{Error, ErrorKind, Result};
 use crate::view::Size;
 
-/// Smallest number of usable pixels of a view: as many as the smallest view, 4x4, has.
+/// Smallest number of usable pixels of a view, the number in the smallest view of 4x4.
 pub const FEWEST_PIXELS: usize = 16;
 
-/// The caller's mask, checked; without one, every pixel.
+/// The caller's mask after its check; without a mask, every pixel.
 pub fn checked(field: &'static str, size: Size, mask: Option<&[u8]>) -> Result<Vec<bool>> {
     let Some(mask) = mask else { return Ok(vec![true; size.len()]) };
     if mask.len() != size.len() {

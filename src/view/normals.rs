@@ -1,13 +1,13 @@
 //! n = (dP/drow x dP/dcolumn) / |...|: normals of a depth map or an organised cloud P(column, row) (docs/method/views.md).
 //!
 //! Method: central differences of the points along both axes, which include camera and distortion, and one-sided
-//! differences at holes and borders. For noisy depth, alternatively the slopes of the weighted least-squares plane
-//! P = c + a column + b row over a window. The winding of the grid orients the normal. For a depth map it then faces the
-//! camera; for a rotated organised cloud it may rightly face away from it.
+//! differences at holes and borders. For noisy depth, the slopes of the weighted least-squares plane P = c + a column +
+//! b row over a window are an alternative. The winding of the grid orients the normal. For a depth map it then faces
+//! the camera; for a rotated organised cloud it may rightly face away from it.
 //!
 //! Discontinuities: a step between neighbours is not used if it is longer than four times the median of the (up to)
 //! four steps around the pixel along the same axis. Lengths are in space, so a flat region has the steps of its
-//! sampling, and neither quantisation nor noise below that counts as a jump.
+//! sampling. Smaller steps from quantisation or noise do not count as jumps.
 //!
 //! Limits: second order inside (error z'''/6 per pixel), first order at borders and holes. A structure of one or two
 //! pixels has no steps around it for comparison and keeps its jumps. The plane fit is first order where its window is
@@ -21,10 +21,10 @@ use crate::view::{Camera, Normals, Points, Size};
 const LONGEST_STEP: f64 = 4.0;
 /// Widest window of a plane fit, in pixels from its centre.
 const LARGEST_RADIUS: usize = 16;
-/// Least determinant of a plane's two slopes, as a share of its diagonal: below it, the window is a line.
+/// Least determinant of a plane's two slopes, as a share of its diagonal, below which the window is a line.
 const LEAST_DETERMINANT: f64 = 1e-3;
 
-/// How normals are estimated from points.
+/// The method that estimates normals from points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Estimate {
     /// Central differences.
@@ -50,7 +50,7 @@ pub fn of_depth_into(size: Size, camera: Camera, depth: &[f32], normals: &mut No
     of_depth_rows(size, camera, depth, 0, normals);
 }
 
-/// [`of_depth_into`] for as many pixels as `normals` holds, from the row `first` on.
+/// [`of_depth_into`] for as many pixels as `normals` holds, starting at the row `first`.
 pub(crate) fn of_depth_rows(size: Size, camera: Camera, depth: &[f32], first: usize, normals: &mut Normals) {
     let rows = normals.len() / size.width;
     if camera.is_orthographic()
@@ -107,7 +107,7 @@ struct Grid<F> {
 }
 
 impl<F: Fn(usize) -> Option<Vector>> Grid<F> {
-    /// Estimates the normals of the pixels from `first` on.
+    /// Estimates the normals of the pixels, starting at `first`.
     fn estimate(&self, estimate: Estimate, first: usize, normals: &mut Normals) {
         for index in 0..(self.size.len() - first).min(normals.len()) {
             let pixel = self.size.position(first + index);
@@ -232,7 +232,8 @@ fn lane_slope(line: [Lanes; 5]) -> Lanes {
         (other_first.select(other_low, low), other_first.select(low, other_low))
     };
     let rest = other_high.less(high).select(other_high, high);
-    // The shorter of one or two steps, the second of three or four: if the third exists, there are at least three.
+    // The median is the shorter of one or two steps, and the second of three or four. If the third exists, there are at
+    // least three.
     let second = rest.less(more).select(rest, more);
     let third = rest.less(more).select(more, rest);
     let median = third.less(far).select(second, least);
@@ -250,7 +251,7 @@ fn median_step(line: [Option<Vector>; 5]) -> Option<f64> {
     for pair in line.windows(2) {
         if let (Some(a), Some(b)) = (pair[0], pair[1]) {
             let square = square(minus(b, a));
-            // Insertion sort: for four numbers, a general sort is slow and large in wasm.
+            // Insertion sort, because for four numbers a general sort is slow and large in wasm.
             let mut place = count;
             while place > 0 && squares[place - 1] > square {
                 squares[place] = squares[place - 1];

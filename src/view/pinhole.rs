@@ -20,13 +20,13 @@ pub struct Pinhole {
     pub lens: Lens,
 }
 
-/// A depth or a coordinate of a cloud from this value on counts as missing, metres or pixels: some formats mark a hole
-/// by their largest number, and f32 cannot hold its square.
+/// Smallest depth or coordinate of a cloud that counts as missing, metres or pixels. Some formats mark a hole by their
+/// largest number, and f32 cannot hold its square.
 pub const FARTHEST: f64 = 1e12;
 /// Message for a ray that is steeper than any in a picture; its points may overflow.
 const TOO_STEEP: &str = "must be finite, and below 1e12 focal lengths";
-/// Pixels and slopes from this value on have no ray: their squares overflow f64, and rounding would send some to
-/// infinity and back.
+/// Smallest pixel position or slope without a ray. The squares of larger ones overflow f64, and rounding would send
+/// some to infinity and back.
 const BEYOND: f64 = 1e150;
 
 impl Pinhole {
@@ -52,7 +52,7 @@ impl Pinhole {
     }
 
     /// Column and row of a point; `None` behind the camera, beyond the fold of its lens, and at the camera's centre. A
-    /// fisheye sees points beside and behind it as far as its lens does not fold.
+    /// fisheye also sees points beside and behind it, up to the angle at which its lens folds.
     #[must_use]
     pub fn project(&self, point: [f64; 3]) -> Option<[f64; 2]> {
         let [x, y] = self.lens.project(point)?;
@@ -69,7 +69,7 @@ impl Pinhole {
 
     /// Direction of the ray through a pixel: with z = 1 if it points forward, so that depth times the direction is the
     /// point; for a fisheye, a unit vector (z below 0.01) if it points sideways or backward. `None` if the lens has no
-    /// ray there, or if the square of pixel or slope overflows.
+    /// ray at this pixel, or if the square of pixel or slope overflows.
     #[must_use]
     pub fn ray(&self, [column, row]: [f64; 2]) -> Option<[f64; 3]> {
         let target = self.straight([column, row]);
@@ -193,7 +193,7 @@ mod tests {
 
     #[test]
     fn nothing_is_seen_beyond_the_fold() {
-        // r - r^3 grows up to r = 0.577; r (1 - 0.5 r^2 + 0.1 r^4) falls from r = 1 on and grows again from 1.41 on.
+        // r - r^3 grows up to r = 0.577. r (1 - 0.5 r^2 + 0.1 r^4) falls between r = 1 and 1.41 and then grows again.
         let once = camera(Lens::Brown([-1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]));
         let twice = camera(Lens::Brown([-0.5, 0.1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]));
         for (camera, seen, unseen) in [(once, 0.57, [0.585, 3.0]), (twice, 0.99, [1.02, 1.5])] {

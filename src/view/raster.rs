@@ -2,9 +2,9 @@
 
 use crate::error::{Error, ErrorKind, Result};
 
-/// Smallest side of a view: below it, neither a normal nor a light is determined.
+/// Smallest side of a view; smaller views do not determine normals and a light.
 pub const SMALLEST_SIDE: usize = 4;
-/// Largest side of a view: the samples of two such views fit a 32-bit memory.
+/// Largest side of a view; the samples of two such views fit a 32-bit memory.
 pub const LARGEST_SIDE: usize = 4096;
 
 /// Width and height of a raster in pixels; row-major, pixel (0, 0) top left.
@@ -93,8 +93,8 @@ impl Size {
         self.interpolate(fields, column, row, weighted_mean)
     }
 
-    /// [`bilinear`](Self::bilinear) over the neighbours that are not NaN: at the border of an object, some lie off the
-    /// mask.
+    /// [`bilinear`](Self::bilinear) over the neighbours that are not NaN, because at the border of an object some lie
+    /// off the mask.
     #[must_use]
     pub fn bilinear_of_known(self, field: &[f32], column: f32, row: f32) -> f32 {
         let [value] = self.each_bilinear_of_known([field], column, row);

@@ -5,7 +5,7 @@
 //!
 //! sum_i (p_i (1 - x_i)^2 + (1 - p_i) x_i^2) / REACH^2 + sum_ij w_ij (x_i - x_j)^2
 //!
-//! over the share x_i of the object in each pixel, where p_i is the share that the pixel's colour alone suggests, and
+//! over the share x_i of the object in each pixel, where p_i is the share that only the pixel's colour suggests, and
 //! w_ij = exp(-|c_i - c_j|^2 / (2 mean |c - c'|^2)) couples neighbours of similar colour. Pixels with x above one half
 //! are the object of the next round. The sum is quadratic, so conjugate gradients find its only minimum.
 //!
@@ -23,8 +23,8 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::numeric::conjugate_gradient::{Limits, System, Vectors, solve};
 use crate::view::Size;
 
-/// Longest side in pixels at which colours are compared. Beyond it a pixel stands for a block: eight pixels wide at 12
-/// megapixels, narrower than a brush.
+/// Longest side in pixels at which colours are compared. In larger pictures a pixel stands for a block, eight pixels
+/// wide at 12 megapixels, which is narrower than a brush.
 const LONGEST: usize = 512;
 /// Bins along each colour channel. 16 of them distinguish shades and fill with the pixels of a small object.
 const BINS: usize = 16;
@@ -37,10 +37,10 @@ const ROUNDS: u32 = 12;
 const RESTING: f64 = 1e-3;
 /// Share of the object's area below which an island or a hole is noise.
 const SPECK: f64 = 0.01;
-/// Largest number of iterations of one round's solve; x is needed to a hundredth.
+/// Largest number of iterations of the solve in a round, which needs x to a hundredth.
 const SOLVE: Limits = Limits { iterations: 80, error: 0.0, relative_error: 1e-4, decrease: 0.0 };
 
-/// What is known about a pixel, in the order of OpenCV's GrabCutClasses.
+/// The knowledge about a pixel, in the order of OpenCV's GrabCutClasses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
     /// Certainly background.
@@ -81,7 +81,7 @@ pub struct SegmentationReport {
 /// A segmentation, one round after the other.
 pub struct Segmentation {
     size: Size,
-    /// The size at which colours are compared, and the pixels of the picture that one of its pixels stands for.
+    /// The size at which colours are compared, and the pixels of the picture for which one of its pixels stands.
     small: Size,
     factor: usize,
     /// Bin of each small pixel.
@@ -240,7 +240,7 @@ fn check(size: Size, colours: &[u8], marks: &[u8]) -> Result<()> {
     }
 }
 
-/// Columns and rows of the picture that a small pixel stands for.
+/// Columns and rows of the picture for which a small pixel stands.
 fn block(size: Size, small: Size, factor: usize, index: usize) -> [Range<usize>; 2] {
     let (column, row) = small.position(index);
     let part = |at: usize, length: usize| factor * at..(factor * (at + 1)).min(length);
@@ -256,7 +256,8 @@ fn mean_colour(size: Size, colours: &[u8], [columns, rows]: [Range<usize>; 2]) -
     sums.map(|sum| sum / count)
 }
 
-/// The mark of a block: a certain one if there is any, else that of its first pixel. Strokes may be thinner than blocks.
+/// The mark of a block: a certain one if there is any, else that of its first pixel. A stroke may be thinner than a
+/// block.
 fn mark_of(size: Size, marks: &[u8], [columns, rows]: [Range<usize>; 2]) -> Mark {
     let first = Mark::ALL[usize::from(marks[size.index(columns.start, rows.start)])];
     rows.flat_map(|row| columns.clone().map(move |column| size.index(column, row)))
@@ -359,7 +360,7 @@ mod tests {
         let mut marks = vec![2; size.len()];
         (60..100).for_each(|column| marks[size.index(column, 60)] = 1);
         (0..160).for_each(|column| marks[size.index(column, 4)] = 0);
-        // A stroke of background across the object, and one of the object outside.
+        // A stroke of background crosses the object, and a stroke of the object lies outside.
         (60..100).for_each(|column| marks[size.index(column, 66)] = 0);
         (2..12).for_each(|column| marks[size.index(column, 100)] = 1);
         let (mask, _) = run(size, &colours, &marks);

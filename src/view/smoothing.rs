@@ -17,7 +17,7 @@ use crate::numeric::robust;
 
 /// Reweighted rounds after the first one, which is plain least squares.
 const REWEIGHTED: usize = 3;
-/// Limits of each round; the error is about the square of that of the heights.
+/// Limits of each round; this error is about the square of the error of the heights.
 const LIMITS: Limits = Limits { iterations: 60, error: 0.0, relative_error: 1e-6, decrease: 0.0 };
 
 /// Removes the noise from a raster of heights, NaN where missing.
@@ -45,7 +45,7 @@ pub fn smooth(size: Size, noise: &DepthNoise, heights: &mut [f32]) {
 struct Stencil {
     offsets: [usize; 4],
     factors: [f32; 4],
-    /// Weight of its square: the twist counts twice in the energy of a thin plate.
+    /// Weight of the square. The twist counts twice in the energy of a thin plate.
     share: f32,
 }
 
@@ -92,7 +92,7 @@ impl ThinPlate {
             for (index, weight) in weights.iter_mut().enumerate().filter(|(_, weight)| **weight > 0.0) {
                 let difference: f32 = (0..4).map(|k| factors[k] * z[index + offsets[k]]).sum();
                 let robust: f32 = robust::weight(difference * difference * inverse_square);
-                // Never zero, which would mark a missing second difference.
+                // The weight is never zero, which would mark a missing second difference.
                 *weight = (share * lambda * robust).max(f32::MIN_POSITIVE);
                 for k in 0..4 {
                     self.diagonal[index + offsets[k]] += *weight * factors[k] * factors[k];
@@ -129,7 +129,8 @@ impl System for ThinPlate {
 mod tests {
     use super::*;
 
-    /// A roof with a staircase on it: its planes lose the steps, its ridge stays in place, its hole stays a hole.
+    /// Smooths a roof with a staircase on it. The planes lose the steps, the ridge stays in place, and the hole stays a
+    /// hole.
     #[test]
     fn steps_go_and_a_ridge_stays() {
         let size = Size { width: 64, height: 64 };

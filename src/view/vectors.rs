@@ -47,7 +47,7 @@ impl Normals {
         [self.x[index], self.y[index], self.z[index]]
     }
 
-    /// The four vectors from `index` on; NaN beyond the last one.
+    /// The four vectors that begin at `index`; NaN beyond the last one.
     pub(crate) fn lanes(&self, index: usize) -> [Lanes; 3] {
         let start = index as isize;
         [Lanes::load(&self.x, start), Lanes::load(&self.y, start), Lanes::load(&self.z, start)]
@@ -63,7 +63,7 @@ impl Normals {
     #[inline(always)]
     #[must_use]
     pub fn is_valid(&self, index: usize) -> bool {
-        // A sum is NaN if a member is.
+        // One test suffices, because a sum is NaN if a member is NaN.
         !self.get(index).iter().sum::<f32>().is_nan()
     }
 
@@ -79,7 +79,7 @@ impl Normals {
         [&mut self.x, &mut self.y, &mut self.z].into_iter().for_each(|axis| axis.resize(length, f32::NAN));
     }
 
-    /// Copies a range of other vectors to this one from `start` on.
+    /// Copies a range of other vectors into this field, starting at `start`.
     pub(crate) fn copy_range(&mut self, start: usize, other: &Self, range: &Range<usize>) {
         let [x, y, z] = [&other.x, &other.y, &other.z].map(|axis| &axis[range.clone()]);
         for (mine, theirs) in [(&mut self.x, x), (&mut self.y, y), (&mut self.z, z)] {
@@ -87,7 +87,7 @@ impl Normals {
         }
     }
 
-    /// Rotates a range of the vectors and writes them into `rotated` from `start` on.
+    /// Rotates a range of the vectors and writes them into `rotated`, starting at `start`.
     pub(crate) fn rotate(&self, range: &Range<usize>, rotation: &Matrix3<f64>, rotated: &mut Self, start: usize) {
         let [x, y, z] = [&self.x, &self.y, &self.z].map(|axis| &axis[range.clone()]);
         for (axis, out) in [&mut rotated.x, &mut rotated.y, &mut rotated.z].into_iter().enumerate() {

@@ -12,12 +12,12 @@ use super::colour::{self, ColourImage, ColourSamples, ColourView};
 use super::{Camera, DepthMap, DepthSamples, Normals, Pinhole, Size};
 use crate::error::Result;
 
-/// Smallest ratio of resolutions at which the image is reduced: the areas of two masks do not determine smaller ratios,
+/// Smallest ratio of resolutions at which the image is reduced. The areas of two masks do not determine smaller ratios,
 /// because both views differ.
 const UNLIKE: f64 = 1.25;
 /// Smallest share of a working pixel that usable image pixels must cover.
 const COVERED: f64 = 0.5;
-/// Share of a working pixel that is rounding and adds no further column.
+/// Largest share of a working pixel that counts as rounding error and adds no further column.
 const SLIVER: f64 = 1e-6;
 /// Margin around the object in working pixels, if the image is cut to its mask.
 const MARGIN: usize = 4;
@@ -146,7 +146,7 @@ impl WorkingSize {
         )
     }
 
-    /// Continuous column and row in the working view of a pixel of the caller's.
+    /// Continuous column and row in the working view of a pixel of the caller's view.
     fn place(&self, pixel: usize) -> [f32; 2] {
         let (column, row) = self.full.position(pixel);
         let place = |at: usize, origin: usize, side: usize| {
@@ -256,8 +256,8 @@ impl Area {
     }
 }
 
-/// Width of a depth pixel at the object, in image pixels: from both focal lengths, else from the areas of both masks,
-/// else from the sizes of the views; never more than the last.
+/// Width of a depth pixel at the object, in image pixels. It follows from both focal lengths, else from the areas of
+/// both masks, else from the sizes of the views, and is at most the last of these.
 fn factor(image: &ColourImage, object: &[bool], depth: &DepthMap) -> f64 {
     let count = |inside: &[bool]| inside.iter().filter(|&&inside| inside).count();
     let frames = ratio(object.len(), depth.width * depth.height);
@@ -270,7 +270,7 @@ fn factor(image: &ColourImage, object: &[bool], depth: &DepthMap) -> f64 {
         _ => frames,
     };
     let factor = footprint.min(frames);
-    // A ratio that is NaN changes nothing.
+    // A ratio of NaN changes nothing.
     if factor >= UNLIKE { factor } else { 1.0 }
 }
 
@@ -380,11 +380,11 @@ mod tests {
 
     #[test]
     fn a_working_pixel_is_the_mean_over_its_area() {
-        // A working pixel covers one and a half image pixels along both axes.
+        // In this case a working pixel covers one and a half image pixels along both axes.
         let ramp: Vec<_> = (0..60 * 60).flat_map(|pixel| [(pixel % 60) as f32 + 1.0; 3]).collect();
         let fine = ColourImage { samples: ColourSamples::RgbLinear(ramp), ..image(60, 60) };
         let (view, _) = WorkingSize::of(fine, &depth(40, 40), MOST).unwrap();
-        // Columns 1 and half of 2, then the other half of 2 and 3.
+        // The first covers column 1 and half of column 2, and the next the other half and column 3.
         for (column, expected) in [(0, (1.0 + 0.5 * 2.0) / 1.5), (1, (0.5 * 2.0 + 3.0) / 1.5)] {
             let found = f64::from(view.log[0][view.size.index(column, 20)]).exp();
             assert!((found - expected).abs() < 1e-5, "{found} {expected}");

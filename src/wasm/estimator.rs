@@ -21,7 +21,7 @@ extern "C" {
     #[wasm_bindgen(typescript_type = "StepReport")]
     pub type JsReport;
 
-    /// Number of the shape from which it starts, numbers, and planes in sequence.
+    /// Number of the shape from which a refinement starts, numbers, and planes in sequence.
     #[wasm_bindgen(typescript_type = "[number, Float64Array, Float32Array]")]
     pub type JsRefinementTask;
 

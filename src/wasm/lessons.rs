@@ -58,7 +58,7 @@ pub fn second_order_of(values: &[f32]) -> Float32Array {
     Float32Array::from(second_order(values).as_slice())
 }
 
-/// Strips from a bright spot, three numbers each point, with a point of NaN after each strip.
+/// Strips from a bright spot, three numbers per point, with a point of NaN after each strip.
 #[wasm_bindgen(js_name = "characteristicStrips")]
 pub fn strips(
     values: &[f32],
@@ -94,7 +94,7 @@ fn normals(planes: &[f32]) -> Normals {
     Normals { x: x.to_vec(), y: y.to_vec(), z: z[..x.len()].to_vec() }
 }
 
-/// Three numbers from an index on; NaN beyond the end.
+/// Three numbers that begin at an index; NaN beyond the end.
 #[inline(never)]
 fn three(numbers: &[f64], place: usize) -> [f32; 3] {
     [0, 1, 2].map(|axis| numbers.get(place + axis).map_or(f32::NAN, |&value| value as f32))

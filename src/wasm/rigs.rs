@@ -92,13 +92,14 @@ impl JsSegmentation {
         Ok(Self(Segmentation::new(size, colours, marks)?))
     }
 
-    /// Runs a round: rounds so far, share of changed pixels, share of the object, and whether it was the last.
+    /// Runs a round. Returns the rounds so far, the share of changed pixels, the share of the object, and whether the
+    /// round was the last.
     pub fn step(&mut self) -> Vec<f64> {
         let SegmentationReport { rounds, changed, share, is_done } = self.0.step();
         vec![f64::from(rounds), changed, share, f64::from(u8::from(is_done))]
     }
 
-    /// 255 on the object.
+    /// The mask: 255 on the object.
     #[must_use]
     pub fn mask(&self) -> Vec<u8> {
         self.0.mask()

@@ -1,4 +1,4 @@
-//! A worker for JavaScript: tasks and findings are plain numbers, and rasters are concatenated.
+//! A worker for JavaScript. Tasks and findings are plain numbers, and rasters are concatenated.
 
 use js_sys::{Float32Array, Float64Array};
 use wasm_bindgen::prelude::wasm_bindgen;

@@ -13,8 +13,9 @@ const NUMBERS: f64 = 1e-4;
 /// The result of a run: alpha, beta, gamma in degrees, scale, residual.
 type End = [f64; 5];
 
-/// Photometric registration from an initial pose some degrees off; the paper's own loop; a search. The paper's loop runs under the
-/// colourful light, because it chooses inliers: under the window light, a last digit moves its result by half a degree.
+/// Photometric registration from an initial pose some degrees off; the paper's own loop; a search. The paper's loop
+/// runs under the colourful light. It chooses inliers, so that under the window light a last digit moves its result by
+/// half a degree.
 const ENDS: [End; 3] = [
     [5.380928, 24.581559, -7.989400, 0.997229, 0.050961],
     [4.846028, 25.005366, -7.994371, 0.998792, 0.116139],

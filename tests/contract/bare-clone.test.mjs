@@ -12,7 +12,7 @@ after(() => rmSync(folder, { recursive: true, force: true }));
 for (const name of ["package.json", "protocols", "scripts", "src"])
   cpSync(inRoot(name), join(folder, name), { recursive: true });
 
-/** The message of a command that is refused before it sets up anything; by then it has loaded all its imports. */
+/** The message of a command that is refused before it sets up anything, but after it has loaded all its imports. */
 const refusal = (args, env = {}) =>
   spawnSync(process.execPath, args, { cwd: folder, env: { ...process.env, ...env }, encoding: "utf8" }).stderr;
 

@@ -1,4 +1,4 @@
-// Tests every line of the table in the package's README in a fresh project: the README's example runs in a browser or in Node.
+// Runs the README's example in a browser or in Node, in a fresh project for every line of the README's table of bundlers.
 import assert from "node:assert/strict";
 import { cpSync, readFileSync, readdirSync } from "node:fs";
 import { createServer as createHttpServer } from "node:http";
@@ -15,7 +15,7 @@ import { LONG } from "./long.mjs";
 const README = inRoot("pkg/README.md");
 const [MADE, OWN] = examples(README, "js");
 
-/** The table's lines: each name with the code in the second column. */
+/** The table's lines, each as a name and the code in the second column. */
 const [, section] = /^\| with \| it needs \|\n\|---\|---\|\n((?:\|.*\n)+)/m.exec(readFileSync(README, "utf8"));
 const table = new Map(
   section
@@ -48,7 +48,7 @@ console.log("end");
 /** Checks that everything was found and works. */
 function complete({ lines, missing, threads }) {
   assert.deepEqual(missing, []);
-  // Vite's development server logs its connection.
+  // The console also has the message of Vite's development server.
   const ours = lines.filter((text) => !text.startsWith("[vite]"));
   assert.match(ours.join("\n"), /^converged (49|50)\.\d+ true: .+\n768 numbers of points\nend$/);
   assert.deepEqual(threads, ["function"]);
@@ -175,7 +175,7 @@ describe("README's example in", () => {
     }
   });
 
-  // Tested in other-origin.test.mjs and runtimes.test.mjs.
+  // These lines are tested in other-origin.test.mjs and runtimes.test.mjs.
   const elsewhere = ["another origin", "Deno", "Bun"];
   test("no other: the table has no line without a test", () =>
     assert.deepEqual([...table.keys()].sort(), [...tested, ...elsewhere].sort()));

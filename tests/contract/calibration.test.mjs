@@ -97,7 +97,7 @@ describe("a rig before boxes", () => {
     );
     assert.equal(sensitivity.length, 24);
     const edges = sensitivity.find(({ cue, axis }) => cue === "edges" && axis === "ry");
-    // A degree or more away, the edges' likelihood is lower than at the estimate.
+    // At a distance of a degree or more, the likelihood of the edges is lower than at the estimate.
     edges.offsets.forEach(
       (offset, k) => Math.abs(offset) > 1 && assert.ok(edges.values[k] < 0, `${offset}: ${edges.values[k]}`),
     );
@@ -176,7 +176,8 @@ describe("a rig before boxes", () => {
       assert.equal(report.candidates.truth.verdict, "undecided", report.candidates.truth.reason);
       assert.equal(report.candidates.told.verdict, "off", report.candidates.told.reason);
       assert.ok(codes(report.warnings).includes("intrinsics-guessed"));
-      // The principal point and the lens are unknown as well: the sigma of the middle's position across is at least a hundredth of the width.
+      // The principal point and the lens are also unknown, so the sigma of the middle's position across is at least a hundredth of the
+      // width.
       const across = Math.sqrt(report.covariance[21]) / report.middle[2];
       assert.ok(across > (0.01 * frame.image.width) / frame.image.camera.fx, String(across));
     },
@@ -283,7 +284,7 @@ describe("a rig before boxes", () => {
     const lens = (distortion) => ({ image: { ...image, camera: { ...image.camera, distortion } }, depth });
     await refused(check(lens([1, 2, 3])), "size", "frames[0].image.camera.distortion");
     await refused(check(lens([NaN, 0, 0, 0, 0])), "range", "frames[0].image.camera.distortion");
-    // A slipped decimal point: the lens folds near the image's middle.
+    // With a misplaced decimal point the lens folds near the image's middle.
     await refused(check(lens([1e6, 0, 0, 0, 0])), "range", "frames[0].image.camera.distortion");
     await refused(
       check({ image, depth: { ...depth, camera: { ...depth.camera, distortion: [-40, 0, 0, 0, 0] } } }),
@@ -337,7 +338,7 @@ test("noise of a receding floor is no rim", LONG, async () => {
 
 test("the health number's interval holds the estimate's error, not one several times as large", LONG, async () => {
   // A covariance with the same inflation for all scenes would overstate these errors. Each of four intervals holds its error with a
-  // probability of 95 %, at least three of them with one of 99 %.
+  // probability of 95 %, and at least three of them hold theirs with 99 %.
   const outside = [];
   for (const seed of [0, 1, 2, 3]) {
     const { own, health } = await found("boxes", seed, 3);
@@ -380,7 +381,7 @@ test("a raw Kinect: calibrations that are off are off, and the estimate is near 
 
 test("a raw Kinect: a misreading that moves the scene by 9 px is named", RAW_KINECT, async () => {
   const { frame, truth } = rawKinect();
-  // The interval of the right calibration's own error reaches 8 px.
+  // The interval of the error of the right calibration reaches 8 px.
   const told = { ...truth, rotation: transpose(truth.rotation) };
   const { verdict, reading, reason } = await checkCalibration([frame], { told });
   assert.deepEqual([verdict, reading], ["off", "transposed-rotation"], reason);

@@ -1,4 +1,4 @@
-// The parts of npm run captures: lenses, hidden truths and other people's costs, on rendered rigs with known extrinsics.
+// The parts of npm run captures, on rendered rigs with known extrinsics: lenses, hidden truths and the costs of other methods.
 import assert from "node:assert/strict";
 import { before, describe, test } from "node:test";
 import { projectFrame, sampleRig } from "../../pkg/index.js";

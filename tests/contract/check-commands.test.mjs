@@ -13,8 +13,8 @@ import { freshProject } from "./fresh.mjs";
 import { LONG } from "./long.mjs";
 
 /**
- * Native code and wasm sum in different orders and compute other sines. Limits of the differences between their reports: for the estimate in
- * units of its sigma, for other numbers relative to the largest of their list, and likewise for the curves of the likelihood.
+ * Native code and wasm sum in different orders and compute other sines. Limits of the differences between their reports: of the estimate
+ * in units of its sigma, of other numbers and of the likelihood's curves relative to the largest number of their list.
  */
 const ROUNDING = { sigmas: 1e-4, relative: 1e-4, curves: 0.01 };
 /** On some rendered rigs, rounding decides whether a point counts, and the estimate moves by up to a hundredth of a sigma. */
@@ -208,7 +208,7 @@ describe("check by npm, Rust and Python", LONG, () => {
 
   test("a raw Kinect has one verdict and one JSON", { skip: existsSync(NYU) ? false : "needs ../shared/data" }, () => {
     const { status, report } = checkAll(NYU, join(NYU, "calib.json"), ROUNDING);
-    // No file states its unit.
+    // No file states the unit of its depths.
     assert.deepEqual([status, report.verdict], [2, "undecided"]);
     assert.deepEqual(
       report.warnings.map(({ code }) => code),

@@ -13,7 +13,7 @@ import { report } from "./rig-sample.mjs";
 const root = mkdtempSync(join(tmpdir(), "check-folder-"));
 after(() => rmSync(root, { recursive: true, force: true }));
 
-/** A stub of the readers: each file states in JSON what reading it returns. */
+/** A stub of the readers: each file holds in JSON the result of reading it. */
 const RIG = `
 import { BimodalError } from "./rig-write.js";
 export async function readRigFile({ name, bytes }) {
@@ -44,7 +44,7 @@ mkdirSync(join(root, "pkg"));
 mkdirSync(join(root, "examples"));
 writeFileSync(join(root, "package.json"), '{ "type": "module" }');
 cpSync(inRoot("examples/check-folder.mjs"), join(root, "examples/check-folder.mjs"));
-// The command and its dependencies, some of which are replaced below.
+// The command and its dependencies. Some are replaced below.
 for (const file of readdirSync(inRoot("pkg")).filter((name) => /\.(js|json|wasm)$/.test(name)))
   cpSync(inRoot("pkg", file), join(root, "pkg", file));
 writeFileSync(join(root, "pkg/rig.js"), RIG);
@@ -114,7 +114,7 @@ describe("exit codes", () => {
     ]) {
       const { status, stdout } = check(...args, "--json", "guessed.json");
       assert.equal(status, 2);
-      assert.match(stdout, /^UNDECIDED: Settled, but check: (one of the check's|two.json: a guess) /);
+      assert.match(stdout, /^UNDECIDED: Looks right, see warnings: (one of the check's|two.json: a guess) /);
       assert.equal(JSON.parse(readFileSync(join(root, "guessed.json"), "utf8")).verdict, "undecided");
     }
     assert.doesNotMatch(check("off", "--calibration", "one.json").stdout, /Settled/);

@@ -92,7 +92,7 @@ const DECIDING = [
   /(?<!typeof [\w.]*)\b(?:message|warning)\b\s*[!=]==?\s*["'`][^"'`]/,
   /\bswitch \((?:[\w.?]*\.)?(?:message|warning)\)/,
 ];
-/** The exception: it displays a message without the name of the field beside it. */
+/** An exception, because it displays a message without the name of the field beside it. */
 const SHOWN = ["www/lab/messages.ts"];
 
 function decisions(text) {

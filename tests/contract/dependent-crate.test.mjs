@@ -25,7 +25,7 @@ function dependent(name, manifest, files) {
   mkdirSync(path, { recursive: true });
   copyFileSync(inRoot("Cargo.lock"), `${path}/Cargo.lock`);
   const head = `[package]\nname = "dependent"\nversion = "0.0.0"\nedition = "2024"\n\n[workspace]\n`;
-  // Speed does not matter here.
+  // The build is not optimised, because speed does not matter here.
   const profile = `[profile.dev]\nopt-level = 0\ndebug = false\n`;
   write(path, { "Cargo.toml": `${head}\n${manifest}\n${profile}`, ...files });
   return path;

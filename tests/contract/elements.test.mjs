@@ -26,7 +26,7 @@ async function opened(name, head) {
   return { page, errors };
 }
 
-/** Workers are reported a little late. */
+/** The browser reports workers a little late. */
 async function workersAre(page, count) {
   for (let tries = 0; page.workers().length !== count && tries < 200; tries++) await page.waitForTimeout(50);
   assert.equal(page.workers().length, count);
@@ -169,7 +169,7 @@ describe("<bimodal-stereo> in plain HTML", LONG, () => {
 
 test("the guide's page works as it is written", LONG, async () => {
   const [guide] = examples(inRoot("docs/guide/elsewhere.md"), "html");
-  // A search takes long; the options leave everything else as it is.
+  // These options omit the search, which takes long. The rest of the guide's page is unchanged.
   write(project, {
     "guide.html": `${guide}<script>Object.assign(document.querySelector("bimodal-stereo"), ${JSON.stringify({ scene: SCENE, options: OPTIONS })});</script>`,
   });
@@ -222,7 +222,7 @@ describe("<bimodal-figure> in plain HTML", LONG, () => {
       }, order);
       await page.locator("bimodal-figure").getByRole("region").waitFor();
       await workersAre(page, 1);
-      // The first lesson has no holes, and would have dropped them.
+      // The first lesson has no holes and would have dropped this part of the state.
       await page.waitForFunction(
         () => document.querySelector("bimodal-figure").shadowRoot.querySelector("[name=holes]")?.value === "20",
       );

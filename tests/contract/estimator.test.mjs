@@ -257,7 +257,7 @@ describe("run", () => {
     let events = 0;
     const onStep = ({ iteration }) => {
       seen.push(iteration);
-      // Runs in the next turn of the event loop, so within two steps.
+      // This runs in the next turn of the event loop, that is, within two steps.
       if (iteration === 1) setImmediate(() => events++);
       if (iteration === 3) assert.equal(events, 1);
     };

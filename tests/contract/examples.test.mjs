@@ -12,7 +12,7 @@ import { readRigFile } from "../../pkg/rig.js";
 import { chrome, folder, pairFiles, run, served } from "./fresh.mjs";
 import { LONG } from "./long.mjs";
 
-/** No test measures time; this ends a test that hangs, milliseconds. */
+/** Limit that ends a test that hangs, milliseconds; no test measures time. */
 const NEVER = 300_000;
 
 const data = folder();
@@ -81,7 +81,7 @@ describe("pages", () => {
         });
         assert.ok(painted > 1000, `${painted} pixels of ${id}`);
       }
-      // Clicked before the worker has loaded, so that there is something to stop on any machine.
+      // The click comes before the worker has loaded, so that the run can be stopped on any machine.
       await page.addInitScript(() => addEventListener("load", () => document.getElementById("stop").click()));
       await page.reload();
       await says(page, "#out", "stopped");
@@ -163,7 +163,7 @@ describe("batch.mjs", () => {
     for (const beta of [0, 10]) await add([`colour/${beta}.png`, `depth/${beta}.npy`], { angles: { beta }, size: 48 });
     for (const beta of [20, 30])
       await add([`view ${beta}-rgb.png`, `view ${beta}-depth.npy`], { angles: { beta }, size: 48 });
-    // The pair comes after the first and takes far longer than an interruption.
+    // This pair comes after the first one and takes far longer than an interruption.
     await add(LARGE, { size: 512 });
     writeFileSync(join(pairs, 'bad, "cut"-colour.png'), "no picture");
     writeFileSync(join(pairs, 'bad, "cut"-depth.npy'), "no array");
@@ -201,7 +201,7 @@ describe("batch.mjs", () => {
       ["name", '"bad', "0"],
     );
     for (const file of LARGE) rmSync(join(pairs, file));
-    // As if the file had been cut off within a line.
+    // The file looks as if it had been cut off within a line.
     appendFileSync(csv, "10,conv");
 
     const second = await batch([pairs, "--csv", csv]);
@@ -219,7 +219,7 @@ describe("batch.mjs", () => {
     }
     assert.match(readFileSync(csv, "utf8"), /^"bad, ""cut""",error,.*it is neither/m);
 
-    // Nothing is left to do.
+    // All pairs have results, so nothing runs.
     const third = await batch([pairs, "--csv", csv]);
     assert.deepEqual([third.code, lines()], [1, all]);
   });

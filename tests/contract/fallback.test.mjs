@@ -8,7 +8,7 @@ const SIMD = "bimodal_stereo_bg.wasm";
 const SCALAR = "bimodal_stereo_scalar_bg.wasm";
 /** Limit of the difference between the rotations: rounding may differ where a compiler reorders sums. */
 const DEGREES = 0.001;
-/** Nothing known, so that the whole method runs, including the search. */
+/** No pose or light is known, so that the whole method runs, including the search. */
 const REQUEST = {
   surface: "bust",
   light: "window",

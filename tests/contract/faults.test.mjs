@@ -21,12 +21,11 @@ function degreesBetween(a, b) {
 
 const isFinitePose = ({ scale, rotation, translation }) => [scale, ...rotation, ...translation].every(Number.isFinite);
 
-/** Nothing known: the loop begins with a search over all poses. It takes most of the time, so only some cases use it. */
+/** Nothing is known, so the loop begins with a search over all poses. The search takes most of the time, so only some cases use it. */
 const SEARCH = { start: "search" };
 
 /**
- * Runs to the end, or checks that the error is named. If the truth is known, "converged" requires a pose near it; if not, the status must
- * not be "converged".
+ * Runs to the end, or checks that the error is named. "converged" requires a known truth and a pose near it.
  */
 function run({ image, depth }, { truth, ...options } = {}) {
   let made;
@@ -158,7 +157,7 @@ describe("faults", () => {
     });
     const round = sample({ surface: { width: 64, height: 64, heights: ball }, light: "window", size: SMALL });
     run({ image: round.image, depth: round.depth }, SEARCH);
-    // A plane of one colour, and a plane as depth.
+    // The image is of one colour, and the depth map is a plane.
     const count = SIDE * SIDE;
     const flat = {
       image: { width: SIDE, height: SIDE, data: new Float32Array(3 * count).fill(0.5) },

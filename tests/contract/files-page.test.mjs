@@ -50,7 +50,7 @@ test("the page's list names what people look for", () => {
 /** The distinct codes of warnings. */
 const codesOf = ({ warnings }) => [...new Set(warnings.map(({ code }) => code))].sort();
 
-/** Reads a sample as its row states, and returns the codes. */
+/** Reads a sample with the options of its row, and returns the codes. */
 const READ = {
   async folder({ files, options }) {
     const found = await readRigFolder(files, options);

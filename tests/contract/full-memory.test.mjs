@@ -1,4 +1,4 @@
-// Exhausted memory is a named error. Four gigabytes are too much for a test, so the module here gets a lower limit.
+// Exhausted memory is a named error. Four gigabytes are too much for a test, so the module gets a lower limit.
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { test } from "node:test";

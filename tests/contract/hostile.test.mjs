@@ -18,7 +18,7 @@ const APART = new Set(["default", "BimodalError", "Estimator", "connectRobot"]);
 
 const circle = {};
 circle.self = circle;
-/** Throws on any access. */
+/** A value that throws on any access. */
 const trap = new Proxy(
   {},
   {
@@ -74,7 +74,7 @@ function* given(count) {
 const PICTURES = [{ title: "a", dataUrl: "data:image/png;base64,AAAA" }];
 const BESIDE = { title: "a", made: new Date(0), inputs: [{ name: "a", says: "b", sha256: "c" }] };
 const OVERLAY = { frame: "a", width: 8, height: 6, picture: PICTURES[0].dataUrl, before: [1, 2], after: [3, 4] };
-/** What a report of a check states besides its numbers. */
+/** The texts of a report of a check. */
 const CHECKED = {
   ...BESIDE,
   inputs: [{ ...BESIDE.inputs[0], bytes: 5, notes: ["a"] }],

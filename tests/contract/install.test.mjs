@@ -61,12 +61,12 @@ test("bundled for browsers it carries its files along, and asks for nothing of N
   };
   const { output } = await build({
     ...{ root: folder, configFile: false, logLevel: "warn", customLogger: logger, worker: { format: "es" } },
-    // This warning about slow plugins depends on how busy the machine is.
+    // This warning about slow plugins depends on the load of the machine.
     build: { write: false, rollupOptions: { input: join(folder, "page.js"), checks: { bundlerTimings: false } } },
   });
   assert.deepEqual(warnings, []);
   const bundled = output.map(({ fileName }) => fileName.replace(/^assets\/|-[\w-]{8}(?=\.)/g, "")).sort();
-  // The check's files are emitted although this page never loads them: their addresses are resolved before the unused code is removed.
+  // The check's files are emitted although this page never loads them, because their addresses are resolved before unused code is removed.
   const wasm = ["", "_check", "_rigs", "_scalar"].map((which) => `bimodal_stereo${which}_bg.wasm`);
   const files = [...wasm, "page.js", "thread.js"];
   assert.deepEqual(bundled, files);
@@ -101,7 +101,7 @@ test("types resolve for Node and for bundlers, without help from other type pack
      export const written = (report: CheckReport): WrittenPose => writePose(report.estimate, "kalibr", context);
      export const page = (report: CheckReport): string => reportHtml(report, [{ title: "", dataUrl: "" }], { made: new Date(0) });
      export const ply: Uint8Array = writeClouds([{ points: new Float32Array(3) }]);
-     // @ts-expect-error a format that is none
+     // @ts-expect-error a format that does not exist
      export const none = (report: CheckReport): WrittenPose => writePose(report.estimate, "urdf");
      const image: ColorImage = decodeColour(new Uint8Array());
      const depth: DepthMap = { ...decodeDepth(new ArrayBuffer(0)), mask: decodeMask(new Uint8Array()).data };

@@ -1,4 +1,4 @@
-// Each catalogue of another language has every text of Learn and no other, with the same symbols, numbers and details.
+// Each catalogue of another language has exactly the texts of Learn, with the same symbols, numbers and details.
 import assert from "node:assert/strict";
 import { readFileSync, readdirSync } from "node:fs";
 import { describe, test } from "node:test";
@@ -12,7 +12,7 @@ const names = readdirSync(inRoot(FOLDER));
 const SAME = {
   de: ["Albedo", "B", "G", "Link", "Orange", "R", "Status", "log S", "nx"],
 };
-/** The sign before decimals. */
+/** The sign before the decimals of a number. */
 const DECIMAL_SIGN = { de: "," };
 
 /** All texts of a tree by their paths. */

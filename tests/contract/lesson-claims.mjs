@@ -15,7 +15,7 @@ const claim = (where, words, holds) => ({ where, words, holds });
 const numberOf = (state, key) => figure(state)[key];
 const statusOf = (state) => figure(state).status;
 
-/** Status words without the reason. */
+/** The words of a status, without its reason. */
 const wordOf = (state) => statusOf(state).split(":")[0];
 
 /** First coefficients of the three channels, and the first one of the second order within a channel. */

@@ -38,7 +38,7 @@ function bears(said, right) {
   return Math.abs(Number(said) - right) <= 1.001 * 10 ** -digits;
 }
 
-/** The text with a wrong word or number in this claim. */
+/** A copy of the text with a wrong word or number in this claim. */
 function turned(text, claim) {
   const { choices, pattern } = patternOf(claim);
   const said = saidIn(text, claim);
@@ -127,7 +127,7 @@ test("each lesson has a guess before its surprise, which the figure answers", ()
       checkAction(lesson, { set: at });
       checkAction(lesson, reveal);
       assert.ok((choices === undefined) !== (number === undefined), lesson.id);
-      // The answer repeats the beginning of the right choice, and of no other.
+      // The answer repeats the beginning of the right choice and of no other choice.
       const begins = (words) => answer.startsWith(words.split(" ").slice(0, 3).join(" ").replace(/,$/, ""));
       if (choices)
         assert.deepEqual(

@@ -71,7 +71,7 @@ describe("one lamp", () => {
       const found = basRelief(normals, LAMP, stretch, right, down);
       const seen = shadeLamp(found.lamp, found.normals).map((value, at) => value * found.albedo[at]);
       close(seen, [...shadeLamp(LAMP, normals)]);
-      // The slope p = -n_x / n_z.
+      // The expected slope is p = -n_x / n_z.
       close([-found.normals[0] / found.normals[2]], [stretch * (NORMAL[0] / 0.8) + right], 1e-5);
     }
     refused(() => basRelief(normals, LAMP, 0), "range", "stretch");
@@ -156,7 +156,7 @@ describe("the landscape of a pixel", () => {
       weights.every((value, i) => i === 0 || value < weights[i - 1]),
       weights.join(),
     );
-    // At 65 degrees, a robust prior has nearly no effect, a plain one moves the pixel nearly halfway.
+    // At 65 degrees, a robust prior has nearly no effect, and a plain one moves the pixel nearly halfway.
     assert.ok(off({ weight: 1 }) > 0.95 * weights[0] && off({ weight: 1, robust: false }) < 0.6 * weights[0]);
   });
 

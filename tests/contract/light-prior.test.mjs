@@ -7,7 +7,7 @@ import { Estimator, init, refused, sample } from "./support.mjs";
 /** The crate's own prior to six digits, written by scripts/reference/light-prior.py next to the Rust table. */
 const KEPT = JSON.parse(readFileSync(new URL("../../scripts/reference/light-prior.json", import.meta.url), "utf8"));
 const OWN = { mean: KEPT.mean, covariance: KEPT.covariance };
-/** Grey light from the viewer only. */
+/** A prior that allows only grey light from the viewer. */
 const narrow = {
   mean: Float64Array.from({ length: 27 }, (_, at) => [-1, 0, -0.5][at % 9] ?? 0),
   covariance: Float64Array.from({ length: 729 }, (_, at) => (at % 28 === 0 ? 1e-10 : 0)),

@@ -4,5 +4,5 @@
  */
 export const LONG = { skip: process.env.LONG_TESTS ? false : "it takes long: npm test -- --long" };
 
-/** Options of a long test that needs something: why it is missing, if it is. */
+/** Options of a long test with a requirement; `missing` states why it is not met. */
 export const longUnless = (missing) => (missing ? { skip: missing } : LONG);

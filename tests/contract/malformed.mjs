@@ -185,7 +185,7 @@ export const exr = (changes, name = "depth-zip.exr") => {
   return file;
 };
 
-/** Offset of the table of an EXR with several blocks, found as a number that points behind the table. */
+/** Offset of the table of an EXR with several blocks. Its first entry is found as a number that points behind the table. */
 function blocksAt(view) {
   for (let at = 0; at + 8 < view.byteLength; at++) {
     const first = view.getUint32(at, true);
@@ -194,7 +194,7 @@ function blocksAt(view) {
   throw new Error("no table");
 }
 
-/** Makes the second entry point at the first block. */
+/** The second entry of the table gets the offset of the first block. */
 export const twice = (_, view) => view.setUint32(blocksAt(view) + 8, view.getUint32(blocksAt(view), true), true);
 
 /** Offset of the table of an EXR with one block, which directly follows the table. */

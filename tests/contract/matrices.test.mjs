@@ -90,7 +90,7 @@ describe("a pose", () => {
     refused(start(changed(1, 1, "1")), "type", "options.start[1][1]");
     refused(start({ matrix: changed(1, 1, -SCALE) }), "range", "options.start.matrix");
     refused(start({ matrix: 5 }), "type", "options.start.matrix");
-    // A shear passes the matrix checks and is refused by the check of rotations.
+    // The check of matrices accepts a shear, which the check of rotations refuses.
     refused(start(changed(0, 1, 0.5)), "range", "options.start.rotation");
     refused(start({ matrix: ROWS, rotaton: ROTATION }), "option", "options.start.rotaton");
     refused(() => matrixText(ROWS.flat().slice(1)), "size", "pose");

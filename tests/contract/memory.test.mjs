@@ -24,7 +24,7 @@ const dome = (column, row) =>
 
 describe("memory", () => {
   test("a pair keeps to its budget, the search included", LONG, (t) => {
-    // An object as wide as the frame, so that the estimator needs more memory than the renderer, whose freed memory it reuses.
+    // The object is as wide as the frame, so that the estimator needs more memory than the renderer, whose freed memory it reuses.
     const relief = {
       width: 128,
       height: 96,
@@ -63,7 +63,8 @@ describe("memory", () => {
 
   test(`${STEPS} steps take no more than the first`, LONG, () => {
     const { image, depth, light } = pair({ size: 16 });
-    // The loop of surfaces runs as long as allowed; photometric registration ends at once on so small a view. A reset takes as long as ten steps.
+    // The loop with ICP runs as long as allowed. Photometric registration would end at once on so small a view. A reset takes as long as
+    // ten steps.
     const options = { light, start: "identity", scale: 1, registration: "icp", stopDegrees: 1e-9, maxIterations: 100 };
     const made = new Estimator(image, depth, options);
     const steps = (count) => {

@@ -33,7 +33,7 @@ const patterns = UNFREE.flatMap((pair) => [Float32Array.from(pair), Float64Array
   Buffer.from(array.buffer),
 );
 
-/** The files of a folder that contain anything that is not free, by their paths in it. */
+/** The paths of the files in a folder that contain anything that is not free. */
 function unfreeIn(path) {
   const files = filesBelow(path);
   assert.ok(files.length > 0, `${path} is empty`);
@@ -171,7 +171,7 @@ describe("the wheel", () => {
   test("carries licences and notices", options, () => {
     const licences = filesBelow(path).find((file) => basename(file) === "LICENSE-MIT");
     assert.ok(licences, "it is in the wheel");
-    // Those of the bindings, and those of the .wasm for its widgets.
+    // Notices of the bindings, and of the .wasm for the widgets.
     for (const file of ["LICENSE-MIT", "LICENSE-APACHE", `python/${NOTICES}`, NOTICES])
       assert.equal(readFileSync(join(dirname(licences), file), "utf8"), read(file));
   });

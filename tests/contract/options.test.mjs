@@ -16,7 +16,7 @@ const holding = (path, value) =>
     .reduceRight((inner, name) => ({ [name]: inner }), value);
 
 const bits = new DataView(new ArrayBuffer(8));
-/** The next number from x towards plus infinity (`by` = 1) or minus infinity (-1). */
+/** The floating-point number next to x towards plus infinity (`by` = 1) or minus infinity (-1). */
 function neighbour(x, by) {
   if (x === 0) return by * Number.MIN_VALUE;
   bits.setFloat64(0, x);
@@ -61,7 +61,7 @@ function ends({ kind, min, above, max, below }) {
 const ROWS = new Map([...paths(OPTIONS, "options"), ...paths(SAMPLE, "sample")]);
 const NUMBERS = [...ROWS].filter(([, { kind }]) => ["number", "whole", "side"].includes(kind));
 
-/** Members that the numerics never see: they get the rotation of the angles, a seed of 64 bits, and no threads. */
+/** Members that the facade converts: the numerics get the rotation of the angles, a seed of 64 bits, and no threads. */
 const FACADE_ALONE = /\.(angles\.\w+|workers|seed)$/;
 /** In the numerics, height and width are one member. */
 const NATIVE_FIELD = { "sample.height": "sample.size" };
@@ -157,7 +157,7 @@ function slow(base = {}) {
 }
 
 const turned = { given: () => noisy({ start: { angles: {} } }) };
-/** For options whose effect the noisy pair does not show at another value, the run that shows it or the value to be used. */
+/** For options whose effect the noisy pair does not show, another run or another value that shows it. */
 const SHOWN = {
   "options.light": { other: new Array(27).fill(0.1) },
   "options.start": { given: () => noisy({}), steps: 1, other: "identity" },
@@ -200,7 +200,7 @@ describe("defaults", () => {
   });
 });
 
-/** A pose that converges. */
+/** A run whose pose converges. */
 function sure() {
   const { image, depth } = pair({ size: 40, light: "window", angles: { beta: 8 } });
   return { image, depth, base: { start: "identity" } };

@@ -88,7 +88,7 @@ describe("a large image beside a coarse depth map", () => {
     for (let c = 0; c < 3; c++) {
       const expected = (linear(60 + 10 * c) + linear(180 + 10 * c)) / 2;
       const code = expected <= 0.0031308 ? 12.92 * expected : 1.055 * expected ** (1 / 2.4) - 0.055;
-      // Half a level of 16 bits, and the single precision of the table.
+      // The errors are half a level of 16 bits and the single precision of the table.
       close([small.data[4 * 700 + c]], [65535 * code], 1);
     }
     assert.equal(
@@ -153,7 +153,7 @@ test("a mask has the size of its picture, and one that is missing before a visib
   assert.equal(pairOf({ ...parts, colour: image(8, 8, black) }, nothing).notes["image.mask"], undefined);
   const colourMask = { width: 8, height: 8, data: new Uint8Array(64).fill(255) };
   assert.equal(pairOf({ ...parts, colourMask }, nothing).notes["image.mask"], undefined);
-  // An object that touches one side of the frame, as a bust does.
+  // The object touches one side of the frame, as a bust does.
   const bust = image(64, 64, (x, y) => (Math.hypot(x - 32, y - 50) < 20 ? 90 : 2));
   assert.equal(pairOf({ ...parts, colour: bust }, nothing).notes["image.mask"], undefined);
   assert.throws(

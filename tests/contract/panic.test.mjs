@@ -1,4 +1,4 @@
-// A panic spoils one estimator and no other. The package does not panic on demand, so a trap is built into its module.
+// A panic makes one estimator unusable and no other. The package does not panic on demand, so a trap is built into its module.
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { test } from "node:test";

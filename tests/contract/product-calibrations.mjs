@@ -33,7 +33,7 @@ const made = (name) => ({ name, bytes: fixture(name) });
 const lines = (all) => `${all.join("\n")}\n`;
 const yamlPlace = ([a, b, c]) => `{x: ${a}, y: ${b}, z: ${c}, roll: ${roll}, pitch: ${pitch}, yaw: ${yaw}}`;
 
-/** Devices that state both the depth and the colour camera. */
+/** Devices whose files hold both the depth and the colour camera. */
 const DEVICES = {
   "realsense-list": words(
     "rs-enumerate-devices.txt",

@@ -3,7 +3,7 @@
 import { sampleRig } from "../../pkg/index.js";
 import { definitionOf, driver, encoded } from "./recordings.mjs";
 
-/** A colour pixel of the small picture is the mean of 3x3 pixels around pixel 4 x + 1 of the large one; a depth is that of the pixel. */
+/** A colour of the small picture is the mean of 3x3 pixels around pixel 4 x + 1 of the large one. A depth is that of this pixel. */
 const STEP = 4;
 const OFFSET = 1;
 const smaller = ({ fx, fy, cx, cy, distortion }) => ({

@@ -157,7 +157,7 @@ export const transform = (parent, child, { rotation, translation: [x, y, z] }, t
 });
 
 export function cloudMessage({ width, height, points }, time, frame) {
-  const step = 20; // x y z, four bytes of padding, intensity
+  const step = 20; // The fields are x, y, z, four bytes of padding, and intensity.
   const view = new DataView(new ArrayBuffer(step * width * height));
   for (let point = 0; point < width * height; point++)
     for (let axis = 0; axis < 3; axis++) view.setFloat32(step * point + 4 * axis, points[3 * point + axis], true);
@@ -203,7 +203,7 @@ export async function mcap(messages, { generation = "ros2", compressChunk, chunk
   }
   await writer.end();
   const whole = Buffer.concat(parts);
-  // The file ends like one that was cut off by a power failure.
+  // The file ends as if a power failure had cut it off.
   return whole.subarray(0, whole.length - cut);
 }
 
@@ -266,7 +266,7 @@ export function driver(frames, pose, { start = 1_700_000_000, every = 0.5, late 
       message: {
         transforms: [
           transform("camera_link", FRAMES.colour, IDENTITY),
-          // Transforms points of the depth camera into the colour camera's frame, by way of the rig's frame.
+          // The transforms lead from the depth camera through the rig's frame to the colour camera's frame.
           transform("camera_link", FRAMES.depth, pose),
         ],
       },

@@ -5,7 +5,7 @@ import { LONG } from "./long.mjs";
 import { Estimator, init, outcome, pair } from "./support.mjs";
 import { runSettled, seen, settled, tamperWith, until } from "./threads.mjs";
 
-/** Large enough to be shared; the pose stops moving from the second iteration on. */
+/** The pair is large enough for two threads, and the pose stops moving after the first iteration. */
 function scene(options = {}, request = {}) {
   const { image, depth, pose } = pair({ light: "window", size: 112, noise: 0.01, angles: { beta: 20 }, ...request });
   return { image, depth, options: { start: pose, stopDegrees: 1e-12, ...options } };
@@ -21,7 +21,7 @@ async function endOf(estimator) {
   return end;
 }
 
-/** The end of a run in steps of one kind, each taken after all threads have answered. */
+/** The end of a run in steps of one kind. Each step begins after all threads have answered. */
 async function settledEnd(estimator, step) {
   await runSettled(estimator, step);
   const end = outcome(estimator);
@@ -29,7 +29,7 @@ async function settledEnd(estimator, step) {
   return end;
 }
 
-/** How long the estimator waits for an answer, milliseconds: LONGEST_WAIT of js/workers/refinement.ts. */
+/** Longest wait of the estimator for an answer, milliseconds: LONGEST_WAIT of js/workers/refinement.ts. */
 const LONGEST_WAIT = 2000;
 
 /** Stops the timer that limits the estimator's wait, so that it waits for the other thread as long as necessary. */

@@ -125,7 +125,7 @@ describe("release", () => {
     );
     assert.equal(git("status", "--porcelain"), "");
     assert.deepEqual([git("log", "-1", "--format=%s"), git("describe")], ["Release 9.8.7", "v9.8.7"]);
-    // Nothing else in the lock file changes.
+    // The rest of the lock file does not change.
     assert.equal(
       git("diff", "--numstat", "HEAD~1", "--", "Cargo.lock"),
       `${locked.length}\t${locked.length}\tCargo.lock`,

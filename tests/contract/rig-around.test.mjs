@@ -1,5 +1,5 @@
-// Folders in which names tell cameras and calibrations apart: several cameras around a LiDAR, a calibration for each frame, binned pictures,
-// topics of Kalibr, and quaternions of a LiDAR.
+// Folders in which names distinguish cameras and calibrations: several cameras around a LiDAR, a calibration for each frame, binned
+// pictures, topics of Kalibr, and quaternions of a LiDAR.
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import { readRigFolder } from "../../pkg/rig.js";
@@ -14,7 +14,7 @@ const colour = (width = 4, height = 2) =>
 const depth = (width, height) =>
   png({ width, height, depth: 16, colourType: 0, rows: Array(height).fill(Array(width).fill([4, 176]).flat()) });
 
-/** x y z and a reflectance, ring by ring, as KITTI's scans. */
+/** Points in the form of KITTI's scans: x y z and a reflectance, ring by ring. */
 const { points } = spinning({ lasers: 16, step: 0.4 });
 const scan = new Uint8Array(
   Float32Array.from({ length: (4 * points.length) / 3 }, (_, at) =>
@@ -52,7 +52,7 @@ function isOf({ frames, poses }, name, focal, rotation) {
 }
 
 describe("several cameras around a LiDAR (nuScenes)", () => {
-  // A folder's own name, which a browser puts before all files, tells no picture from a scan.
+  // A browser puts the folder's own name before all files, so it does not distinguish pictures from scans.
   for (const [path, at] of [
     [(camera) => `${camera}.png`, "LIDAR_TOP.bin"],
     [(camera) => `lidar_nuscenes/${camera}.png`, "lidar_nuscenes/LIDAR_TOP.bin"],

@@ -1,4 +1,4 @@
-// Matrices that are no plain motions, parts of a sensor's pictures, joints that move, and formats that are refused by name.
+// Matrices that are not plain motions, parts of a sensor's pictures, joints that move, and formats that are refused by name.
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import { K, codes, matrix, only, read, refusedFile, rows, sameCamera, samePose, translation } from "./rig-support.mjs";

@@ -9,7 +9,7 @@ const read = (name, text) => readRigFile({ name, bytes: new TextEncoder().encode
 const codes = ({ warnings }) => warnings.map(({ code }) => code);
 
 const P = "600 0 320 0 0 600 240 0 0 0 1 0";
-/** From a LiDAR's axes into a camera's, and back. */
+/** The rotation from a LiDAR's axes to a camera's, and the reverse one. */
 const INTO = "0 -1 0 0.1 0 0 -1 0.2 1 0 0 0.3";
 const BACK = "0 0 1 -0.3 -1 0 0 0.1 0 -1 0 0.2";
 const LAST = " 0 0 0 1";

@@ -124,7 +124,7 @@ describe("places of a camera in a body or in the world", () => {
 
   test("two sensors in one body are related", () => {
     const lidar = `lidar_to_imu: ${JSON.stringify(matrix)}\ncamera_to_imu: ${JSON.stringify(matrix)}\n`;
-    // The calibration is taken, and the folder has no frames.
+    // The calibration is read, and the folder has no frames.
     assert.match(check("both.yaml", lidar).stderr, /no pair|no readable pair/);
   });
 
@@ -229,7 +229,7 @@ describe("frames of a matrix", () => {
     const other = await json({ [key]: four(back) });
     samePose(only(other.poses), turned, [0, 0, 0]);
     assert.deepEqual([ends(other.poses[0]), doubts(other).includes("pose-assumed")], [["lidar", "camera"], true]);
-    // Cameras look the same way, whichever leads to the other.
+    // Both cameras look in the same direction, whichever way the pose leads.
     samePose(only((await json({ "ouster-pylon_transform": matrix })).poses));
   });
 
@@ -310,7 +310,7 @@ describe("lenses", () => {
       const found = await json({ K: intrinsicRows, [name]: [0.1, -0.2, 0.001, 0.0004, 0] });
       assert.deepEqual(doubts(found), ["distortion-unused"], name);
     }
-    // A region, a quaternion and zeros are no lens.
+    // A region, a quaternion and zeros are not lenses.
     for (const other of [{ roi: [0, 0, 640, 480] }, { attitude: [0.5, 0.5, 0.5, 0.5] }, { kd: [0, 0, 0, 0, 0] }])
       assert.deepEqual(doubts(await json({ K: intrinsicRows, ...other })), []);
   });

@@ -70,7 +70,7 @@ describe("depth maps", () => {
     close(metres(reading), expected, 0.0005);
   });
 
-  // Large enough for some blocks to be shorter; half floats hold these depths exactly.
+  // The picture is so large that compression shortens some blocks. Half floats hold these depths exactly.
   for (const name of ["piz-half", "piz-float", "piz-colours", "pxr24-float", "pxr24-mixed", "dwaa-depth"]) {
     test(`large-${name}.exr`, async () => {
       const reading = await readFixture(`large-${name}.exr`, { as: "depth" });
@@ -270,7 +270,7 @@ describe("colour images", () => {
   for (const [name, tolerance] of [
     ["piz-colours", 0],
     ["pxr24-mixed", 0],
-    // Lossy: the tolerance is the error of OpenEXR's own reader.
+    // The compression is lossy, so the tolerance is the error of OpenEXR's own reader.
     ["dwaa-colours", 0.004],
     ["dwab-colours", 0.004],
   ]) {
@@ -292,7 +292,7 @@ describe("colour images", () => {
 
   test("JPEG: baseline, progressive, grey", async () => {
     close(colours(await readFixture("colour.jpg")).flat(), rgb.flat(), 12);
-    // Chroma at half resolution.
+    // The chroma has half the resolution.
     close(colours(await readFixture("colour-progressive.jpg")).flat(), rgb.flat(), 40);
     const grey = colours(await readFixture("colour-grey.jpg"));
     close(

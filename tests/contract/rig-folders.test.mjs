@@ -316,7 +316,7 @@ describe("cameras are given to the pictures they took", () => {
       "depth_K.txt": K(400),
     });
     has(wrong[2], "camera-size", /are for 64x48 pixels, but these pictures have 2x1/);
-    // Without a size, the principal point reveals it.
+    // If the size is not stated, the principal point reveals it.
     const outside = await focals({ ...pair, "rgb.json": text('{"fx": 500, "fy": 500, "cx": 320, "cy": 240}') });
     has(outside[2], "principal-point", /outside the picture \(320, 240 of 2x1\)/);
   });

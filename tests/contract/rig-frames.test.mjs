@@ -1,4 +1,4 @@
-// Which way a pose leads, by the names that people and programs give it; poses of several frames are chained.
+// The direction of a pose by the names that people and programs give it, and chains of poses through several frames.
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import { readRigFolder } from "../../pkg/rig.js";
@@ -84,7 +84,7 @@ describe("poses in the inertial unit", () => {
   });
 
   test("two cameras in one body are chained: VINS-Fusion's body_T_cam0 and body_T_cam1", async () => {
-    // cam1 from cam0 is the fixtures' motion: body_T_cam1 = body_T_cam0 (cam1 from cam0)^-1.
+    // The fixtures' motion leads from cam0 to cam1, so body_T_cam1 is body_T_cam0 times the inverse of that motion.
     const second = product(placed, inverse(matrix));
     const value = { body_T_cam0: opencv(placed.flat(), 4, 4), body_T_cam1: opencv(second.flat(), 4, 4) };
     const [first, ...others] = (await read("vins.json", JSON.stringify(value))).poses;

@@ -1,4 +1,5 @@
-// Disparities and inverse depths, for which larger is nearer, are read as depths with the option `inverse`. 16-bit masks are not depths.
+// Disparities and inverse depths, which are larger for nearer surfaces, are read as depths with the option `inverse`. 16-bit masks are
+// not depths.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { close, codes, metres, read, refusedFile } from "./rig-support.mjs";
@@ -25,7 +26,7 @@ const inFile = grey16(disparities.map((value) => Math.round(256 * value)));
 
 test("disparities become metres by focal length times baseline, and holes stay holes", async () => {
   const reading = await read("disp.png", inFile, { as: "depth", inverse: { numerator: 256 * NUMERATOR } });
-  // Half a level of disparity corresponds to z^2 / (2 * 7680) metres.
+  // The rounding error, half a level of disparity, corresponds to z^2 / (2 * 7680) metres.
   close(metres(reading), depths, 1.5 ** 2 / (2 * 7680));
   assert.deepEqual(reading.guessed, []);
   assert.equal(reading.depth.unit, 1);
@@ -33,7 +34,7 @@ test("disparities become metres by focal length times baseline, and holes stay h
   // Without the option the name is refused, and the error names the remedy for programs.
   await refusedFile(read("disp.png", inFile), "disp.png", /the option `inverse`/);
   await assert.rejects(read("disp.png", inFile), ({ details }) => details.problem === "disparity");
-  // The option alone makes it a depth map, whatever the name.
+  // The option makes the file a depth map, whatever its name.
   assert.equal((await read("x.png", inFile, { inverse: { numerator: 7680 } })).kind, "depth");
 });
 
@@ -49,7 +50,7 @@ test("without the factor the median depth is the longer side of the map, and tha
   const reading = await read("d.png", inFile, { inverse: {} });
   const found = metres(reading).filter((value) => value > 0);
   assert.ok(Math.abs([...found].sort((a, b) => a - b)[found.length >> 1] / WIDTH - 1) < 0.01);
-  // All depths are right up to one factor.
+  // All depths are right up to a common factor.
   const ratios = metres(reading).flatMap((value, at) => (value > 0 ? [value / depths[at]] : []));
   assert.ok(Math.max(...ratios) / Math.min(...ratios) < 1.001);
   assert.deepEqual(reading.guessed, ["unit"]);

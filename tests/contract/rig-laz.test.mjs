@@ -42,7 +42,7 @@ describe("LAZ", () => {
   test("damage inside the compressed points is seen by the header's box", async () => {
     const bytes = fixture("scan-6.laz");
     const view = new DataView(bytes.buffer);
-    // Within the layers of the first chunk, after its uncompressed point.
+    // The changed byte is within the layers of the first chunk, after its uncompressed point.
     for (let at = view.getUint32(96, true) + 200; at < view.getUint32(96, true) + 230; at++) bytes[at] ^= 0x5a;
     await refusedFile(read("a.laz", bytes), "a.laz", /damaged/);
   });

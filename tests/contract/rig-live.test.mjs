@@ -11,7 +11,7 @@ import { close, translation } from "./rig-support.mjs";
 // Node.js has a WebSocket only from version 22.
 globalThis.WebSocket = WebSocket;
 
-/** The robot's messages for each scene. */
+/** The messages that the robot sends for each scene. */
 const views = (count) => Array.from({ length: count }, (_, index) => driver([frame(index)], POSE));
 
 for (const generation of ["ros1", "ros2"])

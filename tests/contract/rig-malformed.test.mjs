@@ -253,7 +253,7 @@ const FILES = [
   ["mirror.txt", text("1 0 0 0\n0 1 0 0\n0 0 -1 0\n0 0 0 1\n"), /mirrors/],
   ["last.txt", text("1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 2\n"), /not in 0 0 0 1/],
   ["numbers.txt", text("1.5 ".repeat(500_000)), /more than 200000 numbers/],
-  // Many digits that form no number: a pattern that can match digits in two ways takes time quadratic in their number.
+  // Many digits that form no number. A pattern that can match digits in two ways would take time quadratic in their number.
   ["digits.txt", text(`${"1".repeat(200_000)}${"e".repeat(200_000)}`), /in an unknown format/],
   ["digits.json", text(`{"fx":"${"1".repeat(200_000)}x","fy":1,"cx":1,"cy":1}`), /fx|camera/],
   ["digits.yaml", text(`fx: ${"1".repeat(200_000)}x\nfy: 1\ncx: 1\ncy: 1\n`), /fx|camera|none/],

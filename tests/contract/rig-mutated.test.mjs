@@ -52,7 +52,7 @@ const products = await Promise.all(
 );
 
 const total = (files) => files.reduce((sum, { cases }) => sum + cases, 0);
-// With the least shares of the cases that are read, and that are refused.
+// Smallest shares of the cases that are read and of those that are refused.
 for (const [what, files, [leastRead, leastRefused]] of [
   ["fixtures", fixtures, [0.044, 0.443]],
   ["files of products", products, [0.076, 0.255]],

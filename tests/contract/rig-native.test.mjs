@@ -1,4 +1,4 @@
-// The calibration readers in Rust (files/) and in JavaScript (js/rig) read the same from the same files, with the same codes.
+// The calibration readers in Rust (files/) and in JavaScript (js/rig) return the same result and the same codes for each file.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { existsSync, readFileSync, readdirSync } from "node:fs";
@@ -70,7 +70,7 @@ describe("readers in Rust and in JavaScript", LONG, () => {
     assert.equal(built.status, 0);
   });
 
-  // Of the products' own files, which JavaScript reads, Rust reads only some: docs/check.md.
+  // Rust reads only some of the products' own files that JavaScript reads (docs/check.md).
   for (const [name, paths] of Object.entries({ "the fixtures": FIXTURES })) {
     test(name, async () => {
       const program = inRoot("target/debug/examples/calibration");

@@ -85,7 +85,7 @@ test("32-bit depth is in metres, and so is depth compressed as inverse depths", 
 });
 
 test("RVL data is read as depth", async () => {
-  // Two pixels without depth, then 1000, 1003 and 998 millimetres: counts and zigzag-coded differences, three bits a nibble.
+  // Two pixels without depth, then 1000, 1003 and 998 millimetres, as counts and zigzag-coded differences with three bits per nibble.
   const words = [2, 3, 2000, 6, 9];
   const nibbles = words.flatMap((value) => {
     const found = [];

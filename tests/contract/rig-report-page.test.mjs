@@ -62,7 +62,7 @@ function moved({ rotation, translation }, centre, axis, step) {
 const valuesOf = ({ angles, translation }) => [...Object.values(angles), ...translation.map((t) => 1000 * t)];
 
 describe("the unknowns", () => {
-  // Far from the identity, where the axes of the angles are not those of the covariance: a LiDAR's extrinsics.
+  // Extrinsics of a LiDAR are far from the identity, so the axes of the angles are not those of the covariance.
   const lidar = posed(product(product(about(0, 1.4), about(1, -0.5)), about(2, 2)), [0.1, -0.4, 0.25]);
   const middle = [0.3, -0.2, 4];
   const root = Array.from({ length: 36 }, (_, k) => ((k % 7 === 0 ? 3 : Math.sin(7 * k)) * (k < 18 ? 0.01 : 0.02)) / 3);
@@ -259,7 +259,7 @@ describe("the command", () => {
     const page = readFileSync(join(folder, "first.html"), "utf8");
     const { text } = harmless(page);
     const command = /<pre class="shell"[^>]*>([^<]*)<\/pre>/.exec(page)[1].replaceAll("&#39;", "'");
-    // The package that is tested, and not one that npm would fetch.
+    // The command runs the tested package, not one that npm would fetch.
     const npx = `npx() { shift; "${process.execPath}" "${cli}" "$@"; }`;
     const again = spawnSync("sh", ["-c", `${npx}\n${command} --json again.json`], { cwd: folder, encoding: "utf8" });
     assert.equal(again.status, 0, again.stderr);

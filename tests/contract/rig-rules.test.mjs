@@ -1,4 +1,5 @@
-// The rules for reading calibrations of any program: what belongs together, what can be read in two ways, what is left over.
+// The rules for reading calibrations of any program: parts that belong together, numbers that can be read in two ways, and parts that are
+// left over.
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import {

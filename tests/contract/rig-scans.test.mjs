@@ -1,4 +1,4 @@
-// Files of LiDARs and mapping tools, whose points are unorganised: what is read from each format, and the messages about it.
+// Files of LiDARs and mapping tools, whose points are unorganised: the readings of each format, and the messages about them.
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import { checkCalibration } from "../../pkg/index.js";
@@ -118,7 +118,7 @@ describe("points in no rows and columns", () => {
       (point) => strengths[point],
       (point) => scan.ring[point],
     );
-    // Organised: 20 columns and 12 rows in front of a camera, the first of them without a point.
+    // An organised cloud of 20 columns and 12 rows in front of a camera, whose first cell has no point.
     const [width, height] = [20, 12];
     const points = Float32Array.from({ length: 3 * width * height }, (_, at) =>
       at < 3 ? NaN : [((at / 3) % width) / 9, at / 999, 2][at % 3],

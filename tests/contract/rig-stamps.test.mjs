@@ -72,7 +72,7 @@ test("whole seconds do not tell frames apart that are a second apart", async () 
   const name = (kind, _, time) => `${kind}_${date(time).slice(0, 19).replace(/\D/g, "-")}.png`;
   const files = recording(name, { period: 1_000_000, offset: 700_000 }).map((file) => ({ ...file }));
   const found = await readRigFolder(files).catch((error) => error);
-  // Equal names are paired as before; by the stamps nothing is.
+  // Equal names may be paired, but not by their stamps.
   if (found.frames) assert.ok(!/time stamps/.test(found.says));
   else assert.equal(found.code, "file");
 });

@@ -79,7 +79,7 @@ export const matrix = [...rows.map((row, at) => [...row, translation[at]]), [0, 
 export const columns = [0, 3, 6, 1, 4, 7, 2, 5, 8].map((at) => rotation[at]);
 /** The fixtures' rotation as a quaternion x y z w. */
 export const quaternion = [0.009998416741873298, -0.014997625112809946, 0.024996041854683248, 0.999525037602976];
-/** Its roll, pitch and yaw about fixed axes, radians. */
+/** The fixtures' roll, pitch and yaw about fixed axes, radians. */
 export const angles = [
   Math.atan2(rotation[7], rotation[8]),
   Math.asin(-rotation[6]),

@@ -1,4 +1,4 @@
-// Points as tables with names of columns, as viewers of LiDARs export them: which columns are the coordinates, and in which unit.
+// Points as tables with names of columns, as viewers of LiDARs export them: the columns of the coordinates, and their unit.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { close, read, refusedFile } from "./rig-support.mjs";
@@ -82,7 +82,7 @@ test("the unit of a column's name counts, whatever the distances", async () => {
     holds(found);
     assert.ok(!codes(found).includes("unit-guessed"), name);
   }
-  // Names that contradict each other state nothing.
+  // Names that contradict each other do not determine the unit.
   const mixed = await read("mixed.csv", table({ "x(m)": 0, "y(mm)": 1, "z(m)": 2 }));
   assert.ok(codes(mixed).includes("unit-guessed"));
 });

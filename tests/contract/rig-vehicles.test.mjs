@@ -244,7 +244,7 @@ describe("robots", () => {
     assert.deepEqual(ends(plain.poses[0]), ["depth_optical", "color_optical"]);
     const tree = `<robot name="rig" xmlns:xacro="x"><xacro:property name="base" value="0.06"/><xacro:property name="half" value="\${base/2}"/>${joint("color_frame", "camera_link", `<origin xyz="0 ${xacro("half + 0.01")} 0" rpy="0 0 ${xacro("radians(90) - pi/2")}"/>`)}${joint("color_optical_frame", "color_frame", optical)}${joint("depth_optical_frame", "camera_link", optical)}${joint("camera_link", "map", "<xacro:insert_block name='origin'/>")}</robot>`;
     const found = await read("rig.urdf.xacro", tree);
-    // The depth camera is four centimetres to the left of the colour camera's position on the body, so points move right in the picture.
+    // The depth camera is four centimetres to the left of the colour camera, so points move right in the picture.
     assert.deepEqual(ends(found.poses[0]), ["depth_optical_frame", "color_optical_frame"]);
     samePose(found.poses[0], [1, 0, 0, 0, 1, 0, 0, 0, 1], [0.04, 0, 0], 1e-9);
     assert.deepEqual(codes(found), ["pose-left-out"]);

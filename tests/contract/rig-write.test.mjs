@@ -208,7 +208,7 @@ test("any number keeps its digits", () => {
 });
 
 test("quaternions of every quadrant", () => {
-  // Half turns and others, so that each of the four components is the largest once.
+  // These rotations make each of the four components the largest once.
   for (const [x, y, z, w] of [
     [1, 0, 0, 0],
     [0, 1, 0, 0],

@@ -34,7 +34,7 @@ describe("search workers", () => {
           const slices = await slicesOf(together);
           assert.ok(slices < all, `${slices} of ${all} slices`);
           assert.deepEqual(outcome(together), outcome(alone));
-          // The next search gets new workers.
+          // The next search starts new workers.
           together.reset();
           assert.ok((await slicesOf(together)) < all);
           assert.deepEqual(outcome(together), outcome(alone));

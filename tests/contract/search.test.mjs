@@ -1,4 +1,4 @@
-// Nothing known, with the built package: the search begins the loop in slices, and the pose is found.
+// Runs of the built package with nothing known: the loop begins with a search in slices, which finds the pose.
 import assert from "node:assert/strict";
 import { before, describe, test } from "node:test";
 import { Estimator, init, sample } from "./support.mjs";

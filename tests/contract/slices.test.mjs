@@ -6,7 +6,7 @@ import { Estimator, init, outcome, pair } from "./support.mjs";
 
 before(() => init());
 
-/** With nothing known, so that the search is sliced as well. */
+/** Nothing is known, so that the search is also sliced. */
 function end(advance) {
   const { image, depth } = pair({ size: 24, noise: 0.01 });
   const estimator = new Estimator(image, depth, { maxIterations: 6 });

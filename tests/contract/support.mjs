@@ -78,7 +78,7 @@ export function png({ width, height, depth, colourType, rows, palette }) {
   );
 }
 
-/** A .npy file of version 1 whose data begin at a multiple of `align` (NumPy: 64). */
+/** A .npy file of version 1 whose data begin at a multiple of `align`, which is 64 in NumPy. */
 export function npy({ descr, shape, data, fortran = false, align = 64 }) {
   const entry = `{'descr': '${descr}', 'fortran_order': ${fortran ? "True" : "False"}, 'shape': (${shape.join(", ")}${shape.length === 1 ? "," : ""}), }`;
   const length = Math.ceil((11 + entry.length) / align) * align - 10;

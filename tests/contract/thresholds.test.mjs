@@ -1,4 +1,4 @@
-// The page of calibrated constants says what the code says.
+// The page of calibrated constants agrees with the code.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";

@@ -42,7 +42,7 @@ for (const [surface, light, beta, [status, code, times]] of [
   });
 }
 
-// For flat relief, sigmas mostly reveal first that the pose is not determined, as for this pair at 64 pixels.
+// If the relief is flat, the sigmas usually show that the pose is not determined, as for this pair at 64 pixels.
 test("relief a tenth as deep as it is", LONG, () => {
   const made = pair({ surface: "ripples", light: "colourful", size: 96, angles: { beta: 10 }, noise: 0.01 });
   const right = found(made, 1);
@@ -76,7 +76,7 @@ for (const [unit, size, factor] of [
   });
 }
 
-// The residuals here come from errors of the normals, not from noise; half or twice the relief reduces them by up to a fifth.
+// These residuals come from errors of the normals, not from noise. Half or twice the relief reduces them by up to a fifth.
 test("the right relief of a view of 48 pixels without noise is doubted by no other unit", LONG, () => {
   for (const [light, beta] of [
     ["colourful", 0],

@@ -91,12 +91,12 @@ const COMMENTS = [
   "protocols",
 ];
 
-/** Not covered yet: these still use words of the table above. */
+/** Files that are not covered yet, because they still use words of the table above. */
 const LATER = ["docs/codes.md"];
 
 /** Phrases that stay as they are, each in one file, with the reason. */
 const EXCEPTIONS = [
-  // A text in written files, which tests/fixtures hold.
+  // This text is in written files, of which tests/fixtures has copies.
   ["js/write/results.ts", "black is none"],
   // Titles of tests.
   ["docs/robustness.md", "is doubted by no other unit"],

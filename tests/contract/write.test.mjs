@@ -32,7 +32,7 @@ import { harmless } from "./harmless.mjs";
 import { BimodalError, estimator, init, pair, refused } from "./support.mjs";
 
 const read = JSON.parse(readFileSync(inRoot(FOLDER, "read.json"), "utf8"));
-/** In the form of the reference: numbers that are not finite by name. */
+/** Numbers in the form of the reference, which has names for those that are not finite. */
 const named = (value) => (Number.isFinite(value) ? value : { NaN: "nan", Infinity: "inf" }[String(value)]);
 
 /** Checks that a promise is rejected with this code and field, and a message that matches. */
@@ -228,7 +228,7 @@ describe("depths in 16 bits", () => {
       "range",
       `depth.data[${data.findIndex((value) => value < 0)}]`,
     );
-    // Refined depths, as the page has them, lie where the depth map has depths.
+    // Refined depths of the page are compared where the depth map has depths.
     const refined = run.refinedDepth();
     const back = decodeDepth(
       (await depthPng({ width: depth.width, height: depth.height, data: refined }, "px")).bytes,

@@ -1,5 +1,5 @@
 /**
- * A second engine: every place of the page works in Firefox, except the clouds: without a graphics card Firefox has no WebGL, and the page
+ * Every part of the page works in Firefox, a second engine, except the clouds. Without a graphics card Firefox has no WebGL, and the page
  * says so.
  */
 

@@ -84,7 +84,7 @@ impl House {
         circles(between.filter(|(from, to)| !from.starts_with(to) && !to.starts_with(from)).collect())
     }
 
-    /// Files outside the layer `wasm`, including tests, that name one of these crates.
+    /// Files outside the layer `wasm` that name one of these crates, including tests.
     pub fn bound_to(&self, crates: &[&str]) -> Vec<&str> {
         let binds = |file: &File| file.words.iter().any(|word| crates.contains(&word.as_str()));
         let outside = self.files.iter().filter(|(_, file)| file.room() != Some("wasm"));
@@ -213,7 +213,7 @@ impl File {
     }
 
     fn scan(&mut self, words: &[String]) {
-        // The ends of the enclosing inline modules.
+        // The positions at which the enclosing inline modules end.
         let mut inline: Vec<usize> = Vec::new();
         let mut is_public = false;
         let mut at = 0;

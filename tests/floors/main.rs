@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 use house::House;
 
-/// From the bottom up: a layer only uses layers before it.
+/// The layers from the bottom up; a layer uses only layers before it.
 const ROOMS: [&str; 19] = [
     "text",
     "serial",

@@ -1,4 +1,5 @@
-//! Rust source as a list of words, as far as paths require it: without types or expressions, macros not expanded.
+//! Rust source as a list of words, which is enough to find paths. Types and expressions are not parsed, and macros are
+//! not expanded.
 
 /// Identifiers, numbers, `::` and single characters; comments, strings, characters and lifetimes are skipped.
 pub fn tokens(source: &str) -> Vec<String> {

@@ -10,7 +10,8 @@ use nalgebra::Vector3;
 use proptest::prelude::ProptestConfig;
 use proptest::test_runner::RngSeed;
 
-/// Number of cases of a law, the same in every run: native runs get their seed from .cargo/config.toml, wasm has no environment.
+/// Number of cases of a law. Every run has the same cases: native runs get their seed from .cargo/config.toml, and wasm
+/// has no environment.
 pub fn laws(cases: u32) -> ProptestConfig {
     let drawn = ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() };
     if cfg!(target_arch = "wasm32") { ProptestConfig { rng_seed: RngSeed::Fixed(1), ..drawn } } else { drawn }
@@ -65,9 +66,9 @@ pub fn angles_between(a: &Normals, b: &Normals) -> Vec<f64> {
 /// A decoded PNG with values as stored: 0 .. 255 or 0 .. 65535.
 pub struct Picture {
     pub size: Size,
-    /// 1, 2, 3 or 4.
+    /// Number of channels: 1, 2, 3 or 4.
     pub channels: usize,
-    /// 8 or 16.
+    /// Bits per channel: 8 or 16.
     pub bits: u32,
     /// Row-major, channels interleaved.
     pub values: Vec<u16>,

@@ -47,7 +47,7 @@ fn functions() {
     replay("functions", bodies::functions::run);
 }
 
-/// A fuzzer that only makes invalid inputs would find little: without any bytes it makes a valid pair.
+/// A fuzzer that makes only invalid inputs would find little, so an empty input makes a valid pair.
 #[test]
 fn no_bytes_are_a_good_input() {
     for run in [bodies::estimator::run, bodies::worker::run, bodies::calibration::run, bodies::functions::run] {

@@ -8,7 +8,7 @@ use std::path::Path;
 use crate::common::{data_dir, median, read_csv, read_npy_f32, read_png};
 use bimodal_stereo::{Light, Size};
 
-/// Bound of the natural logarithm for central differences, whose errors come from the slopes alone.
+/// Error allowed for central differences in the natural logarithm; only slopes cause it.
 const CENTRAL_BOUND: f64 = 0.004;
 /// Bound of the natural logarithm for the slopes with which the renders were made. A step of a 16-bit value changes the
 /// logarithm by 1.5e-4 at a tenth of the range, the usual grey of the renders.

@@ -1,4 +1,4 @@
-//! The search: nothing is known but the two views.
+//! The search, in which only the two views are known.
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
@@ -91,7 +91,7 @@ fn the_search_comes_in_slices_and_says_how_far_it_is() {
     assert_eq!((report.stage, report.iteration), (Stage::Refinement, 1));
 }
 
-/// A ball looks the same from everywhere, and a uniform image has no information: neither pose may be called found.
+/// A ball looks the same from everywhere, and a uniform image has no information, so no pose may be reported as found.
 #[test]
 fn what_cannot_be_known_is_not_claimed() {
     let ball: Vec<f32> = (0..256 * 256)
@@ -150,7 +150,7 @@ fn a_prior_without_weight_has_no_say() {
     assert!(without > 1.5 * with, "{without} {with}");
 }
 
-/// Random numbers without a library: which task is given away, which one comes back, and when.
+/// Random numbers without a library. They decide which task is given away, which one comes back, and when.
 struct Chance(u64);
 
 impl Chance {
@@ -215,7 +215,7 @@ mod long {
         }
     }
 
-    /// Albedo and shadows are not shading: a pose that they may have displaced is not called found.
+    /// A pose that albedo or shadows may have displaced is not reported as found.
     #[test]
     fn what_paint_and_shadows_mislead_is_doubted() {
         for (name, light) in [("bust", "window"), ("bust", "overcast"), ("vase", "window")] {

@@ -82,8 +82,8 @@ fn exposure_leaves_the_pose_alone_under_a_known_light_with_noise() {
     exposure_leaves_the_pose_alone(&sample, &known(&sample));
 }
 
-/// Starts from the true pose. From elsewhere these stages do not find the pose under an unknown light, and then the last
-/// digit of a colour decides which way the loop strays.
+/// Starts from the true pose. From other poses these stages do not find the pose under an unknown light, and the last
+/// digit of a colour decides which way the loop goes.
 #[test]
 fn exposure_leaves_the_pose_alone_under_an_estimated_light() {
     for name in ["colourful", "window"] {
@@ -161,7 +161,7 @@ fn the_origin_of_orthographic_depth_moves_only_the_translation() {
     let moved = b.translation - a.translation + b.scale * b.rotation * Vector3::new(0.0, 0.0, f64::from(OFFSET));
     println!("{:.2e} degrees, scale {:.2e}, translation {moved:?}", a.degrees_to(&b), b.scale - a.scale);
     assert!(a.degrees_to(&b) < SAME);
-    // A thousandth of a degree about an origin at the distance of the offset.
+    // Tolerance: a thousandth of a degree about an origin at the distance of the offset.
     assert!(moved.norm() < SAME.to_radians() * f64::from(OFFSET));
 }
 
@@ -178,7 +178,7 @@ fn mirrored(sample: &Sample) -> Sample {
     }
     let DepthData::Map(depth) = &mut other.depth.data else { panic!("a depth map") };
     depth.chunks_exact_mut(size.width).for_each(<[f32]>::reverse);
-    // L4, L5 and L8 multiply x, xy and xz.
+    // The sign changes for L4, L5 and L8, which multiply x, xy and xz.
     for channel in &mut other.light.0 {
         for odd in [3, 4, 7] {
             channel[odd] = -channel[odd];

@@ -21,7 +21,7 @@ const GAIN_NATURAL: f64 = 2.0;
 /// Mozart has fewer points near its occluding contour than the bust.
 const MOZART_COLOURFUL: f64 = 5.0;
 const MOZART_NATURAL: f64 = 3.0;
-/// The row of an easy natural light.
+/// The row number of an easy natural light.
 const NATURAL_A: usize = 132;
 
 fn square(side: usize) -> Size {
@@ -92,17 +92,17 @@ fn mozart_beats_the_paper() {
     }
 }
 
-/// Seeds to average over: a single sample shows its noise as much as the refinement.
+/// Seeds to average over, because a single sample shows its noise as much as the refinement.
 const SEEDS: std::ops::RangeInclusive<u64> = 1..=5;
 
-/// Squared differences of two depth maps where `counts`.
+/// Squared differences of two depth maps at the pixels for which `counts` is true.
 fn squares(depth: &[f32], truth: &[f32], counts: impl Fn(usize) -> bool) -> Vec<f64> {
     let indices = (0..truth.len()).filter(|&index| counts(index));
     indices.map(|index| f64::from(depth[index] - truth[index]).powi(2)).collect()
 }
 
-/// Refinement alone: the pose is known and fixed. Returns the depth's error before, divided by its error after,
-/// as root mean squares over the pixels with measured depth.
+/// Tests only the refinement: the pose is known and fixed. Returns the depth's error before, divided by its error
+/// after, as root mean squares over the pixels with measured depth.
 fn refinement_gain(name: &str, scene: &Scene, light: Light) -> f64 {
     let [mut before, mut after, mut holes] = [const { Vec::new() }; 3];
     for seed in SEEDS {

@@ -74,7 +74,7 @@ fn a_plane_is_exact_up_to_its_borders() {
             .map(|index| {
                 let (column, row) = size.position(index);
                 let [x, y] = camera.ray(size, [column as f64, row as f64]);
-                // n . P = n . (0, 0, 50)
+                // The points of the plane satisfy n . P = n . (0, 0, 50).
                 let depth = if camera.is_orthographic() {
                     50.0 - (nx * x + ny * y) / nz
                 } else {
@@ -96,7 +96,7 @@ fn a_plane_is_exact_up_to_its_borders() {
 
 #[test]
 fn spheres_are_second_order() {
-    // Twice the resolution of the same scene: errors away from the occluding contour are four times smaller.
+    // At twice the resolution, errors away from the occluding contour are four times smaller.
     let error = |side: usize, perspective: bool| {
         let size = size(side, side);
         let camera = if perspective { pinhole(size) } else { Camera::Orthographic };
@@ -168,7 +168,7 @@ fn the_plane_fit_calms_noise() {
     let size = size(128, 128);
     let (mut depth, truth) = sphere(size, &Camera::Orthographic, [0.0, 0.0, 90.0], 60.0);
     for (index, depth) in depth.iter_mut().enumerate() {
-        // Not random, but uncorrelated between neighbours: +-0.3 pixels.
+        // The noise of +-0.3 pixels is not random, but uncorrelated between neighbours.
         *depth += 0.3 * ((index as f64 * 12.9898).sin() * 43758.5453).fract() as f32;
     }
     let mut points = Points::missing(size.len());

@@ -10,7 +10,7 @@ use bimodal_stereo::{
     Angles, Camera, Estimator, Lens, Options, Pinhole, Size, Stage, Start, Status, StepReport, Worker,
 };
 
-/// More object pixels than a frame of 128x128, odd sides, and a depth map with a part missing.
+/// A scene with more object pixels than a frame of 128x128, odd sides, and a depth map that lacks a part.
 fn large(camera: Camera) -> Sample {
     let scale = if camera.is_orthographic() { 1.1 } else { 1.0 };
     let request = SampleRequest {

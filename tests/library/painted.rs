@@ -113,7 +113,7 @@ fn without_paint_the_colours_themselves_decide() -> Result<()> {
     let scene = painted("bust", 25.0, None)?;
     let report = run(&scene, Options::default())?;
     let off = report.pose.degrees_to(&scene.truth);
-    // A third of the error that local contrast alone would leave.
+    // The limit is a third of the error that only local contrast would leave.
     assert!(off < 0.3 && report.status == Status::Converged, "{off} degrees, {:?}", report.status);
     Ok(())
 }

@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 use proptest::prelude::*;
 use rmpfit::{MPConfig, MPFitter, MPPar, MPResult, MPSide, MPSuccess};
 
-/// s and three angles in radians.
+/// The unknowns: s and three angles in radians.
 type Parameters = [f64; 4];
 
 /// Nine residuals s Rx Ry Rz - A in four unknowns.

@@ -140,7 +140,7 @@ fn between_points_of_one_surface_normals_are_their_mean() {
         }
         off.sort_by(f64::total_cmp);
         let [median, most] = [off[off.len() / 2], off[off.len() * 95 / 100]];
-        // Half a pixel of the bust's curvature, and the error of central differences at occluding contours.
+        // The bust's curvature within half a pixel, plus the error of central differences at occluding contours.
         assert!(gaps > 50 && median < 4.0 && most < 20.0, "{beta}: {gaps} gaps, {median} and {most} degrees off");
     }
 }

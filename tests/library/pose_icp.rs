@@ -287,7 +287,7 @@ fn consensus_of_the_pairs_confirms_the_pose() {
     let (mut from, mut to) = (Vec::new(), Vec::new());
     icp.paired_points(&problem, &mut from, &mut to, usize::MAX);
     let found = ransac(&from, &to, &RansacOptions::default()).unwrap();
-    // The pairs end at pixels, not between them, which costs a tenth of a degree.
+    // The points of a pair lie at pixels, not between them, which costs a tenth of a degree.
     assert!(found.pose.degrees_to(&Similarity { rotation, ..Similarity::identity() }) < 0.2);
     assert!(found.inliers.len() * 10 > from.len() * 9);
 }

@@ -45,7 +45,7 @@ proptest! {
         let beta = sign * (90.0 - 10.0_f64.powf(power));
         let rotation = Angles { alpha, beta, gamma }.rotation();
         let found = Angles::of(&rotation);
-        // Within 1e-6 rad of the pole alpha is dropped, which changes the rotation by as much.
+        // Within 1e-6 rad of the pole alpha is set to zero, which changes the rotation by about 1e-6 rad.
         prop_assert!((found.rotation() - rotation).norm() < 4e-6, "{found:?}");
     }
 

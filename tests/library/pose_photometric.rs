@@ -138,7 +138,7 @@ fn what_cannot_be_registered_is_an_error() {
     assert_eq!(register(&short, None, &Similarity::identity()).unwrap_err().kind(), ErrorKind::Size);
 }
 
-/// Figures of a prototype whose own count of the visible points differs by some ten percent.
+/// Results of a prototype, whose number of visible points differs by some ten percent.
 #[test]
 #[ignore = "needs ../shared/data"]
 fn the_bound_is_that_of_the_prototype() {

@@ -9,7 +9,7 @@ use bimodal_stereo::{
 };
 use nalgebra::{Rotation3, Vector3};
 
-/// Degrees: photometric registration converges from 15 degrees off; a candidate must be nearer.
+/// Largest error of a candidate, degrees; photometric registration converges from 15 degrees.
 const NEAR: f64 = 12.0;
 /// Number of candidates that are checked.
 const FIRST: usize = 10;
@@ -21,7 +21,7 @@ fn bust(request: SampleRequest) -> Sample {
     Scene::new(&relief).unwrap().sample(&SampleRequest { noise: 0.01, ..request }).unwrap()
 }
 
-/// Sixty degrees about an oblique axis, with a roll.
+/// A rotation of sixty degrees about an oblique axis, with a roll.
 fn far() -> SampleRequest {
     let tilt = Rotation3::new(Vector3::new(0.5, 0.8, 0.0).normalize() * 60_f64.to_radians());
     let rotation = (tilt * Rotation3::new(Vector3::z() * -0.3)).into_inner();

@@ -1,4 +1,4 @@
-//! The refinement while the image surface is computed, here or in a worker: the results are equal bit by bit.
+//! A refinement during the computation of the image surface gives the same bits in this thread and in a worker.
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
@@ -16,8 +16,8 @@ fn bits(values: &[f32]) -> Vec<u32> {
     values.iter().map(|value| value.to_bits()).collect()
 }
 
-/// Runs with a worker that delivers the refinements whose number `brings` accepts. If the worker `forgets`, it gets all planes again,
-/// including those that it already holds.
+/// Runs with a worker that delivers only those refinements whose number `brings` accepts. If the worker `forgets`, it
+/// gets all planes again, including those that it already holds.
 fn run(sample: &Sample, options: &Options, brings: impl Fn(usize) -> bool, forgets: bool) -> End {
     let mut estimator = Estimator::new(sample.colour_image(), &sample.depth_map(), options.clone()).unwrap();
     let mut worker = Worker::new(sample.colour_image(), &sample.depth_map(), options.clone()).unwrap();

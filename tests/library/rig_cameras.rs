@@ -6,7 +6,7 @@ use wasm_bindgen_test::wasm_bindgen_test as test;
 use bimodal_stereo::{Lens, Pinhole};
 
 const REFERENCE: &str = include_str!("../../scripts/reference/lens.csv");
-/// Agreement in pixels: both compute in 64 bits.
+/// Tolerance in pixels; both programs compute in 64 bits.
 const SAME_PIXEL: f64 = 1e-9;
 
 fn lens(name: &str, numbers: &[f64]) -> Lens {

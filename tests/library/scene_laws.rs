@@ -17,8 +17,8 @@ use proptest::prelude::*;
 const SIDE: usize = 64;
 /// Largest difference of two equal runs, degrees: each stops where a step changes the rotation by less than 0.01.
 const ALIKE: f64 = 0.02;
-/// Or this share of the reported sigma: near some poses rounding errors grow until the steps do. Set on 200 scenes, three of
-/// which differ by more than [`ALIKE`].
+/// Alternatively, this share of the reported sigma: near some poses rounding errors grow with each step. Set on 200
+/// scenes, three of which differ by more than [`ALIKE`].
 const ALIKE_SIGMAS: f64 = 0.5;
 
 prop_compose! {
@@ -59,7 +59,7 @@ fn run(image: ColourImage, depth: &DepthMap, options: Options) -> Estimator {
     estimator
 }
 
-/// The image with its linear colours replaced, pixel by pixel.
+/// The image with its linear colours changed pixel by pixel.
 fn with_colours(sample: &Sample, colour: impl Fn([f32; 3]) -> [f32; 3]) -> ColourImage {
     let colours = sample.image.colours.chunks_exact(3).flat_map(|rgb| colour([rgb[0], rgb[1], rgb[2]])).collect();
     ColourImage { samples: ColourSamples::RgbLinear(colours), ..sample.colour_image() }

@@ -15,10 +15,10 @@ const CAP: f64 = 100.0;
 const COMPARED: f64 = 92.0;
 /// Height of the cap's border in samples, above the background's limit of 5.
 const RIM: f64 = 6.0;
-/// In samples: smoothing by sigma = 1 sample lowers the cap by half its Laplacian, 1/150 at the pole and 1/60 at 92 samples,
-/// and the triangles cut off 1/600.
+/// Largest error of depth, samples. Smoothing by sigma = 1 sample lowers the cap by half its Laplacian, 1/150 at the
+/// pole and 1/60 at 92 samples, and the triangles cut off 1/600.
 const DEPTH_TOLERANCE: f64 = 0.02;
-/// In degrees: mostly the change of slope by smoothing.
+/// Largest error of a normal, degrees; most of it is the change of slope by smoothing.
 const NORMAL_TOLERANCE: f64 = 0.05;
 
 /// Centre of the sphere in the frame of the mesh.
@@ -157,7 +157,7 @@ fn the_pose_carries_the_depth_view_onto_the_surface() {
     }
 }
 
-/// The same on the bust, which has hidden parts: points visible in the image lie on the image's own depth.
+/// The same test on the bust, which has hidden parts: points visible in the image lie on the image's own depth.
 #[test]
 fn visible_points_of_the_bust_land_on_the_image_view() {
     let scene = Scene::new(&surface("bust").expect("a name")).expect("a surface");

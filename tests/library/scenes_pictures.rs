@@ -1,4 +1,4 @@
-//! Writes pictures to target/tmp for visual inspection: no test can tell whether a face looks like one.
+//! Writes pictures to target/tmp for visual inspection, because no test can decide whether a face looks like a face.
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;

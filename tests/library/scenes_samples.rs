@@ -27,7 +27,7 @@ fn map(sample: &Sample) -> &[f32] {
     }
 }
 
-/// As bits, so that NaN can be compared.
+/// The numbers as bits, so that NaN can be compared.
 fn bits(values: &[f32]) -> Vec<u32> {
     values.iter().map(|value| value.to_bits()).collect()
 }

@@ -85,8 +85,8 @@ fn run(pair: &Pair, start: &Similarity) -> (f64, f64) {
 mod long {
     use super::*;
 
-    /// Silhouettes alone pull a depth map that sees part of the object until it fills the image's mask, even from the true
-    /// pose.
+    /// If the depth map sees only a part of the object, silhouettes move it until it fills the image's mask, even from
+    /// the true pose.
     #[test]
     #[ignore = "needs ../shared/data"]
     fn views_of_a_statue_from_different_places_register_from_a_pose_that_is_roughly_right() {

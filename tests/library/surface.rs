@@ -71,7 +71,7 @@ fn planes_and_quadratics_are_exact() {
         let (found, report) = integrate(size, mask, &p, &q, None, &options);
         let error = largest(&found, &z, |index| mask[index]);
         println!("{error:e} px, {report:?}");
-        // Heights span 53 px.
+        // The error is relative to heights of 53 px.
         assert!(error < 1e-3, "{error}");
         let mean: f64 = found.iter().filter(|z| !z.is_nan()).map(|&z| f64::from(z)).sum();
         assert_eq!(report.components, 1);
@@ -216,7 +216,7 @@ fn a_perspective_sphere_comes_back_up_to_scale() {
         let discriminant = b * b - a * c;
         let z = (-b - discriminant.max(0.0).sqrt()) / a;
         let normal = [x * z - centre[0], y * z - centre[1], z - centre[2]].map(|part| part / radius);
-        // Up to 70 degrees between the normal and the line of sight.
+        // The sphere is limited to 70 degrees between the normal and the line of sight.
         let facing = -(normal[0] * x + normal[1] * y + normal[2]) / a.sqrt();
         if discriminant > 0.0 && facing > 0.34 {
             mask[index] = true;
@@ -273,7 +273,7 @@ fn bad_input_is_an_error_or_a_report() {
     assert_eq!(short.err().as_deref(), Some("p"));
     let bad = IntegrationOptions { tolerance: f64::NAN, ..options };
     assert!(integrator.integrate(&flat, &flat, None, &bad, &mut z).is_err());
-    // Invalid, infinite and extreme gradients: numbers, unknown edges, and the largest number.
+    // Gradients of zero, infinity, the largest number and -1e6 give finite heights.
     for value in [0.0, f32::INFINITY, f32::MAX, -1e6] {
         for robustness in [Robustness::Off, Robustness::Estimated] {
             let p = vec![value; 48];

@@ -55,7 +55,7 @@ fn spikes_inside_the_mask_are_cut() {
     assert!(robust < 0.09, "{robust}");
 }
 
-/// Over the whole rectangle, the vase stands out from its background by a jump that the gradients do not show.
+/// In the whole rectangle, a jump that the gradients do not show separates the vase from its background.
 #[test]
 #[ignore = "needs ../shared/data"]
 fn the_background_bends_the_vase_less_with_robust_weights() {

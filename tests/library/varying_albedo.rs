@@ -1,4 +1,4 @@
-//! Albedo is separated from shading, and the outputs add up.
+//! Albedo is separated from shading, and both add up to the image.
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
@@ -128,6 +128,6 @@ fn print_is_no_relief() {
         crate::common::mean(&off.filter(|square| !square.is_nan()).collect::<Vec<_>>()).sqrt()
     };
     let [painted, plain] = [error(chequers), error(|_| [0.0; 3])];
-    // A margin of a tenth for the borders of the squares, where the albedo is a mixture.
+    // A margin of a tenth of a square, because the albedo at the borders is a mixture.
     assert!(painted < 1.1 * plain, "{painted} {plain}");
 }

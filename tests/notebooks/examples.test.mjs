@@ -7,7 +7,7 @@ import { test } from "node:test";
 import { inRoot, matching } from "../../scripts/shell.mjs";
 import { environment, folder, program } from "./servers.mjs";
 
-/** What each notebook has to say in the end. */
+/** The text that each notebook has to show in the end. */
 const SAYS = {
   "shape-from-shading.ipynb": [/^converged beta (19|20)\.\d+, true 20\.00/m, /between the pictures: [\d.]+e-0[5-9]$/m],
   "calibration.ipynb": [/^consistent - /m, /^dropped +off +2\.\d+ degrees/m, /^factory +consistent/m],

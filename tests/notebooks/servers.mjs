@@ -9,7 +9,7 @@ import { chromium } from "@playwright/test";
 /** The programs of the environment with JupyterLab and marimo (scripts/notebooks.mjs). */
 export const program = (name) => join(process.env.NOTEBOOKS, name);
 
-/** Without the visitor's own settings, and without anything that asks a server elsewhere. */
+/** Options that ignore the user's own settings and send no requests to other servers. */
 export function environment(folder) {
   const own = {
     HOME: folder,

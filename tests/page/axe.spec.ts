@@ -38,7 +38,7 @@ interface Axe {
 
 /** Violations of all rules, including best practices, with their places. */
 async function findings(page: Page): Promise<string[]> {
-  // Through the browser's own protocol, because the page's policy forbids eval.
+  // Runs through the browser's own protocol, because the page's policy forbids eval.
   await page.evaluate(AXE);
   return page.evaluate(async () => {
     const { violations } = await (window as unknown as { axe: Axe }).axe.run(document);
@@ -50,7 +50,7 @@ async function findings(page: Page): Promise<string[]> {
 
 const ENDS = /^(converged|ambiguous|lost|max-iterations)$/;
 
-/** Checks one screen in both colour schemes, because reaching it takes longer than the rules. Soft, so that its findings do not hide the next screen's. */
+/** Checks one screen in both colour schemes, because opening a screen takes longer than the check. Findings do not end the test. */
 async function clean(page: Page, screen: string): Promise<void> {
   for (const colorScheme of ["dark", "light"] as const) {
     await page.emulateMedia({ colorScheme });

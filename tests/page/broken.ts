@@ -3,11 +3,11 @@
 import type { Page } from "@playwright/test";
 
 interface Breakable {
-  /** Ends a worker without notice, as a browser does, right after the n-th message from now on that contains all of `members`; `times` times. */
+  /** Ends a worker without notice, as a browser does, after the n-th later message that contains all of `members`; `times` times. */
   endAt(members: Record<string, string>, nth?: number, times?: number): void;
   /** Number of workers that `endAt` has ended. */
   ended: number;
-  /** Ends every worker whose script's address contains this name, now. */
+  /** Ends at once every worker whose script's address contains this name. */
   endAll(script: string): void;
   /** Number of workers that were made of such a script. */
   made(script: string): number;

@@ -43,7 +43,7 @@ for (const [where, script] of [
       // The focus ring changes the picture as well.
       await clouds.focus();
     };
-    // A picture follows its cause with a delay. If it was taken too early, it will not match again, so another one is taken.
+    // A picture follows its cause with a delay. A picture that was taken too early would never match, so another one is taken.
     await expect(async () => {
       await lookFromTheFront();
       const front = await clouds.screenshot();
@@ -148,7 +148,7 @@ test("points are as large on a dense screen", LONG, async ({ browser, baseURL })
     const clouds = page.locator("#clouds-canvas");
     await page.getByLabel("Draw as").selectOption("points");
     await expect(page.locator("#clouds-note")).toBeHidden();
-    // Before the first step only the depth map's cloud exists, so no other can appear late.
+    // Before the first step only the depth map's cloud exists, so no second cloud can appear late.
     await expect.poll(() => covered(clouds)).toBeGreaterThan(DRAWN);
     shares.push(await covered(clouds));
     await context.close();
@@ -166,7 +166,7 @@ test("while the search looks around, the surface stands where its best candidate
   await expect.poll(() => covered(clouds)).toBeGreaterThan(DRAWN);
   const start = await clouds.screenshot();
   await expect(async () => {
-    // No iteration has run, so only the search can have moved the surface.
+    // No iteration has run, so the search must have moved the surface.
     await page.keyboard.press("s");
     expect((await clouds.screenshot()).equals(start)).toBe(false);
   }).toPass();

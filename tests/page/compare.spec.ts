@@ -192,13 +192,13 @@ test(
     await expect(slider).toHaveValue("0.7");
     await page.getByRole("button", { name: "Redo" }).click();
     await expect.poll(() => lab.fingerprint("Colour")).toBe(changed);
-    // A link restores it.
+    // A link restores the coefficient.
     const link = page.url();
     await page.goto("about:blank");
     await page.goto(link);
     await lab.reaches("ready");
     expect(await lab.fingerprint("Colour")).toBe(changed);
-    // A named light replaces it.
+    // A named light replaces the coefficients.
     await lab.unfold();
     await page.getByLabel("Light", { exact: true }).first().selectOption("colourful");
     await expect.poll(() => lab.fingerprint("Colour")).toBe(before);

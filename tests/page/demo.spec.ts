@@ -47,10 +47,10 @@ test("the example that is too hard is too hard for the search as well", async ({
   await lab.reaches("lost");
   const map = (await page.locator("#score-canvas").getAttribute("aria-label")) ?? "";
   const [, beta, alpha] = /best one is (-?\d+) degrees .* and (-?\d+) about/.exec(map.replaceAll("−", "-")) ?? [];
-  // The true one is turned by 70 degrees about the vertical axis alone. Neighbours on the map are 16 degrees apart.
+  // The true rotation is 70 degrees about the vertical axis. Neighbours on the map are 16 degrees apart.
   expect(Math.hypot(Number(beta) - 70, Number(alpha))).toBeGreaterThan(24);
   expect(await lab.errorDegrees()).toBeGreaterThan(24);
-  // The words tell what rings and colours cannot: here many rotations score alike, and few of an easy scene.
+  // Only the words tell how many rotations score alike: many in this scene, few in an easy one.
   const alike = async () => {
     const said = / (none|\d+) within 5 % of the best$/.exec((await page.locator(words).textContent()) ?? "")?.[1];
     return said === "none" ? 0 : Number(said);

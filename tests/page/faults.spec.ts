@@ -242,7 +242,7 @@ test(
     await page.goto("./#tables");
     const cells = page.locator("#tables .heat-cell");
     await expect(cells.nth(2)).toBeVisible();
-    // All clicks at once: otherwise the first cell could be done before the third is clicked. The cell clicked last runs next.
+    // All clicks come at once, because otherwise the first cell could be done before the third is clicked. The cell clicked last runs next.
     await cells.evaluateAll((buttons) =>
       buttons.slice(0, 3).forEach((button) => (button as HTMLButtonElement).click()),
     );

@@ -41,7 +41,7 @@ export async function number(page: Page, key: string): Promise<number> {
   return Number((await page.locator(`[data-number="${key}"]`).getAttribute("data-value")) ?? NaN);
 }
 
-/** Moves a slider as a user does: the page is busy from the input event on. */
+/** Moves a slider as a user does; the input event makes the page busy. */
 export async function slide(page: Page, name: string, value: number): Promise<void> {
   const slider = page.locator(`.learn-controls input[name="${name}"]`);
   await slider.fill(String(value));

@@ -74,7 +74,7 @@ test("nothing runs while files are awaited", async ({ lab, page }) => {
   const messages = await Messages.of(page);
   await openFiles(lab);
   await expect(page.locator("#verdict")).toContainText("choose them in the settings");
-  // With the pointer, on buttons marked as disabled, and with the keyboard.
+  // Clicks buttons that are marked as disabled, with the pointer and with the keyboard.
   await page.getByRole("button", { name: "Step", exact: true }).click({ force: true });
   const play = page.locator("#play");
   await play.click({ force: true });

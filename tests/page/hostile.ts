@@ -1,10 +1,10 @@
-/** Files whose names and contents are markup, which would run if the page inserted any of them as HTML. */
+/** Files whose names and contents are markup that would run if the page inserted it as HTML. */
 
 import { deflateSync, crc32 } from "node:zlib";
 import { expect, type Page } from "@playwright/test";
 import { colourPng, depthPng, type Upload } from "./uploads";
 
-/** Without slashes, which file names cannot contain. */
+/** Markup without slashes, which file names cannot contain. */
 export const EVIL = `<img src=x onerror="window.owned=1"><svg onload=owned=1>`;
 export const EVIL_TEXT = `</style></title></script><script>window.owned=1</script>"'>${EVIL}`;
 
@@ -41,7 +41,7 @@ export function withTexts({ buffer, ...file }: Upload): Upload {
     chunk("iTXt", Buffer.from(`Author\0\0\0\0\0${EVIL_TEXT}`, "latin1")),
     chunk("eXIf", exif()),
   ];
-  // After the signature and the header.
+  // The position after the signature and the header.
   return { ...file, buffer: Buffer.concat([buffer.subarray(0, 33), ...texts, buffer.subarray(33)]) };
 }
 
@@ -94,7 +94,7 @@ export const pictures = (): Upload[] => [
   withTexts(depthPng(`${EVIL}depth.png`)),
 ];
 
-/** Checks that none of it has become an element or has run. */
+/** Checks that no markup has become an element or has run. */
 export async function expectHarmless(page: Page): Promise<void> {
   expect(await page.evaluate(() => (window as unknown as { owned?: number }).owned)).toBeUndefined();
   expect(await page.locator(`[onerror], [onload], img[src="x"], script:not([src])`).count()).toBe(0);

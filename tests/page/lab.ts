@@ -22,7 +22,7 @@ export class Lab {
     });
   }
 
-  /** Opens the Lab with the paper's own loop, whose first step is an iteration, and further settings. */
+  /** Opens the Lab with further settings and the paper's own loop, whose first step is an iteration. */
   async open(settings = ""): Promise<void> {
     await this.visit([settings, PAPER].filter(Boolean).join("&"));
   }

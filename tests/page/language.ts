@@ -7,7 +7,7 @@ const FOLDER = new URL("../../www/learn/languages/", import.meta.url);
 /** The languages with a catalogue. */
 export const LANGUAGES = readdirSync(FOLDER).map((name) => name.replace(".json", ""));
 
-/** Returns the catalogue's words at a path such as "lessons.pixel.title"; in English, the words that are given. */
+/** Returns the catalogue's words at a path such as "lessons.pixel.title"; in English, the given words. */
 export type Say = (path: string, english: string) => string;
 
 export const catalogueOf = (language: string): object =>

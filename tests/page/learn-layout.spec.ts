@@ -1,10 +1,10 @@
-/** Where the parts of a lesson's figure are: an effect and its control are visible together, and a frame cuts nothing off. */
+/** Positions of the parts of a lesson's figure: an effect and its control are visible together, and a frame cuts nothing off. */
 
 import type { Page } from "@playwright/test";
 import { LESSONS, figure, open, settled } from "./figure";
 import { LONG, expect, test } from "./lab";
 
-/** Pictures that are alone in their row although they are not the only ones. */
+/** Pictures that stand alone in a row although there are several pictures. */
 const lonely = (page: Page): Promise<string[]> =>
   figure(page).evaluate((box) => {
     const pictures = [...box.querySelectorAll<HTMLElement>(".learn-panel:not(.learn-wide)")];

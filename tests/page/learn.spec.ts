@@ -395,7 +395,7 @@ test("an address brings a lesson back, and what is no value of a control is pass
   await page.reload();
   await settled(page);
   await expect(page.locator('.learn-controls input[name="colour"]')).toHaveValue("0.5");
-  // Another lesson and back: the settings are kept.
+  // The settings are kept after a visit to another lesson.
   await page
     .getByRole("navigation", { name: say("interface.lessons", "Lessons") })
     .getByRole("link", { name: say("lessons.sensor.title", "Refining the sensor") })

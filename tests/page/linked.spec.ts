@@ -1,4 +1,4 @@
-/** A hovered pixel is highlighted in every view at the corresponding place. */
+/** When a pixel is hovered, every view highlights the corresponding place. */
 
 import { readFile } from "node:fs/promises";
 import type { Locator } from "@playwright/test";
@@ -186,7 +186,7 @@ test("of many moves the last counts, and the worker is asked one thing at a time
   for (let move = 1; move <= 10; move++)
     await page.mouse.move(box.x + (0.3 + 0.03 * move) * box.width, box.y + 0.4 * box.height);
   expect(await messages.count("probe")).toBe(before + 1);
-  // Until the answer arrives, position and numbers are the last ones.
+  // Until the answer arrives, the last position and numbers stay.
   expect(await pixelOf(lab, "Depth")).toEqual(first);
   await messages.release();
   await expect.poll(() => messages.count("probe")).toBe(before + 2);

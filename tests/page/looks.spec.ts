@@ -1,4 +1,4 @@
-/** Small and large screens, dark and light colours. */
+/** The page on small and large screens, in dark and light colours. */
 
 import { expect, test } from "./lab";
 import { atWidths, innerWidth, narrowest } from "./widths";

@@ -5,12 +5,12 @@
 
 import type { Page } from "@playwright/test";
 
-/** Kinds of messages to the Lab's worker and to the readers', or a cell of the tables. Messages with clouds to draw have no kind. */
+/** Kinds of messages to the worker of the Lab or of the readers, or a cell of the tables. Messages with clouds to draw have no kind. */
 type Kind = "catalogue" | "open" | "reset" | "advance" | "look" | "probe" | "read" | "pair" | "cell";
 
 interface Box {
   counts: Partial<Record<Kind, number>>;
-  /** Messages that are held back, after this many more have passed. */
+  /** The kind of messages that are held back, and how many of them pass before. */
   holding: { kind: Kind | undefined; after: number } | undefined;
   held: (() => void)[];
 }
@@ -27,7 +27,7 @@ export class Messages {
     this.#page = page;
   }
 
-  /** Applies to every document that the page opens from now on; each message is delayed by `late` milliseconds. */
+  /** Applies to every document that the page opens later; each message is delayed by `late` milliseconds. */
   static async of(page: Page, late = 0): Promise<Messages> {
     await page.addInitScript((late) => {
       const box: Box = { counts: {}, holding: undefined, held: [] };
@@ -56,7 +56,7 @@ export class Messages {
     return this.#page.evaluate((kind) => window.messages.counts[kind] ?? 0, kind);
   }
 
-  /** Holds back messages from now on, or those of one kind, after `after` more have passed. */
+  /** Holds back later messages, or those of one kind, after `after` of them have passed. */
   hold(kind?: Kind, after = 0): Promise<void> {
     return this.#page.evaluate(({ kind, after }) => void (window.messages.holding = { kind, after }), { kind, after });
   }

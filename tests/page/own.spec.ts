@@ -109,7 +109,7 @@ test("what is too large for a preview says its name, its size and that, below ea
   expect(file.y).toBeGreaterThanOrEqual(close.y + close.height - 4);
   expect(says.x).toBe(title.x);
   expect(says.y).toBeGreaterThanOrEqual(file.y + file.height);
-  // The name is truncated, its size is not.
+  // The name is truncated, but its size is not.
   await expect(card.locator(".file-name")).toHaveText(/ \(1 kB\)$/);
   expect(
     await card.locator(".file-name").evaluate(({ scrollWidth, clientWidth }) => scrollWidth - clientWidth),
@@ -194,7 +194,7 @@ test("swapped files are offered to be swapped, and then run", async ({ lab, page
   await lab.reaches("ready");
   await expect(page.locator(".offer")).toBeEmpty();
   await expect(page.locator("#next")).not.toContainText("swapped");
-  // A grey picture can be a depth map, a coloured one cannot.
+  // A grey picture can be a depth map, but a coloured one cannot.
   await put(lab, "Colour image", greyPng("grey.png"));
   await put(lab, "Depth map", colourPng("third.png"));
   await expect(page.locator("#next")).toHaveText("Colour and depth seem to be swapped: Settings, Swap.");

@@ -55,7 +55,7 @@ test("of several requests the last one counts", LONG, async ({ lab, page }) => {
   await expect(lab.iteration).toHaveText("1");
   expect(await lab.fingerprint("Colour")).toBe(vase);
 
-  // After a refusal, screen and worker have the same pair, also if another pair was requested in between.
+  // After a refusal, screen and worker have the same pair, even if another pair was requested in between.
   await messages.hold();
   await surface.selectOption("ripples");
   await page.getByLabel("Overlap", { exact: true }).first().fill("7");
@@ -85,7 +85,7 @@ test("where every frame is late the search still ends", LONG, async ({ lab, page
     const response = await route.fetch();
     await route.fulfill({ response, body: `${CLOCK}${await response.text()}` });
   });
-  // Frames this late are played stage by stage, and a search has hundreds of slices.
+  // With such late frames a run is played stage by stage, and a search has hundreds of slices.
   const messages = await Messages.of(page, 400);
   await lab.visit("size=64&light=colourful");
   await page.getByRole("button", { name: "Play" }).click();

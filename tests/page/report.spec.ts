@@ -48,7 +48,7 @@ const pagesOf = (pdf: Buffer) => pdf.toString("latin1").match(/\/Type\s*\/Page\b
 
 const long = (words: string, times = 100) => `${words} `.repeat(times);
 
-/** Everything that a report may hold, each part as long as it may be, on a portrait picture, the highest one. */
+/** A report with all parts at their largest length, and a portrait picture, which is the highest. */
 function fullest(files: number, lines = 12): string {
   const given = report();
   const [candidate] = Object.values(given.candidates);
@@ -114,7 +114,7 @@ test("prints on one page, and many files on a second one", async ({ page, browse
     }
     await page.unroute("**/report.html");
   }
-  // Whoever opens the details prints them as well.
+  // Details that are open are also printed.
   await open(page, reportHtml(report()));
   expect(pagesOf(await page.pdf({ format: "A4" }))).toBe(1);
   await page.getByText("Details: ").click();

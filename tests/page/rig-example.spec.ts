@@ -10,7 +10,7 @@ test("the example is checked by the package itself", LONG, async ({ lab, page })
   await page.getByRole("button", { name: "Next: your calibration" }).click();
   await page.getByRole("button", { name: "Run the check" }).click();
   await expect(page.locator(".rig-word")).toHaveText("Off");
-  // A rotation alone shifts distant points by more than the baseline, so the headline, its row and the report name the place.
+  // The rotation shifts distant points by more than the baseline, so the headline, its row and the report name the place.
   const place = /and [\d.]+ mm \(mostly along [xyz]\) at the centre of the scene, \d\.\d\d m away/;
   await expect(page.locator(".rig-verdict p").first()).toHaveText(place);
   await expect(page.locator(".rig-reason").first()).toContainText(place);
@@ -19,7 +19,7 @@ test("the example is checked by the package itself", LONG, async ({ lab, page })
   expect(readFileSync(await (await download).path(), "utf8").match(new RegExp(place, "g"))).toHaveLength(2);
   const told = page.locator(".rig-calibrations tbody tr").nth(1);
   const degrees = Number.parseFloat((await told.locator("td").nth(1).textContent()) ?? "");
-  // Its error is 2 degrees.
+  // The error of the calibration is 2 degrees.
   expect(degrees).toBeGreaterThan(1);
   expect(degrees).toBeLessThan(3);
   const rendered = page

@@ -175,7 +175,7 @@ test("a frame that was removed stays away when files are added, and comes back u
   await expect(frames).toHaveCount(2);
   await expect(frames.first()).toContainText("frame 2");
   await page.getByRole("button", { name: "Undo removing frame 1" }).click();
-  // Frames added since then are still there.
+  // Frames that were added later are still there.
   await expect(frames).toHaveCount(3);
   await expect(page.locator(".rig-file")).toHaveCount(7);
   await expect(page.getByRole("button", { name: /^Undo/ })).toBeHidden();

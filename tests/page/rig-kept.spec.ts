@@ -56,7 +56,7 @@ test("a reload keeps files, cameras, masks, calibrations and the verdict with it
   await expect(page.locator(".rig-frame")).toHaveCount(3);
   await expect(page.locator(".rig-frame").first()).toContainText("used: 25 % of the image, as drawn");
   await expect(page.getByLabel("Horizontal field of view, °").last()).toHaveValue("60");
-  // The files themselves are there: each can be read again in another unit.
+  // The files themselves are restored, so that each can be read again in another unit.
   await page.getByText("Files", { exact: true }).click();
   await page.locator(".rig-file").nth(1).getByLabel("Unit").selectOption("1");
   await expect(page.locator(".rig-file").nth(1)).toContainText("metres");

@@ -7,7 +7,7 @@ import { open, put, run } from "./rigsteps";
 const image = (name: string) => ({ name, mimeType: "image/png", buffer: colourPng() });
 const text = (name: string, content: string) => ({ name, mimeType: "text/plain", buffer: Buffer.from(content) });
 
-/** 16 rings of x y z and a reflectance, ring by ring, x forward and z up, as KITTI has them. */
+/** A scan in KITTI's form: 16 rings of x y z and a reflectance, ring by ring, with x forward and z up. */
 function scan(name: string) {
   const values: number[] = [];
   for (let ring = 0; ring < 16; ring++)

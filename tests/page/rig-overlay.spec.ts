@@ -5,7 +5,7 @@ import { answerChecks, giveFiles, pair } from "./rig";
 
 declare global {
   interface Window {
-    /** Held requests for pictures; undefined while all pass. */
+    /** Requests for pictures that are held back; undefined if all pass. */
     pictures: (() => void)[] | undefined;
   }
 }

@@ -14,7 +14,7 @@ interface Read {
   warnings: string[];
 }
 
-/** As on the site: WebAssembly may be compiled, and strings cannot become scripts. */
+/** The policy is that of the site: WebAssembly may be compiled, and strings cannot become scripts. */
 const POLICY = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; connect-src 'self'";
 const WORKER = `import { readRigFile } from "/pkg/rig.js";
 onmessage = async ({ data }) => postMessage((await readRigFile(data)).says);`;

@@ -1,4 +1,4 @@
-/** Check a rig: from dropped recordings to a verdict with clicks alone. The recordings are made here with public writers. */
+/** Check a rig: from dropped recordings to a verdict, only by clicks. The recordings are made here with public writers. */
 
 import { expect, test } from "./lab";
 import { existsSync, readFileSync } from "node:fs";

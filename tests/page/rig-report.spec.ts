@@ -1,4 +1,4 @@
-/** The report that the page saves: it says what the page says, and its command repeats the check. */
+/** The report that the page saves has the words of the page, and its command repeats the check. */
 
 import { spawnSync } from "node:child_process";
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
@@ -27,7 +27,7 @@ test("the report begins with the page's verdict, and its command gives the same 
   const sentence = await page.locator(".rig-verdict p").first().textContent();
   const report = await saved(page, "Save report (HTML)");
   const numbers = JSON.parse(await saved(page, "Save numbers (JSON)"));
-  // Under its own policy, not the page's.
+  // The report has its own policy, not that of the page.
   await page.goto("about:blank");
   await page.setContent(report);
   await expect(page.getByRole("heading", { level: 1 })).toContainText(`${word}: expected reprojection error `);

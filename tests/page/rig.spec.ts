@@ -1,4 +1,4 @@
-/** Check a rig: files, calibrations, verdict. Where only the page is tested, the test answers in place of the check. */
+/** Check a rig: files, calibrations, verdict. If only the page is tested, the test answers in place of the check. */
 
 import { LONG, expect, test } from "./lab";
 import { createHash } from "node:crypto";
@@ -83,7 +83,7 @@ test("calibrations from a file, pasted and typed in; inverted twice they are wha
   await page.getByRole("button", { name: "Add what I pasted" }).click();
   await expect(words.nth(1)).toContainText("10.0 mm below");
   await expect(page.locator(".rig-candidate .rig-notes li")).toHaveCount(0);
-  // A guessed unit is said beside its calibration.
+  // A guessed unit is shown beside its calibration.
   await page.getByLabel("Or paste it in any of these formats").fill("1 0 0 25\n0 1 0 0\n0 0 1 0\n0 0 0 1");
   await page.getByRole("button", { name: "Add what I pasted" }).click();
   await expect(page.locator(".rig-candidate").nth(2)).toContainText("was guessed to be in millimetres");
@@ -143,7 +143,7 @@ test("a verdict comes with its numbers, curves, shares and advice", async ({ lab
   await expect(page.locator(".rig-curves figure")).toHaveCount(6);
   await expect(page.locator(".rig-curves")).toContainText(/Minimum at −?\d+\.\d+°; ± \d+\.\d+° \(95 %\)/);
   await expect(page.getByRole("row", { name: /frame 1 50 %/ })).toBeVisible();
-  // The minimum of all cues about y lies away from the narrow interval, that along z within its own.
+  // The minimum of all cues about y lies outside the narrow interval, and the minimum along z inside its own.
   const curve = (title: string) => page.locator(".rig-curves figure", { hasText: title });
   await expect(curve("Rotation about y")).toContainText("your calibration at 2.04°");
   await expect(curve("Rotation about y")).toContainText("the minimum lies outside this interval");
@@ -187,7 +187,7 @@ test("the overlay moves between the calibration in question and the one found", 
   await expect.poll(print).not.toBe(before);
   await slider.press("ArrowLeft");
   await expect(slider).toHaveAttribute("aria-valuetext", /^95 % of the way from .+ to found$/);
-  // At full resolution: one canvas pixel for each image pixel.
+  // The picture has its full resolution: one canvas pixel for each image pixel.
   expect(await layer.evaluate((canvas: HTMLCanvasElement) => [canvas.width, canvas.height])).toEqual(
     await page
       .locator(".rig-overlay-picture > canvas")
@@ -329,7 +329,7 @@ test(
     );
     await step(page, "Files and cameras").click();
     const dialog = page.getByRole("dialog");
-    // Requested from the old worker, answered by the new one.
+    // The old worker got the request, and the new one answers it.
     await page.getByRole("button", { name: "Restrict what is used" }).click();
     await expect(dialog).toBeVisible();
     expect(

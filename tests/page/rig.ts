@@ -114,7 +114,7 @@ export function reportOf(
         cue,
         axis,
         offsets: offsets.map((x) => (a < 3 ? x / 4 : 2.5 * x)),
-        // About y the optimum lies away from the estimate, by more than the covariance allows.
+        // About y the optimum differs from the estimate by more than the covariance allows.
         values: offsets.map((x) => -((x - k + 1 - (a === 1 ? 3 : 0)) ** 2) / (4 + 3 * k + 4 * a)),
       })),
     ),

@@ -96,7 +96,7 @@ test(
     await messages.hold("advance", 1);
     await page.keyboard.press(" ");
     await expect(lab.iteration).toHaveText("1");
-    // Through two other places, neither of which ends the run.
+    // Visits two other places; the run continues.
     await page.locator("#to-learn").click();
     await page.locator("#to-tables").click();
     await expect(page.locator("#lab")).toBeHidden();
@@ -126,7 +126,7 @@ test("the value under the pointer is shown in every view", async ({ lab, page })
   await page.getByRole("img", { name: /^Normals/ }).hover();
   const readouts = page.locator("#image-views .readout");
   for (const readout of await readouts.all()) await expect(readout).toHaveText(/^\d+, \d+: /);
-  // The depth map's pixel is given as well, if there is one.
+  // The text also gives the depth map's pixel, if there is one.
   await expect(page.locator("#probe .where")).toHaveText(/^image \d+, \d+; depth map (\d+, \d+|none)$/);
 });
 
@@ -230,7 +230,7 @@ test("a hint unfolds at a tap", async ({ lab, page }) => {
   await expect(hint).toBeVisible();
 });
 
-/** The error that the table shows for the initial pose. */
+/** The table shows this error for the initial pose. */
 const AT_START = /[\d.]+° at the start/;
 
 test(
@@ -330,7 +330,7 @@ test(
       /is (−?\d+) degrees about the vertical/.exec((await canvas.getAttribute("aria-label")) ?? "") ?? [];
     // Rotations are 16 degrees apart.
     expect(Math.abs(Number(about?.replace("−", "-")) - 30)).toBeLessThanOrEqual(16);
-    // At the true rotation the map is yellow; at its corner nothing was tried.
+    // At the true rotation the map is yellow. At its corner no rotation was tried.
     const colours = await canvas.evaluate((element: HTMLCanvasElement) => {
       const at = (x: number, y: number) => [...(element.getContext("2d")?.getImageData(x, y, 1, 1).data ?? [])];
       return { truth: at(Math.round(((30 + 105) / 210) * element.width), element.height / 2), corner: at(1, 1) };

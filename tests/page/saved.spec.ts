@@ -39,7 +39,7 @@ test("a run that was taken away goes on where it stood, with the options that it
   await page.keyboard.press("s");
   await expect(lab.iteration).toHaveText("1");
 
-  // A pair of files replaces it.
+  // A pair of files replaces the run.
   await drop(page, "body", [colourPng(), depthPng()]);
   await lab.reaches("ready");
   await expect(lab.iteration).toHaveText("0");

@@ -68,7 +68,7 @@ test(
     await expect(lab.iteration).toHaveText("1");
     await hide(page, true);
     await page.getByRole("button", { name: "Play" }).click();
-    // The requested frame arrives; while it cannot be drawn, no further one is requested.
+    // The requested frame arrives. As long as it cannot be drawn, no other frame is requested.
     await expect(lab.iteration).toHaveText("2");
     await page.evaluate(async () => {
       // Time for a dozen frames, so that the test could fail.

@@ -15,7 +15,7 @@ test.use({ serviceWorkers: "allow" });
 
 const offline = (page: Page) => page.locator("#offline");
 
-/** Every place, with a check of something that its worker has computed. */
+/** Every part of the page, with a check of a result of its worker. */
 const PLACES: [string, (page: Page) => Promise<void>][] = [
   [
     "./#size=48",
@@ -130,7 +130,7 @@ test(
       );
       await page.reload();
       await expect(offline(page)).toContainText("A newer version is ready");
-      // The open page keeps its version as a whole.
+      // The open page keeps all files of its version.
       await page.reload();
       await expect(page.locator("#newer")).toHaveCount(0);
       await page.close();
@@ -194,7 +194,7 @@ test("from the first key to a pose in a file, by keyboard alone", LONG, async ({
   await expect(page.getByRole("button", { name: "Play" })).toBeFocused();
   await page.keyboard.press("Space");
   await expect(page.locator("#status")).toHaveAttribute("data-state", /converged|ambiguous/);
-  // From Play onward, around the end of the page.
+  // Tab goes from Play to the end of the page and on from its beginning.
   await tabTo(page, "#takeaway button[value=pose]");
   const download = page.waitForEvent("download");
   await page.keyboard.press("Enter");

@@ -109,7 +109,7 @@ test("the browser's Back turns a slide back, then leads to the lesson, and Forwa
   await page.goForward();
   await expect(slides).toBeVisible();
   await expect(heading(say("lessons.pixel.title", "What a pixel shows"))).toBeVisible();
-  // From the slides to the Lab, and back to the lesson itself.
+  // After a visit to the Lab, Learn shows the lesson and not its slides.
   await page.goto("./#size=32");
   await lab.reaches("ready");
   await page.locator("#to-learn").click();
@@ -152,7 +152,7 @@ test("slides turn by keys, leave the sliders theirs, and end by escape", async (
   await slider.focus();
   await page.keyboard.press("ArrowRight");
   await expect(slider).toHaveValue("0.32");
-  // After a drag of the slider they turn slides again, and Space does not scroll the page behind.
+  // After a drag of the slider, arrow keys turn slides again, and Space does not scroll the page behind.
   const drag = async (input: Locator) => {
     const box = (await input.boundingBox()) ?? { x: 0, y: 0, width: 0, height: 0 };
     await page.mouse.click(box.x + 0.8 * box.width, box.y + 0.5 * box.height);

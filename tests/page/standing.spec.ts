@@ -19,7 +19,7 @@ test("the surfaces are most of the first screen from 1280 to 2560 px", async ({ 
         const bar = await page.locator("#bar").boundingBox();
         expect(box && box.width / width).toBeGreaterThan(0.45);
         expect(box && bar && box.y + box.height).toBeLessThanOrEqual(bar?.y ?? 0);
-        // In reading order: inputs, surfaces, results.
+        // Parts of the page in reading order: inputs, surfaces, results.
         const lefts = await page
           .locator("#inputs, #hero, #outcome")
           .evaluateAll((parts) => parts.map((part) => part.getBoundingClientRect().left));

@@ -4,7 +4,7 @@ import type { Page } from "@playwright/test";
 import { Lab, LONG, expect, test } from "./lab";
 import { colourPng, depthPng, drop } from "./uploads";
 
-/** Sets the browser's own quota, which rejects everything stored from now on. */
+/** Sets the browser's own quota, so that it stores nothing more. */
 async function fill(page: Page, baseURL: string | undefined): Promise<void> {
   const session = await page.context().newCDPSession(page);
   await session.send("Storage.overrideQuotaForOrigin", { origin: new URL(baseURL ?? "").origin, quotaSize: 1 });

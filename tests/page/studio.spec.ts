@@ -75,7 +75,7 @@ test("a link that asks for what can't be says which field is wrong, and how", as
   const field = page.locator("#fields-sample").getByRole("spinbutton", { name: "Overlap" });
   await expect(field).toHaveAttribute("aria-invalid");
   await expect(field).toBeInViewport();
-  // A view that sees the back alone is the fault of the rotation, not of the size.
+  // If a view sees only the back, the rotation is at fault, not the size.
   await page.goto("./#size=32&beta=180");
   await expect(page.locator("#status")).toHaveText("Rotation β: invalid value");
   await expect(page.locator("#verdict")).toHaveText(
@@ -147,7 +147,7 @@ test(
     await expect(found).toHaveText("last run");
     await expect(ball).toHaveText("last run");
     expect(await boxes()).toEqual(before);
-    // After a return to its place and a release, nothing has to run again.
+    // After the light has returned to its place and is released, nothing has to run again.
     await page.mouse.move(x, y);
     await page.mouse.up();
     await expect(found).toHaveText("found");
@@ -182,7 +182,7 @@ test(
 
 test("the arrow keys turn the light toward where they point", async ({ lab, page }) => {
   await lab.open("size=64&light=window");
-  /** The column of the ball's centre of brightness. */
+  /** The mean column of the ball's brightness. */
   const column = () =>
     page.getByRole("img", { name: /^A ball under the true light/ }).evaluate((canvas: HTMLCanvasElement) => {
       const { data, width } =
@@ -228,7 +228,7 @@ test("a slider acts when it rests, and what had been played plays again", LONG, 
   await page.getByRole("button", { name: "Redo" }).click();
   await expect.poll(() => lab.fingerprint("Colour")).not.toBe(before);
   await lab.reaches("converged");
-  // A typed number does as well.
+  // A typed number plays like a change of the slider.
   await exact.fill("0");
   await exact.press("Enter");
   await expect.poll(() => lab.fingerprint("Colour")).toBe(before);
@@ -276,7 +276,7 @@ test("a pose with a rival says so, and the rival can be seen and chosen", LONG, 
   await expect(beta).not.toHaveText(String(foundBeta));
   expect(await lab.errorDegrees()).toBeGreaterThan(away - 5);
   await expect(rivals.getByRole("button", { name: "Restart from here" })).toBeVisible();
-  // Verdict and light belong to the pose found, and say so.
+  // Verdict and light belong to the pose that was found, and their words state it.
   await expect(page.locator("#status")).toHaveText(/^best pose: ambiguous, /);
   await expect(page.locator("#pose-error")).toHaveText(/° from the true rotation \(best pose: \d\.\d°\)/);
   await expect(page.locator("#light figcaption").first()).toHaveText("best pose");

@@ -45,7 +45,7 @@ test("the Lab alone loads nothing of the Tables", async ({ lab, page }) => {
   await page.getByRole("link", { name: "Tables" }).click();
   await expect(page.locator(".heat")).toBeVisible();
   expect(asked.filter((path) => /\.(js|css)$/.test(path)).length).toBeGreaterThan(ofTheLab);
-  // Before a cell runs, there is no second instance of the numerics either.
+  // Before a cell runs, the page holds only one instance of the numerics.
   expect(asked.filter((path) => path.endsWith(".wasm"))).toHaveLength(1);
 });
 

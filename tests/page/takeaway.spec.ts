@@ -13,7 +13,7 @@ async function press(lab: Lab, name: string): Promise<Download> {
   return waiting;
 }
 
-/** Chromium drops downloads of a page beyond ten within a second, which no user reaches. */
+/** Chromium drops downloads beyond ten within a second, which no user reaches. */
 const MOST_AT_ONCE = 8;
 
 /** Waits until a second has passed on the page's clock. */
@@ -149,7 +149,7 @@ test("any picture of the page, the clouds and the curves among them", LONG, asyn
     const colours = new Set<number>();
     for (let i = 0; i < data.length; i += channels)
       colours.add((data[i] ?? 0) * 65536 + (data[i + 1] ?? 0) * 256 + (data[i + 2] ?? 0));
-    // Only a view that is zero everywhere, such as a difference of equal pictures, has one colour.
+    // A view has one colour only if it is zero everywhere, such as a difference of equal pictures.
     expect(colours.size, title).toBeGreaterThan(1);
   }
 });

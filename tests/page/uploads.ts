@@ -78,7 +78,7 @@ const depths16 = (isLittle: boolean): Buffer => {
 /** The depth map of `depthPng` as other programs save it. */
 export const depthPgm = (name = "d.pgm"): Upload => bytes(name, `P5\n${SIDE} ${SIDE}\n65535\n`, depths16(false));
 export function depthPfm(name = "d.pfm"): Upload {
-  // From the bottom row up, with the low byte first.
+  // The rows from the bottom up, with the low byte first.
   const rows = Float32Array.from({ length: SIDE * SIDE }, (_, i) =>
     depthAt((SIDE - 1 - Math.floor(i / SIDE)) * SIDE + (i % SIDE)),
   );
@@ -111,7 +111,7 @@ export function depthTiff(name = "d.tif"): Upload {
   return bytes(name, head, strip, directory);
 }
 
-/** The same as points in rows and columns; missing depths have no point. */
+/** The ball as points in rows and columns; missing depths have no point. */
 export function cloudPly(name = "d.ply"): Upload {
   const points = Float32Array.from({ length: 3 * SIDE * SIDE }, (_, at) => {
     const i = Math.floor(at / 3);

@@ -2,7 +2,7 @@
 
 import type { Page } from "@playwright/test";
 
-/** The first size of a visit: the narrowest layout, without an earlier wider one. */
+/** The first size of a visit: the narrowest layout, so that no wider one precedes it. */
 export const narrowest = { width: 320, height: 844 };
 
 /** Width of the document, px; anything beyond the window's width sticks out. */

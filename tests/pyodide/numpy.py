@@ -1,4 +1,5 @@
-"""A stand-in for numpy, whose wheel for Pyodide no package registry has: the few functions that the test's calls use, on flat buffers."""
+"""A stand-in for numpy, because no package registry has a wheel for Pyodide. It has the few functions that the test's
+calls use, on flat buffers."""
 
 from array import array as flat
 from contextlib import nullcontext
@@ -45,7 +46,7 @@ class ndarray:
         return max(self.numbers)
 
     def __getitem__(self, key):
-        # The first three channels, of which the test's images have no more.
+        # The first three channels, which are all that the test's images have.
         assert key == (Ellipsis, slice(None, 3)) and self.shape[-1] == 3
         return self
 

@@ -1,5 +1,5 @@
-// The wheel for Pyodide, whose bindings call the npm package's WebAssembly. Without numpy, which no registry has for Pyodide: a stand-in has
-// the few functions that the script's calls use.
+// The wheel for Pyodide, whose bindings call the npm package's WebAssembly. No registry has numpy for Pyodide, so a stand-in has the few
+// functions that the script's calls use.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";

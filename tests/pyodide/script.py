@@ -1,4 +1,5 @@
-"""What a notebook in the browser does: a rendered scene, a run of few steps, a part of the method, a check, and errors."""
+"""The calls of a notebook in the browser: a rendered scene, a run of few steps, a part of the method, a check, and
+errors."""
 
 import bimodal_stereo as bimodal
 

@@ -48,7 +48,7 @@ export class Card {
     );
     this.#element.append(this.#where, make("table", {}, make("tbody", {}, ...rows)));
     probe.listen(() => this.#show());
-    // Away from the selected pixel, so that the card never covers it.
+    // The card lies away from the selected pixel, so that it never covers the pixel.
     document.addEventListener("pointermove", ({ clientX, clientY }) => this.#moveAway(clientX, clientY));
     // A touch sends no leave event when it ends, and scrolls if it began on a picture.
     document.addEventListener("pointercancel", () => probe.point(null));

@@ -79,7 +79,7 @@ export class Chart {
     );
   }
 
-  /** Notes where a single curve has gaps, and why. */
+  /** States where and why a single curve has gaps. */
   #sayZeros(values: readonly (number | null)[], pinned: readonly (number | null)[]): void {
     const isDrawn = [...values, ...pinned].some((value) => value !== null && value > 0);
     const zeros = zerosIn(values);
@@ -188,7 +188,7 @@ export class Plot {
       : 0;
     this.#newest = ys.map((values) => values.findLast((value) => value !== null) ?? null);
     this.#data = [xs.slice(first), ...curves.map((values) => values.slice(first))];
-    // Immediately: uPlot would otherwise draw at the end of the task, where the painter cannot measure the time.
+    // Drawn at once, because uPlot would otherwise draw at the end of the task, where the painter cannot measure the time.
     this.#plot?.batch(() => this.#plot?.setData(this.#data));
   }
 

@@ -27,8 +27,8 @@ const LEFT_THE_MIDDLE = 0.3;
 /** Ratio of sizes beyond which a pinned run's object counts as having another resolution. */
 const OTHER_SIZE = 1.5;
 /**
- * How far, in half windows, the drawn points may reach, and how much room is then made, so that the view does not follow every step of a
- * growing object.
+ * Largest reach of the drawn points in half windows, and their reach after the view has made room. The difference keeps the view from
+ * following every step of a growing object.
  */
 const EDGE = 0.98;
 const ROOM = 1.08;
@@ -39,7 +39,7 @@ const ROOM = 1.08;
 const MOST_ROOM = 1.8;
 const NOWHERE = new Matrix4();
 
-/** P -> s R P + t. */
+/** The matrix of P -> s R P + t. */
 function matrixOf({ scale, rotation, translation }: Pose): Matrix4 {
   const [a = 0, b = 0, c = 0, d = 0, e = 0, f = 0, g = 0, h = 0, i = 0] = rotation.map((value) => scale * value);
   const [x = 0, y = 0, z = 0] = translation;
@@ -50,7 +50,7 @@ export class Clouds {
   readonly #camera = new OrthographicCamera();
   readonly #controls: OrbitControls;
   readonly #renderer: Renderer;
-  /** The size of the box as reported after a layout: reading it in between would force a second layout in each frame. */
+  /** The size of the box, reported after a layout, because reading it earlier would force a second layout in each frame. */
   #size = { width: 0, height: 0 };
   readonly #resized = new ResizeObserver((entries) => {
     const { width, height } = entries.at(-1)?.contentRect ?? this.#size;
@@ -63,7 +63,7 @@ export class Clouds {
   #shown: Change["surfaces"];
   /** Bounding sphere of the surfaces. */
   #extent: Sphere | undefined;
-  /** The pose under which the depth map's points are given, and their present position. */
+  /** The pose under which the depth map's points are given, and the pose in which they are drawn. */
   #pose: Matrix4 | undefined;
   #standing = NOWHERE.clone();
   #swings = 0;
@@ -151,8 +151,7 @@ export class Clouds {
   }
 
   /**
-   * Moves the pinned run to the present run. This is needed if the image does not determine the distance, or if the pixels of the two runs
-   * differ in size.
+   * Moves the pinned run to the present run, if the image does not determine the distance or the pixels of the runs differ in size.
    */
   #placePinned(): void {
     const [then, now] = [this.#pinned, this.#extent];
@@ -389,7 +388,7 @@ function extent(points: Float32Array): Sphere | undefined {
   return new Sphere(new Vector3(x.middle, y.middle, z.middle), Math.hypot(x.half, y.half, z.half) || 1);
 }
 
-/** How far most of the points reach from the middle of the window, 1 at its edge. */
+/** The reach of most of the points from the middle of the window, 1 at its edge. */
 function reachOf(points: Float32Array, toScreen: Matrix4): number {
   const every = Math.max(1, Math.floor(points.length / 3 / 2000));
   const reaches: number[] = [];

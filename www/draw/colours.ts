@@ -40,7 +40,7 @@ export function colourAt(map: MapName, share: number): [number, number, number] 
 export const gradient = (map: MapName): string =>
   `linear-gradient(to right, ${STOPS[map].map((stop) => `#${stop}`).join(", ")})`;
 
-/** The same as whole pixels, in the byte order of all machines that browsers run on. */
+/** The colours of a map as whole pixels, in the byte order of all machines that browsers run on. */
 const whole = (table: Uint8ClampedArray): Uint32Array =>
   Uint32Array.from(
     { length: 256 },
@@ -97,7 +97,7 @@ const ofLog = Uint8ClampedArray.from(
   (_, step) => 255 * Math.exp((-REACH * step) / (STEPS - 1) / 2.2),
 );
 
-/** Logarithms of linear colours; `white` is one as well. */
+/** Draws logarithms of linear colours; `white` is the logarithm of the white level. */
 export function paintLog({ width, height, data }: Raster, white: number): ImageData {
   const factor = (STEPS - 1) / REACH;
   const image = new ImageData(width, height);

@@ -1,6 +1,6 @@
 /** Lines of equal value in a raster, for drawing them over its picture. */
 
-/** The two ends of a line within a cell of four pixels, by which of its corners are above the level: pairs of sides. */
+/** The sides of a cell of four pixels between which a line runs, in pairs, for each combination of corners above the level. */
 const SIDES: readonly (readonly number[])[] = [
   [],
   [3, 0],
@@ -30,7 +30,7 @@ export function contour(values: ArrayLike<number>, width: number, height: number
   for (let row = 0; row + 1 < height; row++)
     for (let column = 0; column + 1 < width; column++) {
       const at = row * width + column;
-      // Around the cell from its first pixel: to the right, down, to the left.
+      // The corners of a cell in order from its first pixel: right, down, left.
       corners[0] = (values[at] ?? NaN) - level;
       corners[1] = (values[at + 1] ?? NaN) - level;
       corners[2] = (values[at + width + 1] ?? NaN) - level;
@@ -48,7 +48,7 @@ export function contour(values: ArrayLike<number>, width: number, height: number
   return points;
 }
 
-/** Where the value is zero on one side of a cell: above, right, below, left. */
+/** The place of the value zero on one side of a cell: above, right, below, left. */
 function crossing(corners: readonly number[], side: number): [number, number] {
   const [from, to] = [corners[side] ?? 0, corners[(side + 1) % 4] ?? 0];
   const share = from / (from - to);

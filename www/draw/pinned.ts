@@ -28,7 +28,7 @@ export class Pinned {
     this.#kept = undefined;
   }
 
-  /** Aligns it with the visible pixels: both are parts of a view, given as shares of its sides. */
+  /** Aligns the picture with the visible pixels. Both are parts of a view, given as shares of its sides. */
   place(now: Place): void {
     if (!this.#kept) return;
     const { canvas, place } = this.#kept;

@@ -7,7 +7,7 @@ export interface Asked {
   pixel: Pixel;
 }
 
-/** Answers, or nothing if no answer is available. */
+/** Returns the values at the pixel, or nothing if they are not available. */
 type Ask = (asked: Asked) => Promise<Probed | undefined>;
 
 const isSame = (a: Asked | null, b: Asked | null): boolean =>

@@ -5,7 +5,7 @@ import { nextTask } from "../dom";
 import type { Asked, Change, Told } from "./stage";
 
 export interface Renderer {
-  /** Resolves when that is done. */
+  /** Resolves when the change is drawn. */
   draw(change: Change): Promise<void>;
   end(): void;
 }
@@ -13,7 +13,7 @@ export interface Renderer {
 export interface CloudsHooks {
   /** WebGL was suspended, or has returned. */
   onLost(lost: boolean): void;
-  /** Nothing more will be drawn. */
+  /** The thread has ended, and nothing more will be drawn. */
   onGone(): void;
 }
 
@@ -23,7 +23,7 @@ export async function rendererFor(canvas: HTMLCanvasElement, hooks: CloudsHooks)
   // Creating a thread blocks the page, so it is a separate task.
   await nextTask();
   const thread = new Thread(hooks);
-  // The thread tries, not the page: a request for WebGL waits for the browser's graphics process.
+  // The thread and not the page tests for WebGL, because the test waits for the browser's graphics process.
   if (await thread.ask("can you draw?")) return elsewhere(thread, canvas);
   thread.end();
   return here(canvas, hooks);

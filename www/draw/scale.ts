@@ -81,7 +81,7 @@ export class Scale {
   }
 
   #show(): void {
-    // Frames arrive while a visitor types.
+    // Frames arrive while a visitor types, so the focused field keeps its text.
     const put = (input: HTMLInputElement, value: number) => {
       if (document.activeElement !== input) input.value = short(value);
     };

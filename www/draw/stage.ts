@@ -35,7 +35,7 @@ export interface Sight {
   projection: number[];
 }
 
-/** The parts that change; the others stay. */
+/** A change of the scene: absent parts stay as they are. */
 export interface Change {
   surfaces?: Record<Side, Surface>;
   sight?: Sight;
@@ -53,7 +53,7 @@ export interface Change {
 
 export interface PinnedSurfaces {
   surfaces: Record<Side, Surface>;
-  /** The `swing` of the pinned run. */
+  /** The transformation `swing` of the pinned run. */
   swing: number[];
 }
 
@@ -71,7 +71,7 @@ export class CloudStage {
   readonly #image = new Sheet(1);
   readonly #depth = new Sheet(0.85);
   readonly #pinned = { image: new Sheet(1), depth: new Sheet(0.85), isShown: false };
-  /** All sheets of each run. */
+  /** Both surfaces of each run. */
   readonly #runs = { now: new Group(), pinned: new Group() };
   #wipe = 0;
   #sight: Sight | undefined;

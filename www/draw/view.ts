@@ -63,10 +63,10 @@ export class View {
     this.#canvas.addEventListener("pointermove", point);
     this.#canvas.addEventListener("pointerdown", point);
     this.#canvas.addEventListener("pointerleave", ({ pointerType }) => {
-      // A finger must be lifted before the value under it can be read.
+      // A touch keeps the selection, because a finger hides the value under it until it is lifted.
       if (pointerType !== "touch") this.#point(null);
     });
-    // Announced when moved by keys; with a pointer the announcements would never end.
+    // A value is announced only if keys moved the probe; with a pointer the announcements would never end.
     this.#canvas.addEventListener("focus", () => this.#readout.setAttribute("role", "status"));
     this.#canvas.addEventListener("blur", () => {
       this.#readout.removeAttribute("role");
@@ -99,7 +99,7 @@ export class View {
     this.#showProbe();
   }
 
-  /** Keeps the present picture, for the wipe over later ones. */
+  /** Keeps the present picture, to be shown left of the wipe. */
   pin(): void {
     if (this.#painted) this.#pinned.keep(this.#painted);
   }

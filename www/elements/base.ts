@@ -13,7 +13,7 @@ export abstract class Base extends (globalThis.HTMLElement ?? Nothing) {
   }
 
   connectedCallback(): void {
-    // React and custom element upgrades: properties that were set before the class was known.
+    // Properties may have been set before the class was known, by React or before an upgrade of the element.
     for (const name of this.settable) {
       if (!Object.hasOwn(this, name)) continue;
       const value: unknown = Reflect.get(this, name);

@@ -5,7 +5,7 @@ import { Figure } from "../learn/figure";
 import type { Panel } from "../learn/protocol";
 import { styled } from "./styled";
 
-/** In a separate shadow root, because the element's style would reach into the figure. */
+/** The charts have a separate shadow root, because the element's style would otherwise affect the figure. */
 export function chartsIn(host: HTMLElement): (panels: Panel[]) => void {
   const root = host.attachShadow({ mode: "open" });
   styled(root);

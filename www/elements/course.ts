@@ -9,7 +9,7 @@ type Curve = Pick<PlotPanel, "key" | "title" | "alt" | "y" | "range"> & {
   value(report: StepReport): number;
 };
 
-/** With the smallest range of each, so that the last digits of a run that has converged do not fill the picture. */
+/** The curves with the smallest range of each axis, so that the last digits of a run that has converged do not fill the picture. */
 const CURVES: readonly Curve[] = [
   {
     key: "residual",
@@ -36,7 +36,7 @@ export class Course {
   readonly #points = CURVES.map((): number[] => []);
 
   take(report: StepReport): void {
-    // The search has no iterations.
+    // Reports of the search belong to no iteration.
     if (report.stage === "search") return;
     for (const [at, { value }] of CURVES.entries()) this.#points[at]?.push(report.iteration, value(report));
   }

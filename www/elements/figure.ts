@@ -33,7 +33,7 @@ export class BimodalFigure extends Base implements BimodalFigureElement {
   attributeChangedCallback(name: string, before: string | null, now: string | null): void {
     if (before === now || (name === "state" && (now ?? "") === this.#written)) return;
     if (name === "lesson" || !this.#shown) return this.restart();
-    // After the other changes of this task: the state may be meant for the lesson that is set next.
+    // Waits for the other changes of this task, because the state may be meant for the lesson that is set next.
     queueMicrotask(() => {
       if (!this.isScheduled) this.#shown?.set(this.state);
     });

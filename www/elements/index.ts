@@ -6,7 +6,7 @@ import { BimodalStereo } from "./stereo";
 export { configure } from "./threads";
 
 if (typeof customElements !== "undefined") {
-  // Two copies of the package on one page are no error.
+  // A page may load two copies of the package.
   if (!customElements.get("bimodal-stereo")) customElements.define("bimodal-stereo", BimodalStereo);
   if (!customElements.get("bimodal-figure")) customElements.define("bimodal-figure", BimodalFigure);
 }

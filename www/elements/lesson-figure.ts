@@ -93,7 +93,7 @@ function live(root: ShadowRoot, lesson: Lesson, values: Values, alert: HTMLEleme
   };
 }
 
-/** The two sliders of a panel's axes from a place on it, given as shares of its sides. */
+/** The values of the two sliders that a place on a panel selects. The place is given as shares of the panel's sides. */
 function dragged(lesson: Lesson, key: string, x: number, y: number): Values {
   const axes = lesson.drags[key];
   if (!axes) return {};

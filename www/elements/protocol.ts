@@ -1,4 +1,4 @@
-/** The messages between `<bimodal-stereo>` and its thread. Both sides import this file and nothing else of each other. */
+/** The messages between `<bimodal-stereo>` and its thread. Both sides import this file and no other file of the other side. */
 
 import type { StereoPair } from "../../pkg/elements.js";
 import type { Options, SampleRequest, StepReport, WasmSource } from "../../pkg/index.js";
@@ -19,7 +19,7 @@ export type Order =
   | { kind: "open"; input: Input; options: Options; wasm: WasmSource | undefined }
   | { kind: "step"; withCharts: boolean };
 
-/** What is shown; the image is sent once, with the first answer. */
+/** The contents of a drawing; the image is sent once, with the first answer. */
 export const PICTURES = ["image", "surface", "light"] as const;
 export type PictureName = (typeof PICTURES)[number];
 export type Pictures = Partial<Record<PictureName, ImageBitmap>>;

@@ -8,7 +8,7 @@ import type { Answer, Input, Order } from "./protocol";
 import { startStereo, wasm } from "./threads";
 import { StereoView } from "./view";
 
-/** The scene of a sample of which only the surface was named. */
+/** The scene of a sample if only its surface is named. */
 const SCENE = { light: "window", angles: { beta: 30 }, noise: 0.01 } as const;
 
 export class BimodalStereo extends Base implements BimodalStereoElement {
@@ -207,7 +207,7 @@ export class BimodalStereo extends Base implements BimodalStereoElement {
     this.tell("step", report);
     if (report.status !== before) this.tell("status", { status: report.status });
     if (report.status === "running") return this.#next();
-    // Nothing is left to do, so the worker need not stay.
+    // The run has ended, so the worker is no longer needed.
     this.stop();
     this.tell("done", report);
   }

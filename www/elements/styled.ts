@@ -5,7 +5,7 @@ import parts from "../style/learn-figure.css?inline";
 import tokens from "../style/tokens.css?inline";
 import own from "./figure.css?inline";
 
-/** The page's rules about its root are about the element here. */
+/** The page's rules for its root apply to the element here. */
 const inShadow = (text: string): string =>
   text.replaceAll(/:root\[([^\]]+)\]/g, ":host([$1])").replaceAll(":root", ":host");
 

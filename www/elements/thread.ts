@@ -9,7 +9,7 @@ import { Course } from "./course";
 import type { Answer, Input, Order, Pictures } from "./protocol";
 
 const BALL = 128;
-/** Exponent of a screen, for pictures that are only looked at. */
+/** Exponent of a screen (gamma), for pictures that are only shown. */
 const GAMMA = 1 / 2.2;
 
 let isLoaded = false;
@@ -71,7 +71,7 @@ async function pairOf({
   ];
 }
 
-/** Linear colours as a picture, the brightest being white. */
+/** Linear colours as a picture, in which the brightest colour is white. */
 function pictured(width: number, height: number, colours: ArrayLike<number>): ImageBitmap {
   let most = 0;
   for (let i = 0; i < colours.length; i++) most = Math.max(most, colours[i] || 0);

@@ -45,7 +45,7 @@ const ownFigure = () => new Worker(new URL("./figure-thread.js", import.meta.url
 
 export const startStereo = (): Worker => started("elements-thread.js", places.stereoThread, ownStereo);
 
-/** In the place of www/learn/thread.ts. */
+/** Replaces www/learn/thread.ts in the package. */
 export function startThread(): Worker {
   const worker = started("figure-thread.js", places.figureThread, ownFigure);
   const source = wasm();

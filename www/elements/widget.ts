@@ -41,7 +41,7 @@ function pageOf(): Page {
   return all[PAGE];
 }
 
-/** At once, so that the copy that defines the elements also receives the places of their files. */
+/** Set at once, so that the copy that defines the elements also receives the addresses of their files. */
 const page = pageOf();
 
 async function place(files: Record<string, DataView>): Promise<void> {
@@ -85,7 +85,7 @@ const REPORT_EVERY = 200;
 
 type Bound = { end(): void };
 
-/** Members that follow the kernel; the element takes one that is equal to its own as no change. */
+/** Members that follow the kernel. The element ignores a value that is equal to its own. */
 function follow(model: Model, element: object, names: Record<string, (value: unknown) => unknown>): Bound {
   const ends = Object.entries(names).map(([name, convert]) => {
     const own = name.replace(/^_/, "");
@@ -143,7 +143,7 @@ function labOf(model: Model): [BimodalStereoElement, Bound] {
 async function render({ model, el }: Given): Promise<() => void> {
   await files(model);
   const [element, bound] = model.get("_tag") === "bimodal-figure" ? figureOf(model) : labOf(model);
-  // Otherwise JupyterLab takes the arrow keys of a slider as its own.
+  // Otherwise JupyterLab would handle the arrow keys of a slider.
   element.dataset.lmSuppressShortcuts = "true";
   el.append(element);
   return () => {

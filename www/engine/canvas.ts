@@ -64,7 +64,7 @@ export class ViewCanvas {
     return colours;
   }
 
-  /** Removes it; the canvas is then empty. */
+  /** Removes the bitmap; the canvas is then empty. */
   take(): Painted {
     return { ...this.#frame, bitmap: this.#part.canvas.transferToImageBitmap() };
   }

@@ -23,7 +23,7 @@ import { cutOfDepth, cutOfImage, depthAt, measured, picture, raster, surface, wh
 
 /** The range for a view without values. */
 const NOTHING: Range = { min: 0, max: 1 };
-/** Values that cannot be negative and should be zero. */
+/** Whether a scale shows errors, which cannot be negative and should be zero. */
 const isError = (scale: ScaleName): boolean => scale === "residual" || scale.endsWith("Error");
 const mapOf = (scale: ScaleName): MapName => (isError(scale) ? "magma" : "viridis");
 
@@ -54,7 +54,7 @@ export class ViewPainter {
   readonly #errors: Errors | undefined;
   /** The views that were drawn last. */
   errors: Partial<Record<ErrorName, Raster>> = {};
-  /** How the given depth was last drawn: it stays the same until its range changes. */
+  /** The last drawing of the given depth, which is valid until its range changes. */
   #given: Range | undefined;
 
   /** `truth` is the ground truth of a sample. */
@@ -65,12 +65,12 @@ export class ViewPainter {
     this.#picture = paintPicture(picture(image, this.#cuts.image));
   }
 
-  /** The colour image as it came. */
+  /** The colour image as supplied. */
   given(): Painted {
     return this.#canvases.image.picture(this.#picture).take();
   }
 
-  /** Everything, except views that have not changed, unless `anew` is set. */
+  /** Draws everything except views that have not changed; with `anew`, these as well. */
   show(run: Run, look: Look, poses: { points: Pose; seen: Pose }, anew: boolean): Drawings {
     const { estimator, numbers, depth } = run;
     const [imageDepth, refined] = [numbers.of("imageDepth"), numbers.of("refinedDepth")];

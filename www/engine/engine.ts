@@ -32,13 +32,13 @@ interface Pending {
 export interface EngineHooks {
   /** Called with the number of bytes of the module that have arrived. */
   onLoad(bytes: number): void;
-  /** The worker is gone, and with it the input that it held; calls under way are rejected with the same error. */
+  /** The worker has ended and its input is lost. Pending calls are rejected with the same error. */
   onLost(error: EngineError): void;
 }
 
 export class Engine {
   #worker: Worker | undefined;
-  /** Before its first answer a worker is still loading; to replace it then would only load everything again. */
+  /** Before its first answer a worker is still loading. Replacing it then would only load everything again. */
   #loaded = false;
   #pending = new Map<number, Pending>();
   /** Called when nothing is pending any more. */
@@ -50,7 +50,7 @@ export class Engine {
     this.#hooks = hooks;
   }
 
-  /** The page can no longer use transferred buffers. */
+  /** Buffers are transferred, so the page can no longer use them. */
   call<K extends Kind>(
     kind: K,
     request: Calls[K]["request"],
@@ -117,7 +117,7 @@ export class Engine {
 
   /**
    * No reply of an instance that has panicked or is being replaced can be used, so all pending calls fail with the same error. The next
-   * call makes a new worker; making it here would never end if the worker cannot be loaded at all.
+   * call makes a new worker. If it were made here, a worker that cannot be loaded would cause an endless loop.
    */
   #drop(fault: Fault): void {
     this.#worker?.terminate();

@@ -1,4 +1,4 @@
-/** Imported first by the page's workers: the lock by which the page knows that they live (`alive.ts`). */
+/** Takes the lock by which the page knows that a worker lives (`alive.ts`). The page's workers import this file first. */
 
 import type { Holding } from "./alive";
 

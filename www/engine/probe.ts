@@ -6,8 +6,7 @@ import { depthAt, placesOf } from "./rasters";
 import type { Run } from "./drawings";
 
 /**
- * How far, in pixels of the depth map, the counterpart of one of its pixels may lie from it, because not every depth pixel corresponds to
- * an image pixel.
+ * Largest distance of a counterpart from its pixel, pixels of the depth map, because not every depth pixel corresponds to an image pixel.
  */
 const NEAR = 2;
 

@@ -1,4 +1,4 @@
-/** Messages between the page and its worker. Both sides import this file and nothing else of each other. */
+/** Messages between the page and its worker. Both sides import this file and no other file of the other side. */
 
 import type { ErrorDetails } from "../../pkg/index.js";
 import type { ColorImage, DepthMap, Options, Pinhole, Pose, SampleRequest, StepReport } from "../../pkg/index.js";
@@ -9,7 +9,7 @@ export interface Pair {
   depth: DepthMap;
   /** Guesses and changes during reading, in words, by field. */
   notes: Record<string, string>;
-  /** The unit of depth that was found where none was given. */
+  /** The guessed unit of depth, if none was given. */
   unit?: number;
   /** The true pose, of a rendered pair. */
   truth?: Pose;
@@ -23,7 +23,7 @@ export interface OwnFiles {
   depthMask?: File;
   colourCamera?: Pinhole;
   depthCamera?: Pinhole;
-  /** Metres (or pixels) per stored unit of depth; if absent, it is guessed if there is a camera. */
+  /** Metres (or pixels) per stored unit of depth. If it is absent and there is a camera, it is guessed. */
   unit?: number;
   /** Whether larger numbers of the depth map are nearer, with the factor if it is known. */
   inverse?: { numerator?: number };
@@ -33,16 +33,15 @@ export interface OwnFiles {
   truth?: Pose;
 }
 
-/** A sample's light may be turned, degrees about the colour view's x and y. */
+/** Rotation of a sample's light about the colour view's x and y, degrees. */
 export type SampleSource = { kind: "sample"; request: SampleRequest; turn: { alpha: number; beta: number } };
 /** The input to show; a saved run continues where it stopped. */
 export type Source = SampleSource | { kind: "files"; files: OwnFiles } | { kind: "saved"; file: File };
-/** The same for the worker, with the files read. */
+/** The input for the worker, after the files have been read. */
 export type Input = Exclude<Source, { kind: "files" }> | { kind: "pair"; pair: Pair };
 
 /**
- * Options whose light may also be "known" and whose start may be "truth", which are those of the sample, because only the worker holds
- * them.
+ * Options whose light may also be "known" and whose start may be "truth". Only the worker holds the light and pose of the sample.
  */
 export type LabOptions = Omit<Options, "light" | "start"> & {
   light: "known" | "estimate" | number[];
@@ -50,8 +49,8 @@ export type LabOptions = Omit<Options, "light" | "start"> & {
 };
 
 /**
- * Numbers of one view for drawing: from the pixel at `left`, `top` on, every `stride`-th of the full grid, so that a frame takes the same
- * time for any size of input. Three channels are interleaved.
+ * Numbers of one view for drawing, for every `stride`-th pixel of the full grid. They start at the pixel `left`, `top`. With strides a
+ * frame takes the same time for any size of input. Three channels are interleaved.
  */
 export interface Raster {
   left: number;
@@ -63,15 +62,15 @@ export interface Raster {
   data: Float32Array;
 }
 
-/** Colours, with what is needed to show them: their white level and whether they are already encoded for a screen. */
+/** Colours with their white level, and whether they are already encoded for a screen. */
 export interface Picture extends Raster {
   white: number;
   encoded: boolean;
 }
 
 /**
- * Points of one view at its pixels: every `stride`-th of the full grid from `left`, `top` on, NaN where missing. Without a width they are
- * an unordered list.
+ * Points of one view for every `stride`-th pixel of the full grid, NaN where missing. They start at the pixel `left`, `top`. If the width
+ * is 0, they are an unordered list.
  */
 export interface Surface {
   left: number;
@@ -85,7 +84,7 @@ export interface Surface {
   colours: Uint8Array | null;
 }
 
-/** The pictures of the Lab, and whose pixels they show. */
+/** The pictures of the Lab, each with the view whose pixels it shows. */
 export const VIEWS = {
   picture: "image",
   imageNormals: "image",
@@ -130,7 +129,7 @@ export interface Look {
   texture: Texture;
 }
 
-/** Pixels of a view from `left`, `top` on, every `stride`-th of the full grid. */
+/** Every `stride`-th pixel of a view's full grid, starting at `left`, `top`. */
 export interface Painted extends Pick<Raster, "left" | "top" | "width" | "height" | "stride"> {
   full: { width: number; height: number };
   bitmap: ImageBitmap;
@@ -141,13 +140,13 @@ export interface Drawings {
   views: Partial<Record<ViewName, Painted>>;
   ranges: Record<ScaleName, Range>;
   surfaces: Record<Side, Surface>;
-  /** The pose under which the depth map's points are given (during a search, that of the start), and the one to be shown. */
+  /** `points` is the pose under which the depth map's points are given, during a search the initial pose. `seen` is the pose to show. */
   poses: { points: Pose; seen: Pose };
 }
 
 /** Everything that changes with a step. */
 export interface Frame extends Drawings {
-  /** One for each step since the last frame, the newest last. */
+  /** The reports of all steps since the last frame; the newest is the last. */
   reports: StepReport[];
   /** Alpha, beta, gamma and score of each rotation that the search has tried. */
   scores: Float32Array;
@@ -164,7 +163,7 @@ export interface KnownLight {
 
 /** Everything that changes with the input. */
 export interface Opened {
-  /** Unit of the image's depth and of the depth view's. */
+  /** Units of the depth of both views. */
   units: { image: "px" | "m"; depth: "px" | "m" };
   /** Guesses and changes during reading, in words, by field. */
   notes: Record<string, string>;
@@ -234,7 +233,7 @@ export interface Calls {
   reset: { request: { options: LabOptions; look: Look }; reply: Frame };
   look: { request: { look: Look }; reply: Drawings };
   probe: { request: { side: Side; pixel: Pixel }; reply: Probed };
-  /** Runs steps until the time is up, at least one; a stage is always run alone. */
+  /** Runs at least one step, and more until the time is up. A stage is run without any other. */
   advance: { request: { by: "step" | "stage"; milliseconds: number; look: Look }; reply: Frame };
 }
 

@@ -23,7 +23,7 @@ export interface Cut {
   height: number;
 }
 
-/** The part of the view for which `inside` holds, or all of it if it holds nowhere. An object in a corner is then still drawn large. */
+/** The part of the view for which `inside` holds, or the whole view if it holds nowhere, so that a small object is drawn large. */
 export function cutOf(width: number, height: number, inside: (index: number) => boolean): Cut {
   let [left, top, right, bottom] = [width, height, -1, -1];
   for (let row = 0, index = 0; row < height; row++) {
@@ -156,7 +156,7 @@ function thinned(points: Float32Array): Float32Array {
   return kept;
 }
 
-/** The index of each pixel's point in the list of pixels with a depth, -1 for the others. */
+/** The index of each pixel's point in the list of pixels with a depth; -1 for pixels without a depth. */
 export function placesOf(depth: Float32Array): { places: Int32Array; count: number } {
   const places = new Int32Array(depth.length).fill(-1);
   let count = 0;

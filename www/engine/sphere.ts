@@ -12,7 +12,7 @@ const RADIUS = 0.97;
 const ball = ballNormals(SIDE, RADIUS);
 let context: OffscreenCanvasRenderingContext2D | undefined;
 
-/** Logarithms of the ball's colours as a picture; `white` is one as well. */
+/** A picture of the logarithms of the ball's colours; `white` is the logarithm of the white level. */
 function painted(data: Float32Array, white: number): ImageBitmap {
   context ??= contextOf(SIDE, SIDE);
   context.putImageData(

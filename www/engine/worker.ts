@@ -48,7 +48,7 @@ interface OpenInput extends Input, Run {
 let experiment: OpenInput | undefined;
 let isLoaded = false;
 const ready = load();
-// Each request waits for it and reports a failure; before the first request its rejection must not count as unhandled.
+// Each request waits for the module and reports its failure. Before the first request, a rejection must not count as unhandled.
 ready.catch(() => {});
 
 async function load(): Promise<void> {
@@ -193,7 +193,7 @@ function reset({ options, look }: Calls["reset"]["request"]): Frame {
   return frame(current, look, [current.estimator.report]);
 }
 
-/** Least and most time spent on one frame of the search, in milliseconds: a pause must still take effect at once. */
+/** Shortest and longest time spent on one frame of the search, milliseconds. A pause must take effect at once. */
 const SEARCHING = [30, 250] as const;
 let answered = Infinity;
 
@@ -207,13 +207,13 @@ async function advance({ by, milliseconds, look }: Calls["advance"]["request"]):
     const last = reports.at(-1);
     return last?.stage === "search" && last.reason?.code !== "search-done";
   };
-  // A slice of the search shows too little progress, so that several slices make a frame, which has the report of the last one. If drawing
-  // is slow, the search takes as much time as the page, and so at least half of all the time.
+  // A slice of the search shows too little progress, so several slices make a frame with the report of the last one. If drawing is slow,
+  // the search gets as much time as the page.
   const searching = Math.min(Math.max(began - answered, SEARCHING[0]), SEARCHING[1]);
   try {
     do {
       if (isSearch()) reports.pop();
-      // Unlike `step` this lets the messages of the other threads through.
+      // Unlike `step`, this call lets messages of the other threads arrive.
       reports.push(by === "stage" ? estimator.stepStage() : await estimator.run({ maxIterations: 1 }));
       const scores = estimator.searchScores();
       if (scores.length > 0) current.scores = scores;
@@ -286,7 +286,7 @@ async function handle(request: Request): Promise<void> {
   }
 }
 
-/** Decoding is asynchronous, so requests are queued: none may see a half-opened input of another. */
+/** Decoding is asynchronous, so requests are queued. No request may see an input that another has half opened. */
 let last: Promise<void> = Promise.resolve();
 self.onmessage = (event: MessageEvent<Request>) => {
   last = last.then(() => handle(event.data));

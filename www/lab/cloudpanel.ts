@@ -12,7 +12,7 @@ const LOST = "The browser has suspended WebGL. The surfaces stand still until it
 const GONE =
   "The browser ended the drawing thread twice. Reload the page to see the surfaces again; everything else continues.";
 
-/** What the colours mean where they are not those of the two views. */
+/** The meaning of the colours if they are not those of the two views. */
 const COLOURS: Partial<Record<Texture, string>> = {
   picture: "colours of the picture; grey: depth map",
   normals: "right red, up green, near blue",

@@ -10,7 +10,7 @@ export interface CoefficientHooks {
   onLight(patch: Settings, done: boolean, gesture: object): void;
 }
 
-/** Harmonics of one channel, and what each multiplies: x right, y down, z away. */
+/** Harmonics of one channel as functions of the normal: x right, y down, z away. */
 const PER_CHANNEL = 9;
 const ORDERS = [
   { name: "Order 0: brightness", of: [[0, "1"]] },
@@ -35,7 +35,7 @@ const ORDERS = [
 ] as const;
 const CHANNELS = ["red", "green", "blue"] as const;
 
-/** Largest absolute value of a slider: a factor of e² either way, beyond all lights that the module knows; and its step. */
+/** Largest absolute value of a slider, a factor of e² that no built-in light reaches, and the step of a slider. */
 const MOST = 2;
 const STEP = 0.01;
 /** How long, in milliseconds, a slider rests before its value takes effect. */
@@ -77,7 +77,7 @@ export class Coefficients {
   /** The coefficients of a known light, if any. */
   show(values: ArrayLike<number> | null): void {
     this.element.hidden = values === null;
-    // While the visitor moves a slider, it is ahead of the drawing.
+    // A slider that the visitor moves is ahead of the drawing.
     if (!values || this.#resting !== undefined) return;
     this.#values = Array.from(values);
     for (const [index, slider] of this.#sliders) slider.value = String(this.#values[index] ?? 0);

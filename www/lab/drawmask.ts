@@ -17,7 +17,7 @@ async function maskFile(image: File, width: number, height: number, data: Uint8A
   });
 }
 
-/** The mask at the size of its image. */
+/** Scales the mask to the size of its image. */
 async function fileOf({ width, height, data }: Paint, image: File): Promise<File> {
   const { width: columns = width, height: rows = height } = await lookAt(image);
   const full = new Uint8Array(columns * rows);
@@ -70,7 +70,7 @@ export async function drawMask(image: File, take: (mask: File | undefined) => vo
   });
 }
 
-/** The same for a depth map, of which a range of depths can be used. */
+/** Opens the tool for a depth map, of which a range of depths can be used. */
 export async function drawDepthMask(depth: File, take: (mask: File | undefined) => void): Promise<void> {
   tool ??= new MaskTool();
   const { shown, suggest } = silhouettes();

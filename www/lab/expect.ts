@@ -13,7 +13,7 @@ export interface Facts {
 
 export interface Expectation {
   words: string;
-  /** Whether something can be done about it. */
+  /** Whether the visitor can improve it. */
   isDoubt: boolean;
 }
 
@@ -70,7 +70,7 @@ function ofMasks({ masks }: Facts): Expectation[] {
   return found;
 }
 
-/** One camera, or two views of it that are aligned: the true pose is then no rotation. */
+/** Both views come from one camera or from two aligned cameras, so that the true rotation is zero. */
 const isRegistered = ({ colour, depth, focal }: Facts): boolean => {
   const [columns, rows] = sides(colour);
   const [width, height] = sides(depth);

@@ -3,7 +3,7 @@
 import type { Stage } from "../../pkg/index.js";
 import { make } from "../dom";
 
-/** What the explanations depend on. */
+/** Properties of the run on which the explanations depend. */
 export interface Method {
   shading: "surface" | "pixel";
   registration: "joint" | "icp" | "fixed";
@@ -288,7 +288,7 @@ const stages: Readonly<Record<Stage, (method: Method) => Text>> = {
 
 function shown({ title, formula, words, source }: Text): HTMLElement[] {
   const equation = make("div", { class: "equation" });
-  // Markup of this file alone.
+  // Markup that is made only in this file.
   if (formula) equation.innerHTML = formula;
   return [
     make("h2", {}, title),

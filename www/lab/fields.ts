@@ -36,7 +36,7 @@ export interface ChoiceField extends Common {
   initial: string;
   /** The choices; if absent, they come from the library's catalogue. */
   choices?: readonly (readonly [value: string, label: string])[];
-  /** Choices that apply to one origin only; for the other the initial choice is used. */
+  /** Choices that apply only to one origin; the other origin has the initial choice. */
   only?: Readonly<Record<string, Origin>>;
 }
 export interface FlagField extends Common {
@@ -54,7 +54,7 @@ export type Group = PageField["group"] | "colour" | "depth";
 export type Settings = Readonly<Record<string, Value>>;
 
 export const near = (settings: Settings) => settings.start === "near";
-/** The bare grid has no rendering options: its size follows from the surface, and it has no noise. */
+/** A bare grid has no rendering options, because its surface determines its size and it has no noise. */
 export const rendered = (settings: Settings) => settings.protocol !== "grid";
 
 /** The field of a row. */
@@ -287,7 +287,7 @@ export const fields: readonly Field[] = [
 
 export const inputGroups: readonly Group[] = ["sample", "colour", "depth"];
 
-/** Whether one of these is a field of the input. */
+/** Whether one of these fields belongs to the input. */
 export const areOfInput = (keys: readonly string[]): boolean =>
   fields.some(({ key, group }) => inputGroups.includes(group) && keys.includes(key));
 

@@ -5,7 +5,7 @@ import { faultOf } from "../engine/fault";
 import type { Fault, Taken } from "../engine/protocol";
 import { depthPng, normalsPng, writeClouds, writeNpy } from "./write";
 
-/** The kinds that are made here. */
+/** The kinds of files that this thread makes. */
 export type LargeKind = "clouds" | "depth" | "depthPng" | "normals" | "depthNormals";
 
 export interface FileRequest {
@@ -14,7 +14,7 @@ export interface FileRequest {
 }
 export type FileAnswer = { bytes: Uint8Array<ArrayBuffer>; says: string } | { fault: Fault };
 
-/** The clouds' inks on the page. */
+/** Colours of the clouds, as on the page. */
 const [ORANGE, BLUE] = [
   [199, 100, 26],
   [11, 98, 184],

@@ -1,6 +1,6 @@
 /**
- * The short path for own files: picture, depth, masks, go. A dialog that borrows the slots and fields of the settings, so that both always
- * agree, and gives them back when it closes. Loaded with its first opening.
+ * The short path for own files: picture, depth, masks, go. The dialog borrows the slots and fields of the settings, so that both always
+ * agree, and returns them when it closes. Loaded with its first opening.
  */
 
 import "../style/first-run.css";

@@ -82,7 +82,7 @@ export class Form {
     mark(control, message, "error");
     let folded = control.row.closest("details");
     for (; folded; folded = folded.parentElement?.closest("details") ?? null) folded.open = true;
-    // Within the settings, which may be longer than their sheet.
+    // Scrolls only within the settings, which may be longer than their sheet.
     control.row.scrollIntoView({ block: "nearest" });
     return control.field.label;
   }
@@ -172,7 +172,7 @@ const REST = 200;
 function numbers(field: NumberField, id: string, change: Change): Built {
   // The library checks the numbers and has better messages than the browser, so the inputs have no limits.
   const exact = make("input", { id, type: "number", step: "any", inputmode: "decimal", placeholder: field.empty });
-  // Like a slider that has stopped: a run that was playing plays again.
+  // This change counts as that of a slider that has stopped, so a run that was playing plays again.
   const read = (input: HTMLInputElement) => change(input.value === "" ? null : input.valueAsNumber, true);
   exact.addEventListener("change", () => read(exact));
   if (!field.slider) return { inputs: [exact], show: (value) => (exact.value = value === null ? "" : String(value)) };

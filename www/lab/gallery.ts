@@ -23,7 +23,7 @@ import {
   type ViewName,
 } from "../engine/protocol";
 
-/** What the pictures request from the worker; hidden pictures request nothing. */
+/** Requests that pictures send to the worker; a hidden picture sends none. */
 export interface GalleryHooks {
   look(look: Look): Promise<Drawings | undefined>;
   probe(asked: Asked): Promise<Probed | undefined>;
@@ -253,15 +253,15 @@ export class Gallery {
     this.#showCharts();
   }
 
-  /** Share of each picture's width that is the pinned run's. */
+  /** Share of each picture's width that shows the pinned run. */
   wipe(share: number): void {
-    // Setting the same value again would recompute the styles of the whole page.
+    // The same value is not set again, because that would recompute the styles of the whole page.
     if (share !== this.#wipe) this.#box.style.setProperty("--wipe", `${100 * share}%`);
     this.#wipe = share;
     this.#clouds.wipe(share);
   }
 
-  /** The charts follow after the page has changed its colours: both at once would be a long task. */
+  /** The charts change their colours after the page, because both at once would be a long task. */
   async recolour(): Promise<void> {
     this.#clouds.recolour();
     await nextFrame();

@@ -224,7 +224,7 @@ export class Intake {
     picker.addEventListener("change", () => {
       const file = picker.files?.[0];
       if (file) this.put(slot, file);
-      picker.value = ""; // so that the same file, mended on disk, can be picked again
+      picker.value = ""; // Emptied, so that the same file can be picked again after a change on disk.
     });
     clear.addEventListener("click", () => this.put(slot, undefined));
     zone.addEventListener("dragover", (event) => {
@@ -236,7 +236,7 @@ export class Intake {
       event.preventDefault();
       zone.removeAttribute("data-over");
       const files = event.dataTransfer?.files ?? [];
-      // Several files are sorted, as everywhere on the page.
+      // Several files are sorted by their contents, as everywhere on the page.
       if (files.length > 1) return;
       event.stopPropagation();
       if (files[0]) this.put(slot, files[0]);

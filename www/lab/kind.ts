@@ -1,4 +1,4 @@
-/** The purpose of a file, recognised by its first bytes alone: depth maps have one channel of 16 bits or are arrays, masks one of 8. */
+/** Recognises the purpose of a file by its first bytes: depth maps are arrays or have one channel of 16 bits, masks have one of 8. */
 
 const PNG = [0x89, 0x50, 0x4e, 0x47];
 const NPY = [0x93, 0x4e, 0x55, 0x4d];

@@ -73,15 +73,15 @@ export class Lab {
   readonly #messages: Messages;
   #origin: Origin = "sample";
   readonly #record = new RunRecord();
-  /** The input that was requested last, accepted or not, or what it lacked. */
+  /** The input that was requested last, accepted or not; for an incomplete input, the missing parts. */
   #wanted: Source | string = "";
   /** The input on the screen, to be opened again if the worker has lost it. */
   #good: { source: Source; settings: Settings } | undefined;
   /** The input that the worker holds. It may have been superseded before it was shown. */
   #held: Source | undefined;
-  /** Counts beginnings, so that the answer to a superseded one is dropped. */
+  /** Counts the runs that were begun, so that answers to a superseded one are dropped. */
   #turn = 0;
-  /** The beginning under way, which steps wait for. */
+  /** The run that is being begun; steps wait for it. */
   #beginning: Promise<void> = Promise.resolve();
   /** The object whose surfaces are on the screen. */
   #seen = "";
@@ -249,7 +249,7 @@ export class Lab {
     );
   }
 
-  /** Starts the loop, on an input that the worker may already hold. */
+  /** Starts the loop; the worker may already hold its input. */
   #start(source: Source | string): Promise<void> {
     this.#willPlay = false;
     return this.#enter(this.#attempt(source, ++this.#turn));
@@ -278,7 +278,7 @@ export class Lab {
         this.#forget();
         await this.#show(frame);
       } else if (!(await this.#open(source, options, turn))) return;
-      // Includes what the page has filled in by itself.
+      // Includes the values that the page has filled in by itself.
       this.#good = { source, settings: turn === this.#turn ? this.store.settings : settings };
       if (turn === this.#turn) this.#notices.settle();
     } catch (error) {
@@ -389,14 +389,14 @@ export class Lab {
     this.#transport.show(playing, isIdle && notice?.cause ? notice.words : "");
   }
 
-  /** Shows an error beside the field that it concerns; what was on the screen stays usable. */
+  /** Shows an error beside the field that it concerns; the run on the screen stays usable. */
   async #fail(error: unknown): Promise<void> {
     this.player.pause();
     this.#notices.fail(this.#messages.fail(error));
     if (this.#good && this.#held !== this.#good.source) await this.#recover(this.#good);
   }
 
-  /** The worker's input is lost. If no caller waits for an answer and reports it, this does, after all rejections have been handled. */
+  /** The worker's input is lost. If no caller has reported the loss after all rejections have been handled, it is reported here. */
   #lose(error: EngineError): void {
     this.#held = undefined;
     const turn = this.#turn;
@@ -443,7 +443,7 @@ export class Lab {
       this.#messages.add("The input is kept; the run restarts.");
     } catch (error) {
       if (turn !== this.#turn) return;
-      this.#good = undefined; // the page waits for another input
+      this.#good = undefined; // The page waits for another input.
       this.#messages.add(error instanceof Error ? error.message : String(error), true);
     }
   }

@@ -37,7 +37,7 @@ export class LightPanel {
   readonly #coefficients: Coefficients;
   readonly #box = byId("light", HTMLElement);
   #resting: ReturnType<typeof setTimeout> | undefined;
-  /** Rotated by the pointer, before the settings have changed. */
+  /** The rotation by the pointer, before the settings have changed. */
   #turn: Turn | undefined;
   #gesture = {};
   #standing = "found";

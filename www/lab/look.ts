@@ -1,6 +1,6 @@
 /**
- * The visitor's files, recognised by their contents. The package's readers of rig files read each one once, in a separate thread that keeps
- * the pixels; a pair of them becomes the input of a run. Loaded with the first file.
+ * The visitor's files, recognised by their contents. The package's readers of rig files read each file once, in a separate thread that
+ * keeps the pixels. A pair of files becomes the input of a run. Loaded with the first file.
  */
 
 import type { ErrorDetails, PairKind, PairSample } from "../../pkg/index.js";
@@ -15,7 +15,7 @@ import type { Files, Slot } from "./storage";
 export interface Look {
   kind: Summary["kind"] | undefined;
   says: string;
-  /** Why it could not be read here; the browser may still read it. */
+  /** Why the readers refused the file; the browser may still decode it. */
   fault?: string;
   warnings: string[];
   /** Whether a picture is stored without colours. */

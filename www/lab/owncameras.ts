@@ -38,7 +38,7 @@ export interface Assigned {
 
 export class OwnCameras {
   #given: GivenCamera[] = [];
-  /** The fields filled last; undefined after a new file. */
+  /** The fields that were filled last; undefined after a new file. */
   #filled: Fields | undefined;
 
   /** Cameras of new files replace all others. */

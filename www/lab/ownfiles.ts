@@ -87,7 +87,7 @@ export class OwnFiles {
     await drawMask(colour, (mask) => this.intake.files.colour === colour && this.intake.put("colourMask", mask));
   }
 
-  /** The same for the depth map, of which a range of depths can be used. */
+  /** Opens the tool for a mask of the depth map, of which a range of depths can be used. */
   async drawDepthMask(): Promise<void> {
     const { depth } = this.intake.files;
     if (!depth) return;

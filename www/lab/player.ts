@@ -12,7 +12,7 @@ export const paces = [
   { label: "fastest", pause: 0, milliseconds: 30 },
 ] as const;
 
-/** Iterations that take longer than this, in milliseconds, are played stage by stage, which shows more, and a pause takes effect sooner. */
+/** Iterations that take longer than this, in milliseconds, are played stage by stage, to show more and to react sooner to a pause. */
 const SLOW = 300;
 
 export interface PlayerHooks {
@@ -24,7 +24,7 @@ export interface PlayerHooks {
   /** Whether a step of this kind is still within the search. */
   isSearching(by: Advance["by"]): boolean;
   onChange(): void;
-  /** The error, and what repeats the step that it interrupted, unless the run has been paused. */
+  /** Called with the error and with a function that repeats the interrupted step, unless the run has been paused. */
   onError(error: unknown, again: Again | undefined): void;
 }
 
@@ -47,7 +47,7 @@ export class Player {
     this.#hooks = hooks;
   }
 
-  /** A step that takes several frames, as one of the search does, plays until it is done. */
+  /** A step of several frames, such as the search, plays until it is done. */
   get playing(): boolean {
     return this.#playing || (this.#stepping !== undefined && this.#hooks.isSearching(this.#stepping));
   }
@@ -66,9 +66,9 @@ export class Player {
   }
 
   /**
-   * An iteration or a stage. The search is one stage and belongs to the first iteration, however many frames it takes.
-   * One key press waits for the frame under way; further ones, for example from a key held down, are ignored. The run plays first
-   * until `isThere`.
+   * Runs an iteration or a stage. The search is one stage and belongs to the first iteration, however many frames it takes. One key press
+   * waits for the frame under way; others, for example from a key held down, are ignored. If `isThere` is given, the run plays until it
+   * is true.
    */
   async step(by: Advance["by"], isThere = () => true): Promise<void> {
     this.pause();

@@ -54,7 +54,7 @@ export class PoseTable {
     table.tBodies[0]?.append(...lines);
   }
 
-  /** Whether the numbers are those of the previous run, because the settings have changed or are about to. */
+  /** Whether the numbers belong to the previous run, because the settings have changed or are being changed. */
   date(isBefore: boolean): void {
     this.#isBefore = isBefore;
     this.#head();
@@ -99,7 +99,7 @@ export class PoseTable {
           ? ` (${decimals(angleBetween(start.rotation, truth.rotation), 1)}° at the start)`
           : "";
       this.#error.replaceChildren(make("strong", {}, `${decimals(degrees, 2)}°`), ` from the true rotation${before}`);
-      // Decided by the true pose, so that the text does not change during the search.
+      // The true pose decides this, so that the text does not change during the search.
       if (Math.abs(truth.angles.beta) > POLE)
         this.#error.append(". This close to β = 90°, only α and γ together determine the rotation.");
     }

@@ -12,7 +12,7 @@ import { decimals } from "../draw/numbers";
 const REACH = 105;
 /** Distance of neighbouring rotations, degrees, which is the side of a square. */
 const SPACING = 16;
-/** Part of the best score from which another rotation is said to be nearly as good. */
+/** Share of the best score above which another rotation counts as nearly as good. */
 const NEAR = 0.95;
 
 export class ScoreMap {
@@ -20,7 +20,7 @@ export class ScoreMap {
   readonly #canvas = byId("score-canvas", HTMLCanvasElement);
   readonly #words = byId("score-words", HTMLElement);
 
-  /** Alpha, beta, gamma and score of each rotation so far; of rotations that differ only in gamma, the best is visible. */
+  /** Alpha, beta, gamma and score of each rotation so far. Where rotations differ only in gamma, the best one is drawn. */
   show(scores: Float32Array, truth: Pose | null): void {
     const context = this.#canvas.getContext("2d");
     const count = scores.length / 4;
@@ -50,7 +50,7 @@ export class ScoreMap {
     mark(best[0] ?? 0, best[1] ?? 0, ["#000", "#fff"]);
     if (truth) mark(truth.angles.alpha, truth.angles.beta, ["#fff", "#d55e00"]);
     this.#figure.hidden = false;
-    // Where many score alike, the best one is the best by chance, which the colours cannot show.
+    // If many rotations have nearly the best score, chance decides which one is best. The colours cannot show this.
     const others = rows.filter(([, , , score = 0]) => score >= NEAR * (best[3] ?? 0)).length - 1;
     const rings = `white ring: best${truth ? "; orange: true" : ""}`;
     const alike = others === 0 ? "none" : String(others);

@@ -133,7 +133,7 @@ const valueAt = (root: unknown, path: string): unknown =>
     .slice(1)
     .reduce<unknown>((inner, name) => (inner as Record<string, unknown> | undefined)?.[name], root);
 
-/** The fields for the options of a saved run; only the angles of an initial pose, because there are no other fields. */
+/** The fields for the options of a saved run. An initial pose gives only its angles, which alone have fields. */
 export function settingsOf(options: Options): Settings {
   const own = optionFields.map((field): [string, Value] => {
     const value = valueAt(options, field.path);

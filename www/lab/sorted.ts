@@ -22,7 +22,7 @@ interface Seen {
   look: Look;
 }
 
-/** Of two pictures that compete for one slot, the one that belongs in the other slot: judged by its name, or else the grey one. */
+/** Of two pictures that compete for one slot, returns the one for the other slot, by its name or else because it is grey. */
 function odd(pair: readonly [Seen, Seen], isOther: (name: string) => boolean): Seen {
   return pair.find(({ file }) => isOther(file.name)) ?? pair.find(({ look }) => look.isGrey) ?? pair[1];
 }

@@ -8,7 +8,7 @@ import { camera, isGuessed, sampleRequest, turnOf, type Origin, type Settings } 
 
 const OWN = "own-files";
 
-/** Stores the origin for this tab alone, so that a link that is opened in a new tab shows its own settings. */
+/** Stores the origin only for this tab, so that a link in a new tab shows its own settings. */
 export function rememberOrigin(origin: Origin): void {
   try {
     if (origin === "files") sessionStorage.setItem(OWN, "1");

@@ -63,7 +63,7 @@ export class Status {
     this.#put(this.#message, "");
   }
 
-  /** The first advice for the present input. */
+  /** The most important advice for the present input. */
   get #first(): string {
     return this.#isOwn
       ? "Press play; masks, cameras and the method are in the settings."

@@ -9,7 +9,7 @@ import type { Explanations } from "./ask";
 /** The search, and the five stages of one iteration. */
 const stages: readonly Stage[] = ["search", "light", "shading", "surface", "registration", "refinement"];
 
-/** Milliseconds that would round to zero. */
+/** Times below this, in milliseconds, would round to zero. */
 const LEAST = 0.05;
 
 export class Strip {

@@ -17,7 +17,7 @@ import { lightCsv, matrixText, poseJson, runReportHtml } from "./write";
 export interface Run {
   taken: Taken;
   report: StepReport;
-  /** Undefined while it is not over. */
+  /** Undefined until the run has ended. */
   end: Verdict | undefined;
   truth: Pose | null;
   origin: Origin;
@@ -134,7 +134,7 @@ export async function fileOfKind(kind: Exclude<Kind, "run">, run: Run): Promise<
     case "report":
       return report(run);
     default: {
-      // The first iteration computes them.
+      // Only the first iteration computes these results.
       const normals = {
         normals: image.normals,
         depthNormals: depth.normals,

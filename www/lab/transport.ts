@@ -4,7 +4,7 @@ import { byId } from "../dom";
 
 const IDS = ["play", "step", "stage-step", "reset"] as const;
 
-/** The same height is set in bar.css. */
+/** Height of a low window; bar.css has the same number. */
 const low = matchMedia("(max-height: 30rem)");
 
 export class Transport {

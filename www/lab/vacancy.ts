@@ -26,6 +26,6 @@ export function sayVacant(wanted: Source | string, notice: { state: string; word
   const drop = lacking ? `Drop ${lacking} of the same object anywhere on this page.` : BOTH;
   const says = isThere && words ? sentence(words) : drop;
   const hero = byId("hero", HTMLElement);
-  // Checked for every frame.
+  // This is checked in every frame.
   if (hero.dataset.says !== says) hero.dataset.says = says;
 }

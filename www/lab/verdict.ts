@@ -17,7 +17,7 @@ export interface Verdict {
 export const isSearching = ({ status, stage, iteration }: StepReport): boolean =>
   status === "running" && stage === "search" && iteration === 0;
 
-/** Whether a step of this kind has to go on searching: the stage ends with the search, the iteration does not. */
+/** Whether a step of this kind continues after this report. A stage ends with the search, an iteration after it. */
 export const isWithinSearch = (report: StepReport, by: "step" | "stage"): boolean =>
   isSearching(report) && !(by === "stage" && report.reason?.code === "search-done");
 
@@ -36,11 +36,11 @@ export function wordsOf({ status, iteration, pose }: StepReport, truth: Pose | n
   return `${status === "running" ? `iteration ${iteration}` : ends[status]}${off}`;
 }
 
-/** Degrees within which a pose counts as found, and beyond which it counts as missed. */
+/** Degrees of error up to which a pose counts as found, and above which it counts as missed. */
 const FOUND = 1;
 const MISSED = 5;
 
-/** Degrees below which the pose counts as not moved from the initial pose. */
+/** Degrees of difference below which the pose counts as still the initial pose. */
 const STAYED = 0.5;
 
 /** The angle of a bᵀ in degrees, from |a − b| because the trace loses the small angles that matter here. */

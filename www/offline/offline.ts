@@ -4,7 +4,7 @@ import { language, phrase } from "../words";
 
 export async function keepForOffline(line: HTMLElement): Promise<void> {
   if (!import.meta.env.PROD || !("serviceWorker" in navigator)) return;
-  // Waits until the first run has started.
+  // The page itself loads first.
   if (document.readyState !== "complete")
     await new Promise((loaded) => addEventListener("load", loaded, { once: true }));
   try {

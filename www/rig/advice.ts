@@ -3,7 +3,7 @@
 import { make } from "../dom";
 import { svg } from "./parts";
 
-/** Two cameras seen from above, before something; the words are the caption's. */
+/** Two cameras and a scene in front of them, seen from above. The caption explains the drawing. */
 function drawing(...scene: SVGElement[]): SVGElement {
   const camera = (x: number, kind: string) =>
     svg(

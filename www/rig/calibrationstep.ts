@@ -18,7 +18,7 @@ const TURNS: Record<By, readonly string[]> = {
 
 /** Distance of two cameras, metres, above which a wrong unit or a pose in the world is likelier than a rig. */
 const FAR = 0.5;
-/** The same distance for a LiDAR and a camera on one vehicle. */
+/** The same limit for a LiDAR and a camera on one vehicle, metres. */
 const FAR_ON_VEHICLE = 3;
 
 export class CalibrationStep {
@@ -133,7 +133,7 @@ export class CalibrationStep {
         const apart = Math.hypot(...candidate.pose.translation);
         const isFar = apart > (rig.hasScans ? FAR_ON_VEHICLE : FAR);
         const farWords = `${decimals(apart, apart > 10 ? 0 : 2)} m apart is far for one rig. Is the translation in metres, and does the pose relate the two cameras?`;
-        // What was guessed about a file is said here as well: it was perhaps dropped here.
+        // Guesses about a file appear here as well, because it may have been dropped here.
         const warnings = candidate.guessed ?? rig.item(candidate.file)?.summary?.warnings ?? [];
         notes.replaceChildren(
           ...[...(isFar ? [farWords] : []), ...warnings.map(({ message }) => message)].map((each) =>

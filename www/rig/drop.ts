@@ -77,7 +77,7 @@ export function dropTarget(
       const files = [...(input.files ?? [])]
         .slice(0, MOST_FILES)
         .map((file) => ({ name: file.webkitRelativePath || file.name, blob: file }));
-      input.value = ""; // so that the same file, mended on disk, can be picked again
+      input.value = ""; // Emptied, so that the same file can be picked again after a change on disk.
       if (files.length > 0) onFiles(files, isFolder);
     });
   }

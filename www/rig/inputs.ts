@@ -1,4 +1,4 @@
-/** The files of a check for its report: sizes and hashes, with the files of a folder instead of the items that were made from them. */
+/** The files of a check for its report, with sizes and hashes. A folder is listed by its files, not by the items made from them. */
 
 import { sha256 } from "../hash";
 import type { Reading } from "./files";
@@ -7,7 +7,7 @@ import type { ReportInput } from "./report";
 
 /** A folder that was read: its items, and its files. */
 export interface ReadFolder {
-  /** The numbers of its items. */
+  /** The ids of the folder's items. */
   items: number[];
   files: { name: string; blob: Blob }[];
   readings: Reading[];

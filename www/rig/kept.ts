@@ -1,6 +1,7 @@
 /**
- * Keeps a rig over a reload: the requests that read its files, with these, and beside them one record of what the visitor chose and of the
- * last verdict. A reload restores it in its own tab; other tabs offer it. Frames of a robot exist only in the worker and are not kept.
+ * Keeps a rig over a reload. It stores the requests that read the files, together with the files, and one record of the visitor's choices
+ * and the last verdict. A reload restores it in its own tab; other tabs offer it. Frames of a robot exist only in the worker and are not
+ * kept.
  */
 
 import { change, reasonOf, records } from "../database";
@@ -11,9 +12,9 @@ import type { Read } from "./session";
 const STATE = "state";
 /** Milliseconds without a change after which the rig is stored. */
 const REST = 300;
-/** In the storage of this tab: which stored rig is its own. */
+/** Key in the storage of this tab; its value names the tab's own rig. */
 const MINE = "kept-rig";
-/** The name of this file contains a hash of its content: another version of the page may hold other things. */
+/** The name of this file contains a hash of its content. Another version of the page may store other records. */
 const VERSION = import.meta.url;
 
 type Lists = Pick<Rig, "items" | "frames" | "candidates" | "cues" | "notes" | "arranged" | "run" | "history">;
@@ -30,7 +31,7 @@ interface State {
   lists: Lists;
 }
 
-/** Forbidden storage keeps nothing. */
+/** If the browser forbids storage, nothing is kept. */
 function ownerHere(): string | null {
   try {
     return sessionStorage.getItem(MINE);
@@ -55,9 +56,9 @@ async function found(): Promise<{ state: State; reads: Map<string, Read> } | und
 
 export class Kept {
   readonly #rig: Rig;
-  /** Called with how the files are kept, in words. */
+  /** Called with a sentence about how the files are kept. */
   readonly #onWords: (words: string) => void;
-  /** What the database holds of this rig. */
+  /** The records of this rig in the database. */
   #stored = new Map<string, Read>();
   #owner = crypto.randomUUID() as string;
   #timer: ReturnType<typeof setTimeout> | undefined;
@@ -112,7 +113,7 @@ export class Kept {
     return items.length + candidates.length > 0 || busy !== "";
   }
 
-  /** The files alone; what was chosen for them is left to the visitor. */
+  /** Restores only the files; the visitor chooses their roles again. */
   async #readAgain(reads: Iterable<Read>): Promise<void> {
     for (const { kind, ask } of reads) {
       if (kind === "read") await this.#rig.add([{ name: ask.name, blob: ask.blob }]);
@@ -122,7 +123,7 @@ export class Kept {
 
   async #keep(): Promise<void> {
     const { items, busy, live } = this.#rig;
-    // A change follows once these have ended.
+    // The rig is stored after these activities, because each ends with another change.
     if (busy || live.isRunning || items.some(({ state }) => state === "reading")) return;
     if (!this.#isUsed) return this.#forget();
     try {

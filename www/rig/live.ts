@@ -1,4 +1,4 @@
-/** A live connection to a robot: connects, takes a frame of each new view, and checks after each. */
+/** A live connection to a robot: takes a frame of each new view and runs the check after each frame. */
 
 import type { Topic } from "./recordings";
 import type { Assembly } from "./protocol";
@@ -111,7 +111,7 @@ export class Live {
       }
       this.#become(this.#isStopping ? "connected" : "done");
     } catch (error) {
-      // A lost connection has changed the number of the turn.
+      // If the connection was lost, the reason has already been shown.
       if (isMine()) this.#become("connected", this.#isStopping || wasCancelled(error) ? "" : messageOf(error));
     }
   }
@@ -155,7 +155,7 @@ export class Live {
     this.steps.push({ views: this.views, verdict, ...run.report.health });
   }
 
-  /** The connection stays; a check that runs comes to its end. */
+  /** The connection stays open, and a running check continues to its end. */
   stop(): void {
     this.#isStopping = true;
     void this.#rig.session.call("rest", {}).catch(() => {});

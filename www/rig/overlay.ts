@@ -17,9 +17,9 @@ interface Stop {
   pose: Pose;
 }
 
-/** Steps of the slider from one calibration to the next. */
+/** Number of slider steps from one calibration to the next. */
 const WAY = 20;
-/** Distinct from all depth colours, and from most objects. */
+/** A colour that differs from all depth colours and from most objects. */
 const EDGE = [255, 60, 190] as const;
 /** Ratio of the point size to the mean distance of points, so that sparse regions are covered. */
 const OVERLAP = 1.2;
@@ -279,7 +279,7 @@ function paint(layer: HTMLCanvasElement, { points, edges }: Projection, what: Wh
   return { min, max };
 }
 
-/** In the memory layout of a canvas: red first, opaque. */
+/** The colours have the memory layout of a canvas, red first, and are opaque. */
 const packed = ([r, g, b]: readonly [number, number, number]): number =>
   new Uint32Array(new Uint8Array([r, g, b, 255]).buffer)[0] ?? 0;
 

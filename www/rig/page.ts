@@ -66,7 +66,7 @@ export class RigPage {
     void this.#restore();
   }
 
-  /** After a reload the rig is as it was, at the step of the address. */
+  /** A reload restores the rig and shows the step of the address. */
   async #restore(): Promise<void> {
     const { files } = this.#steps;
     const kept = new Kept(this.#rig, (words) => files.keeping(words));

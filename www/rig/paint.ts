@@ -24,7 +24,7 @@ export class Paint {
   }
 
   /**
-   * The first stroke decides about the rest: if it marks used pixels, nothing else is used; if it marks excluded pixels, everything else is
+   * The first stroke decides the other pixels: if it marks used pixels, no others are used; if it marks excluded pixels, all others are
    * used.
    */
   #start(use: boolean): Uint8Array {
@@ -35,7 +35,7 @@ export class Paint {
   rectangle(box: Box, use: boolean): Box {
     const data = this.#start(use);
     const inside = this.#within(box);
-    // The object lies somewhere in a rectangle, and nowhere outside the first one.
+    // A rectangle means that the object lies inside it. The first rectangle also excludes everything outside.
     this.marks ??= new Uint8Array(this.width * this.height).fill(use ? BACKGROUND : PROBABLY_OBJECT);
     for (let row = inside.top; row < inside.top + inside.height; row++) {
       const from = row * this.width + inside.left;

@@ -33,7 +33,7 @@ async function bytesOf({ name, blob }: PartFile): Promise<Uint8Array> {
   try {
     return new Uint8Array(await blob.arrayBuffer());
   } catch (error) {
-    // The file was removed or replaced.
+    // Reading fails if the file has been removed or replaced.
     throw new BimodalError("file", `${name}: ${error instanceof Error ? error.message : String(error)}`);
   }
 }

@@ -2,7 +2,7 @@
 
 import { freshId, make } from "../dom";
 
-/** Width of thumbnails in lists, px: twice the displayed size. */
+/** Width of thumbnails in lists, twice the displayed size, px. */
 export const THUMB = 360;
 
 const SVG = "http://www.w3.org/2000/svg";

@@ -50,7 +50,7 @@ function colour({ data, transfer }: CheckFrame["image"], { width, height, from }
   return out;
 }
 
-/** Depths, or distances for a scan in a LiDAR's axes, half of whose points have a z below the LiDAR. */
+/** Depths of a camera's map, or distances of a LiDAR's scan, half of whose points lie below the LiDAR. */
 function distancesOf(map: CheckFrame["depth"]): Float32Array {
   const { points } = map;
   if (!points) return metresOf(map);

@@ -68,7 +68,7 @@ export function fromQuaternion(x: number, y: number, z: number, w: number): numb
 
 export type EulerOrder = "rpy" | "xyz";
 
-/** Degrees about x, y and z: about fixed axes one after the other (ROS), or R = Rx Ry Rz. */
+/** The rotation by degrees about x, y and z: one after the other about fixed axes (ROS), or R = Rx Ry Rz. */
 export function fromEuler(x: number, y: number, z: number, order: EulerOrder): number[] {
   const turn = (axis: number, degrees: number): number[] => {
     const [c, s] = [Math.cos(degrees * DEGREE), Math.sin(degrees * DEGREE)];

@@ -36,7 +36,7 @@ export interface Summary extends Omit<Reading, "name"> {
   guessed: string[];
   width?: number;
   height?: number;
-  /** Metres per stored unit of a depth map, or of those that a file of cameras belongs to. */
+  /** Metres per stored unit of a depth map, or of the depth maps to which a file of cameras belongs. */
   unit?: number;
   /** Whether it is an organised cloud, which needs no camera. */
   organised?: boolean;
@@ -74,7 +74,7 @@ export interface Assembly {
 /** The places of the files of a run's pair. */
 export type PartName = "colour" | "depth" | "colourMask" | "depthMask";
 
-/** A file of a run's pair: it may have been read under its number. */
+/** A file of a run's pair, with its number if the worker has read it. */
 export interface PartFile {
   file: number;
   name: string;
@@ -156,7 +156,7 @@ export interface Calls {
   picture: { ask: { file: number; range?: [number, number]; width?: number }; answer: ImageBitmap };
   /** The mask of an object in an RGBA picture, from marks in the order of the library. */
   suggest: { ask: { width: number; height: number; data: Uint8ClampedArray; marks: Uint8Array }; answer: Uint8Array };
-  /** The part of a depth map within a range in metres, and where `paint`, of any size, is not zero. */
+  /** The part of a depth map within a range in metres where `paint`, which may have any size, is not zero. */
   within: { ask: { file: number; range?: [number, number]; paint?: Mask }; answer: Mask };
   /** A pair of the gallery. */
   rendered: { ask: { pair: PairKind }; answer: PairSample };
@@ -171,8 +171,8 @@ export interface Calls {
   /** One cloud of the frame for each pose, in the colour camera's frame. */
   clouds: { ask: { frame: number; poses: { name: string; pose: Pose }[] }; answer: Uint8Array };
   /**
-   * The files that were read, with sizes and hashes, with the files of a folder instead of the items made from them; and the hash of the
-   * numerics.
+   * The files that were read, with sizes and hashes, and the hash of the numerics. A folder is listed by its files, not by the items made
+   * from them.
    */
   inputs: {
     ask: { items: { file: number; name: string; says: string; notes: string[]; blob?: Blob }[] };

@@ -5,7 +5,7 @@ import type { RigFolder } from "../../pkg/rig/index.js";
 import type { Assembly, Calls, Summary } from "./protocol";
 import { type Recording, type Robot, connectRobot, openRecording } from "./recordings";
 
-/** Frames and what goes with them, before the worker keeps their pixels. */
+/** Frames with their cameras and warnings, before the worker keeps their pixels. */
 export interface Taken extends Pick<Assembly, "origin" | "cameras" | "poses" | "warnings"> {
   frames: CheckFrame[];
 }

@@ -37,7 +37,7 @@ export function restrictDepth(
   return { ...depth, mask: Uint8Array.from(metres, (z, i) => (z >= near && z <= far && mask?.[i] !== 0 ? 255 : 0)) };
 }
 
-/** The pixels of a depth map within a range of depths, and where a mask drawn at another size is not zero. */
+/** The pixels of a depth map within a range of depths where a mask, which may have another size, is not zero. */
 export function maskWithin(
   depth: CheckFrame["depth"],
   range: readonly [number, number] | undefined,

@@ -111,7 +111,7 @@ export class Rig implements RigState {
     return this.of("depth").filter(({ summary }) => summary?.guessed.includes("unit"));
   }
 
-  /** A rig has one depth camera, so depth maps whose unit is still a guess get this unit as well. */
+  /** A rig has one depth camera, so other depth maps whose unit is a guess also get this unit. */
   async setUnit(item: Item, unit: number): Promise<void> {
     const together = item.blob ? [] : this.of("depth").filter(({ blob }) => !blob);
     await this.#giveUnits(new Map([item, ...together, ...this.unitsGuessed].map((each) => [each, unit])));
@@ -370,7 +370,7 @@ export class Rig implements RigState {
     return this.complete.length === 0 || this.complete.some(isMap);
   }
 
-  /** Whether any depth map is a cloud, which a LiDAR's scan is as well. */
+  /** Whether any depth map is a cloud; a LiDAR's scan is one. */
   get hasScans(): boolean {
     return this.complete.some(({ depth }) => this.item(depth)?.summary?.organised === true);
   }
@@ -399,7 +399,7 @@ export class Rig implements RigState {
     return units.length > 2 ? [`the unit of ${units.length} depth maps`] : units.map((name) => `the unit of ${name}`);
   }
 
-  /** Whether a picture of a folder has a camera for its frame alone, and the visitor has chosen no other. */
+  /** Whether a picture of a folder has a camera that belongs to its frame, and the visitor has chosen no other. */
   #hasOwn(side: Side, file: number): boolean {
     return this.item(file)?.summary?.hasOwnCamera === true && !this.cameras[side].chosen;
   }

@@ -32,8 +32,8 @@ const cameraOf = ({ model, ...camera }: Pinhole, size: object | undefined): obje
 });
 
 /**
- * The names of the files that the cameras come from; the command reads them as the page does. If a camera is not from a file, the text of
- * both cameras as they were used.
+ * The names of the files that gave the cameras, which the command reads as the page does. If a camera was typed in, the text of both
+ * cameras as they were used.
  */
 function camerasOf(rig: Rig, { plans: [plan] }: Run): { names: string[]; text?: string } {
   const sides: Side[] = ["colour", "depth"];

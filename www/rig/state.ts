@@ -78,7 +78,7 @@ export interface Candidate {
   pose: Pose;
   /** The file that the candidate came from; removing the file also removes the candidate. */
   file?: number;
-  /** What the reader guessed about pasted text. */
+  /** The reader's guesses about pasted text. */
   guessed?: ReaderWarning[];
 }
 
@@ -94,7 +94,7 @@ export interface Run {
   candidates: Record<string, Pose>;
   /** The cues that were used; absent for all. */
   cues: CheckCue[];
-  /** Whether no calibration was given, so that the identity was used. */
+  /** Whether the identity was checked because no calibration was given. */
   estimateOnly: boolean;
   /** The guesses at the time of the run, in words. */
   guessed: string[];

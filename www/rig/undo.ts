@@ -5,7 +5,7 @@ import type { RigState } from "./state";
 /** Largest number of undo steps; their contents stay in memory. */
 const MOST_STEPS = 20;
 
-/** An object in its earlier state; lists contain the same objects, to which rows of the page refer. */
+/** An object with its earlier state. The object itself stays in its list, because rows of the page refer to it. */
 interface Kept {
   thing: object;
   copy: object;
@@ -19,9 +19,9 @@ interface Step {
   where: Where;
   /** Whether the removed item has been restored in another way. */
   isMoot(): boolean;
-  /** Later items have higher numbers. */
+  /** Number of an item; later items have higher numbers. */
   last: number;
-  /** Whether everything was removed, so that later items belong to another rig. */
+  /** Whether everything was removed. Later items then belong to another rig. */
   isWhole: boolean;
   lists: Pick<RigState, "items" | "frames" | "candidates">;
   rest: Pick<RigState, "notes" | "history" | "run">;

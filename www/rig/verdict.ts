@@ -16,7 +16,7 @@ const SHAPES: Record<Tone, readonly string[]> = {
   open: ["M9 9.2a3 3 0 1 1 4.2 2.8c-.9.4-1.2 1-1.2 1.9", "M12 17v.2"],
 };
 
-/** Distinguished by shape, not by colour alone. */
+/** The mark of a verdict. The marks differ in shape, not only in colour. */
 export function icon(tone: Tone): SVGElement {
   return svg(
     "svg",

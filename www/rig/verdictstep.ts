@@ -38,7 +38,7 @@ export class VerdictStep {
   );
   readonly #card = make("div", { class: "rig-card rig-verdict-box", hidden: true });
   readonly #results = make("div", { class: "rig-results", hidden: true });
-  /** In reading order; on wide screens the pictures are beside both. */
+  /** The two columns are in reading order; on wide screens the pictures stand beside them. */
   readonly #first = make("div", { class: "rig-column" });
   readonly #last = make("div", { class: "rig-column" });
   readonly #overlay: Overlay;
@@ -147,7 +147,7 @@ export class VerdictStep {
 
   #tell(share: number, message: string): void {
     this.#progress.value = share;
-    // Read out by screen readers when it changes; the share changes all the time.
+    // Screen readers read this text when it changes, so it does not contain the share, which changes all the time.
     if (this.#status.textContent !== message) this.#status.textContent = message;
   }
 
@@ -200,7 +200,7 @@ export class VerdictStep {
       ...(isUsable(run) ? [{ value: "", label: "found" }] : []),
       ...(run.estimateOnly ? [] : Object.keys(run.candidates)).map((name) => ({ value: name, label: name })),
     ];
-    // The visitor's calibration is the default choice, unless it is off.
+    // The visitor's calibration is the initial choice, unless the verdict is "off".
     const isKept = !run.estimateOnly && run.report.verdict !== "off";
     const isConfirmed = !run.estimateOnly && run.report.verdict === "consistent";
     const wish = this.#wish;

@@ -12,7 +12,7 @@ export const isOfScan = words.isOfScan as typeof Words.isOfScan;
 export const verdictReason = words.verdictReason as typeof Words.verdictReason;
 export const verdictWords = words.verdictWords as typeof Words.verdictWords;
 
-/** The report with the page's guesses and warnings, each of which caps a verdict as the check's own do. */
+/** The report with the page's guesses and warnings, which cap a verdict as the warnings of the check do. */
 export function whole({ report, guessed, doubts }: Run): WholeReport {
   const own = [...guessed.map((what) => ({ code: "unit-guessed", message: `Guessed: ${what}.` })), ...doubts];
   const isCapped = own.length > 0 && report.verdict === "consistent";

@@ -26,7 +26,7 @@ export const marks: readonly Mark[] = [
 export function markOf(state: State | undefined): Mark | undefined {
   if (state?.kind !== "done") return undefined;
   const { result } = state;
-  // If no pose was estimated, it is neither right nor wrong, and a loop without a stopping rule always ends at its maximum.
+  // A pose that was not estimated is neither right nor wrong. A loop without a stopping rule always ends at its maximum.
   if (!("rivals" in result)) return undefined;
   const kind = isConfidentlyWrong(result)
     ? "wrong"

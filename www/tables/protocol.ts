@@ -1,6 +1,5 @@
 /**
- * The protocols of `npm run tables` for the page: the same cells, measured by the same modules. This file only declares the types of their
- * results.
+ * The protocols of `npm run tables` for the page: the same cells, measured by the same modules. This file only declares types.
  */
 
 import { aims as judge } from "../../protocols/aims.mjs";

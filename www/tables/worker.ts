@@ -53,7 +53,7 @@ async function handle({ cell }: Task): Promise<void> {
   }
 }
 
-/** A run leaves room for messages, so what comes in between has to wait. */
+/** Messages arrive while a run is under way, so each task waits for the previous one. */
 let last: Promise<void> = Promise.resolve();
 self.onmessage = (event: MessageEvent<Task>) => {
   last = last.then(() => handle(event.data));

@@ -139,7 +139,7 @@ fn errors_as_json_have_a_code_and_a_field() {
 fn results_that_cannot_be_written() {
     let made = bust();
     let [image, depth, light] = ["image.png", "depth.npy", "light.csv"].map(|name| made.path(name));
-    // A file is in the place of the folder to be made.
+    // A file has the name of the folder to be made.
     let told =
         run(&[&image, &depth, "--light", &light, "--start", "identity", "--max-iterations", "1", "--out", &light]);
     assert_eq!((told.code, told.err.contains("light.csv")), (3, true), "{}", told.err);

@@ -26,7 +26,7 @@ fn cameras_of_files_make_metres() {
     assert_eq!(units(&made, &[]), ["px", "px"]);
     let named = with(&made, "elsewhere.json", CAMERA);
     assert_eq!(units(&made, &["--cameras", &named]), ["m", "m"]);
-    // Next to the images, a name that indicates cameras is enough.
+    // A file next to the images is used if its name indicates cameras.
     with(&made, "calib.json", CAMERA);
     assert_eq!(units(&made, &[]), ["m", "m"]);
     let report = run_pair(&made, &ONCE).json();

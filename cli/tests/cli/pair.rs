@@ -160,7 +160,7 @@ fn a_prior_over_lights_is_read_and_followed() {
     let made = bust();
     let [image, depth] = ["image.png", "depth.npy"].map(|name| made.path(name));
     let kept = concat!(env!("CARGO_MANIFEST_DIR"), "/../scripts/reference/light-prior.json");
-    // A prior of grey light from the front only.
+    // A prior that allows only grey light from the front.
     let narrow = made.path("narrow.json");
     let covariance: Vec<Vec<f64>> =
         (0..27).map(|row| (0..27).map(|column| if row == column { 1e-10 } else { 0.0 }).collect()).collect();

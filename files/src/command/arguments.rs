@@ -7,7 +7,7 @@ use clap::Parser;
 
 use crate::problem::{Problem, Result};
 
-/// One text for all languages.
+/// All languages have the same text.
 pub const HELP: &str = include_str!("help.txt");
 const MOST_WORKERS: usize = 16;
 

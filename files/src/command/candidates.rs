@@ -19,7 +19,7 @@ pub struct Candidates {
     pub cameras: Vec<PathBuf>,
 }
 
-/// The refusal of a file of poses between a sensor and what carries it or what it looks at.
+/// The error about a file of poses between a sensor and its carrier or its target.
 fn of_carriers(path: &Path, pose: &NamedPose) -> Problem {
     let [from, to] = [&pose.names.from, &pose.names.to].map(|name| name.as_deref().unwrap_or("another frame"));
     let words = format!(
@@ -78,7 +78,7 @@ fn add(
             let words = format!("it maps {from} to {to}; its inverse was checked.");
             warnings.push(Warning::new("inverse-checked", words).of_file(name));
         }
-        // JavaScript would sort a number used as a name first, and two files may share a name.
+        // Two files may have the same name, and JavaScript puts names that are numbers first.
         let is_number = title.bytes().all(|letter| letter.is_ascii_digit());
         let mut unique = if is_number { format!("\"{title}\"") } else { title };
         while poses.iter().any(|(known, _)| *known == unique) {

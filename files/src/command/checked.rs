@@ -18,7 +18,7 @@ pub struct Said {
     pub json: Value,
 }
 
-/// The result of a check, with what the readers add to it.
+/// The result of a check, with the additions of the readers.
 pub struct Checked {
     pub report: CheckReport,
     pub verdict: CheckVerdict,
@@ -35,7 +35,7 @@ impl Checked {
         const DOUBTFUL: &str = "doubtful";
         let (mut verdict, mut code, mut reason) = (report.verdict, report.reason.code(), report.reason.to_string());
         if let (CheckVerdict::Consistent, Some(first)) = (verdict, warnings.iter().find(|warning| warning.is_doubt)) {
-            reason = format!("Settled, but check: {} {reason}", first.message);
+            reason = format!("Looks right, see warnings: {} {reason}", first.message);
             (verdict, code) = (CheckVerdict::Undecided, DOUBTFUL);
         }
         Self { report, verdict, code, reason, warnings, inputs }

@@ -9,8 +9,8 @@ static LIDAR: Pattern =
     Pattern::new(|| pattern("(?i)velodyne|lidar|laser|ouster|livox|hesai|pandar|rslidar|robosense"));
 static CAMERA: Pattern = Pattern::new(|| pattern("(?i)cam"));
 
-/// Frames of no camera and no LiDAR: the inertial unit, the body, a vehicle, a robot and its hand, and what a
-/// calibration looks at.
+/// Frames of no camera and no LiDAR: the inertial unit, the body, a vehicle, a robot and its hand, and the target of a
+/// calibration.
 static CARRIER: Pattern = Pattern::new(|| {
     pattern(concat!(
         r"(?i)^(?:b|body|i|imu\w*|base(?:[_ ]?(?:link|footprint))?|rig|vehicle|ego(?:[_ ]?vehicle)?|car|robot\w*|",
@@ -47,7 +47,7 @@ pub fn is_backwards(pose: &NamedPose) -> bool {
     is_lidar(to) && !from.is_empty() && !is_lidar(from) && !is_depth(from)
 }
 
-/// Whether a pose relates a sensor to what carries it or what it looks at, so that it does not relate two sensors.
+/// Whether a pose relates a sensor to its carrier or its target, so that it does not relate two sensors.
 pub fn is_of_carrier(pose: &NamedPose) -> bool {
     ends(pose).into_iter().any(|name| CARRIER.is_match(name))
 }

@@ -172,7 +172,7 @@ fn inputs(files: impl Iterator<Item = (String, (String, PathBuf))>) -> Result<Ve
 
 fn write(checked: &Checked, arguments: &Arguments, terminal: &mut Terminal<'_>) -> Result<()> {
     let is_json = arguments.json.as_deref() == Some(Path::new("-"));
-    // Printed first, so that an output file that cannot be written does not lose the verdict.
+    // The verdict is printed first, so that it is not lost if an output file cannot be written.
     let words = text::text(checked);
     if is_json { print(terminal.err, &words) } else { print(terminal.out, &words) }?;
     if let Some(path) = arguments.json.as_ref().filter(|_| !is_json) {

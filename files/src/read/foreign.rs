@@ -1,4 +1,4 @@
-//! Files that are not read: recognised by their first bytes, with advice.
+//! Files that are not read. They are recognised by their first bytes and reported with advice.
 
 /// First bytes of picture formats that are not supported, with advice.
 const PICTURES: [(usize, &[u8], &str); 7] = [
@@ -56,7 +56,7 @@ pub fn is_foreign_picture(bytes: &[u8]) -> bool {
     read_elsewhere(bytes).is_some() || kind_in(&PICTURES, bytes).is_some()
 }
 
-/// A description of what an unread file seems to be.
+/// A description of the format that an unread file seems to have.
 pub fn describe(bytes: &[u8]) -> String {
     if let Some(kind) = read_elsewhere(bytes) {
         return format!("it is {kind}, which is not supported here; npx bimodal-stereo check reads it");

@@ -24,7 +24,7 @@ pub fn png(bytes: &[u8]) -> Result<Raster> {
     let (has_srgb, gamma) = (info.srgb.is_some(), info.gama_chunk.map(|gamma| f64::from(gamma.into_value())));
     check_size(info.width as usize, info.height as usize)?;
     let (mut raster, profile) = decoded(bytes, ImageFormat::Png).map_err(|error| damaged(&error))?;
-    // Statements about colours do not matter to depths.
+    // Depths have no colours, so a colour profile is ignored.
     if !raster.has_colour() {
         return Ok(raster);
     }
@@ -103,14 +103,14 @@ fn raster_of(picture: DynamicImage, orientation: Orientation) -> Raster {
     Raster { width, height, channels, samples, bits, is_lossy: false, linear: None, encoding: None, notes, warnings }
 }
 
-/// Whether the picture's own end marker is there. Segments are skipped by their length, because a preview in one has an
+/// Whether the picture has its own end marker. Segments are skipped by their length, because a preview in one has an
 /// end marker as well.
 fn has_end(bytes: &[u8]) -> bool {
     let mut at = 2;
     while let Some(&[mark, kind]) = bytes.get(at..).and_then(|rest| rest.first_chunk()) {
         at += match (mark, kind) {
             (0xff, 0xd9) => return true,
-            // Stuffed bytes, standalone and restart markers: no segment follows.
+            // No segment follows stuffed bytes, standalone markers and restart markers.
             (0xff, 0x00 | 0x01 | 0xd0..=0xd8) => 2,
             (0xff, 0x02..=0xfe) => match bytes.get(at + 2..at + 4) {
                 Some(&[high, low]) => 2 + usize::from(u16::from_be_bytes([high, low])),
@@ -176,7 +176,7 @@ mod tests {
     use super::super::raster;
     use super::*;
 
-    /// Written by the formats' own programs; see scripts/reference/rig-files.py.
+    /// The formats' own programs wrote these files; see scripts/reference/rig-files.py.
     fn fixture(name: &str) -> Raster {
         let path = format!("{}/../tests/fixtures/rig/{name}", env!("CARGO_MANIFEST_DIR"));
         raster(path.as_ref()).unwrap()
@@ -208,7 +208,7 @@ mod tests {
             assert_eq!(((turned.width, turned.height), turned.warnings.len()), (sides, 1), "{turn}");
             for at in 0..turned.width * turned.height {
                 let (x, y) = (at % turned.width, at / turned.width);
-                // The stored pixel that each of the eight orientations shows there.
+                // The stored pixel that each of the eight orientations shows at this place.
                 let [column, row] = [
                     [w - x.min(w), y],
                     [w - x.min(w), h - y.min(h)],

@@ -28,7 +28,7 @@ pub struct RawCamera {
 fn pattern(text: &str) -> Regex {
     Regex::new(text).expect("is a constant")
 }
-/// Files call the same model by many names.
+/// The names by which files call the models.
 static BROWN: LazyLock<Regex> = LazyLock::new(|| {
     pattern(
         "^(|none|pinhole|plumb[_ ]?bob|radtan|radial-tangential|brown|brown[_ ]?conrady|opencv|rational[_ ]?polynomial|full_opencv|perspective)$",
@@ -36,8 +36,8 @@ static BROWN: LazyLock<Regex> = LazyLock::new(|| {
 });
 static FISHEYE: LazyLock<Regex> =
     LazyLock::new(|| pattern("^(fisheye|equidistant|equi|kannala[_ ]?brandt4?|opencv_fisheye)$"));
-/// Variants of librealsense, which projects both as Brown's model except for products of terms (older versions inverted
-/// the second).
+/// Variants of Brown's model in librealsense, which projects both as Brown's model except for products of terms. Older
+/// versions inverted the second one.
 static REALSENSE: LazyLock<Regex> = LazyLock::new(|| pattern("^(modified|inverse)[_ ]?brown[_ ]?conrady$"));
 /// Longest plausible focal length, pixels.
 const LONGEST: f64 = 1e6;

@@ -7,12 +7,12 @@ use super::numbers::number_in;
 
 static LINE: Pattern =
     Pattern::new(|| pattern(r"^\s*([0-9]+)\s+([A-Z][A-Z_]+)\s+([0-9]+)\s+([0-9]+)((?:\s+\S+)*)\s*$"));
-/// COLMAP measures principal points from the corner of the first pixel, this crate from its centre.
+/// COLMAP measures principal points from the corner of the first pixel, and this crate from its centre.
 const CORNER: f64 = 0.5;
 /// Bytes within which the first camera must appear.
 const HEAD: usize = 4096;
 
-/// Number of focal lengths, number of coefficients after the principal point, and whether they are a fisheye's.
+/// Number of focal lengths, number of coefficients after the principal point, and whether the lens is a fisheye.
 fn model(name: &str) -> Option<(usize, usize, bool)> {
     Some(match name {
         "SIMPLE_PINHOLE" => (1, 0, false),

@@ -69,7 +69,7 @@ fn placed(mut found: Calibration, path: &str) -> Calibration {
     found
 }
 
-/// Content of a text, with its format; the file's name may say what its numbers are.
+/// Content of a text, with its format; the file's name may state the meaning of its numbers.
 pub fn read_text(text: &str, path: &str) -> Result<Calibration, Reason> {
     let text = text.trim_start_matches('\u{feff}').trim();
     if text.is_empty() {
@@ -114,7 +114,7 @@ fn searched(value: &Value, format: &str) -> Result<Calibration, Reason> {
 }
 
 fn json(text: &str) -> Result<Value, Reason> {
-    // Python writes these three, which JSON does not allow; no value of a calibration may be one of them.
+    // Python writes these three words, which JSON does not allow. They are not valid values of a calibration.
     static NONE: names::Pattern = names::Pattern::new(|| names::pattern(r"-?\bInfinity\b|\bNaN\b"));
     let plain = NONE.replace_all(text, "null");
     serde_json::from_str(&plain).map_err(|error| format!("this JSON is damaged or cut off ({error})"))

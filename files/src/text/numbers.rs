@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use regex_lite::Regex;
 use serde_json::Value;
 
-/// Largest number of numbers in a matrix: calibrations have 16, distortions 14; more is something else.
+/// Largest number of numbers in a matrix; calibrations have at most 16 and distortions 14.
 const MOST: usize = 64;
 
 static NUMBER: LazyLock<Regex> = LazyLock::new(|| {
@@ -65,7 +65,7 @@ pub fn fixed(value: f64, decimals: i32) -> String {
     if !value.is_finite() || value.abs() >= 1e15 {
         return shown(value);
     }
-    // The languages round only exact halves differently; such a value is a multiple of this power of two.
+    // Rust and JavaScript differ only in the rounding of exact halves, which are multiples of this power of two.
     let scaled = value.abs() * 10_f64.powi(decimals);
     let is_half = scaled.fract() == 0.5 && (value * 2_f64.powi(decimals + 1)).fract() == 0.0;
     let value = if is_half { value.signum() * (scaled + 0.25).round() / 10_f64.powi(decimals) } else { value };

@@ -7,9 +7,9 @@ use super::calibration::{NamedPose, Names, Reason};
 use super::numbers::{precise, shown};
 use crate::warning::Warnings;
 
-/// Largest element of R R^T - 1 for a rotation: allows for truncated digits, or a calibration that drifted.
+/// Largest element of R R^T - 1 of a rotation. Truncated digits or a drifted calibration cause smaller ones.
 const ROTATION_TOLERANCE: f64 = 1e-2;
-/// Largest such element without a warning: 0.06 degrees and less, as from four digits.
+/// Largest such element without a warning: 0.06 degrees, the rounding of four digits.
 const ROUNDING: f64 = 1e-3;
 /// Largest distance between cameras of one rig, metres: a longer shift is in millimetres.
 const LONGEST: f64 = 10.0;

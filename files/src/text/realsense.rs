@@ -11,7 +11,7 @@ use crate::warning::Warnings;
 
 static INTRINSIC: Pattern = Pattern::new(|| pattern(r#"^\s*Intrinsic of "([^"]{1,60})""#));
 static EXTRINSIC: Pattern = Pattern::new(|| pattern(r#"(?i)^\s*Extrinsic from "([^"]{1,60})"\s+To\s+"([^"]{1,60})""#));
-/// Largest number of entries, streams times sizes: a camera has some sixty.
+/// Largest number of entries, streams times sizes; a camera has some sixty.
 const MOST: usize = 2000;
 /// Largest number of lines of a camera, and of a motion.
 const BLOCK: usize = 15;

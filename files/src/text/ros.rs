@@ -9,7 +9,7 @@ use super::poses::{of_quaternion, of_yaw_pitch_roll, turned};
 use crate::warning::Warnings;
 
 const NAME: &str = "static_transform_publisher";
-/// Characters after the name that may belong to it: numbers, names, quotes and brackets.
+/// Number of characters after the name that may hold its arguments: numbers, names, quotes and brackets.
 const REACH: usize = 2000;
 const MOST: usize = 1000;
 

@@ -2,7 +2,7 @@
 
 use super::calibration::Calibration;
 
-/// What topics have in common: the kind of message, and whether it was rectified.
+/// Parts of topics that do not distinguish cameras: the kind of message, and whether it was rectified.
 const MESSAGES: [&str; 8] =
     ["/image", "/compressed", "/image_raw", "/image_rect", "/image_rect_raw", "/image_color", "/image_mono", "/raw"];
 /// Largest number of characters of a topic.

@@ -1,8 +1,8 @@
 //! Cameras and motions in JSON, YAML and XML from any program: ROS, OpenCV, Open3D, Kalibr, RealSense, or written by
 //! hand.
 //!
-//! A walk over all objects recognises them by the names and shapes of their members (see `names`); the rest of a name
-//! beside the known words becomes the camera's name. Walks are bounded in depth and in number of objects.
+//! A walk over all objects recognises them by the names and shapes of their members (see `names`); the words of a name
+//! that are not known become the camera's name. Walks are bounded in depth and in number of objects.
 
 use bimodal_stereo::Similarity;
 use serde_json::{Map, Value};

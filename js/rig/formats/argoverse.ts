@@ -73,7 +73,7 @@ const isTable = /^[^\n]*\bsensor_name\b[^\n]*\n/;
 export const isArgoverse2Table = (text: string): boolean =>
   isTable.test(text) && /\b(?:fx_px|tx_m)\b/.test(text.slice(0, 400));
 
-/** The same tables as CSV. */
+/** The two tables of Argoverse 2 as CSV. */
 export function readArgoverse2Table(text: string): Findings {
   const [head = "", ...lines] = text.split(/\r?\n/).filter((line) => line.trim() !== "");
   const names = head.split(",").map((name) => name.trim());

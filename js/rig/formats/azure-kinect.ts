@@ -2,8 +2,8 @@
  * The calibration of an Azure Kinect: the JSON of the device, which an .mkv recording has as an attachment, and the print of the SDK's
  * example.
  *
- * The JSON's numbers are fractions of the whole sensor. The images of a mode are a crop of it, which may be binned, so that one set of
- * numbers gives a camera for each mode; the size of the images selects one. As in the SDK, pixel centres have integer coordinates.
+ * The JSON's numbers are fractions of the whole sensor. The images of a mode are a crop of the sensor, which may be binned, so that one
+ * set of numbers gives a camera for each mode; the size of the images selects one. As in the SDK, pixel centres have integer coordinates.
  */
 import { badFile } from "../../errors.js";
 import { BROWN_NAMES, type RawCamera } from "./cameras.js";
@@ -11,7 +11,7 @@ import { Findings, flat } from "./findings.js";
 import { isNode, type Node, type Numbers, nodesOf, numberOf } from "./numbers.js";
 import { chained, inverseOf, poseOf, rotationOf } from "./poses.js";
 
-/** From the SDK: the size of the binned sensor, the first pixel of the crop, and the size of the images. */
+/** Each mode, from the SDK: the size of the binned sensor, the first pixel of the crop, and the size of the images. */
 type Mode = [binned: [number, number], crop: [number, number], size: [number, number]];
 const COLOUR: Mode[] = [
   [

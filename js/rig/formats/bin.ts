@@ -9,7 +9,7 @@ import { FEWEST_POINTS, channelOf, columnOf, pointsOf } from "./channels.js";
 import { MOST_POINTS } from "./grid.js";
 import type { Points } from "./picture.js";
 
-/** Floats per point, the channels from the fourth on, and a name. */
+/** Floats per point, the meaning of the channels after x, y, z, and a name. */
 const LAYOUTS: [floats: number, others: string[], of: string][] = [
   [4, ["reflectance"], "KITTI"],
   [5, ["intensity", "ring"], "nuScenes"],
@@ -24,7 +24,7 @@ const FARTHEST = 500;
 const LEAST = 1e-6;
 /** Share of points whose coordinates have to be plausible. */
 const NEARLY_ALL = 0.99;
-/** Smallest share of points with a negative coordinate; depths are never negative. */
+/** Smallest share of points with a negative coordinate, which distinguishes scans from depth maps. */
 const LEAST_NEGATIVE = 0.1;
 /** Largest number of points that are examined. */
 const LOOKED_AT = 20_000;
@@ -75,7 +75,8 @@ export function readBin(bytes: Uint8Array): Points | undefined {
     points: pointsOf(values, floats),
     ...(intensity && { intensity }),
     ...(ring && isRing(ring) && { ring }),
-    // Whatever the last number means, a spinning scanner measures its points one after the other.
+    // The last number may have any meaning, because only the order of the points is used: a spinning scanner measures them one after the
+    // other.
     ...(times && { times: Float64Array.from(times) }),
   };
   const notes = [`${floats} floats to a point (guessed: ${of})`];

@@ -1,4 +1,4 @@
-/** Cameras as files write them: checked, with their distortion by OpenCV's names. */
+/** Checks the cameras of files and converts their distortion to OpenCV's order. */
 import { badFile } from "../../errors.js";
 import type { NamedCamera } from "../types.js";
 import { lensNamed } from "./lenses.js";
@@ -14,7 +14,7 @@ export interface RawCamera {
   skew?: number | undefined;
   model?: string | undefined;
   distortion?: Numbers | undefined;
-  /** Whether the name of the model cannot be the name of a product. */
+  /** Whether the model's name cannot be that of a product. */
   isLens?: boolean | undefined;
   /** Whether the coefficients have Brown's names and OpenCV's order, whatever the model. */
   isByName?: boolean | undefined;
@@ -126,7 +126,7 @@ export function cameraOf(raw: RawCamera, warnings: ReaderWarning[]): NamedCamera
 
 type Lens = { model?: "fisheye"; distortion?: Numbers };
 
-/** Places of k1 to k4, a fisheye's coefficients, in a list by Brown's names. */
+/** Positions of a fisheye's coefficients k1 to k4 in a list by Brown's names. */
 const FISHEYE_OF_BROWN = [0, 1, 4, 5];
 
 function fisheye({ distortion, isByName = false }: RawCamera, label: string, warnings: ReaderWarning[]): Lens {

@@ -23,7 +23,7 @@ export function roomFor(count: number, channels: readonly (Channel | undefined)[
   };
 }
 
-/** Smallest number of points of a scan; fewer show neither how they were scanned nor whether a calibration is right. */
+/** Smallest number of points of a scan; fewer show neither the pattern of the scanner nor whether a calibration is right. */
 export const FEWEST_POINTS = 200;
 
 /** One column of a table with this many numbers per row. */

@@ -24,7 +24,7 @@ const CODES: readonly Code[] = [
 const CARLA = 1000 / (2 ** 24 - 1);
 /** The smallest change of the lower byte, in the direction opposite to that of the higher byte, that counts as a wrap. */
 const WRAP = 64;
-/** The fewest steps of the higher byte by one that are needed for a decision, and the smallest share of them that must be carries. */
+/** Smallest number of changes of the higher byte by one that a decision needs, and the smallest share of them that must be carries. */
 const [FEWEST_MOVES, MOSTLY] = [20, 0.7];
 /** The largest median of depths in millimetres. */
 const USUAL = 8000;
@@ -77,7 +77,7 @@ function isSmooth({ data, width, channels }: Picture, [low = 0, middle = 0, high
 
 /** Whether a picture has carries, or three bytes that form a smooth number: near the camera, the highest byte hardly changes. */
 function fits(picture: Picture, { order }: Code): boolean {
-  // Two-byte codes leave blue empty.
+  // Codes of two bytes leave the blue channel empty.
   const isTwo = order.length === 2;
   if (isTwo ? !isEmpty(picture, 2) : order.some((channel) => isEmpty(picture, channel))) return false;
   const [low = 0, high = 1] = order.slice(-2);

@@ -1,4 +1,4 @@
-/** Files that are not read: their formats, by first bytes or names, and what to do with them. */
+/** Files that are not read: their formats, by first bytes or names, and a remedy for each. */
 import { type BimodalError, badFile } from "../../errors.js";
 
 export { pointList } from "./point-list.js";

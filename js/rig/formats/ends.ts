@@ -11,7 +11,7 @@ export type PoseNames = Omit<NamedPose, "pose">;
 /** Names of poses of a camera in the world: ARKit, Blender, NeRF, trajectories. */
 const OF_WORLD =
   /\b(?:(?:camera|cam|c|local|object|view) ?(?:to|2) ?(?:world|w)|poses?|matrix world|location|camera transform)\b/;
-/** Names of their inverses. */
+/** Names of the inverses of such poses. */
 const TO_CAMERA =
   /\b(?:(?:world|w) ?(?:to|2) ?(?:camera|cam|c|view)|view matrix|(?:world|camera) view(?: transform)?)\b/;
 
@@ -25,7 +25,7 @@ export function worldFrames(name: string): Frames | undefined {
   return undefined;
 }
 
-/** Words in names that say how good an estimate is and where it comes from, not which frames it relates. */
+/** Words in names that describe the quality and the origin of an estimate, not its frames. */
 const NO_FRAME = [
   "init|initial|guess|prior|coarse|rough|nominal|cad|default|factory|manual|auto|est|estimated?|estimation|opt",
   "optimi[sz]ed|optimi[sz]ation|refined?|refinement|final|best|result|results|solution|solved|corrected|adjusted",
@@ -101,5 +101,5 @@ export function named(written: string, frames: Frames): PoseNames {
   return backwards ? { name, from: backwards[2] ?? "", to: backwards[1] ?? "" } : { name };
 }
 
-/** Whether a motion leads into the world or out of it, so that it does not relate two cameras. */
+/** Whether one of a motion's frames is the world, so that the motion does not relate two cameras. */
 export const isOfWorld = ({ from, to }: Frames): boolean => from === "world" || to === "world";

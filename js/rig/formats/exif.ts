@@ -47,7 +47,7 @@ export function turnedBy(picture: Picture, orientation: number, why: string): Pi
   const isSwapped = orientation >= 5;
   const [across, down] = isSwapped ? [height, width] : [width, height];
   const out = data.slice() as typeof data;
-  // Whether the stored columns and rows run backwards.
+  // Whether columns and rows are stored in reverse order.
   const [flipX, flipY] = [[2, 3, 7, 8].includes(orientation), [3, 4, 6, 7].includes(orientation)];
   for (let y = 0; y < down; y++) {
     for (let x = 0; x < across; x++) {

@@ -1,6 +1,6 @@
 /**
- * OpenEXR by B44 and B44A, which parse-exr does not support. Halves are packed in tiles of 4x4 pixels: 14 bytes each, or 3 where all pixels are
- * equal. Other types are not compressed. A block of lines has one channel after the other.
+ * OpenEXR compressed with B44 or B44A, which parse-exr does not support. Halves are packed in tiles of 4x4 pixels: 14 bytes each, or 3
+ * where all pixels are equal. Other types are not compressed. A block of lines has one channel after the other.
  */
 import { badFile } from "../../errors.js";
 import { half } from "../../half.js";
@@ -12,7 +12,7 @@ const [SIDE, LONG, FLAT] = [4, 14, 3];
 /** The shift that marks a tile of equal pixels. */
 const ALIKE = 13;
 
-/** The six bits from a bit on. */
+/** The six bits that begin at a bit. */
 const six = (body: Uint8Array, at: number, bit: number): number => {
   const from = at + (bit >> 3);
   return ((((body[from] ?? 0) << 8) | (body[from + 1] ?? 0)) >> (10 - (bit & 7))) & 63;

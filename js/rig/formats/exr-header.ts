@@ -5,7 +5,7 @@ import { checkSize } from "./limits.js";
 export const COMPRESSIONS = ["none", "RLE", "ZIPS", "ZIP", "PIZ", "PXR24", "B44", "B44A", "DWAA", "DWAB"];
 /** Lines of a block by each compression. */
 const LINES: Record<number, number> = { 0: 1, 1: 1, 2: 1, 3: 16, 4: 32, 5: 16, 6: 32, 7: 32, 8: 32, 9: 256 };
-/** The two compressions by B44, and the first of the two by DWA. */
+/** Numbers of the two compressions by B44, and of the first one by DWA. */
 export const [B44, B44A, DWAA] = [6, 7, 8];
 /** Bytes of a sample of each type. */
 export const SIZES = [4, 2, 4];

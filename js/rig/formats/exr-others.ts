@@ -1,5 +1,5 @@
 /**
- * OpenEXR by PIZ, PXR24 or DWA, read by parse-exr. This module is loaded with the first such file.
+ * OpenEXR compressed with PIZ, PXR24 or DWA, read by parse-exr. This module is loaded with the first such file.
  *
  * parse-exr trusts what a file declares and supports only the channels R, G, B, A and Y. It therefore gets a file that is made here, with the
  * attributes that it needs, checked blocks in order, and the wanted channels under these names. Limits: PIZ and DWA with channels of different

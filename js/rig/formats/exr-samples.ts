@@ -33,7 +33,7 @@ export function channelOfLines(body: Uint8Array, header: Header, used: number, r
   return out;
 }
 
-/** Puts the samples of one channel into interleaved data with so many channels, from a pixel on. */
+/** Puts the samples of one channel into interleaved data with this many channels, starting at a pixel. */
 export function interleave(samples: Float32Array, data: Float32Array, pixel: number, channels: number, to: number) {
   for (let at = 0; at < samples.length; at++) data[(pixel + at) * channels + to] = samples[at] ?? NaN;
 }

@@ -1,5 +1,5 @@
 /**
- * OpenEXR of one part in scan lines, uncompressed or by RLE, ZIPS or ZIP: halves, floats and integers.
+ * OpenEXR of one part in scan lines, uncompressed or compressed with RLE, ZIPS or ZIP: halves, floats and integers.
  *
  * PIZ, PXR24 and the colours of DWA are read by parse-exr (exr-others.ts). It does not replace this reader: it supports neither a channel Z
  * nor integers, misreads channels of different types, and does not check what a file declares. B44 is in exr-b44.ts, and the lossless channels
@@ -12,7 +12,7 @@ import { HALF, channelOfLines, interleave } from "./exr-samples.js";
 import type { Picture } from "./picture.js";
 import { warning } from "../warnings.js";
 
-/** The last compression that is read here. */
+/** The largest number of a compression that this file reads. */
 const ZIP = 3;
 /** Largest number of bytes of all channels, including unused ones. */
 const MOST_PIXELS = 2 ** 28;

@@ -63,7 +63,7 @@ function ofWorldName(path: string): Frames | undefined {
 /** Names of extrinsics of a single camera, such as ScanNet's "extrinsic_color": they name one end and no direction. */
 const ONE_END =
   /^(?:extrinsics?[_-](?:colou?r|rgb|depth|ir|cam(?:era)?)\d*|(?:colou?r|rgb|depth|ir|cam(?:era)?)\d*[_-]extrinsics?)$/i;
-/** Whether a bare pose has such a name and is not the identity. */
+/** Whether a pose without frames has such a name and is not the identity. */
 const namesOneEnd = (path: string, { pose }: NamedPose): boolean =>
   ONE_END.test(path.replace(/^.*[/\\]/, "").replace(/\.[a-z]{1,5}$/i, "")) && isMoved(pose);
 
@@ -73,7 +73,7 @@ const isUsual = ({ from, to }: { from: string; to: string }): boolean =>
 
 /**
  * The poses of a file. A single pose without frames takes the frames in the file's name, except the default from depth to colour. With
- * `isBare` the file holds only numbers, so its name may say that it is a camera's pose in the world, or name one end alone.
+ * `isBare` the file holds only numbers, so its name may mean a camera's pose in the world, or name only one of the two frames.
  */
 export function withEnds(
   poses: readonly NamedPose[],

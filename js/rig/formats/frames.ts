@@ -124,7 +124,7 @@ export const isLidar = (name: string): boolean => LIDAR.test(name) && !CAMERA.te
 const CARRIER =
   /^(?:b|body|i|imu\w*|base(?:[_ ]?(?:link|footprint))?|rig|vehicle|ego(?:[_ ]?vehicle)?|car|robot\w*|hand|gripper|flange|tool\d*|\w+_(?:hand|gripper|flange|tool\d*)|gps|ins|oxts|(?:april|aru|charu)\w*|tag\w*|marker\w*|(?:chess|checker|calib\w*)?_?board|target|pattern|object|table)$/i;
 
-/** Whether a motion relates a sensor to what carries it or to what it looks at, instead of relating two sensors. */
+/** Whether a motion relates a sensor to its carrier or to its target, instead of relating two sensors. */
 export const isOfCarrier = ({ from = "", to = "" }: Ends): boolean => CARRIER.test(from) || CARRIER.test(to);
 
 type Ends = { from?: string | undefined; to?: string | undefined };

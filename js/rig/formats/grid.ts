@@ -3,7 +3,7 @@ import { badFile } from "../../errors.js";
 import { checkSize } from "./limits.js";
 import { type ReaderWarning, warning } from "../warnings.js";
 
-/** Image sizes of depth cameras, by which the rows and columns of a cloud are guessed where its file does not give them. */
+/** Image sizes of depth cameras. They are tried for a cloud whose file does not give rows and columns. */
 export const SIZES = [
   [640, 480],
   [320, 240],

@@ -66,7 +66,7 @@ export function withLists(node: Node): Node {
   const whole: Record<string, Numbers> = {};
   for (const [stem, list] of lists) {
     const values = Array.from({ length: list.size }, (_, at) => list.get(at));
-    // A lens may have a single coefficient.
+    // A single number is allowed, because a lens may have one coefficient.
     const isLength = LENGTHS.has(list.size) || stem === "d";
     const isWhole = isLength && values.every((value) => value !== undefined);
     if (isWhole && !Object.hasOwn(node, stem)) whole[stem] = values as Numbers;

@@ -159,7 +159,7 @@ export function inSrgb(picture: Picture, profile: Uint8Array): Picture {
   };
 }
 
-/** PNG keeps a name, a zero and the compressed profile. */
+/** PNG stores a name, a zero byte and the compressed profile. */
 export function pngProfile(chunk: Uint8Array): Uint8Array {
   return inflateUpTo(chunk.subarray(chunk.indexOf(0) + 2), MOST_PROFILE, "its colour profile");
 }

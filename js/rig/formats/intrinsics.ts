@@ -11,7 +11,7 @@ const FX = ["fx", "flx", "focalx", "focallengthx"];
 const FY = ["fy", "fly", "focaly", "focallengthy"];
 const CX = ["cx", "ppx", "u0", "centerx", "principalpointx"];
 const CY = ["cy", "ppy", "v0", "centery", "principalpointy"];
-/** Four intrinsics in a list are fx fy cx cy where fx and fy differ by less than this share. */
+/** Four intrinsics in a list are fx fy cx cy if the first two differ by less than this share. */
 const SQUARE = 0.2;
 /** Shortest focal length in pixels; shorter ones are normalised by the image's size, or are not focal lengths. */
 const SHORTEST = 10;
@@ -89,7 +89,7 @@ export function fourOf(node: Node, name: string | undefined): Intrinsics | undef
   const four = matrixOf(member(node, "intrinsics", "cameramatrix"))?.values;
   if (four === undefined) return undefined;
   if (kalibr !== undefined && four.length !== 9 && four.length !== 12) {
-    // The cameras of other models are left out by their names.
+    // Other models have other parameters, which are not read here.
     if (kalibr !== "pinhole") return undefined;
     if (four.length !== 4) throw badFile(`${cameraNamed(name)} has ${four.length} intrinsics; fu fv pu pv are needed`);
   } else {

@@ -1,5 +1,5 @@
 /**
- * JPEG and WebP. Browsers decode them, turn them as EXIF says and bring their colours to sRGB; Node has jpeg-js for JPEG.
+ * JPEG and WebP. Browsers decode them, turn them by their EXIF orientation and convert their colours to sRGB; Node has jpeg-js for JPEG.
  *
  * jpeg-js (0.4, 8 kB gzipped, loaded on demand) is used instead of sharp, a binary of megabytes for each system, and of mozjpeg as wasm,
  * 100 kB. It trusts what a file declares, so sizes, channels and the number of scans are checked first.
@@ -15,7 +15,7 @@ const MOST_SCANS = 64;
 const MEMORY = 512;
 /** Largest number of segments: tables, remarks and scans. A camera's file has a few dozen. */
 const MOST_SEGMENTS = 5000;
-/** A block of 8x8 takes at least two bits: one for its mean, one for the end. */
+/** Smallest number of bits of a block of 8x8: one for its mean, one for its end. */
 const BITS_OF_BLOCK = 2;
 const MOST_PROFILE = 2 ** 22;
 
@@ -96,7 +96,7 @@ function marked(bytes: Uint8Array): Marked {
   return { ...size, orientation, profile: joined };
 }
 
-/** The decoder's message; its type errors, which say nothing about the file, get another one. */
+/** The decoder's message. Its type errors do not describe the file and get another message. */
 function reasonOf(error: unknown): string {
   if (error instanceof TypeError || error instanceof RangeError) return "its segments contradict each other";
   return error instanceof Error ? error.message : String(error);
@@ -125,7 +125,7 @@ export async function byBrowser(bytes: Uint8Array, format: string, check = check
 
 const hasBrowser = (): boolean => typeof createImageBitmap === "function" && typeof OffscreenCanvas === "function";
 
-/** Three of four channels; the image is opaque. */
+/** Keeps three of four channels, because the image is opaque. */
 function withoutAlpha(picture: Picture): Picture {
   const { width, height, data } = picture;
   const out = new Uint8Array(3 * width * height);

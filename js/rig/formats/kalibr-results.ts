@@ -35,7 +35,7 @@ function listed(part: string, name: string): Numbers | undefined {
 function cameraOf(name: string, part: string): RawCamera {
   const [type = ""] = /[A-Za-z]+(?=CameraGeometry)/.exec(part) ?? [];
   const [fx = NaN, fy = NaN, cx = NaN, cy = NaN, ...more] = listed(part, "projection") ?? [];
-  // Other projections begin with further parameters; their type refuses the camera.
+  // Other projections begin with further parameters, but their cameras are refused by type.
   const values = { focal: [fx, fy], centre: [cx, cy], distortion: listed(part, "distortion") };
   if (/^Distorted(?:Pinhole)?$|^Pinhole$/.test(type) && more.length === 0) return { name, ...values, model: "radtan" };
   if (type === "EquidistantDistortedPinhole") return { name, ...values, model: "equidistant" };

@@ -100,7 +100,7 @@ const LIDAR = /velo|lidar|laser/i;
 const USED =
   /^(?:P(?:_rect_)?\d{1,2}|Tr(?:_velo_(?:to_)?cam(?:_\d)?)?|R0_rect|R_rect(?:_\d\d)?|[KDRTS]_(?:rect_)?\d\d)$/;
 
-/** A pose by a name that KITTI does not have: a matrix, or R and T apart. */
+/** A pose with a name that KITTI does not use: a matrix, or separate R and T. */
 function otherPose(found: Findings, lines: Lines): { name: string; pose: Pose } | undefined {
   const others = [...lines].filter(([key]) => !USED.test(key) && !/imu/i.test(key));
   for (const [name, values] of others) {

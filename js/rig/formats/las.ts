@@ -99,7 +99,7 @@ function checkBox(points: Float32Array, { box, scale, count }: Header): void {
   for (let at = 0; at < points.length; at += 3) {
     const isOutside = box.some(([most, least], axis) => {
       const value = points[at + axis] ?? NaN;
-      // Rounded to an integer, and then to 24 bits.
+      // Tolerance for coordinates that were rounded to an integer and then to 24 bits.
       const slack = Math.abs(scale[axis] ?? 0) + 1e-6 * Math.max(Math.abs(most), Math.abs(least));
       return most > least && !(value >= least - slack && value <= most + slack);
     });

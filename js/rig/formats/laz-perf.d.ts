@@ -24,7 +24,7 @@ declare module "laz-perf/lib/web/laz-perf.js" {
 }
 
 declare module "laz-perf/lib/web/laz-perf.wasm" {
-  /** Compressed by zlib, as base64. */
+  /** The code, compressed by zlib and written as base64. */
   const packed: string;
   export default packed;
 }

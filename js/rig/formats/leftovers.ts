@@ -76,7 +76,7 @@ function lensOf(value: unknown): Coefficient | undefined {
   return distortion && { ...coefficients, distortion, ...modelIn(value) };
 }
 
-/** Two numbers of a list or of a text, "640x480". */
+/** The two numbers of a list, or of a text such as "640x480". */
 function sides(value: unknown): Numbers | undefined {
   const written = typeof value === "string" ? /^\s*(\d{1,5})\s*[x×*]\s*(\d{1,5})\s*$/.exec(value) : null;
   const both = written ? [Number(written[1]), Number(written[2])] : matrixOf(value)?.values;
@@ -123,7 +123,7 @@ function sizesOf(node: Node, place: Place): Size[] {
 /** Names that suggest a lens. */
 const LENS_LIKE = /distort|dist_?coef|lens_?(?:coef|param)|^kc$|radial|tangential/i;
 
-/** Numbers of coefficients that lenses have, and the largest that one may be. */
+/** Possible numbers of coefficients of a lens, and the largest value of a coefficient. */
 const [COUNTS, LARGEST] = [[4, 5, 8, 12, 14], 100];
 
 /**
@@ -228,7 +228,7 @@ export class Leftovers {
     const give = ({ width, height }: Size, some: FoundCamera[]) => {
       for (const { raw } of some.filter(isBare)) Object.assign(raw, { width, height });
     };
-    // The innermost come first, so that cameras take the nearest size.
+    // The innermost sizes come first, so that cameras take the nearest one.
     const inner = [...this.#sizes].reverse();
     for (const size of inner)
       give(

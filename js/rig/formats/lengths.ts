@@ -1,6 +1,6 @@
 /**
- * Units of translations: the unit that a file's comments state, and a warning if a translation is longer than the cameras of a rig are
- * apart.
+ * Units of translations: the unit that a file's comments state, and a warning if a translation is longer than the usual distance of a
+ * rig's cameras.
  *
  * Limit: rigs whose cameras are farther apart have to state the unit.
  */
@@ -21,7 +21,7 @@ const MOST = 200;
 
 const COMMENT = /(?:^|[\s,;{])(?:#|\/\/|%|;|\/\*)([^\n]{1,200})/gm;
 const SUBJECT = /\b(?:translations?|units?|t|tvec|positions?|lengths?|baselines?|distances?|extrinsics?|poses?|all)\b/i;
-/** Comments about other lengths. */
+/** Comments about lengths other than translations. */
 const OTHERS = /depth|focal|pixel|sensor|board|square|tag|marker|pattern|rotation only/i;
 const UNIT =
   /(?:\b(?:in|are|is|unit|units|as)|[:=([])\s*\[?\(?\s*(mm|cm|dm|m|inch(?:es)?|(?:milli|centi|deci)?met(?:er|re)s?)\b/i;
@@ -41,7 +41,7 @@ export function unitInComments(text: string): number | undefined {
 
 const says = (length: number, unit: number): string => `${Number((1000 * length * unit).toPrecision(3))} mm`;
 
-/** Adds a warning where a translation without a unit is longer than the sensors of a rig are apart. */
+/** Adds a warning if a translation without a unit is longer than the usual distance of a rig's sensors. */
 export function checkLength({ name, from = "", to = "", pose }: NamedPose, warnings: ReaderWarning[]): void {
   const frames = `${from} ${to} ${name ?? ""}`;
   if (FAR.test(frames)) return;

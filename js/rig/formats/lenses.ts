@@ -21,7 +21,7 @@ const FISHEYE = [
  * direction for the second model.
  */
 const REALSENSE = ["modifiedbrownconrady|inversebrownconrady"];
-/** Models that are not supported, with what they stand for. */
+/** Models that are not supported, with their descriptions. */
 const OTHERS: [pattern: string, meaning: string][] = [
   ["ds(?:none)?|doublesphere(?:none)?|xialpha", "double sphere"],
   ["eucm(?:none)?|(?:extended|enhanced)unified|pinholeeucm|alphabeta", "extended unified"],

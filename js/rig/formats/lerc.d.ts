@@ -1,4 +1,4 @@
-/** The package has no type declarations. */
+/** Declares the package, which contains no types. */
 declare module "lerc" {
   const lerc: {
     decode(

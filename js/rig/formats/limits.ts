@@ -5,7 +5,7 @@ import { badFile } from "../../errors.js";
 export const MOST_SIDE = 4096;
 /** Largest number of bytes of a file: twice those of 4096x4096 pixels of 16 bits, or a cloud of 1280x960 pixels as text. */
 export const MOST_BYTES = 64 * 2 ** 20;
-/** Bytes by which compressed data may exceed twice their content. */
+/** Compressed data may exceed twice their content by this many bytes. */
 export const OVERHEAD = 1024;
 /** Largest number of cameras, and of poses, in a file. */
 export const MOST_FOUND = 5000;

@@ -108,7 +108,7 @@ export function readBouguet(text: string): Findings {
   }
   const [om, t] = [entries.get("om"), entries.get("T")];
   if (om?.length === 3 && t?.length === 3) {
-    // The toolbox expects the board's squares in millimetres; a baseline of less than two millimetres is one in metres.
+    // The toolbox expects the board's squares in millimetres. A baseline below two is therefore in metres.
     const unit = Math.hypot(...t) > 2 ? 1e-3 : 1;
     found.pose(
       ofVector(om),

@@ -160,7 +160,7 @@ export class Motions {
     const r = this.#rotationParts(node[key]);
     const t = parts(other.value, ["x", "y", "z"]);
     if (r === undefined || t === undefined) return false;
-    // Projections and disparity matrices have names of a single letter as well.
+    // A single letter may also name a projection or a disparity matrix.
     if (/^[qp]$/i.test(key) && r.values.length !== 4) return false;
     if (/^p/i.test(other.key) && t.values.length !== 3) return false;
     if (t.values.length !== 3) throw badFile(`its ${other.key} has ${t.values.length} numbers, not three`);
@@ -181,7 +181,7 @@ export class Motions {
     return true;
   }
 
-  /** The numbers of a rotation, and what the names of its members specify. */
+  /** The numbers of a rotation, and the properties that the names of its members specify. */
   #rotationParts(value: unknown): (Matrix & { said: Attributes; isMatrix: boolean }) | undefined {
     const isMatrix = isNode(value) && value.data !== undefined;
     const four = parts(value, ["x", "y", "z", "w"]) ?? parts(value, ["qx", "qy", "qz", "qw"]);
@@ -315,7 +315,7 @@ export class Motions {
       this.#warnings.push(warning("pose-left-out", `"${key}" looks like a pose and was not used.`, { name: key }));
   }
 
-  /** Several poses without frames cannot all be the one between the cameras. */
+  /** Of several poses without frames, only one could be the pose between the cameras. */
   #countUnnamed(): void {
     const unnamed = this.poses.filter(({ from, to }) => from === undefined && to === undefined);
     if (unnamed.length < 2) return;
@@ -351,7 +351,7 @@ export class Motions {
     );
   }
 
-  /** Turns poses without frames, from this index on, into poses of the camera in the world. */
+  /** Turns poses without frames into poses of the camera in the world, starting at this index. */
   placeInWorld(first: number): void {
     for (const pose of this.poses.slice(first))
       if (pose.from === undefined && pose.to === undefined) Object.assign(pose, { from: "camera", to: "world" });

@@ -5,7 +5,7 @@ import type { Node, Numbers } from "./numbers.js";
 import { ofVector } from "./poses.js";
 
 export const isMrcal = (root: Node): boolean => typeof root.lensmodel === "string" && Array.isArray(root.intrinsics);
-/** It is not JSON: it has comments, single quotes and trailing commas. */
+/** The dictionary is not JSON, because it has comments, single quotes and trailing commas. */
 export const looksLikeMrcal = (text: string): boolean => /["']lensmodel["']\s*:/.test(text.slice(0, 20_000));
 
 export function readMrcal(root: Node): Findings {

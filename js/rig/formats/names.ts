@@ -138,7 +138,7 @@ export const isNoMotion = leftover(NO_MOTION);
 export const isLens = leftover(LENS);
 export const lensNames = LENS.map((phrase) => leftover([phrase]));
 
-/** What the words of a name specify about its numbers. */
+/** Properties of numbers that the words of their name specify. */
 export interface Attributes {
   /** The order of a quaternion. */
   order?: "wxyz" | "xyzw";

@@ -45,7 +45,7 @@ class Notes {
         this.#add(number);
         [key, value] = [[], undefined];
       } else if (token === ":" || token === "=") {
-        // If there are two names, as in "depth intrinsics: width: 640", the first one is the group's.
+        // If there are two names, as in "depth intrinsics: width: 640", the first one names the group.
         if (value !== undefined && value.length > 0) {
           this.#close();
           this.#begin(key.join(" "));

@@ -34,7 +34,7 @@ export function matrixText(bytes: Uint8Array): string | undefined {
   }
 }
 
-/** The numbers of an array of one row or column, as those of a lens; undefined for other files. */
+/** The numbers of an array of one row or column, such as the coefficients of a lens; undefined for other files. */
 export function lensArray(bytes: Uint8Array): number[] | undefined {
   if (bytes.length > MOST_BYTES || !isNpy(bytes)) return undefined;
   try {
@@ -47,12 +47,12 @@ export function lensArray(bytes: Uint8Array): number[] | undefined {
 }
 
 /**
- * Largest number of numbers in an array of a calibration: matrices of 16 and lenses of 14, and motions of the views that it was made from.
+ * Largest number of numbers in an array of a calibration. A matrix has 16 and a lens 14; the motions of the views that were used have more.
  */
 const MOST_NUMBERS = 400;
 /** Largest number of bytes of such an archive; a picture beside the matrices takes more. */
 const MOST_ARCHIVE = 1 << 17;
-/** The plainest names of a depth map in an archive. */
+/** The usual names of a depth map in an archive. */
 export const DEPTH = /^(?:depth|depths|depth_?map|depth_?image)$/i;
 /** First bytes of a ZIP archive that is not empty. */
 const IS_ZIP = [0x50, 0x4b, 0x03, 0x04];
@@ -79,7 +79,7 @@ export function archiveText(bytes: Uint8Array): string | undefined {
     const isCalibration = found.some(([, rows]) => Array.isArray(rows?.[0]) && isMatrix(rows as number[][]));
     return isCalibration ? JSON.stringify(Object.fromEntries(found)) : undefined;
   } catch (error) {
-    // The reader of images reports what is wrong with it.
+    // The reader of images reports the fault of a damaged archive.
     if (error instanceof BimodalError || error instanceof RangeError) return undefined;
     throw error;
   }

@@ -14,7 +14,7 @@ const MOST = 64;
 const MOST_NAMES = 400;
 const LONGEST_TEXT = 200;
 
-/** A finite number, also one that is written as text. */
+/** A finite number, which may be written as text. */
 export function numberOf(value: unknown): number | undefined {
   if (typeof value === "number") return Number.isFinite(value) ? value : undefined;
   if (typeof value !== "string" || !NUMBER.test(value.trim())) return undefined;
@@ -46,7 +46,7 @@ export function numbersByName(text: string, line: RegExp): Map<string, Numbers> 
 
 export interface Matrix {
   values: Numbers;
-  /** The number of rows, where the file has a list of rows or the member `rows`. */
+  /** The number of rows, if the file has a list of rows or the member `rows`. */
   rows?: number;
 }
 

@@ -124,7 +124,7 @@ const READS: Record<string, Read> = {
   I8: (view, at) => Number(view.getBigInt64(at, true)),
 };
 
-/** Where the values of a field are written: at `first` and then every `step` places. */
+/** The places of a field's values: `first`, and then every `step` places. */
 interface Target {
   field: Field;
   into: Float32Array | Float64Array;

@@ -11,9 +11,9 @@ export interface Picture extends Raster<Pixels> {
   format: string;
   /** Bits of a channel in the file. */
   bits: number;
-  /** Metres per stored unit, where the file gives it. */
+  /** Metres per stored unit, if the file gives it. */
   unit?: number;
-  /** How integers encode intensity, where the file gives it. */
+  /** The encoding of intensity by integers, if the file gives it. */
   transfer?: "srgb" | "linear";
   /** Additions to the description, for instance how the picture was turned. */
   notes: string[];
@@ -28,7 +28,7 @@ export interface Cloud {
   width: number;
   height: number;
   points: Float32Array;
-  /** Strength of each return, where the file has it, in the file's own unit. */
+  /** Strength of each return in the file's own unit, if the file has it. */
   intensity?: Float32Array;
   notes: string[];
   warnings: ReaderWarning[];
@@ -38,7 +38,7 @@ export interface Cloud {
 export interface Points {
   format: string;
   scan: Scan;
-  /** Whether the format is known to be in metres. */
+  /** Whether the numbers of the format are known to be metres. */
   isMetric: boolean;
   notes: string[];
   warnings: ReaderWarning[];

@@ -13,7 +13,7 @@ import { type ReaderWarning, distinct } from "../warnings.js";
 type Found = Calibration & { format: string };
 
 const MOST_NUMBERS = 200_000;
-/** Characters in which a header of names is looked for. */
+/** Number of characters in which a header of names is searched. */
 const HEAD = 1000;
 const near = (value: number | undefined, to: number): boolean => value !== undefined && Math.abs(value - to) < 1e-9;
 
@@ -60,12 +60,12 @@ function nine(values: Numbers, size: Numbers): Found {
   );
 }
 
-/** Numbers of distortion that OpenCV writes. */
+/** Possible numbers of distortion coefficients that OpenCV writes. */
 const LENSES = [4, 5, 8, 12, 14];
 const isK = (k: Numbers): boolean =>
   k.length === 9 && [3, 6, 7].every((at) => near(k[at], 0)) && near(k[8], 1) && Math.min(k[0] ?? 0, k[4] ?? 0) > 10;
 
-/** A matrix of intrinsics, a line of OpenCV's distortion and, where there is one, the motion below it; a size may be the first line. */
+/** A matrix of intrinsics, a line of OpenCV's distortion and, in some files, a motion below it. The first line may be a size. */
 function withLens(rows: Numbers[], text: string): Found | undefined {
   const size = rows[0]?.length === 2 ? rows.slice(0, 1) : [];
   const body = rows.slice(size.length);

@@ -32,7 +32,7 @@ interface Property {
   name: string;
   size: number;
   read: Read;
-  /** The type of the length, for a list. */
+  /** For a list, the type of its length. */
   count?: { size: number; read: Read };
 }
 
@@ -186,7 +186,7 @@ export function readPly(bytes: Uint8Array): Cloud | Points {
   const warnings: ReaderWarning[] = [];
   const grid = others[0]?.name === "range_grid" ? others[0] : undefined;
   const body = bytes.subarray(end);
-  // A number as text has at least a digit and a space.
+  // Smallest number of bytes of a number as text: a digit and a space.
   const least =
     vertices.count * vertices.properties.reduce((sum, { size }) => sum + (format === "ascii" ? 2 : size), 0) - 1;
   checkBytes(least, body.length, "this PLY");

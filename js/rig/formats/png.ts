@@ -1,4 +1,4 @@
-/** PNG, turned upright and converted to sRGB as its metadata say. */
+/** PNG, turned upright and converted to sRGB by its metadata. */
 import { readPng } from "../../png.js";
 import { exifOrientation, turnedBy } from "./exif.js";
 import { damagedProfile, inSrgb, pngProfile } from "./icc.js";
@@ -44,7 +44,7 @@ function inColour(picture: Picture, chunks: Map<string, Uint8Array>): Picture {
 export function pngPicture(bytes: Uint8Array, check = checkSize): Picture {
   const { chunks, ...raster } = readPng(bytes, check);
   const picture: Picture = { ...raster, format: "PNG", notes: [], warnings: [] };
-  // The colour metadata of a grey picture do not matter, since it may hold depths.
+  // A grey picture may hold depths, so its colour metadata are not used.
   const coloured = picture.channels >= 3 ? inColour(picture, chunks) : picture;
   const exif = chunks.get("eXIf");
   return exif ? turnedBy(coloured, exifOrientation(exif), "EXIF says") : coloured;

@@ -4,7 +4,7 @@ import { checkBytes, checkSize } from "./limits.js";
 import type { Picture } from "./picture.js";
 import { Words } from "./tokens.js";
 
-/** Largest maximum of PNM's samples; more does not fit 16 bits. */
+/** Largest maximum of PNM's samples; a larger one does not fit 16 bits. */
 const MOST_LEVEL = 65_535;
 
 const whole = (words: Words, what: string): number => {

@@ -13,14 +13,14 @@ const MOST_OF_POINT = 10;
 const SLACK = 0.01;
 /** ParaView, and so VeloView and LidarView, writes the axes of an array as "Points_m_XYZ:0" or "Points_0". */
 const AXIS_OF_ARRAY = /^points(?:_([a-z]{1,3}))?(?:_xyz)?[:_]([012])$/;
-/** "x", "X [m]", "x(mm)", "x_m". */
+/** Column names such as "x", "X [m]", "x(mm)" and "x_m". */
 const AXIS = /^([xyz])(?:\s*[[(]\s*([a-z]+)\s*[\])]|_(m|cm|mm))?$/;
 
 export interface PointColumns {
   /** The columns of x, y and z. */
   axes: number[];
   names: string[];
-  /** Metres per unit, where the columns' names state it. */
+  /** Metres per unit, if the columns' names state it. */
   unit?: number;
 }
 

@@ -7,9 +7,9 @@ import type { NamedPose, Pose } from "../types.js";
 import type { Numbers } from "./numbers.js";
 import { type ReaderWarning, warning } from "../warnings.js";
 
-/** Largest error of R R^T - 1 of a rotation matrix: digits that were cut off, or a calibration that drifted. */
+/** Largest element of R R^T - 1 of a rotation matrix. Rounded digits or a drifted calibration cause smaller ones. */
 const ROTATION_TOLERANCE = 1e-2;
-/** Errors below this need no warning: 0.06 degrees, as of four digits. */
+/** Elements below this need no warning: 0.06 degrees, the rounding of four digits. */
 const ROUNDING = 1e-3;
 /** Longest translation between the cameras of a rig, metres; a longer one is in millimetres. */
 const LONGEST = 10;
@@ -54,7 +54,7 @@ export const isRotation = (values: Numbers): boolean => values.length === 9 && s
 export const degreesOf = (r: Numbers): number =>
   (180 / Math.PI) * Math.acos(Math.min(1, Math.max(-1, (at(r, 0) + at(r, 4) + at(r, 8) - 1) / 2)));
 
-/** Nine numbers as a rotation, with a warning where they had to be adjusted. */
+/** Nine numbers as a rotation, with a warning if they had to be adjusted. */
 export function rotationOf(values: Numbers, warnings: ReaderWarning[]): Numbers {
   if (values.length !== 9 || !values.every(Number.isFinite)) throw badFile("a rotation has nine numbers");
   const off = skewness(values);
@@ -73,7 +73,7 @@ export function rotationOf(values: Numbers, warnings: ReaderWarning[]): Numbers 
   return nearestRotation(values);
 }
 
-/** From x, y, z, w. */
+/** The rotation of a quaternion x, y, z, w. */
 export function ofQuaternion([x = 0, y = 0, z = 0, w = 0]: Numbers, warnings: ReaderWarning[]): Numbers {
   const length = Math.hypot(x, y, z, w);
   if (!(Math.abs(length - 1) <= ROTATION_TOLERANCE))
@@ -92,11 +92,11 @@ export function ofQuaternion([x = 0, y = 0, z = 0, w = 0]: Numbers, warnings: Re
   ];
 }
 
-/** From w, x, y, z. */
+/** The rotation of a quaternion w, x, y, z. */
 export const ofScalarFirst = ([w = NaN, x = NaN, y = NaN, z = NaN]: Numbers, warnings: ReaderWarning[]): Numbers =>
   ofQuaternion([x, y, z, w], warnings);
 
-/** From a rotation vector in rad. */
+/** The rotation of a rotation vector in rad. */
 export function ofVector([x = 0, y = 0, z = 0]: Numbers): Numbers {
   const angle = Math.hypot(x, y, z);
   if (angle < 1e-12) return [1, -z, y, z, 1, -x, -y, x, 1];
@@ -160,7 +160,7 @@ export function inverseOf({ rotation: r, translation: t }: Pose): Pose {
   );
 }
 
-/** First `b`, then `a`. */
+/** The motion that applies `b` first, then `a`. */
 export function chained(a: Pose, b: Pose): Pose {
   const rotation = Array.from({ length: 9 }, (_, index) => {
     const [i, j] = [Math.floor(index / 3), index % 3];
@@ -182,7 +182,7 @@ export function chained(a: Pose, b: Pose): Pose {
   );
 }
 
-/** A translation in metres. With `isRig` it relates two cameras; if it is longer than a rig, it is in millimetres. */
+/** A translation in metres. With `isRig` it relates two cameras and is read as millimetres if it is too long for a rig in metres. */
 function shiftOf(values: Numbers, isRig: boolean, warnings: ReaderWarning[]): Numbers {
   if (values.length !== 3 || !values.every((value) => Number.isFinite(value) && Math.abs(value) < 1e9))
     throw badFile("a translation has three numbers");
@@ -231,7 +231,7 @@ function ofOneDevice(values: Numbers, { from, to }: Omit<NamedPose, "pose">, war
 export const isLastRow = (row: Numbers): boolean =>
   row.length === 4 && row.every((value, index) => Math.abs(value - (index === 3 ? 1 : 0)) < 1e-6);
 
-/** 12 or 16 numbers, row by row. */
+/** A pose from 12 or 16 numbers, row by row. */
 export function motionOfMatrix(
   values: Numbers,
   names: Omit<NamedPose, "pose">,
@@ -252,7 +252,7 @@ export function motionOfMatrix(
 export const isOfScan = ({ rotation }: { readonly rotation: ArrayLike<number> }): boolean =>
   (rotation[8] ?? 1) < Math.SQRT1_2;
 
-/** Numbers of a pose that differ less from the identity's are its rounding. */
+/** Numbers of a pose that differ less from those of the identity are rounding errors. */
 const STILL = 1e-6;
 
 /** Whether a pose is not the identity. */

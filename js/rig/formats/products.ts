@@ -101,7 +101,7 @@ const MOST_MEMBERS = 20_000;
 /** The cameras and poses of a product's object, which may be the only document of a YAML file. */
 export function productOfTree(value: unknown): Found | undefined {
   const whole: unknown = Array.isArray(value) && value.length === 1 ? value[0] : value;
-  // To recognise its product, each reader looks through all members.
+  // Each reader looks through all members to recognise its product.
   if (isNode(whole) && Object.keys(whole).length > MOST_MEMBERS) return undefined;
   const [format, , read] = (isNode(whole) ? TREES.find(([, is]) => is(whole)) : undefined) ?? [];
   if (format !== undefined && read && isNode(whole)) return named(read(whole), format);

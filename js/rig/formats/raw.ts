@@ -62,7 +62,7 @@ function isCloudOf(view: DataView, floats: number): boolean {
   return there > 0.5 * seen && negative > 0.1 * seen;
 }
 
-/** Whether a headerless file looks like a LiDAR's points of 4 floats (KITTI) or of 5 (nuScenes). */
+/** Whether a file without a header looks like a LiDAR's points of 4 floats (KITTI) or 5 floats (nuScenes). */
 export function arePoints(bytes: Uint8Array): boolean {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   return isCloudOf(view, 4) || isCloudOf(view, 5);
@@ -105,7 +105,7 @@ export function readRaw(bytes: Uint8Array, [width, height]: Size): Picture {
   );
 }
 
-/** The size in the name of raw pixels of two or four bytes, as "depth_640x480.raw", if the file has as many. */
+/** The size in a name such as "depth_640x480.raw", if the file has as many pixels of two or four bytes. */
 export function sizeInName(name: string, { length }: Uint8Array): Size | undefined {
   const [, width, height] = /(?<!\d)(\d{2,5})x(\d{2,5})(?!\d)[^/]*$/.exec(name) ?? [];
   const size: Size = [Number(width), Number(height)];

@@ -42,7 +42,7 @@ class Enumeration {
         "lens-approximated",
         `The lens of "${name}" has no coefficients (N/A) and was read without distortion.`,
       );
-    // Motion sensors, for example, have no intrinsics.
+    // Other streams, such as those of motion sensors, have no intrinsics.
     if (focal.some((value) => value === undefined || value === 0)) this.#missing.add(`intrinsics of "${name}"`);
     else
       this.found.camera(

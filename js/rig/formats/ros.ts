@@ -33,7 +33,7 @@ function mentions(text: string): string[] {
       /\bargs\s*=\s*"([^"]*)"/.exec(inside)?.[1] ??
       /\barguments\s*=\s*\[([^\]]*)\]/.exec(inside)?.[1] ??
       /\barguments\s*=\s*(["'])([^"']*)\1\s*\.split\b/.exec(inside)?.[2] ??
-      // The rest of a list that the name is in, as ExecuteProcess's cmd.
+      // The rest of the list that contains the name, such as ExecuteProcess's cmd.
       /^["']\s*,([^\]]*)\]/.exec(inside)?.[1] ??
       inside.split(/\r?\n/).find((line) => /\d/.test(line)) ??
       ""
@@ -45,11 +45,11 @@ function mentions(text: string): string[] {
 const CONDITION = /<(?:node|group|include)\b[^<>]*?\s(?:if|unless)\s*=|\b(?:IfCondition|UnlessCondition)\s*\(/;
 /** Arguments that ROS computes when it starts the file. */
 const COMPUTED = /\$\([^)]{0,80}\)?|\$\{?\w{1,40}\}?|\b(?:LaunchConfiguration|math\.\w+|str|float)\b/;
-/** A computed argument after a flag that takes a number. */
+/** A flag that takes a number, followed by a computed argument. */
 const COMPUTED_FLAG = new RegExp(`--(?:x|y|z|roll|pitch|yaw|q[xyzw])[\\s'",=]+(${COMPUTED.source})`);
 const words = (text: string): string[] => text.split(/[\s,'"[\]()=]+/).filter((part) => part !== "");
 
-/** The words of an argument list whose numbers are literal; in the names of frames, "$(arg robot)" stands for itself. */
+/** The words of an argument list whose numbers are literal. In names of frames, "$(arg robot)" is kept as it is. */
 function written(args: string): string[] {
   const all = words(args);
   const isFlags = all.some((word) => word.startsWith("--"));

@@ -3,7 +3,7 @@ import type { NamedCamera, NamedPose } from "../types.js";
 
 /** Ends of a pose that name a camera, but not which one. */
 const SOME_CAMERA = /^(?:cam|camera|image|img)$/i;
-/** What topics have in common: the kind of message, and whether it was rectified. */
+/** Parts of topics that do not distinguish cameras: the kind of message, and whether it was rectified. */
 const MESSAGE = /\/(?:image|compressed|image_raw|image_rect|image_rect_raw|image_color|image_mono|raw)$/i;
 
 /** If several cameras have one pose each, each pose leads to or from its camera: "lidar2cam" of CAM_FRONT leads to CAM_FRONT. */

@@ -8,7 +8,7 @@ import { numberOf } from "./numbers.js";
 import { MOST_SIDE, checkSize } from "./limits.js";
 import type { Picture } from "./picture.js";
 
-/** The smallest depth map; matrices and trajectories have fewer columns or rows. */
+/** Size of the smallest depth map; matrices and trajectories have fewer columns or rows. */
 const [FEWEST_COLUMNS, FEWEST_ROWS] = [24, 18];
 /** Smallest share of the first rows that must have as many numbers as the first one. */
 const MOSTLY = 0.9;

@@ -104,7 +104,7 @@ async function searched(value: unknown, format: string, text: string): Promise<R
 async function ofTable({ rows, isSeries }: { rows: Node[]; isSeries: boolean }, text: string): Promise<Read> {
   const named = Object.fromEntries(rows.map((row, at) => [isSeries ? `pose ${at + 1}` : `row ${at + 1}`, row]));
   const found = await searched(named, isSeries ? "a table of poses" : "a table", text);
-  // All rows have the same columns, so one warning per code is enough.
+  // All rows have the same columns, so one warning for each code is enough.
   return { ...found, warnings: [...new Map([...found.warnings].reverse().map((each) => [each.code, each])).values()] };
 }
 
@@ -122,7 +122,7 @@ function ofNotes(text: string): Read | undefined {
   return { ...found, format: "numbers with labels" };
 }
 
-/** Signs of YAML: its directive, the matrices of OpenCV, and lists of members. */
+/** Properties that show YAML: its directive, the matrices of OpenCV, and lists of members. */
 const IS_YAML = /^%YAML|!!opencv-matrix|^\s*- \w+:\s*$/m;
 /** YAML, or else numbers with labels. */
 async function ofYaml(text: string): Promise<Read> {
@@ -159,7 +159,7 @@ async function ofXml(text: string): Promise<Read> {
   return (await products()).productOfXml(root) ?? searched(plainXml(root), "XML", text);
 }
 
-/** The cameras and poses of a text, with the name of its format; the file's name supplies what the text leaves open. */
+/** The cameras and poses of a text, with the name of its format; the file's name supplies frames that the text leaves open. */
 export async function readText(text: string, file: string): Promise<Read> {
   const { isBare = false, ...found } = await ofContent(text);
   asFisheye(found.cameras, found.warnings, `${file.replace(/^.*[/\\]/, "")}\n${text}`);

@@ -9,7 +9,7 @@ import { badFile } from "../../errors.js";
 import { inflateUpTo } from "../../inflate.js";
 import { OVERHEAD } from "./limits.js";
 
-/** `length` bytes, filled as far as there are data. */
+/** An array of `length` bytes, filled as far as there are data. */
 export const unpackZstd = (bytes: Uint8Array, length: number): Uint8Array => decompress(bytes, new Uint8Array(length));
 
 /** The second compression that LERC data may have. */
@@ -25,11 +25,11 @@ export function unpackLerc(packed: Uint8Array, length: number, again: number): U
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   const isKnown = String.fromCharCode(...bytes.subarray(0, 6)) === "Lerc2 ";
   const version = isKnown ? view.getInt32(6, true) : 0;
-  // From version 3 on, a checksum follows name and version.
+  // Since version 3, a checksum follows name and version.
   const at = version >= 3 ? 14 : 10;
   const word = (index: number) => view.getUint32(at + 4 * index, true);
   const [height, width, depths] = [word(0), word(1), version >= 4 ? word(2) : 1];
-  // Follows the number of valid pixels.
+  // The size of a block follows the number of valid pixels.
   const [block, declared, type] = (version >= 4 ? [4, 5, 6] : [3, 4, 5]).map(word) as [number, number, number];
   const isSound = isKnown && block >= 1 && declared <= bytes.length;
   if (!isSound || width * height * depths * (SIZES[type] ?? 0) !== length)

@@ -87,7 +87,7 @@ export function undoIntegers(part: Uint8Array, width: number, size: number, samp
 }
 
 /**
- * A row holds all high bytes, then all second bytes, and so on; differences run over the whole row. The result is in little-endian order.
+ * A row holds all high bytes, then all second bytes, and so on. Differences run over the whole row. The result is in little-endian order.
  */
 export function undoFloats(part: Uint8Array, count: number, size: number, samples: number): void {
   const stride = count * size;

@@ -233,7 +233,7 @@ function pixels(bytes: Uint8Array, found: Layout, little: boolean, codecs?: Code
   return out;
 }
 
-/** Into little-endian order, in place. */
+/** Converts bytes to little-endian order, in place. */
 function swap(part: Uint8Array, size: number, little: boolean): void {
   if (little || size === 1) return;
   for (let at = 0; at + size <= part.length; at += size) part.subarray(at, at + size).reverse();
@@ -257,7 +257,7 @@ export function readTiff(bytes: Uint8Array): Picture | Promise<Picture> {
   return import("./tiff-codecs.js").then(picture);
 }
 
-/** Samples as pictures have them. */
+/** Converts samples to the types of pictures. */
 function asPicture(samples: Uint8Array, found: Layout): Picture {
   const { buffer } = samples as Uint8Array<ArrayBuffer>;
   const { width, height, samples: channels, bits, isFloat, isSigned } = found;

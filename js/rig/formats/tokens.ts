@@ -2,7 +2,7 @@
 const HASH = 35;
 const NEWLINE = 10;
 
-/** Longer words are neither numbers nor names. */
+/** Longest word; longer ones are neither numbers nor names. */
 const MOST = 64;
 
 export class Words {

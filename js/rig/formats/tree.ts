@@ -243,7 +243,7 @@ class Search {
   }
 }
 
-/** Adds the pose from each camera to the next one if both are related, in either direction, to the same inertial unit or body. */
+/** Adds the pose from each camera to the next one if the file relates both, in either direction, to the same inertial unit or body. */
 function chain(poses: NamedPose[]): void {
   /** The poses of cameras in the frame of the body, by the camera's name. */
   const places = new Map<string, { body: string; pose: NamedPose["pose"] }>();
@@ -308,7 +308,7 @@ function nameIn(node: Node): string | undefined {
 const nameOf = (key: string, parent: string): string => {
   if (/^(transforms?|intrinsics?|pose|param|opencv_storage|launch|parameters|ros__parameters|nodes)$/.test(key))
     return parent;
-  // A camera may have intrinsics for several sizes.
+  // A repeated name is allowed, because a camera may have intrinsics for several sizes.
   return parent !== "" && /^\d{2,5}[xX_]\d{2,5}(?:[@_]\d+)?$/.test(key) ? `${parent} ${key}` : key;
 };
 

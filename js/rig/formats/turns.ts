@@ -21,17 +21,17 @@ const RADIAN = 180 / Math.PI;
 
 export interface Turn {
   rotation: Numbers;
-  /** How nine numbers were read where the file does not say whether they are rows or columns. */
+  /** The reading of nine numbers if the file does not state whether they are rows or columns. */
   assumed?: "rows" | "columns";
 }
 
 const isRig = (r: Numbers): boolean => degreesOf(r) <= PARALLEL;
 const between = (a: Numbers, b: Numbers): number => Math.hypot(...a.map((value, at) => value - (b[at] ?? 0))) * RADIAN;
 
-/** Cosine of 45 degrees: nearer to an axis than to any other. */
+/** Cosine of 45 degrees; within this angle a direction is nearer to an axis than to any other. */
 const NEAR = Math.SQRT1_2;
 
-/** Whether a camera is upright on a LiDAR or a vehicle (x forward, z up) and looks forward, by its rotation from there or the inverse. */
+/** Whether a camera is upright on a LiDAR or a vehicle (x forward, z up) and looks forward. Its rotation or the inverse may be given. */
 const looksForward = (r: Numbers): boolean =>
   ((r[5] ?? 0) < -NEAR && (r[6] ?? 0) > NEAR) || ((r[7] ?? 0) < -NEAR && (r[2] ?? 0) > NEAR);
 
@@ -66,7 +66,7 @@ export function ofFour(values: Numbers, { order }: Attributes, name: string, war
   return last;
 }
 
-/** Roll, pitch and yaw as ROS has them: angles about the fixed axes x, y and z, in this order. */
+/** ROS's roll, pitch and yaw: angles about the fixed axes x, y and z, in this order. */
 const ofAngles = ([x = 0, y = 0, z = 0]: Numbers, isDegrees: boolean): Numbers =>
   ofYawPitchRoll([z, y, x].map((angle) => (isDegrees ? angle / RADIAN : angle)));
 
@@ -78,7 +78,8 @@ const turnsAxes = (values: Numbers): boolean => {
 };
 
 /**
- * Whether angles are degrees: the file says so, they are too large for radians, or only as degrees are they a rotation that a rig can have.
+ * Whether angles are degrees: the file states it, they are too large for radians, or only in degrees do they give a possible rotation of
+ * a rig.
  */
 function areDegrees(values: Numbers, { angle }: Attributes): boolean {
   if (angle !== undefined) return angle === "degrees";

@@ -1,7 +1,7 @@
 /**
  * Robot descriptions, URDF and xacro: a joint's origin carries points of the child link into the parent link, by a translation and by roll,
- * pitch and yaw about fixed axes. Properties and their arithmetic are evaluated. Macros are not, and joints that depend on their parameters
- * are left out with a warning.
+ * pitch and yaw about fixed axes. Properties and their arithmetic are evaluated. Macros are not evaluated, and joints that depend on
+ * their parameters are left out with a warning.
  */
 import { badFile } from "../../errors.js";
 import type { NamedPose } from "../types.js";

@@ -93,7 +93,7 @@ export const isCommandWindow = (text: string): boolean => {
   return lines.some((line) => TITLE.test(line.trim())) && lines.some((line) => WITH.test(line) || FACTOR.test(line));
 };
 
-/** Intrinsics by rows, or by columns as MATLAB's older IntrinsicMatrix. */
+/** Intrinsics by rows, or by columns as in MATLAB's older IntrinsicMatrix. */
 function intrinsicsOf({ rows }: Shown): Numbers | undefined {
   const values = rows.flat();
   if (rows.length !== 3 || values.length !== 9) return undefined;
@@ -102,7 +102,7 @@ function intrinsicsOf({ rows }: Shown): Numbers | undefined {
   return isRows ? values : isColumns ? transposed(values, 3) : undefined;
 }
 
-/** A command window's cameras, whose pixels MATLAB counts from 1. */
+/** The cameras of a command window. MATLAB counts their pixels from 1. */
 export function readCommandWindow(text: string): Findings {
   const found = new Findings();
   const all = shownIn(text);

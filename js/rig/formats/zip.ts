@@ -14,7 +14,7 @@ export interface Entry {
   packed: number;
   length: number;
   checksum: number;
-  /** The place where its local header begins. */
+  /** The place where the local header of the entry begins. */
   at: number;
 }
 

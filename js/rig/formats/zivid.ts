@@ -24,7 +24,7 @@ export function readZivid(root: Node): Findings {
   const [matrix, lens] = [part(body, "cameramatrix"), part(body, "distortion")];
   const [fx = NaN, fy = NaN, cx = NaN, cy = NaN] = ["fx", "fy", "cx", "cy"].map((key) => numberOf(part(matrix, key)));
   const distortion = ["k1", "k2", "p1", "p2", "k3"].map((key) => numberOf(part(lens, key)) ?? 0);
-  // The same pixels of a Zivid camera measure colours and points.
+  // In a Zivid camera the same pixels measure colours and points.
   if (Number.isFinite(fx)) found.camera({ name: "camera", focal: [fx, fy], centre: [cx, cy], distortion }, "both");
   const m = matrixOf(root);
   if (m) {

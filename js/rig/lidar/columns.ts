@@ -14,11 +14,11 @@ import type { Rows } from "./rows.js";
 const FEWEST_COLUMNS = 90;
 /** Azimuths that differ by less, radians, belong to one pulse. */
 const ONE_PULSE = 0.008 * DEGREE;
-/** Consecutive steps whose mean is the pace: the ticks of the clock average out. */
+/** Number of consecutive steps whose mean is the pace, so that the ticks of the clock average out. */
 const WINDOW = 16;
-/** A step longer than this many usual ones is a gap. */
+/** A step is a gap if it is longer than this number of usual steps. */
 const GAP = 2.5;
-/** The pace is that of the row at this share of all rows, ordered from the finest. */
+/** The quantile of the rows' paces, from the finest, that serves as the pace of the scan. */
 const FINEST = 0.2;
 /** The pace of a scan whose rows are too short to measure it, radians. */
 const USUAL_PACE = 0.2 * DEGREE;
@@ -49,7 +49,7 @@ function paceOf(azimuths: number[]): number | undefined {
   for (let from = 0; from + WINDOW <= steps.length; from += WINDOW / 2) {
     const window = steps.slice(from, from + WINDOW);
     if (!window.every((step) => step < GAP * usual)) continue;
-    // A step of twice the usual length spans a pulse without a return.
+    // A step of twice the usual length contains a pulse without a return.
     const pulses = window.reduce((sum, step) => sum + Math.max(1, Math.round(step / usual)), 0);
     means.push(window.reduce((sum, step) => sum + step, 0) / pulses);
   }

@@ -35,7 +35,7 @@ const Z: Vector = [0, 0, 1];
 /** Axes with the given up direction, and with the forward direction that is perpendicular to it and nearest to the given one. */
 export function frameOf(up: Vector, forward: Vector): Frame {
   const right = cross(forward, up);
-  // A forward direction along up leaves the azimuth open.
+  // A forward direction that is parallel to up does not determine the azimuth.
   const side = unit(Math.hypot(...right) > 1e-3 ? right : cross(Math.abs(up[0]) < 0.9 ? X : Z, up));
   return { right: side, forward: cross(up, side), up };
 }
@@ -60,7 +60,7 @@ export function meanDirection(points: Float32Array): Vector {
   return count === 0 ? [0, 0, 0] : [x / count, y / count, z / count];
 }
 
-/** Shorter mean directions are those of a scanner that looks all around; the check has the same rule, in src/calibration/ahead.rs. */
+/** Length of the mean direction below which a scanner looks all around. The check has the same rule in src/calibration/ahead.rs. */
 const ALL_AROUND = 0.5;
 
 /** Whether points with this mean direction have a field of view that faces one way. */
@@ -69,11 +69,11 @@ export const facesOneWay = (mean: Vector): boolean => Math.hypot(...mean) > ALL_
 /** Cylindrical coordinates of the points about the up axis. */
 export interface Polar {
   frame: Frame;
-  /** From forward to the right, -pi to pi, radians. */
+  /** Azimuth from forward to the right, -pi to pi, radians. */
   azimuth: Float64Array;
   /** Distance from the axis, metres. */
   radius: Float64Array;
-  /** Along the axis, metres. */
+  /** Height along the axis, metres. */
   height: Float64Array;
 }
 

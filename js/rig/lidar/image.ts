@@ -3,7 +3,7 @@ import type { Frame } from "./frame.js";
 import type { Row } from "./rows.js";
 
 export interface Image {
-  /** The method by which its rows were found. */
+  /** The method by which the rows were found. */
   how: "ring" | "order" | "elevation" | "sphere";
   width: number;
   height: number;

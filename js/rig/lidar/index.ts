@@ -5,7 +5,8 @@
  * scanner's rings (`rows.ts`), or from a z-buffer for clouds without rings (`sphere.ts`); columns come from azimuths.
  *
  * Limits. All points count as measured at one moment and from one place. If the rig or the scene moves during a sweep, or between the sweep
- * and the picture, the range image and the picture disagree. A cloud of many sweeps is treated as seen from its origin.
+ * and the picture, the range image and the picture disagree. A cloud of many sweeps is treated as if all of it had been seen from its
+ * origin.
  */
 import { buffered } from "./sphere.js";
 import { spun } from "./columns.js";

@@ -18,7 +18,7 @@ export interface Row {
 export interface Rows {
   how: "ring" | "order" | "elevation";
   polar: Polar;
-  /** From the top down. */
+  /** The rows from the top down. */
   rows: Row[];
   /** The row of each point; -1 for a point without one. */
   row: Int16Array;
@@ -30,7 +30,7 @@ const MOST_ROWS = 512;
 const FEWEST_POINTS = 20;
 /** Largest ratio of the median distance of points from their cones to the distance of neighbouring cones; points without rows have 0.25. */
 const FITTING = 0.15;
-/** The same limit if the rows come from rings or from turns, which are rows even if their cones fit poorly. */
+/** The limit of the same ratio for rows from rings or turns, which are known to be rows even if their cones fit poorly. */
 const FITTING_RINGS = 0.5;
 /** Largest number of points on which this ratio is measured. */
 const LOOKED_AT = 50_000;
@@ -117,7 +117,7 @@ function fitted(polar: Polar, group: ArrayLike<number>, how: Rows["how"]): Rows 
   return isFit({ how, polar, rows, row }) ? { how, polar, rows, row } : undefined;
 }
 
-/** Whether points lie much nearer to their own row than the rows lie to each other. */
+/** Whether the points are much nearer to their own row than neighbouring rows are to each other. */
 function isFit({ how, polar: { radius, height }, rows, row }: Rows): boolean {
   const offs: number[] = [];
   const stride = Math.max(1, Math.floor(row.length / LOOKED_AT));
@@ -134,7 +134,7 @@ function isFit({ how, polar: { radius, height }, rows, row }: Rows): boolean {
  * An axis of the frame counts as the scanner's axis if directions scatter along it at most this many times as much as along the best axis.
  */
 const AS_GOOD = 1.5;
-/** Cosine of 1.5 degrees. */
+/** Cosine of the largest angle between an axis of the frame and a scanner's axis that counts as the same: 1.5 degrees. */
 const NEAR = 0.99966;
 
 /** Rows from the file's rings, about the axis along which the directions of each ring scatter least. */
@@ -238,7 +238,7 @@ const BIN = 0.02 * DEGREE;
 const BLURRED = 2;
 /** Smallest ratio of the height of a cluster to that of the highest ones; it is low, because rays into the sky do not return. */
 const LEAST_CLUSTER = 0.05;
-/** Bins that count as the highest ones. */
+/** Number of bins that count as the highest ones. */
 const HIGHEST_BINS = 5 * FEWEST_ROWS;
 /** Largest ratio of the height of a valley between two clusters to that of the lower cluster. */
 const VALLEY = 0.5;
@@ -268,7 +268,7 @@ export function byElevation(polar: Polar): Rows | undefined {
     Int16Array.from({ length: count }, (_, index) => group[binOf(index)] ?? 0),
     "elevation",
   );
-  // Near points were left out of the histogram, and others lie in the tails of two clusters.
+  // These points are near ones, which the histogram leaves out, and points in the tails of two clusters.
   return coarse && refined(coarse, () => true);
 }
 

@@ -4,20 +4,20 @@
 export interface Scan {
   /** x, y, z interleaved, in the cloud's own frame. */
   points: Float32Array;
-  /** Number of the laser that measured each point, where the file has it. */
+  /** Number of the laser that measured each point, if the file has it. */
   ring?: Float32Array;
-  /** Strength of each return, where the file has it, in the file's own unit. */
+  /** Strength of each return in the file's own unit, if the file has it. */
   intensity?: Float32Array;
-  /** Time of each point in the file's own unit, where the file has it. */
+  /** Time of each point in the file's own unit, if the file has it. */
   times?: Float64Array;
 }
 
 /** Returns nearer than this, metres, come from the sensor's own housing or mark a missing return. */
 const NEAREST = 0.1;
-/** A distance from here on marks a missing point, metres. */
+/** Smallest distance that marks a missing point, metres. */
 const FARTHEST = 1e4;
 
-/** Distance from the origin of the point whose x is at this index; by the square root, because Math.hypot is several times slower. */
+/** Distance from the origin of the point whose x is at this index. Math.hypot would be several times slower. */
 export function rangeOf(points: Float32Array, at: number): number {
   const [x, y, z] = [points[at] ?? NaN, points[at + 1] ?? NaN, points[at + 2] ?? NaN];
   return Math.sqrt(x * x + y * y + z * z);

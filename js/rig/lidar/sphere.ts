@@ -11,7 +11,7 @@ import { type Image, LEAST_SIDE } from "./image.js";
 /** The smallest and the largest cell, radians. */
 const FINEST = 0.02 * DEGREE;
 const COARSEST = 4 * DEGREE;
-/** Points per occupied cell at the wanted density, two random points to three cells: x / (1 - exp(-x)) at x = 2/3. */
+/** Points per occupied cell at the wanted density of two random points per three cells: x / (1 - exp(-x)) at x = 2/3. */
 const FILLED = 1.37;
 /** Two points lie on one surface if their ranges differ by less than this share. */
 const ONE_SURFACE = 0.02;
@@ -84,7 +84,7 @@ interface Grid {
   height: number;
 }
 
-/** A z-buffer in the making. */
+/** A z-buffer that is being filled. */
 class Buffer {
   readonly cells: Int32Array;
   hidden = 0;

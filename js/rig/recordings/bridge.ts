@@ -8,7 +8,7 @@ import { BimodalError } from "../../errors.js";
 import { decoderOf, type Message } from "./messages.js";
 import type { RosTopic } from "./ros-source.js";
 
-/** Subprotocols of the bridge: since its version 3, and before. */
+/** Subprotocols of the bridge since its version 3, and of earlier versions. */
 const PROTOCOLS = ["foxglove.sdk.v1", "foxglove.websocket.v1"];
 /** Opcode of a binary frame that carries a message. */
 const MESSAGE_DATA = 1;
@@ -150,7 +150,7 @@ function addressOf(written: string): string {
   try {
     url = new URL(whole);
   } catch {
-    // Reported below, like any other address that is not a WebSocket's.
+    // The error is reported below, as for all addresses that are not those of a WebSocket.
   }
   if (!url || !/^wss?:$/.test(url.protocol) || url.hostname === "")
     throw noConnection(text.slice(0, 100), "it is not the address of a bridge; write it like ws://localhost:8765");
@@ -172,7 +172,7 @@ function socketOf(address: string): WebSocket {
   }
 }
 
-/** Connects and waits for the topics, which the server sends at once. A server without topics sends its name alone. */
+/** Connects and waits for the topics, which the server sends at once. A server without topics sends only its name. */
 export async function connect(written: string): Promise<Bridge> {
   const address = addressOf(written);
   const socket = socketOf(address);

@@ -16,10 +16,10 @@ const lastOf = (topic: string): string => topic.slice(topic.lastIndexOf("/") + 1
 /** Whether the name of a topic says that its images are rectified. */
 export const isRectified = (topic: string): boolean => /rect/i.test(lastOf(baseOf(topic)));
 
-/** How near a topic of intrinsics is to one of images by name: 2 beside it, 1 of the same sensor, 0 neither. */
+/** How closely topics of intrinsics and of images belong together by name: 2 side by side, 1 of the same sensor, else 0. */
 export function belongs(info: string, pictures: string): number {
   const parent = parentOf(baseOf(pictures));
-  // The rule of image_transport; librealsense records image/data and info/camera_info.
+  // image_transport puts both topics side by side; librealsense records image/data and info/camera_info.
   if (parentOf(info) === parent) return 2;
   return parentOf(parentOf(info)) === parentOf(parent) && lastOf(parent) === "image"
     ? 2
@@ -43,7 +43,7 @@ function binned(message: Message, numbers: number[], size: Size | undefined): { 
   const [bx, by] = [Math.max(1, numberIn(message, "binning_x") || 1), Math.max(1, numberIn(message, "binning_y") || 1)];
   const cut = { width: Math.floor(region.width / bx), height: Math.floor(region.height / by) };
   const isCut = bx > 1 || by > 1 || x > 0 || y > 0 || region.width !== full.width || region.height !== full.height;
-  // Some drivers state the region although the intrinsics are for it already: the size of the image decides.
+  // Some drivers state the region although their intrinsics already belong to it. The size of the image decides.
   if (!isCut || size === undefined || size.width !== cut.width || size.height !== cut.height)
     return { numbers, ...(full.width > 0 && full.height > 0 && { size: full }) };
   return {

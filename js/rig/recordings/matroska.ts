@@ -35,7 +35,7 @@ const ID = {
   block: 0xa1,
   simple: 0xa3,
 } as const;
-/** Elements of a segment: each of them ends a cluster of unknown size. */
+/** Elements of a segment, each of which ends a cluster of unknown size. */
 const TOP: ReadonlySet<number> = new Set([
   ID.info,
   ID.tracks,
@@ -241,7 +241,7 @@ class MatroskaSource implements Source {
     };
   }
 
-  /** The calibration has each camera in all of its modes; the size of the pictures tells which one was used. */
+  /** The calibration has each camera in all of its modes. The size of the pictures shows which mode was used. */
   async camera({ track, width, height }: Shot): Promise<Found<NamedCamera | undefined>> {
     const isDepth = /depth|^ir$/i.test(track);
     const found = this.#calibration.cameras.find(

@@ -71,7 +71,7 @@ interface Logged {
   bytes: Uint8Array;
 }
 
-/** Takes the records that are complete; false if damaged data follows. */
+/** Takes the records that are complete; returns false if damaged data follow. */
 function take(
   reader: McapStreamReader,
   channels: Map<number, McapTypes.TypedMcapRecords["Channel"]>,

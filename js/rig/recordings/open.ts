@@ -20,7 +20,7 @@ export interface RecordingFile {
   content: Blob | Uint8Array;
 }
 
-/** Options for taking frames from a recording. Topics that are not given are those of `chosen`. */
+/** Options for taking frames from a recording. If a topic is not given, that of `chosen` is used. */
 export interface RecordingOptions extends Choice {
   /** The largest number of frames; default 10. */
   frames?: number;

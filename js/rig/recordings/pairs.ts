@@ -29,7 +29,7 @@ export interface Pair {
   after?: Shot;
 }
 
-/** Whether the stamps of two topics are missing, or come from two clocks. */
+/** Whether stamps of two topics are missing, or come from two clocks. */
 const areOfTwoClocks = (a: Shot, b: Shot): boolean =>
   a.taken === undefined || b.taken === undefined || Math.abs(a.taken - b.taken - (a.logged - b.logged)) > CLOCKS;
 
@@ -101,7 +101,7 @@ interface Candidate {
   again(): Promise<Pair | undefined>;
 }
 
-/** Each shot of the slower topic with the nearest one of the other topic. For short recordings, which are read at once. */
+/** Each shot of the slower topic with the nearest one of the other topic, for short recordings, which are read at once. */
 async function allPairs(source: Source, { colour, depth }: Wanted): Promise<Pair[]> {
   const shots: Shot[] = [];
   for await (const shot of source.shots([colour, depth], ...source.span)) shots.push(shot);
@@ -129,7 +129,7 @@ async function candidates(source: Source, wanted: Wanted): Promise<Candidate[]> 
   });
 }
 
-/** How much the image changes per second. */
+/** Change of the image per second. */
 async function unrest({ colour, after }: Pair, { light }: Signature): Promise<number> {
   const next = await after?.read({ as: "colour" });
   if (after === undefined || next?.kind !== "colour") return 0;
@@ -139,11 +139,11 @@ async function unrest({ colour, after }: Pair, { light }: Signature): Promise<nu
 interface Seen {
   candidate: Candidate;
   signature: Signature;
-  /** Change per second; zero if there are no more moments than frames wanted. */
+  /** Change per second; zero if there are no more moments than requested frames. */
   unrest: number;
 }
 
-/** The half of the moments at which the rig moves least, but at least as many as are wanted. */
+/** The half of the moments at which the rig moves least, but at least as many as requested. */
 function restful(seen: readonly Seen[], wanted: number): Seen[] {
   const kept = Math.max(wanted, Math.ceil(seen.length / 2));
   const limit = seen.map(({ unrest }) => unrest).sort((a, b) => a - b)[kept - 1] ?? Infinity;

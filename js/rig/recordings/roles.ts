@@ -49,7 +49,7 @@ const colourScore = (shot: Shot): number =>
   (isColoured(shot.encoding) || /^(?:jpe?g|png|webp)$/.test(shot.encoding) ? 4 : 0) +
   (COLOUR_NAME.test(shot.track) ? 4 : 0) -
   (OTHER_NAME.test(shot.track) || DEPTH_NAME.test(shot.track) ? 8 : 0) -
-  // Lossy compression softens edges.
+  // Images without lossy compression are preferred, because it softens edges.
   (isColoured(shot.encoding) ? 0 : 0.5);
 
 const depthScore = (shot: Shot): number =>

@@ -59,7 +59,7 @@ export function signatureOf(image: CheckFrame["image"], depth: CheckFrame["depth
   return { light: lightOf(image), depth: grid, valid };
 }
 
-/** The mean change of a cell: of brightness, plus of depth relative to the larger depth. */
+/** The mean change of a cell: the change of brightness plus that of depth relative to the larger depth. */
 export function differenceOf(a: Signature, b: Signature): number {
   let [depth, both] = [0, 0];
   for (let cell = 0; cell < a.depth.length; cell++) {
@@ -75,7 +75,7 @@ export function differenceOf(a: Signature, b: Signature): number {
 export const changeOf = (a: Float32Array, b: Float32Array): number =>
   a.reduce((sum, value, cell) => sum + Math.abs(value - (b[cell] ?? 0)), 0) / a.length;
 
-/** A smaller difference is noise: that of a camera on a table is a few thousandths. */
+/** Largest difference that counts as noise; the noise of a camera on a table is a few thousandths. */
 export const ALIKE = 0.02;
 
 /**

@@ -1,6 +1,6 @@
 /**
- * The interface of containers: tracks, and what was recorded on them within a span of time. Only the parts that are needed are read, since a
- * recording may be larger than memory.
+ * The interface of containers: tracks, and the data that was recorded on them within a span of time. Only the parts that are needed are
+ * read, since a recording may be larger than memory.
  */
 import type { NamedCamera, NamedPose, ReadOptions, RigReading } from "../types.js";
 import type { ReaderWarning } from "../warnings.js";
@@ -23,11 +23,11 @@ export interface Track {
   kind: TrackKind;
   /** Messages or blocks. */
   count: number;
-  /** Why it cannot be read. */
+  /** The reason why the track cannot be read. */
   unread?: string;
 }
 
-/** How a shot is read; `turn` turns the axes of a cloud. */
+/** Decodes the shot; `turn` turns the axes of a cloud. */
 export interface ShotOptions extends ReadOptions {
   turn?: Turn;
 }

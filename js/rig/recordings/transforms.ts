@@ -19,7 +19,7 @@ interface Edge {
   shifted: number;
 }
 
-/** Frames in a chain; a longer one is circular. */
+/** Largest number of frames in a chain; a longer chain is circular. */
 const LONGEST = 100;
 /** Largest change of a fixed transform, from the rounding of its numbers: radians and metres. */
 const STILL = { turn: 2e-3, shift: 5e-4 };

@@ -1,7 +1,7 @@
 /** Checks the input of writers by name, because readers of the written file would trust wrong contents. */
 import { BimodalError, type ErrorCode, refused } from "../../errors.js";
 
-/** `value` is the refused value, and `index` the number of the entry. */
+/** `value` is the refused value, and `index` the position of the entry. */
 export const fault = (
   code: ErrorCode,
   field: string,
@@ -9,13 +9,13 @@ export const fault = (
   { value, index }: { value?: unknown; index?: number } = {},
 ): BimodalError => new BimodalError(code, `${field}: ${words}`, field, refused(value, index));
 
-/** One of some words. */
+/** Checks that a value is one of some words. */
 export function oneOf(words: readonly string[], value: unknown, field: string): void {
   if (!words.some((word) => word === value))
     throw fault("option", field, `"${String(value)}" is unknown; known: ${words.join(", ")}`, { value });
 }
 
-/** Describes lists by one entry, objects by their members, and objects with arbitrary names by "*"; other members are not checked. */
+/** In an example, a list has one entry, and "*" stands for arbitrary names of members. Members that it lacks are not checked. */
 export type Example = readonly Example[] | { readonly [name: string]: Example };
 
 /** Checks that the lists and objects of an example are present. */

@@ -25,7 +25,7 @@ function check(cloud: Cloud, index: number): void {
   if (!(points instanceof Float32Array)) throw fault("type", `${field}.points`, "must be a Float32Array");
   if (points.length % 3 !== 0)
     throw fault("size", `${field}.points`, `needs 3 numbers for each point, not ${points.length}`);
-  // Larger numbers would be truncated to bytes.
+  // Numbers that do not fit a byte would be truncated.
   if (colours !== undefined && Object(colours).byteLength !== points.length)
     throw fault("size", `${field}.colours`, `needs ${points.length} bytes`);
 }
@@ -59,7 +59,7 @@ export function writeClouds(clouds: readonly Cloud[], unit: "metres" | "pixels" 
   if (!Array.isArray(clouds)) throw fault("type", "clouds", "must be a list of clouds");
   if (clouds.length === 0 || clouds.length > MOST_CLOUDS)
     throw fault("size", "clouds", `needs 1 to ${MOST_CLOUDS} of them, not ${clouds.length}`);
-  // `forEach` would pass over holes.
+  // `forEach` would skip the holes of a list.
   [...clouds].forEach(check);
   let count = 0;
   for (const { points } of clouds) for (let at = 0; at < points.length; at += 3) if (isThere(points, at)) count++;

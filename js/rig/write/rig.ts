@@ -9,7 +9,7 @@ import { fault, like, oneOf } from "./built.js";
 /** Width and height in pixels. */
 export type Size = readonly [width: number, height: number];
 
-/** What is known about the rig besides the pose; it is written if the format has a place for it. */
+/** Properties of the rig besides the pose; they are written if the format has a place for them. */
 export interface RigContext {
   /** The colour camera. */
   colour?: PinholeInput | undefined;
@@ -57,7 +57,7 @@ export interface Rig {
 }
 
 const LENGTHS = { brown: [0, 4, 5, 8], fisheye: [4] } as const;
-/** Largest difference of an entry of R Rᵀ from the identity's: sixteen printed digits lose far less, single precision about as much. */
+/** Largest difference of an entry of R Rᵀ from the identity, about the rounding error of single precision. */
 const MOST_SHEAR = 1e-6;
 
 function numbers(values: ArrayLike<number>, lengths: readonly number[], field: string): number[] {
@@ -144,10 +144,10 @@ export const row = ({ rotation, translation }: Rig, i: number): number[] => [
 /** The four rows of the 4x4 matrix that carries points of the depth camera into the colour camera's frame. */
 export const rows = (rig: Rig): number[][] => [...[0, 1, 2].map((i) => row(rig, i)), [0, 0, 0, 1]];
 
-/** Whether any number from this index on differs from zero. */
+/** Whether any number at this index or later differs from zero. */
 export const reaches = (distortion: readonly number[], from: number): boolean =>
   distortion.slice(from).some((value) => value !== 0);
 
-/** This many numbers of a distortion, padded with zeros. */
+/** The first numbers of a distortion, padded with zeros to this length. */
 export const padded = (distortion: readonly number[], length: number): number[] =>
   Array.from({ length }, (_, k) => distortion[k] ?? 0);

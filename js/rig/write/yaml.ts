@@ -14,7 +14,7 @@ function matrix(name: string, height: number, width: number, values: readonly nu
   ];
 }
 
-/** The names are those of OpenCV's calibration sample; the words for the model, which OpenCV omits, are those of ROS. */
+/** The names are those of OpenCV's calibration sample. OpenCV omits the model, so it has ROS's words. */
 function opencvCamera(camera: Camera | undefined, name: string): string[] {
   if (camera === undefined) return [];
   const { fx, fy, cx, cy, distortion, model, size } = camera;
@@ -49,7 +49,7 @@ function kalibrDistortion({ model, distortion }: Camera): { word: string; coeffi
   return { word: "radtan", coefficients: padded(distortion, 4) };
 }
 
-/** Intrinsics without their distortion would be read as a camera without distortion, so both are written or neither. */
+/** Both are written or none, because readers take intrinsics without distortion for those of a camera that has none. */
 function kalibrCamera(camera: Camera | undefined, name: string, notes: string[]): string[] {
   const leftOut = (why: string): string[] => {
     notes.push(why);

@@ -45,8 +45,8 @@ const breathe = () =>
   });
 
 /**
- * The same as `run` of benches/common: to the end, or through `most` iterations. Stages carry the package's own times. With several
- * workers, an iteration is one step, which waits for them; `shared` has the wall times.
+ * Runs a loop to its end or through `most` iterations, as `run` of benches/common does. Stages carry the package's own times. With
+ * several workers, an iteration is one step, which waits for them; `shared` has the wall times.
  */
 async function run({ start, shading, most, workers }) {
   const { image, depth, pose } = scene;

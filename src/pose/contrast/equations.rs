@@ -73,7 +73,7 @@ impl Equations {
         self.count();
     }
 
-    /// Adds a point to the equations of the light alone.
+    /// Adds a point to the equations of the light without the pose.
     pub fn add_shades(&mut self, shades: &[f32; SHADES], residual: [f64; 3], weight: f64) {
         for (products, residual) in self.channels.iter_mut().zip(residual) {
             let mut numbers = [0.0; NUMBERS];
@@ -110,7 +110,7 @@ impl Equations {
         [0, 1, 2].map(|channel: usize| SVector::from_fn(|k, _| self.channels[channel].sums[RESIDUAL][UNKNOWNS + k]))
     }
 
-    /// The step of the light alone. The residual is r = v - B L, so its derivative is -B.
+    /// The step of the light under a fixed pose. The residual is r = v - B L, so its derivative is -B.
     pub fn light_step(&mut self) -> Option<Lights> {
         let inverse = self.inverse_gram()?;
         Some(self.shade_gradients().map(|gradient| inverse * gradient))
@@ -134,7 +134,7 @@ impl Equations {
     }
 }
 
-/// The equations of the pose alone.
+/// The equations of the pose without the light.
 pub(super) struct Reduced {
     pub matrix: PoseMatrix,
     gradient: PoseVector,

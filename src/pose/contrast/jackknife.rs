@@ -8,11 +8,10 @@ use crate::pose::increment::{PoseMatrix, PoseVector};
 use crate::pose::jackknife::{SECTORS, covariance, sectors};
 use crate::pose::similarity::Similarity;
 
-/// Number of steps that start from the final pose and leave out a sector: more than for photometric registration, because
-/// the local means converge slowly.
+/// Number of steps that start from the final pose and leave out a sector. It is larger than for photometric
+/// registration, because the local means converge slowly.
 const STEPS: usize = 8;
-/// Factor on the weight of samples that are left out. With only zero weights around it, a sample would have no local
-/// mean.
+/// Factor on the weight of samples that are left out. A sample surrounded by weights of zero would have no local mean.
 const LEFT_OUT: f32 = 1e-4;
 
 impl ContrastRegistration {

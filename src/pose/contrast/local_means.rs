@@ -3,8 +3,8 @@
 //! (H a)_p = a_p - sum_q g(p - q) w_q a_q / sum_q g(p - q) w_q,
 //!
 //! with a Gaussian g. It removes slow changes over the surface, such as the slopes of an imprecise light and most of
-//! the varying albedo; edges and small relief remain. H is linear for fixed weights, so it applies to derivatives as it
-//! does to values.
+//! the varying albedo; edges and small relief remain. H is linear for fixed weights, so it applies to derivatives in
+//! the same way as to values.
 
 /// Reach of the Gaussian in sigmas. Its weight has fallen to 4 % there, and the mean of constant values is exact
 /// anyway.

@@ -28,8 +28,8 @@ const CONTOUR_SCALE: f64 = 1.5;
 /// Weight of the same distance during the instrumental rounds. Silhouettes bring the pose close, but their bias of part of a pixel would
 /// then pull it off (docs/lab/thresholds.md).
 const SETTLING_CONTOUR_WEIGHT: f64 = 0.1;
-/// Weight of ln^2 of the apparent size relative to the initial one: 20 % more costs about a sixth of the contrast.
-/// Without it a registration slides to where the object is small.
+/// Weight of ln^2 of the apparent size relative to the initial one. An increase by 20 % costs about a sixth of the
+/// contrast. Without this term a registration slides to a pose with a small object.
 const SIZE_WEIGHT: f64 = 5.0;
 /// Weight of ln^2 of the scale relative to that of the units, where poses are compared. A scale that is a quarter
 /// larger or smaller costs little.
@@ -70,15 +70,14 @@ pub(super) struct Objective {
     /// Number of pixels on the mask's border, by which the sum over contour points is divided.
     border: f64,
     /// For each grid pixel: its weight in the local means, zero if it takes no part; the harmonics with their local
-    /// means removed; v as last seen; v with its local means removed; the derivatives of v.
+    /// means removed; the latest v; v with its local means removed; the derivatives of v.
     weights: Vec<f32>,
     shades: Vec<[f32; SHADES]>,
     seen_values: Vec<[f32; CHANNELS]>,
     values: Vec<[f32; CHANNELS]>,
     derivatives: Vec<[f32; DERIVATIVES]>,
     prediction: Prediction,
-    /// Whether the derivatives are those of the prediction; shading then determines the pose rather than the
-    /// silhouette.
+    /// Whether the derivatives are those of the prediction. Shading, not the silhouette, then determines the pose.
     has_instruments: bool,
     squares: Vec<f32>,
     /// Sum of the weights of samples on and off the mask, and of those off it.
@@ -190,7 +189,7 @@ impl Objective {
         self.take_means(level);
     }
 
-    /// Recomputes the local means of the values last seen, under the present weights.
+    /// Recomputes the local means of the latest values under the present weights.
     fn take_means(&mut self, level: &mut Level) {
         level.means.weigh(&self.weights);
         self.shades.copy_from_slice(&level.shades);
@@ -268,9 +267,9 @@ impl Objective {
         self.value(problem, level, state) + units_term(problem, &state.pose)
     }
 
-    /// The value by which poses are ranked: the same with the contrast term divided by its value without any light. By
-    /// E alone, a cloud that shrinks to where the image has little contrast would win, although no light explains that
-    /// contrast.
+    /// The value by which poses are ranked: this E with the contrast term divided by its value without any light. E
+    /// itself would prefer a cloud that shrinks to a part of the image with little contrast, although no light explains
+    /// that contrast.
     pub fn ranked(&mut self, problem: &ContrastProblem<'_>, level: &mut Level, state: &State) -> f64 {
         let value = self.compared(problem, level, state);
         let left = self.unexplained(&state.light);

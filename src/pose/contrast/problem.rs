@@ -45,7 +45,7 @@ impl ContrastProblem<'_> {
 
 #[cfg(test)]
 impl<'a> ContrastProblem<'a> {
-    /// A problem of two views as they are, both in pixels.
+    /// A problem of two unchanged views, both in pixels.
     pub fn of_views(image: &'a ColourView, depth: &'a DepthView, normal_error: &'a [f32]) -> Self {
         let (object, normals) = (image.object(), &depth.normals);
         Self { image, object, depth, normals, normal_error, unit_scale: 1.0, scale_is_held: false }

@@ -26,7 +26,7 @@ const BLUR_OF_STRIDE: f64 = 0.4;
 /// Share of the median intensity that is added before the logarithm, v = log(I + 0.1 median I), which limits the
 /// contrast of dark pixels.
 const LIFT: f32 = 0.1;
-/// Maximum number of Gauss-Newton steps of a round, and of attempts to damp each.
+/// Maximum number of Gauss-Newton steps of a round, and of attempts to damp a step.
 const MOST_STEPS: usize = 4;
 const MOST_ATTEMPTS: usize = 6;
 /// A step below this, in radians and object sizes, is negligible: a thousandth of a degree.
@@ -36,8 +36,8 @@ const SETTLED_ROUND: [f64; LEVELS] = [0.02, 0.3];
 
 /// Damping of an instrumental step, as a share of the diagonal.
 const INSTRUMENT_DAMPING: f64 = 1e-3;
-/// The instrumental rounds are undone if they raise E by more than this share. They are not a descent, and from a pose
-/// that does not fit they lead anywhere.
+/// The instrumental rounds are undone if they raise E by more than this share. They do not descend E, and may lead
+/// anywhere from a pose that does not fit.
 const LARGEST_RISE: f64 = 0.1;
 
 /// Limits on the work of a registration.
@@ -54,9 +54,9 @@ pub struct ContrastEffort {
 }
 
 impl ContrastEffort {
-    /// Down to the sharp image.
+    /// The limits of a registration that ends with the sharp image.
     pub const FULL: Self = Self { first_level: 1, last_level: 0, rounds: 14, instrument_rounds: 0 };
-    /// On the blurred image alone: enough to see whether an initial pose deserves more work.
+    /// Registers only on the blurred image, which shows whether an initial pose deserves more work.
     pub const COARSE: Self = Self { first_level: 1, last_level: 1, rounds: 3, instrument_rounds: 0 };
 }
 
@@ -86,7 +86,7 @@ impl ContrastRegistration {
     pub fn new(problem: &ContrastProblem<'_>, stride: usize, blur: f64) -> Self {
         let samples = Samples::new(problem, stride.max(1));
         let unit = ((problem.depth.valid() as f64).sqrt() / MEASURED_SIDE).max(1.0);
-        // The noise of normals reaches equally far in large and small views.
+        // The noise of normals has the same reach in large and small views.
         let finest = blur / unit;
         let lifted = problem.image.lifted(LIFT);
         let between = BLUR_OF_STRIDE * (samples.stride as f64 / unit - 1.0).max(0.0);
@@ -280,7 +280,7 @@ mod tests {
     use crate::view::{ColourImage, ColourSamples, ColourView, DepthMap, DepthSamples, DepthView};
 
     const SIDE: usize = 64;
-    /// Blur of the texture below, pixels: as soft as shading, and sharper than the local means.
+    /// Blur of the following texture, pixels: as soft as shading, and sharper than the local means.
     const TEXTURE_BLUR: usize = 2;
 
     /// A dome with bumps, and its gradient, pixels.
@@ -372,7 +372,7 @@ mod tests {
     fn a_silhouette_that_does_not_fit_widens_sigmas() {
         let views = views(&texture(9, 0.03));
         let mask = &views.0.mask;
-        // Four pixels are cut off the mask alone on two sides: their pulls cancel, and the image is the same.
+        // Four pixels are cut off the mask on two sides, but not off the image. Their effects cancel.
         let cut = |index: usize| (index % SIDE).abs_diff(SIDE / 2) > 22;
         let frayed: Vec<bool> = (0..mask.len()).map(|index| mask[index] && !cut(index)).collect();
         let [clean, frayed] = [mask, &frayed].map(|object| sigmas(&views, object));

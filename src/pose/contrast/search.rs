@@ -1,10 +1,10 @@
 //! Search from many initial poses to one pose and its rivals, coarse to fine, in slices. All begin with few samples and
-//! rounds; the best get more, and the last stages use up to 10000 samples.
+//! rounds. The best get more, and the last stages use up to 10000 samples.
 //!
 //! At each stage the ends are ranked by E on the sharp image at one robust scale, with the contrast term relative to
 //! that without light, so that they are comparable. Noisy depth has no details to compare with the sharp image. The
-//! stages then blur image and prediction by the sigma that the noise requires, and the best end alone is registered to
-//! the sharp image in an additional stage.
+//! stages then blur image and prediction by the sigma that the noise requires. In an additional stage only the best end
+//! is registered to the sharp image.
 
 use super::problem::{ContrastProblem, ContrastReport};
 use super::registration::{ContrastEffort, ContrastRegistration};
@@ -39,8 +39,8 @@ const LAST: Stage = Stage {
     kept: 6,
     apart: RIVAL_APART,
 };
-/// Noise, in log units, whose robust scale ranks the ends: below what photographs leave, so that details decide, and
-/// far above that of renders.
+/// Noise, in log units, whose robust scale ranks the ends. It is below the residuals of photographs, so that details
+/// decide, and far above those of renders.
 const RANKING_NOISE: f64 = 0.05;
 /// An end whose rank exceeds the lowest one by less than this is a rival (docs/lab/thresholds.md).
 const RIVAL_MARGIN: f64 = 0.1;
@@ -130,8 +130,8 @@ impl ContrastSearch {
         self.next = 0;
     }
 
-    /// Keeps the initial pose of the sharp stage if its end is as far away as a rival, because the registration then
-    /// slid into another optimum.
+    /// Keeps the initial pose of the sharp stage if the end of the stage is as far away as a rival, because the
+    /// registration then slid into another optimum.
     fn stay_near(&mut self, problem: &ContrastProblem<'_>) {
         let Some(&start) = self.starts.first() else { return };
         self.ends.retain(|(_, end)| end.degrees_to(&start) <= RIVAL_APART);

@@ -1,4 +1,4 @@
-//! Samples that the image sees under a pose, and the contour where the surface turns away.
+//! Samples that the image sees under a pose, and the contour at which the surface turns away.
 
 use nalgebra::Vector3;
 

@@ -9,7 +9,7 @@ use crate::pose::uncertainty::{Uncertainty, describe, weakest_of};
 use crate::view::Size;
 
 /// Side of the tiles of the depth map whose scores count as one observation, depth pixels: three sigmas of the local
-/// means. It grows with the object, as they do. Scores of the silhouette are summed over tiles of the image with the
+/// means. Like these, it grows with the object. Scores of the silhouette are summed over tiles of the image with the
 /// same side.
 const TILE: f64 = 9.0;
 

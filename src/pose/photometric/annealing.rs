@@ -9,11 +9,11 @@ use crate::error::Result;
 use crate::pose::descent::{Damping, Lowered};
 use crate::pose::residuals::SHRINKING;
 
-/// Maximum number of Gauss-Newton steps of a round, and of attempts to damp each.
+/// Maximum number of Gauss-Newton steps of a round, and of attempts to damp a step.
 const MOST_STEPS: usize = 6;
 const MOST_ATTEMPTS: usize = 8;
 /// A round before the final robust scale ends with a step below this, in radians and object sizes, because the next
-/// round moves the pose by as much or more.
+/// round moves the pose at least as far.
 const SMALL_STEP: f64 = 1e-3;
 /// A round at the final scale ends with a step below this, 0.002 degrees: less than [`FINE_SETTLED`].
 const SMALL_FINE_STEP: f64 = 3e-5;

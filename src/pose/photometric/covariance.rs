@@ -7,8 +7,8 @@
 //! Noise contributes to M itself: gradients of a noisy image are noisy as well, and squared noise looks like
 //! information. On a sphere, whose colours carry no information about its rotation, M amounts to F = sum w s^2 k D^T D
 //! with the noise s of the image, D = d pixel / d unknowns, and the covariance k of the two gradients of white noise.
-//! The eigenvalues lambda of M over F (one where there is nothing but noise, 12 to 900 on the built-in surfaces)
-//! therefore measure the information of the colours, and sigmas grow by lambda / (lambda - 1) along each eigenvector.
+//! The eigenvalues lambda of M over F therefore measure the information of the colours: they are 1 for pure noise, and
+//! 12 to 900 on the built-in surfaces. Sigmas grow by lambda / (lambda - 1) along each eigenvector.
 
 use super::equations::{ReducedSystem, SquareSums, add_product, folded, no_sums, scaled};
 use super::evaluation::Evaluation;
@@ -29,7 +29,7 @@ const MODEL_SIGMA_INFLATION: f64 = 2.0;
 /// slightly blurred image's spline. It is the mean over the positions in a cell, by quadrature over both splines'
 /// responses to one pixel.
 const GRADIENT_COVARIANCE: f64 = 0.144;
-/// Smallest lambda - 1, at which a sigma grows a thousandfold and its unknown counts as not determined. On a ball, lambda
+/// Smallest lambda - 1, at which a sigma grows a thousandfold and its unknown counts as undetermined. On a ball, lambda
 /// is 0.85 to 1.15 by chance.
 const LEAST_SIGNAL: f64 = 1e-3;
 /// Standard deviations per channel, log units.
@@ -111,7 +111,7 @@ impl Tiles {
         let size = evaluation.problem.depth_size;
         let across = size.width.div_ceil(TILE);
         self.tiles.fill(Tile::default());
-        // Products of each point with itself, which are not pairs: of residuals, and of weights.
+        // Products of the residuals, and of the weights, of each point with itself, which are not pairs.
         let mut own = [Doubles::splat(0.0); 2];
         evaluation.for_each_linearised(frame, |indices, points, weight| {
             let score = scaled(&reduced.score(points), weight).map(Doubles::array);
@@ -134,7 +134,7 @@ impl Tiles {
             residuals += red * red + green * green + blue * blue;
             weights += weight * weight;
         }
-        // This is 0 / 0 if no tile has a pair.
+        // The quotient is 0 / 0 if no tile has a pair.
         self.structure = (residuals / (3.0 * weights)).max(0.0).sqrt();
         noise_information
     }

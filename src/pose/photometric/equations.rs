@@ -19,7 +19,8 @@ use crate::pose::sums::Sums;
 /// One row for each unknown of the pose, one column for each of the light.
 type PoseByLight = SMatrix<f64, UNKNOWNS, COEFFICIENTS>;
 
-/// Relative damping of unknowns without any information, so that the factorisation exists: rounding of 10^6 terms.
+/// Relative damping of unknowns without any information, so that the factorisation exists. It is the rounding error of
+/// 10^6 terms.
 const LEAST_DAMPING: f64 = 1e-12;
 
 /// Sums over points: those of the light, and those for the pose.
@@ -39,7 +40,7 @@ pub(super) struct Equations {
 pub(super) type SquareSums = [Derivative; UNKNOWNS];
 type CrossSums = [Derivative; COEFFICIENTS];
 
-/// Sums over points for the light alone: D and d.
+/// Sums over points for the equations of the light: D and d.
 pub(super) struct LightEquations {
     /// One channel's block of D up to its diagonal; all three channels have the same weights.
     gram: [[Doubles; HARMONICS]; HARMONICS],
@@ -52,7 +53,7 @@ pub(super) struct LightEquations {
     is_known: bool,
 }
 
-/// The equations of the pose alone, after the elimination of the light.
+/// The equations of the pose after the elimination of the light.
 pub(super) struct ReducedSystem {
     /// A - C D^-1 E^T: the information of the pose if Z = J.
     pub matrix: PoseMatrix,

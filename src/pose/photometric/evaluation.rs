@@ -13,8 +13,8 @@ use crate::light::{Coefficients, basis};
 use crate::numeric::{DOUBLE_LANES, Doubles, Real, dot, quantile, robust};
 use crate::pose::increment::Frame;
 
-/// Points with a smaller weight do not count for the noise: their residuals come from their normals, not from the
-/// image.
+/// Smallest weight of a point that counts for the noise. Residuals of other points come from their normals, not from
+/// the image.
 const LEAST_WEIGHT_FOR_NOISE: f64 = 0.25;
 
 /// The residuals of some points at one state, on one level of the image.
@@ -84,7 +84,7 @@ impl Evaluation<'_> {
     }
 
     /// The equations by instrumental variables, minus the contribution of white noise of the normals. This noise biases
-    /// the light towards less contrast, and with it the pose. The contribution stays in if the light would be
+    /// the light towards less contrast, and with it the pose. The contribution is kept if the light would be
     /// undetermined without it.
     pub fn unbiased_system(&self, frame: &Frame) -> Option<ReducedSystem> {
         let noise = self.problem.depth_noise;
@@ -123,7 +123,7 @@ impl Evaluation<'_> {
         samples.extend(points.map(|points| self.model.sample(points)));
     }
 
-    /// The equations of the light alone; `samples` belong to the same points under the same pose.
+    /// The equations of the light under a fixed pose; `samples` belong to the same points under this pose.
     pub fn light_equations(&self, samples: &[Samples]) -> LightEquations {
         let mut equations = LightEquations::new(self.problem.light.is_some());
         for ((indices, weight), samples) in self.points.lane_groups().zip(samples) {

@@ -39,9 +39,9 @@ impl Photometric {
         Ok(Phase::InstrumentalStep { round, frame, steps: 0, last: f64::INFINITY })
     }
 
-    /// Takes a step of such a round, undamped because there is no objective to lower. Steps of the first round may
-    /// grow. Later rounds reject a step that is longer than the previous one: the solution may repel a pose that
-    /// rounding put beside it, and each step then grows by a third.
+    /// Takes a step of such a round. The step is not damped, because there is no objective to lower. Steps of the first
+    /// round may grow. Later rounds reject a step that is longer than the previous one. The solution may repel a pose
+    /// that rounding put beside it, and each step would then grow by a third.
     pub(super) fn step_by_instruments(
         &mut self,
         problem: &PhotometricProblem<'_>,

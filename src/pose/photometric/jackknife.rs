@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::pose::increment::{Frame, PoseMatrix, PoseVector};
 use crate::pose::jackknife::{SECTORS, covariance, sectors};
 
-/// Maximum number of points, evenly spread; model errors do not average out over more of them.
+/// Maximum number of points, evenly spread. Model errors do not average out over more points.
 const MOST_POINTS: usize = 20_000;
 /// Number of Gauss-Newton steps that start from the final pose and leave out a sector; set on random scenes
 /// (docs/lab/thresholds.md).

@@ -3,7 +3,7 @@
 //!
 //! Each depth point predicts a colour by its normal; under the right pose the image shows these colours. The unknowns
 //! are the rotation, the translation, the logarithm of the scale, and the light: all 27 coefficients under the prior h
-//! of natural lights, or the exposure alone if the light is known. rho is the robust function of Geman and McClure of
+//! of natural lights, or only the exposure if the light is known. rho is the robust function of Geman and McClure of
 //! the three channels together, sigma the noise of log S.
 //!
 //! The method runs in rounds. A round fixes the visible points (z-buffer). Points that then leave the mask count with

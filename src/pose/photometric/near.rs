@@ -1,12 +1,12 @@
-//! Terms of the pose alone, in addition to the image residuals, about an initial pose that is trusted to some degree:
-//! the object's points have to lie on the image's mask, and a Gaussian holds the pose.
+//! Two terms of the pose, in addition to the image residuals, near an initial pose that is trusted to some degree: the
+//! object's points have to lie on the image's mask, and a Gaussian holds the pose.
 //!
 //! A point off the mask is a residual like any other. Far off, it costs a fixed share of the square of the robust
 //! scale, which is the cost of a point whose colours do not fit at all. Pixels of the mask that no point covers cost
 //! nothing, because the depth camera may not have seen that part of the object.
 //!
 //! An object that recedes shrinks into its mask and onto pixels that are easily explained. Its distance is therefore
-//! freed last: above the sharp image the Gaussian all but holds it.
+//! freed last. On blurred levels the Gaussian almost fixes it.
 
 use nalgebra::Vector3;
 
@@ -25,7 +25,7 @@ const MOST_POINTS: usize = 2000;
 /// (docs/lab/thresholds.md).
 const OFF_WEIGHT: f64 = 0.5;
 /// Distance off the mask at which a point's weight has fallen to a quarter, pixels, for each level of the image. It is
-/// the reach of the level; a sharper level follows.
+/// the reach of the level; a sharper level corrects smaller distances.
 const SCALES: [f64; 4] = [6.0, 6.0, 12.0, 20.0];
 /// Sigma of the distance on all levels but the sharp one, as a share of the prior's.
 const DISTANCE_FIRST: f64 = 0.1;
@@ -196,7 +196,7 @@ mod tests {
                 step[k] = by;
                 cost(&FRAME.change(&step).after(&pose))
             };
-            // Half of the derivative of the cost; the derivative of the distance is taken over several pixels.
+            // Half of the derivative of the cost. The derivative of the distance is a difference over several pixels.
             let slope = (moved(small) - moved(-small)) / (4.0 * small);
             let off = (gradient[k] - slope).abs();
             assert!(off < 0.2 * gradient.norm(), "{k}: {} {slope}", gradient[k]);

@@ -1,9 +1,9 @@
-//! What white noise of the normals adds to sums of products f g of two functions of the normals:
+//! The bias by which white noise of the normals raises sums of products f g of two functions of the normals:
 //! sum w var (f_a g_a + f_b g_b), where f_a and f_b are the slopes of f along two tangents of a normal
 //! (docs/method/registration.md).
 //!
 //! Residuals and derivatives depend on the normals through linear functions of the harmonics. One matrix therefore
-//! suffices: the same sum over the harmonics alone.
+//! suffices, the same sum over pairs of harmonics.
 
 use nalgebra::SMatrix;
 
@@ -25,7 +25,7 @@ impl NormalNoise {
     pub fn add(&mut self, normals: [Doubles; 3], weight: Doubles) {
         let gradient = basis_gradient(normals);
         for (row, sums) in self.0.iter_mut().enumerate() {
-            // Only slopes across the normal count, because it stays a unit vector.
+            // Only slopes across the normal count, because a normal stays a unit vector.
             let along = dot(gradient[row], normals);
             let across = [0, 1, 2].map(|axis: usize| weight * (gradient[row][axis] - along * normals[axis]));
             for (sum, &other) in sums.iter_mut().zip(&gradient[..=row]) {

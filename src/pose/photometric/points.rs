@@ -11,14 +11,14 @@ use crate::pose::spline_image::SplineImage;
 use crate::pose::visibility::{Visibility, VisibilityProblem};
 use crate::view::{Size, extent};
 
-/// Distance from the border of the mask within which points are left out, image pixels: they would enter and leave with
-/// every step, and the spline is only a continuation there.
+/// Distance from the border of the mask within which points are left out, image pixels, because they would enter and
+/// leave with every step, and the spline is only a continuation there.
 const MARGIN: usize = 1;
 /// Minimum number of points for a coarse level under a known light: about 15 for each unknown of the pose
 /// (docs/lab/thresholds.md).
 const ENOUGH_KNOWN: usize = 100;
-/// Minimum number of points for a coarse level under an unknown light: 30 for each unknown, because the 27 of the light
-/// may fit the image under a wrong pose (docs/lab/thresholds.md).
+/// Minimum number of points for a coarse level under an unknown light: 30 for each unknown, because the 27 unknowns of
+/// the light may fit the image under a wrong pose (docs/lab/thresholds.md).
 const ENOUGH_UNKNOWN: usize = 1000;
 /// (5^(1/2) - 1) / 2.
 const GOLDEN_SECTION: f64 = 0.618_033_988_749_895;
@@ -140,7 +140,7 @@ impl VisiblePoints {
         }
     }
 
-    /// The points side by side with their own weights. An odd last one comes twice, once with weight zero.
+    /// The points side by side with their own weights. An odd last point comes twice, once with weight zero.
     pub fn lane_groups(&self) -> impl Iterator<Item = (Indices, Doubles)> {
         self.indices.chunks(DOUBLE_LANES).zip(self.weights.chunks(DOUBLE_LANES)).map(|(some, weights)| {
             let (mut indices, mut lanes) = ([some[0]; DOUBLE_LANES], [0.0; DOUBLE_LANES]);

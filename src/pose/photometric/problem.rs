@@ -120,17 +120,17 @@ const ENOUGH_ANNEALED: usize = 5000;
 /// Options of a registration: its reach and its cost.
 #[derive(Clone, Copy, Debug)]
 pub struct PhotometricOptions {
-    /// First level, 0 to 3, limited to those that a problem has: the coarsest from afar, 0 from a pose with an error of
-    /// about a degree.
+    /// First level, 0 to 3, limited to the levels of a problem: the coarsest for a distant pose, 0 for a pose with an
+    /// error of about a degree.
     pub first_level: usize,
-    /// Cap on the rounds.
+    /// Maximum number of rounds.
     pub most_rounds: usize,
     /// Maximum number of points, evenly spread over the visible ones.
     pub most_points: usize,
     /// Maximum number of points of the annealing. The rounds after it, with instrumental variables, end at the same
     /// pose from any pose nearby.
     pub annealed_points: usize,
-    /// Whether the robust scale shrinks from round to round; otherwise it is the final one from the first round on.
+    /// Whether the robust scale shrinks from round to round. Otherwise all rounds have the final scale.
     pub annealing: bool,
     /// Whether the points of the previous registration stay, instead of those visible in each round. Several problems
     /// can then be compared on the same points, and only these need points and normals.
@@ -162,7 +162,7 @@ pub enum PhotometricTermination {
     /// The last rounds, with instrumental variables, would have raised the objective, so the pose of least squares was
     /// kept. It is usable but has the bias of the noise.
     Annealed,
-    /// The cap on the rounds was reached.
+    /// The maximum number of rounds was reached.
     MostRounds,
 }
 
@@ -171,7 +171,7 @@ pub enum PhotometricTermination {
 pub struct PhotometricReport {
     /// The pose; for an orthographic image t_z keeps its initial value.
     pub pose: Similarity,
-    /// The light; for a known one, without the exposure.
+    /// The light; a known light is given without the exposure.
     pub light: Light,
     /// Offset of log S relative to a known light; zero if the light was free.
     pub exposure: f64,
@@ -186,7 +186,7 @@ pub struct PhotometricReport {
     pub visible: usize,
     /// Whether these are only a sample, see [`PhotometricOptions::most_points`].
     pub sampled: bool,
-    /// Share of them within the robust scale.
+    /// Share of the visible points within the robust scale.
     pub inliers: f64,
     /// Gauss-Newton steps taken.
     pub iterations: usize,

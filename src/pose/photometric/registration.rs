@@ -103,8 +103,7 @@ impl Photometric {
         let reduced = self.reduce_by_instruments(problem, &frame)?;
         let held = problem.held();
         let mut covariance = self.covariance(problem, &frame, &reduced) + by_sectors;
-        // The prior may hold the pose back from where the residuals alone would take it. That distance counts as an
-        // error, too.
+        // The prior may keep the pose from the optimum of the residuals. That distance also counts as an error.
         if let Some(step) = problem.near.and_then(|_| reduced.step(0.0, &held)) {
             covariance.ger(1.0, &step.pose, &step.pose, 1.0);
         }

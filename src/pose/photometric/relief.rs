@@ -1,4 +1,4 @@
-//! Albedo that follows the relief: dirt and ambient shadow lie in hollows, wear on ridges.
+//! Albedo that follows the relief, because dirt and ambient shadow lie in hollows, and wear on ridges.
 //!
 //! Curvature of the depth map at two scales, and its squares, are regressors of the log albedo in addition to the
 //! light. At the beginning of a round their coefficients are fitted to the residuals in alternation with the light; the

@@ -35,7 +35,7 @@ pub(super) struct Samples {
 /// Residuals of points side by side, with the quantities that the equations need.
 pub(super) struct LinearisedPoints {
     pub shown: Doubles,
-    /// One for each channel.
+    /// A number for each channel.
     pub residual: [Doubles; 3],
     /// d r / d unknowns, one row for each channel.
     pub jacobian: [Derivative; 3],
@@ -221,7 +221,7 @@ mod tests {
         let lens = Lens::brown(&[0.1, -0.05, 0.003, -0.002, 0.0]).unwrap();
         let pinhole = Camera::Pinhole(Pinhole { fx: 50.0, fy: 48.0, cx: 19.0, cy: 15.0, lens });
         let normal = Vector3::new(0.36, -0.48, -0.8);
-        // Colours are rounded to f32, so the difference over a smaller step would be rounding.
+        // Colours are rounded to f32, so a difference over a smaller step would show only rounding.
         let small = 3e-3;
         for (camera, point, length) in
             [(Camera::Orthographic, Vector3::new(3.3, -4.2, 7.0), 9.0), (pinhole, Vector3::new(0.21, -0.13, 1.2), 0.2)]
@@ -248,7 +248,7 @@ mod tests {
                 let difference = (moved(small) - moved(-small)) / (2.0 * small);
                 for channel in 0..3 {
                     let jacobian = PoseVector::from(linearised.jacobian[channel].map(last));
-                    // Relative to the row, because a single entry may be zero.
+                    // The tolerance is relative to the row, because a single entry may be zero.
                     let error = (jacobian[k] - difference[channel]).abs() / jacobian.norm();
                     assert!(error <= 1e-4, "{k}: {} {difference} {error}", jacobian[k]);
                 }

@@ -21,7 +21,7 @@ use crate::view::Size;
 
 /// Gaussian blur of each level's image, pixels; a level takes every 2^level-th point.
 const BLURS: [f64; COARSEST_NEAR + 1] = [0.0, 1.5, 3.0, 6.0];
-/// Coarsest level under an unknown light: a light that follows the pose fits strongly blurred colours under any pose
+/// Coarsest level under an unknown light. A light that follows the pose fits strongly blurred colours under any pose
 /// (docs/lab/thresholds.md).
 const COARSEST_UNKNOWN: usize = 1;
 /// Blur of the image whose gradients are the instrumental variables, pixels (docs/lab/thresholds.md).
@@ -45,10 +45,10 @@ pub struct Photometric {
     /// The image whose gradients are the instrumental variables.
     instruments: SplineImage,
     pub(super) points: VisiblePoints,
-    /// Present once a problem has an initial pose.
+    /// The terms about an initial pose, once a problem has one.
     near: Option<Box<Near>>,
     pub(super) tiles: Tiles,
-    /// log S at the points as long as the pose stays.
+    /// log S at the points, as long as the pose does not change.
     samples: Vec<Samples>,
     magnitudes: Vec<f32>,
     pub(super) state: State,
@@ -130,7 +130,7 @@ impl Photometric {
         Ok(frame)
     }
 
-    /// Fits the light alone, with reweighting.
+    /// Fits the light under a fixed pose, with reweighting.
     pub(super) fn fit_light(&mut self, problem: &PhotometricProblem<'_>, level: usize) -> Result<()> {
         let mut samples = std::mem::take(&mut self.samples);
         self.evaluation(problem, level, &self.state).sample(&mut samples);
@@ -183,7 +183,7 @@ impl Photometric {
         self.weighting = Weighting { robust_scale, prior };
     }
 
-    /// The terms of the pose alone, if there are any.
+    /// The terms about an initial pose, if there are any.
     pub(super) fn near_terms(
         &self,
         problem: &PhotometricProblem<'_>,

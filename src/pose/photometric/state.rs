@@ -26,7 +26,7 @@ impl State {
         Self { pose, ..self.relit(&step.light, light_is_known) }
     }
 
-    /// The state after a step of the light alone.
+    /// The state after a step of the light under the same pose.
     pub fn relit(&self, step: &Coefficients, light_is_known: bool) -> Self {
         let mut next = *self;
         if light_is_known {

@@ -5,15 +5,15 @@ use crate::diagnosis::excess;
 use crate::light::{COEFFICIENTS, Light};
 use crate::numeric::robust;
 
-/// Largest factor on the robust scale if residuals exceed the noise: a narrow scale would settle on a part of the
+/// Largest factor on the robust scale if residuals exceed the noise. A narrow scale would settle on a part of the
 /// object that light and normals happen to fit.
 const LARGEST_WIDENING: f64 = 2.0;
-/// Degrees of freedom of Student's t in the prior's tails: under coloured lamps, which lie far outside the Gaussian, a
+/// Degrees of freedom of Student's t in the prior's tails. Under coloured lamps, which lie far outside the Gaussian, a
 /// Gaussian prior would bias poses by degrees.
 const PRIOR_DEGREES_OF_FREEDOM: f64 = 5.0;
 
-/// Number of residuals that count as one independent error if the albedo varies: it sets the weight of other terms
-/// relative to sums over residuals. Set on pairs of a statue (docs/lab/thresholds.md).
+/// Number of residuals that count as one independent error if the albedo varies. It determines the weight of other
+/// terms relative to sums over residuals. Set on pairs of a statue (docs/lab/thresholds.md).
 pub(super) const CORRELATED: f64 = 640.0;
 
 /// Weights of residuals and prior.
@@ -26,8 +26,8 @@ pub(super) struct Weighting {
 }
 
 impl Weighting {
-    /// For the first fit of the light, before the residuals are known: the scale exceeds all residuals, so that all
-    /// points count alike.
+    /// Weights for the first fit of the light, before the residuals are known. The scale exceeds all residuals, so that
+    /// all points count alike.
     pub const FIRST: Self = Self { robust_scale: 1e3, prior: 1e-2 };
 }
 

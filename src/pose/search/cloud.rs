@@ -10,7 +10,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::numeric::quantile;
 use crate::view::{Normals, Points, Size};
 
-/// Maximum number of patches: about four for each cell of the grid that an object covers.
+/// Maximum number of patches, about four for each cell of the grid that an object covers.
 const MOST_PATCHES: usize = 1000;
 /// Minimum number of patches that distinguish rotations.
 const FEWEST_PATCHES: usize = 16;

@@ -14,13 +14,13 @@ use crate::pose::similarity::Similarity;
 
 /// Maximum number of ascents.
 const MOST_ASCENTS: usize = 96;
-/// Smallest distance between hypotheses of the sweep, degrees. A worse one that is closer is left out, because an
+/// Smallest distance between hypotheses of the sweep, degrees. Of two closer ones the worse is left out, because an
 /// ascent reaches farther.
 const SWEEP_SEPARATION: f64 = 10.0;
 /// Maximum number of candidates.
 const MOST_CANDIDATES: usize = 40;
-/// Smallest distance between candidates, degrees. A worse one that is closer is a duplicate, because registration would
-/// join them.
+/// Smallest distance between candidates, degrees. Of two closer ones the worse is a duplicate, because registration
+/// would join them.
 const CANDIDATE_SEPARATION: f64 = 5.0;
 
 /// A search in slices; owns its memory.
@@ -116,7 +116,7 @@ impl Search {
         Progress { share: done as f64 / (self.swept.len() + self.ascents.len()) as f64 }
     }
 
-    /// A slice for a worker; `None` if none can begin at present.
+    /// A slice for a worker; `None` if no slice can begin at present.
     pub(crate) fn take(&mut self) -> Option<SearchTask> {
         if !self.swept.is_complete() {
             return self.swept.take(|_| true).map(SearchTask::Sweep);
@@ -167,7 +167,7 @@ impl Search {
         }
     }
 
-    /// The best hypothesis so far.
+    /// The best hypothesis up to now.
     pub(crate) const fn best(&self) -> Option<&Candidate> {
         self.best.as_ref()
     }
@@ -183,7 +183,7 @@ impl Search {
         &self.candidates
     }
 
-    /// The poses of the sweep before any ascent, each rotation once, with the better of its sizes.
+    /// The poses of the sweep before any ascent. Each rotation occurs once, with its best size.
     #[must_use]
     pub fn swept_poses(&self) -> Vec<Similarity> {
         self.swept_rotations().iter().map(|hypothesis| self.matcher.candidate(hypothesis).pose).collect()
@@ -195,7 +195,7 @@ impl Search {
         swept.chain(self.ascents.results().map(|end| (end.pose.rotation, end.score))).collect()
     }
 
-    /// The hypotheses of the sweep, each rotation once, with the better of its sizes.
+    /// The hypotheses of the sweep. Each rotation occurs once, with its best size.
     fn swept_rotations(&self) -> Vec<Hypothesis> {
         let mut rotations: Vec<Hypothesis> = Vec::new();
         for hypothesis in self.swept.results().flatten() {

@@ -231,7 +231,7 @@ fn even(field: &Field, index: usize, mirror: u32) -> (f32, f32) {
     (0.5 * (field.re[index] + field.re[mirror]), 0.5 * (field.im[mirror] - field.im[index]))
 }
 
-/// The same for the imaginary part.
+/// The conjugate spectrum of the imaginary part of a field, from the spectrum of the field.
 fn odd(field: &Field, index: usize, mirror: u32) -> (f32, f32) {
     let mirror = mirror as usize;
     (0.5 * (field.im[index] + field.im[mirror]), 0.5 * (field.re[index] - field.re[mirror]))

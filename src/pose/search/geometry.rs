@@ -1,7 +1,7 @@
 //! Converts hypotheses on the grid to poses. Without intrinsics, the colour camera sees parallel rays, and the centre
-//! of a pose moves in the image plane at z = 0. With intrinsics, the centre moves in a plane of constant distance. This
-//! is the distance from the depth camera, or the one at which both silhouettes have the same area. Scale and distance
-//! then cannot be distinguished, so the scale is held and the distance varies.
+//! of a pose moves in the image plane at z = 0. With intrinsics, the centre moves in a plane of constant distance. It
+//! is the distance from the depth camera, or the distance at which both silhouettes have the same area. Scale and
+//! distance then cannot be distinguished, so the scale is held and the distance varies.
 
 use nalgebra::Vector3;
 

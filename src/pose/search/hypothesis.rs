@@ -12,7 +12,8 @@ pub(crate) struct Hypothesis {
 }
 
 impl Hypothesis {
-    /// Rotated about x, y and z by these angles in radians, and grown by this natural logarithm of a factor.
+    /// The hypothesis after a rotation about x, y and z by these angles, radians, and a growth by this natural
+    /// logarithm of a factor.
     pub fn moved(&self, rotation: Vector3<f64>, growth: f64) -> Self {
         let rotation = Rotation3::new(rotation).into_inner() * self.rotation;
         Self { rotation, size: self.size * growth.exp(), ..*self }

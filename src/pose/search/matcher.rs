@@ -38,7 +38,7 @@ pub struct Matcher {
     cloud: Cloud,
     target: Target,
     template: Template,
-    /// Present if the light is known.
+    /// The colours of a known light, if the light is known.
     prediction: Option<Prediction>,
     correlator: Correlator,
 }
@@ -104,7 +104,7 @@ impl Matcher {
         Candidate { pose, score: hypothesis.score }
     }
 
-    /// Draws the rotated cloud as a template. Returns whether enough of it is visible.
+    /// Draws the rotated cloud as a template. Returns whether enough of the cloud is visible.
     fn draw(&mut self, rotation: &Matrix3<f64>, size: f64) -> bool {
         self.template.draw(&self.cloud, rotation, &self.geometry.projection(size, self.target.cell));
         if self.template.visible < FEWEST_CELLS {

@@ -1,15 +1,15 @@
 //! Search over all poses: candidates without an initial pose, under a known or an unknown light
 //! (docs/method/search.md).
 //!
-//! The objective, maximised over R, s and tau, is N (N / V) ln( det T / det E ) / 3, see [`score`]: how much better the
-//! rotated depth normals explain the image's log colours than a constant does.
+//! The objective, maximised over R, s and tau, is N (N / V) ln( det T / det E ) / 3, see [`score`]. It measures how
+//! much better the rotated depth normals explain the image's log colours than a constant does.
 //!
 //! Method: depth map and image are put on a coarse grid. First comes a sweep. For rotations spread evenly, and several
 //! scales if the scale is free, the visible part of the rotated cloud is drawn on the grid. FFT correlates all
 //! translations at once, and the best few are scored exactly. Then the best rotations, no two of them similar, ascend
 //! to their local maxima with halved steps. Their ends without duplicates, sorted by score, are the candidates.
-//! Harmonics of order two are closed under rotation: under an unknown light every rotation of the same normals explains
-//! the same colours, so only the positions of the normals in the image support a pose.
+//! Harmonics of order two are closed under rotation. Under an unknown light every rotation of the same normals
+//! therefore explains the same colours, and only the positions of the normals in the image support a pose.
 //!
 //! | file | content |
 //! |---|---|
@@ -25,8 +25,8 @@
 //! | `task_results` | results that may come in any order |
 //!
 //! Limits: tilt up to 100 degrees with roll up to 32, or any rotation up to 76 degrees. Candidates end a few degrees
-//! from the truth. The search misses tilts beyond 60 degrees of half a depth map, where the views share too little, and
-//! overlaps below 0.15. It models neither shadows nor varying albedo.
+//! from the truth. The search misses tilts beyond 60 degrees if the depth map shows half of the object, where the views
+//! share too little, and overlaps below 0.15. It models neither shadows nor varying albedo.
 
 mod ascent;
 mod cloud;

@@ -15,7 +15,7 @@ pub struct SearchProblem<'a> {
     pub normals: &'a Normals,
     /// The light in the colour view's frame if it is known up to its exposure.
     pub light: Option<&'a Light>,
-    /// s if it is held; `None` searches 0.7 .. 1.4 times `unit_scale`.
+    /// s if it is held; `None` means a search over 0.7 .. 1.4 times `unit_scale`.
     pub scale: Option<f64>,
     /// Initial value of s.
     pub unit_scale: f64,

@@ -14,11 +14,11 @@ use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use crate::numeric::random::Random;
 
-/// Largest tilt between both lines of sight in degrees; beyond a right angle views of a relief share almost nothing.
+/// Largest tilt between both lines of sight, degrees. Beyond a right angle, views of a relief share almost nothing.
 const LARGEST_TILT: f64 = 100.0;
 /// Largest roll about the line of sight in degrees at any tilt, because most cameras are held upright.
 const LARGEST_ROLL: f64 = 32.0;
-/// Every rotation by less than this many degrees belongs to the domain, about any axis.
+/// Every rotation by less than this many degrees about any axis belongs to the domain.
 const LARGEST_ANGLE: f64 = 76.0;
 /// Constants of the spiral: phi = sqrt 2, and psi, the positive root of psi^4 = psi + 4.
 const PSI: f64 = 1.533_751_168_755_204_3;

@@ -1,11 +1,11 @@
-//! Exact score of a template at one translation: how well it explains the colours under it.
+//! Exact score of a template at one translation, which measures how well the template explains the colours under it.
 //!
 //! score = N (N / V) (1/3) ln( det(T + e) / det(E + e) ), with N cells of overlap out of V visible ones, the covariance
-//! T of the balanced colours y in the overlap, and the covariance E of their residuals. Under an unknown light
-//! these are the residuals of a linear fit of the nine harmonics in each channel, under a known one y - W B(n) L without
-//! a common exposure. The score is the gain of log likelihood over a constant colour, so exposure and white balance cancel. N /
-//! V is the share of the visible cells that lie on the mask: points that should be visible but lie off the object count
-//! against the pose.
+//! T of the balanced colours y in the overlap, and the covariance E of their residuals. Under an unknown light these
+//! are the residuals of a linear fit of the nine harmonics in each channel, under a known one y - W B(n) L without a
+//! common exposure. The score is the gain of log likelihood over a constant colour, so exposure and white balance
+//! cancel. N / V is the share of the visible cells that lie on the mask: points that should be visible but lie off the
+//! object reduce the score.
 //!
 //! Limits: every cell counts as independent, and shadows and varying albedo are not modelled.
 
@@ -18,20 +18,20 @@ use crate::light::{HARMONICS, Light, basis};
 /// Variance e added to the balanced colours, whose first axis has variance one. A tilt by half the spacing of the rotations
 /// leaves at least this much unexplained (docs/lab/thresholds.md).
 const UNEXPLAINED: f64 = 1e-3;
-/// Added to the diagonal of the harmonics' Gram matrix, as shares of the entry itself and of the weight. They prevent
-/// large coefficients of harmonics that hardly vary over the overlap.
+/// Numbers that are added to the diagonal of the harmonics' Gram matrix, as shares of the entry itself and of the
+/// weight. They prevent large coefficients of harmonics that hardly vary over the overlap.
 const RIDGE: f64 = 1e-3;
 const RIDGE_OF_WEIGHT: f64 = 1e-4;
-/// Smallest number of cells of an overlap: nine harmonics fit any colours of nine cells.
+/// Smallest number of cells of an overlap. Nine harmonics fit any colours of nine cells.
 pub const FEWEST_CELLS: f32 = 12.0;
 
-/// Products of the harmonics over some cells.
+/// Sums over some cells of the products of the harmonics.
 pub type Gram = SMatrix<f64, HARMONICS, HARMONICS>;
 
 /// Balanced colours of a known light at every cell of a template, without their mean along the exposure.
 pub struct Prediction {
     light: Light,
-    /// W (1, 1, 1) at length one: the direction in which the exposure moves the colours.
+    /// W (1, 1, 1) with length one, the direction in which the exposure moves the colours.
     pub exposure: Vector3<f64>,
     /// The colours, in the order of the template's cells.
     pub colours: Vec<[f32; 3]>,
@@ -79,7 +79,8 @@ pub fn score(template: &Template, prediction: Option<&Prediction>, target: &Targ
 /// Sums of squares of the colours about their mean and of the residuals, and the number of cells.
 type Squares = (Matrix3<f64>, Matrix3<f64>, f64);
 
-/// The cells that a moved template and the target share: index in the template's list, sums, index in the target.
+/// The cells that a moved template and the target share, each as index in the template's list, sums, and index in the
+/// target.
 fn overlap<'a>(
     template: &'a Template,
     target: &'a Target,

@@ -13,7 +13,7 @@ const FREE_SCALES: [f64; 4] = [0.74, 0.90, 1.09, 1.32];
 const NEAR_SIZES: [f64; 3] = [0.87, 1.0, 1.15];
 /// Number of pairs in one slice.
 const SWEPT_AT_ONCE: usize = 8;
-/// Number of slices of a single pair at the beginning. The first call compiles the code, and until engines have
+/// Number of slices at the beginning that have a single pair. The first call compiles the code, and until engines have
 /// optimised it, a pair takes several times as long.
 const WARMING_SLICES: usize = 30;
 

@@ -1,8 +1,9 @@
 //! The colour view on the search grid: coverage and balanced, mean-free log colours of each cell, and their spectra.
 //!
 //! y = W (log S - mean), where W holds the principal axes of the object's colours, each divided by the root of its
-//! standard deviation. This is half-way between plain and whitened differences. Plain ones show little but brightness.
-//! In whitened ones the faint chromaticity of natural light counts as much as its brightness, but so does noise.
+//! standard deviation. This is half-way between plain and whitened differences. Plain differences show hardly anything
+//! but brightness. In whitened differences the faint chromaticity of natural light counts as much as its brightness,
+//! but so does noise.
 //!
 //! Limits: the grid spans the mask. If the mask is the whole frame, a small object has few cells.
 
@@ -23,7 +24,7 @@ pub type Fourier = PlaneFourier<SIDE>;
 /// Number of cells across the longer side of the mask; a tilt by the spacing of the rotations moves features by about
 /// two.
 const ACROSS: f64 = 18.0;
-/// Smallest covered share of a cell with a colour; less is a border of interpolated pixels.
+/// Smallest covered share of a cell with a colour; a smaller share is a border of interpolated pixels.
 const LEAST_COVER: f32 = 0.05;
 /// Standard deviation in log units below which a colour axis is not amplified further: twice the noise of a good
 /// camera.
@@ -61,7 +62,8 @@ impl Target {
     /// # Errors
     /// [`ErrorKind::Degenerate`] if all colours are the same.
     pub fn new(view: &ColourView, side: usize, fourier: &mut Fourier) -> Result<Self> {
-        // Tested on pixels, because their means over cells differ by rounding. Bright colours have large logarithms.
+        // This is tested on pixels, because their means over cells differ by rounding. Bright colours have large
+        // logarithms.
         if view.log_spread() <= f64::from(f32::EPSILON) * (1.0 + view.log_mean().abs()) {
             return Err(flat());
         }

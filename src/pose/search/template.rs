@@ -13,8 +13,8 @@ use crate::light::{HARMONICS, basis};
 
 /// Smallest cosine between a normal and the direction to the camera; more oblique patches are slivers on the grid.
 const GRAZING: f32 = 0.1;
-/// Depth in cells behind the nearest patch of a cell at which a patch is hidden: the slope of a visible surface over a
-/// cell and its neighbours.
+/// Depth in cells behind the nearest patch of a cell at which a patch is hidden. It allows for the slope of a visible
+/// surface over a cell and its neighbours.
 const HIDDEN: f32 = 2.5;
 
 /// Number of values that are added and multiplied at once.
@@ -150,7 +150,7 @@ impl Template {
             if column >= 1.0 && row >= 1.0 && column <= last && row <= last {
                 let cell = nearest(row) * self.side + nearest(column);
                 for cell in [cell, cell - 1, cell + 1, cell - self.side, cell + self.side] {
-                    // Written out because `min` is a function call on some targets.
+                    // The minimum is written out, because `min` is a function call on some targets.
                     if depth < self.nearest[cell] {
                         self.nearest[cell] = depth;
                     }
@@ -205,7 +205,7 @@ fn rows(rotation: &Matrix3<f64>) -> [[f32; 3]; 3] {
 }
 
 fn times(m: &[[f32; 3]; 3], [x, y, z]: [f32; 3]) -> [f32; 3] {
-    // Written out because a map over an array remains a function call.
+    // The loop is written out, because a map over an array remains a function call.
     [
         m[0][0] * x + m[0][1] * y + m[0][2] * z,
         m[1][0] * x + m[1][1] * y + m[1][2] * z,

@@ -3,8 +3,8 @@
 //! Method: draws the points on a raster of cells as wide as the spacing of the points, nearest first. Discontinuities
 //! are the points of covered cells next to empty or much farther ones. The end of the data is not always the end of the
 //! object. A sharp edge of the depth map, where the surface faces the sensor and then stops, lies on the silhouette in
-//! every view. An occluding contour, where the surface turns away, lies on it only in the view from which it turns
-//! away.
+//! every view. An occluding contour, where the surface turns away, lies on the silhouette only in the view from which
+//! the surface turns away.
 
 use nalgebra::Vector3;
 
@@ -12,11 +12,11 @@ use super::problem::SilhouetteProblem;
 use crate::pose::similarity::Similarity;
 use crate::view::Size;
 
-/// Neighbours in the depth map whose distances differ by more than this share do not belong to one surface: 15 mm at
-/// 0.75 m.
+/// Neighbours in the depth map whose distances differ by more than this share, 15 mm at 0.75 m, do not belong to one
+/// surface.
 const JUMP: f64 = 0.02;
-/// Cosines between normal and ray of the depth camera: a discontinuity begins to count as sharp at the first and counts
-/// fully from the second; normals of real sensors at an occluding contour do not fall below 0.3.
+/// Cosines between normal and ray of the depth camera. A discontinuity begins to count as sharp at the first and counts
+/// fully above the second. Normals of real sensors at an occluding contour do not fall below 0.3.
 const SHARP: [f64; 2] = [0.35, 0.7];
 /// Cosine between normal and ray of the colour camera below which a surface turns away.
 const TURNED_AWAY: f64 = 0.45;
@@ -50,7 +50,7 @@ pub struct Discontinuities {
 
 /// Reach, in cells, of the neighbourhood that determines the normal of a discontinuity.
 const AROUND: usize = 5;
-/// Marks a cell without a point.
+/// The mark of a cell without a point.
 const BARE: u32 = u32::MAX;
 
 impl Discontinuities {

@@ -11,8 +11,8 @@
 //! Here sd is the signed distance to the silhouette, positive outside, p(q) the nearest discontinuity, n the normal of
 //! a discontinuity in the image, m the strongest gradient along that normal, and s how clear it is.
 //!
-//! A depth sensor shrinks or grows every object by an edge bias d that is the same all around. Left out, it would
-//! shift the distance, so it is an unknown.
+//! A depth sensor shrinks or grows every object by an edge bias d that is the same all around. Without this unknown the
+//! distance would be biased.
 //!
 //! The object turns about its centre c: x = R (X - c) + c + t. Method: rounds of damped Gauss-Newton. Visible points,
 //! covered pixels and matches are frozen in a round, and rho narrows in stages.

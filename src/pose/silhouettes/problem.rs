@@ -25,7 +25,7 @@ pub struct SilhouetteReport {
     /// Robust standard deviation of the depth discontinuities about silhouette and edges, pixels.
     pub noise: f64,
     pub uncertainty: Uncertainty,
-    /// Whether the silhouettes do not constrain the weakest rotation, which then keeps its initial value.
+    /// Whether the weakest rotation keeps its initial value because the silhouettes do not constrain it.
     pub unseen: bool,
     /// The objective at the finest scale.
     pub cost: f64,

@@ -26,7 +26,7 @@ const EDGE_WEIGHT: f64 = 0.4;
 const PRIOR_WEIGHT: f64 = 0.1;
 /// One sigma of the edge bias, pixels.
 const EDGE_BIAS_SIGMA: f64 = 2.0;
-/// Robust scales in turn, pixels.
+/// Robust scales of the rounds in turn, pixels.
 const SCALES: [f64; 4] = [40.0, 14.0, 7.0, 3.5];
 /// Number of rounds at each robust scale.
 const ROUNDS: usize = 6;
@@ -39,10 +39,10 @@ const MOST_POINTS: usize = 4000;
 const MOST_BORDER: usize = 1000;
 /// The last robust scale.
 const FINEST: f64 = SCALES[SCALES.len() - 1];
-/// Length of silhouette, in pixels, whose errors count as one.
+/// Length of silhouette, in pixels, whose errors count as one error.
 const CORRELATED_LENGTH: f64 = 8.0;
 /// Factor by which errors exceed the residuals, because errors of masks, of the sensors' registration and of the edge
-/// bias all go one way.
+/// bias all have the same sign.
 const SIGMA_INFLATION: f64 = 3.0;
 /// Smallest noise of the discontinuities, pixels.
 const LEAST_NOISE: f64 = 0.3;
@@ -54,7 +54,7 @@ const EDGE_BIAS: usize = SCALE;
 
 /// Registers from silhouettes; owns its memory.
 pub struct SilhouetteRegistration {
-    /// Present if the image has a mask.
+    /// The image's silhouette, if the image has a mask.
     silhouette: Option<Silhouette>,
     edges: Edges,
     /// The edge beside each discontinuity, if there is one.

@@ -16,7 +16,7 @@ const DEPTH_FOCAL: [f64; 2] = [0.7, 0.95];
 /// degrees.
 const BASELINE: [f64; 2] = [0.02, 0.08];
 const LARGEST_TURN: f64 = 3.0;
-/// Range of the distance from projector to depth camera in metres: that of structured-light sensors.
+/// Range of the distance from projector to depth camera in structured-light sensors, metres.
 const PROJECTOR: [f64; 2] = [0.05, 0.08];
 
 /// Properties that all frames of a rig share.

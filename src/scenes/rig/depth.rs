@@ -26,7 +26,7 @@ const LATERAL: f64 = 0.5;
 /// (Kinect).
 const DISPARITY: f64 = 580.0 * 0.075;
 const DISPARITY_STEP: f64 = 0.125;
-/// Cosine between surface and line of sight up to which no light returns, and from which all of it does.
+/// Cosines between surface and line of sight: up to the first no light returns, and above the second all light returns.
 const GRAZING: [f64; 2] = [0.08, 0.18];
 /// Relative jump of depth between neighbours that counts as a discontinuity.
 const RIM: f64 = 0.03;
@@ -119,7 +119,7 @@ fn displaced(size: Size, index: usize, jitter: [f64; 2]) -> usize {
     size.index(move_by(column, jitter[0], size.width), move_by(row, jitter[1], size.height))
 }
 
-/// The depth at a pixel that may lie at a discontinuity: lost, between both surfaces, or unchanged.
+/// The depth at a pixel that may lie at a discontinuity. It is lost, between both surfaces, or unchanged.
 fn at_rim(seen: &Seen, size: Size, index: usize, depth: f64, draw: f64) -> Option<f64> {
     let jump = |near: usize| f64::from(seen.depth[near]) - depth;
     let other = size.neighbours(index).find(|&near| jump(near).abs() > RIM * depth);
@@ -137,7 +137,7 @@ fn smooth_noise(size: Size, chance: &mut Chance) -> Vec<f64> {
     let length = kernel.iter().map(|weight| weight * weight).sum::<f64>().sqrt();
     let kernel: Vec<f64> = kernel.iter().map(|weight| weight / length).collect();
     let white: Vec<f64> = (0..size.len()).map(|_| chance.gaussian()).collect();
-    // Borders wrap around, so that the variance is one there, too.
+    // Borders wrap around, so that the variance is also one at the borders.
     let along = |values: &[f64], step: [usize; 2]| -> Vec<f64> {
         let mut sums = vec![0.0; values.len()];
         for (index, sum) in sums.iter_mut().enumerate() {
@@ -226,8 +226,8 @@ mod tests {
         assert!(at(50).chain(at(150)).all(|value| (950..1050).contains(&value) || (1450..1550).contains(&value)));
     }
 
-    /// A square at 0.8 m in front of a wall at 1.6 m: its shadow on the wall is f b (1 / 0.8 - 1 / 1.6) pixels wide, on
-    /// the side away from the projector.
+    /// A square at 0.8 m is in front of a wall at 1.6 m. Its shadow on the wall is f b (1 / 0.8 - 1 / 1.6) pixels wide,
+    /// on the side away from the projector.
     #[test]
     fn the_shadow_of_the_projector_lies_where_geometry_says() {
         for projector in [0.06, -0.08] {

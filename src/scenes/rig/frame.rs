@@ -14,7 +14,7 @@ use crate::scenes::flaws::Chance;
 use crate::scenes::{LARGEST_VIEW, SMALLEST_VIEW};
 use crate::view::{Pinhole, Size};
 
-/// Streams of random numbers of each frame; the rig has a separate one, beyond those of any frame.
+/// Number of streams of random numbers of each frame. The rig has a separate stream, beyond those of any frame.
 #[derive(Clone, Copy)]
 enum Stream {
     Layout,
@@ -32,7 +32,7 @@ pub struct RigRequest {
     pub kind: RigKind,
     /// Seed of the rig: cameras, lenses and extrinsics. It also enters the frames.
     pub seed: u64,
-    /// Frames of one seed share the rig; scene, light and noise differ.
+    /// Number of the frame. Frames of one seed share the rig; scene, light and noise differ.
     pub frame: u32,
     /// Sides of 16 to 1024 pixels; `None` is 640x480 or 960x540, depending on the seed.
     pub colour_size: Option<Size>,
@@ -126,7 +126,7 @@ pub fn render(request: &RigRequest) -> Result<RigFrame> {
 struct Views {
     rig: Rig,
     stage: Stage,
-    /// From the world to the colour camera.
+    /// The transformation from the world to the colour camera.
     view: Similarity,
     light: Illumination,
     rays: Rays,
@@ -195,7 +195,7 @@ mod tests {
                 same as f64 / f64::from(all.max(1))
             };
             let [right, wrong] = [agreement(&true_pose), agreement(&off)];
-            // The rest are pixels that several albedos or things share.
+            // The other pixels see several albedos or things.
             assert!(right > 0.93 && wrong < right - 0.04, "{kind:?}: {right} {wrong}");
         }
     }

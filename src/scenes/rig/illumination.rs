@@ -55,7 +55,7 @@ impl Illumination {
         Self { sky, turn, sky_share, lamps }
     }
 
-    /// A natural light as it is, or as half of the light of a stage that a lamp lights as well.
+    /// A natural light as it is, or as half of the light of a stage that is also lit by a lamp.
     pub fn given(sky: Light, has_lamp: bool, stage: &Stage, target: Vector3<f64>, chance: &mut Chance) -> Self {
         let lamps: Vec<Lamp> = has_lamp.then(|| Lamp::random(stage, target, chance)).into_iter().collect();
         Self { sky, turn: Matrix3::identity(), sky_share: if has_lamp { 0.5 } else { 1.0 }, lamps }
@@ -87,7 +87,7 @@ impl Illumination {
 }
 
 impl Lamp {
-    /// Above and beside the rig, possibly behind it.
+    /// The lamp is above and beside the rig, possibly behind it.
     fn random(stage: &Stage, target: Vector3<f64>, chance: &mut Chance) -> Self {
         let side = if chance.uniform() < 0.5 { -1.0 } else { 1.0 };
         let reach = target.norm();
@@ -170,7 +170,7 @@ mod tests {
                 }
             }
         }
-        // Borders of shadows differ by the step off the surface and by the samples of the map.
+        // Borders of shadows differ because of the step off the surface and the samples of the map.
         assert!(all > 500 && dark > all / 20 && dark < all / 2, "{dark} of {all}");
         assert!(same as f64 > 0.97 * all as f64, "{same} of {all}");
     }

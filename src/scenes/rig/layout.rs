@@ -55,7 +55,7 @@ impl RigKind {
 /// A stage, the rig's pose in it, and the scene's centre.
 pub struct Layout {
     pub stage: Stage,
-    /// From the world to the colour camera.
+    /// The transformation from the world to the colour camera.
     pub view: Similarity,
     pub target: Vector3<f64>,
 }

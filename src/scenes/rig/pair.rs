@@ -117,7 +117,7 @@ struct Recipe {
     pattern: Pattern,
     /// Distance of the depth camera relative to that of the colour camera.
     away: f64,
-    /// How far the depth camera looks past the object, relative to its width of view.
+    /// Distance by which the depth camera looks past the object, relative to its width of view.
     aside: f64,
 }
 
@@ -232,7 +232,7 @@ fn of_mesh(mesh: &Mesh) -> Solid {
     }
 }
 
-/// A tube along a trefoil knot, tilted so that no symmetry is left. It thickens along its way.
+/// A tube along a trefoil knot, tilted so that no symmetry is left. Its thickness grows along the knot.
 fn knot() -> Solid {
     let centre = |u: f64| {
         let (twice, thrice) = (2.0 * TAU * u, 3.0 * TAU * u);

@@ -20,7 +20,7 @@ const NODES: usize = 8;
 /// size for the bending of its edges by a lens.
 const MARGIN: f64 = 0.5;
 const MARGIN_SHARE: f64 = 0.05;
-/// Marks a ray that meets nothing.
+/// The mark of a ray that meets nothing.
 pub const NOTHING: u32 = u32::MAX;
 
 /// The rays of a camera, `samples` x `samples` for each pixel.
@@ -76,7 +76,7 @@ impl Rays {
             }
         }
         for (axis, [least, largest]) in rays.bounds.iter_mut().enumerate() {
-            // The minimum of a number and NaN is the number.
+            // The minimum ignores NaN.
             for slope in rays.slopes.iter().map(|slopes| f64::from(slopes[axis])) {
                 (*least, *largest) = (least.min(slope), largest.max(slope));
             }
@@ -84,7 +84,7 @@ impl Rays {
         rays
     }
 
-    /// A view without a lens and with one sample a pixel, for a lamp or a projector.
+    /// A view without a lens and with one sample per pixel, for a lamp or a projector.
     pub fn straight(focal_length: f64, size: Size) -> Self {
         let [cx, cy] = [size.width, size.height].map(|side| 0.5 * (side as f64 - 1.0));
         Self::new(&Pinhole { fx: focal_length, fy: focal_length, cx, cy, lens: Lens::None }, size, 1)
@@ -214,7 +214,7 @@ fn span(coordinates: [f64; 3], length: usize) -> std::ops::Range<usize> {
     let [a, b, c] = coordinates;
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));
     let margin = MARGIN + MARGIN_SHARE * (high - low);
-    // Clamped before the casts, which would saturate.
+    // The numbers are clamped before the casts, which would saturate.
     let within = |position: f64| position.max(0.0).min(length as f64) as usize;
     within((low - margin).ceil())..within((high + margin).floor() + 1.0)
 }
@@ -304,7 +304,7 @@ mod tests {
             let ray = Vector3::new(x, y, 1.0);
             let depths = stage.triangles.iter().filter_map(|triangle| {
                 let [a, b, c] = triangle.corners.map(|corner| placed[corner as usize]);
-                // ray t = a + u (b - a) + v (c - a)
+                // The ray meets the triangle where ray t = a + u (b - a) + v (c - a).
                 let solution = Matrix3::from_columns(&[ray, a - b, a - c]).lu().solve(&a)?;
                 let [t, u, v] = solution.into();
                 (t > 0.0 && u >= 0.0 && v >= 0.0 && u + v <= 1.0).then_some(t)

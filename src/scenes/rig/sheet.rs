@@ -5,7 +5,7 @@ use nalgebra::{Vector2, Vector3};
 use super::solids::Solid;
 use crate::scenes::flaws::Chance;
 
-/// Number of cells along the longer side: 4 mm on a sheet of 0.8 m.
+/// Number of cells along the longer side, each 4 mm on a sheet of 0.8 m.
 const CELLS: usize = 192;
 /// Range of the number of long creases of crumpled paper, and the largest bend at a crease in radians.
 const CREASES: [f64; 2] = [4.0, 10.0];
@@ -19,7 +19,7 @@ const CORNERS: usize = 32;
 /// Range of the number of folds of a cloth, and their largest depth in metres.
 const FOLDS: [f64; 2] = [5.0, 10.0];
 const FOLD_DEPTH: f64 = 0.05;
-/// Largest depth of either kind in metres; more would reach the background.
+/// Largest depth of both kinds, metres; a larger one would reach the background.
 const DEPTH: f64 = 0.16;
 
 /// A sheet of these sides in metres (width, height), about the plane z = 0.

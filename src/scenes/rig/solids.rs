@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 
-/// Largest side of a cell of a flat face in metres: a lens bends edges, but hardly over so short a distance.
+/// Largest side of a cell of a flat face, metres. A lens bends edges, but hardly over so short a distance.
 const LONGEST_SIDE: f64 = 0.1;
 
 /// Triangles with normals at their corners, which need not face outwards.

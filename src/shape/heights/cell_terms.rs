@@ -125,8 +125,8 @@ impl<'a> CellTerms<'a> {
         }
     }
 
-    /// How well a single pixel's colours and the weight of its normal determine its slopes: the smaller eigenvalue of
-    /// its matrix. Zero unless `wanted`.
+    /// Measures how well a single pixel's colours and the weight of its normal determine its slopes, by the smaller
+    /// eigenvalue of its matrix. Zero unless `wanted`.
     pub(super) fn confidence(&self, frames: &Frames, source: usize, slopes: [Lanes; 2], wanted: Mask) -> Lanes {
         let at = NormalWithDerivatives::at(frames, slopes);
         let [mut pp, mut pq, mut qq] = self.linearise_at(&at, self.pixel_log(source), wanted).matrix;

@@ -1,4 +1,4 @@
-//! The domain of unknown heights: the mask of one view, the neighbours of its pixels, their rays.
+//! The domain of unknown heights: the mask of one view, the neighbours of its pixels, and their rays.
 
 use super::ray_frames::RayFrames;
 use crate::error::{Error, ErrorKind, Result};
@@ -23,11 +23,11 @@ pub struct HeightDomain {
     /// Columns of the box; the rows of the rasters over it have length `width`, a multiple of [`LANES`].
     pub(super) columns: usize,
     pub(super) width: usize,
-    /// Which pixels and neighbours are inside: bits of [`INSIDE`] and the following.
+    /// The pixels and neighbours that are inside, as bits of [`INSIDE`] and the following constants.
     pub(super) flags: Vec<u8>,
     pub(super) pixels: usize,
     pub(super) cosine: CosineSolver,
-    /// How normals follow from slopes at each pixel.
+    /// The frames from which normals follow, given the slopes at each pixel.
     pub(super) frames: RayFrames,
 }
 
@@ -82,7 +82,7 @@ impl HeightDomain {
         (0..self.flags.len() / width).map(move |row| (row * width, (top + row) * view_width + left))
     }
 
-    /// Which of a block of [`LANES`] pixels have any of the `wanted` bits.
+    /// The pixels of a block of [`LANES`] that have any of the `wanted` bits.
     #[inline(always)]
     pub(super) fn flagged(&self, index: usize, wanted: u8) -> Mask {
         let flags = self.flags.get(index..).and_then(|flags| flags.first_chunk());

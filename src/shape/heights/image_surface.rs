@@ -5,7 +5,7 @@
 //! independent. [`HeightSolver`] solves the heights at falling robust scales from several starts: the surface
 //! integrated from the pixels' own normals, a flat one and a dome over the mask. Shading is ambiguous and not convex;
 //! the local optimum with the lowest objective is taken, which was the best one on Mozart at 64x64 under the lights A,
-//! B and C. Each call tries one more start, so that none takes long, and continues from the best surface so far.
+//! B and C. Each call tries one more start, so that no call takes long, and continues from the best surface so far.
 //!
 //! A large image is halved until a level is small. The starts are tried at that level, and the best surface moves up
 //! from level to level, with a few steps at each. It serves both cameras. Limits: unconnected parts of the mask are
@@ -19,7 +19,7 @@ use crate::error::Result;
 use crate::light::Light;
 use crate::view::ColourView;
 
-/// Largest number of object pixels at which all starts are tried at full resolution: an object that fills half of 96x96
+/// Largest number of object pixels at which all starts are tried at full resolution. An object that fills half of 96x96
 /// is not halved.
 const MOST_PIXELS: usize = 6000;
 

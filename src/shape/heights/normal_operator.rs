@@ -23,8 +23,8 @@ pub(super) struct NormalOperator {
     pub smoothness: [Vec<f32>; 2],
     /// Weights of the differences to the right and to the lower neighbour: edges and damping together.
     edge_weight: [Vec<f32>; 2],
-    /// Weighted differences, with a margin of zeros of one row and one pixel at both ends. For cells, from H (p, q):
-    /// half the sum and half the difference of both components.
+    /// Weighted differences, with a margin of zeros of one row and one pixel at both ends. For cells, they are half the
+    /// sum and half the difference of both components of H (p, q).
     cell_sum: Vec<f32>,
     cell_difference: Vec<f32>,
     /// Weight times first difference, at the edges.
@@ -71,8 +71,8 @@ impl NormalOperator {
         self.gather(anchor_weight, direction, product);
     }
 
-    /// Adopts the brightness terms of the cells to the right of and below the pixels from `index` on, and their
-    /// gradients for [`downhill`](Self::downhill).
+    /// Adopts the brightness terms of four cells, and their gradients for [`downhill`](Self::downhill). The cells are
+    /// to the right of and below the pixels that begin at `index`.
     pub fn set_cells(&mut self, index: usize, shading: &LinearisedCells) {
         for (raster, value) in self.stiffness.iter_mut().zip(shading.matrix) {
             value.store(&mut raster[index..]);
@@ -255,7 +255,7 @@ mod tests {
                     moved[index] += step;
                     quadratic_form(&operator, &inside, &anchors, damping, &edges, &moved)
                 };
-                // Half the difference quotient of a quadratic equals half its gradient exactly.
+                // Half the difference quotient of a quadratic is exactly half its gradient.
                 let slope = (by(0.5) - by(-0.5)) / 2.0;
                 assert!((slope - f64::from(image[index])).abs() < 1e-3, "{width}x{height} at {index}");
             }

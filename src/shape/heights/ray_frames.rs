@@ -7,9 +7,9 @@ use crate::view::{Camera, Size};
 
 /// (a, b, c) of N = a + p b + q c: N points at the camera; p and q are slopes per pixel in pixels of height.
 ///
-/// Orthographic: z is depth in pixels and N = (p, q, -1). Pinhole: z = f log Z, so that slopes are alike, and with the
-/// ray r(u, v): a = r_v x r_u, b = (r_v x r) / f, c = (r x r_u) / f; multiplied by f^2, so that N has a length of order
-/// one.
+/// For an orthographic camera, z is depth in pixels and N = (p, q, -1). For a pinhole, z = f log Z, so that slopes are
+/// alike, and with the ray r(u, v) a = r_v x r_u, b = (r_v x r) / f, c = (r x r_u) / f; multiplied by f^2, so that N
+/// has a length of order one.
 pub(super) type RayFrame = [[f32; 3]; 3];
 
 /// The frame of every pixel of an orthographic camera.
@@ -18,7 +18,7 @@ pub(super) const ORTHOGRAPHIC: RayFrame = [[0.0, 0.0, -1.0], [1.0, 0.0, 0.0], [0
 /// The frames of the pixels of a box.
 pub(super) enum RayFrames {
     Orthographic,
-    /// Without distortion, a ray consists of its column's x and its row's y: here, each with its change to the next
+    /// Without distortion, a ray consists of its column's x and its row's y. Each is stored with its change to the next
     /// pixel.
     Pinhole {
         columns: Vec<[f64; 2]>,
@@ -30,8 +30,8 @@ pub(super) enum RayFrames {
 }
 
 impl RayFrames {
-    /// Frames of a box of `sides` columns and rows from the pixel `corner` on. Columns beyond the view repeat its last
-    /// one.
+    /// Frames of a box of `sides` columns and rows that begins at the pixel `corner`. Columns beyond the view repeat
+    /// its last one.
     pub fn new(camera: &Camera, size: Size, corner: [usize; 2], sides: [usize; 2]) -> Self {
         let Some(focal_length) = camera.focal_length() else { return Self::Orthographic };
         let last = [size.width - 1, size.height - 1];

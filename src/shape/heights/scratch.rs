@@ -9,7 +9,7 @@ use super::domain::HeightDomain;
 use super::solver::HeightSolver;
 use crate::view::{Normals, Size};
 
-/// Pixels of a band: enough to make the shading solver's setup negligible.
+/// Number of pixels of a band, enough to make the shading solver's setup negligible.
 const BAND: usize = 1 << 15;
 
 /// Memory for the stages of both views.

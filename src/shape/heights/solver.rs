@@ -2,9 +2,9 @@
 //! sum_cells rho(|log S - S(n)|) + sum_edges w (z_j - z_i - g)^2 + sum_i a_i (z_i - anchor_i)^2
 //! + sum_i kappa_i (second differences of z)^2 (docs/method/heights.md).
 //!
-//! The unknown is the surface, so every normal is integrable by construction: under natural light, where three colours
-//! hardly distinguish one normal from another, this is what a single pixel lacks. n is the unit vector of
-//! N = a + p b + q c at the centre of a cell of four pixels, with p, q the slopes of z there and (a, b, c) fixed vectors of the
+//! The unknown is the surface, so every normal is integrable by construction. Single pixels lack this constraint, and
+//! under natural light their three colours hardly distinguish one normal from another. n is the unit vector of N = a +
+//! p b + q c at the centre of a cell of four pixels, with p, q the slopes of z there and (a, b, c) fixed vectors of the
 //! pixel's ray (`ray_frames`); rho is Geman-McClure. The edges hold the slopes of the pixels' own normals (trapezoidal
 //! rule, as in the integration), weighted by how well the colours of a single pixel determine its normal: under
 //! colourful light they decide, up to the border of the mask; under natural light they hardly weigh.
@@ -31,8 +31,8 @@ const DAMPING: [f32; 2] = [1e-4, 1e4];
 /// Divisor of the damping after a step that lowered the objective, and factor after one that did not.
 const DAMPING_DIVISOR: f32 = 5.0;
 const DAMPING_FACTOR: f32 = 10.0;
-/// Least stiffness of the preconditioner, squared log residual per squared slope, so that dark pixels do not make it
-/// singular.
+/// Least stiffness of the preconditioner, squared log residual per squared slope, which keeps dark pixels from making
+/// it singular.
 const LEAST_STIFFNESS: f64 = 1e-6;
 /// The solve has converged when a step lowers the objective by less than this share.
 const SMALLEST_DECREASE: f64 = 1e-4;
@@ -65,7 +65,7 @@ pub struct HeightSolver {
 }
 
 impl HeightSolver {
-    /// A solver for `domains`. It accepts others as well, and reallocates for a larger one.
+    /// A solver for `domains`. It also accepts other domains, and reallocates for a larger one.
     #[inline(never)]
     pub fn new(domains: &[&HeightDomain]) -> Self {
         let room = |domain: &&HeightDomain| padded(domain.len(), domain.width).max(domain.cosine.len());
@@ -365,7 +365,7 @@ fn weighted_square(weight: &[f32], at: isize, off: Lanes) -> Lanes {
     zero.less(weight).select(weight * off * off, zero)
 }
 
-/// p and q at the centre of the cells to the right of and below the pixels from `index` on.
+/// p and q at the centre of the cells to the right of and below the pixels that begin at `index`.
 #[inline(always)]
 fn cell_slopes(z: &[f32], index: usize, width: usize) -> [Lanes; 2] {
     let (here, below) = (index as isize, (index + width) as isize);
@@ -414,7 +414,7 @@ mod tests {
         };
         let mut used = HeightSolver::new(&[&other]);
         let (objective, anchored) = solve(&mut used, &mut domain, HeightProblem { anchors, ..free });
-        // Flat heights would cost 5 * 40^2.
+        // The cost of flat heights is 5 * 40^2.
         assert!(objective < 100.0 && anchored[0] > 30.0, "{objective} {}", anchored[0]);
         solve(&mut used, &mut other, free);
         let mut fresh = HeightSolver::new(&[&domain]);

@@ -19,7 +19,7 @@ pub const INTERMEDIATE: Effort = Effort { steps: 5, iterations: 20, tolerance: 0
 /// little damping achieve as much as [`INTERMEDIATE`] in less time. With a single step, shapes would count as settled
 /// too early.
 pub const EARLY_CALL: Effort = Effort { steps: 2, iterations: 30, tolerance: 0.03, damping: 1e-3 };
-/// Work on a surface that every call improves a little: the next call linearises again, so a few iterations achieve
+/// Work on a surface that every call improves a little. The next call linearises again, so a few iterations achieve
 /// most of the gain. Set by the gain per round at 64x64 to 640x480 (docs/lab/thresholds.md).
 pub const EVERY_CALL: Effort = Effort { steps: 1, iterations: 4, tolerance: 0.1, damping: FAR_DAMPING };
 
@@ -130,7 +130,7 @@ impl MultiStart {
     }
 }
 
-/// A dome over the mask: its profile is a circle in the distance to the border, as high as the largest distance.
+/// A dome over the mask. Its profile is a circle in the distance to the border, as high as the largest distance.
 fn dome(size: Size, mask: &[bool]) -> Vec<f32> {
     let distance = distance_to_border(size, mask);
     let radius = distance.iter().copied().fold(0.0, f32::max);

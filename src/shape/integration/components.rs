@@ -61,7 +61,7 @@ impl Components {
             self.labels[index] = if parent != index {
                 self.labels[parent]
             } else if right.weight[index] > 0.0 || down.weight[index] > 0.0 {
-                // The first pixel of its component, hence without edges from the left or from above.
+                // This is the first pixel of its component, which has no edges from the left or from above.
                 self.count += 1;
                 self.count as u32 - 1
             } else {
@@ -76,7 +76,7 @@ impl Components {
     }
 
     fn root(&mut self, mut index: usize) -> usize {
-        // Terminates, because a parent is never larger than its child.
+        // The loop terminates, because a parent is never larger than its child.
         while self.labels[index] as usize != index {
             let parent = self.labels[index] as usize;
             self.labels[index] = self.labels[parent];

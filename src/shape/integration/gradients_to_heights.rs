@@ -26,16 +26,16 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::numeric::{quantile, robust};
 use crate::view::Size;
 
-/// Gradients beyond this (height per pixel) count as unknown: next to heights of 1e6, an f32 has no digits left for a
-/// shape.
+/// Gradients beyond this (height per pixel) count as unknown, because next to heights of 1e6 an f32 has no digits left
+/// for a shape.
 const LARGEST_GRADIENT: f32 = 1e6;
-/// sigma of one edge's noise in medians of |curl|: a curl sums four edges, which doubles sigma.
+/// sigma of one edge's noise in medians of |curl|. A curl sums four edges, which doubles sigma.
 const SIGMA_OF_CURL: f64 = robust::SIGMA_OF_MEDIAN / 2.0;
-/// Least s as a share of the mean |gradient|: a few times the trapezoidal error of a well-sampled surface.
+/// Least s as a share of the mean |gradient|, a few times the trapezoidal error of a well-sampled surface.
 const LEAST_SCALE: f64 = 0.05;
-/// Least weight of an edge: keeps pixels attached to their neighbours if all their edges are outliers.
+/// Least weight of an edge, which keeps pixels attached to their neighbours if all their edges are outliers.
 const LEAST_WEIGHT: f32 = 1e-4;
-/// Reweighting ends when the mean change of the weights is below this: the change if three edges in a thousand become
+/// Reweighting ends when the mean change of the weights is below this, the change if three edges in a thousand become
 /// outliers.
 const SMALLEST_CHANGE: f64 = 3e-3;
 /// Relative error of the solves between two reweightings, well below the least robust scale; the last solve is exact.
@@ -43,7 +43,7 @@ const ROUND_TOLERANCE: f64 = 1e-3;
 /// Factor on the scale between rounds of a cold start, which begins at the root mean square residual. Least squares
 /// smears a jump over its neighbours, and a small scale would cut these as well.
 const ANNEALING: f64 = 0.5;
-/// Largest number of cells in the median, evenly spread: its error is then below one percent.
+/// Largest number of cells in the median, evenly spread. The error of the median is then below one percent.
 const MOST_SAMPLES: usize = 1 << 15;
 
 /// Treatment of outliers among the gradients.
@@ -227,7 +227,7 @@ impl Integrator {
         let width = self.system.width;
         for (index, source) in self.window() {
             let here = self.inside[index];
-            // The last column's right neighbour is padding or another row's first pixel.
+            // The pixel to the right of the last column is padding or the first pixel of another row.
             let has_right = here && (index + 1) % width != 0 && self.inside[index + 1];
             let has_below = here && self.inside.get(index + width).is_some_and(|&below| below);
             let right = if has_right { (p[source] + p[source + 1]) / 2.0 } else { f32::NAN };

@@ -10,7 +10,7 @@
 use crate::view::{Camera, Normals, Size};
 
 /// Least cosine between the normal and the direction to the camera: 87 degrees, slopes up to 20 pixels of depth per
-/// pixel. Steeper measurements are noise at silhouettes; smooth objects at 64 to 640 pixels have no slopes beyond 20.
+/// pixel. Steeper measurements are noise at silhouettes. Smooth objects at 64 to 640 pixels have no slopes beyond 20.
 pub const GRAZING: f64 = 0.05;
 
 /// Gradients of depth (orthographic: in pixels) or of log depth (pinhole) along columns, `p`, and along rows, `q`.

@@ -23,7 +23,7 @@ use crate::numeric::vector::{dot, sum_of};
 pub enum IntegrationTermination {
     /// The relative residual is within the tolerance.
     Converged,
-    /// The cap on iterations was reached; the heights are the best so far and usable.
+    /// The maximum number of iterations was reached; the heights are the best so far and usable.
     IterationCap,
     /// There was no edge and no anchor.
     Empty,

@@ -22,7 +22,7 @@ impl Edges {
 pub enum AnchorWeight<'a> {
     /// One weight for all anchors.
     Uniform(f32),
-    /// One for each pixel of the raster.
+    /// A weight for each pixel of the raster.
     PerPixel(&'a [f32]),
 }
 

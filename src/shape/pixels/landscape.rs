@@ -13,8 +13,8 @@ use crate::light::{Light, Polynomial};
 use crate::numeric::{LANES, Lanes, Mask};
 use crate::view::Normals;
 
-/// Two ends of descents closer than this (3 degrees) are one minimum: a descent stops within a tenth of a degree of it,
-/// and minima of a quadratic form of second order are tens of degrees apart.
+/// Two ends of descents closer than this, 3 degrees, are one minimum. A descent stops within a tenth of a degree of the
+/// minimum, and minima of a quadratic form of second order are tens of degrees apart.
 const SAME: f32 = 0.05;
 
 /// A local minimum of a pixel's objective.
@@ -24,7 +24,7 @@ pub struct Minimum {
     pub normal: [f32; 3],
     /// The objective there.
     pub objective: f32,
-    /// Share of the hemisphere's directions from which the descent ends there.
+    /// Share of the hemisphere's directions from which the descent ends at this minimum.
     pub share: f32,
 }
 
@@ -36,7 +36,7 @@ pub struct PixelLandscape {
     pub objective: Vec<f32>,
     /// The minima, lowest first.
     pub minima: Vec<Minimum>,
-    /// Normals from step to step of the descent from the start; the last one is its end.
+    /// Normals after each step of the descent from the start; the last one is its end.
     pub path: Vec<[f32; 3]>,
 }
 
@@ -75,7 +75,7 @@ fn values(pixel: &Pixels<'_>, side: usize) -> Vec<f32> {
         let normals: [[f32; 3]; LANES] = std::array::from_fn(|lane| {
             let place = block * LANES + lane;
             let (x, y) = (coordinate(place % side), coordinate(place / side));
-            // There is no normal beyond the hemisphere's edge: the root is NaN there.
+            // Beyond the hemisphere's edge the root is NaN, because there is no normal.
             [x, y, -(1.0 - x * x - y * y).sqrt()]
         });
         objective(pixel, four(&normals)).store(values);
@@ -100,7 +100,7 @@ fn minima(pixel: &Pixels<'_>) -> Vec<Minimum> {
             match found.iter_mut().find(|minimum| is_same(minimum.normal, normal)) {
                 Some(minimum) => minimum.share += share,
                 None => {
-                    // Inserted in order, because there are only a few.
+                    // The minima are inserted in order, because there are only a few.
                     let place = found.iter().take_while(|minimum| minimum.objective <= objective).count();
                     found.insert(place, Minimum { normal, objective, share });
                 }

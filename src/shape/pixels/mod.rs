@@ -1,4 +1,4 @@
-//! One normal for each pixel (Eq. 6 to 9), and the exposure, the one unknown shared by all pixels.
+//! One normal for each pixel (Eq. 6 to 9), and the exposure, the only unknown that all pixels share.
 
 mod exposure;
 mod landscape;

@@ -17,7 +17,7 @@ use crate::view::Normals;
 /// The data for the unknown normals: all slices have one length, with one element for each pixel.
 #[derive(Clone, Copy)]
 pub struct ShadingProblem<'a> {
-    /// log S of R, G, B; a pixel with NaN depends on its prior alone.
+    /// log S of R, G, B; a pixel with NaN depends only on its prior.
     pub log: [&'a [f32]; 3],
     /// The other view's normals in this frame, NaN where it has none.
     pub prior: &'a Normals,
@@ -36,11 +36,11 @@ pub struct ShadingWeights {
     pub robust: Option<f32>,
 }
 
-/// Scale of rho: 23 degrees, more than the noise of normals, less than a wrong correspondence.
+/// Scale of rho, 23 degrees: more than the noise of normals, and less than the error of a wrong correspondence.
 const PRIOR_SCALE: f32 = 0.4;
 
 impl ShadingWeights {
-    /// Weights with a robust prior: a prior normal that is far away, such as that of a wrong correspondence, loses its
+    /// Weights with a robust prior. A prior normal that is far away, such as that of a wrong correspondence, loses its
     /// weight.
     #[must_use]
     pub const fn with_robust_prior(prior: f32, unit: f32) -> Self {
@@ -70,20 +70,20 @@ pub struct ShadingSolver {
 
 /// Number of directions on the hemisphere that are compared: 5 degrees apart, well within the basin of the local solve.
 const DIRECTIONS: usize = 600;
-/// n_z of the flattest direction: closer to the edge of the hemisphere, a surface is too steep to be seen in a pixel.
+/// n_z of the flattest direction. Closer to the edge of the hemisphere, a surface is too steep to be seen in a pixel.
 pub(super) const LARGEST_N_Z: f32 = -0.05;
 /// Largest number of trials of one pixel in one solve. The paper allows 1000 and needs 300; Gauss-Newton needs about
 /// five.
 pub(super) const MOST_STEPS: usize = 30;
-/// A step this short (in units of a unit normal, 0.06 degrees) is the last one: it is taken, and leaves an error of at
-/// most a tenth of itself, a hundredth of the best normals' error.
+/// Length of a step (in units of a unit normal, 0.06 degrees) below which it is the last one. It is taken, and leaves
+/// an error of at most a tenth of its length, a hundredth of the best normals' error.
 const SMALLEST_STEP: f32 = 1e-3;
 /// First damping, relative to the diagonal.
 const FIRST_DAMPING: f32 = 1e-3;
 /// Damping beyond which no step is tried.
 const LARGEST_DAMPING: f32 = 1e6;
-/// Added to the diagonal, in squared log residuals per squared unit of a normal, so that a flat light does not make the
-/// system singular.
+/// Number that is added to the diagonal, in squared log residuals per squared unit of a normal, so that a flat light
+/// does not make the system singular.
 const LEAST_DIAGONAL: f32 = 1e-9;
 
 impl Default for ShadingSolver {
@@ -126,7 +126,7 @@ impl ShadingSolver {
         for index in (0..normals.len()).step_by(LANES) {
             let missing = Lanes::splat(f32::NAN);
             let mut solved = [missing; 3];
-            // Largest number of blocks of a raster lie off the object.
+            // Empty blocks are skipped, because most blocks of a raster lie off the object.
             let start = index as isize;
             let (red, prior) = (Lanes::load(problem.log[0], start), Lanes::load(&problem.prior.z, start));
             if (red.finite() | prior.finite()).any() {
@@ -174,7 +174,7 @@ pub(super) struct Pixels<'a> {
     prior: [Lanes; 3],
     pub(super) has_colour: Mask,
     has_prior: Mask,
-    /// One for a pixel with a colour; below, lambda_2 for a pixel with a prior.
+    /// Weight of the colours, one for a pixel with a colour; the next field is lambda_2 for a pixel with a prior.
     colour_weight: Lanes,
     prior_weight: Lanes,
     unit_weight: Lanes,

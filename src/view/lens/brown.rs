@@ -87,8 +87,8 @@ fn is_unfolded(coefficients: &[f64; 8], [x, y]: [f64; 2], [[a, b], [c, d]]: [[f6
     bends && grows(coefficients, square)
 }
 
-/// Whether the distorted radius grows monotonically up to the radius with this square. Small coefficients cannot
-/// prevent it; otherwise radii in between are sampled.
+/// Whether the distorted radius grows monotonically up to the radius with this square. It does with small coefficients;
+/// otherwise radii in between are sampled.
 fn grows(coefficients: &[f64; 8], square: f64) -> bool {
     let [k1, k2, _, _, k3, k4, k5, k6] = coefficients.map(f64::abs);
     let below = square * (k4 + square * (k5 + square * k6));

@@ -82,8 +82,8 @@ fn distort([k1, k2, k3, k4]: &[f64; 4], angle: f64) -> [f64; 2] {
     ]
 }
 
-/// Whether the distorted radius grows monotonically up to this angle. Small coefficients cannot prevent it; otherwise
-/// angles in between are sampled.
+/// Whether the distorted radius grows monotonically up to this angle. It does with small coefficients; otherwise angles
+/// in between are sampled.
 fn grows(coefficients: &[f64; 4], angle: f64) -> bool {
     let shrinking = distort(&coefficients.map(|value| -value.abs()), angle);
     let limit = angle < PI;

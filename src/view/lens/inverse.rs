@@ -3,9 +3,9 @@
 /// Largest number of rounds of Newton's method; usual lenses take three, and halving the bracket down to rounding takes
 /// fifty.
 pub(super) const MOST_ROUNDS: usize = 60;
-/// Distance in pixels at which a ray has been found: a hundredth of the step between coordinates in f32.
+/// Distance in pixels at which a ray counts as found, a hundredth of the step between coordinates in f32.
 pub(super) const RETURN_DISTANCE: f64 = 1e-7;
-/// Largest slope of a ray behind Brown's lens, 89.4 degrees off the axis: the model has no ray at 90.
+/// Largest slope of a ray behind Brown's lens, 89.4 degrees off the axis. The model has no ray at 90 degrees.
 pub(super) const LARGEST_SLOPE: f64 = 100.0;
 /// Number of radii at which the growth of the distorted radius is checked, evenly spaced in their squares.
 pub(super) const FOLD_SAMPLES: usize = 16;

@@ -3,7 +3,7 @@
 //! Points are distorted in closed form; rays are found by Newton's method within a bracket along the radius.
 //!
 //! A lens model folds: beyond some radius the distorted radius shrinks, and perhaps grows again farther out. No lens
-//! sees what lies beyond the first fold, so it has neither pixel nor ray. Limits: a fold between the sixteen sampled
+//! sees points beyond the first fold, so these have no pixels and no rays. Limits: a fold between the sixteen sampled
 //! radii can be missed; it is then so shallow that it hardly moves a pixel.
 
 mod brown;
@@ -34,7 +34,7 @@ impl Lens {
     pub fn brown(coefficients: &[f64]) -> Result<Self> {
         match coefficients.len() {
             0 => Ok(Self::None),
-            // OpenCV defines up to 14; those of thin prisms and tilted sensors are not supported here.
+            // OpenCV defines up to 14 coefficients; those of thin prisms and tilted sensors are not supported here.
             4.. if coefficients.iter().all(|value| *value == 0.0) => Ok(Self::None),
             4 | 5 | 8 => Ok(Self::Brown(std::array::from_fn(|k| coefficients.get(k).copied().unwrap_or(0.0)))),
             count => Err(wrong_size("4, 5 or 8", count)),
@@ -76,7 +76,7 @@ impl Lens {
     }
 
     /// The distorted position of a point; `None` behind the camera, beyond the fold, and at the camera's centre. A
-    /// fisheye sees points beside and behind it as far as it does not fold.
+    /// fisheye also sees points beside and behind it, up to the angle at which it folds.
     pub(super) fn project(&self, point: [f64; 3]) -> Option<[f64; 2]> {
         match self {
             Self::None => slopes(point),

@@ -21,9 +21,9 @@ export interface Row {
   reads: Reads;
   /** The codes of the warnings that the sample gives. */
   warnings: readonly ReaderCode[];
-  /** What is taken from the file. */
+  /** The numbers that are taken from the file. */
   taken: string;
-  /** What the file does not say and the reader decides. */
+  /** The reader's decisions where the file leaves something open. */
   guessed: string;
   /** How to get the file from the product. */
   exported: string;

@@ -25,7 +25,7 @@ const SERIES = 5;
 export const bar = (share: number): Markup =>
   html`<svg class="bar" viewBox="0 0 100 8" preserveAspectRatio="none" aria-hidden="true"><rect class="track" width="100" height="8"/><rect class="fill" width="${Math.min(100, Math.max(0, 100 * share)) || 0}" height="8"/></svg>`;
 
-/** A step of 1, 2 or 5 times a power of ten that divides a range into at most five. */
+/** A step of 1, 2 or 5 times a power of ten that divides a range into at most five parts. */
 function step(range: number): number {
   const power = 10 ** Math.floor(Math.log10(range / 5));
   return ([1, 2, 5].find((times) => range / (times * power) <= 5) ?? 10) * power;
@@ -38,7 +38,7 @@ function ticks(from: number, to: number): number[] {
   return Array.from({ length: Math.max(0, count) }, (_, k) => (first + k) * by);
 }
 
-/** Lengths of a panel in its units, named where they are used, because a list is shorter to download. */
+/** Lengths of a panel in its units. They have names where they are used, because a list is a smaller download. */
 const PANEL = [320, 200, 26, 10, 10, 40, 5, 3, 32] as const;
 
 const at = (value: number): string => value.toFixed(2);
@@ -49,7 +49,7 @@ interface Line {
   curve: Curve;
 }
 
-/** The part of a line within the panel, cut at its border; one continuous stroke per visit, so that dashes continue. */
+/** The part of a line within the panel, cut at its border. Each piece inside is one stroke, so that its dashes continue. */
 function path({ points }: Curve, x: (offset: number) => string, y: (height: number) => string): string {
   type Point = (typeof points)[number];
   const place = ({ offset, height }: Point) => `${x(offset)} ${y(height)}`;
@@ -92,7 +92,7 @@ ${ticks(first, last).map((tick) => html`<path class="grid" d="M${x(tick)} ${top}
 ${lines.map(({ series, curve: found }) => html`<path class="series s${series}" d="${path(found, x, y)}"/>`)}
 ${lines.map(({ series, curve: { best, from, to } }) => {
   if (from === undefined && to === undefined) return undefined;
-  // The marks are below each other under the axis, so that none hides another.
+  // The marks are in separate lines under the axis, so that none hides another.
   const level = Number(y(0)) + 2 + between * series;
   return html`<path class="width s${series}" d="M${x(from ?? first)} ${level}H${x(to ?? last)}"/><path class="best s${series}" d="M${x(best)} ${y(0)}l-${mark} -${2 * mark}h${2 * mark}z"/>`;
 })}

@@ -3,7 +3,7 @@ import type { CheckReport, Pose, Warning } from "../../../types/index.js";
 
 /** The result of a check; its warnings may include messages of the caller. */
 export interface Checked extends Omit<CheckReport, "warnings"> {
-  /** Codes are not needed: the report shows the messages. */
+  /** Warnings need no codes, because the report shows the messages. */
   warnings: readonly (string | Pick<Warning, "message">)[];
 }
 

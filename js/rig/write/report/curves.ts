@@ -18,7 +18,7 @@ export interface Curve {
 
 type Points = Curve["points"];
 
-/** The place where the height first exceeds the 95 % level along these points, beginning with the best one. */
+/** The place where the height first exceeds the 95 % level along these points, starting at the best one. */
 function crossing(points: Points): number | undefined {
   const after = points.findIndex(({ height }) => height > SIGMAS_95);
   const [a, b] = [points[after - 1], points[after]];
@@ -26,7 +26,7 @@ function crossing(points: Points): number | undefined {
   return a.offset + ((SIGMAS_95 - a.height) / (b.height - a.height)) * (b.offset - a.offset);
 }
 
-/** Undefined if fewer than two values are numbers. */
+/** The result is undefined if fewer than two values are numbers. */
 export function curve(offsets: readonly number[], values: readonly number[]): Curve | undefined {
   const known = offsets
     .map((offset, index) => ({ offset, value: values[index] ?? NaN }))
@@ -34,7 +34,7 @@ export function curve(offsets: readonly number[], values: readonly number[]): Cu
     .sort((a, b) => a.offset - b.offset);
   if (known.length < 2) return undefined;
   const peak = known.reduce((most, { value }) => Math.max(most, value), -Infinity);
-  // If several are equal, the one that is nearest to the estimate.
+  // If several offsets are equally good, the one nearest to the estimate counts.
   const best = known.reduce(
     (found, { offset, value }) => (value === peak && Math.abs(offset) < Math.abs(found) ? offset : found),
     Infinity,

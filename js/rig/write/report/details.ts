@@ -93,7 +93,7 @@ where its curve is below the dashed line.</p><div class="panels">${panels}</div>
   );
 }
 
-/** Closed by default, so that a printed report has one page. */
+/** The sections are closed by default, so that a printed report has one page. */
 export const details = (report: Checked, more: Markup | undefined): Markup =>
   html`<details><summary>Details: calibrations, cues, frames, sensitivity, covariance</summary>${[
     ...[candidateTable(report), more, cueTable(report), frameTable(report)],

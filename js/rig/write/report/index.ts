@@ -39,7 +39,7 @@ const LEGEND = html`<p class="soft"><svg class="key" viewBox="0 0 24 8" aria-hid
 /** Largest number of lines in the lists of a printed page at which its pictures may be large. */
 const FEW_LINES = 14;
 
-/** Lines that the lists take, each limited to what a full page holds. */
+/** Number of lines of the lists, each limited to the length of a full page. */
 function linesOf({ warnings, candidates }: Checked, { inputs = [], shell }: ReportOptions): number {
   const command = String(shell?.command ?? "").split("\n");
   return (

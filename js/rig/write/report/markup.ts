@@ -31,6 +31,6 @@ function written(part: Part): string {
   return Array.isArray(part) ? part.map(written).join("") : escaped(String(part ?? ""));
 }
 
-/** A template whose values are escaped; attributes that hold one are in double quotes. */
+/** A template whose values are escaped. Attributes that hold a value must be in double quotes. */
 export const html = (parts: TemplateStringsArray, ...values: readonly Part[]): Markup =>
   new Markup(parts.map((text, index) => text + written(values[index])).join(""));

@@ -4,7 +4,7 @@ const NONE = "not known";
 const [MOST_PLAIN, LEAST_PLAIN] = [1e5, 1e-3];
 const SPACE = "\u202f";
 
-/** This many digits, without an exponent if a few zeros suffice. */
+/** A number with this many digits, without an exponent if a few zeros suffice. */
 export function digits(value: number, count = 3): string {
   if (!Number.isFinite(value)) return NONE;
   const size = Math.abs(value);

@@ -9,7 +9,7 @@ const COLUMNS = 640;
 /** Largest number of points that are drawn; a picture of 12 megapixels has fewer. */
 const MOST_POINTS = 1_000_000;
 
-/** Points as runs along the rows of a grid. */
+/** Draws points as runs along the rows of a grid. */
 function runs(edges: ArrayLike<number>, cell: number, columns: number, rows: number): string {
   const cells = new Set<number>();
   for (let i = 0; i + 1 < Math.min(edges.length, 2 * MOST_POINTS); i += 2) {

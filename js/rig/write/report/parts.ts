@@ -42,7 +42,7 @@ export function pictureSection(pictures: readonly Picture[]): Markup | undefined
   return section("Pictures", html`<div class="pictures">${figures}</div>`);
 }
 
-/** The first ones of a list, and a remark on how many are left out. */
+/** The first items of a list, and a remark on the number of omitted items. */
 export function firstOf<T>(
   all: readonly T[],
   most: number,
@@ -54,8 +54,8 @@ export function firstOf<T>(
 }
 
 /**
- * Files that fit on the first page of a printed report with two lines each, and with one line each; if there are more, a second page lists
- * this many.
+ * Numbers of files: those that fit on the first page of a printed report with two lines each, those with one line each, and those on a
+ * second page if there are more.
  */
 const [FEW, BESIDE, ON_A_PAGE] = [5, 10, 60];
 

@@ -37,11 +37,11 @@ const CUES: Readonly<Record<string, string>> = {
 };
 export const cueName = (cue: string): string => (Object.hasOwn(CUES, cue) ? CUES[cue] : undefined) ?? cue;
 
-/** A pose that is not known has no place. */
+/** An unknown pose gives no place. */
 const isKnown = ({ rotation, translation }: Placed): boolean =>
   rotation.length === 9 && translation.length === 3 && [...rotation, ...translation].every(Number.isFinite);
 
-/** Where the poses put the depth camera, for the calibration in question and for the best fit. */
+/** The place of the depth camera under the calibration in question and under the best fit. */
 function places({ estimate }: Checked, given: Calibration | undefined): Markup[] {
   const all = [["The calibration in question", given] as const, ["The best fit", estimate] as const];
   return all.flatMap(([name, pose]) => (pose && isKnown(pose) ? [html`<p>${name}: ${placeInWords(pose)}</p>`] : []));
@@ -105,7 +105,7 @@ const UNKNOWNS = [
 ];
 const COLUMNS = ["Unknown", "Candidate", "Found", "Difference", "95\u202f% interval", "Unit"];
 
-/** The shorter way around. */
+/** The angle of the shorter way around. */
 const around = (degrees: number): number => degrees - 360 * Math.round(degrees / 360);
 
 /** Candidate, found value and difference, with the interval of the found value. */
@@ -135,7 +135,7 @@ function unknownTable(report: Checked, given: Calibration | undefined): Markup {
 /** Nanometres and nanoradians, so that a copied matrix keeps the precision of the calibration. */
 const COPIED = 9;
 
-/** Four rows that programs read. */
+/** The matrix as four rows that programs can read. */
 function matrix({ rotation: r, translation: t }: Placed): Markup {
   const shown = (value: number) => (Number.isFinite(value) ? value.toFixed(COPIED) : "?").padStart(COPIED + 4);
   const rows = [0, 1, 2].map((i) => [0, 1, 2, 3].map((j) => shown((j < 3 ? r[3 * i + j] : t[i]) ?? NaN)).join(""));

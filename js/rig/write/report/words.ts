@@ -17,7 +17,7 @@ export const wordOf = (verdict: CheckVerdict): string => WORDS[verdictOf(verdict
 
 const firstOf = ({ candidates }: Pick<Checked, "candidates">) => Object.values(candidates)[0];
 
-/** Whether a warning alone keeps the verdict from "consistent". */
+/** Whether only a warning keeps the verdict from "consistent". */
 const isCapped = (report: Checked): boolean =>
   report.verdict === "undecided" && firstOf(report)?.verdict === "consistent";
 
@@ -39,7 +39,7 @@ const SIDES = [
   ["below", "above"],
   ["in front of", "behind"],
 ] as const;
-/** Millimetres and degrees below which zero is shown. */
+/** Millimetres and degrees below which a difference is shown as zero. */
 const [LEAST_SHIFT, LEAST_TURN] = [0.05, 0.005];
 
 type Motion = Pick<CheckReport["estimate"], "rotation" | "translation">;
@@ -61,7 +61,7 @@ function heading({ rotation }: Motion): string {
   return `which looks along the LiDAR's ${axis} axis with z up, except for a rotation by ${degrees.toFixed(2)}°`;
 }
 
-/** Where the depth camera or LiDAR sits relative to the colour camera, so that one can compare it with the rig. */
+/** The place of the depth camera or LiDAR relative to the colour camera, in words that can be compared with the rig. */
 export function placeInWords({ rotation, translation }: Motion, isLidar = false): string {
   const parts = translation
     .map((metres, axis) => ({ mm: 1000 * metres, words: SIDES[axis]?.[metres < 0 ? 1 : 0] ?? "" }))
