@@ -261,10 +261,7 @@ mod tests {
 
     #[test]
     fn registrations_that_end_apart_at_one_optimum_widen_its_sigmas() {
-        let mut all = LocalOptima::new(
-            4,
-            Residuals { noise: 0.0, covariance: None, image_noise: 0.0, spread: 1.0 },
-        );
+        let mut all = LocalOptima::new(4, Residuals { noise: 0.0, covariance: None, image_noise: 0.0, spread: 1.0 });
         let mut enter = |degrees: f64, noise: f64| {
             let registered = optimum(degrees, 900.0, noise).registered;
             all.enter(Origin::Candidate(0), registered);
