@@ -224,7 +224,7 @@ mod tests {
     use nalgebra::{Rotation3, Vector3};
 
     use super::*;
-    use crate::pose::{Axis, Direction, Uncertainty, Unknown};
+    use crate::pose::{Direction, Uncertainty};
 
     /// An optimum at this angle about z, with its visible points and its noise.
     fn optimum(degrees: f64, visible: f64, noise: f64) -> LocalOptimum {
@@ -267,7 +267,9 @@ mod tests {
             all.enter(Origin::Candidate(0), registered);
         };
         // The last end fits worse and does not count.
-        [(0.0, 0.01), (1.0, 0.011), (-1.0, 0.012), (2.0, 0.02)].map(|(degrees, noise)| enter(degrees, noise));
+        for (degrees, noise) in [(0.0, 0.01), (1.0, 0.011), (-1.0, 0.012), (2.0, 0.02)] {
+            enter(degrees, noise);
+        }
         let Ranking { best, .. } = all.ranked();
         let ends = best.expect("an optimum").equal_ends();
         assert_eq!(ends.len(), 3);
@@ -275,7 +277,7 @@ mod tests {
             rotation_degrees: [0.1; 3],
             translation: [Some(0.1), Some(0.1), None],
             scale: None,
-            weakest: Direction { unknown: Unknown::Rotation, axis: Axis::Z },
+            weakest: Direction { first: None, second: None },
         };
         uncertainty.add_spread(&ends[0], &ends);
         let expected = (0.01 + 2.0 / 3.0_f64).sqrt();
