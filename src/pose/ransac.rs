@@ -2,8 +2,8 @@
 //! theta (docs/method/surfaces.md).
 //!
 //! Four pairs determine theta. Least squares on its inliers refines the sample with the lowest objective, sum
-//! min(|r|^2, threshold^2). A then becomes a similarity as in Eq. 15, and that similarity is fitted to its own inliers
-//! until they no longer change.
+//! min(|r|^2, threshold^2). Eq. 15 refuses an A that is near no similarity. A similarity is then fitted to the inliers
+//! of A, and again to its own until they no longer change; scale and rotation of Eq. 15 are not used.
 //!
 //! The linear model shears and stretches, so on nearly flat parts it follows noise where a similarity would not. It
 //! therefore only decides which pairs the similarity is fitted to first.
@@ -186,25 +186,26 @@ fn refine_affine(mut affine: AffineModel, pairs: &Pairs<'_>) -> Result<(AffineMo
     Ok((affine, inliers))
 }
 
-/// The similarity nearest to A (Eq. 15), fitted to its inliers.
+/// The similarity fitted to the inliers of the linear model, then to its own. An error if A is near no similarity (Eq. 15).
 fn refine_similarity(
     affine: &AffineModel,
     affine_inliers: Vec<u32>,
     pairs: &Pairs<'_>,
     scale: Option<f64>,
 ) -> Result<(Similarity, Vec<u32>)> {
-    let mut pose = Similarity::nearest(&affine.matrix, affine.translation)?;
-    let mut inliers = affine_inliers;
-    for _ in 0..MOST_REFITS {
+    Similarity::nearest(&affine.matrix, affine.translation)?;
+    let (mut inliers, mut fits) = (affine_inliers, 0);
+    let pose = loop {
         let select = |points: &[Vector3<f64>]| -> Vec<_> { inliers.iter().map(|&k| points[k as usize]).collect() };
-        pose = Similarity::fit(&select(pairs.depth), &select(pairs.image), None, scale)?;
+        let pose = Similarity::fit(&select(pairs.depth), &select(pairs.image), None, scale)?;
         let found = pairs.inliers(|point| pose.apply(*point));
-        let settled = found == inliers;
+        fits += 1;
+        let ends = found == inliers || fits == MOST_REFITS;
         inliers = found;
-        if settled {
-            break;
+        if ends {
+            break pose;
         }
-    }
+    };
     if inliers.len() < FEWEST_PAIRS {
         return Err(degenerate("fewer than four pairs agree on a similarity").value(inliers.len() as f64));
     }
