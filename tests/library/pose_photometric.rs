@@ -208,7 +208,7 @@ fn neighbours_share_what_the_model_leaves_out_and_no_noise() {
         }
         let views = views(sample, 1.0);
         let report = register(&views, None, &views.sample.pose).unwrap();
-        (report.structure, report.noise)
+        (report.spatial_covariance, report.noise)
     };
     for noise in [0.0, 0.01, 0.03] {
         let (structure, noise) = structure(noise, 0.0);
