@@ -236,8 +236,7 @@ impl fmt::Display for Reason {
             }
             Self::ContrastUnexplained { percent } => write!(
                 f,
-                "a single albedo does not fit the image, and the objective of local contrast and silhouette is {} % \
-                 (about 100 % if shading explains nothing)",
+                "a single albedo does not fit the image, and local contrast and silhouette do not fit the pose (objective {} %)",
                 whole(*percent)
             ),
             Self::Unexplained { percent } => {

@@ -272,6 +272,7 @@ impl Estimator {
         }
     }
 
+    /// The parts for a stage of this iteration.
     fn parts(&mut self) -> Parts<'_> {
         let Self { pair, stages, correspondences, scratch, solution, accepted, report, .. } = self;
         let Stages { light, albedo, shape, registration, refinement } = stages;
