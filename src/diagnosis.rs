@@ -3,8 +3,8 @@
 //!
 //! Nothing else in the crate decides this from residuals. [`Residuals::diagnose`] gives the diagnosis for each method
 //! that could take over, because each has its own threshold. [`is_pure_noise`] tells whether a palette of albedos is
-//! fitted at all; [`excess`] and [`share_of_model`] grade the residuals for weights that depend on them. A method may still decline: local contrast also needs clean normals or edges of albedo
-//! (`estimator/finder/local_contrast`).
+//! fitted at all; [`excess`] and [`share_of_model`] grade the residuals for weights that depend on them. A method may still
+//! decline: local contrast also needs clean normals or edges of albedo (`estimator/finder/local_contrast`).
 //!
 //! | threshold | value | set on | held out |
 //! |---|---|---|---|
@@ -27,7 +27,8 @@ pub const PURE_NOISE: f64 = 0.035;
 pub const MIXED_NOISE: f64 = 2.0 * PURE_NOISE;
 /// [`PURE_NOISE`] as a share of the spread of the log image: noisy normals under a strong light leave as much.
 const PURE_SHARE: f64 = 0.15;
-/// Largest spatial covariance of residuals (as a standard deviation, log units) for which a single albedo is an adequate model.
+/// Largest spatial covariance of residuals (root of their mean covariance within tiles, log units) for which a single albedo is
+/// an adequate model.
 const MODEL_COVARIANCE: f64 = 0.007;
 /// [`MODEL_COVARIANCE`] behind a pinhole, where dark print makes the spread of the colours large in comparison with the noise.
 const PINHOLE_COVARIANCE: f64 = 0.03;
@@ -55,7 +56,8 @@ pub const LARGEST_CONTRAST_OBJECTIVE: f64 = 0.56;
 pub struct Residuals {
     /// Robust standard deviation of a channel.
     pub noise: f64,
-    /// Spatial covariance: root of the mean covariance of residuals within tiles; `None` if only the noise was measured.
+    /// Spatial covariance: root of the mean covariance of residuals within tiles, log units; `None` if only the
+    /// noise was measured.
     pub covariance: Option<f64>,
     /// Standard deviation of the image's own noise.
     pub image_noise: f64,
