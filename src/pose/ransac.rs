@@ -289,6 +289,17 @@ mod tests {
     }
 
     #[test]
+    fn a_mirrored_relief_is_refused_although_a_similarity_fits_within_the_threshold() {
+        let mut generator = Random::new(5, 0);
+        let mut coordinate = |extent: f64| extent * (f64::from(generator.word()) / f64::from(u32::MAX) - 0.5);
+        let depth: Vec<_> = (0..50).map(|_| Vector3::new(coordinate(10.0), coordinate(9.0), coordinate(3.0))).collect();
+        let mirrored: Vec<_> = depth.iter().map(|point| Vector3::new(point.x, point.y, -point.z)).collect();
+        let options = RansacOptions { threshold: 4.0, ..RansacOptions::default() };
+        assert_eq!(ransac(&depth, &depth, &options).unwrap().inliers.len(), depth.len());
+        assert_eq!(ransac(&depth, &mirrored, &options).unwrap_err().kind(), ErrorKind::Degenerate);
+    }
+
+    #[test]
     fn more_outliers_need_more_samples() {
         assert_eq!(samples_needed(1.0), 1);
         assert_eq!(samples_needed(0.5), 108);
