@@ -126,7 +126,7 @@ impl ShadingSolver {
         for index in (0..normals.len()).step_by(LANES) {
             let missing = Lanes::splat(f32::NAN);
             let mut solved = [missing; 3];
-            // Most groups of lanes of a raster lie off the object and need no work.
+            // Empty blocks are skipped, because most blocks of a raster lie off the object.
             let start = index as isize;
             let (red, prior) = (Lanes::load(problem.log[0], start), Lanes::load(&problem.prior.z, start));
             if (red.finite() | prior.finite()).any() {
