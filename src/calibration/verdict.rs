@@ -28,8 +28,8 @@ use crate::pose::{Axis, Unknown};
 /// Smallest share of the depth points that the estimate has to put onto the image before it may judge a candidate. The
 /// other points are not compared with anything, and a wrong pose can always fit a small part.
 pub(super) const LEAST_COMPARED_SHARE: f64 = 0.15;
-/// Largest reprojection error that passes, pixels of an image 640 wide: 0.4 degrees at a common focal length. Careful
-/// calibrations by hand reach this accuracy, and colours of points at depth discontinuities need it.
+/// Largest reprojection error that passes, pixels of an image 640 wide, or 0.4 degrees at a common focal length.
+/// Careful calibrations by hand reach this accuracy, and the colouring of points at depth discontinuities needs it.
 pub(super) const TOLERANCE: f64 = 3.5;
 /// Share of draws inside an interval.
 const INSIDE: f64 = 0.95;

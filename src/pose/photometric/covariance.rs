@@ -136,7 +136,7 @@ impl Tiles {
             residuals += red * red + green * green + blue * blue;
             weights += weight * weight;
         }
-        // This is 0 / 0 if no tile has a pair.
+        // The quotient is 0 / 0 if no tile has a pair.
         self.spatial_covariance = (residuals / (3.0 * weights)).max(0.0).sqrt();
         noise_information
     }
