@@ -2,9 +2,9 @@
 //! varying albedo.
 //!
 //! Nothing else in the crate decides this from residuals. [`Residuals::diagnose`] gives the diagnosis for each method
-//! that could take over, because each has its own threshold; [`excess`] and [`share_of_model`] grade the residuals for
-//! weights that depend on them. A method may still decline: local contrast also needs clean normals or edges of albedo
-//! (`estimator/finder/local_contrast`).
+//! that could take over, because each has its own threshold. [`is_pure_noise`] tells whether a palette of albedos is
+//! fitted at all; [`excess`] and [`share_of_model`] grade the residuals for weights that depend on them. A method may still
+//! decline: local contrast also needs clean normals or edges of albedo (`estimator/finder/local_contrast`).
 //!
 //! | threshold | value | set on | held out |
 //! |---|---|---|---|
@@ -18,7 +18,7 @@
 //! | `UNIT_NOISE` | 1.25 | right pairs with clean depth leave up to 1.23 times the image's noise | none |
 //! | `MODEL_NOISE` | 2 | renders leave 0.75 to 1 times the image's noise, photographs 0.7 to 5 times | none |
 //! | [`LARGEST_UNEXPLAINED`] | 0.3 of the spread | renders leave 0.01 to 0.1 | none |
-//! | [`LARGEST_UNEXPLAINED_CONTRAST`] | 0.56 | photographs whose pose is found leave 0.13 to 0.51 | none |
+//! | [`LARGEST_CONTRAST_OBJECTIVE`] | 0.56 | photographs whose pose is found end at 0.13 to 0.51 | none |
 
 /// Standard deviation of residuals in a channel, log units, up to which noise and errors of normals may explain them.
 pub const PURE_NOISE: f64 = 0.035;
@@ -27,7 +27,8 @@ pub const PURE_NOISE: f64 = 0.035;
 pub const MIXED_NOISE: f64 = 2.0 * PURE_NOISE;
 /// [`PURE_NOISE`] as a share of the spread of the log image: noisy normals under a strong light leave as much.
 const PURE_SHARE: f64 = 0.15;
-/// Largest spatial covariance of residuals (as a standard deviation, log units) for which a single albedo is an adequate model.
+/// Largest spatial covariance of residuals (root of their mean covariance within tiles, log units) for which a single albedo is
+/// an adequate model.
 const MODEL_COVARIANCE: f64 = 0.007;
 /// [`MODEL_COVARIANCE`] behind a pinhole, where dark print makes the spread of the colours large in comparison with the noise.
 const PINHOLE_COVARIANCE: f64 = 0.03;
@@ -46,15 +47,17 @@ pub const UNIT_NOISE: f64 = 1.25;
 const MODEL_NOISE: f64 = 2.0;
 /// Largest share of the spread of the log image that a trusted pose may leave unexplained.
 pub const LARGEST_UNEXPLAINED: f64 = 0.3;
-/// Largest share of the local contrast that a trusted pose may leave unexplained.
-pub const LARGEST_UNEXPLAINED_CONTRAST: f64 = 0.56;
+/// Largest objective of local contrast (E of `pose/contrast`, without unit) of a trusted pose: 0 if shading and silhouette
+/// fit perfectly, about 1 if shading explains nothing.
+pub const LARGEST_CONTRAST_OBJECTIVE: f64 = 0.56;
 
 /// The residuals of an image after registration with a single albedo, in log units.
 #[derive(Clone, Copy, Debug)]
 pub struct Residuals {
     /// Robust standard deviation of a channel.
     pub noise: f64,
-    /// Spatial covariance of the residuals, as a standard deviation; `None` if only the noise was measured.
+    /// Spatial covariance: root of the mean covariance of residuals within tiles, log units; `None` if only the
+    /// noise was measured.
     pub covariance: Option<f64>,
     /// Standard deviation of the image's own noise.
     pub image_noise: f64,
@@ -88,15 +91,15 @@ impl Residuals {
     /// The diagnosis that decides whether an alternative is tried. For another unit of depth it is never [`Diagnosis::VaryingAlbedo`].
     #[must_use]
     pub fn diagnose(&self, against: Alternative) -> Diagnosis {
-        let common = |most: f64| self.covariance.is_some_and(|covariance| covariance > most);
+        let covary = |most: f64| self.covariance.is_some_and(|covariance| covariance > most);
         let (varies, is_explained) = match against {
             Alternative::LocalContrast if self.covariance.is_none() => (self.noise > MIXED_NOISE, self.is_noise()),
-            Alternative::LocalContrast => (common(MODEL_COVARIANCE), self.is_noise()),
+            Alternative::LocalContrast => (covary(MODEL_COVARIANCE), self.is_noise()),
             Alternative::Silhouettes => {
                 let purest = PURE_NOISE.max(PURE_SHARE * self.spread);
-                (common(PINHOLE_COVARIANCE) || self.noise > purest, self.is_noise())
+                (covary(PINHOLE_COVARIANCE) || self.noise > purest, self.is_noise())
             }
-            Alternative::DepthUnit => (false, !common(UNIT_COVARIANCE) && self.noise <= UNIT_NOISE * self.image_noise),
+            Alternative::DepthUnit => (false, !covary(UNIT_COVARIANCE) && self.noise <= UNIT_NOISE * self.image_noise),
         };
         match (varies, is_explained) {
             (true, _) => Diagnosis::VaryingAlbedo,
@@ -126,10 +129,16 @@ impl Residuals {
     /// Whether these residuals have less spatial covariance than `share` of the others', and little enough for a single
     /// albedo.
     #[must_use]
-    pub fn is_less_common(&self, share: f64, others: &Self) -> bool {
-        let limit = others.covariance.map_or(MODEL_COVARIANCE, |covariance| MODEL_COVARIANCE.min(share * covariance));
+    pub fn have_less_covariance(&self, share: f64, others: &Self) -> bool {
+        let limit = others.covariance.map_or(MODEL_COVARIANCE, |theirs| MODEL_COVARIANCE.min(share * theirs));
         self.covariance.is_some_and(|covariance| covariance < limit)
     }
+}
+
+/// Whether residuals with these standard deviations along three axes of log colour may be noise and errors of normals alone.
+#[must_use]
+pub fn is_pure_noise(deviations: [f64; 3]) -> bool {
+    deviations.iter().map(|deviation| deviation * deviation).sum::<f64>() < 3.0 * PURE_NOISE * PURE_NOISE
 }
 
 /// Noise as a multiple of [`PURE_NOISE`], clamped to two bounds.
@@ -198,10 +207,16 @@ mod tests {
     }
 
     #[test]
-    fn another_unit_has_to_leave_less_in_common() {
+    fn another_unit_has_to_leave_less_covariance() {
         let [own, half, most] = [0.01, 0.0049, 0.0069].map(|covariance| residuals([0.02, covariance, 0.01, 0.4]));
-        assert!(half.is_less_common(0.5, &own) && !most.is_less_common(0.5, &own));
-        assert!(most.is_less_common(0.9, &residuals([0.02, 1.0, 0.01, 0.4])));
+        assert!(half.have_less_covariance(0.5, &own) && !most.have_less_covariance(0.5, &own));
+        assert!(most.have_less_covariance(0.9, &residuals([0.02, 1.0, 0.01, 0.4])));
+    }
+
+    #[test]
+    fn pure_noise_is_judged_over_three_axes() {
+        assert!(is_pure_noise([0.034; 3]) && is_pure_noise([0.06, 0.0, 0.0]));
+        assert!(!is_pure_noise([0.036; 3]) && !is_pure_noise([0.061, 0.0, 0.0]) && !is_pure_noise([f64::NAN; 3]));
     }
 
     #[test]

@@ -109,11 +109,12 @@ pub const CODES: &str = include_str!("codes.json");
 // | `shape/refinement` | the depth view's own normals and depth, through `heights` | Eq. 17 to 19 |
 // | `pose/search` | the initial pose if nothing is known: all rotations, translations and scales, on a coarse grid | before Algorithm 1 |
 // | `pose/photometric` | the pose directly from the image, with the light projected out | beyond the paper |
-// | `pose/contrast` | the pose of an object with varying albedo, by local contrast and its silhouette | beyond the paper |
+// | `pose/contrast` | the pose of an object with varying albedo, by local contrast in an orthographic image | beyond the paper |
+// | `pose/silhouettes` | the pose of an object with varying albedo behind a pinhole, by silhouettes | beyond the paper |
 // | `pose/icp`, `pose/ransac` | the pose from both surfaces | Eq. 12 to 14 |
 // | `pose/similarity`, `pose/angles` | s, R, t and the angles, in closed form; the least-squares fit of Eq. 16 is a test, `tests/library/pose_angles.rs` | Eq. 15, 16, 20 |
 // | `pose/correspondence` | which depth point falls on which pixel, and what occludes it | the 1-pixel rule |
-// | `calibration` | the cameras of a rig whose calibration is checked, and their lenses | |
+// | `calibration` | the check of a rig's calibration: estimate, covariance, verdict on each candidate | |
 // | `options`, `reason`, `report` | what a run can be given, what it reports and why | |
 // | `picture` | results as screen pixels | |
 // | `estimator` | Algorithm 1 stage by stage, its `objective`, its `verdict`; the `finder` of a pose; workers and threads | Eq. 1, Algorithm 1 |

@@ -132,9 +132,9 @@ pub struct Options {
     /// Scale of the pose: `None` is free, `Some(s)` is held.
     #[cfg_attr(feature = "serde", serde(with = "serialised::free_or_held"))]
     pub scale: Option<f64>,
-    /// Method of the pose stage.
+    /// Method of the registration stage.
     pub registration: Registration,
-    /// Method of the shape stage.
+    /// Method of the shading and surface stages.
     pub shading: Shading,
     /// Weights of the terms of the objective.
     #[cfg_attr(feature = "serde", serde(rename = "lambda"))]

@@ -89,9 +89,9 @@ pub enum Reason {
         /// The direction that keeps its initial value.
         weakest: Direction,
     },
-    /// A single albedo does not fit the image, and shading fits too little of its local contrast.
+    /// A single albedo does not fit the image, and local contrast and silhouette do not fit the pose.
     ContrastUnexplained {
-        /// Unexplained share of the local contrast.
+        /// The objective of both: 0 if they fit perfectly, about 100 if shading explains none of the contrast.
         #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serial::finite"))]
         percent: f64,
     },
@@ -236,7 +236,7 @@ impl fmt::Display for Reason {
             }
             Self::ContrastUnexplained { percent } => write!(
                 f,
-                "a single albedo does not fit the image, and shading leaves {} % of its local contrast unexplained",
+                "a single albedo does not fit the image, and local contrast and silhouette do not fit the pose (objective {} %)",
                 whole(*percent)
             ),
             Self::Unexplained { percent } => {

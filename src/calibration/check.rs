@@ -19,7 +19,7 @@ use super::search;
 use super::sensitivity::curves;
 use super::unknowns::State;
 use super::unseen::leave_unseen_out;
-use super::verdict::{CheckVerdict, LEAST_OVERLAP};
+use super::verdict::{CheckVerdict, LEAST_COMPARED_SHARE};
 use crate::error::{Error, ErrorKind, Result};
 use crate::pose::Similarity;
 
@@ -305,7 +305,7 @@ impl CalibrationCheck {
 
     /// Adds the frame to take next, unless the estimate puts hardly any point onto the image.
     fn look_ahead(&mut self, findings: &Findings, planes: &[Planes]) {
-        if let Some(report) = self.report.as_mut().filter(|report| report.overlap >= LEAST_OVERLAP) {
+        if let Some(report) = self.report.as_mut().filter(|report| report.overlap >= LEAST_COMPARED_SHARE) {
             report.next = next(&self.scene, &self.best, findings, planes, &report.covariance);
         }
     }

@@ -13,7 +13,7 @@ use super::reason::{CheckReason, Margin, Warning, WarningKind};
 use super::registration::{Findings, Round};
 use super::report::{CheckReport, CueReport, FrameReport};
 use super::unknowns::{FOCAL, Matrix, POSE, State, Vector, add_square};
-use super::verdict::{CandidateReport, CheckVerdict, Judge, LEAST_OVERLAP};
+use super::verdict::{CandidateReport, CheckVerdict, Judge, LEAST_COMPARED_SHARE};
 
 /// Variance if nothing at all is known, squared pixels.
 const FARTHEST: f64 = 1e6;
@@ -176,7 +176,7 @@ impl CalibrationCheck {
             if !is_seen || !self.scene.is_seen(candidate) {
                 report.without_points(is_seen, self.width);
             }
-            if is_seen && overlap < LEAST_OVERLAP {
+            if is_seen && overlap < LEAST_COMPARED_SHARE {
                 report.with_little_overlap(overlap);
             }
             report

@@ -27,7 +27,7 @@ use crate::pose::{Axis, Unknown};
 
 /// Smallest share of the depth points that the estimate has to put onto the image before it may judge a candidate. The
 /// other points are not compared with anything, and a wrong pose can always fit a small part.
-pub(super) const LEAST_OVERLAP: f64 = 0.15;
+pub(super) const LEAST_COMPARED_SHARE: f64 = 0.15;
 /// Largest reprojection error that passes, pixels of an image 640 wide, or 0.4 degrees at a common focal length.
 /// Careful calibrations by hand reach this accuracy, and the colouring of points at depth discontinuities needs it.
 pub(super) const TOLERANCE: f64 = 3.5;

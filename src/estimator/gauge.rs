@@ -15,9 +15,9 @@ use crate::pose::{Correspondences, Similarity};
 use crate::view::{Camera, ColourView, DepthView, Points};
 
 /// Two orthographic masks that overlap less than this (intersection over union) are centred on each other first.
-const LEAST_OVERLAP: f64 = 0.5;
-/// Growth of the apparent size beyond which, or below whose inverse, a registration has collapsed: a cloud that shrinks
-/// onto a few pixels fits easily. The search covers 0.7 to 1.4.
+const LEAST_MASK_OVERLAP: f64 = 0.5;
+/// Factor of the apparent size, or its inverse, beyond which a pose is not plausible beside a given one. The search covers
+/// 0.7 to 1.4, and a single registration may change the size by `finder::COLLAPSE`.
 const LARGEST_SIZE_RATIO: f64 = 2.0;
 
 /// s0: length of one unit of the depth view in the colour view.
@@ -95,12 +95,12 @@ fn coincides(image: &ColourView, depth: &DepthView, start: Start) -> bool {
     start == Start::Identity
         && match (image.camera, depth.camera) {
             (Camera::Pinhole(_), Camera::Pinhole(_)) => true,
-            (Camera::Orthographic, Camera::Orthographic) => mask_overlap(image, depth) >= LEAST_OVERLAP,
+            (Camera::Orthographic, Camera::Orthographic) => mask_overlap(image, depth) >= LEAST_MASK_OVERLAP,
             _ => false,
         }
 }
 
-/// Intersection over union of both masks, with their centres aligned.
+/// Intersection over union of both masks if the views share their frame.
 fn mask_overlap(image: &ColourView, depth: &DepthView) -> f64 {
     let (mut both, mut any) = (0_usize, image.mask.iter().filter(|&&inside| inside).count());
     for index in (0..depth.size.len()).filter(|&index| depth.mask[index]) {

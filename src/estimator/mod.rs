@@ -86,6 +86,18 @@ pub struct Estimator {
     threads: Option<Box<threads::Threads>>,
 }
 
+/// The estimator taken apart for a stage: its input, the stages that take it, and what they change.
+struct Parts<'a> {
+    inputs: Inputs<'a>,
+    albedo: &'a AlbedoStage,
+    shape: &'a mut ShapeStage,
+    registration: &'a mut RegistrationStage,
+    refinement: &'a mut RefinementStage,
+    accepted: &'a Accepted,
+    scratch: &'a mut Scratch,
+    solution: &'a mut Solution,
+}
+
 impl Estimator {
     /// Checks both views and the options, and prepares iteration zero.
     ///
@@ -260,33 +272,27 @@ impl Estimator {
         }
     }
 
+    /// The parts for a stage of this iteration.
+    fn parts(&mut self) -> Parts<'_> {
+        let Self { pair, stages, correspondences, scratch, solution, accepted, report, .. } = self;
+        let Stages { light, albedo, shape, registration, refinement } = stages;
+        let inputs = Inputs::of(pair, albedo, light, correspondences, report.iteration);
+        Parts { inputs, albedo, shape, registration, refinement, accepted, scratch, solution }
+    }
+
     /// Normals of the image (Eq. 6 to 9), and the exposure of a known light unless the registration found it.
     fn find_normals(&mut self) {
         let exposure_is_free =
             self.pair.known_light().is_some() && self.stages.registration.found_by_colours().is_none();
-        let inputs = Inputs::of(
-            &self.pair,
-            &self.stages.albedo,
-            &self.stages.light,
-            &self.correspondences,
-            self.report.iteration,
-        );
-        let Solution { light, image, .. } = &mut self.solution;
-        self.stages.shape.find_normals(inputs, exposure_is_free, light, &mut image.normals);
+        let Parts { inputs, shape, solution: Solution { light, image, .. }, .. } = self.parts();
+        shape.find_normals(inputs, exposure_is_free, light, &mut image.normals);
     }
 
     /// Heights of the image, then the gauges that neither view determines: t_z of an orthographic image, the distance
     /// of a pinhole image's surface.
     fn find_surface(&mut self) -> Result<()> {
-        let light = self.solution.light.total();
-        let inputs = Inputs::of(
-            &self.pair,
-            &self.stages.albedo,
-            &self.stages.light,
-            &self.correspondences,
-            self.report.iteration,
-        );
-        self.stages.shape.find_surface(inputs, &light, &mut self.scratch, &mut self.solution.image)?;
+        let Parts { inputs, shape, scratch, solution, .. } = self.parts();
+        shape.find_surface(inputs, &solution.light.total(), scratch, &mut solution.image)?;
         gauge::fix_depth_of_surface(&self.pair, &self.correspondences, &mut self.scratch.spare, &mut self.solution);
         Ok(())
     }
@@ -296,14 +302,8 @@ impl Estimator {
         if gauge::pixel_length(&self.pair.image, &self.solution) <= 0.0 {
             return Err(Reason::BehindCamera);
         }
-        let inputs = Inputs::of(
-            &self.pair,
-            &self.stages.albedo,
-            &self.stages.light,
-            &self.correspondences,
-            self.report.iteration,
-        );
-        match self.stages.registration.register(inputs, &self.stages.albedo, &self.solution)? {
+        let Parts { inputs, albedo, registration, solution, .. } = self.parts();
+        match registration.register(inputs, albedo, solution)? {
             Registering::Done(registered) => self.finish_registration(registered.map(|registered| *registered)),
             Registering::Finding(finder) => self.find(finder),
         }
@@ -361,14 +361,8 @@ impl Estimator {
 
     /// Normals and depth of the depth view (Eq. 17 to 19).
     fn refine(&mut self) {
-        let inputs = Inputs::of(
-            &self.pair,
-            &self.stages.albedo,
-            &self.stages.light,
-            &self.correspondences,
-            self.report.iteration,
-        );
-        self.stages.refinement.refine(inputs, &self.accepted, &mut self.scratch, &mut self.solution);
+        let Parts { inputs, refinement, accepted, scratch, solution, .. } = self.parts();
+        refinement.refine(inputs, accepted, scratch, solution);
     }
 
     /// Projects the depth points, hides the occluded ones, and drops those too far from the image surface.

@@ -57,7 +57,7 @@ impl ViewPair {
 
     /// The residuals of a registration.
     pub fn residuals(&self, found: &PhotometricReport) -> Residuals {
-        Residuals { covariance: Some(found.structure), ..self.residuals_of_noise(found.noise) }
+        Residuals { covariance: Some(found.spatial_covariance), ..self.residuals_of_noise(found.noise) }
     }
 
     /// The residuals if only their noise was measured.

@@ -10,7 +10,7 @@
 //! Limits: albedo of one chromaticity whose lightness follows the shading counts as shading, and a large cast shadow
 //! with a sharp border may count as an albedo of the same chromaticity.
 
-use crate::diagnosis::PURE_NOISE;
+use crate::diagnosis::is_pure_noise;
 use crate::light::colour_axes::{Axes, AxesPrior};
 use crate::light::harmonics::basis;
 use crate::light::mixture::{MOST_REGIONS, Mixture, Sample};
@@ -93,7 +93,7 @@ impl AlbedoFitter {
         // A single albedo under white lamps, to find the axes of the light.
         self.turn(None, &Axes::WHITE);
         let white = Mixture::blank().fitted(&self.samples, &prior(&Axes::WHITE), tiles)?;
-        if white.scales.iter().map(|scale| scale * scale).sum::<f64>() < 3.0 * PURE_NOISE * PURE_NOISE {
+        if is_pure_noise(white.scales) {
             return None;
         }
         let normals = self.samples.iter().map(|sample| sample.normal);

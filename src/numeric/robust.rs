@@ -1,6 +1,6 @@
 //! The robust function of Geman and McClure, rho(r) = r^2 / (1 + r^2 / s^2), and the robust standard deviation.
 //!
-//! Everything here is a function of u = (r / s)^2, the squared residual in units of the scale s. Callers form u,
+//! Nearly everything here is a function of u = (r / s)^2, the squared residual in units of the scale s. Callers form u,
 //! because they hold their residuals squared, divided, or times 1 / s^2. A residual of one scale keeps a quarter of its
 //! weight, and rho never exceeds s^2. S. Geman, D. McClure: "Bayesian image analysis: an application to single photon
 //! emission tomography", 1985.
@@ -49,6 +49,13 @@ pub(crate) fn rho<T: Real>(squared: T, u: T) -> T {
     squared / (T::constant(1.0) + u)
 }
 
+/// rho / s^2 of a squared residual r^2 if `shown` is one, and its largest value, one, if `shown` is zero.
+#[inline(always)]
+pub(crate) fn saturated_if_shown<T: Real>(squared: T, squared_scale: T, shown: T) -> T {
+    let one = T::constant(1.0);
+    one - shown * (one - squared / (squared_scale + squared))
+}
+
 /// rho / s^2 = u / (1 + u), between zero and one.
 #[inline(always)]
 pub(crate) fn saturated<T: Real>(u: T) -> T {
@@ -68,6 +75,8 @@ mod tests {
             let slope = (saturated(u + step) - saturated((u - step).max(0.0))) / (step + step.min(u));
             assert!((weight(u) - slope).abs() < 1e-5 * weight(u).max(1e-3), "{u}: {} {slope}", weight(u));
             assert!((saturated(u) - u * attenuation(u)).abs() < 1e-12);
+            assert!((saturated_if_shown(4.0 * u, 4.0, 1.0) - saturated(u)).abs() < 1e-12);
+            assert_eq!(saturated_if_shown(4.0 * u, 4.0, 0.0), 1.0);
         }
         assert_eq!(weight(1.0), 0.25);
         assert!((weight_of_square(0.7_f64) - weight(0.7)).abs() < 1e-15);

@@ -5,7 +5,7 @@
 //! | `search/` | search before Algorithm 1: candidate poses without an initial pose | log likelihood relative to a constant colour | rotation, scale, translation in the image | sweep over all rotations, correlation by FFT, local ascent |
 //! | `photometric/` | photometric registration, beyond the paper | robust residuals of log colours + prior of the light | pose and light | Gauss-Newton, the light eliminated; instrumental variables |
 //! | `silhouettes/` | registration from silhouettes, beyond the paper, for varying albedo | depth discontinuities against the image's mask and edges | pose without scale, and the edge bias | Gauss-Newton |
-//! | `contrast/` | registration by local contrast, for varying albedo | robust residuals with local means removed, silhouette | pose and light | Gauss-Newton, the light eliminated; many initial poses |
+//! | `contrast/` | registration by local contrast, for varying albedo in an orthographic image | robust residuals with local means removed, silhouette | pose and light | Gauss-Newton, the light eliminated; many initial poses |
 //! | `icp` | Eq. 12: the depth points onto the image surface | robust point-to-plane distance | pose | nearest neighbours and Gauss-Newton, alternating |
 //! | `ransac` | Eq. 13 and 14: consensus of pairs over the linear model P -> A P + t | truncated squared distance | the twelve numbers theta | samples of four pairs, then linear least squares |
 //! | `similarity` | Eq. 15: the similarity nearest to A; Eq. 12 for known pairs, in closed form | least squares | s, R, t | Horn's quaternion |

@@ -2,8 +2,8 @@
 //! theta (docs/method/surfaces.md).
 //!
 //! Four pairs determine theta. Least squares on its inliers refines the sample with the lowest objective, sum
-//! min(|r|^2, threshold^2). A then becomes a similarity as in Eq. 15, and that similarity is fitted to its own inliers
-//! until they no longer change.
+//! min(|r|^2, threshold^2). Eq. 15 refuses an A that is near no similarity. A similarity is then fitted to the inliers
+//! of A, and again to its own until they no longer change; scale and rotation of Eq. 15 are not used.
 //!
 //! The linear model shears and stretches, so on nearly flat parts it follows noise where a similarity would not. It
 //! therefore only selects the pairs to which the similarity is first fitted.
@@ -186,25 +186,26 @@ fn refine_affine(mut affine: AffineModel, pairs: &Pairs<'_>) -> Result<(AffineMo
     Ok((affine, inliers))
 }
 
-/// The similarity nearest to A (Eq. 15), fitted to its inliers.
+/// The similarity fitted to the inliers of the linear model, then to its own. An error if A is near no similarity (Eq. 15).
 fn refine_similarity(
     affine: &AffineModel,
     affine_inliers: Vec<u32>,
     pairs: &Pairs<'_>,
     scale: Option<f64>,
 ) -> Result<(Similarity, Vec<u32>)> {
-    let mut pose = Similarity::nearest(&affine.matrix, affine.translation)?;
-    let mut inliers = affine_inliers;
-    for _ in 0..MOST_REFITS {
+    Similarity::nearest(&affine.matrix, affine.translation)?;
+    let (mut inliers, mut fits) = (affine_inliers, 0);
+    let pose = loop {
         let select = |points: &[Vector3<f64>]| -> Vec<_> { inliers.iter().map(|&k| points[k as usize]).collect() };
-        pose = Similarity::fit(&select(pairs.depth), &select(pairs.image), None, scale)?;
+        let pose = Similarity::fit(&select(pairs.depth), &select(pairs.image), None, scale)?;
         let found = pairs.inliers(|point| pose.apply(*point));
-        let settled = found == inliers;
+        fits += 1;
+        let ends = found == inliers || fits == MOST_REFITS;
         inliers = found;
-        if settled {
-            break;
+        if ends {
+            break pose;
         }
-    }
+    };
     if inliers.len() < FEWEST_PAIRS {
         return Err(degenerate("fewer than four pairs agree on a similarity").value(inliers.len() as f64));
     }
@@ -285,6 +286,17 @@ mod tests {
         }
         // Each of five numbers is in four of five samples.
         assert!(seen.iter().all(|&count: &i32| (count - 1600).abs() < 100), "{seen:?}");
+    }
+
+    #[test]
+    fn a_mirrored_relief_is_refused_although_a_similarity_fits_within_the_threshold() {
+        let mut generator = Random::new(5, 0);
+        let mut coordinate = |extent: f64| extent * (f64::from(generator.word()) / f64::from(u32::MAX) - 0.5);
+        let depth: Vec<_> = (0..50).map(|_| Vector3::new(coordinate(10.0), coordinate(9.0), coordinate(3.0))).collect();
+        let mirrored: Vec<_> = depth.iter().map(|point| Vector3::new(point.x, point.y, -point.z)).collect();
+        let options = RansacOptions { threshold: 4.0, ..RansacOptions::default() };
+        assert_eq!(ransac(&depth, &depth, &options).unwrap().inliers.len(), depth.len());
+        assert_eq!(ransac(&depth, &mirrored, &options).unwrap_err().kind(), ErrorKind::Degenerate);
     }
 
     #[test]

@@ -6,7 +6,7 @@
 //! > min_{s, R} |s R − A|²  (Eq. 15, 16)
 //!
 //! which has a closed form: [`Similarity::nearest`](crate::Similarity::nearest). [`ransac`](crate::ransac) fits the
-//! model and takes the similarity:
+//! model, refuses one that is near no similarity, and fits the similarity to the pairs on which most agree:
 //!
 //! ```
 //! use bimodal_stereo::{Angles, RansacOptions, Similarity, ransac};

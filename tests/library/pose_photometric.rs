@@ -198,7 +198,7 @@ const SEEDS: u64 = 10;
 
 #[test]
 fn neighbours_share_what_the_model_leaves_out_and_no_noise() {
-    let structure = |noise: f64, shadow: f64| {
+    let covariance = |noise: f64, shadow: f64| {
         let mut sample = bust_with_noise(30.0, 96, scenes::lights::WINDOW, noise);
         for (index, colour) in sample.image.colours.chunks_mut(3).enumerate() {
             // A shadow over a part of the object, which harmonics of the normals cannot represent.
@@ -208,18 +208,18 @@ fn neighbours_share_what_the_model_leaves_out_and_no_noise() {
         }
         let views = views(sample, 1.0);
         let report = register(&views, None, &views.sample.pose).unwrap();
-        (report.structure, report.noise)
+        (report.spatial_covariance, report.noise)
     };
     for noise in [0.0, 0.01, 0.03] {
-        let (structure, noise) = structure(noise, 0.0);
-        assert!(structure < 0.15 * noise, "{structure} of {noise}");
+        let (covariance, noise) = covariance(noise, 0.0);
+        assert!(covariance < 0.15 * noise, "{covariance} of {noise}");
     }
     // The mean over a tile of 8 pixels keeps sin(u) / u of such a wave along each axis; the light absorbs a little.
     let kept = (4.0 * 0.35_f64).sin() / (4.0 * 0.35);
     for noise in [0.0, 0.03] {
-        let (structure, _) = structure(noise, 0.04);
+        let (covariance, _) = covariance(noise, 0.04);
         let expected = 0.02 * kept * kept;
-        assert!(structure > 0.6 * expected && structure < 1.1 * expected, "{structure} of {expected}");
+        assert!(covariance > 0.6 * expected && covariance < 1.1 * expected, "{covariance} of {expected}");
     }
 }
 

@@ -81,8 +81,8 @@ pub struct ContrastEvidence {
     /// Sigma of the rotation about the least certain axis, degrees, and the weakest direction.
     pub sigma: f64,
     pub weakest: Direction,
-    /// Objective of local contrast and silhouette: 0 if nothing is left, 1 if shading explains none of the contrast.
-    pub unexplained: f64,
+    /// Objective of local contrast and silhouette: 0 if both fit perfectly, about 1 if shading explains nothing.
+    pub objective: f64,
 }
 
 impl ContrastEvidence {
@@ -91,7 +91,7 @@ impl ContrastEvidence {
         Self {
             sigma: found.uncertainty.largest_rotation(),
             weakest: found.uncertainty.weakest,
-            unexplained: found.objective,
+            objective: found.objective,
         }
     }
 }

@@ -4,7 +4,7 @@
 //! good is then checked against what the registration reports about its answer, and may become ambiguous or lost.
 //! `docs/lab/thresholds.md` lists the thresholds with the data used to calibrate them.
 
-use crate::diagnosis::{LARGEST_UNEXPLAINED, LARGEST_UNEXPLAINED_CONTRAST};
+use crate::diagnosis::{LARGEST_CONTRAST_OBJECTIVE, LARGEST_UNEXPLAINED};
 use crate::options::{Registration, Shading};
 use crate::pose::Direction;
 use crate::reason::Reason;
@@ -19,8 +19,8 @@ const MOST_REJECTIONS: u32 = 6;
 const SETTLED_OBJECTIVE: f64 = 1e-3;
 /// Iterations after which shapes under an unmoving pose improve no further: they flicker by some tenths of a percent.
 const MOST_UNMOVED: u32 = 8;
-/// Overlap (share of valid depth pixels) below which a pose cannot be trusted.
-const LEAST_OVERLAP: f64 = 0.05;
+/// Share of valid depth pixels with a correspondence below which a pose cannot be trusted.
+const LEAST_MATCHED_SHARE: f64 = 0.05;
 /// Fewer correspondences than this determine nothing.
 const FEWEST_CORRESPONDENCES: usize = 12;
 /// Iterations before the loop may converge: the first has no predecessor, and a surface tries its starts first.
@@ -42,7 +42,7 @@ pub type Verdict = (Status, Option<Reason>);
 /// The verdict after an iteration; `None` if the loop continues.
 pub fn verdict(evidence: &Evidence) -> Option<Verdict> {
     let Evidence { registration, is_rejected, rejections, iteration, max_iterations, .. } = *evidence;
-    if evidence.correspondences < FEWEST_CORRESPONDENCES || evidence.overlap < LEAST_OVERLAP {
+    if evidence.correspondences < FEWEST_CORRESPONDENCES || evidence.overlap < LEAST_MATCHED_SHARE {
         return Some((Status::Lost, Some(Reason::LittleOverlap { percent: 100.0 * evidence.overlap })));
     }
     let end = if has_settled(evidence) {
@@ -91,7 +91,7 @@ fn reason_for_distrust(evidence: &Evidence) -> Option<Verdict> {
         Answer::Initial(Staying::Explains) => return Some(capped(Reason::InitialPoseKept)),
         Answer::Initial(Staying::ExplainsNothing) => return Some((Status::Lost, Some(Reason::InitialPoseKept))),
         Answer::Silhouettes(found) => return reason_to_doubt_silhouettes(&found, evidence.tolerance).map(capped),
-        Answer::Contrast(found) => (reason_without_contrast(&found), Some((found.sigma, found.weakest))),
+        Answer::Contrast(found) => (reason_to_doubt_contrast(&found), Some((found.sigma, found.weakest))),
         Answer::Photometric(found) => (reason_to_be_lost(&found), Some((found.sigma, found.weakest))),
         Answer::Surfaces => (None, None),
     };
@@ -118,10 +118,10 @@ fn reason_to_doubt_silhouettes(found: &SilhouetteEvidence, tolerance: f64) -> Op
     (sigma.is_nan() || sigma > tolerance).then_some(Reason::AlbedoVaries { sigma_degrees: sigma, weakest })
 }
 
-fn reason_without_contrast(&ContrastEvidence { sigma, weakest, unexplained }: &ContrastEvidence) -> Option<Reason> {
-    let is_unexplained = unexplained.is_nan() || unexplained > LARGEST_UNEXPLAINED_CONTRAST;
+fn reason_to_doubt_contrast(&ContrastEvidence { sigma, weakest, objective }: &ContrastEvidence) -> Option<Reason> {
+    let is_unexplained = objective.is_nan() || objective > LARGEST_CONTRAST_OBJECTIVE;
     too_uncertain(sigma, weakest)
-        .or_else(|| is_unexplained.then_some(Reason::ContrastUnexplained { percent: 100.0 * unexplained }))
+        .or_else(|| is_unexplained.then_some(Reason::ContrastUnexplained { percent: 100.0 * objective }))
 }
 
 fn too_uncertain(sigma: f64, weakest: Direction) -> Option<Reason> {
@@ -173,7 +173,7 @@ mod tests {
     const ABOUT_Y: Direction = Direction { first: Some(Unknown::Rotation(Axis::Y)), second: None };
     const SURE: PhotometricEvidence =
         PhotometricEvidence { sigma: 0.1, weakest: ABOUT_X, unexplained: 0.05, inliers: 0.9 };
-    const CONTRASTED: ContrastEvidence = ContrastEvidence { sigma: 0.5, weakest: ABOUT_X, unexplained: 0.3 };
+    const CONTRASTED: ContrastEvidence = ContrastEvidence { sigma: 0.5, weakest: ABOUT_X, objective: 0.3 };
     const SEEN: SilhouetteEvidence = SilhouetteEvidence { sigma: 0.8, weakest: ABOUT_Y, is_unseen: false };
     const ICP: Evidence = Evidence { registration: Registration::Icp, answer: Answer::Surfaces, ..SETTLED };
     const FIXED: Evidence = Evidence { registration: Registration::Fixed, answer: Answer::Surfaces, ..SETTLED };
@@ -276,7 +276,7 @@ mod tests {
             ("a fair sigma", photometric(PhotometricEvidence { sigma: 1.6, ..SURE }), ambiguous, turned(1.6)),
             (
                 "local contrast that shading does not explain",
-                contrast(ContrastEvidence { unexplained: 0.6, ..CONTRASTED }),
+                contrast(ContrastEvidence { objective: 0.6, ..CONTRASTED }),
                 lost,
                 Some(Reason::ContrastUnexplained { percent: 60.0 }),
             ),

@@ -283,7 +283,7 @@ impl Finder {
         let colours = PhotometricRegistration::prepared(memory, pair);
         colours.keep_ends(std::mem::take(&mut self.chosen.ends));
         let Some(cleaned) = local_contrast::cleaned(pair, colours, self.chosen.best.as_deref()) else {
-            return self.decide(pair, memory, None);
+            return self.next_method(pair, memory, None);
         };
         let starts = match &self.scope {
             Scope::Everywhere(_) => {
@@ -310,7 +310,7 @@ impl Finder {
             return Ok(Next::Phase(Phase::Contrast(contrast)));
         }
         let found = local_contrast::conclude(pair, colours, cleaned, search);
-        self.decide(pair, memory, found)
+        self.next_method(pair, memory, found)
     }
 
     /// A slice of the registrations by silhouettes without an initial pose.
@@ -321,7 +321,8 @@ impl Finder {
         Next::Phase(Phase::Silhouettes(anywhere))
     }
 
-    fn decide(&mut self, pair: &ViewPair, memory: &mut Memory, found: Option<Decision>) -> Result<Next> {
+    /// The decision, or the method that comes next after local contrast, which `found` a pose or did not.
+    fn next_method(&mut self, pair: &ViewPair, memory: &mut Memory, found: Option<Decision>) -> Result<Next> {
         let colours = PhotometricRegistration::prepared(memory, pair);
         if let Scope::Near(near) = &mut self.scope {
             let choice = std::mem::take(&mut self.chosen);
@@ -330,7 +331,7 @@ impl Finder {
                 let nearby = Nearby::again(pair, near.region.clone(), near.silhouettes.take());
                 return Ok(Next::Phase(Phase::Nearby(Box::new(nearby))));
             }
-            return near.decide(pair, colours, choice, found).map(Next::Decision);
+            return near.conclude(pair, colours, choice, found).map(Next::Decision);
         }
         let decision = match found {
             Some(decision) => decision,
@@ -381,7 +382,7 @@ impl Near {
     }
 
     /// Takes the first pose within the trust region: from local contrast, the image or silhouettes. Otherwise keeps the initial pose.
-    fn decide(
+    fn conclude(
         &mut self,
         pair: &ViewPair,
         colours: &mut PhotometricRegistration,

@@ -17,7 +17,7 @@ const PRIOR_WEIGHT: f64 = 1.0;
 const LARGEST_NOISE: f64 = 0.2;
 
 /// Largest number of points, evenly spread, by which a candidate of the search is registered. The best candidate is
-/// registered again by all points. With 14 to 34 unknowns, so many points average the noise well enough to distinguish
+/// registered again by all points. With at most 33 unknowns, so many points average the noise well enough to distinguish
 /// candidates, and large views take no longer.
 const CANDIDATE_POINTS: usize = 2500;
 

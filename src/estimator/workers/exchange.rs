@@ -1,8 +1,7 @@
 //! Exchange of work between an estimator and its workers. Whether they succeed or fail, the outcome is the same to the
 //! bit.
 
-use crate::estimator::stages::Inputs;
-use crate::estimator::{Estimator, RefinementTask, Run, memory};
+use crate::estimator::{Estimator, Parts, RefinementTask, Run, memory};
 use crate::report::{Stage, Status};
 use crate::view::Normals;
 
@@ -62,14 +61,8 @@ impl Estimator {
             && self.stages.albedo.found().is_none()
             && self.stages.registration.keeps(&self.pair, &self.solution.pose);
         if is_known {
-            let inputs = Inputs::of(
-                &self.pair,
-                &self.stages.albedo,
-                &self.stages.light,
-                &self.correspondences,
-                self.report.iteration,
-            );
-            self.stages.refinement.prepare_next(inputs, &self.solution);
+            let Parts { inputs, refinement, solution, .. } = self.parts();
+            refinement.prepare_next(inputs, solution);
         } else {
             self.stages.refinement.discard_prepared();
         }

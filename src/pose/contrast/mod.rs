@@ -31,8 +31,8 @@
 //! | `equations` | the linear system, the light eliminated |
 //! | `uncertainty`, `jackknife` | one sigma of the pose |
 //!
-//! Limits: an object without relief (a printed bag) or with a symmetry (a cylinder) has no distinct minimum. The method
-//! requires a mask.
+//! Limits: the image is orthographic, so that the apparent size is the scale, and it requires a mask. An object without
+//! relief (a printed bag) or with a symmetry (a cylinder) has no distinct minimum.
 
 mod equations;
 mod jackknife;

@@ -12,7 +12,7 @@ use super::problem::ContrastProblem;
 use super::samples::Samples;
 use super::seen::Seen;
 use crate::numeric::{quantile, robust};
-use crate::pose::increment::{Frame, PoseVector, SCALE, TRANSLATION_Z, UNKNOWNS};
+use crate::pose::increment::{Frame, PoseVector, SCALE, UNKNOWNS};
 use crate::pose::residuals::LEAST_NOISE;
 use crate::pose::silhouette::{OUTSIDE_WEIGHT, SLACK, Silhouette};
 use crate::pose::similarity::Similarity;
@@ -85,7 +85,7 @@ pub(super) struct Objective {
     beside: f64,
     /// The squared robust scale.
     scale: f64,
-    /// Apparent size of the initial pose.
+    /// Scale of the initial pose, the apparent size in an orthographic image.
     size: f64,
     unit: f64,
 }
@@ -116,13 +116,8 @@ impl Objective {
     }
 
     /// Sets the apparent size of a pose as the one that E expects.
-    pub fn expect_size(&mut self, problem: &ContrastProblem<'_>, start: &Similarity) {
-        self.size = self.apparent_size(problem, start);
-    }
-
-    /// s, or s / z behind a pinhole.
-    fn apparent_size(&self, problem: &ContrastProblem<'_>, pose: &Similarity) -> f64 {
-        if problem.is_metric() { pose.scale / pose.apply(self.samples.centre).z } else { pose.scale }
+    pub const fn expect_size(&mut self, start: &Similarity) {
+        self.size = start.scale;
     }
 
     /// Length in which distances are counted, pixels.
@@ -258,12 +253,12 @@ impl Objective {
         }
         self.values.copy_from_slice(&self.seen_values);
         level.means.remove(&mut self.values);
-        self.unexplained(&state.light) + self.silhouettes(problem, &state.pose) + self.size_term(problem, &state.pose)
+        self.unexplained(&state.light) + self.silhouettes(problem, &state.pose) + self.size_term(&state.pose)
     }
 
     /// E with an additional term that holds the scale near that of the units, if it is free.
     pub fn compared(&mut self, problem: &ContrastProblem<'_>, level: &mut Level, state: &State) -> f64 {
-        self.expect_size(problem, &state.pose);
+        self.expect_size(&state.pose);
         self.value(problem, level, state) + units_term(problem, &state.pose)
     }
 
@@ -277,8 +272,8 @@ impl Objective {
         if all > 0.0 { value - left + left / all } else { f64::INFINITY }
     }
 
-    fn size_term(&self, problem: &ContrastProblem<'_>, pose: &Similarity) -> f64 {
-        SIZE_WEIGHT * (self.apparent_size(problem, pose) / self.size).ln().powi(2)
+    fn size_term(&self, pose: &Similarity) -> f64 {
+        SIZE_WEIGHT * (pose.scale / self.size).ln().powi(2)
     }
 
     /// Cost of points off the mask, and of the occluding contour off its border.
@@ -328,10 +323,7 @@ impl Objective {
         });
         let mut row = PoseVector::zeros();
         row[SCALE] = 1.0;
-        if problem.is_metric() {
-            row[TRANSLATION_Z] = -frame.length / frame.centre.z;
-        }
-        let growth = (self.apparent_size(problem, &state.pose) / self.size).ln();
+        let growth = (state.pose.scale / self.size).ln();
         equations.add_row(&row, growth, SIZE_WEIGHT);
         equations.reduced()
     }
@@ -409,7 +401,7 @@ impl Objective {
 /// Cost of a scale that differs from that of the units, where poses are compared.
 fn units_term(problem: &ContrastProblem<'_>, pose: &Similarity) -> f64 {
     let growth = (pose.scale / problem.unit_scale).ln();
-    if problem.is_metric() || problem.scale_is_held { 0.0 } else { UNIT_WEIGHT * growth * growth }
+    if problem.scale_is_held { 0.0 } else { UNIT_WEIGHT * growth * growth }
 }
 
 /// Position in the image of a point of the colour view, and its derivative by each unknown.

@@ -10,7 +10,7 @@ use crate::view::{ColourView, DepthView, Normals};
 /// Input of the registration. Points and normals (depth view's frame) are NaN where missing.
 #[derive(Clone, Copy)]
 pub struct ContrastProblem<'a> {
-    /// The colour view.
+    /// The colour view, orthographic.
     pub image: &'a ColourView,
     /// Mask of the object in the image, including pixels without a usable colour.
     pub object: &'a [bool],
@@ -32,11 +32,6 @@ impl ContrastProblem<'_> {
         held_unknowns(&self.image.camera, self.scale_is_held)
     }
 
-    /// Whether the image has a pinhole camera.
-    pub(super) fn is_metric(&self) -> bool {
-        !self.image.camera.is_orthographic()
-    }
-
     /// Image position of a point of the depth view.
     pub(super) fn place(&self, pose: &Similarity, point: &Vector3<f64>) -> Option<[f64; 2]> {
         self.image.camera.project(self.image.size, pose.apply(*point).into())
@@ -55,7 +50,7 @@ impl<'a> ContrastProblem<'a> {
 /// Result of the registration.
 #[derive(Clone, Debug)]
 pub struct ContrastReport {
-    /// The pose; for an orthographic image t_z keeps its initial value.
+    /// The pose; t_z keeps its initial value.
     pub pose: Similarity,
     /// E with the term of the units: 0 if shading and silhouette explain everything, about 1 if shading explains
     /// nothing.

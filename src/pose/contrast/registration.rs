@@ -109,8 +109,8 @@ impl ContrastRegistration {
     }
 
     /// Begins a registration.
-    pub fn begin(&mut self, problem: &ContrastProblem<'_>, start: &Similarity, effort: ContrastEffort) {
-        self.objective.expect_size(problem, start);
+    pub fn begin(&mut self, start: &Similarity, effort: ContrastEffort) {
+        self.objective.expect_size(start);
         let state = State { pose: *start, light: Lights::default() };
         self.course =
             Some(Course { state, effort, level: effort.first_level, round: 0, noise: f64::INFINITY, descended: None });
@@ -213,7 +213,7 @@ impl ContrastRegistration {
     /// One sigma of a pose, from its residuals; `None` if too few samples are visible.
     pub fn uncertainty(&mut self, problem: &ContrastProblem<'_>, pose: &Similarity) -> Option<Uncertainty> {
         let mut state = State { pose: *pose, light: Lights::default() };
-        self.objective.expect_size(problem, pose);
+        self.objective.expect_size(pose);
         let by_sectors = self.jackknife(problem, pose);
         let frame = self.look(problem, &mut state, None)?;
         self.objective.use_instruments(true);
@@ -341,7 +341,7 @@ mod tests {
         let rotation = Rotation3::new(Vector3::new(0.03, -0.04, 0.01)).into_inner();
         let start = Similarity::identity().turned_about(depth.points.centroid(), 1.0, rotation);
         let mut registration = ContrastRegistration::new(&problem, 1, 0.0);
-        registration.begin(&problem, &start, ContrastEffort { instrument_rounds, ..ContrastEffort::FULL });
+        registration.begin(&start, ContrastEffort { instrument_rounds, ..ContrastEffort::FULL });
         while !registration.step(&problem) {}
         registration.pose().unwrap().degrees_to(&Similarity::identity())
     }

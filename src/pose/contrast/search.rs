@@ -89,7 +89,7 @@ impl ContrastSearch {
             return self.stage >= STAGES.len();
         };
         if !self.under_way {
-            self.registration.begin(problem, start, stage.effort);
+            self.registration.begin(start, stage.effort);
             self.under_way = true;
         }
         if self.registration.step(problem) {
@@ -160,7 +160,7 @@ impl ContrastSearch {
 #[must_use]
 pub fn register_again(problem: &ContrastProblem<'_>, start: &Similarity) -> Option<(Similarity, f64)> {
     let mut registration = registration(problem, &LAST, 0.0);
-    registration.begin(problem, start, LAST.effort);
+    registration.begin(start, LAST.effort);
     while !registration.step(problem) {}
     let pose = registration.pose()?;
     Some((pose, registration.evaluate(problem, &pose, RANKING_NOISE)?))
@@ -228,7 +228,7 @@ mod tests {
         let found = search.outcome(&problem).unwrap().best.pose;
         let [from_sharp, from_soft] = [0.0, depth.noise.window()].map(|blur| {
             let mut registration = registration(&problem, &LAST, blur);
-            registration.begin(&problem, &found, LAST.effort);
+            registration.begin(&found, LAST.effort);
             while !registration.step(&problem) {}
             registration.pose().unwrap().degrees_to(&found)
         });

@@ -20,7 +20,7 @@ pub(super) struct Seen {
     cell: f64,
     /// Whether each sample is visible, regardless of the mask.
     pub visible: Vec<bool>,
-    /// Cosine between each sample's normal and the ray towards it, negative if it faces the camera.
+    /// Cosine between each sample's normal and the viewing direction, negative if it faces the camera.
     facing: Vec<f64>,
     /// Points of the depth view where the surface turns away from the image's camera; they have to lie on the
     /// silhouette.
@@ -50,14 +50,12 @@ impl Seen {
         let place = |point: &Vector3<f64>| camera.project(problem.image.size, (*point).into());
         for (k, sample) in samples.list.iter().enumerate() {
             let point = pose.apply(sample.point);
-            let normal = pose.rotation * sample.normal;
-            self.facing[k] = if camera.is_orthographic() { normal.z } else { normal.dot(&point) / point.norm() };
+            self.facing[k] = (pose.rotation * sample.normal).z;
             if let Some(place) = place(&point) {
                 self.enter(place, point.z);
             }
         }
-        let length = camera.focal_length().map_or(1.0, |focal_length| pose.apply(samples.centre).z / focal_length);
-        let tolerance = HIDDEN_BEHIND * self.cell * length;
+        let tolerance = HIDDEN_BEHIND * self.cell;
         for (k, sample) in samples.list.iter().enumerate() {
             let point = pose.apply(sample.point);
             let nearest = place(&point).and_then(|place| self.at(place));

@@ -61,13 +61,15 @@ struct Tile {
 #[derive(Default)]
 pub(super) struct Tiles {
     tiles: Vec<Tile>,
-    structure: f64,
+    /// Log units, see [`Tiles::spatial_covariance`].
+    spatial_covariance: f64,
 }
 
 impl Tiles {
     /// Allocates the tiles of a depth map.
     pub fn new(depth: Size) -> Self {
-        Self { tiles: vec![Tile::default(); depth.width.div_ceil(TILE) * depth.height.div_ceil(TILE)], structure: 0.0 }
+        let count = depth.width.div_ceil(TILE) * depth.height.div_ceil(TILE);
+        Self { tiles: vec![Tile::default(); count], spatial_covariance: 0.0 }
     }
 
     /// Covariance of the pose's unknowns; held ones have none.
@@ -91,10 +93,10 @@ impl Tiles {
         scores.covariance(gain.as_ref(), noise.sigma_inflation() * growth, &held)
     }
 
-    /// Spatial covariance of the residuals from the last sums, as the root of its mean within tiles, log units. Errors of
+    /// Spatial covariance: root of the mean covariance of residuals within tiles from the last sums, log units. Errors of
     /// the model extend over neighbours, white noise does not.
-    pub const fn structure(&self) -> f64 {
-        self.structure
+    pub const fn spatial_covariance(&self) -> f64 {
+        self.spatial_covariance
     }
 
     /// Sums the scores and residuals of each tile. Returns F.
@@ -135,7 +137,7 @@ impl Tiles {
             weights += weight * weight;
         }
         // The quotient is 0 / 0 if no tile has a pair.
-        self.structure = (residuals / (3.0 * weights)).max(0.0).sqrt();
+        self.spatial_covariance = (residuals / (3.0 * weights)).max(0.0).sqrt();
         noise_information
     }
 }

@@ -45,21 +45,20 @@ impl Evaluation<'_> {
 
     /// Sum of w rho. A point that left the mask counts with the largest rho, the square of the robust scale.
     pub fn data_term(&self) -> f64 {
-        let largest = self.largest_rho();
+        let squared_scale = self.squared_scale();
         let mut sum = Doubles::splat(0.0);
         self.for_each_square(|weight, shown, square| {
-            let saved = Doubles::splat(1.0) - square / (largest + square);
-            sum = sum + weight * largest * (Doubles::splat(1.0) - shown * saved);
+            sum = sum + weight * squared_scale * robust::saturated_if_shown(square, squared_scale, shown);
         });
         sum.sum()
     }
 
     /// Share of the weights whose residuals are below the robust scale.
     pub fn inlier_share(&self) -> f64 {
-        let largest = self.largest_rho();
+        let squared_scale = self.squared_scale();
         let mut sum = Doubles::splat(0.0);
         self.for_each_square(|weight, shown, square| {
-            sum = sum + square.less(largest).keep(weight * shown);
+            sum = sum + square.less(squared_scale).keep(weight * shown);
         });
         sum.sum() / self.points.weight().max(f64::MIN_POSITIVE)
     }
@@ -193,12 +192,12 @@ impl Evaluation<'_> {
 
     #[inline(always)]
     fn robust_weight(&self, residual: &[Doubles; 3]) -> Doubles {
-        robust::weight(dot(*residual, *residual) / self.largest_rho())
+        robust::weight(dot(*residual, *residual) / self.squared_scale())
     }
 
-    /// The square of the robust scale.
+    /// The square of the robust scale, which is the largest rho.
     #[inline(always)]
-    fn largest_rho(&self) -> Doubles {
+    fn squared_scale(&self) -> Doubles {
         Doubles::splat(self.weighting.robust_scale * self.weighting.robust_scale)
     }
 

@@ -19,7 +19,8 @@
 //!    little efficiency but do not bias the mean.
 //!
 //! One sigma follows from the spread of the scores over tiles of the depth map ([`covariance`]): noise, wrong normals
-//! and interpolation enter with their actual size and correlation. Errors that leave no residual are not covered.
+//! and interpolation enter with their actual size and correlation. The [`jackknife`], which leaves out one sector of the
+//! object at a time, adds errors that correlate over more than a tile. Errors that leave no residual are not covered.
 //!
 //! T. Söderström, P. Stoica: "Instrumental Variable Methods for System Identification", Springer 1983. G. Golub, V.
 //! Pereyra: "The differentiation of pseudo-inverses and nonlinear least squares problems whose variables separate",

@@ -113,7 +113,7 @@ fn rotated(rotation: &Matrix3<f64>, vector: [Doubles; 3]) -> [Doubles; 3] {
     [row(0), row(1), row(2)]
 }
 
-/// Number of points that annealing needs. With 14 to 34 unknowns, 5000 points average noise to a twentieth of its size
+/// Number of points that annealing needs. With at most 33 unknowns (six of the pose, 27 of the light), 5000 points average noise to a twentieth of its size
 /// or less, and more do not change where the later rounds end (docs/lab/thresholds.md).
 const ENOUGH_ANNEALED: usize = 5000;
 
@@ -179,9 +179,9 @@ pub struct PhotometricReport {
     pub objective: f64,
     /// Robust standard deviation of a channel's residuals, log units.
     pub noise: f64,
-    /// Spatial covariance of the residuals: root mean covariance within tiles of the depth map, log units. Shadows,
+    /// Spatial covariance: root of the mean covariance of residuals within tiles of the depth map, log units. Shadows,
     /// varying albedo and light from other parts of the object raise it, but white noise of any size does not.
-    pub structure: f64,
+    pub spatial_covariance: f64,
     /// Number of visible points.
     pub visible: usize,
     /// Whether these are only a sample, see [`PhotometricOptions::most_points`].

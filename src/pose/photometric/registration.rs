@@ -119,7 +119,7 @@ impl Photometric {
             exposure: self.state.exposure,
             objective: evaluation.data_term() / largest,
             noise: self.noise.residuals,
-            structure: self.tiles.structure(),
+            spatial_covariance: self.tiles.spatial_covariance(),
             visible: self.points.len(),
             sampled: self.points.are_sampled(),
             inliers: evaluation.inlier_share(),

@@ -21,7 +21,7 @@ const NORM: f32 = 1.0 / CELLS as f32;
 /// Number of translations proposed for each rotation, among which the exact score chooses.
 const PROPOSALS: usize = 3;
 /// Smallest share of the template, or of the mask if that is smaller, that a translation has to bring into overlap.
-const LEAST_OVERLAP: f32 = 0.15;
+const LEAST_TEMPLATE_OVERLAP: f32 = 0.15;
 /// Number of complex fields for the nine harmonics, two in each.
 const PAIRS: usize = HARMONICS.div_ceil(2);
 /// Lower bound of sums of squares, in squares of balanced colours. It keeps their quotient and logarithm finite.
@@ -212,7 +212,7 @@ impl Correlator {
 
 /// Smallest number of overlapping cells.
 fn least_cover(template: &Template, target: &Target) -> f32 {
-    (LEAST_OVERLAP * template.visible.min(target.covered)).max(FEWEST_CELLS)
+    (LEAST_TEMPLATE_OVERLAP * template.visible.min(target.covered)).max(FEWEST_CELLS)
 }
 
 /// conj(f) g, cell by cell.

@@ -2,7 +2,7 @@
 //!
 //! For each pixel: min over n of
 //! sum_j (log S_j - [n;1]^T M_j [n;1])^2 + lambda_2 rho(|n - m|^2) + lambda_3 (n^T n - 1)^2,
-//! where m is the other view's normal there, and rho is the identity or Geman-McClure. The paper writes the two prior
+//! where m is the other view's normal there, and rho(u) is u, or u / (1 + u / s^2) of Geman and McClure with scale s. The paper writes the two prior
 //! terms without a square and lambda_3 linear; a least-squares solver squares them, as this one does.
 //!
 //! Three colours give up to eight solutions. A pixel without a normal therefore first compares directions over the whole
@@ -97,10 +97,10 @@ impl ShadingSolver {
     #[must_use]
     pub fn new() -> Self {
         let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
-        let discontinuity = f64::from(LARGEST_N_Z);
+        let flattest = f64::from(LARGEST_N_Z);
         let directions: Vec<[f32; 3]> = (0..DIRECTIONS)
             .map(|index| {
-                let z = discontinuity + (-1.0 - discontinuity) * (index as f64 + 0.5) / DIRECTIONS as f64;
+                let z = flattest + (-1.0 - flattest) * (index as f64 + 0.5) / DIRECTIONS as f64;
                 let radius = (1.0 - z * z).sqrt();
                 let (sin, cos) = (golden * index as f64).sin_cos();
                 [radius * cos, radius * sin, z].map(|value| value as f32)
@@ -255,7 +255,7 @@ impl<'a> Pixels<'a> {
     }
 
     /// Damped Gauss-Newton; a step to a normal that faces away from the camera is rejected. The loop runs until the
-    /// last of the four has converged; the others keep their normals.
+    /// last of the [`LANES`] pixels has ended; the others keep their normals.
     #[inline(never)]
     pub(super) fn descend(
         &self,

@@ -21,7 +21,7 @@ const AWAY: f64 = 2.0;
 const UNIT_ROUNDS: usize = 5;
 /// Another unit fits better if the spatial covariance of its residuals is below this share of the given unit's. Set on
 /// pairs with right and wrong units (docs/lab/thresholds.md).
-const BETTER_STRUCTURE: f64 = 0.5;
+const BETTER_COVARIANCE: f64 = 0.5;
 /// Another unit must also lower the noise by four sigmas: the noise, estimated by the median of n points in three
 /// channels, has a relative sigma of 0.56 / sqrt(n).
 const SIGMAS_OF_NOISE: f64 = 4.0 * 0.56;
@@ -51,7 +51,7 @@ fn better_unit(colours: &mut PhotometricRegistration, pair: &ViewPair, pose: &Si
                 break;
             }
             if found.noise < noise
-                && pair.residuals(&found).is_less_common(BETTER_STRUCTURE, &pair.residuals(&own))
+                && pair.residuals(&found).have_less_covariance(BETTER_COVARIANCE, &pair.residuals(&own))
                 && gauge::growth(pair, &found.pose, pose) < COLLAPSE
             {
                 (better, noise) = (Some(unit), found.noise);
@@ -112,16 +112,16 @@ mod tests {
     fn no_unit_is_asked_for_where_only_white_noise_is_left() {
         let (estimator, mut registration) = registered(10.0);
         let limits = (UNIT_COVARIANCE, UNIT_NOISE * estimator.pair.image.log_noise());
-        for (structure, noise, expected) in [(0.99, 0.99, None), (1.01, 0.99, Some(0.1)), (0.99, 1.01, Some(0.1))] {
+        for (covariance, noise, expected) in [(0.99, 0.99, None), (1.01, 0.99, Some(0.1)), (0.99, 1.01, Some(0.1))] {
             let mut found = registration.found().unwrap().clone();
-            (found.structure, found.noise) = (structure * limits.0, noise * limits.1);
+            (found.spatial_covariance, found.noise) = (covariance * limits.0, noise * limits.1);
             registration.adopt(found);
-            assert_eq!(better_unit(&estimator, &mut registration), expected, "{structure} and {noise} of the limits");
+            assert_eq!(better_unit(&estimator, &mut registration), expected, "{covariance} and {noise} of the limits");
         }
         // With the right relief no unit is better, with or without the gate.
         let (estimator, mut registration) = registered(1.0);
         let found = registration.found().unwrap().clone();
-        registration.adopt(PhotometricReport { structure: f64::MAX, ..found });
+        registration.adopt(PhotometricReport { spatial_covariance: f64::MAX, ..found });
         assert_eq!(better_unit(&estimator, &mut registration), None);
     }
 }
