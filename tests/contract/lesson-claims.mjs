@@ -104,13 +104,33 @@ const grey = [
 ];
 
 const colours = [
-  claim("colours", "The dark curve [shrinks|grows] to a few spots", () =>
+  claim("colours", "Each colour leaves [a different|the same] curve of normals", () =>
+    numberOf("colours&colour=1&noise=0", "apart") > 20 ? "a different" : "the same",
+  ),
+  // One sample of the map is about one degree wide.
+  claim("colours", "Where the three curves meet, [all colours are|only one colour is] explained", () =>
+    ["colourful", "window"].every((light) => numberOf(`colours&colour=1&noise=0&light=${light}`, "meeting") < 1)
+      ? "all colours are"
+      : "only one colour is",
+  ),
+  claim("colours", "Its three curves [almost coincide|are far apart]", () =>
+    numberOf("colours&colour=1&noise=0&light=window", "apart") < 0.2 * numberOf("colours&colour=1&noise=0", "apart")
+      ? "almost coincide"
+      : "are far apart",
+  ),
+  claim("colours", "The three lines [move apart|close up], the dark valley", () =>
+    change(numberOf("colours&colour=0", "apart"), numberOf("colours&colour=1", "apart"), ["move apart", "close up"]),
+  ),
+  claim("colours", "The three lines run [side by side|across each other], and", () =>
+    numberOf("colours&colour=1&light=window", "apart") < 10 ? "side by side" : "across each other",
+  ),
+  claim("colours", "the dark valley [shrinks|grows] to the spots", () =>
     change(numberOf("colours&colour=0", "explained"), numberOf("colours&colour=1", "explained"), ["grows", "shrinks"]),
   ),
   claim("colours", "and the error of the normals [falls|rises]", () =>
     change(numberOf("colours&colour=0", "degrees"), numberOf("colours&colour=1", "degrees"), ["rises", "falls"]),
   ),
-  claim("colours", "window light at full colour. There the curve stays [long|short]", () =>
+  claim("colours", "side by side, and the dark valley stays [long|short]", () =>
     numberOf("colours&colour=1&light=window", "explained") > 10 * numberOf("colours&colour=1", "explained")
       ? "long"
       : "short",

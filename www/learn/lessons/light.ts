@@ -145,13 +145,13 @@ export const colours: Lesson = {
   formulaWords:
     "Minimise the sum over the three colours of the squared difference between the measured and the predicted logarithm.",
   text: [
-    "Let the light be red from one side, green from another and blue from a third. Each colour leaves a different curve of normals. Where the three curves meet, all colours are explained. The cost of a normal is the squared distance between measured and predicted log colours; the solver looks for its global minimum.",
+    "Let the light be red from one side, green from another and blue from a third. Each colour leaves a different curve of normals: the red, the green and the blue line in the map. Where the three curves meet, all colours are explained. The cost of a normal, shown by the shade of the map, is the squared distance between measured and predicted log colours; the solver looks for its global minimum.",
     "A quadratic form in three colours can still have several minima. The solver therefore first compares 600 directions all over the hemisphere and then descends from the best one. White dots mark the local minima; the larger the dot, the more starting points end there.",
     "Natural light is nearly white. Its three curves almost coincide, and the valley becomes long and flat: a little noise moves the lowest point by tens of degrees. The picture now has a noise of {=noise}. A single pixel then determines almost nothing. Noise may also give the pixel a colour that no normal has. Then no normal explains it within 2 %, and the lowest minimum is merely the closest match.",
   ],
   tasks: [
-    "Raise the colour of the light from 0 to 1. The dark curve shrinks to a few spots, and the error of the normals falls.",
-    "Choose the window light at full colour. There the curve stays long.",
+    "Raise the colour of the light from 0 to 1. The three lines move apart, the dark valley shrinks to the spots where they meet, and the error of the normals falls.",
+    "Choose the window light at full colour. The three lines run side by side, and the dark valley stays long.",
     "Add noise under the coloured lamps. Then compare how much the error grows under each light.",
   ],
   tries: [
