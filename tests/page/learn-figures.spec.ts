@@ -26,3 +26,54 @@ test("8: the map has the curve of each colour, and they meet at the true normal"
   await expect.poll(async () => new Set(await paths()).size).toBe(1);
   expect(lab.complaints).toEqual([]);
 });
+
+/** Messages to the threads, held back until they are let go. */
+async function holdRequests(page: Page): Promise<{ hold(): Promise<void>; release(): Promise<void> }> {
+  await page.addInitScript(() => {
+    const held: (() => void)[] = [];
+    const state = { isHeld: false, held };
+    Object.assign(window, { requests: state });
+    const post = Worker.prototype.postMessage as (this: Worker, ...all: unknown[]) => void;
+    Worker.prototype.postMessage = function (this: Worker, ...all: unknown[]) {
+      if (state.isHeld) held.push(() => post.apply(this, all));
+      else post.apply(this, all);
+    };
+  });
+  const set = (isHeld: boolean) =>
+    page.evaluate((isHeld) => {
+      const { requests } = window as unknown as { requests: { isHeld: boolean; held: (() => void)[] } };
+      requests.isHeld = isHeld;
+      if (!isHeld) for (const send of requests.held.splice(0)) send();
+    }, isHeld);
+  return { hold: () => set(true), release: () => set(false) };
+}
+
+test("numbers and pictures of the state before the last drag are dimmed until the new ones are there", async ({
+  lab,
+  page,
+}) => {
+  const requests = await holdRequests(page);
+  const parts = [page.locator(".learn-figure .learn-numbers"), page.locator(".learn-figure .learn-panels")];
+  await open(page, "at=surface&step=2");
+  for (const part of parts) {
+    await expect(part).toHaveAttribute("aria-busy", "false");
+    await expect(part).toHaveCSS("opacity", "1");
+  }
+  const before = await page.locator('[data-number="jump"]').textContent();
+  await requests.hold();
+  await slide(page, "step", 8);
+  for (const part of parts) {
+    await expect(part).toHaveAttribute("aria-busy", "true");
+    await expect.poll(() => part.evaluate((each) => Number(getComputedStyle(each).opacity))).toBeLessThan(0.6);
+  }
+  await expect(page.locator('[data-number="jump"]')).toHaveText(before ?? "?");
+  // The controls are those of the new state already.
+  await expect(page.locator(".learn-controls")).toHaveCSS("opacity", "1");
+  await requests.release();
+  for (const part of parts) {
+    await expect(part).toHaveAttribute("aria-busy", "false");
+    await expect(part).toHaveCSS("opacity", "1");
+  }
+  await expect(page.locator('[data-number="jump"]')).not.toHaveText(before ?? "?");
+  expect(lab.complaints).toEqual([]);
+});

@@ -273,6 +273,8 @@ export class LearnPage {
     this.#kept.set(shown.lesson.id, shown.controls.values);
     shown.numbers.show(shown.controls.values);
     shown.box.setAttribute("aria-busy", "true");
+    shown.figure.wait();
+    shown.readouts.wait();
     this.#session.ask(shown.lesson.id, computed(shown.lesson, shown.controls.values));
     this.#writeAddress();
   }

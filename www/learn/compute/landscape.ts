@@ -96,11 +96,12 @@ function pathOf({ path }: PixelLandscape): Mark[] {
 
 function marksOf(minima: Minimum[], { prior, weight }: PixelLandscapeRequest, truth?: ArrayLike<number>): Mark[] {
   return [
-    ...(truth ? [{ ink: "truth", shape: "cross", points: onDisc(truth), size: 3 } as const] : []),
     ...minima.map(
       ({ normal, share }) =>
         ({ ink: "minimum", shape: "dot", points: onDisc(normal), size: 1.2 + 3 * Math.sqrt(share) }) as const,
     ),
     ...(prior && (weight ?? 0) > 0 ? [{ ink: "prior", shape: "ring", points: onDisc(prior), size: 3.5 } as const] : []),
+    // Above the dots, because a minimum may be at the truth.
+    ...(truth ? [{ ink: "truth", shape: "cross", points: onDisc(truth), size: 3 } as const] : []),
   ];
 }
