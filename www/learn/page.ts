@@ -12,6 +12,7 @@ import { Controls } from "./controls";
 import { Embed } from "./embed";
 import { exerciseList } from "./exercises";
 import { Figure } from "./figure";
+import { Fit } from "./fit";
 import { Guesses } from "./guesses";
 import { languageInAddress } from "./language";
 import { type Lesson, computed, followedIn, initialValues, valuesFrom } from "./lesson";
@@ -33,6 +34,7 @@ interface Shown {
   lesson: Lesson;
   article: HTMLElement;
   figure: Figure;
+  fit: Fit;
   controls: Controls;
   readouts: Readouts;
   player: Player;
@@ -207,7 +209,7 @@ export class LearnPage {
     const numbers = new TextNumbers(text, lesson, controls);
     const article = make("article", { class: "learn-lesson", "data-lesson": lesson.id }, text, box);
     lightTogether(article);
-    const parts = { figure, controls, readouts, player, guesses, numbers, embed };
+    const parts = { figure, fit: new Fit(box, figure.element), controls, readouts, player, guesses, numbers, embed };
     return { ...parts, lesson, article, box, alert, drawing: undefined };
   }
 
@@ -287,6 +289,7 @@ export class LearnPage {
     const inWords = drawingIn(shown.lesson.id, drawing);
     shown.figure.show(inWords);
     shown.readouts.show(inWords);
+    shown.fit.now();
     if (done && !shown.player.isPlaying) shown.guesses.drawn(drawing, shown.controls.values);
     shown.embed.fit(drawing.panels.some(({ kind }) => kind === "plot"));
     shown.box.setAttribute("aria-busy", String(!done));

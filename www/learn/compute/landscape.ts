@@ -45,7 +45,7 @@ export function landscapeOf(
   const panel = scalarOf(
     {
       key: words.key ?? "landscape",
-      title: words.title ?? "Cost of every normal at that pixel",
+      title: words.title ?? "Cost of every normal",
       alt: "The hemisphere of all visible normals seen from the front; dark means a low cost. It has {minima} minima.",
       details: { minima: minima.length },
       legend: words.curves

@@ -181,7 +181,7 @@ export const colours: Lesson = {
       max: 1,
       step: 0.02,
       initial: 0.3,
-      hint: "0: all three colours replaced by their mean; 1: the light unchanged",
+      hint: "0: grey; 1: as it is",
     },
     { kind: "choice", key: "light", label: "Light", choices: LIGHTS, initial: "colourful" },
     { kind: "slider", key: "noise", label: "Noise of the picture", min: 0, max: 0.1, step: 0.005, initial: 0.01 },
