@@ -11,7 +11,7 @@ const LARGEST = 0.38;
 /** Smallest width of a picture, height of a plot and width of a plot beside a picture or another plot, px. */
 const LEAST_PICTURE = 112;
 const LEAST_PLOT = 130;
-const NARROWEST_PLOT = 215;
+const NARROWEST_PLOT = 260;
 /** Height of a plot for its width, and the largest one, px. */
 const PLOT_SHAPE = 0.5;
 const LARGEST_PLOT = 280;
