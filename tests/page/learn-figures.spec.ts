@@ -1,8 +1,8 @@
 /** What the figures of the lessons draw for the sentences beside them, and how they mark numbers that are not up to date. */
 
 import type { Page } from "@playwright/test";
-import { open, slide } from "./figure";
-import { expect, test } from "./lab";
+import { LESSONS, open, slide } from "./figure";
+import { LONG, expect, test } from "./lab";
 
 /** The line of an ink in a panel, as its path. */
 const line = (page: Page, panel: string, ink: string) =>
@@ -77,3 +77,42 @@ test("numbers and pictures of the state before the last drag are dimmed until th
   await expect(page.locator('[data-number="jump"]')).not.toHaveText(before ?? "?");
   expect(lab.complaints).toEqual([]);
 });
+
+/** Letters of the formulas that are not symbols: functions, indices of axes and of measured quantities. */
+const PLAIN = new Set(["log", "max", "min", "information", "x", "y", "z", "S"]);
+
+test(
+  "each symbol of a formula has its meaning below it, and the fourth lesson's all light a part of the figure",
+  LONG,
+  async ({ lab, page }) => {
+    for (const id of LESSONS) {
+      await open(page, `at=${id}`);
+      const [unnamed, inFormula, listed] = await page.evaluate(() => {
+        const symbols = (part: string) => [...document.querySelectorAll(`${part} [data-symbol]`)];
+        const names = (part: string) => [...new Set(symbols(part).map((each) => each.getAttribute("data-symbol")))];
+        const letters = [...document.querySelectorAll(".learn-formula mi")].filter(
+          (mi) => !mi.closest("[data-symbol]"),
+        );
+        return [letters.map((mi) => mi.textContent ?? ""), names(".learn-formula"), names(".learn-symbols")] as const;
+      });
+      expect(
+        unnamed.filter((letter) => !PLAIN.has(letter) && letter !== "j" && letter !== "⊤"),
+        id,
+      ).toEqual([]);
+      expect(listed.filter((name) => name !== "j").sort(), id).toEqual([...inFormula].sort());
+      if (unnamed.includes("j")) expect(listed, id).toContain("j");
+      for (const item of await page.locator(".learn-symbols li").all())
+        expect((await item.textContent())?.length).toBeGreaterThan(5);
+    }
+    await open(page, "at=strips");
+    const symbols = page.locator(".learn-formula [data-symbol]");
+    for (const symbol of await symbols.all()) {
+      await symbol.hover();
+      const name = await symbol.getAttribute("data-symbol");
+      await expect(page.locator(".learn-figure .learn-lit").first(), name ?? "").toBeAttached();
+      await page.locator(".learn-main h2").first().hover();
+      await expect(page.locator(".learn-lit")).toHaveCount(0);
+    }
+    expect(lab.complaints).toEqual([]);
+  },
+);

@@ -18,7 +18,7 @@ import { languageInAddress } from "./language";
 import { type Lesson, computed, followedIn, initialValues, valuesFrom } from "./lesson";
 import { beside, chapters, lessonNamed, lessons } from "./lessons";
 import { lightTogether } from "./lit";
-import { sentence } from "./maths";
+import { sentence, symbolList } from "./maths";
 import { TextNumbers } from "./numbers";
 import { Player } from "./player";
 import type { Drawing, LessonId, Values } from "./protocol";
@@ -231,6 +231,7 @@ export class LearnPage {
       embed.element,
       make("p", { class: "learn-gist" }, lesson.gist),
       formula,
+      symbolList(formula),
       ...lesson.text.map((words) => make("p", {}, ...sentence(words))),
       make("h3", {}, phrase("guess", "Predict, then look")),
       ...guesses,

@@ -81,9 +81,9 @@ export const failure: Lesson = {
   gist: "Some scenes do not contain the answer. A good program says so; this one usually does.",
   formula: () =>
     block(
-      sup(sub(mi("σ"), symbol("R")), mn("2")),
+      sup(sub(symbol("sigma"), symbol("R")), mn("2")),
       mo("≈"),
-      frac(sup(mi("σ"), mn("2")), row(mi(phrase("information", "information")), mo("("), symbol("R"), mo(")"))),
+      frac(sup(symbol("sigma"), mn("2")), row(mi(phrase("information", "information")), mo("("), symbol("R"), mo(")"))),
     ),
   formulaWords:
     "The variance of the rotation is about the variance of the noise divided by the information that the scene contains about the rotation.",

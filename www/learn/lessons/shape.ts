@@ -5,7 +5,7 @@ import { LIGHTS } from "../lesson";
 import { block, colourTerm, comma, frac, mi, mo, norm, row, sub, symbol } from "../maths";
 
 const n = (index: string) => sub(symbol("n"), mi(index));
-const change = (axis: string) => frac(row(mi("∂"), symbol("z")), row(mi("∂"), mi(axis)));
+const change = (axis: "x" | "y") => frac(row(mo("∂"), symbol("z")), row(mo("∂"), symbol(axis)));
 
 export const surface: Lesson = {
   id: "surface",
