@@ -324,6 +324,7 @@ function isGood(overlap) {
 
 const bump = [claim("Bump or dent", "At [#]°. A dent has", () => grey[0].holds())];
 
+const SEARCH = ["pose&run=search", "error"];
 const HOME = ["pose&offset=20&run=register", "error"];
 /** The answers of the guesses, each after the end of its question. */
 const guessed = [
@@ -355,6 +356,9 @@ const guessed = [
   ),
   claim("pose", "Let it register from 20° away. The pose [comes home|stays away]", () =>
     numberOf(...HOME) < 1 ? "comes home" : "stays away",
+  ),
+  claim("pose", "takes longer, and the error ends [below|above] one degree", () =>
+    numberOf(...SEARCH) < 1 ? "below" : "above",
   ),
   claim("sensor", "the refined normals?\nThey [hardly|greatly] change", () =>
     numberOf("sensor&noise=1", "normalsAfter") < 1.2 * numberOf("sensor", "normalsAfter") ? "hardly" : "greatly",

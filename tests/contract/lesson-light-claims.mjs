@@ -30,6 +30,9 @@ export const grey = [
   claim("grey", "Then the two pictures [cannot|always] differ", () =>
     turns.every((turn) => numberOf(`grey&height=0&turn=${turn}`, "difference") < 1e-6) ? "cannot" : "always",
   ),
+  claim("grey", "A known light [does|does not], and so does a depth map", () =>
+    numberOf("grey&turn=0", "difference") > 0.1 ? "does" : "does not",
+  ),
   claim("grey", "every pixel [keeps|loses] its brightness", () =>
     numberOf("grey&turn=180", "difference") < 1e-4 ? "keeps" : "loses",
   ),

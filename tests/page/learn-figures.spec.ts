@@ -116,3 +116,46 @@ test(
     expect(lab.complaints).toEqual([]);
   },
 );
+
+/** The symbols before and after each light matrix in a formula. */
+const besideLight = (page: Page) =>
+  page
+    .locator(".learn-formula [data-symbol=M]")
+    .evaluateAll((all) =>
+      all.map((light) =>
+        [light.previousElementSibling, light.nextElementSibling].map((part) =>
+          (part?.matches("[data-symbol]") ? part : part?.querySelector("[data-symbol]"))?.getAttribute("data-symbol"),
+        ),
+      ),
+    );
+
+test("no formula gives the plain normal to a 4 by 4 matrix, and no symbol has a hat", LONG, async ({ lab, page }) => {
+  let count = 0;
+  for (const id of LESSONS) {
+    await open(page, `at=${id}`);
+    for (const pair of await besideLight(page)) {
+      // The refinement's normals, those of the depth, are extended as well.
+      for (const name of pair) expect(name, id).toBe("N");
+      count++;
+    }
+    expect(await page.locator(".learn-text mo").allTextContents(), id).not.toEqual(expect.arrayContaining(["^"]));
+  }
+  expect(count).toBeGreaterThan(5);
+  expect(lab.complaints).toEqual([]);
+});
+
+test("7: at half a turn the difference reads zero", async ({ lab, page }) => {
+  await open(page, "at=grey&turn=180");
+  await expect(page.locator('[data-number="difference"]')).toHaveText("0.0000");
+  expect(lab.complaints).toEqual([]);
+});
+
+test("each lesson ends with its summary and what one can do now", LONG, async ({ page }) => {
+  for (const id of LESSONS) {
+    await open(page, `at=${id}`);
+    const ending = page.locator(".learn-can p");
+    await expect(ending).toHaveCount(2);
+    await expect(ending.first()).toContainText((await page.locator(".learn-gist").textContent()) ?? "?");
+    await expect(ending.last()).toContainText("Now: You can ");
+  }
+});

@@ -237,7 +237,12 @@ export class LearnPage {
       ...guesses,
       make("h3", {}, phrase("try", "Try")),
       tries,
-      make("p", { class: "learn-can" }, make("strong", {}, `${phrase("can", "Now")}: `), lesson.can),
+      make(
+        "div",
+        { class: "learn-can" },
+        make("p", {}, make("strong", {}, `${phrase("short", "In short")}: `), lesson.gist),
+        make("p", {}, make("strong", {}, `${phrase("can", "Now")}: `), lesson.can),
+      ),
       make("h3", {}, phrase("more", "More")),
       referencesOf(lesson.more),
       this.#ends(lesson),

@@ -23,7 +23,7 @@ export const pose: Lesson = {
     "Raise λ until the minima of the pixel have merged. Repeat with the pose 20° off.",
     "Let it register from 20° away. The pose comes home.",
     "Let it register from 40° away. Here the true pose lies beyond the tolerance, so the given pose is kept and the status is ambiguous.",
-    "Let it search from scratch. It needs no initial pose, and takes longer.",
+    "Let it search from scratch. It needs no initial pose and takes longer, and the error ends below one degree.",
   ],
   tries: [
     { set: { run: "hold", offset: 0 }, sweep: { key: "offset", to: 30 } },
