@@ -1,6 +1,6 @@
 /**
  * Published figures of common sensors, for rigs whose intrinsics are not known. Single devices differ from them by some percent, so they are
- * guesses, which cap the verdict. This table loads when a visitor asks for it.
+ * guesses, which cap the verdict. This table loads on demand.
  */
 
 export interface Sensor {
