@@ -28,7 +28,13 @@ export class Figure {
     this.#onDrag = onDrag;
   }
 
+  /** Marks the panels as those of an earlier state, until the next drawing. */
+  wait(): void {
+    this.element.setAttribute("aria-busy", "true");
+  }
+
   show({ panels }: Drawing): void {
+    this.element.setAttribute("aria-busy", "false");
     const keys = new Set(panels.map(({ key }) => key));
     for (const [key, { element }] of this.#widgets) {
       if (keys.has(key)) continue;

@@ -39,6 +39,8 @@ interface Symbol {
 }
 
 const bold = (letter: string) => math("mi", { mathvariant: "bold", class: "learn-bold" }, letter);
+/** The change per step of what is marked. */
+export const dot = (base: Element): Element => math("mover", { accent: "true" }, base, mo("˙"));
 const tilde = (base: Element) => math("mover", { accent: "true" }, base, mo("~"));
 
 /** Every symbol of the lessons, once. */
@@ -49,7 +51,17 @@ export const SYMBOLS = {
   m: { make: () => bold("m"), ink: "prior", name: "normal of the depth map at that point" },
   M: { make: () => sub(bold("M"), mi("j")), ink: "light", name: "light of colour j, a 4 by 4 matrix of 9 numbers" },
   l: { make: () => bold("l"), ink: "light", name: "unit vector to the lamp" },
-  E: { make: () => mi("E"), ink: "colour", name: "intensity of the pixel" },
+  lj: { make: () => sub(bold("l"), mi("j")), ink: "light", name: "part of order 1 in colour j, a vector" },
+  c: { make: () => sub(mi("c"), mi("j")), ink: "light", name: "part of order 0 in colour j, a number" },
+  Q: { make: () => sub(bold("Q"), mi("j")), ink: "light", name: "part of order 2 in colour j, a 3 by 3 matrix" },
+  E: { make: () => mi("E"), ink: "intensity", name: "intensity of the pixel" },
+  x: { make: () => mi("x"), ink: "pixel", name: "place in the picture, to the right" },
+  y: { make: () => mi("y"), ink: "pixel", name: "place in the picture, down" },
+  p: { make: () => mi("p"), ink: "normal", name: "slope: change of the depth per step to the right" },
+  q: { make: () => mi("q"), ink: "normal", name: "slope: change of the depth per step down" },
+  map: { make: () => mi("R"), ink: "isophote", name: "reflectance map: the intensity for each pair of slopes" },
+  s: { make: () => mi("s"), ink: "normal", name: "factor of all depths" },
+  t: { make: () => mi("t"), ink: "normal", name: "added tilt" },
   rho: { make: () => mi("ρ"), ink: "albedo", name: "albedo" },
   L: { make: () => mi("L"), ink: "light", name: "light, 27 numbers" },
   a: { make: () => mi("a"), ink: "albedo", name: "logarithm of the albedo" },
@@ -59,6 +71,9 @@ export const SYMBOLS = {
   R: { make: () => bold("R"), ink: "pose", name: "rotation of the pose" },
   z: { make: () => mi("z"), ink: "truth", name: "depth" },
   d: { make: () => mi("d"), ink: "sensor", name: "depth measured by the sensor" },
+  mu: { make: () => mi("μ"), ink: "sensor", name: "weight of the measured depth" },
+  sigma: { make: () => mi("σ"), ink: "error", name: "standard deviation, the usual size of an error" },
+  j: { make: () => mi("j"), ink: "colour", name: "red, green or blue" },
   ej: {
     make: () => sub(mi("e"), mi("j")),
     ink: "error",
@@ -71,7 +86,25 @@ export type SymbolName = keyof typeof SYMBOLS;
 /** A symbol in the colour that it has in the figure. */
 export function symbol(name: SymbolName): Element {
   const { make: draw, ink, name: words } = SYMBOLS[name];
-  return math("mrow", { class: `learn-ink-${ink}`, title: phrase(`symbol.${name}`, words) }, draw());
+  return math(
+    "mrow",
+    { class: `learn-ink-${ink}`, title: phrase(`symbol.${name}`, words), "data-symbol": name },
+    draw(),
+  );
+}
+
+const hasColours = (formula: Element): boolean =>
+  [...formula.querySelectorAll("mi")].some(({ textContent }) => textContent === "j");
+
+/** The symbols of a formula with their meanings, in their order. */
+export function symbolList(formula: Element): HTMLElement {
+  const found = [...formula.querySelectorAll("[data-symbol]")].map((each) => each.getAttribute("data-symbol") ?? "");
+  const names = new Set([...found, ...(hasColours(formula) ? ["j"] : [])]) as Set<SymbolName>;
+  const items = [...names].map((name) => {
+    const drawn = symbol(name);
+    return make("li", {}, inline(drawn), ` ${drawn.getAttribute("title") ?? ""}`);
+  });
+  return make("ul", { class: "soft learn-symbols" }, ...items);
 }
 
 /** The shading of the model: the extended normal on both sides of the light's matrix. */

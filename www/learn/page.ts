@@ -12,12 +12,13 @@ import { Controls } from "./controls";
 import { Embed } from "./embed";
 import { exerciseList } from "./exercises";
 import { Figure } from "./figure";
+import { Fit } from "./fit";
 import { Guesses } from "./guesses";
 import { languageInAddress } from "./language";
 import { type Lesson, computed, followedIn, initialValues, valuesFrom } from "./lesson";
 import { beside, chapters, lessonNamed, lessons } from "./lessons";
 import { lightTogether } from "./lit";
-import { sentence } from "./maths";
+import { sentence, symbolList } from "./maths";
 import { TextNumbers } from "./numbers";
 import { Player } from "./player";
 import type { Drawing, LessonId, Values } from "./protocol";
@@ -33,6 +34,7 @@ interface Shown {
   lesson: Lesson;
   article: HTMLElement;
   figure: Figure;
+  fit: Fit;
   controls: Controls;
   readouts: Readouts;
   player: Player;
@@ -207,7 +209,7 @@ export class LearnPage {
     const numbers = new TextNumbers(text, lesson, controls);
     const article = make("article", { class: "learn-lesson", "data-lesson": lesson.id }, text, box);
     lightTogether(article);
-    const parts = { figure, controls, readouts, player, guesses, numbers, embed };
+    const parts = { figure, fit: new Fit(box, figure.element), controls, readouts, player, guesses, numbers, embed };
     return { ...parts, lesson, article, box, alert, drawing: undefined };
   }
 
@@ -229,12 +231,18 @@ export class LearnPage {
       embed.element,
       make("p", { class: "learn-gist" }, lesson.gist),
       formula,
+      symbolList(formula),
       ...lesson.text.map((words) => make("p", {}, ...sentence(words))),
       make("h3", {}, phrase("guess", "Predict, then look")),
       ...guesses,
       make("h3", {}, phrase("try", "Try")),
       tries,
-      make("p", { class: "learn-can" }, make("strong", {}, `${phrase("can", "Now")}: `), lesson.can),
+      make(
+        "div",
+        { class: "learn-can" },
+        make("p", {}, make("strong", {}, `${phrase("short", "In short")}: `), lesson.gist),
+        make("p", {}, make("strong", {}, `${phrase("can", "Now")}: `), lesson.can),
+      ),
       make("h3", {}, phrase("more", "More")),
       referencesOf(lesson.more),
       this.#ends(lesson),
@@ -273,6 +281,8 @@ export class LearnPage {
     this.#kept.set(shown.lesson.id, shown.controls.values);
     shown.numbers.show(shown.controls.values);
     shown.box.setAttribute("aria-busy", "true");
+    shown.figure.wait();
+    shown.readouts.wait();
     this.#session.ask(shown.lesson.id, computed(shown.lesson, shown.controls.values));
     this.#writeAddress();
   }
@@ -285,6 +295,7 @@ export class LearnPage {
     const inWords = drawingIn(shown.lesson.id, drawing);
     shown.figure.show(inWords);
     shown.readouts.show(inWords);
+    shown.fit.now();
     if (done && !shown.player.isPlaying) shown.guesses.drawn(drawing, shown.controls.values);
     shown.embed.fit(drawing.panels.some(({ kind }) => kind === "plot"));
     shown.box.setAttribute("aria-busy", String(!done));

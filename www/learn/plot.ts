@@ -58,6 +58,7 @@ export class Plot {
   readonly #legend = make("p", { class: "learn-legend learn-keys" });
   #panel: PlotPanel | undefined;
   #width = 0;
+  #height = 0;
 
   constructor() {
     this.element = make(
@@ -82,18 +83,22 @@ export class Plot {
     this.#draw(panel);
   }
 
-  /** Redraws for another width or type size, but not for a change of its height. */
+  /** Redraws for another width or type size, and for another height where the style sheet gives one. */
   #fit(): void {
-    const type = parseFloat(getComputedStyle(this.#drawing).fontSize) / TYPE;
-    const width = Math.round(this.element.clientWidth / (type || 1));
-    if (width === 0 || width === this.#width) return;
+    const style = getComputedStyle(this.#drawing);
+    const type = parseFloat(style.fontSize) / TYPE || 1;
+    const width = Math.round(this.element.clientWidth / type);
+    const given = Math.round(parseFloat(style.getPropertyValue("--plot-height")) / type);
+    const height = given || heightOf(width);
+    if (width === 0 || (width === this.#width && height === this.#height)) return;
     this.#width = width;
+    this.#height = height;
     if (this.#panel) this.#draw(this.#panel);
   }
 
   #draw({ series, x, y, at, domain, range }: PlotPanel): void {
     const width = this.#width || WIDTH;
-    const height = heightOf(width);
+    const height = this.#height || heightOf(width);
     const box = { left: MARGIN.left, top: MARGIN.top, right: width - MARGIN.right, bottom: height - MARGIN.bottom };
     this.#drawing.setAttribute("viewBox", `0 0 ${width} ${height}`);
     const every = (axis: 0 | 1) => series.flatMap(({ points }) => points.filter((_, i) => i % 2 === axis));

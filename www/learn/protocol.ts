@@ -34,6 +34,7 @@ export const LARGEST_CONSTANT = 0.6;
 export type Ink =
   | "normal"
   | "light"
+  | "intensity"
   | "albedo"
   | "prior"
   | "colour"

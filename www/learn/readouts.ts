@@ -25,7 +25,13 @@ export class Readouts {
     );
   }
 
+  /** Marks the numbers as those of an earlier state, until the next drawing. */
+  wait(): void {
+    this.element.setAttribute("aria-busy", "true");
+  }
+
   show({ numbers, words = {} }: Drawing): void {
+    this.element.setAttribute("aria-busy", "false");
     for (const { readout, value } of this.#rows) {
       const word = words[readout.key];
       const number = numbers[readout.key];

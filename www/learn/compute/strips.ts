@@ -111,8 +111,8 @@ function reflectanceMap(lamp: number[], brightness: number, truth: readonly [num
   const line = (level: number) => contour(values, SIDE, SIDE, level);
   const marks: Mark[] = [
     { ink: "isophote", shape: "line", points: LEVELS.flatMap(line), isFine: true },
-    { ink: "light", shape: "line", points: line(brightness) },
-    { ink: "truth", shape: "cross", points: inMap(truth), size: 3 },
+    { ink: "intensity", shape: "line", points: line(brightness) },
+    { ink: "normal", shape: "cross", points: inMap(truth), size: 3 },
   ];
   return pictureOf(
     {

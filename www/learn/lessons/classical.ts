@@ -1,13 +1,15 @@
 /** Lessons 3 and 4: the ambiguity of one picture, and classical shape from shading under one lamp. */
 
 import type { Lesson } from "../lesson";
-import { block, comma, lines, mi, mo, row, sub, sup, symbol } from "../maths";
+import { block, comma, dot, lines, mo, row, sup, symbol, type SymbolName } from "../maths";
 import { decimals } from "../digits";
 import { stretchOf } from "../stretch";
 import { lampSliders } from "./first";
 
 const prime = (base: Element) => sup(base, mo("′"));
-const dot = (name: string) => prime(mi(name));
+const pair = (make: (name: SymbolName) => Element, first: SymbolName, second: SymbolName) =>
+  row(mo("("), make(first), mo(","), make(second), mo(")"));
+const change = (name: SymbolName) => dot(symbol(name));
 
 export const relief: Lesson = {
   id: "relief",
@@ -17,11 +19,11 @@ export const relief: Lesson = {
     block(
       prime(symbol("z")),
       mo("="),
-      mi("s"),
+      symbol("s"),
       symbol("z"),
       mo("+"),
-      mi("t"),
-      mi("x"),
+      symbol("t"),
+      symbol("x"),
       comma(),
       prime(symbol("E")),
       mo("="),
@@ -99,25 +101,20 @@ export const strips: Lesson = {
   gist: "With one known lamp and one albedo, the shape can be followed along strips that start at a bright spot.",
   formula: () =>
     lines(
+      block(symbol("E"), pair(symbol, "x", "y"), mo("="), symbol("map"), pair(symbol, "p", "q")),
       block(
-        symbol("E"),
-        row(mo("("), mi("x"), mo(","), mi("y"), mo(")")),
-        mo("="),
-        mi("R"),
-        row(mo("("), mi("p"), mo(","), mi("q"), mo(")")),
-      ),
-      block(
-        row(mo("("), dot("x"), mo(","), dot("y"), mo(")"), mo("="), mo("∇"), mi("R")),
+        row(pair(change, "x", "y"), mo("="), mo("∇"), symbol("map")),
         comma(),
-        row(mo("("), dot("p"), mo(","), dot("q"), mo(")"), mo("="), mo("∇"), symbol("E")),
+        row(pair(change, "p", "q"), mo("="), mo("∇"), symbol("E")),
       ),
-      block(row(dot("z"), mo("="), mi("p"), sub(mi("R"), mi("p")), mo("+"), mi("q"), sub(mi("R"), mi("q")))),
+      block(row(change("z"), mo("="), symbol("p"), change("x"), mo("+"), symbol("q"), change("y"))),
     ),
   formulaWords:
-    "The intensity of the picture is the reflectance map of the slopes. A strip moves in the picture along the gradient of the map, and its slopes change along the gradient of the picture.",
+    "The intensity of the picture is the reflectance map of the slopes. A strip moves in the picture along the gradient of the map, and its slopes change along the gradient of the picture. Its depth changes by each slope times the step along it.",
   text: [
-    "Write the surface as a depth z(x, y) with slopes p and q along x and y. Under a known lamp, Lambert's law gives each pair of slopes an intensity: the reflectance map R(p, q). A pixel of intensity {E} has its slopes somewhere on one isophote of that map. One equation, two unknowns.",
-    "But neighbours have to fit together. Suppose the slopes at one point are known. Step in the picture along the gradient of R: then the change of the slopes is the gradient of {E}, which the picture shows. So position, slopes and height can be carried on, step by step, along a characteristic strip. At a bright spot the surface faces the lamp, so its slopes are known, and the curvature of the picture gives that of the surface, except for its sign.",
+    "Write the surface as a depth {z} that depends on the place {x}, {y} in the picture. Its slopes {p} and {q} say how fast the depth changes to the right and down; together they say the same as the normal. Under a known lamp, Lambert's law gives each pair of slopes an intensity. All pairs together are the reflectance map {map}, a picture whose axes are slopes. So a pixel of intensity {E} has its slopes somewhere on one isophote of that map. This is the first line of the formula: one equation, two unknowns.",
+    "But neighbours have to fit together. Suppose that the slopes at one point are known, and take a small step; a dot over a letter marks its change. Step in the picture along ∇{map}, the direction in the map in which the intensity grows. Then the slopes change by ∇{E}, the direction in the picture in which it grows, and that can be seen. This is the second line. In the third, the depth changes by each slope times the step along it. So place, slopes and depth are carried on, step by step, along a characteristic strip.",
+    "A strip starts at a bright spot. There the surface faces the lamp, so its slopes are known. The curvature of the picture gives that of the surface, except for its sign: the spot may be a bump or a dent.",
     "Horn invented this in his thesis in 1970, the first computed shape from shading. Strips drift with noise and leave gaps, so later methods solve for all heights at once: his paper of 1989 computes heights and slopes together. Tests of such methods used the bust of Mozart; here, the built-in bust stands in for it.",
     "The method needs one lamp, known exactly, one albedo, and somebody who says whether the spot is a bump. It fails where strips cross a saddle: the picture cannot say on which side of it the surface goes on.",
   ],
@@ -153,7 +150,7 @@ export const strips: Lesson = {
   readouts: [
     { key: "near", label: "Error of the height, first 10 px", unit: "px", digits: 2, ink: "error" },
     { key: "far", label: "Farther away", unit: "px", digits: 2, ink: "error" },
-    { key: "intensity", label: "Intensity of the pixel", digits: 2, ink: "light" },
+    { key: "intensity", label: "Intensity of the pixel", digits: 2, ink: "intensity" },
     { key: "strips", label: "Strips", digits: 0, ink: "normal" },
   ],
   drags: { picture: { x: "px", y: "py" } },

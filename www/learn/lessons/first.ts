@@ -105,7 +105,7 @@ export const lambert: Lesson = {
     "Hold a sheet of paper under a lamp. It is brightest when it faces the lamp. Tilt it, and the same light is spread over more paper, so each part gets less. This is Lambert's law: the intensity {E} is the albedo {rho}, the share of light that the surface reflects, times the cosine {n}·{l} of the angle between the normal {n} and the direction {l} to the lamp. A matte surface looks equally bright from every side.",
     "The cosine is flat near 0° and steep near 90°. At 60° half of the intensity is left, and beyond 90° the surface is in its own shadow. Light does not add up to less than nothing, hence the maximum in the formula.",
     "A line of equal intensity is called an isophote. The figure marks that of {=level}; drag this number to change it. On a ball, an isophote is a circle around the point that faces the lamp, because all normals on it have the same angle to the lamp. On any other surface, an isophote still joins all points with that angle, but now the line runs wherever the surface has such normals. Bright spots mark the places that face the lamp.",
-    "One intensity fixes only one angle. The normal may lie anywhere on a cone around the lamp. To see the cone, follow one isophote on the ball: all its colours in the normal map of lesson 1 differ, and all its pixels look the same.",
+    "One intensity fixes only one angle. The normal may lie anywhere on a cone around the lamp: for half of the largest intensity, on the cone of 60°. To see the cone, follow one isophote on the ball: all its colours in the normal map of lesson 1 differ, and all its pixels look the same.",
   ],
   tasks: [
     "Move the lamp from the left to the right. The isophotes follow it, and the shadow grows on the other side.",

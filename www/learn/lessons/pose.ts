@@ -23,7 +23,7 @@ export const pose: Lesson = {
     "Raise λ until the minima of the pixel have merged. Repeat with the pose 20° off.",
     "Let it register from 20° away. The pose comes home.",
     "Let it register from 40° away. Here the true pose lies beyond the tolerance, so the given pose is kept and the status is ambiguous.",
-    "Let it search from scratch. It needs no initial pose, and takes longer.",
+    "Let it search from scratch. It needs no initial pose and takes longer, and the error ends below one degree.",
   ],
   tries: [
     { set: { run: "hold", offset: 0 }, sweep: { key: "offset", to: 30 } },
@@ -105,23 +105,23 @@ export const sensor: Lesson = {
   formula: () =>
     lines(
       block(
-        mi("μ"),
+        symbol("mu"),
         norm(row(symbol("z"), mo("−"), symbol("d"))),
         mo("+"),
         colourTerm(() => sub(symbol("N"), symbol("z"))),
         mo(","),
       ),
       block(
-        mi("μ"),
+        symbol("mu"),
         mo("="),
-        sup(row(mo("("), sub(mi("σ"), mi("S")), mo("/"), sub(mi("σ"), symbol("d")), mo(")")), mn("2")),
+        sup(row(mo("("), sub(symbol("sigma"), mi("S")), mo("/"), sub(symbol("sigma"), symbol("d")), mo(")")), mn("2")),
       ),
     ),
   formulaWords:
     "A weight mu times the squared distance between the refined and the measured depth, plus the cost of the colours for the normals of the refined depth. Mu is the variance of the shading over that of the sensor.",
   text: [
     "A depth sensor is right on the large scale and noisy on the small one. Shading is the opposite: it gives slopes from pixel to pixel and drifts over long distances. The two complement each other.",
-    "Once the pose is known, the refinement finds a depth {z} that stays near the measured depth {d} and whose normals explain the colours. The weight μ is not tuned by hand: it is the variance of the shading over that of the sensor, both measured from the data. Holes are filled where the colour camera sees the surface. Noise spoils the normals most, because differences between neighbouring pixels amplify it. Without any noise the normals are still about 4° off: the depth map of this figure is only 64 pixels wide, too coarse for the fine shape of the face. With twice as many pixels 1° is left.",
+    "Once the pose is known, the refinement finds a depth {z} that stays near the measured depth {d} and whose normals explain the colours. The weight {mu} is not tuned by hand: it is the variance {sigma}² of the shading (index S) over that of the sensor (index d), both measured from the data. Holes are filled where the colour camera sees the surface. Noise spoils the normals most, because differences between neighbouring pixels amplify it. Without any noise the normals are still about 4° off: the depth map of this figure is only 64 pixels wide, too coarse for the fine shape of the face. With twice as many pixels 1° is left.",
     "Parts that the picture does not show stay as measured: the side facing away from the camera, and parts in shadow.",
   ],
   tasks: [
