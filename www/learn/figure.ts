@@ -2,6 +2,7 @@
 
 import { make } from "../dom";
 import { Cloud } from "./cloud";
+import { blank } from "./frames";
 import type { Drawing, ImagePanel, Mark, Panel } from "./protocol";
 import { Plot } from "./plot";
 import { svg } from "./svg";
@@ -28,7 +29,23 @@ export class Figure {
     this.#onDrag = onDrag;
   }
 
+  /** Shows empty panels until the first drawing arrives, or none if it will not arrive. */
+  outline(kinds: readonly Panel["kind"][]): void {
+    if (this.#widgets.size > 0) return;
+    this.#count(kinds);
+    this.element.replaceChildren(...kinds.map(blank));
+  }
+
+  /** The style sheet of the slides divides the width by these. */
+  #count(kinds: readonly Panel["kind"][]): void {
+    const plots = kinds.filter((kind) => kind === "plot").length;
+    this.element.style.setProperty("--plots", String(plots));
+    this.element.style.setProperty("--pictures", String(kinds.length - plots));
+  }
+
   show({ panels }: Drawing): void {
+    if (this.#widgets.size === 0) this.element.replaceChildren();
+    this.#count(panels.map(({ kind }) => kind));
     const keys = new Set(panels.map(({ key }) => key));
     for (const [key, { element }] of this.#widgets) {
       if (keys.has(key)) continue;

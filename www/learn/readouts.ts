@@ -12,11 +12,7 @@ export class Readouts {
   constructor(readouts: readonly Readout[]) {
     this.#rows = readouts.map((readout) => ({
       readout,
-      value: make(
-        "dd",
-        { "data-number": readout.key, ...(readout.ink ? { class: `learn-ink-${readout.ink}` } : {}) },
-        "–",
-      ),
+      value: make("dd", { "data-number": readout.key, class: readout.ink ? `learn-ink-${readout.ink}` : "words" }, "–"),
     }));
     this.element = make(
       "dl",
