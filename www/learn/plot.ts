@@ -63,13 +63,7 @@ export class Plot {
   #most = Infinity;
 
   constructor() {
-    this.element = make(
-      "figure",
-      { class: "learn-panel learn-wide" },
-      this.#title,
-      this.#box,
-      this.#legend,
-    );
+    this.element = make("figure", { class: "learn-panel learn-wide" }, this.#title, this.#box, this.#legend);
     new ResizeObserver(() => this.#fit()).observe(this.element);
   }
 

@@ -1,13 +1,12 @@
 /** Lessons 3 and 4: the ambiguity of one picture, and classical shape from shading under one lamp. */
 
 import type { Lesson } from "../lesson";
-import { block, comma, lines, mi, mo, row, sub, sup, symbol } from "../maths";
+import { block, comma, gradient, lines, mi, mo, primed, row, sub, symbol } from "../maths";
 import { decimals } from "../digits";
 import { stretchOf } from "../stretch";
 import { lampSliders } from "./first";
 
-const prime = (base: Element) => sup(base, mo("′"));
-const dot = (name: string) => prime(mi(name));
+const dot = (name: string) => primed(mi(name));
 
 export const relief: Lesson = {
   id: "relief",
@@ -15,7 +14,7 @@ export const relief: Lesson = {
   gist: "A flattened or an inverted surface can make exactly the same picture, under another lamp and with another albedo.",
   formula: () =>
     block(
-      prime(symbol("z")),
+      primed(symbol("z")),
       mo("="),
       mi("s"),
       symbol("z"),
@@ -23,7 +22,7 @@ export const relief: Lesson = {
       mi("t"),
       mi("x"),
       comma(),
-      prime(symbol("E")),
+      primed(symbol("E")),
       mo("="),
       symbol("E"),
     ),
@@ -107,9 +106,9 @@ export const strips: Lesson = {
         row(mo("("), mi("p"), mo(","), mi("q"), mo(")")),
       ),
       block(
-        row(mo("("), dot("x"), mo(","), dot("y"), mo(")"), mo("="), mo("∇"), mi("R")),
+        row(mo("("), dot("x"), mo(","), dot("y"), mo(")"), mo("="), gradient(mi("R"))),
         comma(),
-        row(mo("("), dot("p"), mo(","), dot("q"), mo(")"), mo("="), mo("∇"), symbol("E")),
+        row(mo("("), dot("p"), mo(","), dot("q"), mo(")"), mo("="), gradient(symbol("E"))),
       ),
       block(row(dot("z"), mo("="), mi("p"), sub(mi("R"), mi("p")), mo("+"), mi("q"), sub(mi("R"), mi("q")))),
     ),
