@@ -132,7 +132,7 @@ function drawn({ ink, shape, points, size = 2, isFine = false }: Mark): SVGEleme
   const name = `learn-mark learn-ink-${ink}`;
   if (shape === "line") {
     const d = pathOf(points);
-    if (isFine) return [svg("path", { class: `${name} fine`, d })];
+    if (isFine) return [svg("path", { class: `${name} fine-halo`, d }), svg("path", { class: `${name} fine`, d })];
     return [svg("path", { class: `${name} halo`, d }), svg("path", { class: name, d })];
   }
   return all.flatMap(([x, y]) => {

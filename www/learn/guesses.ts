@@ -57,7 +57,7 @@ export class Guesses {
 
   #form(guess: Guess): Form {
     const answer = make("p", { class: "learn-answer", role: "status" });
-    const noted = make("p", { class: "soft", role: "status" });
+    const noted = make("p", { class: "soft learn-noted", "aria-live": "polite" });
     const compare = make("button", { type: "submit", disabled: true }, phrase("guess.compare", "Compare"));
     const field = guess.choices ? choicesOf(guess.choices) : numberOf(guess);
     const form = make(
@@ -169,7 +169,9 @@ function verdict(guess: Guess, given: number, drawing: Drawing, values: Values):
   const figure = guess.number
     ? ` ${phrase("guess.shows", "The figure shows {number}.", { number: withUnit(decimals(near, digits), unit?.trim()) })}`
     : "";
-  // The answer to a right choice begins with that choice.
-  const chosen = good && guess.choices ? "" : ` ${phrase("guess.chose", "You guessed: {guess}.", { guess: said })}`;
-  return [make("strong", {}, head), `${chosen}${figure} `, ...sentence(guess.answer)];
+  const chosen = phrase("guess.chose", "You guessed: {guess}.", { guess: said });
+  // The answer to a right choice begins with that choice. On a slide the choice is still in view.
+  const words =
+    good && guess.choices ? [] : [make("span", { class: guess.choices ? "learn-chose" : "" }, ` ${chosen}`)];
+  return [make("strong", {}, head), ...words, `${figure} `, ...sentence(guess.answer)];
 }
