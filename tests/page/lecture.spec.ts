@@ -100,7 +100,7 @@ test("a link hides every answer until a button or a key shows it", async ({ lab,
   await exercises.getByRole("button", { name: hide }).click();
   await expect(page).toHaveURL(/#learn&at=exercises&answers=hidden/);
   // They stay hidden on the way through the page, and after a reload.
-  await page.locator('.learn-contents a[data-lesson="relief"]').click();
+  await page.locator('.learn-contents a[data-to="relief"]').click();
   await expect(page).toHaveURL(/answers=hidden/);
   await page.reload();
   const form = page.locator(".learn-guess").first();
@@ -144,7 +144,7 @@ test("a link without settings shows the lesson's own, whatever was set before", 
   await slide(page, "turn", 120);
   await settled(page);
   // The visitor's own ways keep the setting: another lesson and back, and a reload.
-  await page.locator('.learn-contents a[data-lesson="colours"]').click();
+  await page.locator('.learn-contents a[data-to="colours"]').click();
   await expect(page.locator('[data-lesson="colours"].learn-lesson')).toBeVisible();
   await page.locator(".learn-ends a").first().click();
   await expect(control(page, "turn")).toHaveValue("120");
@@ -281,7 +281,7 @@ test("the next slide's figure is computed in advance, and is there at once", asy
   });
   expect(isBusy).toEqual(["strips", null]);
   await expect(figure(page)).toHaveAttribute("aria-busy", "false");
-  // A drag asks for other values.
+  // A drag changes the figure as on any slide.
   await slide(page, "lx", 0.1);
   await settled(page);
   expect(lab.complaints).toEqual([]);

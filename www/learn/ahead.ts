@@ -1,5 +1,5 @@
 /**
- * Keeps the last drawing of each slide and computes that of the next one while the present one is looked at. It has a thread of its own, so
+ * Keeps the last drawing of each slide and computes that of the next one while the present one is looked at. It has a separate thread, so
  * that no drag on the present figure waits for it. A failure is not reported: the slide's own request will report it.
  */
 

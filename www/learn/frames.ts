@@ -4,7 +4,7 @@ import { make } from "../dom";
 import { phrase } from "../words";
 import type { LessonId, Panel } from "./protocol";
 
-/** The kinds of the panels in their order: tests/contract/lessons.test.mjs compares them with the figures. */
+/** The kinds of the panels in their order: tests/contract/lesson-frames.test.mjs compares them with the figures. */
 export const FRAMES: Readonly<Record<LessonId, readonly Panel["kind"][]>> = {
   normal: ["image", "image", "image"],
   lambert: ["image", "image", "image", "plot"],

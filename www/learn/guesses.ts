@@ -172,6 +172,6 @@ function verdict(guess: Guess, given: number, drawing: Drawing, values: Values):
   const chosen = phrase("guess.chose", "You guessed: {guess}.", { guess: said });
   // The answer to a right choice begins with that choice. On a slide the choice is still in view.
   const words =
-    good && guess.choices ? [] : [make("span", { class: guess.choices ? "learn-chose" : "" }, ` ${chosen}`)];
+    good && guess.choices ? [] : [make("span", { class: guess.choices ? "learn-chose" : undefined }, ` ${chosen}`)];
   return [make("strong", {}, head), ...words, `${figure} `, ...sentence(guess.answer)];
 }

@@ -61,7 +61,7 @@ export class LearnPage {
   readonly #main = make("div", { class: "learn-main" });
   readonly #answers: Answers;
   readonly #exercises: HTMLElement;
-  readonly #exerciseLink = make("a", { href: "#learn&at=exercises" }, phrase("exercises", "Exercises"));
+  readonly #exerciseLink = make("a", { href: "#learn&at=exercises", "data-to": "exercises" }, phrase("exercises", "Exercises"));
   readonly #slides: Slides;
   #chosen: Chosen = chosenBy("");
   #shown: Shown | undefined;
@@ -75,7 +75,7 @@ export class LearnPage {
     for (const chapter of chapters) {
       const list = make("ol", { "aria-label": chapter.title });
       for (const { id, title } of chapter.lessons) {
-        const link = make("a", { "data-lesson": id }, title);
+        const link = make("a", { "data-to": id }, title);
         this.#links.set(id, link);
         this.#point(id);
         list.append(make("li", {}, link));
