@@ -61,7 +61,11 @@ export class LearnPage {
   readonly #main = make("div", { class: "learn-main" });
   readonly #answers: Answers;
   readonly #exercises: HTMLElement;
-  readonly #exerciseLink = make("a", { href: "#learn&at=exercises", "data-to": "exercises" }, phrase("exercises", "Exercises"));
+  readonly #exerciseLink = make(
+    "a",
+    { href: "#learn&at=exercises", "data-to": "exercises" },
+    phrase("exercises", "Exercises"),
+  );
   readonly #slides: Slides;
   #chosen: Chosen = chosenBy("");
   #shown: Shown | undefined;
