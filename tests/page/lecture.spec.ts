@@ -71,7 +71,6 @@ test("a question on a slide takes the arrow keys only from those who tab to it",
   await page.keyboard.press("q");
   await guess(page);
   await expect(asked(page).locator(".learn-answer")).not.toBeEmpty();
-  // A typed letter is no command in a field for numbers.
   await asked(page).locator("label").last().click();
   await page.keyboard.press("ArrowRight");
   await expect(page.locator('.learn-slide [data-lesson="strips"]')).toBeVisible();
@@ -83,6 +82,13 @@ test("a question on a slide takes the arrow keys only from those who tab to it",
   await asked(page).locator("input").first().focus();
   await page.keyboard.press("ArrowRight");
   await expect(page.locator('.learn-slide [data-lesson="relief"]')).toBeVisible();
+  // After a typed number, too.
+  await open(page, "at=grey&slides");
+  await page.keyboard.press("q");
+  await asked(page).locator("input").fill("3");
+  await page.keyboard.press("Enter");
+  await page.keyboard.press("ArrowRight");
+  await expect(page.locator('.learn-slide [data-lesson="colours"]')).toBeVisible();
   expect(lab.complaints).toEqual([]);
 });
 

@@ -66,6 +66,8 @@ export class Slides {
     this.element.addEventListener("click", ({ target, detail }) => {
       if (detail > 0 && target instanceof Element && target.matches(KEEPS_FOCUS)) this.#focus();
     });
+    // After a typed guess the keys are commands again.
+    this.element.addEventListener("submit", () => this.#focus());
     this.element.addEventListener("close", () => {
       if (document.fullscreenElement) void document.exitFullscreen();
       hooks.close();
