@@ -126,14 +126,22 @@ export const PARTS = [
     name: "sizes",
     what: "initial poses of three sizes (only the size that follows from the units)",
     changes: [
-      { file: LOCAL_CONTRAST, from: "const SIZES: [f64; 3] = [0.84, 1.0, 1.19];", to: "const SIZES: [f64; 1] = [1.0];" },
+      {
+        file: LOCAL_CONTRAST,
+        from: "const SIZES: [f64; 3] = [0.84, 1.0, 1.19];",
+        to: "const SIZES: [f64; 1] = [1.0];",
+      },
     ],
   },
   {
     name: "hues",
     what: "the sharpening of chromaticity that JPEG has blurred",
     changes: [
-      { file: LOCAL_CONTRAST, from: "let sharp = pair.image.with_sharp_chromaticity();", to: "let sharp: Option<ColourView> = None;" },
+      {
+        file: LOCAL_CONTRAST,
+        from: "let sharp = pair.image.with_sharp_chromaticity();",
+        to: "let sharp: Option<ColourView> = None;",
+      },
     ],
   },
 ];

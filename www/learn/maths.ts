@@ -14,21 +14,34 @@ export function math(tag: string, attributes: Record<string, string>, ...childre
   return element;
 }
 
-const text = (tag: "mi" | "mn" | "mo", content: string, variant?: string) =>
-  math(tag, variant ? { mathvariant: variant } : {}, content);
-export const mi = (content: string): Element => text("mi", content);
-export const mn = (content: string): Element => text("mn", content);
-export const mo = (content: string): Element => text("mo", content);
+/**
+ * A letter in the italics of a text font. By itself a browser replaces it by a letter from the mathematical block of Unicode, which only
+ * mathematics fonts have.
+ */
+const letter = (content: string, weight = ""): Element =>
+  math("mi", { mathvariant: "normal", class: `learn-letter${weight}` }, content);
+export const mi = (content: string): Element => (content.length > 1 ? math("mi", {}, content) : letter(content));
+export const mn = (content: string): Element => math("mn", {}, content);
+/** Brackets do not grow, because without a mathematics font browsers enlarge them at random. */
+export const mo = (content: string): Element =>
+  math("mo", "()||".includes(content) ? { stretchy: "false" } : {}, content);
 export const row = (...children: Element[]): Element => math("mrow", {}, ...children);
 export const sub = (base: Element, index: Element): Element => math("msub", {}, base, index);
 export const sup = (base: Element, exponent: Element): Element => math("msup", {}, base, exponent);
 export const frac = (up: Element, down: Element): Element => math("mfrac", {}, up, down);
 export const sum = (below: Element): Element => math("munder", {}, mo("∑"), below);
-export const norm = (inside: Element): Element => sup(row(mo("‖"), inside, mo("‖")), mn("2"));
+/** The exponent belongs to the bracket, whose height does not depend on what is inside. */
+export const squared = (...inside: Element[]): Element => row(mo("("), ...inside, sup(mo(")"), mn("2")));
+export const norm = (inside: Element): Element => row(mo("||"), inside, sup(mo("||"), mn("2")));
+/** The prime of a text font is raised by itself; as an exponent it would be raised twice. */
+export const primed = (base: Element): Element => row(base, math("mtext", { class: "learn-prime" }, "′"));
+/** The sign of a transposed vector, as a letter that every font has. */
+export const transposed = (base: Element): Element => sup(base, math("mi", { mathvariant: "normal" }, "T"));
 
 /** Space before and after, as in print; browsers add none. */
 const space = (width: string): Element => math("mspace", { width });
 export const log = (of: Element): Element => row(mi("log"), space("0.1667em"), of);
+export const gradient = (of: Element): Element => row(mi("grad"), space("0.1667em"), of);
 export const comma = (): Element => row(mo(","), space("0.6em"));
 
 interface Symbol {
@@ -38,16 +51,13 @@ interface Symbol {
   name: string;
 }
 
-const bold = (letter: string) => math("mi", { mathvariant: "bold", class: "learn-bold" }, letter);
-/** The change per step of what is marked. */
-export const dot = (base: Element): Element => math("mover", { accent: "true" }, base, mo("˙"));
-const tilde = (base: Element) => math("mover", { accent: "true" }, base, mo("~"));
+const bold = (name: string) => letter(name, " learn-bold");
 
 /** Every symbol of the lessons, once. */
 export const SYMBOLS = {
   n: { make: () => bold("n"), ink: "normal", name: "unit normal of the surface" },
   // It has no hat, which would mean a unit vector: its length is the square root of two.
-  N: { make: () => tilde(bold("n")), ink: "normal", name: "unit normal with a fourth component 1" },
+  N: { make: () => bold("ñ"), ink: "normal", name: "unit normal with a fourth component 1" },
   m: { make: () => bold("m"), ink: "prior", name: "normal of the depth map at that point" },
   M: { make: () => sub(bold("M"), mi("j")), ink: "light", name: "light of colour j, a 4 by 4 matrix of 9 numbers" },
   l: { make: () => bold("l"), ink: "light", name: "unit vector to the lamp" },
@@ -109,10 +119,10 @@ export function symbolList(formula: Element): HTMLElement {
 
 /** The shading of the model: the extended normal on both sides of the light's matrix. */
 export const shading = (normal: () => Element = () => symbol("N")): Element =>
-  row(sup(normal(), mi("⊤")), symbol("M"), normal());
+  row(transposed(normal()), symbol("M"), normal());
 /** The cost of a normal by the colours alone. */
 export const colourTerm = (normal?: () => Element): Element =>
-  row(sum(mi("j")), sup(row(mo("("), log(symbol("S")), mo("−"), shading(normal), mo(")")), mn("2")));
+  row(sum(mi("j")), squared(log(symbol("S")), mo("−"), shading(normal)));
 
 export const inline = (...children: Element[]): Element => math("math", {}, row(...children));
 export const block = (...children: Element[]): Element => math("math", { display: "block" }, row(...children));

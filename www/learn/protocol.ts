@@ -57,7 +57,7 @@ export interface Mark {
   points: number[];
   /** Radius of dots and rings in hundredths of the picture. */
   size?: number;
-  /** Whether lines are thin and have no dark edge, because they lie close to each other. */
+  /** Whether lines are thin and have a thin light edge instead of a dark one, because they lie close to each other. */
   isFine?: boolean;
 }
 

@@ -1,15 +1,14 @@
 /** Lessons 3 and 4: the ambiguity of one picture, and classical shape from shading under one lamp. */
 
 import type { Lesson } from "../lesson";
-import { block, comma, dot, lines, mo, row, sup, symbol, type SymbolName } from "../maths";
+import { block, comma, gradient, lines, mo, primed, row, symbol, type SymbolName } from "../maths";
 import { decimals } from "../digits";
 import { stretchOf } from "../stretch";
 import { lampSliders } from "./first";
 
-const prime = (base: Element) => sup(base, mo("′"));
 const pair = (make: (name: SymbolName) => Element, first: SymbolName, second: SymbolName) =>
   row(mo("("), make(first), mo(","), make(second), mo(")"));
-const change = (name: SymbolName) => dot(symbol(name));
+const change = (name: SymbolName) => primed(symbol(name));
 
 export const relief: Lesson = {
   id: "relief",
@@ -17,7 +16,7 @@ export const relief: Lesson = {
   gist: "A flattened or an inverted surface can make exactly the same picture, under another lamp and with another albedo.",
   formula: () =>
     block(
-      prime(symbol("z")),
+      primed(symbol("z")),
       mo("="),
       symbol("s"),
       symbol("z"),
@@ -25,7 +24,7 @@ export const relief: Lesson = {
       symbol("t"),
       symbol("x"),
       comma(),
-      prime(symbol("E")),
+      primed(symbol("E")),
       mo("="),
       symbol("E"),
     ),
@@ -103,9 +102,9 @@ export const strips: Lesson = {
     lines(
       block(symbol("E"), pair(symbol, "x", "y"), mo("="), symbol("map"), pair(symbol, "p", "q")),
       block(
-        row(pair(change, "x", "y"), mo("="), mo("∇"), symbol("map")),
+        row(pair(change, "x", "y"), mo("="), gradient(symbol("map"))),
         comma(),
-        row(pair(change, "p", "q"), mo("="), mo("∇"), symbol("E")),
+        row(pair(change, "p", "q"), mo("="), gradient(symbol("E"))),
       ),
       block(row(change("z"), mo("="), symbol("p"), change("x"), mo("+"), symbol("q"), change("y"))),
     ),
@@ -113,7 +112,7 @@ export const strips: Lesson = {
     "The intensity of the picture is the reflectance map of the slopes. A strip moves in the picture along the gradient of the map, and its slopes change along the gradient of the picture. Its depth changes by each slope times the step along it.",
   text: [
     "Write the surface as a depth {z} that depends on the place {x}, {y} in the picture. Its slopes {p} and {q} say how fast the depth changes to the right and down; together they say the same as the normal. Under a known lamp, Lambert's law gives each pair of slopes an intensity. All pairs together are the reflectance map {map}, a picture whose axes are slopes. So a pixel of intensity {E} has its slopes somewhere on one isophote of that map. This is the first line of the formula: one equation, two unknowns.",
-    "But neighbours have to fit together. Suppose that the slopes at one point are known, and take a small step; a dot over a letter marks its change. Step in the picture along ∇{map}, the direction in the map in which the intensity grows. Then the slopes change by ∇{E}, the direction in the picture in which it grows, and that can be seen. This is the second line. In the third, the depth changes by each slope times the step along it. So place, slopes and depth are carried on, step by step, along a characteristic strip.",
+    "But neighbours have to fit together. Suppose that the slopes at one point are known, and take a small step; a prime on a letter now marks its change. Step in the picture along grad {map}, the direction in the map in which the intensity grows. Then the slopes change by grad {E}, the direction in the picture in which it grows, and that can be seen. This is the second line. In the third, the depth changes by each slope times the step along it. So place, slopes and depth are carried on, step by step, along a characteristic strip.",
     "A strip starts at a bright spot. There the surface faces the lamp, so its slopes are known. The curvature of the picture gives that of the surface, except for its sign: the spot may be a bump or a dent.",
     "Horn invented this in his thesis in 1970, the first computed shape from shading. Strips drift with noise and leave gaps, so later methods solve for all heights at once: his paper of 1989 computes heights and slopes together. Tests of such methods used the bust of Mozart; here, the built-in bust stands in for it.",
     "The method needs one lamp, known exactly, one albedo, and somebody who says whether the spot is a bump. It fails where strips cross a saddle: the picture cannot say on which side of it the surface goes on.",

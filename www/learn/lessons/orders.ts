@@ -2,7 +2,7 @@
 
 import type { Lesson } from "../lesson";
 import { LIGHTS } from "../lesson";
-import { block, log, mo, row, shading, sup, symbol } from "../maths";
+import { block, log, mo, row, shading, symbol, transposed } from "../maths";
 import { LARGEST_CONSTANT } from "../protocol";
 
 export const orders: Lesson = {
@@ -21,7 +21,7 @@ export const orders: Lesson = {
       mo("·"),
       symbol("n"),
       mo("+"),
-      row(sup(symbol("n"), mo("⊤")), symbol("Q"), symbol("n")),
+      row(transposed(symbol("n")), symbol("Q"), symbol("n")),
     ),
   formulaWords:
     "The logarithm of the intensity is a constant, plus a vector times the normal, plus a quadratic form of the normal.",

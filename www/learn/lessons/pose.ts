@@ -2,7 +2,7 @@
 
 import type { Lesson } from "../lesson";
 import { LIGHTS } from "../lesson";
-import { block, colourTerm, lines, mi, mn, mo, norm, row, sub, sup, symbol } from "../maths";
+import { block, colourTerm, lines, mi, mo, norm, row, squared, sub, symbol } from "../maths";
 
 export const pose: Lesson = {
   id: "pose",
@@ -111,11 +111,7 @@ export const sensor: Lesson = {
         colourTerm(() => sub(symbol("N"), symbol("z"))),
         mo(","),
       ),
-      block(
-        symbol("mu"),
-        mo("="),
-        sup(row(mo("("), sub(symbol("sigma"), mi("S")), mo("/"), sub(symbol("sigma"), symbol("d")), mo(")")), mn("2")),
-      ),
+      block(symbol("mu"), mo("="), squared(sub(symbol("sigma"), mi("S")), mo("/"), sub(symbol("sigma"), symbol("d")))),
     ),
   formulaWords:
     "A weight mu times the squared distance between the refined and the measured depth, plus the cost of the colours for the normals of the refined depth. Mu is the variance of the shading over that of the sensor.",
