@@ -3,6 +3,7 @@
 import "../style/learn.css";
 import "../style/embed.css";
 import "../style/learn-figure.css";
+import "../style/learn-blank.css";
 import "../style/learn-print.css";
 import "../style/learn-slides.css";
 import { make } from "../dom";

@@ -81,8 +81,8 @@ export class Plot {
   }
 
   /**
-   * Redraws for another width or type size, and for another height or limit of it where the style sheet gives one, but not for a change of
-   * its own height.
+   * Redraws for another width or type size, and where the style sheet gives another height or limit. The height that follows from the drawing
+   * itself changes nothing.
    */
   #fit(): void {
     const style = getComputedStyle(this.#drawing);
