@@ -30,7 +30,7 @@ const orders = [
     "nine coefficients for each colour, [#] in all",
     () => sample({ surface: "bust", light: "window", size: 16 }).light.length,
   ),
-  claim("orders", "Second-order terms have the [same value|opposite value] on opposite sides", () => {
+  claim("orders", "Second-order terms have the [same value|opposite value] for opposite normals", () => {
     const { light } = sample({ surface: "bust", light: "colourful", size: 16 });
     const second = light.map((value, at) =>
       CHANNELS.some((from) => at >= from + SECOND && at < from + 9) ? value : 0,
@@ -144,6 +144,7 @@ const pose = [
   claim("pose", "Raise λ until the minima of the pixel have [merged|split]", () =>
     [0, 20].every((offset) => numberOf(`pose&offset=${offset}&weight=0`, "minima") === 1) ? "merged" : "split",
   ),
+  claim("pose", "far from the true normal: [#]° off at λ = 1", () => numberOf("pose&offset=20&weight=0", "end")),
   claim("pose", "If the pose is right, the prior is [near|far from] the true normal", () =>
     ["off", "end"].every((key) => numberOf("pose&offset=0&weight=0", key) < 4) ? "near" : "far from",
   ),
@@ -196,6 +197,7 @@ const sensor = [
   claim("sensor", "Holes are [filled|left] where the colour camera sees the surface", () =>
     numberOf("sensor&holes=40", "filled") > 90 ? "filled" : "left",
   ),
+  claim("sensor", "Of these holes [#] % are filled", () => numberOf("sensor&noise=0.4&holes=40", "filled")),
   claim("sensor", "it is less informative, and the refined depth gets [worse|better]", () =>
     change(numberOf("sensor", "after"), numberOf("sensor&picture=0.2", "after"), ["worse", "better"]),
   ),

@@ -80,6 +80,12 @@ export const colours = [
     );
     return new Set(grows).size === 1 ? grows[0] : "differs";
   }),
+  claim("colours", "At 5 % the error of the normals is [#]° there", () =>
+    numberOf("colours&colour=1&noise=0.05", "degrees"),
+  ),
+  claim("colours", "under the window it is [#]°", () =>
+    numberOf("colours&colour=1&light=window&noise=0.05", "degrees"),
+  ),
   claim("colours", "a little noise moves the lowest point by [tens|tenths] of degrees", () =>
     numberOf("colours&colour=1&light=window&noise=0.03", "degrees") > 20 ? "tens" : "tenths",
   ),

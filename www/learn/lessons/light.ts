@@ -81,7 +81,7 @@ export const grey: Lesson = {
   text: [
     "From here to lesson 12 the whole object has one albedo. Its logarithm is then a constant, which {M} includes.",
     "A normal has two degrees of freedom; grey light gives one equation. The cost map shows for each normal how far its log intensity is from the measured one. The normals that explain the pixel form a curve, the dark line in the map. The pixel alone does not determine where on that line the true normal lies.",
-    "The picture as a whole is ambiguous, too. Rotate every normal by half a turn about the line of sight, and a bump becomes a dent. Rotate the lamp by the same angle (now {=turn}), and every pixel keeps its brightness. This is why craters in photographs sometimes look like hills.",
+    "The picture as a whole is ambiguous, too. Rotate every normal by half a turn about the line of sight, and a bump becomes a dent. Rotate its lamp by half a turn, too (in the figure by {=turn}), and every pixel keeps its brightness. This is why craters in photographs sometimes look like hills.",
     "The reason is that a rotated light is again a light of nine numbers. If the light is unknown, colour does not resolve the ambiguity. A known light does, and so does a depth map. Cast shadows, occluding contours and the assumption that light comes from above help as well.",
   ],
   tasks: [
@@ -153,7 +153,7 @@ export const colours: Lesson = {
   tasks: [
     "Raise the colour of the light from 0 to 1. The three lines move apart, the dark valley shrinks to the spots where they meet, and the error of the normals falls.",
     "Choose the window light at full colour. The three lines run side by side, and the dark valley stays long.",
-    "Add noise under the coloured lamps. Then compare how much the error grows under each light.",
+    "Add noise under the coloured lamps. At 5 % the error of the normals is 3.1° there. Then compare how much the error grows under each light: under the window it is 39.3°.",
   ],
   tries: [
     { set: { light: "colourful", noise: 0.01, colour: 0 }, sweep: { key: "colour", to: 1 } },
