@@ -79,7 +79,7 @@ test("numbers and pictures of the state before the last drag are dimmed until th
 });
 
 /** Letters of the formulas that are not symbols: functions, indices of axes and of measured quantities. */
-const PLAIN = new Set(["log", "max", "min", "information", "x", "y", "z", "S"]);
+const PLAIN = new Set(["log", "max", "min", "grad", "information", "x", "y", "z", "S", "T"]);
 
 test(
   "each symbol of a formula has its meaning below it, and the fourth lesson's all light a part of the figure",
@@ -96,7 +96,7 @@ test(
         return [letters.map((mi) => mi.textContent ?? ""), names(".learn-formula"), names(".learn-symbols")] as const;
       });
       expect(
-        unnamed.filter((letter) => !PLAIN.has(letter) && letter !== "j" && letter !== "⊤"),
+        unnamed.filter((letter) => !PLAIN.has(letter) && letter !== "j"),
         id,
       ).toEqual([]);
       expect(listed.filter((name) => name !== "j").sort(), id).toEqual([...inFormula].sort());
