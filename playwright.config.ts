@@ -8,7 +8,7 @@ const PORT = Number(process.env.PAGE_PORT ?? 4199);
 const FOLDER = "/some/folder/";
 
 /** Learn has catalogues of other languages, and the page in these passes the same tests. */
-const LEARN = /\/(?:learn|learn-layout|slides)\.spec\.ts$/;
+const LEARN = /\/(?:learn|learn-layout|lecture|slides)\.spec\.ts$/;
 
 /** Playwright's own browsers come from elsewhere; the system's serves as well. */
 const chromium =

@@ -7,6 +7,7 @@ import { inRoot, say, script } from "./shell.mjs";
 export const PLACES = [
   "CITATION.cff",
   "pyproject.toml",
+  "www/index.html",
   "www/learn/references.ts",
   ".github/ISSUE_TEMPLATE/config.yml",
 ];

@@ -5,6 +5,7 @@
 import { normalDegrees } from "../../protocols/measure-shapes.mjs";
 import { figure, labRun } from "./lesson-figures.mjs";
 import { lambert, normal, relief, strips } from "./lesson-first-claims.mjs";
+import { colours, grey, pixel } from "./lesson-light-claims.mjs";
 import { Estimator, init, sample, shadeNormals } from "./support.mjs";
 
 await init();
@@ -29,7 +30,7 @@ const orders = [
     "nine coefficients for each colour, [#] in all",
     () => sample({ surface: "bust", light: "window", size: 16 }).light.length,
   ),
-  claim("orders", "Second-order terms have the [same value|opposite value] on opposite sides", () => {
+  claim("orders", "Second-order terms have the [same value|opposite value] for opposite normals", () => {
     const { light } = sample({ surface: "bust", light: "colourful", size: 16 });
     const second = light.map((value, at) =>
       CHANNELS.some((from) => at >= from + SECOND && at < from + 9) ? value : 0,
@@ -70,66 +71,6 @@ const orders = [
     ) && numberOf("orders&constant=0.6", "change") < 1e-6
       ? "Nine"
       : "Ten",
-  ),
-];
-
-const pixel = [
-  claim("pixel", "The same normal now has a [different|brighter red] colour", () =>
-    ["red", "green", "blue"].some((key) => Math.abs(numberOf("pixel&beta=60", key) - numberOf("pixel", key)) > 0.1)
-      ? "different"
-      : "brighter red",
-  ),
-  claim("pixel", "All three curves move [down|up] by the same amount", () => {
-    const moves = ["red", "green", "blue"].map((key) => numberOf("pixel&albedo=0.5", key) - numberOf("pixel", key));
-    const isSame = moves.every((move) => Math.abs(move - Math.log(0.5)) < 1e-5);
-    return isSame ? change(0, moves[0], ["up", "down"]) : "apart";
-  }),
-];
-
-const turns = [0, 45, 90, 135, 180];
-const grey = [
-  claim("grey", "At [#]° the two pictures are the same", () => {
-    const differences = turns.map((turn) => numberOf(`grey&turn=${turn}`, "difference"));
-    return turns[differences.indexOf(Math.min(...differences))];
-  }),
-  claim("grey", "the difference [falls|rises] to zero", () =>
-    numberOf("grey&turn=180", "difference") < 1e-4 && numberOf("grey", "difference") > 0.1 ? "falls" : "rises",
-  ),
-  claim("grey", "Then the two pictures [cannot|always] differ", () =>
-    turns.every((turn) => numberOf(`grey&height=0&turn=${turn}`, "difference") < 1e-6) ? "cannot" : "always",
-  ),
-  claim("grey", "every pixel [keeps|loses] its brightness", () =>
-    numberOf("grey&turn=180", "difference") < 1e-4 ? "keeps" : "loses",
-  ),
-];
-
-const colours = [
-  claim("colours", "The dark curve [shrinks|grows] to a few spots", () =>
-    change(numberOf("colours&colour=0", "explained"), numberOf("colours&colour=1", "explained"), ["grows", "shrinks"]),
-  ),
-  claim("colours", "and the error of the normals [falls|rises]", () =>
-    change(numberOf("colours&colour=0", "degrees"), numberOf("colours&colour=1", "degrees"), ["rises", "falls"]),
-  ),
-  claim("colours", "window light at full colour. There the curve stays [long|short]", () =>
-    numberOf("colours&colour=1&light=window", "explained") > 10 * numberOf("colours&colour=1", "explained")
-      ? "long"
-      : "short",
-  ),
-  claim("colours", "compare how much the error [grows|shrinks] under each light", () => {
-    const grows = ["colourful", "window", "overcast"].map((light) =>
-      change(
-        numberOf(`colours&colour=1&light=${light}`, "degrees"),
-        numberOf(`colours&colour=1&light=${light}&noise=0.05`, "degrees"),
-        ["grows", "shrinks"],
-      ),
-    );
-    return new Set(grows).size === 1 ? grows[0] : "differs";
-  }),
-  claim("colours", "a little noise moves the lowest point by [tens|tenths] of degrees", () =>
-    numberOf("colours&colour=1&light=window&noise=0.03", "degrees") > 20 ? "tens" : "tenths",
-  ),
-  claim("colours", "Then [no|some] normal explains it within 2 %", () =>
-    numberOf("colours&light=overcast&colour=0.7&noise=0.05&px=0.82&py=0.8", "explained") === 0 ? "no" : "some",
   ),
 ];
 
@@ -203,6 +144,7 @@ const pose = [
   claim("pose", "Raise λ until the minima of the pixel have [merged|split]", () =>
     [0, 20].every((offset) => numberOf(`pose&offset=${offset}&weight=0`, "minima") === 1) ? "merged" : "split",
   ),
+  claim("pose", "far from the true normal: [#]° off at λ = 1", () => numberOf("pose&offset=20&weight=0", "end")),
   claim("pose", "If the pose is right, the prior is [near|far from] the true normal", () =>
     ["off", "end"].every((key) => numberOf("pose&offset=0&weight=0", key) < 4) ? "near" : "far from",
   ),
@@ -255,6 +197,7 @@ const sensor = [
   claim("sensor", "Holes are [filled|left] where the colour camera sees the surface", () =>
     numberOf("sensor&holes=40", "filled") > 90 ? "filled" : "left",
   ),
+  claim("sensor", "Of these holes [#] % are filled", () => numberOf("sensor&noise=0.4&holes=40", "filled")),
   claim("sensor", "it is less informative, and the refined depth gets [worse|better]", () =>
     change(numberOf("sensor", "after"), numberOf("sensor&picture=0.2", "after"), ["worse", "better"]),
   ),
@@ -383,6 +326,7 @@ function isGood(overlap) {
 
 const bump = [claim("Bump or dent", "At [#]°. A dent has", () => grey[0].holds())];
 
+const SEARCH = ["pose&run=search", "error"];
 const HOME = ["pose&offset=20&run=register", "error"];
 /** The answers of the guesses, each after the end of its question. */
 const guessed = [
@@ -414,6 +358,9 @@ const guessed = [
   ),
   claim("pose", "Let it register from 20° away. The pose [comes home|stays away]", () =>
     numberOf(...HOME) < 1 ? "comes home" : "stays away",
+  ),
+  claim("pose", "takes longer, and the error ends [below|above] one degree", () =>
+    numberOf(...SEARCH) < 1 ? "below" : "above",
   ),
   claim("sensor", "the refined normals?\nThey [hardly|greatly] change", () =>
     numberOf("sensor&noise=1", "normalsAfter") < 1.2 * numberOf("sensor", "normalsAfter") ? "hardly" : "greatly",

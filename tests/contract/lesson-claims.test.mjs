@@ -65,12 +65,7 @@ describe("what the text says, the figure shows", () => {
 });
 
 /** Tasks that only say what to do. */
-const INSTRUCTIONS = [
-  "Walk across the ball from left to right.",
-  "Move the pixel across the bump.",
-  "Cut holes into the depth map",
-  "Let it search from scratch.",
-];
+const INSTRUCTIONS = ["Walk across the ball from left to right.", "Move the pixel across the bump."];
 
 test("each lesson has claims, and each of its tasks has one unless it only says what to do", () => {
   for (const { id, tasks } of lessons) {
@@ -158,4 +153,26 @@ test("a line of equal value lies where the value is, and leaves out what is not 
   const left = contour(half, side, side, 0.3);
   assert.ok(left.length > 0 && left.every((value, at) => at % 2 === 1 || !(value > 0.5)));
   assert.deepEqual(contour(distance, side, side, 2), []);
+});
+
+test("the ambiguity of a grey picture is not said to be removed by a light or a depth map alone", () => {
+  const grey = texts.get("grey");
+  for (const words of ["Cast shadows", "occluding contours", "light comes from above"])
+    assert.ok(grey.includes(words), words);
+  assert.ok(!/almost zero|only a known light/i.test(grey));
+});
+
+test("each formula's albedo is in it or said to be constant, and the order of the lessons is as their texts say", () => {
+  const at = (id) => 1 + lessons.findIndex((lesson) => lesson.id === id);
+  assert.match(texts.get("grey"), new RegExp(`to lesson ${at("paint") - 1} the whole object has one albedo`));
+  assert.match(texts.get("orders"), new RegExp(`albedo is 1, whose logarithm is 0; lesson ${at("pixel")} adds it`));
+  for (const [id, named] of [
+    ["lambert", ["normal"]],
+    ["relief", ["prior"]],
+    ["colours", ["lambert"]],
+    ["prior", ["sensor"]],
+    ["failure", ["paint"]],
+  ])
+    for (const other of named) assert.match(texts.get(id), new RegExp(`[Ll]esson ${at(other)}\\b`), id);
+  assert.match(texts.get("prior"), new RegExp(`lessons ${at("relief")} and ${at("grey")}`));
 });

@@ -21,6 +21,7 @@ const ENTRY = [
   'export { exercises } from "./www/learn/exercises.ts";',
   'export { computed, valuesFrom } from "./www/learn/lesson.ts";',
   'export { READ, SAME_UNITS, nameOf, placeOf, wordsOf } from "./www/learn/translation.ts";',
+  'export { FRAMES } from "./www/learn/frames.ts";',
   'export { SYMBOLS } from "./www/learn/maths.ts";',
   'export { STATUSES } from "./www/learn/compute/status.ts";',
   'export { runOptions, sampleRequest, fromLink } from "./www/lab/settings.ts";',

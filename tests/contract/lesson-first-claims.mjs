@@ -50,6 +50,7 @@ function state(px) {
 const angleAt = (level) => numberOf(`lambert&level=${level}`, "angle");
 export const lambert = [
   claim("lambert", "At [#]° half of the intensity is left", () => angleAt(0.5)),
+  claim("lambert", "for half of the largest intensity, on the cone of [#]°", () => angleAt(0.5)),
   claim("lambert", "The cosine is [flat|steep] near 0°", () =>
     angleAt(0.9) > 4 * (angleAt(0.05) - angleAt(0.1)) ? "flat" : "steep",
   ),

@@ -114,7 +114,7 @@ async function learn(page: Page): Promise<void> {
   await page.goto("./#learn");
   await settled(page);
   const links = await page
-    .locator(".learn-contents a")
+    .locator(".learn-contents a[data-to]")
     .evaluateAll((all) => all.map((link) => link.getAttribute("href") ?? ""));
   expect(links).toHaveLength(LESSONS.length + 1);
   for (const link of links) {
@@ -126,6 +126,11 @@ async function learn(page: Page): Promise<void> {
   await page.goto("./#learn&at=pose&slides");
   await settled(page);
   await clean(page, "slides");
+  await page.keyboard.press("q");
+  await settled(page);
+  await clean(page, "a question on a slide");
+  await page.locator(".learn-count").click();
+  await clean(page, "the list of slides");
 }
 
 async function tables(page: Page): Promise<void> {

@@ -24,7 +24,7 @@ export async function open(page: Page, state = ""): Promise<void> {
     }, hash);
   } else await page.goto(`./${hash}`);
   // If only the fragment changes, the previous lesson stays until the page handles the change.
-  const link = page.locator(`.learn-contents a[href="#learn&at=${new URLSearchParams(state).get("at") ?? ""}"]`);
+  const link = page.locator(`.learn-contents a[data-to="${new URLSearchParams(state).get("at") ?? ""}"]`);
   if ((await link.count()) > 0) await expect(link).toHaveAttribute("aria-current", "true");
   await settled(page);
 }

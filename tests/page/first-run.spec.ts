@@ -138,6 +138,8 @@ test("a rendered pair is taken as files with its true pose", LONG, async ({ lab,
   await path(page).getByText("No pictures at hand?").click();
   const cards = path(page).locator(".render");
   await expect(cards).toHaveCount(6);
+  // They open below the end of the dialog, which scrolls to them.
+  await expect(cards.first()).toBeInViewport({ ratio: 0.5 });
   await expect(cards.last()).toContainText("Fails");
   await expect(cards.first().locator("canvas")).toHaveAttribute("width", "320", { timeout: 60_000 });
   await cards.nth(1).click();
@@ -148,6 +150,8 @@ test("a rendered pair is taken as files with its true pose", LONG, async ({ lab,
   await press(page, "Run");
   await lab.reaches("converged");
   expect(await lab.errorDegrees()).toBeLessThan(1);
+  // The light of files cannot be dragged.
+  await expect(page.locator("#next")).toContainText("Rotate the surfaces, or download");
 });
 
 test("it fits a phone and has no violation of axe's rules in either colour scheme", async ({ lab, page }) => {

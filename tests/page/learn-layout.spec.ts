@@ -41,15 +41,6 @@ test("the controls stay in view while the last picture is looked at", async ({ p
   }
 });
 
-test("all of a figure is seen at once on a wide screen", LONG, async ({ page }) => {
-  await page.setViewportSize({ width: 1920, height: 1080 });
-  for (const id of LESSONS) {
-    await open(page, `at=${id}`);
-    const box = await figure(page).boundingBox();
-    expect((box?.y ?? Infinity) + (box?.height ?? 0), id).toBeLessThanOrEqual(1080);
-  }
-});
-
 test("an embedded figure fits the frame that its line of HTML gives", LONG, async ({ page }) => {
   for (const id of LESSONS) {
     await page.setViewportSize({ width: 1280, height: 800 });
@@ -81,3 +72,39 @@ test(
     await expect(page.getByRole("button", { name: say("interface.slides", "Slides") })).toBeHidden();
   },
 );
+
+test("all of a figure is in view beside its text, with pictures that are large enough", LONG, async ({ page }) => {
+  for (const [width, height] of [
+    [1280, 800],
+    [1440, 900],
+    [1920, 1080],
+  ] as const) {
+    await page.setViewportSize({ width, height });
+    for (const id of LESSONS) {
+      await open(page, `at=${id}`);
+      const hidden = () =>
+        figure(page).evaluate((box) =>
+          Math.ceil(Math.max(box.scrollHeight - box.clientHeight, box.getBoundingClientRect().bottom - innerHeight)),
+        );
+      await expect.poll(hidden, `${id} at ${width} px`).toBeLessThanOrEqual(0);
+      const sides = await figure(page)
+        .locator(":is(.learn-canvas, .learn-plot-box)")
+        .evaluateAll((all) => all.map(({ clientWidth, clientHeight }) => Math.min(clientWidth, clientHeight)));
+      expect(Math.min(...sides), `${id} at ${width} px`).toBeGreaterThanOrEqual(112);
+      expect(await lonely(page), `${id} at ${width} px`).toEqual([]);
+    }
+  }
+});
+
+test("on a phone each picture and plot is seen whole below the controls", LONG, async ({ page }) => {
+  await page.setViewportSize({ width: 390, height: 844 });
+  for (const id of LESSONS) {
+    await open(page, `at=${id}`);
+    const heights = await figure(page).evaluate((box) => {
+      const heightOf = (part: Element | null) => part?.getBoundingClientRect().height ?? Infinity;
+      const panels = [...box.querySelectorAll(".learn-panel")].map(heightOf);
+      return { controls: heightOf(box.querySelector(".learn-controls")), panel: Math.max(...panels) };
+    });
+    expect(heights.controls + heights.panel, id).toBeLessThan(844);
+  }
+});

@@ -64,6 +64,8 @@ function live(root: ShadowRoot, lesson: Lesson, values: Values, alert: HTMLEleme
   });
   const ask = () => {
     box.setAttribute("aria-busy", "true");
+    figure.wait();
+    readouts.wait();
     session.ask(lesson.id, computed(lesson, controls.values));
   };
   const changed = () => {

@@ -100,8 +100,14 @@ function gallery(hooks: Hooks): HTMLElement {
     cards,
   );
   element.addEventListener("toggle", () => {
-    if (element.open && cards.childElementCount === 0)
-      void import("./rendered").then(({ showGallery }) => showGallery(cards, (files) => hooks.drop(files)));
+    if (!element.open) return;
+    // The cards open below the end of the dialog.
+    const reveal = () => element.scrollIntoView({ block: "start" });
+    if (cards.childElementCount > 0) return reveal();
+    void import("./rendered").then(({ showGallery }) => {
+      showGallery(cards, (files) => hooks.drop(files));
+      reveal();
+    });
   });
   return element;
 }

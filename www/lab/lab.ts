@@ -373,7 +373,7 @@ export class Lab {
 
   #verdict(report: StepReport): Verdict | undefined {
     const isHeld = methodOf(this.store.settings, this.#origin).registration === "fixed";
-    return verdict(report, this.#record.from, this.#record.truth, isHeld);
+    return verdict(report, this.#record.from, this.#record.truth, isHeld, this.#origin === "files");
   }
 
   #showState(): void {

@@ -58,6 +58,8 @@ const ends: Record<Exclude<StepReport["status"], "running">, string> = {
 
 /** Suggestions after a successful run. */
 const HARDER = "Rotate the surfaces, drag the light, or try “Too hard”, where no pose can be recovered.";
+/** The same for files, whose light cannot be dragged. */
+const KEEP = "Rotate the surfaces, or download pose, clouds and refined depth below.";
 /** The right pose, up to noise. */
 const FINER = "Less noise or a larger image would bring it closer.";
 
@@ -71,6 +73,7 @@ export function verdict(
   start: Pose | undefined,
   truth: Pose | null,
   isHeld = false,
+  isOwn = false,
 ): Verdict | undefined {
   if (status === "running") return undefined;
   const said = message ? [sentence(message)] : isHeld ? [HELD] : [];
@@ -90,7 +93,9 @@ export function verdict(
             : [];
     const next =
       tone === "good"
-        ? HARDER
+        ? isOwn
+          ? KEEP
+          : HARDER
         : isNear
           ? FINER
           : off <= FOUND && (status === "lost" || status === "ambiguous")

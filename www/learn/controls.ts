@@ -5,6 +5,9 @@ import { phrase } from "../words";
 import { labelOf, shown, type Control, type Lesson } from "./lesson";
 import type { Values } from "./protocol";
 
+/** Characters of the longest choice that fit a select of one column. */
+const SHORT = 15;
+
 interface Field {
   control: Control;
   element: HTMLElement;
@@ -90,7 +93,7 @@ export class Controls {
       control,
       element: make(
         "div",
-        { class: "learn-choice" },
+        { class: control.choices.some(([, label]) => label.length > SHORT) ? "learn-choice wide" : "learn-choice" },
         make("label", { for: id }, labelOf(control, this.#values)),
         select,
         ...hint(control, select),

@@ -80,7 +80,8 @@ export const exercises: readonly Exercise[] = [
   },
 ];
 
-export function exerciseList(): HTMLElement {
+/** `tools` stand above the exercises. */
+export function exerciseList(...tools: HTMLElement[]): HTMLElement {
   return make(
     "section",
     { class: "learn-exercises", id: "learn-exercises", "aria-labelledby": "learn-exercises-title" },
@@ -93,6 +94,7 @@ export function exerciseList(): HTMLElement {
         "Each link opens the figure in the state the exercise refers to. To make your own exercise, set a figure and use the Link button at the top of the page: the address holds the lesson and all control settings.",
       ),
     ),
+    ...tools,
     make(
       "ol",
       {},

@@ -2,6 +2,7 @@
 
 import { make } from "../dom";
 import { Cloud } from "./cloud";
+import { blank } from "./frames";
 import type { Drawing, ImagePanel, Mark, Panel } from "./protocol";
 import { Plot } from "./plot";
 import { svg } from "./svg";
@@ -28,7 +29,29 @@ export class Figure {
     this.#onDrag = onDrag;
   }
 
+  /** Marks the panels as those of an earlier state, until the next drawing. */
+  wait(): void {
+    this.element.setAttribute("aria-busy", "true");
+  }
+
+  /** Shows empty panels until the first drawing arrives, or none if it will not arrive. */
+  outline(kinds: readonly Panel["kind"][]): void {
+    if (this.#widgets.size > 0) return;
+    this.#count(kinds);
+    this.element.replaceChildren(...kinds.map(blank));
+  }
+
+  /** The style sheet of the slides divides the width by these. */
+  #count(kinds: readonly Panel["kind"][]): void {
+    const plots = kinds.filter((kind) => kind === "plot").length;
+    this.element.style.setProperty("--plots", String(plots));
+    this.element.style.setProperty("--pictures", String(kinds.length - plots));
+  }
+
   show({ panels }: Drawing): void {
+    this.element.setAttribute("aria-busy", "false");
+    if (this.#widgets.size === 0) this.element.replaceChildren();
+    this.#count(panels.map(({ kind }) => kind));
     const keys = new Set(panels.map(({ key }) => key));
     for (const [key, { element }] of this.#widgets) {
       if (keys.has(key)) continue;
@@ -115,7 +138,7 @@ function drawn({ ink, shape, points, size = 2, isFine = false }: Mark): SVGEleme
   const name = `learn-mark learn-ink-${ink}`;
   if (shape === "line") {
     const d = pathOf(points);
-    if (isFine) return [svg("path", { class: `${name} fine`, d })];
+    if (isFine) return [svg("path", { class: `${name} fine-halo`, d }), svg("path", { class: `${name} fine`, d })];
     return [svg("path", { class: `${name} halo`, d }), svg("path", { class: name, d })];
   }
   return all.flatMap(([x, y]) => {

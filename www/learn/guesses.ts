@@ -12,17 +12,41 @@ interface Hooks {
   set(values: Values): void;
   /** Reveals the answer; `done` is called once the figure is on its way to the last state. */
   reveal(what: Try, done: () => void): void;
+  /** Whether answers are hidden at present. */
+  areHidden(): boolean;
+}
+
+interface Form {
+  element: HTMLElement;
+  /** On a slide: puts the question, without an earlier guess, or takes it away. */
+  ask(isAsked: boolean): void;
 }
 
 export class Guesses {
   readonly elements: readonly HTMLElement[];
+  readonly #forms: readonly Form[];
   readonly #hooks: Hooks;
   /** Called with the next complete drawing. */
   #waiting: ((drawing: Drawing, values: Values) => void) | undefined;
+  /** Reveals the answer to the last guess that was made while answers were hidden. */
+  #held: (() => void) | undefined;
 
   constructor({ guesses }: Lesson, hooks: Hooks) {
     this.#hooks = hooks;
-    this.elements = guesses.map((guess) => this.#form(guess));
+    this.#forms = guesses.map((guess) => this.#form(guess));
+    this.elements = this.#forms.map(({ element }) => element);
+  }
+
+  /** Puts one question on a slide, or none. */
+  ask(index: number | undefined): void {
+    this.#held = undefined;
+    this.#forms.forEach((form, at) => form.ask(at === index));
+  }
+
+  /** Answers are no longer hidden. */
+  release(): void {
+    this.#held?.();
+    this.#held = undefined;
   }
 
   /** Takes the drawing of the present values. */
@@ -31,8 +55,9 @@ export class Guesses {
     this.#waiting = undefined;
   }
 
-  #form(guess: Guess): HTMLElement {
+  #form(guess: Guess): Form {
     const answer = make("p", { class: "learn-answer", role: "status" });
+    const noted = make("p", { class: "soft learn-noted", "aria-live": "polite" });
     const compare = make("button", { type: "submit", disabled: true }, phrase("guess.compare", "Compare"));
     const field = guess.choices ? choicesOf(guess.choices) : numberOf(guess);
     const form = make(
@@ -40,8 +65,24 @@ export class Guesses {
       { class: "learn-guess" },
       make("fieldset", {}, make("legend", {}, ...sentence(guess.question)), field.element),
       compare,
+      noted,
       answer,
     );
+    const empty = () => {
+      noted.replaceChildren();
+      answer.replaceChildren();
+    };
+    const reveal = (given: number) => {
+      empty();
+      // The answer is about the state of the question, even if the visitor has moved something since.
+      this.#hooks.set(guess.at);
+      this.#hooks.reveal(guess.reveal, () => {
+        this.#waiting = (drawing, values) => {
+          answer.dataset.right = String(isRight(guess, given, drawing, values));
+          answer.replaceChildren(...verdict(guess, given, drawing, values));
+        };
+      });
+    };
     let isAsked = false;
     form.addEventListener("input", () => {
       compare.disabled = field.value() === undefined;
@@ -53,17 +94,21 @@ export class Guesses {
       event.preventDefault();
       const given = field.value();
       if (given === undefined) return;
-      answer.replaceChildren();
-      // The answer is about the state of the question, even if the visitor has moved something since.
-      this.#hooks.set(guess.at);
-      this.#hooks.reveal(guess.reveal, () => {
-        this.#waiting = (drawing, values) => {
-          answer.dataset.right = String(isRight(guess, given, drawing, values));
-          answer.replaceChildren(...verdict(guess, given, drawing, values));
-        };
-      });
+      if (!this.#hooks.areHidden()) return reveal(given);
+      empty();
+      noted.append(phrase("guess.noted", "Your guess is noted. The answer is still hidden."));
+      this.#held = () => reveal(given);
     });
-    return form;
+    const ask = (isNow: boolean) => {
+      form.toggleAttribute("data-asked", isNow);
+      if (!isNow) return;
+      form.reset();
+      empty();
+      compare.disabled = true;
+      isAsked = true;
+      this.#hooks.set(guess.at);
+    };
+    return { element: form, ask };
   }
 }
 
@@ -124,7 +169,9 @@ function verdict(guess: Guess, given: number, drawing: Drawing, values: Values):
   const figure = guess.number
     ? ` ${phrase("guess.shows", "The figure shows {number}.", { number: withUnit(decimals(near, digits), unit?.trim()) })}`
     : "";
-  // The answer to a right choice begins with that choice.
-  const chosen = good && guess.choices ? "" : ` ${phrase("guess.chose", "You guessed: {guess}.", { guess: said })}`;
-  return [make("strong", {}, head), `${chosen}${figure} `, ...sentence(guess.answer)];
+  const chosen = phrase("guess.chose", "You guessed: {guess}.", { guess: said });
+  // The answer to a right choice begins with that choice. On a slide the choice is still in view.
+  const words =
+    good && guess.choices ? [] : [make("span", { class: guess.choices ? "learn-chose" : undefined }, ` ${chosen}`)];
+  return [make("strong", {}, head), ...words, `${figure} `, ...sentence(guess.answer)];
 }

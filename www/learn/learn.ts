@@ -3,6 +3,7 @@
 import { make } from "../dom";
 import { placeOf } from "../place";
 import { phrase } from "../words";
+import { Kept } from "./kept";
 import {
   LANGUAGES,
   isReady,
@@ -16,12 +17,10 @@ import {
 } from "./language";
 import { retell } from "./lessons";
 import { LearnPage } from "./page";
-import type { LessonId, Values } from "./protocol";
 
 export class Learn {
   readonly #parent: HTMLElement;
-  /** The settings of each lesson, which outlast a change of the language. */
-  readonly #kept = new Map<LessonId, Values>();
+  readonly #kept = new Kept();
   #page: LearnPage | undefined;
 
   constructor(parent: HTMLElement) {

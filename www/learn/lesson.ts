@@ -123,12 +123,14 @@ export const labelOf = ({ label }: Control, values: Values): string =>
 export function shown(control: SliderControl, value: number, values: Values): string {
   if (control.reads) return control.reads(value, values);
   const number = amount(control, value);
-  const digits = control.logarithmic
-    ? number === 0
-      ? 0
-      : Math.max(0, 2 - Math.floor(Math.log10(number)))
-    : Math.max(0, -Math.floor(Math.log10(control.step) + 1e-9));
+  const digits = control.logarithmic ? digitsOf(number) : Math.max(0, -Math.floor(Math.log10(control.step) + 1e-9));
   return withUnit(decimals(number, digits), control.unit);
+}
+
+/** Decimals of a number that is rounded to two significant digits, without trailing zeros. */
+function digitsOf(number: number): number {
+  const plain = String(Number(number.toPrecision(2)));
+  return plain.split(".")[1]?.length ?? 0;
 }
 
 /** Takes the values from an address that are valid for their controls. */

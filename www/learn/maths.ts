@@ -14,21 +14,34 @@ export function math(tag: string, attributes: Record<string, string>, ...childre
   return element;
 }
 
-const text = (tag: "mi" | "mn" | "mo", content: string, variant?: string) =>
-  math(tag, variant ? { mathvariant: variant } : {}, content);
-export const mi = (content: string): Element => text("mi", content);
-export const mn = (content: string): Element => text("mn", content);
-export const mo = (content: string): Element => text("mo", content);
+/**
+ * A letter in the italics of a text font. By itself a browser replaces it by a letter from the mathematical block of Unicode, which only
+ * mathematics fonts have.
+ */
+const letter = (content: string, weight = ""): Element =>
+  math("mi", { mathvariant: "normal", class: `learn-letter${weight}` }, content);
+export const mi = (content: string): Element => (content.length > 1 ? math("mi", {}, content) : letter(content));
+export const mn = (content: string): Element => math("mn", {}, content);
+/** Brackets do not grow, because without a mathematics font browsers enlarge them at random. */
+export const mo = (content: string): Element =>
+  math("mo", "()||".includes(content) ? { stretchy: "false" } : {}, content);
 export const row = (...children: Element[]): Element => math("mrow", {}, ...children);
 export const sub = (base: Element, index: Element): Element => math("msub", {}, base, index);
 export const sup = (base: Element, exponent: Element): Element => math("msup", {}, base, exponent);
 export const frac = (up: Element, down: Element): Element => math("mfrac", {}, up, down);
 export const sum = (below: Element): Element => math("munder", {}, mo("∑"), below);
-export const norm = (inside: Element): Element => sup(row(mo("‖"), inside, mo("‖")), mn("2"));
+/** The exponent belongs to the bracket, whose height does not depend on what is inside. */
+export const squared = (...inside: Element[]): Element => row(mo("("), ...inside, sup(mo(")"), mn("2")));
+export const norm = (inside: Element): Element => row(mo("||"), inside, sup(mo("||"), mn("2")));
+/** The prime of a text font is raised by itself; as an exponent it would be raised twice. */
+export const primed = (base: Element): Element => row(base, math("mtext", { class: "learn-prime" }, "′"));
+/** The sign of a transposed vector, as a letter that every font has. */
+export const transposed = (base: Element): Element => sup(base, math("mi", { mathvariant: "normal" }, "T"));
 
 /** Space before and after, as in print; browsers add none. */
 const space = (width: string): Element => math("mspace", { width });
 export const log = (of: Element): Element => row(mi("log"), space("0.1667em"), of);
+export const gradient = (of: Element): Element => row(mi("grad"), space("0.1667em"), of);
 export const comma = (): Element => row(mo(","), space("0.6em"));
 
 interface Symbol {
@@ -38,18 +51,27 @@ interface Symbol {
   name: string;
 }
 
-const bold = (letter: string) => math("mi", { mathvariant: "bold", class: "learn-bold" }, letter);
-const tilde = (base: Element) => math("mover", { accent: "true" }, base, mo("~"));
+const bold = (name: string) => letter(name, " learn-bold");
 
 /** Every symbol of the lessons, once. */
 export const SYMBOLS = {
   n: { make: () => bold("n"), ink: "normal", name: "unit normal of the surface" },
   // It has no hat, which would mean a unit vector: its length is the square root of two.
-  N: { make: () => tilde(bold("n")), ink: "normal", name: "unit normal with a fourth component 1" },
+  N: { make: () => bold("ñ"), ink: "normal", name: "unit normal with a fourth component 1" },
   m: { make: () => bold("m"), ink: "prior", name: "normal of the depth map at that point" },
   M: { make: () => sub(bold("M"), mi("j")), ink: "light", name: "light of colour j, a 4 by 4 matrix of 9 numbers" },
   l: { make: () => bold("l"), ink: "light", name: "unit vector to the lamp" },
-  E: { make: () => mi("E"), ink: "colour", name: "intensity of the pixel" },
+  lj: { make: () => sub(bold("l"), mi("j")), ink: "light", name: "part of order 1 in colour j, a vector" },
+  c: { make: () => sub(mi("c"), mi("j")), ink: "light", name: "part of order 0 in colour j, a number" },
+  Q: { make: () => sub(bold("Q"), mi("j")), ink: "light", name: "part of order 2 in colour j, a 3 by 3 matrix" },
+  E: { make: () => mi("E"), ink: "intensity", name: "intensity of the pixel" },
+  x: { make: () => mi("x"), ink: "pixel", name: "place in the picture, to the right" },
+  y: { make: () => mi("y"), ink: "pixel", name: "place in the picture, down" },
+  p: { make: () => mi("p"), ink: "normal", name: "slope: change of the depth per step to the right" },
+  q: { make: () => mi("q"), ink: "normal", name: "slope: change of the depth per step down" },
+  map: { make: () => mi("R"), ink: "isophote", name: "reflectance map: the intensity for each pair of slopes" },
+  s: { make: () => mi("s"), ink: "normal", name: "factor of all depths" },
+  t: { make: () => mi("t"), ink: "normal", name: "added tilt" },
   rho: { make: () => mi("ρ"), ink: "albedo", name: "albedo" },
   L: { make: () => mi("L"), ink: "light", name: "light, 27 numbers" },
   a: { make: () => mi("a"), ink: "albedo", name: "logarithm of the albedo" },
@@ -59,6 +81,9 @@ export const SYMBOLS = {
   R: { make: () => bold("R"), ink: "pose", name: "rotation of the pose" },
   z: { make: () => mi("z"), ink: "truth", name: "depth" },
   d: { make: () => mi("d"), ink: "sensor", name: "depth measured by the sensor" },
+  mu: { make: () => mi("μ"), ink: "sensor", name: "weight of the measured depth" },
+  sigma: { make: () => mi("σ"), ink: "error", name: "standard deviation, the usual size of an error" },
+  j: { make: () => mi("j"), ink: "colour", name: "red, green or blue" },
   ej: {
     make: () => sub(mi("e"), mi("j")),
     ink: "error",
@@ -71,15 +96,33 @@ export type SymbolName = keyof typeof SYMBOLS;
 /** A symbol in the colour that it has in the figure. */
 export function symbol(name: SymbolName): Element {
   const { make: draw, ink, name: words } = SYMBOLS[name];
-  return math("mrow", { class: `learn-ink-${ink}`, title: phrase(`symbol.${name}`, words) }, draw());
+  return math(
+    "mrow",
+    { class: `learn-ink-${ink}`, title: phrase(`symbol.${name}`, words), "data-symbol": name },
+    draw(),
+  );
+}
+
+const hasColours = (formula: Element): boolean =>
+  [...formula.querySelectorAll("mi")].some(({ textContent }) => textContent === "j");
+
+/** The symbols of a formula with their meanings, in their order. */
+export function symbolList(formula: Element): HTMLElement {
+  const found = [...formula.querySelectorAll("[data-symbol]")].map((each) => each.getAttribute("data-symbol") ?? "");
+  const names = new Set([...found, ...(hasColours(formula) ? ["j"] : [])]) as Set<SymbolName>;
+  const items = [...names].map((name) => {
+    const drawn = symbol(name);
+    return make("li", {}, inline(drawn), ` ${drawn.getAttribute("title") ?? ""}`);
+  });
+  return make("ul", { class: "soft learn-symbols" }, ...items);
 }
 
 /** The shading of the model: the extended normal on both sides of the light's matrix. */
 export const shading = (normal: () => Element = () => symbol("N")): Element =>
-  row(sup(normal(), mi("⊤")), symbol("M"), normal());
+  row(transposed(normal()), symbol("M"), normal());
 /** The cost of a normal by the colours alone. */
 export const colourTerm = (normal?: () => Element): Element =>
-  row(sum(mi("j")), sup(row(mo("("), log(symbol("S")), mo("−"), shading(normal), mo(")")), mn("2")));
+  row(sum(mi("j")), squared(log(symbol("S")), mo("−"), shading(normal)));
 
 export const inline = (...children: Element[]): Element => math("math", {}, row(...children));
 export const block = (...children: Element[]): Element => math("math", { display: "block" }, row(...children));

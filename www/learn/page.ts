@@ -3,26 +3,33 @@
 import "../style/learn.css";
 import "../style/embed.css";
 import "../style/learn-figure.css";
+import "../style/learn-blank.css";
 import "../style/learn-print.css";
 import "../style/learn-slides.css";
 import { make } from "../dom";
 import { saveJson } from "../save";
 import { phrase } from "../words";
+import { Ahead } from "./ahead";
+import { Answers } from "./answers";
+import { type Chosen, chosenBy, slidesInAddress } from "./chosen";
 import { Controls } from "./controls";
 import { Embed } from "./embed";
 import { exerciseList } from "./exercises";
 import { Figure } from "./figure";
+import { Fit } from "./fit";
+import { FRAMES } from "./frames";
 import { Guesses } from "./guesses";
+import type { Kept } from "./kept";
 import { languageInAddress } from "./language";
-import { type Lesson, computed, followedIn, initialValues, valuesFrom } from "./lesson";
-import { beside, chapters, lessonNamed, lessons } from "./lessons";
+import { type Lesson, computed, followedIn, valuesFrom } from "./lesson";
+import { beside, chapters, lessonNamed, lessons, titleOf } from "./lessons";
 import { lightTogether } from "./lit";
-import { sentence } from "./maths";
+import { sentence, symbolList } from "./maths";
 import { TextNumbers } from "./numbers";
 import { Player } from "./player";
 import type { Drawing, LessonId, Values } from "./protocol";
 import { Readouts } from "./readouts";
-import { referencesOf } from "./references";
+import { referencesOf, teachersLink } from "./references";
 import { Session } from "./session";
 import { Slides, type Slide } from "./slides";
 import { drawingIn } from "./translation";
@@ -33,6 +40,7 @@ interface Shown {
   lesson: Lesson;
   article: HTMLElement;
   figure: Figure;
+  fit: Fit;
   controls: Controls;
   readouts: Readouts;
   player: Player;
@@ -49,26 +57,34 @@ export class LearnPage {
     onDrawing: (drawing, done) => this.#draw(drawing, done),
     onFault: ({ message }) => this.#complain(message),
   });
-  readonly #kept: Map<LessonId, Values>;
+  readonly #ahead = new Ahead();
+  readonly #kept: Kept;
   readonly #links = new Map<LessonId, HTMLAnchorElement>();
   readonly #contents = make("div", { class: "learn-chapters" });
   readonly #main = make("div", { class: "learn-main" });
-  readonly #exercises = exerciseList();
-  readonly #exerciseLink = make("a", { href: "#learn&at=exercises" }, phrase("exercises", "Exercises"));
+  readonly #answers: Answers;
+  readonly #exercises: HTMLElement;
+  readonly #exerciseLink = make(
+    "a",
+    { href: "#learn&at=exercises", "data-to": "exercises" },
+    phrase("exercises", "Exercises"),
+  );
   readonly #slides: Slides;
+  #chosen: Chosen = chosenBy("");
   #shown: Shown | undefined;
   #isOpen = false;
   /** The figure alone, in a frame of another page. */
   #isEmbedded = false;
 
   /** `tools` stand below the contents. */
-  constructor(parent: HTMLElement, { kept, tools }: { kept: Map<LessonId, Values>; tools: HTMLElement[] }) {
+  constructor(parent: HTMLElement, { kept, tools }: { kept: Kept; tools: HTMLElement[] }) {
     this.#kept = kept;
     for (const chapter of chapters) {
       const list = make("ol", { "aria-label": chapter.title });
       for (const { id, title } of chapter.lessons) {
-        const link = make("a", { href: `#learn&at=${id}` }, title);
+        const link = make("a", { "data-to": id }, title);
         this.#links.set(id, link);
+        this.#point(id);
         list.append(make("li", {}, link));
       }
       this.#contents.append(make("p", { class: "learn-chapter" }, chapter.title), list);
@@ -78,29 +94,55 @@ export class LearnPage {
       { class: "learn-contents", "aria-label": phrase("lessons", "Lessons") },
       this.#contents,
       make("p", {}, this.#exerciseLink),
+      make("p", {}, teachersLink()),
       ...tools,
     );
-    this.#slides = new Slides(
-      (by) => this.#go(by),
-      () => this.#endSlides(),
-    );
+    this.#answers = new Answers(parent, () => this.#toggleAnswers());
+    this.#exercises = exerciseList(this.#answers.button());
+    this.#slides = new Slides(this.#answers, {
+      turn: (by) => this.#turn(by),
+      jump: (id) => this.#turnTo(id),
+      choose: (chosen) => this.#choose(chosen),
+      close: () => this.#endSlides(),
+    });
     parent.append(nav, this.#main, this.#slides.element);
   }
 
-  /** Shows the lesson named in the address with its settings; without one, the lesson shown last. */
+  /**
+   * Shows the lesson named in the address with the address's settings, whatever a visitor has set before; without one, the lesson shown last.
+   * The page's own links contain what the visitor has set.
+   */
   open(hash: string): void {
     this.#isOpen = true;
     const asked = new URLSearchParams(hash.replace(/^#/, ""));
     this.#isEmbedded = asked.has("embed");
+    if (asked.get("answers") === "hidden") this.#answers.hide();
     if (asked.get("at") === "exercises") return this.#showExercises();
-    const lesson = lessonNamed(asked.get("at")) ?? this.#shown?.lesson ?? (lessons[0] as Lesson);
-    const isTold = lesson.controls.some(({ key }) => asked.has(key));
-    const values = isTold ? valuesFrom(lesson, asked) : (this.#kept.get(lesson.id) ?? initialValues(lesson));
-    this.#show(lesson, values);
-    if (asked.has("slides")) this.#startSlides();
+    const slides = asked.get("slides");
+    const lesson = this.#lessonIn(asked);
+    const named = lessonNamed(asked.get("at")) ?? (slides ? lesson : undefined);
+    // Slides that a link opens all begin with their own settings.
+    if (slides !== null && !this.#slides.isOpen) this.#forget();
+    this.#show(lesson, named ? valuesFrom(lesson, asked) : this.#kept.of(lesson));
+    if (slides !== null) this.#startSlides();
     // Returns from the slides to the lesson at which they were opened.
     else this.#slides.close();
     this.#writeAddress();
+  }
+
+  /** The lesson of an address, which has to be one of its slides. */
+  #lessonIn(asked: URLSearchParams): Lesson {
+    const lesson = lessonNamed(asked.get("at")) ?? this.#shown?.lesson ?? (lessons[0] as Lesson);
+    const slides = asked.get("slides");
+    if (slides === null) return lesson;
+    this.#chosen = chosenBy(slides);
+    const isAmong = this.#chosen.includes(lesson.id) && (slides === "" || asked.has("at"));
+    return isAmong ? lesson : (lessonNamed(this.#chosen[0] ?? null) ?? lesson);
+  }
+
+  #forget(): void {
+    this.#kept.forget();
+    for (const id of this.#links.keys()) this.#point(id);
   }
 
   /** Nothing is computed for a hidden page. */
@@ -109,6 +151,7 @@ export class LearnPage {
     this.#isOpen = false;
     this.#shown?.player.stop();
     this.#session.end();
+    this.#ahead.end();
     this.#slides.close();
   }
 
@@ -141,7 +184,7 @@ export class LearnPage {
       const before = this.#shown;
       before?.player.stop();
       this.#shown = this.#make(lesson, values);
-      if (this.#slides.isOpen) this.#slides.take(slideOf(this.#shown));
+      if (this.#slides.isOpen) this.#slides.take(this.#slideOf(this.#shown));
       else this.#main.replaceChildren(this.#shown.article);
       // The link to this lesson is at the end of the previous one, so the page has to scroll up.
       if (before) scrollTo(0, 0);
@@ -156,6 +199,18 @@ export class LearnPage {
     this.#slides.close();
     this.#main.replaceChildren(this.#exercises);
     this.#mark(undefined);
+    this.#writeExercises();
+  }
+
+  #writeExercises(): void {
+    const state = new URLSearchParams({ at: "exercises", ...this.#answers.inAddress, ...languageInAddress() });
+    history.replaceState(null, "", `#learn&${state}`);
+  }
+
+  #toggleAnswers(): void {
+    if (this.#exercises.isConnected) return this.#writeExercises();
+    if (!this.#answers.areHidden) this.#shown?.guesses.release();
+    this.#writeAddress();
   }
 
   #mark(id: LessonId | undefined): void {
@@ -178,6 +233,7 @@ export class LearnPage {
     const readouts = new Readouts(lesson.readouts);
     const alert = make("p", { class: "alert", role: "alert", hidden: true });
     const look = make("p", { class: "learn-look", role: "status" });
+    figure.outline(FRAMES[lesson.id]);
     const box = make(
       "section",
       { class: "card learn-figure", "aria-label": phrase("figure", "Figure"), "aria-busy": "true" },
@@ -191,6 +247,7 @@ export class LearnPage {
     box.append(embed.source);
     const guesses = new Guesses(lesson, {
       set: (at) => controls.set(at),
+      areHidden: () => this.#answers.areHidden,
       reveal: (what, done) => {
         showFigure(box);
         player.play(what, done);
@@ -207,7 +264,7 @@ export class LearnPage {
     const numbers = new TextNumbers(text, lesson, controls);
     const article = make("article", { class: "learn-lesson", "data-lesson": lesson.id }, text, box);
     lightTogether(article);
-    const parts = { figure, controls, readouts, player, guesses, numbers, embed };
+    const parts = { figure, fit: new Fit(box, figure.element), controls, readouts, player, guesses, numbers, embed };
     return { ...parts, lesson, article, box, alert, drawing: undefined };
   }
 
@@ -219,6 +276,7 @@ export class LearnPage {
     );
     const slides = make("button", { type: "button", class: "learn-slides-button" }, phrase("slides", "Slides"));
     slides.addEventListener("click", () => {
+      this.#chosen = chosenBy("");
       this.#startSlides();
       this.#writeAddress("another");
     });
@@ -229,12 +287,19 @@ export class LearnPage {
       embed.element,
       make("p", { class: "learn-gist" }, lesson.gist),
       formula,
+      symbolList(formula),
       ...lesson.text.map((words) => make("p", {}, ...sentence(words))),
       make("h3", {}, phrase("guess", "Predict, then look")),
       ...guesses,
+      this.#answers.button(),
       make("h3", {}, phrase("try", "Try")),
       tries,
-      make("p", { class: "learn-can" }, make("strong", {}, `${phrase("can", "Now")}: `), lesson.can),
+      make(
+        "div",
+        { class: "learn-can" },
+        make("p", {}, make("strong", {}, `${phrase("short", "In short")}: `), lesson.gist),
+        make("p", {}, make("strong", {}, `${phrase("can", "Now")}: `), lesson.can),
+      ),
       make("h3", {}, phrase("more", "More")),
       referencesOf(lesson.more),
       this.#ends(lesson),
@@ -246,9 +311,9 @@ export class LearnPage {
     return make(
       "p",
       { class: "learn-ends" },
-      ...(before ? [make("a", { href: `#learn&at=${before.id}` }, `← ${before.title}`)] : []),
+      ...(before ? [make("a", { href: `#learn&${this.#kept.inAddress(before.id)}` }, `← ${before.title}`)] : []),
       after
-        ? make("a", { href: `#learn&at=${after.id}` }, `${after.title} →`)
+        ? make("a", { href: `#learn&${this.#kept.inAddress(after.id)}` }, `${after.title} →`)
         : make("a", { href: "#learn&at=exercises" }, `${phrase("exercises", "Exercises")} →`),
     );
   }
@@ -270,11 +335,19 @@ export class LearnPage {
   #ask(): void {
     const shown = this.#shown;
     if (!shown) return;
-    this.#kept.set(shown.lesson.id, shown.controls.values);
-    shown.numbers.show(shown.controls.values);
+    const { lesson, controls } = shown;
+    this.#kept.keep(lesson, controls.values);
+    this.#point(lesson.id);
+    shown.numbers.show(controls.values);
     shown.box.setAttribute("aria-busy", "true");
-    this.#session.ask(shown.lesson.id, computed(shown.lesson, shown.controls.values));
+    shown.figure.wait();
+    shown.readouts.wait();
     this.#writeAddress();
+    const known = this.#slides.isOpen ? this.#ahead.drawing(lesson, controls.values) : undefined;
+    if (!known) return this.#session.ask(lesson.id, computed(lesson, controls.values));
+    // An answer under way is about other values.
+    this.#session.forget();
+    this.#draw(known, true);
   }
 
   #draw(drawing: Drawing, done: boolean): void {
@@ -285,9 +358,18 @@ export class LearnPage {
     const inWords = drawingIn(shown.lesson.id, drawing);
     shown.figure.show(inWords);
     shown.readouts.show(inWords);
+    shown.fit.now();
     if (done && !shown.player.isPlaying) shown.guesses.drawn(drawing, shown.controls.values);
     shown.embed.fit(drawing.panels.some(({ kind }) => kind === "plot"));
     shown.box.setAttribute("aria-busy", String(!done));
+    if (done && this.#slides.isOpen) this.#prepare(shown, drawing);
+  }
+
+  /** The next slide is computed while this one is looked at. */
+  #prepare({ lesson, controls }: Shown, drawing: Drawing): void {
+    this.#ahead.keep(lesson, controls.values, drawing);
+    const next = lessonNamed(this.#chosen[this.#chosen.indexOf(lesson.id) + 1] ?? null);
+    if (next) this.#ahead.prepare(next, this.#kept.of(next));
   }
 
   #complain(message: string): void {
@@ -297,21 +379,41 @@ export class LearnPage {
     again.addEventListener("click", () => this.#ask());
     shown.alert.replaceChildren(message, " ", again);
     shown.alert.hidden = false;
+    shown.figure.outline([]);
     shown.box.setAttribute("aria-busy", "false");
   }
 
-  #go(by: 1 | -1): void {
-    const next = this.#shown && beside(this.#shown.lesson.id, by);
-    if (!next) return;
+  #turn(by: 1 | -1): void {
+    const next = this.#shown && this.#chosen[this.#chosen.indexOf(this.#shown.lesson.id) + by];
+    if (next) this.#turnTo(next);
+  }
+
+  #turnTo(id: LessonId): void {
+    const lesson = lessonNamed(id);
+    if (!lesson) return;
     // Before the lesson is shown, because that writes the address of its values.
     this.#writeAddress("another");
-    this.#show(next, this.#kept.get(next.id) ?? initialValues(next));
+    this.#show(lesson, this.#kept.of(lesson));
+    this.#writeAddress();
+  }
+
+  #choose(chosen: Chosen): void {
+    this.#chosen = chosen;
+    this.#slides.count(chosen);
     this.#writeAddress();
   }
 
   #startSlides(): void {
-    if (!this.#shown || this.#slides.isOpen) return;
-    this.#slides.open(slideOf(this.#shown));
+    const shown = this.#shown;
+    if (!shown) return;
+    if (this.#slides.isOpen) return this.#slides.count(this.#chosen);
+    this.#slides.open(this.#slideOf(shown));
+    if (shown.drawing && shown.box.getAttribute("aria-busy") === "false") this.#prepare(shown, shown.drawing);
+  }
+
+  #slideOf({ article, lesson: { id, title }, guesses }: Shown): Slide {
+    const ask = (index: number | undefined) => guesses.ask(index);
+    return { article, id, title, chosen: this.#chosen, questions: guesses.elements.length, ask };
   }
 
   #endSlides(): void {
@@ -326,30 +428,23 @@ export class LearnPage {
   #writeAddress(entry: "same" | "another" = "same"): void {
     const shown = this.#shown;
     if (!shown || !this.#isOpen) return;
-    const start = initialValues(shown.lesson);
-    const changed = Object.entries(shown.controls.values).filter(([key, value]) => value !== start[key]);
-    const state = new URLSearchParams({
-      at: shown.lesson.id,
-      ...Object.fromEntries(changed.map(([key, value]) => [key, String(value)])),
-      ...languageInAddress(),
-    });
+    const state = this.#kept.inAddress(shown.lesson.id, languageInAddress());
     shown.embed.show(`#learn&${state}`);
-    const address = `#learn&${state}${this.#slides.isOpen ? "&slides" : ""}${this.#isEmbedded ? "&embed" : ""}`;
+    for (const [key, value] of Object.entries(this.#answers.inAddress)) state.append(key, value);
+    const slides = this.#slides.isOpen ? slidesInAddress(this.#chosen) : "";
+    const address = `#learn&${state}${slides}${this.#isEmbedded ? "&embed" : ""}`;
     if (entry === "same") history.replaceState(null, "", address);
     else history.pushState(null, "", address);
   }
-}
 
-const titleOf = (lesson: Lesson): string => `${lessons.indexOf(lesson) + 1}. ${lesson.title}`;
+  #point(id: LessonId): void {
+    const link = this.#links.get(id);
+    if (link) link.href = `#learn&${this.#kept.inAddress(id)}`;
+  }
+}
 
 /** On a phone the figure may be out of view when a button below it is pressed. */
 function showFigure(box: HTMLElement): void {
   const { top, height } = box.getBoundingClientRect();
   if (top < 0 || top + Math.min(height, innerHeight / 2) > innerHeight) box.scrollIntoView({ block: "start" });
 }
-
-const slideOf = ({ article, lesson: { id, title } }: Shown): Slide => ({
-  article,
-  title,
-  hasBeside: (by) => beside(id, by) !== undefined,
-});

@@ -34,6 +34,7 @@ export const LARGEST_CONSTANT = 0.6;
 export type Ink =
   | "normal"
   | "light"
+  | "intensity"
   | "albedo"
   | "prior"
   | "colour"
@@ -56,7 +57,7 @@ export interface Mark {
   points: number[];
   /** Radius of dots and rings in hundredths of the picture. */
   size?: number;
-  /** Whether lines are thin and have no dark edge, because they lie close to each other. */
+  /** Whether lines are thin and have a thin light edge instead of a dark one, because they lie close to each other. */
   isFine?: boolean;
 }
 

@@ -5,6 +5,9 @@ import type { Readout } from "./lesson";
 import { decimals, withUnit } from "./digits";
 import type { Drawing } from "./protocol";
 
+/** A number that is not known yet. With its unit it is about as wide as the number, which then moves nothing. */
+const blank = ({ unit }: Readout): string => (unit ? withUnit("–", unit) : "–");
+
 export class Readouts {
   readonly element: HTMLElement;
   readonly #rows: { readout: Readout; value: HTMLElement }[];
@@ -14,8 +17,8 @@ export class Readouts {
       readout,
       value: make(
         "dd",
-        { "data-number": readout.key, ...(readout.ink ? { class: `learn-ink-${readout.ink}` } : {}) },
-        "–",
+        { "data-number": readout.key, class: readout.ink ? `learn-ink-${readout.ink}` : "words" },
+        blank(readout),
       ),
     }));
     this.element = make(
@@ -25,7 +28,13 @@ export class Readouts {
     );
   }
 
+  /** Marks the numbers as those of an earlier state, until the next drawing. */
+  wait(): void {
+    this.element.setAttribute("aria-busy", "true");
+  }
+
   show({ numbers, words = {} }: Drawing): void {
+    this.element.setAttribute("aria-busy", "false");
     for (const { readout, value } of this.#rows) {
       const word = words[readout.key];
       const number = numbers[readout.key];

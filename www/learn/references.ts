@@ -36,6 +36,10 @@ const anchor = (heading: string): string =>
     .replace(/[^\w\s-]/g, "")
     .replace(/\s/g, "-");
 
+/** The page for teachers, in the documents. */
+export const teachersLink = (): HTMLAnchorElement =>
+  make("a", { href: `${DOCS}/guide/learn.md` }, phrase("teachers", "For teachers"));
+
 export function referencesOf({ sections, paper, others = [] }: References): HTMLElement {
   const links = [
     ...(paper

@@ -26,6 +26,11 @@ export class Session {
     this.#worker.postMessage(request);
   }
 
+  /** The answer to the request under way is no longer wanted. */
+  forget(): void {
+    this.#next++;
+  }
+
   /** Ends the request under way, which is obsolete. */
   end(): void {
     this.#worker?.terminate();

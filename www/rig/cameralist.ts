@@ -1,10 +1,12 @@
-/** The two cameras of the rig: from a file, typed in, or a field of view. */
+/** The two cameras of the rig: from a file, typed in, by a field of view, or of a common sensor. */
 
 import { make } from "../dom";
 import { decimals } from "../draw/numbers";
 import { choose, fill, labelled, numberField, press, show, toNumber } from "./parts";
 import { cameraDoubt } from "./doubts";
 import { typedFrom, type Rig, type Side, type TypedCamera } from "./rig";
+import type { Sensor } from "./sensors";
+import { hasShape } from "./typed";
 
 const fields = [
   { key: "fx", label: "fx", unit: "px" },
@@ -19,6 +21,10 @@ export class CameraForm {
   readonly #rig: Rig;
   readonly #side: Side;
   readonly #source = make("select");
+  readonly #sensor = make("select");
+  readonly #sensorField = labelled("Sensor", this.#sensor);
+  /** The table, once it has loaded. */
+  #sensors: readonly Sensor[] | undefined;
   readonly #numbers = make("p", { class: "soft rig-camera-numbers" });
   readonly #form = make("div", { class: "rig-camera-form" });
   readonly #inputs = new Map<keyof TypedCamera, { element: HTMLElement; input: HTMLInputElement }>();
@@ -35,6 +41,12 @@ export class CameraForm {
     this.#source.addEventListener("change", () => {
       mine.source = this.#source.value;
       mine.chosen = true;
+      rig.changed();
+    });
+    this.#sensor.addEventListener("change", () => {
+      const found = this.#sensors?.find(({ name }) => name === this.#sensor.value);
+      if (found) mine.sensor = found;
+      else delete mine.sensor;
       rig.changed();
     });
     this.#by = choose(
@@ -98,10 +110,28 @@ export class CameraForm {
       { class: "rig-camera" },
       make("legend", {}, title),
       labelled("Source of its parameters", this.#source),
+      this.#sensorField,
       this.#numbers,
       this.#edit,
       this.#form,
     );
+  }
+
+  /** The sensors whose pictures have the shape of this one; the table loads when it is first asked for. */
+  #showSensors(): void {
+    if (!this.#sensors) {
+      void import("./sensors").then(({ SENSORS }) => {
+        this.#sensors = SENSORS;
+        this.show();
+      });
+      return;
+    }
+    const { sensor } = this.#rig.cameras[this.#side];
+    const size = this.#rig.sizeOf(this.#side);
+    const fitting = this.#sensors.filter((each) => each.sides.includes(this.#side) && hasShape(each, size));
+    const shape = size ? ` for ${size.width}×${size.height} px` : "";
+    const none = { value: "", label: fitting.length > 0 ? "Select one" : `No sensor in the list${shape}` };
+    fill(this.#sensor, [none, ...fitting.map(({ name }) => ({ value: name, label: name }))], sensor?.name ?? "");
   }
 
   show(): void {
@@ -117,9 +147,12 @@ export class CameraForm {
         ...same,
         ...given.map((each) => ({ value: each.source, label: each.label })),
         { value: "typed", label: "Enter them" },
+        { value: "sensor", label: "A common sensor (a guess)" },
       ],
       source,
     );
+    this.#sensorField.hidden = source !== "sensor";
+    if (source === "sensor") this.#showSensors();
     this.#form.hidden = source !== "typed";
     const isNeeded = this.#side === "colour" || this.#rig.needsDepthCamera;
     const camera = isNeeded ? this.#rig.cameraOf(this.#side) : undefined;
@@ -129,9 +162,11 @@ export class CameraForm {
       ? words(camera, cameraDoubt(this.#rig, this.#side))
       : source === "typed"
         ? "Some numbers are missing."
-        : isNeeded
-          ? ""
-          : "Not needed: the depth maps are clouds, which hold the positions of their points.";
+        : source === "sensor"
+          ? "Select the sensor. Its published figures are a guess, so the verdict will be capped."
+          : isNeeded
+            ? ""
+            : "Not needed: the depth maps are clouds, which hold the positions of their points.";
     this.#by.value = typed.by;
     this.#model.value = typed.model;
     for (const { key } of fields) {

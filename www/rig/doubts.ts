@@ -55,6 +55,12 @@ export function doubtsOf(rig: RigState): Doubt[] {
     }),
   );
   const sides = rig.cameras.depth.source === "same" ? (["colour"] as const) : (["colour", "depth"] as const);
+  const ofSensors = sides.flatMap((side) => {
+    const { source, sensor } = rig.cameras[side];
+    if (source !== "sensor" || !sensor || (side === "depth" && !rig.needsDepthCamera)) return [];
+    const message = `The ${side} camera's parameters are published figures of a sensor (${sensor.name}), which is a guess: single devices differ by some percent.`;
+    return [{ code: "intrinsics-guessed", message }];
+  });
   const ofCameras = sides.flatMap((side) => {
     const words = cameraDoubt(rig, side);
     return words ? [ofSize(`The ${side} camera's parameters: ${words}`)] : [];
@@ -64,6 +70,7 @@ export function doubtsOf(rig: RigState): Doubt[] {
     ...rig.notes.filter((note) => note.code !== "unit-guessed" && note.isDoubt),
     ...sizes,
     ...ofCameras,
+    ...ofSensors,
   ];
 }
 

@@ -20,7 +20,7 @@ import {
   messageOf,
 } from "./state";
 import { Takings } from "./takings";
-import { choice, emptyCamera, fromTyped } from "./typed";
+import { choice, emptyCamera, fromSensor, fromTyped } from "./typed";
 import { Undo } from "./undo";
 import { isBackwards, isOfScan } from "./words";
 
@@ -326,7 +326,8 @@ export class Rig implements RigState {
         name === undefined && width === undefined ? 0 : width === size?.width && height === size?.height ? 1 : 2;
       const given = [...all].sort((a, b) => rank(a) - rank(b));
       const mine = this.cameras[side];
-      const isThere = ["", "typed", "same"].includes(mine.source) || given.some(({ source }) => source === mine.source);
+      const isThere =
+        ["", "typed", "same", "sensor"].includes(mine.source) || given.some(({ source }) => source === mine.source);
       if (mine.chosen && isThere) continue;
       const arranged = all.find(({ source }) => source === this.arranged[side]);
       if (arranged) {
@@ -354,8 +355,9 @@ export class Rig implements RigState {
   }
 
   cameraOf(side: Side): Pinhole | undefined {
-    const { source, typed } = this.cameras[side];
+    const { source, typed, sensor } = this.cameras[side];
     if (source === "same") return this.cameraOf("colour");
+    if (source === "sensor") return fromSensor(sensor, this.sizeOf(side));
     if (source === "typed") return fromTyped(typed, this.sizeOf(side));
     return this.given.find((each) => each.source === source)?.camera.camera;
   }
@@ -385,7 +387,7 @@ export class Rig implements RigState {
           ? "the colour camera's parameters, which the depth camera shares"
           : "the depth camera's parameters (or its field of view)",
       );
-    if (this.cameras.colour.source === "typed" && !this.cameraOf("colour"))
+    if (["typed", "sensor"].includes(this.cameras.colour.source) && !this.cameraOf("colour"))
       missing.push("all parameters of the colour camera, or “Unknown”");
     return missing;
   }

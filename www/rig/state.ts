@@ -3,6 +3,7 @@
 import type { CheckCue, CheckReport, Pinhole, Pose } from "../../pkg/index.js";
 import type { ReaderWarning } from "./files";
 import type { FramePlan, Kind, NamedCamera, Summary } from "./protocol";
+import type { Sensor } from "./sensors";
 import type { Session } from "./session";
 
 export type Side = "colour" | "depth";
@@ -63,11 +64,13 @@ export interface TypedCamera {
 }
 
 export interface CameraChoice {
-  /** "", "typed", "same" as the colour camera, or the camera's place among those of the files, "3:0". */
+  /** "", "typed", "sensor", "same" as the colour camera, or the camera's place among those of the files, "3:0". */
   source: string;
   /** Whether the visitor has chosen the source; otherwise it follows the files. */
   chosen: boolean;
   typed: TypedCamera;
+  /** The common sensor whose published figures are used. */
+  sensor?: Sensor;
 }
 
 export interface Candidate {

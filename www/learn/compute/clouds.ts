@@ -14,7 +14,7 @@ function thinned(points: Float32Array): Float32Array {
 export const cloudsOf = (estimator: Estimator): CloudPanel => ({
   kind: "cloud",
   key: "clouds",
-  title: "The two surfaces in the camera frame",
+  title: "Both surfaces",
   alt: "Points of the depth map in the estimated pose, and points of the surface recovered from the picture. Under the right pose they coincide.",
   sets: [
     { name: "picture", ink: "normal", points: thinned(estimator.points("image")) },

@@ -1,6 +1,7 @@
 /** Three colours: each selects a curve on the hemisphere, and the remaining normals are where the curves meet. */
 
 import type { Drawing, Values } from "../protocol";
+import { curvesOf, degreesApart, degreesToCurves } from "./curves";
 import { atPixel, normalsOf, pictureOf } from "./draw";
 import { landscapeOf } from "./landscape";
 import { normalDegrees } from "./measure";
@@ -14,7 +15,9 @@ export function* colours(values: Values): Generator<Drawing> {
   const grid = made.image;
   const chosen = pixelAt(grid.mask, grid.width, grid.height, numberOf(values, "px"), numberOf(values, "py"));
   const truth = vectorAt(made.truth.imageNormals, chosen);
-  const landscape = landscapeOf({ log: logAt(made, chosen), light, start: [0, 0, -1] }, { truth });
+  const log = logAt(made, chosen);
+  const curves = curvesOf(log, light);
+  const landscape = landscapeOf({ log, light }, { truth, curves });
   const found = after(
     made,
     { light, start: made.pose, registration: "fixed", shading: "pixel", lambda: { prior: 0 } },
@@ -57,6 +60,9 @@ export function* colours(values: Values): Generator<Drawing> {
       explained: landscape.explained,
       good: landscape.good,
       off: landscape.off,
+      // How far the curves are from each other, and the lowest minimum from all of them.
+      apart: degreesApart(curves),
+      meeting: degreesToCurves(landscape.lowest, curves),
       degrees: normalDegrees(found, made.truth.imageNormals),
     },
   };

@@ -50,7 +50,7 @@ export function* lambert(values: Values): Generator<Drawing> {
         { key: "law", title: "Lambert's law", alt: "Intensity against the angle between normal and lamp: a cosine." },
         "angle, °",
         "intensity",
-        [{ name: "intensity", ink: "light", points: law() }],
+        [{ name: "intensity", ink: "intensity", points: law() }],
         { at: degreesOf(level), range: [0, 1] },
       ),
     ],

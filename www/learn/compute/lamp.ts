@@ -60,12 +60,12 @@ export const shaded = (
   marks: Mark[] = [],
 ): ImagePanel => pictureOf(words, shape, grey(values), marks, 1);
 
-/** Lines of equal intensity, and one of them in the colour of the light. */
+/** Lines of equal intensity, and one of them in the colour of intensities. */
 export function isophotes(values: Float32Array, { width, height }: Shape, levels: number[], chosen?: number): Mark[] {
   const line = (level: number) => contour(values, width, height, level);
   return [
     { ink: "isophote", shape: "line", points: levels.flatMap(line), isFine: true },
-    ...(chosen === undefined ? [] : [{ ink: "light", shape: "line", points: line(chosen) } as const]),
+    ...(chosen === undefined ? [] : [{ ink: "intensity", shape: "line", points: line(chosen) } as const]),
   ];
 }
 

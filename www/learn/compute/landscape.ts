@@ -28,7 +28,7 @@ const COLUMNS = 5;
 
 export function landscapeOf(
   request: PixelLandscapeRequest,
-  words: { key?: string; title?: string; truth?: ArrayLike<number> } = {},
+  words: { key?: string; title?: string; truth?: ArrayLike<number>; curves?: Mark[] } = {},
 ): Landscape {
   const found = pixelLandscape({ side: SIDE, ...request });
   const distances = found.objective.map((value) => Math.sqrt(value));
@@ -45,16 +45,19 @@ export function landscapeOf(
   const panel = scalarOf(
     {
       key: words.key ?? "landscape",
-      title: words.title ?? "Cost of every normal at that pixel",
+      title: words.title ?? "Cost of every normal",
       alt: "The hemisphere of all visible normals seen from the front; dark means a low cost. It has {minima} minima.",
       details: { minima: minima.length },
-      legend: "dark: explains the pixel; dots: minima; cross: truth; line: solver",
+      legend: words.curves
+        ? "line: explains one colour; dark: explains all; dots: minima; cross: truth"
+        : "dark: explains the pixel; dots: minima; cross: truth; line: solver",
     },
     { width: SIDE, height: SIDE },
     distances,
     { min: 0, max: MOST_SHOWN },
     "viridis",
-    marksOf(found, minima, request, words.truth),
+    // The curves take the place of the solver's steps, which would be one line too many.
+    [...(words.curves ?? pathOf(found)), ...marksOf(minima, request, words.truth)],
   );
   return {
     panel,
@@ -83,21 +86,22 @@ function minimaOf({ minima }: PixelLandscape): Minimum[] {
   }).filter(({ share }) => share > LEAST_SHARE);
 }
 
-function marksOf(
-  { path }: PixelLandscape,
-  minima: Minimum[],
-  { prior, weight }: PixelLandscapeRequest,
-  truth?: ArrayLike<number>,
-): Mark[] {
-  const steps = Array.from({ length: path.length / 3 }, (_, i) => onDisc(path.subarray(3 * i, 3 * i + 3)));
+function pathOf({ path }: PixelLandscape): Mark[] {
+  const points = Array.from({ length: path.length / 3 }, (_, i) => onDisc(path.subarray(3 * i, 3 * i + 3))).flat();
   return [
-    { ink: "path", shape: "line", points: steps.flat() },
-    { ink: "path", shape: "dot", points: steps.flat(), size: 0.9 },
-    ...(truth ? [{ ink: "truth", shape: "cross", points: onDisc(truth), size: 3 } as const] : []),
+    { ink: "path", shape: "line", points },
+    { ink: "path", shape: "dot", points, size: 0.9 },
+  ];
+}
+
+function marksOf(minima: Minimum[], { prior, weight }: PixelLandscapeRequest, truth?: ArrayLike<number>): Mark[] {
+  return [
     ...minima.map(
       ({ normal, share }) =>
         ({ ink: "minimum", shape: "dot", points: onDisc(normal), size: 1.2 + 3 * Math.sqrt(share) }) as const,
     ),
     ...(prior && (weight ?? 0) > 0 ? [{ ink: "prior", shape: "ring", points: onDisc(prior), size: 3.5 } as const] : []),
+    // Above the dots, because a minimum may be at the truth.
+    ...(truth ? [{ ink: "truth", shape: "cross", points: onDisc(truth), size: 3 } as const] : []),
   ];
 }

@@ -87,11 +87,13 @@ function sampled(values: Float32Array, [x = NaN, y = NaN]: number[]): number {
   return (1 - v) * ((1 - u) * a + u * b) + v * ((1 - u) * c + u * d);
 }
 
-/** Found and true heights along the strip that has the median error, beginning at the spot. */
-function profile(strips: number[][][], heightAt: (point: number[]) => number): PlotPanel["series"] {
+/** Found and true heights along the strip that has the median error among those that lead far enough, beginning at the spot. */
+function profile(strips: number[][][], spot: number, heightAt: (point: number[]) => number): PlotPanel["series"] {
   const errorOf = (strip: number[][]) => middleOf(strip.map((point) => Math.abs(-(point[2] ?? NaN) - heightAt(point))));
   const sorted = strips.map((strip) => ({ strip, error: errorOf(strip) })).sort((a, b) => a.error - b.error);
-  const chosen = sorted[Math.floor(sorted.length / 2)]?.strip ?? [];
+  const long = sorted.filter(({ strip }) => wayOf(strip.at(-1) ?? [], spot) > BESIDE);
+  const shown = long.length > 0 ? long : sorted;
+  const chosen = shown[Math.floor(shown.length / 2)]?.strip ?? [];
   const [start] = chosen;
   if (!start) return [];
   let way = 0;
@@ -111,8 +113,8 @@ function reflectanceMap(lamp: number[], brightness: number, truth: readonly [num
   const line = (level: number) => contour(values, SIDE, SIDE, level);
   const marks: Mark[] = [
     { ink: "isophote", shape: "line", points: LEVELS.flatMap(line), isFine: true },
-    { ink: "light", shape: "line", points: line(brightness) },
-    { ink: "truth", shape: "cross", points: inMap(truth), size: 3 },
+    { ink: "intensity", shape: "line", points: line(brightness) },
+    { ink: "normal", shape: "cross", points: inMap(truth), size: 3 },
   ];
   return pictureOf(
     {
@@ -180,7 +182,7 @@ export function* strips(values: Values): Generator<Drawing> {
         { key: "along", title: "Along one strip", alt: "Heights along one strip: true and found." },
         "way, px",
         "height, px",
-        profile(all, heightAt),
+        profile(all, spot, heightAt),
       ),
     ],
     numbers: {

@@ -74,13 +74,15 @@ export function* surface(values: Values): Generator<Drawing> {
   );
   const found = integrateNormals(pixels, grid.width, grid.height, robust);
   const truth = made.truth.imageDepth;
+  const row = Math.round(ROW * grid.height);
+  const column = Math.round(WALL * grid.width);
+  const isBoth = (index: number) => Number.isFinite(found[index]) && Number.isFinite(truth[index]);
+  // The depths are compared on the side of the dome, so that a wrong height of the step does not make the dome look wrong.
   const centred = (depth: Float32Array): Float32Array => {
-    const middle = meanOf(depth, (index) => Number.isFinite(found[index]) && Number.isFinite(truth[index]));
+    const middle = meanOf(depth, (index) => isBoth(index) && index % grid.width < column);
     return depth.map((value) => value - middle);
   };
   const [foundDepth, trueDepth] = [centred(found), centred(truth)];
-  const row = Math.round(ROW * grid.height);
-  const column = Math.round(WALL * grid.width);
   const rise = (depth: Float32Array) =>
     (depth[row * grid.width + column - BESIDE] ?? NaN) - (depth[row * grid.width + column + BESIDE - 1] ?? NaN);
   const left = (depth: Float32Array) => depth.filter((_, index) => index % grid.width < column - 2);

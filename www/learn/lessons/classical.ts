@@ -1,13 +1,14 @@
 /** Lessons 3 and 4: the ambiguity of one picture, and classical shape from shading under one lamp. */
 
 import type { Lesson } from "../lesson";
-import { block, comma, lines, mi, mo, row, sub, sup, symbol } from "../maths";
+import { block, comma, gradient, lines, mo, primed, row, symbol, type SymbolName } from "../maths";
 import { decimals } from "../digits";
 import { stretchOf } from "../stretch";
 import { lampSliders } from "./first";
 
-const prime = (base: Element) => sup(base, mo("′"));
-const dot = (name: string) => prime(mi(name));
+const pair = (make: (name: SymbolName) => Element, first: SymbolName, second: SymbolName) =>
+  row(mo("("), make(first), mo(","), make(second), mo(")"));
+const change = (name: SymbolName) => primed(symbol(name));
 
 export const relief: Lesson = {
   id: "relief",
@@ -15,22 +16,22 @@ export const relief: Lesson = {
   gist: "A flattened or an inverted surface can make exactly the same picture, under another lamp and with another albedo.",
   formula: () =>
     block(
-      prime(symbol("z")),
+      primed(symbol("z")),
       mo("="),
-      mi("s"),
+      symbol("s"),
       symbol("z"),
       mo("+"),
-      mi("t"),
-      mi("x"),
+      symbol("t"),
+      symbol("x"),
       comma(),
-      prime(symbol("E")),
+      primed(symbol("E")),
       mo("="),
       symbol("E"),
     ),
   formulaWords: "The new depth is s times the depth plus t times x, and the new intensity is the old one.",
   text: [
-    "Sculptors of coins and medals have always known it: a portrait a few millimetres deep looks like a whole head. Multiply all depths by a factor s, here {=stretch}. Every normal changes, and yet a lamp in another place, together with another albedo, restores the picture pixel by pixel. The section shows heights: a height is a depth with the opposite sign. This is the bas-relief ambiguity. It holds for any factor s and any added tilt t, for one picture or a hundred under different lamps.",
-    "The reason is a matrix. Scale each normal by its albedo and call the result b, so that the intensity is b·l. For any invertible matrix A, the vectors A b and A⁻ᵀ l have the same product. Most such matrices turn the normals into vectors that belong to no surface. Those that flatten, tilt or invert depth are the ones that leave a surface.",
+    "Sculptors of coins and medals have always known it: a portrait a few millimetres deep looks like a whole head. Multiply all depths by a factor s, here {=stretch}. Every normal changes, and yet a lamp in another place, together with another albedo, restores the picture pixel by pixel. This is the bas-relief ambiguity. It holds for any factor s and any added tilt t, for one picture or a hundred under different lamps. In the formula, a prime marks the other surface and its picture. The plot cuts through both surfaces and shows heights: a height is a depth with the opposite sign.",
+    "The reason is a matrix. Scale each normal by its albedo and call the result b, so that the intensity is b·l. For any invertible matrix A, the vectors A b and A⁻ᵀ l have the same product. Most such matrices turn the normals into vectors that belong to no surface, because around a loop their slopes do not add up to zero (lesson 9). Those that flatten, tilt or invert depth are the ones that leave a surface.",
     "The most famous case is s = −1: near and far are exchanged, and a face becomes its mould. It needs no other albedo, only a lamp rotated by half a turn about the line of sight. People see the mould of a face as a face, because they expect faces, and light from above.",
     "So a single picture does not determine a shape. Something else has to be known: the lamp, the albedo, the silhouette, or a depth map. From lesson 10 on, this page uses the depth map.",
   ],
@@ -99,27 +100,22 @@ export const strips: Lesson = {
   gist: "With one known lamp and one albedo, the shape can be followed along strips that start at a bright spot.",
   formula: () =>
     lines(
+      block(symbol("E"), pair(symbol, "x", "y"), mo("="), symbol("map"), pair(symbol, "p", "q")),
       block(
-        symbol("E"),
-        row(mo("("), mi("x"), mo(","), mi("y"), mo(")")),
-        mo("="),
-        mi("R"),
-        row(mo("("), mi("p"), mo(","), mi("q"), mo(")")),
-      ),
-      block(
-        row(mo("("), dot("x"), mo(","), dot("y"), mo(")"), mo("="), mo("∇"), mi("R")),
+        row(pair(change, "x", "y"), mo("="), gradient(symbol("map"))),
         comma(),
-        row(mo("("), dot("p"), mo(","), dot("q"), mo(")"), mo("="), mo("∇"), symbol("E")),
+        row(pair(change, "p", "q"), mo("="), gradient(symbol("E"))),
       ),
-      block(row(dot("z"), mo("="), mi("p"), sub(mi("R"), mi("p")), mo("+"), mi("q"), sub(mi("R"), mi("q")))),
+      block(row(change("z"), mo("="), symbol("p"), change("x"), mo("+"), symbol("q"), change("y"))),
     ),
   formulaWords:
-    "The intensity of the picture is the reflectance map of the slopes. A strip moves in the picture along the gradient of the map, and its slopes change along the gradient of the picture.",
+    "The intensity of the picture is the reflectance map of the slopes. A strip moves in the picture along the gradient of the map, and its slopes change along the gradient of the picture. Its depth changes by each slope times the step along it.",
   text: [
-    "Write the surface as a depth z(x, y) with slopes p and q along x and y. Under a known lamp, Lambert's law gives each pair of slopes an intensity: the reflectance map R(p, q). A pixel of intensity {E} has its slopes somewhere on one isophote of that map. One equation, two unknowns.",
-    "But neighbours have to fit together. Suppose the slopes at one point are known. Step in the picture along the gradient of R: then the change of the slopes is the gradient of {E}, which the picture shows. So position, slopes and height can be carried on, step by step, along a characteristic strip. At a bright spot the surface faces the lamp, so its slopes are known, and the curvature of the picture gives that of the surface, except for its sign.",
+    "Write the surface as a depth {z} that depends on the place {x}, {y} in the picture. Its slopes {p} and {q} say how fast the depth changes to the right and down; together they say the same as the normal. Under a known lamp, Lambert's law gives each pair of slopes an intensity. All pairs together are the reflectance map {map}, a picture whose axes are slopes. So a pixel of intensity {E} has its slopes somewhere on one isophote of that map. This is the first line of the formula: one equation, two unknowns.",
+    "But neighbours have to fit together. Suppose that the slopes at one point are known, and take a small step; a prime on a letter now marks its change. Step in the picture along grad {map}, the direction in the map in which the intensity grows. Then the slopes change by grad {E}, the direction in the picture in which it grows, and that can be seen. This is the second line. It follows from the first: along {x}, {E_x} = {map_p}{p_x} + {map_q}{q_x}, and {q_x} = {p_y}, because both are the second derivative of {z} along {x} and {y}. So {E_x} is the change of {p} in the step ({map_p}, {map_q}). In the third line, the depth changes by each slope times the step along it. So place, slopes and depth are carried on, step by step, along a characteristic strip.",
+    "A strip starts at a bright spot. There the surface faces the lamp, so its slopes are known. The curvature of the picture gives that of the surface, except for its sign: the spot may be a bump or a dent.",
     "Horn invented this in his thesis in 1970, the first computed shape from shading. Strips drift with noise and leave gaps, so later methods solve for all heights at once: his paper of 1989 computes heights and slopes together. Tests of such methods used the bust of Mozart; here, the built-in bust stands in for it.",
-    "The method needs one lamp, known exactly, one albedo, and somebody who says whether the spot is a bump. It fails where strips cross a saddle: the picture cannot say on which side of it the surface goes on.",
+    "The method needs one lamp, known exactly, one albedo, and somebody who says whether the spot is a bump. It fails at a saddle, where the surface rises in one direction and falls in the other: strips part there, and the smallest error decides to which side they go.",
   ],
   tasks: [
     "Take the spot for a dent. The same picture now gives a wrong surface, and the error near the spot rises.",
@@ -153,7 +149,7 @@ export const strips: Lesson = {
   readouts: [
     { key: "near", label: "Error of the height, first 10 px", unit: "px", digits: 2, ink: "error" },
     { key: "far", label: "Farther away", unit: "px", digits: 2, ink: "error" },
-    { key: "intensity", label: "Intensity of the pixel", digits: 2, ink: "light" },
+    { key: "intensity", label: "Intensity of the pixel", digits: 2, ink: "intensity" },
     { key: "strips", label: "Strips", digits: 0, ink: "normal" },
   ],
   drags: { picture: { x: "px", y: "py" } },

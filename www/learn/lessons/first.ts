@@ -34,7 +34,7 @@ export const normal: Lesson = {
   text: [
     "Put a pencil upright on a surface: it points along the normal {n}. The normal says which way the surface faces at that point, and nothing about where the point is. Its length is 1, so of its three components only two are free.",
     "This page measures x to the right, y down and z away from the camera. A surface that the camera can see faces the camera, so its {n_z} is negative. Straight toward the camera the normal is (0, 0, −1), and the arrow in the figure shrinks to a dot. At the silhouette of a ball the normal is perpendicular to the line of sight.",
-    "A normal map turns the three components into red, green and blue: the farther a normal points to the right, the more red; up, the more green; toward the camera, the more blue. A surface that faces the camera is light blue. The ball in the figure shows every visible normal once, so it is the key to all such maps.",
+    "A normal map turns the three components into red, green and blue: the farther a normal points to the right, the more red; up (against y), the more green; toward the camera, the more blue. A surface that faces the camera is light blue. The ball in the figure shows every visible normal once, so it is the key to all such maps.",
     "Turn the surface, now by {=turn}, and its normals turn with it. Point at the nose before and after: it is the same point of the bust, but its normal has another colour. Brightness plays no part in a normal map. The next lessons ask how much of it brightness reveals.",
   ],
   tasks: [
@@ -102,10 +102,10 @@ export const lambert: Lesson = {
   formulaWords:
     "The intensity is the albedo times the cosine of the angle between normal and lamp, and zero beyond 90 degrees.",
   text: [
-    "Hold a sheet of paper under a lamp. It is brightest when it faces the lamp. Tilt it, and the same light is spread over more paper, so each part gets less. This is Lambert's law: the intensity {E} is the albedo {rho}, the share of light that the surface reflects, times the cosine {n}·{l} of the angle between the normal {n} and the direction {l} to the lamp. A matte surface looks equally bright from every side.",
+    "Hold a sheet of paper under a lamp. It is brightest when it faces the lamp. Tilt it, and the same light is spread over more paper, so each part gets less. This is Lambert's law: the intensity {E} is the albedo {rho}, the share of light that the surface reflects, times the cosine {n}·{l} of the angle between the normal {n} and the direction {l} to the lamp. A matte surface looks equally bright wherever the camera is.",
     "The cosine is flat near 0° and steep near 90°. At 60° half of the intensity is left, and beyond 90° the surface is in its own shadow. Light does not add up to less than nothing, hence the maximum in the formula.",
     "A line of equal intensity is called an isophote. The figure marks that of {=level}; drag this number to change it. On a ball, an isophote is a circle around the point that faces the lamp, because all normals on it have the same angle to the lamp. On any other surface, an isophote still joins all points with that angle, but now the line runs wherever the surface has such normals. Bright spots mark the places that face the lamp.",
-    "One intensity fixes only one angle. The normal may lie anywhere on a cone around the lamp. To see the cone, follow one isophote on the ball: all its colours in the normal map of lesson 1 differ, and all its pixels look the same.",
+    "One intensity fixes only one angle. The normal may lie anywhere on a cone around the lamp: for half of the largest intensity, on the cone of 60°. To see the cone, follow one isophote on the ball: all its colours in the normal map of lesson 1 differ, and all its pixels look the same.",
   ],
   tasks: [
     "Move the lamp from the left to the right. The isophotes follow it, and the shadow grows on the other side.",

@@ -42,6 +42,9 @@ export function lessonNamed(name: string | null): Lesson | undefined {
   return lessons.find(({ id }) => id === name);
 }
 
+/** The title of a lesson after its number. */
+export const titleOf = (lesson: Lesson): string => `${lessons.indexOf(lesson) + 1}. ${lesson.title}`;
+
 /** The neighbour of a lesson; the first and the last have only one. */
 export function beside(id: LessonId, by: 1 | -1): Lesson | undefined {
   return lessons[lessons.findIndex((lesson) => lesson.id === id) + by];

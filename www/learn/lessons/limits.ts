@@ -10,7 +10,7 @@ import { block, frac, log, mi, mn, mo, row, shading, sub, sup, symbol } from "..
 export const paint: Lesson = {
   id: "paint",
   title: "Shadows and paint",
-  gist: "The image model ignores shadows and assumes one albedo. Chromaticity separates paint from shading, but not from shadow.",
+  gist: "The image model ignores shadows and assumes one albedo. The ratio of the three colours separates paint from shading, but not from shadow.",
   formula: () => block(log(symbol("S")), mo("="), symbol("aj"), mo("+"), shading(), mo("+"), symbol("ej")),
   formulaWords: "The log intensity of colour j is its log albedo plus its shading plus a remainder.",
   text: [
@@ -81,16 +81,16 @@ export const failure: Lesson = {
   gist: "Some scenes do not contain the answer. A good program says so; this one usually does.",
   formula: () =>
     block(
-      sup(sub(mi("σ"), symbol("R")), mn("2")),
+      sup(sub(symbol("sigma"), symbol("R")), mn("2")),
       mo("≈"),
-      frac(sup(mi("σ"), mn("2")), row(mi(phrase("information", "information")), mo("("), symbol("R"), mo(")"))),
+      frac(sup(symbol("sigma"), mn("2")), row(mi(phrase("information", "information")), mo("("), symbol("R"), mo(")"))),
     ),
   formulaWords:
     "The variance of the rotation is about the variance of the noise divided by the information that the scene contains about the rotation.",
   text: [
     "Here nothing is given: light and pose are both unknown, and the search starts from scratch. The report at the end contains more than a pose: a status, a reason, a sigma of the rotation, and alternative poses that fit the image equally well. “Ambiguous” and “lost” do not mean that the pose is wrong. They mean that the data do not show that it is right.",
     "Symmetry: a round object looks the same when it is rotated about its axis. No method can detect that rotation. Little overlap: if the depth map covers only a narrow strip, a few normals have to explain everything. Texture: fine print that changes from pixel to pixel hides the shading. A large turn: the cameras share less and less of the object, and they see the shared part at a grazing angle.",
-    "Compare the true error, which is known here because the scene is synthetic, with the reported sigma and status. Sigma is the size of error to expect; errors of two or three sigmas are rare but possible. In the formula, the information says how fast the residual rises when the rotation changes. A good method is allowed to fail. It should not be confident when it does.",
+    "Compare the true error, which is known here because the scene is synthetic, with the reported sigma and status. Sigma is the size of error to expect; errors of two or three sigmas are rare but possible. It counts the noise, not what the model leaves out: a shadow that passes for albedo (lesson 13) can shift the result and stay unnoticed. Once the status is lost, sigma is only a lower bound. In the formula, {sigma} without an index is the noise of the picture, and the information is the curvature of the sum of squares at its minimum: how fast the residual rises when the rotation changes. A good method is allowed to fail. It should not be confident when it does.",
     "The reported sigma is that of the rotation about its least certain axis; the degrees quoted in a status are also one sigma. Above 1.5° the status is ambiguous, because two sigmas then exceed the 3° within which a pose counts as found. Above 5° it is lost: a rotation this uncertain is useless. Above 25° the rotation counts as not observable. Converged means that sigma is below 1.5°, no other pose fits as well, and the colours are explained; a wider overlap, a smaller turn, a less symmetric object or an initial pose help to get there. A status can have other reasons: it is ambiguous if other poses fit the image equally well, and lost if too much of the colours remains unexplained.",
   ],
   tasks: [

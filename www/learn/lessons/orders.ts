@@ -2,7 +2,7 @@
 
 import type { Lesson } from "../lesson";
 import { LIGHTS } from "../lesson";
-import { block, log, mi, mo, row, shading, sub, sup, symbol } from "../maths";
+import { block, log, mo, row, shading, symbol, transposed } from "../maths";
 import { LARGEST_CONSTANT } from "../protocol";
 
 export const orders: Lesson = {
@@ -15,19 +15,19 @@ export const orders: Lesson = {
       mo("="),
       shading(),
       mo("="),
-      sub(mi("c"), mi("j")),
+      symbol("c"),
       mo("+"),
-      sub(symbol("l"), mi("j")),
+      symbol("lj"),
       mo("·"),
       symbol("n"),
       mo("+"),
-      row(sup(symbol("n"), mo("⊤")), sub(mi("Q"), mi("j")), symbol("n")),
+      row(transposed(symbol("n")), symbol("Q"), symbol("n")),
     ),
   formulaWords:
     "The logarithm of the intensity is a constant, plus a vector times the normal, plus a quadratic form of the normal.",
   text: [
-    "A room has many lamps, walls and windows. Light adds up, so the intensity of a matte surface is a sum of clamped cosines, one for each source: a function of the normal alone, and a smooth one. A polynomial of degree 2 describes it well. In the formula, {S} is the intensity in one colour j (red, green or blue), called {E} so far; c, l and Q are the parts of order 0, 1 and 2.",
-    "Three balls show the parts. The zeroth-order term is the same for every normal. First-order terms brighten one side. Second-order terms have the same value on opposite sides. Added up, they give the fourth ball, which shows every normal that the camera can see, and so shows the whole model.",
+    "A room has many lamps, walls and windows. Light adds up, so the intensity of a matte surface is a sum of clamped cosines, one for each source: a function of the normal alone, and a smooth one, because each point collects light from half of all directions, which blurs the details of the light. A polynomial of degree 2 describes it well. In the formula, {S} is the intensity in one colour j (red, green or blue), called {E} so far; {c}, {lj} and {Q} are the parts of order 0, 1 and 2. Here the albedo is 1, whose logarithm is 0; lesson 6 adds it, lesson 7 makes it part of {M}, and lesson 13 gives each colour its own. The last paragraph says why the formula has a logarithm.",
+    "Three balls show the parts. The zeroth-order term is the same for every normal. First-order terms brighten one side. Second-order terms have the same value for opposite normals, {n} and {−n}, of which a ball shows only one. Added up, they give the fourth ball, which shows every normal that the camera can see, and so shows the whole model.",
     "The polynomial has nine coefficients for each colour, 27 in all. The matrices {M} collect them, and {N} is the normal with a fourth component 1, so that one product contains all orders. A symmetric 4 by 4 matrix has ten numbers. But the squares of the normal's components add up to 1, so a constant (here {=constant}) can be moved from the zeroth order to the squares without any effect, and nine numbers remain.",
     "Nine numbers describe the intensity under any distant light, with an error of about 1 % on average over many lights (Ramamoorthi and Hanrahan); the readouts show the error for the one lamp of this figure. This page follows Barron and Malik and uses nine numbers for the logarithm of the intensity instead. That is a choice, not a theorem. It has a price: under a single lamp in the dark its error is larger. And it has two gains: the albedo becomes a term that is added, and no predicted intensity is negative.",
   ],

@@ -1,0 +1,161 @@
+/** What the figures of the lessons draw for the sentences beside them, and how they mark numbers that are not up to date. */
+
+import type { Page } from "@playwright/test";
+import { LESSONS, open, slide } from "./figure";
+import { LONG, expect, test } from "./lab";
+
+/** The line of an ink in a panel, as its path. */
+const line = (page: Page, panel: string, ink: string) =>
+  page.locator(`[data-panel="${panel}"] path.learn-ink-${ink}:not(.halo)`);
+
+test("8: the map has the curve of each colour, and they meet at the true normal", async ({ lab, page }) => {
+  await open(page, "at=colours&colour=1&noise=0");
+  const paths = async () => {
+    const found: string[] = [];
+    for (const ink of ["red", "green", "blue"]) {
+      await expect(line(page, "landscape", ink)).toHaveCount(1);
+      found.push((await line(page, "landscape", ink).getAttribute("d")) ?? "");
+    }
+    return found;
+  };
+  const coloured = await paths();
+  for (const path of coloured) expect(path.length).toBeGreaterThan(100);
+  expect(new Set(coloured).size).toBe(3);
+  // Light of one colour leaves one curve.
+  await slide(page, "colour", 0);
+  await expect.poll(async () => new Set(await paths()).size).toBe(1);
+  expect(lab.complaints).toEqual([]);
+});
+
+/** Messages to the threads, held back until they are let go. */
+async function holdRequests(page: Page): Promise<{ hold(): Promise<void>; release(): Promise<void> }> {
+  await page.addInitScript(() => {
+    const held: (() => void)[] = [];
+    const state = { isHeld: false, held };
+    Object.assign(window, { requests: state });
+    const post = Worker.prototype.postMessage as (this: Worker, ...all: unknown[]) => void;
+    Worker.prototype.postMessage = function (this: Worker, ...all: unknown[]) {
+      if (state.isHeld) held.push(() => post.apply(this, all));
+      else post.apply(this, all);
+    };
+  });
+  const set = (isHeld: boolean) =>
+    page.evaluate((isHeld) => {
+      const { requests } = window as unknown as { requests: { isHeld: boolean; held: (() => void)[] } };
+      requests.isHeld = isHeld;
+      if (!isHeld) for (const send of requests.held.splice(0)) send();
+    }, isHeld);
+  return { hold: () => set(true), release: () => set(false) };
+}
+
+test("numbers and pictures of the state before the last drag are dimmed until the new ones are there", async ({
+  lab,
+  page,
+}) => {
+  const requests = await holdRequests(page);
+  const parts = [page.locator(".learn-figure .learn-numbers"), page.locator(".learn-figure .learn-panels")];
+  await open(page, "at=surface&step=2");
+  for (const part of parts) {
+    await expect(part).toHaveAttribute("aria-busy", "false");
+    await expect(part).toHaveCSS("opacity", "1");
+  }
+  const before = await page.locator('[data-number="jump"]').textContent();
+  await requests.hold();
+  await slide(page, "step", 8);
+  for (const part of parts) {
+    await expect(part).toHaveAttribute("aria-busy", "true");
+    await expect.poll(() => part.evaluate((each) => Number(getComputedStyle(each).opacity))).toBeLessThan(0.6);
+  }
+  await expect(page.locator('[data-number="jump"]')).toHaveText(before ?? "?");
+  // The controls are those of the new state already.
+  await expect(page.locator(".learn-controls")).toHaveCSS("opacity", "1");
+  await requests.release();
+  for (const part of parts) {
+    await expect(part).toHaveAttribute("aria-busy", "false");
+    await expect(part).toHaveCSS("opacity", "1");
+  }
+  await expect(page.locator('[data-number="jump"]')).not.toHaveText(before ?? "?");
+  expect(lab.complaints).toEqual([]);
+});
+
+/** Letters of the formulas that are not symbols: functions, indices of axes and of measured quantities. */
+const PLAIN = new Set(["log", "max", "min", "grad", "information", "x", "y", "z", "S", "T"]);
+
+test(
+  "each symbol of a formula has its meaning below it, and the fourth lesson's all light a part of the figure",
+  LONG,
+  async ({ lab, page }) => {
+    for (const id of LESSONS) {
+      await open(page, `at=${id}`);
+      const [unnamed, inFormula, listed] = await page.evaluate(() => {
+        const symbols = (part: string) => [...document.querySelectorAll(`${part} [data-symbol]`)];
+        const names = (part: string) => [...new Set(symbols(part).map((each) => each.getAttribute("data-symbol")))];
+        const letters = [...document.querySelectorAll(".learn-formula mi")].filter(
+          (mi) => !mi.closest("[data-symbol]"),
+        );
+        return [letters.map((mi) => mi.textContent ?? ""), names(".learn-formula"), names(".learn-symbols")] as const;
+      });
+      expect(
+        unnamed.filter((letter) => !PLAIN.has(letter) && letter !== "j"),
+        id,
+      ).toEqual([]);
+      expect(listed.filter((name) => name !== "j").sort(), id).toEqual([...inFormula].sort());
+      if (unnamed.includes("j")) expect(listed, id).toContain("j");
+      for (const item of await page.locator(".learn-symbols li").all())
+        expect((await item.textContent())?.length).toBeGreaterThan(5);
+    }
+    await open(page, "at=strips");
+    const symbols = page.locator(".learn-formula [data-symbol]");
+    for (const symbol of await symbols.all()) {
+      await symbol.hover();
+      const name = await symbol.getAttribute("data-symbol");
+      await expect(page.locator(".learn-figure .learn-lit").first(), name ?? "").toBeAttached();
+      await page.locator(".learn-main h2").first().hover();
+      await expect(page.locator(".learn-lit")).toHaveCount(0);
+    }
+    expect(lab.complaints).toEqual([]);
+  },
+);
+
+/** The symbols before and after each light matrix in a formula. */
+const besideLight = (page: Page) =>
+  page
+    .locator(".learn-formula [data-symbol=M]")
+    .evaluateAll((all) =>
+      all.map((light) =>
+        [light.previousElementSibling, light.nextElementSibling].map((part) =>
+          (part?.matches("[data-symbol]") ? part : part?.querySelector("[data-symbol]"))?.getAttribute("data-symbol"),
+        ),
+      ),
+    );
+
+test("no formula gives the plain normal to a 4 by 4 matrix, and no symbol has a hat", LONG, async ({ lab, page }) => {
+  let count = 0;
+  for (const id of LESSONS) {
+    await open(page, `at=${id}`);
+    for (const pair of await besideLight(page)) {
+      // The refinement's normals, those of the depth, are extended as well.
+      for (const name of pair) expect(name, id).toBe("N");
+      count++;
+    }
+    expect(await page.locator(".learn-text mo").allTextContents(), id).not.toEqual(expect.arrayContaining(["^"]));
+  }
+  expect(count).toBeGreaterThan(5);
+  expect(lab.complaints).toEqual([]);
+});
+
+test("7: at half a turn the difference reads zero", async ({ lab, page }) => {
+  await open(page, "at=grey&turn=180");
+  await expect(page.locator('[data-number="difference"]')).toHaveText("0.0000");
+  expect(lab.complaints).toEqual([]);
+});
+
+test("each lesson ends with its summary and what one can do now", LONG, async ({ page }) => {
+  for (const id of LESSONS) {
+    await open(page, `at=${id}`);
+    const ending = page.locator(".learn-can p");
+    await expect(ending).toHaveCount(2);
+    await expect(ending.first()).toContainText((await page.locator(".learn-gist").textContent()) ?? "?");
+    await expect(ending.last()).toContainText("Now: You can ");
+  }
+});
