@@ -101,7 +101,8 @@ pub struct Choice {
     pub best: Option<Box<PhotometricReport>>,
     /// Poses that the data cannot distinguish from the best, best first.
     pub rivals: Vec<Similarity>,
-    /// Where registrations of the same optimum ended. Their spread adds to the sigmas of the best pose.
+    /// Where registrations of the same optimum ended. Their spread adds to the sigmas of the best pose once the method is
+    /// chosen.
     pub ends: Vec<Similarity>,
 }
 
@@ -112,11 +113,7 @@ impl Choice {
             return Self { best: None, rivals, ends: Vec::new() };
         };
         let ends = best.equal_ends();
-        let mut report = best.registered.report;
-        if let Some(report) = &mut report {
-            report.uncertainty.add_spread(&report.pose, &ends);
-        }
-        Self { best: report, rivals, ends }
+        Self { best: best.registered.report, rivals, ends }
     }
 }
 

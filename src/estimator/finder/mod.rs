@@ -281,7 +281,7 @@ impl Finder {
     ) -> Result<Next> {
         self.chosen = choice;
         let colours = PhotometricRegistration::prepared(memory, pair);
-        colours.keep_ends(std::mem::take(&mut self.chosen.ends));
+        colours.keep_ends(self.chosen.ends.clone());
         let Some(cleaned) = local_contrast::cleaned(pair, colours, self.chosen.best.as_deref()) else {
             return self.next_method(pair, memory, None);
         };
@@ -349,10 +349,13 @@ impl Finder {
 }
 
 /// The decision for silhouettes, or else for the best registration.
-fn everywhere_by(silhouettes: Option<SilhouetteReport>, Choice { best, rivals, .. }: Choice) -> Decision {
+fn everywhere_by(silhouettes: Option<SilhouetteReport>, Choice { best, rivals, ends }: Choice) -> Decision {
     match (silhouettes, best) {
         (Some(found), _) => Decision { by: Method::Silhouettes(Box::new(found)), rivals: Some(Vec::new()) },
-        (None, Some(best)) => Decision { by: Method::Photometric(best), rivals: Some(rivals) },
+        (None, Some(mut best)) => {
+            best.uncertainty.add_spread(&best.pose, &ends);
+            Decision { by: Method::Photometric(best), rivals: Some(rivals) }
+        }
         (None, None) => Decision { by: Method::Nothing, rivals: Some(rivals) },
     }
 }

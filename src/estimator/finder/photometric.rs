@@ -108,8 +108,9 @@ impl PhotometricRegistration {
     }
 
     /// Holds the next registrations near an initial pose, or frees them.
-    pub const fn keep_near(&mut self, prior: Option<PosePrior>) {
+    pub fn keep_near(&mut self, prior: Option<PosePrior>) {
         self.near = prior;
+        self.ends.clear();
     }
 
     /// Whether registrations are held near an initial pose.

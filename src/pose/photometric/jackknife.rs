@@ -43,12 +43,14 @@ impl Photometric {
         covariance(&moves)
     }
 
-    /// Takes a few steps by the image alone. Returns their sum. The prior about an initial pose and the mask would hold the
-    /// pose back, although they are no evidence about the errors of the colours.
+    /// Takes a few steps. Returns their sum.
     fn refit(&mut self, problem: &PhotometricProblem<'_>, frame: &Frame) -> PoseVector {
         let mut moved = PoseVector::zeros();
         for _ in 0..STEPS {
-            let Ok(reduced) = self.reduce_by_instruments(problem, frame) else { break };
+            let Ok(mut reduced) = self.reduce_by_instruments(problem, frame) else { break };
+            if let Some(sums) = self.near_terms(problem, 0, frame, &self.state.pose) {
+                reduced.add(&sums);
+            }
             let Some(step) = reduced.step(0.0, &problem.held()) else { break };
             self.state = self.state.stepped(frame, &step, problem.light.is_some());
             moved += step.pose;
