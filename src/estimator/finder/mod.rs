@@ -261,11 +261,8 @@ impl Finder {
         let Some(mut choice) = choice else { return Ok(Next::Phase(Phase::Candidates(candidates))) };
         let mut looked_at = candidates.poses();
         if let Scope::Everywhere(Some(opening)) = &mut self.scope {
-            looked_at
-                .iter_mut()
-                .chain(&mut choice.rivals)
-                .chain(&mut choice.ends)
-                .for_each(|pose| *pose = opening.pose_out(pose));
+            let poses = looked_at.iter_mut().chain(&mut choice.rivals).chain(&mut choice.ends);
+            poses.for_each(|pose| *pose = opening.pose_out(pose));
             choice.best = choice.best.map(|best| opening.report_out(best));
         }
         self.diagnose(pair, memory, choice, looked_at)
