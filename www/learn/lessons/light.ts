@@ -81,7 +81,7 @@ export const grey: Lesson = {
   text: [
     "From here to lesson 12 the whole object has one albedo. Its logarithm is then a constant, which {M} includes.",
     "A normal has two degrees of freedom; grey light gives one equation. The cost map shows for each normal how far its log intensity is from the measured one. The normals that explain the pixel form a curve, the dark line in the map. The pixel alone does not determine where on that line the true normal lies.",
-    "The picture as a whole is ambiguous, too. Rotate every normal by half a turn about the line of sight, and a bump becomes a dent. Rotate its lamp by half a turn, too (in the figure by {=turn}), and every pixel keeps its brightness. This is why craters in photographs sometimes look like hills.",
+    "The picture as a whole is ambiguous, too. Rotate every normal by half a turn about the line of sight, and a bump becomes a dent. Rotate its lamp by half a turn, too, and every pixel keeps its brightness. In the figure the lamp has turned by {=turn} so far. This is why craters in photographs sometimes look like hills.",
     "The reason is that a rotated light is again a light of nine numbers. If the light is unknown, colour does not resolve the ambiguity. A known light does, and so does a depth map. Cast shadows, occluding contours and the assumption that light comes from above help as well.",
   ],
   tasks: [
@@ -147,7 +147,7 @@ export const colours: Lesson = {
   text: [
     "A unit normal has two unknowns, and the colour of a pixel gives up to three numbers. One lamp of one colour leaves a cone of normals around it (lesson 2). A second lamp of another colour adds a second cone, and two cones meet in at most two normals. A third one decides between them.",
     "Let the light be red from one side, green from another and blue from a third. Each colour leaves a different curve of normals: the red, the green and the blue line in the map. Where the three curves meet, all colours are explained. The cost of a normal, shown by the shade of the map, is the squared distance between measured and predicted log colours; the solver looks for its global minimum.",
-    "A quadratic form in three colours can still have several minima. The solver therefore first compares 600 directions all over the hemisphere and then descends from the best one. White dots mark the local minima; the larger the dot, the more starting points end there.",
+    "The light is known here; lesson 11 estimates it together with the pose. Even so the cost, a sum of squares of quadratic forms, can have several minima. The solver therefore first compares 600 directions all over the hemisphere and then descends from the best one. White dots mark the local minima; the larger the dot, the more starting points end there.",
     "Natural light is nearly white. Its three curves almost coincide, and the valley becomes long and flat: a little noise moves the lowest point by tens of degrees. The picture now has a noise of {=noise}. A single pixel then determines almost nothing. Noise may also give the pixel a colour that no normal has. Then no normal explains it within 2 %, and the lowest minimum is merely the closest match.",
   ],
   tasks: [

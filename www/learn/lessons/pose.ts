@@ -20,14 +20,14 @@ export const pose: Lesson = {
   ],
   tasks: [
     "Move the pose away from 0°. Watch the residual rise and the two surfaces separate.",
-    "Raise λ until the minima of the pixel have merged. With the pose 20° off the solver then ends far from the true normal: 17.1° off at λ = 1.",
+    "Set the pose 20° off. Raise λ until the minima of the pixel have merged. The solver then ends far from the true normal: 17.1° off at λ = 1.",
     "Let it register from 20° away. The pose comes home.",
     "Let it register from 40° away. Here the true pose lies beyond the tolerance, so the given pose is kept and the status is ambiguous.",
     "Let it search from scratch. It needs no initial pose and takes longer, and the error ends below one degree.",
   ],
   tries: [
     { set: { run: "hold", offset: 0 }, sweep: { key: "offset", to: 30 } },
-    { set: { run: "hold", offset: 0, robust: 0, weight: -3 }, sweep: { key: "weight", to: 0 } },
+    { set: { run: "hold", offset: 20, robust: 0, weight: -3 }, sweep: { key: "weight", to: 0 } },
     { set: { offset: 20, run: "register" } },
     { set: { offset: 40, run: "register" } },
     { set: { run: "search" } },
