@@ -48,32 +48,29 @@ async function holdRequests(page: Page): Promise<{ hold(): Promise<void>; releas
   return { hold: () => set(true), release: () => set(false) };
 }
 
-test("numbers and pictures of the state before the last drag are dimmed until the new ones are there", async ({
-  lab,
-  page,
-}) => {
+test("numbers lose their weight and pictures fade after a drag until the new ones are there", async ({ lab, page }) => {
   const requests = await holdRequests(page);
   const parts = [page.locator(".learn-figure .learn-numbers"), page.locator(".learn-figure .learn-panels")];
   await open(page, "at=surface&step=2");
-  for (const part of parts) {
-    await expect(part).toHaveAttribute("aria-busy", "false");
-    await expect(part).toHaveCSS("opacity", "1");
-  }
+  const number = page.locator('[data-number="jump"]');
+  const picture = page.locator(".learn-panels .learn-canvas").first();
+  const isCurrent = async () => {
+    for (const part of parts) await expect(part).toHaveAttribute("aria-busy", "false");
+    await expect(picture).toHaveCSS("opacity", "1");
+    await expect(number).toHaveCSS("font-weight", "600");
+  };
+  await isCurrent();
   const before = await page.locator('[data-number="jump"]').textContent();
   await requests.hold();
   await slide(page, "step", 8);
-  for (const part of parts) {
-    await expect(part).toHaveAttribute("aria-busy", "true");
-    await expect.poll(() => part.evaluate((each) => Number(getComputedStyle(each).opacity))).toBeLessThan(0.6);
-  }
+  for (const part of parts) await expect(part).toHaveAttribute("aria-busy", "true");
+  await expect.poll(() => picture.evaluate((each) => Number(getComputedStyle(each).opacity))).toBeLessThan(0.6);
+  await expect(number).toHaveCSS("font-weight", "400");
   await expect(page.locator('[data-number="jump"]')).toHaveText(before ?? "?");
   // The controls are those of the new state already.
   await expect(page.locator(".learn-controls")).toHaveCSS("opacity", "1");
   await requests.release();
-  for (const part of parts) {
-    await expect(part).toHaveAttribute("aria-busy", "false");
-    await expect(part).toHaveCSS("opacity", "1");
-  }
+  await isCurrent();
   await expect(page.locator('[data-number="jump"]')).not.toHaveText(before ?? "?");
   expect(lab.complaints).toEqual([]);
 });

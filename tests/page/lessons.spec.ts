@@ -60,7 +60,7 @@ test("numbers that the text states of the method are the method's own", LONG, as
   await answers(page, `the program uses ${OPTIONS.lambda.members.prior.default} against`);
   await open(page, "at=pose");
   await expect(page.locator(".learn-text")).toContainText(
-    `within ${OPTIONS.startTolerance.members.degrees.default}° of it`,
+    `turn at most ${OPTIONS.startTolerance.members.degrees.default}° from this given pose`,
   );
   const noise = Number(/noise: ([\d.]+)/.exec(await source("www/learn/compute/prior.ts"))?.[1]);
   await open(page, "at=prior");
