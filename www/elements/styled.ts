@@ -1,6 +1,7 @@
 /** The style of the lessons' figures for a shadow root. */
 
 import words from "../style/learn.css?inline";
+import waiting from "../style/learn-blank.css?inline";
 import parts from "../style/learn-figure.css?inline";
 import tokens from "../style/tokens.css?inline";
 import own from "./figure.css?inline";
@@ -13,7 +14,7 @@ let sheet: CSSStyleSheet | undefined;
 export function styled(root: ShadowRoot): void {
   if (!sheet) {
     sheet = new CSSStyleSheet();
-    sheet.replaceSync([tokens, words, parts, own].map(inShadow).join("\n"));
+    sheet.replaceSync([tokens, words, parts, waiting, own].map(inShadow).join("\n"));
   }
   root.adoptedStyleSheets = [sheet];
 }
