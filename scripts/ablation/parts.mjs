@@ -21,7 +21,7 @@ export const PARTS = [
     changes: [{ file: `${CONTRAST}/registration.rs`, from: "if effort.instrument_rounds > 0 {", to: "if false {" }],
   },
   {
-    name: "paint",
+    name: "albedo-steps",
     what: "the removal of albedo at edges before local contrast is compared",
     changes: [
       {
@@ -44,7 +44,7 @@ export const PARTS = [
     changes: [{ file: LOCAL_CONTRAST, from: "pair.options.registration == Registration::Joint", to: "false" }],
   },
   {
-    name: "outline",
+    name: "silhouette",
     what: "the terms that keep occluding contours on the silhouette and points inside it",
     changes: [
       ...CONTOURS,
@@ -55,7 +55,7 @@ export const PARTS = [
       },
     ],
   },
-  { name: "limbs", what: "the term that keeps occluding contours on the silhouette", changes: CONTOURS },
+  { name: "contours", what: "the term that keeps occluding contours on the silhouette", changes: CONTOURS },
   {
     name: "size",
     what: "the prior on the apparent size, in a registration and in the ranking",
@@ -134,7 +134,7 @@ export const PARTS = [
     ],
   },
   {
-    name: "hues",
+    name: "chromaticity",
     what: "the sharpening of chromaticity that JPEG has blurred",
     changes: [
       {

@@ -144,8 +144,8 @@ impl Uncertainty {
         self.rotation_degrees.into_iter().fold(0.0, f64::max)
     }
 
-    /// Adds the spread of other ends about `pose`: registrations that fit the image equally well from other initial
-    /// poses.
+    /// Adds the mean square distance of `ends` from `pose`. They are the poses at which registrations from several initial
+    /// poses ended, and they fit the image about equally well.
     pub(crate) fn add_spread(&mut self, pose: &Similarity, ends: &[Similarity]) {
         let count = ends.len().max(1) as f64;
         let spread =

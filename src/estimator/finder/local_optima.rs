@@ -71,7 +71,7 @@ pub struct LocalOptimum {
 }
 
 impl LocalOptimum {
-    /// Ends of other registrations that fit the image as well as the best one.
+    /// Ends of registrations that fit the image as well as the best one, which is among them.
     fn equal_ends(&self) -> Vec<Similarity> {
         let most = RIVAL_NOISE * self.registered.noise;
         self.ends.iter().filter(|(_, noise)| *noise <= most).map(|(pose, _)| *pose).collect()
