@@ -3,7 +3,7 @@
 //!
 //! The Bayesian information criterion chooses the number of albedos. A further albedo has to raise the likelihood of
 //! the colours by more than its four unknowns would by chance. A tile of neighbouring pixels counts once, because
-//! errors of shading are alike within it. A single albedo counts as none, because the light then explains everything.
+//! errors of shading are alike within it. If one albedo suffices, there is no palette, because the light alone explains the image.
 //!
 //! The only inputs are log colours and the normals of the same pixels; see [`AlbedoFitter::fit`].
 //!

@@ -1,7 +1,7 @@
 //! The noise of a depth map, distinguished from its surface by how second differences grow with their span
 //! (docs/method/views.md).
 //!
-//! D_k = z(x - k) - 2 z(x) + z(x + k). A surface whose slope wanders, by innovations of variance c^2 a pixel, has var
+//! D_k = z(x - k) - 2 z(x) + z(x + k). A surface whose slope wanders, by innovations of variance c^2 per pixel, has var
 //! D_k = c^2 k (2 k^2 + 1) / 3. Noise has var D_k = 6 sigma^2 for every span wider than its correlation. Both therefore
 //! follow from a few spans by linear least squares, whatever causes the noise. White noise, noise that the sensor has
 //! smoothed laterally, and the staircase of a quantised map all stop growing, while a surface never does. Fourth
