@@ -47,7 +47,7 @@ pub struct VaryingAlbedo {
     centre: [f64; 3],
     /// Mean shading along the axes, for pixels without a normal.
     mean_shading: [f64; 3],
-    /// Share of the residual of a region's albedo that is albedo as well, along each axis.
+    /// Share of a pixel's residual from its region's albedo that counts as albedo, along each axis.
     gains: [f64; 3],
     /// The shares for pixels without a normal, whose lightness carries no information about albedo.
     unseen_gains: [f64; 3],
