@@ -20,8 +20,8 @@ use crate::view::Size;
 const SPANS: [usize; 3] = [2, 3, 4];
 /// Spans whose growth distinguishes noise from a surface.
 const GROWTH_SPANS: [usize; 2] = [1, 2];
-/// Largest ratio var D_1 / var D_2 of a surface, that of a wandering slope. Smoother surfaces have a smaller ratio, and
-/// noise has a larger one.
+/// Largest ratio var D_1 / var D_2 of a surface. A surface whose slope is a random walk has this ratio; smoother
+/// surfaces have a smaller one, and noise has a larger one.
 const SURFACE_GROWTH: f64 = 1.0 / 6.0;
 /// Second differences beyond this quantile are excluded as depth discontinuities and creases. The factor corrects the
 /// variance of the others if they are normal: 1 - 2 q phi(q) / 0.8 with q = 1.2816.
