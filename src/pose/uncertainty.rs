@@ -193,7 +193,7 @@ pub struct Information {
 }
 
 impl Information {
-    /// The smallest eigenvalue over the weight, that of the least determined direction: 0 .. 1/3.
+    /// The smallest eigenvalue over the weight, 0 .. 1/3. It belongs to the least determined direction.
     #[must_use]
     pub fn weakest(&self) -> f64 {
         self.eigen(false).map_or(0.0, |eigen| eigen.eigenvalues.min())
