@@ -4,13 +4,13 @@ import { defineConfig } from "@playwright/test";
 /** `npm test` names a free port, so that two checkouts can be tested at once. */
 const PORT = Number(process.env.PAGE_PORT ?? 4199);
 
-/** The built page, as a host may have it: below some folder of its own. */
+/** The built page is served below a folder, as some hosts do. */
 const FOLDER = "/some/folder/";
 
-/** Learn has catalogues of other languages, and the page in these passes the same tests. */
+/** Learn has catalogues of other languages; its tests also run in these. */
 const LEARN = /\/(?:learn|learn-layout|lecture|slides)\.spec\.ts$/;
 
-/** Playwright's own browsers come from elsewhere; the system's serves as well. */
+/** The system's browser is used, because Playwright would download its own. */
 const chromium =
   process.env.CHROMIUM ??
   ["/usr/bin/chromium-headless-shell", "/usr/bin/chromium", "/usr/bin/google-chrome"].find((path) => existsSync(path));
@@ -21,17 +21,17 @@ export default defineConfig({
   reporter: [["list"], ["./tests/page/skipped.ts"]],
   fullyParallel: true,
   workers: 2,
-  // No test is about time: these end what hangs, and leave room for machines that are slow or busy.
+  // No test measures time. These limits end tests that hang, and leave room for slow or busy machines.
   timeout: 300_000,
   expect: { timeout: 100_000, toPass: { timeout: 200_000 } },
   use: {
     baseURL: `http://127.0.0.1:${PORT}${FOLDER}`,
-    // What a service worker answers, tests that stand in for a server could not; tests/page/site.spec.ts lets it in.
+    // Service workers are blocked, because their answers would bypass the routes of the tests. tests/page/site.spec.ts permits them.
     serviceWorkers: "block",
     viewport: { width: 1280, height: 800 },
     launchOptions: {
       ...(chromium ? { executablePath: chromium } : {}),
-      // Containers have no sandbox, machines for tests no graphics card, and the browser's own errands no business here.
+      // Containers have no sandbox, test machines have no graphics card, and the browser's background traffic is switched off.
       args: [
         "--no-sandbox",
         "--enable-unsafe-swiftshader",

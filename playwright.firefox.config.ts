@@ -2,7 +2,7 @@ import { fileURLToPath } from "node:url";
 import { defineConfig } from "@playwright/test";
 import page from "./playwright.config";
 
-/** A second engine: Debian's Firefox, which Playwright drives by WebDriver BiDi. Chromium's flags are none of its. */
+/** A second engine: Debian's Firefox, which Playwright drives by WebDriver BiDi. It does not take Chromium's flags. */
 export default defineConfig(page, {
   testDir: "tests/firefox",
   outputDir: "target/playwright-firefox",

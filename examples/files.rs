@@ -34,7 +34,7 @@ fn words(bytes: &[u8]) -> impl Iterator<Item = u16> + '_ {
 fn read_image(path: &str) -> Outcome<ColourImage> {
     let (width, height, kind, bits, bytes) = read_png(path)?;
     if kind != png::ColorType::Rgba {
-        return Err("it is grey: the light is told from red, green and blue".into());
+        return Err("it is grey, but the light is estimated from red, green and blue".into());
     }
     let samples = match bits {
         png::BitDepth::Sixteen => ColourSamples::Rgba16(words(&bytes).collect()),

@@ -8,7 +8,7 @@ let loading: Promise<void> | undefined;
 let module: WebAssembly.Module | undefined;
 let memory: WebAssembly.Memory | undefined;
 
-/** A function of the numerics. Otherwise the bindings would keep a failed start forever. */
+/** A function that only our module exports. Another module has to be refused before the start, because the bindings never forget a failed one. */
 const OWN = "sample";
 
 async function loadOnce(where: () => WasmSource): Promise<void> {

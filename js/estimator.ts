@@ -52,8 +52,7 @@ export interface Given {
 
 /**
  * Shape, light and pose from one colour image and one depth map, one iteration after the other. Every returned array is a copy. An
- * estimator owns memory that the garbage collector frees too late or never, so call
- * `free()` or declare it with `using`.
+ * estimator owns memory that the garbage collector frees too late or never, so call `free()`, or declare it with `using`.
  */
 export class Estimator {
   #raw: Raw | undefined;

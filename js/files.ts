@@ -1,6 +1,6 @@
 /**
- * Image and depth files without a canvas, which would throw away the lower byte of 16 bits and premultiply alpha: PNG of
- * 8 and 16 bits, and NumPy's .npy. A separate module, loaded with the first file.
+ * Image and depth files: PNG of 8 and 16 bits, and NumPy's .npy. A canvas could not read them, because it drops the lower byte of 16 bits
+ * and premultiplies alpha. This module is separate and loads with the first file.
  */
 import { wrong } from "./check.js";
 import { BimodalError, badFile } from "./errors.js";

@@ -53,8 +53,8 @@ function planes(interleaved: Float32Array): Float32Array {
 }
 
 /**
- * Depth, in pixels, of the surface with these normals (3*w*h interleaved, NaN where missing) seen by an orthographic camera: the
- * least-squares solution, or with `robust` one in which slopes across a discontinuity are ignored. Mean zero in each connected part.
+ * Depth, in pixels, of the surface with these normals (3*w*h interleaved, NaN where missing), seen by an orthographic camera. It is the
+ * least-squares solution; `robust` ignores slopes across discontinuities. Each connected part has mean zero.
  */
 export function integrateNormals(
   unitNormals: Float32Array,
@@ -83,8 +83,8 @@ export function pixelLandscape(request: PixelLandscapeRequest): PixelLandscape {
 }
 
 /**
- * Intensity of a matte surface of albedo 1 for each unit normal (x, y, z in turn) under one distant lamp: the cosine between the normal and
- * the direction to the lamp times the length of `lamp`, zero where the surface faces away. Toward the camera is -z.
+ * Intensity of a matte surface of albedo 1 under one distant lamp, for each unit normal (x, y, z in turn). It is the cosine between the
+ * normal and the direction to the lamp, times the length of `lamp`, and zero where the surface faces away. Toward the camera is -z.
  */
 export function shadeLamp(lamp: ArrayLike<number>, unitNormals: Float32Array): Float32Array {
   three(lamp, "lamp");

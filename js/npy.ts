@@ -177,7 +177,7 @@ function elementsOf(bytes: Uint8Array, { kind, isBigEndian, end }: Header, count
 }
 
 /**
- * The axes of an array and, if it has at most two of them and at most this many numbers, as in a calibration, its values, row by row.
+ * The axes of an array. Its values follow row by row if it has at most two axes and at most `most` numbers, as in a calibration.
  */
 export function readSmall(bytes: Uint8Array, most: number): { axes: number[]; values?: number[] } {
   const header = headerOf(bytes);

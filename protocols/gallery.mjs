@@ -19,7 +19,7 @@ export const GALLERY = [
   {
     kind: "relief",
     name: "Relief by a lamp",
-    shows: "A carved disc, half of its light from a lamp that casts shadows, which the model does not know.",
+    shows: "A carved disc. Half of its light comes from a lamp that casts shadows, which the model leaves out.",
     level: "medium",
     ends: { status: "ambiguous", degrees: 1.4, millimetres: 23 },
   },
@@ -33,7 +33,7 @@ export const GALLERY = [
   {
     kind: "marble",
     name: "Marble bust",
-    shows: "Veins of two colours, which look like shading to a method that knows one albedo.",
+    shows: "Veins of two colours, which look like shading to a method that assumes a single albedo.",
     level: "hard",
     ends: { status: "ambiguous", degrees: 13, millimetres: 233 },
   },

@@ -47,7 +47,7 @@ function parsed() {
   const workers = Number(given.workers);
   if (!(Number.isInteger(workers) && workers > 0))
     throw new Failure(`--workers must be a whole number above zero, not "${given.workers}".`);
-  if (given.docs && given.quick) throw new Failure("--docs is of all cells: leave --quick out.");
+  if (given.docs && given.quick) throw new Failure("--docs needs all cells: leave out --quick.");
   return { ...given, workers, parts: PARTS.filter(({ name }) => wanted.includes(name)) };
 }
 
@@ -56,7 +56,7 @@ async function measured(part, chosen, { quick = false, workers }) {
   say(`without ${part.what} (${part.name})`);
   const { wasm, gzipped } = await variant(part);
   const { json, failures, complete } = await collect([table(chosen)], { quick, workers, wasm });
-  if (!complete) throw new Failure("Broken off; what was done is kept, and the next run goes on from there.");
+  if (!complete) throw new Failure("Interrupted. The results so far are kept, and the next run continues from there.");
   for (const { id, failure } of failures)
     say(`${part.name}, ${id}: ${failure.code ?? failure.name}: ${failure.message}`);
   if (part === ALL && failures.length > 0) throw new Failure("With all parts no cell may fail.");
@@ -93,7 +93,7 @@ await script(async () => {
   const chosen = sets(given.quick, hasData());
   const variants = await all(given, chosen);
   if (variants[0]?.part !== ALL.name)
-    throw new Failure("Nothing is known of the method with all parts: run it without --known.");
+    throw new Failure("There are no results of the method with all parts: run it without --known.");
   console.log(`\n${text(chosen, variants).join("\n")}\n`);
   if (given.json) {
     writeFileSync(

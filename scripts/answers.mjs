@@ -59,9 +59,9 @@ function parsed() {
   const unknown = REASONS.find(({ scene }) => !SCENES.some(({ name }) => name === scene));
   if (scenes.length === 0) throw new Failure(`No scene's name contains "${only}".`);
   if (write && (only || against))
-    throw new Failure("--write takes all scenes of this package: without --only and --against.");
+    throw new Failure("--write needs all scenes of this package: leave out --only and --against.");
   if (given.scalar && against === undefined)
-    throw new Failure("--scalar needs --against: the committed figures are of the .wasm with SIMD.");
+    throw new Failure("--scalar needs --against: the committed figures are those of the .wasm with SIMD.");
   if (!(Number.isInteger(count) && count > 0))
     throw new Failure(`--processes must be a whole number above zero, not "${processes}".`);
   if (unknown) throw new Failure(`scripts/answers/reasons.mjs: there is no scene "${unknown.scene}".`);

@@ -7,8 +7,8 @@
 // FOLDER, those in ../shared/data are read.
 //
 // --json FILE  one row for each frame
-// --ranks N    how often N wrong candidates of each size rank worse than the calibration, also by others' costs (scripts/lidar/ranks.mjs)
-// --draws N    N checks more of each of three candidates, with the intensities and without them (scripts/lidar/draws.mjs)
+// --ranks N also ranks N wrong candidates of each size, and by the costs of other tools (scripts/lidar/ranks.mjs) --draws N N more checks
+// of each of three candidates, with the intensities and without them (scripts/lidar/draws.mjs)
 import { existsSync, readFileSync, writeFileSync } from "node:fs";
 import { basename, join } from "node:path";
 import { parseArgs } from "node:util";

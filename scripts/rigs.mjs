@@ -6,13 +6,11 @@
 // --keep S     share of the depths that are kept at random (default 1), as in a sparse map
 // --rings N    rows of the depth map that are kept, evenly spaced, as the rings of a LiDAR
 // --json FILE  one row for each check
-// --confusions instead: whether the first sentence of a check names what people confuse, on rigs of all kinds in turn and on
-//              nyu_raw_pair if there is other people's data
-// --only A,B   of the confusions, by name
-// --right N    number of right rigs of which a check should name no mistake (default 40), seeds from --from
-// --off N      number of rigs whose candidates are merely off, not misread (default 40), seeds from --from
-// --next       instead: whether the frame that a check of one frame proposes sharpens it as predicted, --rigs rigs of each kind
-// --step N     distance of the seeds of --confusions (default 2: odd seeds test what was chosen on even ones)
+// --confusions instead: whether the first sentence of a check names common mistakes, on rigs of all kinds in turn and on nyu_raw_pair if
+//              the third-party data are there --only A,B of the confusions, by name --right N number of right rigs of which a check should
+//              name no mistake (default 40), seeds from --from --off N number of rigs whose candidates are merely off, not misread (default
+//              40), seeds from --from --next instead: whether the frame that a check of one frame proposes sharpens it as predicted, --rigs
+//              rigs of each kind --step N distance of the seeds of --confusions (default 2: odd seeds test what was chosen on even ones)
 import { writeFileSync } from "node:fs";
 import { parseArgs } from "node:util";
 import { build } from "./build.mjs";

@@ -53,8 +53,8 @@ const WRITERS = /\/write-/;
 const REPORT = /^assets\/reportfile-/;
 /**
  * Readers that load only for files of their kind: JPEG without a browser, texts, YAML, TOML, JSON with comments, calibrations of products,
- * lenses in separate files, point clouds, EXR, TIFF, recordings, messages about unsupported files; and the code that makes the Lab's pair from
- * the files of a run.
+ * lenses in separate files, point clouds, EXR, TIFF, recordings, messages about unsupported files. The code that makes the Lab's pair from
+ * the files of a run belongs here as well.
  */
 const OTHERS =
   /\/(?:decoder|dist\d*|pointclouds|exr|exr-others|products|text|tiff|tiff-codecs|js-yaml|recorded|containers|lens-owners|pairs)-/;

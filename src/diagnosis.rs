@@ -5,20 +5,21 @@
 //! that could take over, because each has its own threshold. [`is_pure_noise`] tells whether a palette of albedos is
 //! fitted at all; [`excess`] and [`share_of_model`] grade the residuals for weights that depend on them. A method may still
 //! decline: local contrast also needs clean normals or edges of albedo (`estimator/finder/local_contrast`).
+//! docs/lab/thresholds.md has the data that were held out.
 //!
-//! | threshold | value | set on | held out |
-//! |---|---|---|---|
-//! | [`PURE_NOISE`] | 0.035 log units | renders leave 0.010 to 0.018, anything real 0.041 or more | 54 renders of the built-in surfaces |
-//! | [`MIXED_NOISE`] | twice that | photographs of objects with varying albedo leave 0.04 to 0.34 | five objects and the cow, for the refinement alone |
-//! | `PURE_SHARE` | 0.15 of the spread | pinhole renders leave 0.01 to 0.10, registered captures 0.14 to 0.54 | none |
-//! | `MODEL_COVARIANCE` | 0.007 log units | 155 renders leave up to 0.0043, pictures of shading 0.0084 or more | shading of five objects, renders with varying albedo |
-//! | `PINHOLE_COVARIANCE` | 0.03 log units | twelve pinhole renders leave up to 0.006, four captures 0.14 to 0.39 | none |
-//! | `UNIT_COVARIANCE` | 0.0015 log units | all but two of 110 random renders in the right unit stay below | none |
-//! | `NOISE_OF_IMAGE`, `SHARE_OF_SPREAD` | 1.5, 0.05 | renders leave 0.75 to 1 times the image's noise | none |
-//! | `UNIT_NOISE` | 1.25 | right pairs with clean depth leave up to 1.23 times the image's noise | none |
-//! | `MODEL_NOISE` | 2 | renders leave 0.75 to 1 times the image's noise, photographs 0.7 to 5 times | none |
-//! | [`LARGEST_UNEXPLAINED`] | 0.3 of the spread | renders leave 0.01 to 0.1 | none |
-//! | [`LARGEST_CONTRAST_OBJECTIVE`] | 0.56 | photographs whose pose is found end at 0.13 to 0.51 | none |
+//! | threshold | value | set on |
+//! |---|---|---|
+//! | [`PURE_NOISE`] | 0.035 log units | renders leave 0.010 to 0.018, photographs 0.041 or more |
+//! | [`MIXED_NOISE`] | twice that | photographs of objects with varying albedo leave 0.04 to 0.34 |
+//! | `PURE_SHARE` | 0.15 of the spread | pinhole renders leave 0.01 to 0.10, registered captures 0.14 to 0.54 |
+//! | `MODEL_COVARIANCE` | 0.007 log units | 155 renders leave up to 0.0043, pictures of shading 0.0084 or more |
+//! | `PINHOLE_COVARIANCE` | 0.03 log units | twelve pinhole renders leave up to 0.006, four captures 0.14 to 0.39 |
+//! | `UNIT_COVARIANCE` | 0.0015 log units | all but two of 110 random renders in the right unit stay below |
+//! | `NOISE_OF_IMAGE`, `SHARE_OF_SPREAD` | 1.5, 0.05 | renders leave 0.75 to 1 times the image's noise |
+//! | `UNIT_NOISE` | 1.25 | right pairs with clean depth leave up to 1.23 times the image's noise |
+//! | `MODEL_NOISE` | 2 | renders leave 0.75 to 1 times the image's noise, photographs 0.7 to 5 times |
+//! | [`LARGEST_UNEXPLAINED`] | 0.3 of the spread | renders leave 0.01 to 0.1 |
+//! | [`LARGEST_CONTRAST_OBJECTIVE`] | 0.56 | photographs whose pose is found end at 0.13 to 0.51 |
 
 /// Standard deviation of residuals in a channel, log units, up to which noise and errors of normals may explain them.
 pub const PURE_NOISE: f64 = 0.035;

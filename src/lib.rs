@@ -1,9 +1,9 @@
 //! Camera pose, shape and light from one colour image and one depth map of the same object, taken from different places.
 //!
-//! It needs no calibration target, no matched features and no initial pose. The colours of a surface
-//! depend on its normals, and a depth map has normals: under the right pose, the normals explain the colours. The
-//! method is that of Zhang, Liu, Wu, Zhang and Wang, "Bimodal Stereo: Joint Shape and Pose Estimation from Color-Depth
-//! Image Pair" (Machine Vision and Applications), extended by a search, a photometric registration and a verdict.
+//! The crate needs no calibration target, no matched features and no initial pose. The colours of a surface depend on its normals, and a
+//! depth map has normals: under the right pose, the normals explain the colours. The method is that of Zhang, Liu, Wu, Zhang and Wang,
+//! "Bimodal Stereo: Joint Shape and Pose Estimation from Color-Depth Image Pair" (Machine Vision and Applications), extended by a search, a
+//! photometric registration and a verdict.
 //!
 //! # Example
 //!

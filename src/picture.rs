@@ -1,5 +1,5 @@
-//! Results as screen pixels: normals as colours, numbers through a colour map. Four bytes a pixel: red, green, blue and
-//! opacity; pixels without a value are transparent.
+//! Results as screen pixels: normals as colours, numbers through a colour map. A pixel has four bytes: red, green, blue
+//! and opacity. Pixels without a value are transparent.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::numeric::quantile;

@@ -118,8 +118,8 @@ impl Sample {
         Unit::guessed(if self.median() > FARTHEST { 0.001 } else { 1.0 }, "")
     }
 
-    /// Whether at least half of some whole numbers without a unit are too large to be pixels of an object, so that they
-    /// are a camera's millimetres.
+    /// Whether whole numbers without a unit are a camera's millimetres: at least half of them are too large to be
+    /// depths in pixels.
     pub fn looks_like_millimetres(&self) -> bool {
         self.is_varied() && self.median() > 1000.0 * NEAREST
     }

@@ -27,5 +27,5 @@ text, YAML or XML of OpenCV, Kalibr's camchain, a static transform of ROS, or JS
   --help              prints this text
   --version           prints the version
 
-Exit code: 0 consistent, 1 off, 2 undecided or settled with a warning, 3 the input is bad or the check could not run, 130 interrupted.
+Exit code: 0 consistent, 1 off, 2 undecided or consistent with a warning, 3 the input is bad or the check could not run, 130 interrupted.
 `;

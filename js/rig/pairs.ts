@@ -311,7 +311,7 @@ function attempt(found: Sorted, warnings: ReaderWarning[]): Pairs {
   if (stamped !== undefined) return stamped;
   const own: ReaderWarning[] = [];
   const strict = byNames(found, own);
-  // If names are ambiguous, they stay so without some of their words.
+  // The looser comparison ignores some words, so it cannot help if the names are ambiguous already.
   const pairs = strict.length > 0 || own.length > 0 ? strict : byNames(found, own, looseKey);
   warnings.push(...own);
   if (pairs.length > 0) doubtNumbers(found, warnings);
@@ -334,7 +334,7 @@ function ofOneCamera(found: Sorted, warnings: ReaderWarning[]): Pairs | undefine
   return pairs;
 }
 
-/** Adds the reason to each picture without a warning, if no picture of the folder has a partner. */
+/** For a folder in which no picture has a partner: adds a warning with the reason to each picture that has none yet. */
 export function sayUnpaired(pictures: NamedFile[], warnings: ReaderWarning[]): void {
   const { colours, depths } = sorted(pictures, []);
   if (colours.length + depths.length < 2) return;

@@ -16,8 +16,8 @@ const HOW: Record<RangeImage["how"], string> = {
 };
 
 /**
- * Points count as coordinates of a map if the median of their distances, in units of the file, exceeds the first number, and the spread
- * of the distances as a share of this median is below the second one.
+ * Points count as coordinates of a map if the median of their distances exceeds the first number, in units of the file. The spread of the
+ * distances must also be less than the second number times this median.
  */
 const [FAR_OFF, NARROWLY] = [10_000, 0.05];
 

@@ -58,7 +58,7 @@ async function deflated(bytes: Uint8Array<ArrayBuffer>): Promise<Uint8Array> {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-/** Longest name of a remark, which readers look up. */
+/** Largest number of characters of a remark's name in PNG. */
 const LONGEST_NAME = 79;
 
 function checkTexts(texts: unknown): void {

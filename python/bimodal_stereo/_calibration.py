@@ -87,11 +87,10 @@ class Sensitivity(NamedTuple):
 class NextFrame(NamedTuple):
     """The frame that would best determine the least certain unknown.
 
-    ``axis``: this unknown, "rx", "ry", "rz" about the scene's centre or "tx", "ty", "tz", in the colour frame. ``sigma``: its present sigma, degrees
-    or millimetres; ``expected``: the sigma with this frame added. ``motion``: the place of the scene of ``frame`` in
-    the next frame: "nearer", "left", "right",
-    "up", "down" or "turned"; ``pose``: the same as a motion of its points, colour frame, metres. ``message``: the
-    proposal in words.
+    ``axis``: this unknown, "rx", "ry", "rz" about the scene's centre or "tx", "ty", "tz", in the colour frame.
+    ``sigma``: its present sigma, degrees or millimetres; ``expected``: the sigma with this frame added.
+    ``motion``: the place of the scene of ``frame`` in the next frame: "nearer", "left", "right", "up", "down" or "turned".
+    ``pose``: the same as a motion of its points, colour frame, metres. ``message``: the proposal in words.
     """
 
     axis: str

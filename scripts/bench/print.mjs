@@ -89,7 +89,7 @@ const aimTable = (list) =>
 
 /** Lines of the report. */
 export const report = (result, list) => [
-  `Scene: ${result.surface}, light ${result.lightName}, beta = 20; ${fixed(100 * result.covered, 0)} % of the frame are object. ${result.machine}`,
+  `Scene: ${result.surface}, light ${result.lightName}, beta = 20; the object covers ${fixed(100 * result.covered, 0)} % of the frame. ${result.machine}`,
   "\nStages, milliseconds: median (10 % .. 90 %)",
   ...stageTable(result),
   "\nTime to the end of the loop, from a search and from the true pose",

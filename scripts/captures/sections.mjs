@@ -125,7 +125,7 @@ export async function scenes(options) {
 
 export function printScenes(rows) {
   console.log(
-    "\nseven_scenes, colour and depth of one moment, told the identity: where the check puts the colour camera",
+    "\nseven_scenes, colour and depth of one moment, from the identity: where the check puts the colour camera",
   );
   console.log(
     "moment  focal length  x, y, z mm          depth edges within 2 px of an image edge: there, at the identity",
@@ -145,7 +145,7 @@ export function printScenes(rows) {
   for (const key of new Set(poses.map(({ name, assumed }) => `${name}, ${assumed}`))) {
     const some = poses.filter(({ name, assumed }) => `${name}, ${assumed}` === key);
     console.log(
-      `  ${key.padEnd(19)} within 1 deg, 20 mm: ${count(some, (row) => within(row, ONE_DEGREE)).padEnd(8)} median ${spread(some)}; told is "off" in ${count(some, ({ verdict }) => verdict === "off")}`,
+      `  ${key.padEnd(19)} within 1 deg, 20 mm: ${count(some, (row) => within(row, ONE_DEGREE)).padEnd(8)} median ${spread(some)}; the candidate is "off" in ${count(some, ({ verdict }) => verdict === "off")}`,
     );
   }
 }
@@ -255,7 +255,7 @@ const line = (title, rows, of) => {
 
 export function printTold(rows) {
   console.log(
-    "\ntold 3 deg, 20 mm off, about the object or the camera: median / 90 %, degrees and mm at the object's middle",
+    "\ncandidates 3 deg, 20 mm off, about the object or the camera: median / 90 %, degrees and mm at the object's middle",
   );
   console.log(
     `${"".padEnd(26)}${["turn", "in plane", "tilt", "lateral", "along"].map((title) => title.padStart(14)).join("")}`,
@@ -277,6 +277,6 @@ export function printTold(rows) {
       ({ parts }) => parts,
     );
   console.log(
-    `the told one is "off" in ${count(one, ({ verdict }) => verdict === "off")}, "consistent" in ${count(one, ({ verdict }) => verdict === "consistent")}`,
+    `the candidate is "off" in ${count(one, ({ verdict }) => verdict === "off")}, "consistent" in ${count(one, ({ verdict }) => verdict === "consistent")}`,
   );
 }

@@ -6,7 +6,7 @@ export class Coverage {
   #session = new Session();
   /** For each function, the characters of its text that have run. */
   #ran = new Map();
-  /** The last growth, as arrays and indices. */
+  /** The characters that ran for the first time in the last call: arrays and indices in them. */
   #last = [];
   /** Number of characters of all functions that have run. */
   count = 0;

@@ -1,4 +1,4 @@
-// Pictures as people store them by mistake: mirrored, turned, registered, with the intrinsics of another size.
+// Pictures with common mistakes: mirrored, turned, already registered, or with the intrinsics of another size.
 import { project, ray } from "../captures/lens.mjs";
 import { moved } from "./draws.mjs";
 

@@ -202,8 +202,8 @@ impl CalibrationCheck {
         self.starts = starts;
     }
 
-    /// Candidates that are nearly right enter once more at a late level, because wide windows would lead them away
-    /// among texture.
+    /// Starts from the candidates once more at a late level. On texture, the wide windows of the early levels would lead candidates away
+    /// that are nearly right.
     fn enter_candidates(&mut self) {
         let initial = self.best.initial;
         let states = self.candidates.iter().map(|candidate| candidate.1);

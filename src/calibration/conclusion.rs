@@ -21,7 +21,7 @@ const FARTHEST: f64 = 1e6;
 const CLEARLY: f64 = 3.0;
 /// Ratio of two densities above which a candidate counts as misread. The first is the density of the reading in the
 /// distribution of the estimate, the second that of the candidate in the prior about the estimate. The limit is twenty
-/// times the number of readings, fourteen.
+/// for each of the fourteen readings that are tried.
 const MISREAD: f64 = 280.0;
 
 impl CalibrationCheck {

@@ -1,9 +1,9 @@
 //! Depth discontinuities: places in the colour camera's view where a near surface ends in front of a farther one.
 //!
-//! A pixel of the depth map is on a discontinuity if the next pixel with a depth, along its row or column, lies clearly
-//! farther from the colour camera than the surface that continues from the pixels behind. The next pixel may lie beyond a hole: a depth camera that is offset from its projector
-//! or its own colour camera misses depths on one side of each near object. The far side of a discontinuity is not used,
-//! because it begins wherever this hole ends.
+//! A pixel of the depth map is on a discontinuity if the next pixel with a depth, along its row or column, lies clearly behind the
+//! continuation of the pixel's own surface, as seen from the colour camera. The next pixel may lie beyond a hole: a depth camera that is
+//! offset from its projector or its own colour camera misses depths on one side of each near object. The far side of a discontinuity is not
+//! used, because it begins wherever this hole ends.
 
 use super::frame::{Frame, Projection};
 

@@ -1,4 +1,4 @@
-//! A log likelihood with its derivatives, and the reliability of these.
+//! A log likelihood, its derivatives, and their reliability.
 //!
 //! Neighbouring depth discontinuities and pixels share their errors, so a sum over them is a composite likelihood. Its
 //! maximum is right, but its curvature is too large. The check estimates the information from the scene itself. It

@@ -81,7 +81,7 @@ mod tests {
         assert!((one - step).amax() < 0.5 * RESOLUTION + 1e-6, "{}", one - step);
     }
 
-    /// Rounding of the state that a round reaches does not change the state from which it is seen.
+    /// Rounding errors in the state of a round do not change the state at which visibility is computed.
     #[test]
     fn rounding_does_not_choose_the_state_from_which_the_scene_is_seen() {
         let (scene, initial) = (scene(), State::at(Similarity::identity()));

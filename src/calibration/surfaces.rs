@@ -10,8 +10,8 @@ use super::unknowns::State;
 /// A log likelihood at a state, tile by tile.
 pub(super) type LogLikelihood<'a> = Box<dyn Fn(&State, &mut [f64]) + 'a>;
 
-/// The log likelihood by a cue over the patches of one frame that are visible from `from`; `None` if the cue is not one
-/// over surfaces or the frame lacks the data that it needs.
+/// The log likelihood by a cue over the patches of one frame that are visible from `from`. It is `None` if the cue does
+/// not compare surfaces, or if the frame lacks the data for it.
 pub(super) fn log_likelihood<'a>(
     cue: Cue,
     patches: &'a Patches,

@@ -213,8 +213,8 @@ impl<S: Real<Scalar = S>> Polynomial<S> {
             + z * (T::splat(by_z) + T::splat(self.zz) * z)
     }
 
-    /// [`shade`](Self::shade) and [`gradient`](Self::gradient) together. A quadratic is its constant plus half the sum
-    /// of both slopes, here and at zero, along the normal.
+    /// [`shade`](Self::shade) and [`gradient`](Self::gradient) together. A quadratic equals its constant plus half the
+    /// sum of two slopes along the normal: the slope at the normal and that at zero.
     #[inline(always)]
     #[must_use]
     pub fn expand<T: Real<Scalar = S>>(&self, [x, y, z]: [T; 3]) -> (T, [T; 3]) {

@@ -3,7 +3,7 @@
 //!
 //! The Bayesian information criterion chooses the number of albedos. A further albedo has to raise the likelihood of
 //! the colours by more than its four unknowns would by chance. A tile of neighbouring pixels counts once, because
-//! errors of shading are alike within it. A single albedo counts as none, because the light then explains everything.
+//! errors of shading are alike within it. If one albedo suffices, there is no palette, because the light alone explains the image.
 //!
 //! The only inputs are log colours and the normals of the same pixels; see [`AlbedoFitter::fit`].
 //!
@@ -47,7 +47,7 @@ pub struct VaryingAlbedo {
     centre: [f64; 3],
     /// Mean shading along the axes, for pixels without a normal.
     mean_shading: [f64; 3],
-    /// Share of the residual of a region's albedo that is albedo as well, along each axis.
+    /// Share of a pixel's residual from its region's albedo that counts as albedo, along each axis.
     gains: [f64; 3],
     /// The shares for pixels without a normal, whose lightness carries no information about albedo.
     unseen_gains: [f64; 3],

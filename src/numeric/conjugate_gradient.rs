@@ -1,6 +1,5 @@
 //! Preconditioned conjugate gradients: minimises x^T A x / 2 - b^T x over x for a symmetric, positive semi-definite A,
-//! without
-//! forming the matrix (docs/method/normals.md and docs/method/heights.md).
+//! without forming the matrix (docs/method/normals.md and docs/method/heights.md).
 //!
 //! The preconditioner M is close to A and easy to solve for. In exact arithmetic each iteration minimises over one more
 //! dimension, and the error in the norm of A falls by (k - 1) / (k + 1) or better, where k is the square root of the

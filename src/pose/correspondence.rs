@@ -3,7 +3,8 @@
 //! See docs/method/surfaces.md. The pose transforms and projects a depth point. It corresponds to the pixel on which it
 //! falls if the pixel is on the mask, the point faces the colour camera, no other depth point hides it there
 //! (z-buffer), the image surface does not hide it from the depth camera (z-buffer of the reverse view), and both
-//! surfaces are close to each other. The distance threshold comes from the caller or from the median distance, but is at least one pixel: a surface from shading under poor light is off by several pixels even under
+//! surfaces are close to each other. The distance threshold comes from the caller or from the median distance. The
+//! latter is at least one pixel, because a surface from shading under poor light is off by several pixels even under
 //! the best pose.
 //!
 //! Of several points on one pixel, the nearest to its centre is kept. Where the depth camera sees a surface more

@@ -2,8 +2,8 @@
 //! theta (docs/method/surfaces.md).
 //!
 //! Four pairs determine theta. Least squares on its inliers refines the sample with the lowest objective, sum
-//! min(|r|^2, threshold^2). Eq. 15 refuses an A that is near no similarity. A similarity is then fitted to the inliers
-//! of A, and again to its own until they no longer change; scale and rotation of Eq. 15 are not used.
+//! min(|r|^2, threshold^2). Eq. 15 refuses an A that is near no similarity. A similarity is then fitted to the inliers of A, and fitted
+//! again to its own inliers until they no longer change. Scale and rotation of Eq. 15 are not used.
 //!
 //! The linear model shears and stretches, so on nearly flat parts it follows noise where a similarity would not. It
 //! therefore only selects the pairs to which the similarity is first fitted.

@@ -2,8 +2,8 @@
 
 /// Smallest assumed noise of log S, log units, or 0.2 percent, the rounding of a good 8-bit image.
 pub(super) const LEAST_NOISE: f64 = 0.002;
-/// Error of a normal, radians, at which its point has lost three quarters of its weight. On average errors act by their
-/// square: 0.1 rad shifts the pose by some tenths of a degree, whatever the light.
+/// Error of a normal, radians, at which its point has lost three quarters of its weight. On average, errors shift the
+/// pose in proportion to their square: 0.1 rad by some tenths of a degree under any light.
 pub(super) const NORMAL_ERROR: f64 = 0.1;
 /// First robust scale relative to that of the residuals, and the factor by which it shrinks at most from round to
 /// round.

@@ -92,7 +92,7 @@ impl Similarity {
         }
     }
 
-    /// This pose with another scale and rotation, which maps `point` of the depth view to the same place.
+    /// The pose with another scale and rotation that maps `point` of the depth view to the same place as this one.
     #[must_use]
     pub(crate) fn turned_about(&self, point: Vector3<f64>, scale: f64, rotation: Matrix3<f64>) -> Self {
         Self { scale, rotation, translation: self.apply(point) - scale * (rotation * point) }

@@ -107,8 +107,11 @@ impl TryFrom<Similarity> for Isometry3<f64> {
 impl TryFrom<Similarity3<f64>> for Similarity {
     type Error = Error;
 
-    /// The same transformation. /// /// # Errors [`ErrorKind::Range`] if the scaling is not positive, which nalgebra
-    /// permits, or a number is not finite. The field is a member of `similarity`.
+    /// The same transformation.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Range`] if the scaling is not positive, which nalgebra permits, or a number is not finite. The
+    /// field is a member of `similarity`.
     fn try_from(similarity: Similarity3<f64>) -> Result<Self> {
         let pose = Self { scale: similarity.scaling(), ..Self::from(similarity.isometry) };
         pose.validate("similarity")?;

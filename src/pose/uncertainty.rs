@@ -193,7 +193,7 @@ pub struct Information {
 }
 
 impl Information {
-    /// The smallest eigenvalue over the weight, that of the least determined direction: 0 .. 1/3.
+    /// The smallest eigenvalue over the weight, 0 .. 1/3. It belongs to the least determined direction.
     #[must_use]
     pub fn weakest(&self) -> f64 {
         self.eigen(false).map_or(0.0, |eigen| eigen.eigenvalues.min())
@@ -257,8 +257,7 @@ impl Information {
         std::array::from_fn(|k| (k == TRANSLATION_Z && gauge) || (k == SCALE && self.scale_is_held))
     }
 
-    /// Eigenvalues that J_n^T J_m has by chance without any shape, from the noise of the normals, averaged over the
-    /// pairs.
+    /// The eigenvalues that J_n^T J_m would have without any shape, by chance: from the noise of the normals, averaged over the pairs.
     fn floor(&self) -> f64 {
         LEAST_INFORMATION.max(self.normal_noise.powi(2) / (self.pairs.max(1) as f64).sqrt())
     }

@@ -34,7 +34,7 @@ pub(super) fn window(at: f64, centre: f64, half: f64) -> f64 {
     step((half - (at - centre).abs()) / 5.0)
 }
 
-/// Zero until `past` has the sign of `reach`, then a fourth power that is one at `reach`; rounds an end off.
+/// Rounds off an end: the fourth power of `past / reach`, and zero if both have different signs.
 pub(super) fn overhang(past: f64, reach: f64) -> f64 {
     (past / reach).max(0.0).powi(4)
 }

@@ -17,8 +17,8 @@ use crate::view::{Camera, ColourImage, ColourSamples, DepthMap, DepthSamples, No
 pub const SMALLEST_VIEW: usize = 16;
 /// Largest side of a view in pixels: four pixels for each sample of the 256 grid, beyond which triangles show.
 pub const LARGEST_VIEW: usize = 1024;
-/// Smallest depth of the centroid of an orthographic view, in radii of the object. It applies if the side of the view
-/// is smaller, and keeps depths well above zero, which marks a hole.
+/// Smallest depth of the centroid of an orthographic view, in radii of the object. It replaces the side of the view if
+/// that is smaller, and keeps depths well above zero, which marks a hole.
 const CLEARANCE: f64 = 1.25;
 /// Default rotation about y in degrees: that of the paper's Table 1.
 const DEFAULT_BETA: f64 = 20.0;

@@ -84,8 +84,9 @@ impl ImageShapeSolver {
         pixels::exposure_step(problem.shading(), problem.weights(problem.prior_weight), normals, moved)
     }
 
-    /// `depth` of the surface, NaN off the mask, from the normals of the pixels; if the surface is solved as a whole,
-    /// it improves these normals. The depth is determined up to a constant (orthographic) or a factor (pinhole).
+    /// Computes `depth` of the surface, NaN off the mask, from the normals of the pixels. A surface that is solved as a
+    /// whole improves these normals, too. The depth is determined up to a constant (orthographic) or a factor
+    /// (pinhole).
     ///
     /// # Errors
     /// The errors of the integration.

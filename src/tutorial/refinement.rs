@@ -1,12 +1,12 @@
 //! Chapter 7. What does the image add to the depth map?
 //!
-//! If the pose is known, the image also shades the depth map's surface. Its normals follow the colours of their pixels
-//! (Eq. 17),
+//! If the pose is known, the image also shows the shading of the depth map's surface. The normals of that surface
+//! follow from the colours of their pixels (Eq. 17),
 //!
 //! > g(n_R) = Σ_j ( (R n_R)ᵀ M_j (R n_R) − log S_j )² + λ_g2 |n_R − n_R⁰|²
 //!
-//! the mirror image of chapter 3. Its depth follows these normals and the measurement, each as far as it can be trusted
-//! (Eq. 18, 19). The noise decreases and holes are filled.
+//! as in chapter 3 with both views exchanged. The depth follows these normals and the measurement, each as far as it
+//! can be trusted (Eq. 18, 19). The noise decreases and holes are filled.
 //! [`Estimator::refined_depth`](crate::Estimator::refined_depth) and
 //! [`Estimator::depth_normals`](crate::Estimator::depth_normals) hold the result.
 //!

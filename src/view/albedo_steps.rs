@@ -32,7 +32,8 @@ const FEWEST_PAIRS: usize = 3;
 const WIDEST_BORDER: usize = 3;
 /// The albedo counts as varying if at least this share of the pixels lies outside the largest region.
 const LEAST_ALBEDO: f64 = 0.03;
-/// Weight that ties each region to the mean, in pairs of pixels. It has an effect only on regions without borders.
+/// Weight that ties each region to the mean; one pair of pixels across a border has the weight one. It matters only for
+/// regions without borders.
 const LOOSE_TIE: f64 = 1e-3;
 
 /// Regions share one albedo if their chromaticities (log colours less the channels' mean) differ by less than this, log

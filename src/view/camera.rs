@@ -83,7 +83,8 @@ impl Camera {
     /// evaluated.
     ///
     /// # Errors
-    /// [`ErrorKind::Range`] with `field` if most pixels in the mask with `values` that are not NaN are removed.
+    /// [`ErrorKind::Range`] with `field` if most pixels of the mask are removed, not counting those whose `values` are
+    /// NaN.
     pub(super) fn keep_pixels_with_rays(
         &self,
         field: &'static str,

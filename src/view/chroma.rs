@@ -1,6 +1,6 @@
 //! Sharpens chromaticity to the resolution of brightness (docs/method/views.md).
 //!
-//! JPEG stores colours at half the resolution of brightness, and a Bayer sensor has one colour a pixel. Where two
+//! JPEG stores colours at half the resolution of brightness, and a Bayer sensor has one colour per pixel. Where two
 //! albedos meet, brightness steps, but chromaticity drifts over three or four pixels through values that belong to
 //! neither. The image itself shows this: a step changes between two neighbours, whereas the change of a drift grows
 //! with the distance. Each pixel then takes the mean chromaticity of the window around it in which chromaticity and

@@ -1,4 +1,5 @@
-//! The quadratic sum of a segmentation: each pixel's own evidence, and links between neighbours of similar colour.
+//! The quadratic objective of a segmentation: each pixel's own evidence, and links between neighbours of similar
+//! colour.
 
 use crate::numeric::conjugate_gradient::System;
 use crate::view::Size;

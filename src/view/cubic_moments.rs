@@ -11,7 +11,7 @@ const TERMS: usize = 10;
 /// Relative damping of the normal equations, above the rounding error of their sums.
 const DAMPING: f64 = 1e-9;
 
-/// Number of sums of a^j b^k up to the sixth power, which are all products of a cubic's terms.
+/// Number of powers a^j b^k with j + k up to six. The products of two terms of a cubic are among them.
 const MOMENTS: usize = 28;
 
 /// Sums over the neighbours: of the weights times a^j b^k, ordered by j + k and then by k, and of those up to the third

@@ -61,8 +61,8 @@ pub const UNFITTED: f32 = 0.3;
 /// radians; NaN where there is no normal. Returns the standard deviation of the points in pixel lengths.
 ///
 /// Each pixel takes the window of least error among those consistent with the narrower ones: a normal that moves by
-/// more than its previous error is biased by the wider window (Lepski's rule). In noisy views, noise moves normals
-/// anyway. If the noise is white, the surroundings of a pixel together show whether normals move by more than the noise
+/// more than its previous error is biased by the wider window (Lepski's rule). In noisy views, noise moves normals too.
+/// If the noise is white, the surroundings of a pixel together show whether normals move by more than the noise
 /// explains. Otherwise only the error decides.
 pub fn improve(size: Size, points: &Points, normals: &mut Normals, error: &mut [f32], is_white: bool) -> f64 {
     let mut first = normals.clone();

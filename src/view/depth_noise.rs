@@ -1,7 +1,7 @@
 //! The noise of a depth map, distinguished from its surface by how second differences grow with their span
 //! (docs/method/views.md).
 //!
-//! D_k = z(x - k) - 2 z(x) + z(x + k). A surface whose slope wanders, by innovations of variance c^2 a pixel, has var
+//! D_k = z(x - k) - 2 z(x) + z(x + k). A surface whose slope wanders, by innovations of variance c^2 per pixel, has var
 //! D_k = c^2 k (2 k^2 + 1) / 3. Noise has var D_k = 6 sigma^2 for every span wider than its correlation. Both therefore
 //! follow from a few spans by linear least squares, whatever causes the noise. White noise, noise that the sensor has
 //! smoothed laterally, and the staircase of a quantised map all stop growing, while a surface never does. Fourth
@@ -20,8 +20,8 @@ use crate::view::Size;
 const SPANS: [usize; 3] = [2, 3, 4];
 /// Spans whose growth distinguishes noise from a surface.
 const GROWTH_SPANS: [usize; 2] = [1, 2];
-/// Largest ratio var D_1 / var D_2 of a surface, that of a wandering slope. Smoother surfaces have a smaller ratio, and
-/// noise has a larger one.
+/// Largest ratio var D_1 / var D_2 of a surface. A surface whose slope is a random walk has this ratio; smoother
+/// surfaces have a smaller one, and noise has a larger one.
 const SURFACE_GROWTH: f64 = 1.0 / 6.0;
 /// Second differences beyond this quantile are excluded as depth discontinuities and creases. The factor corrects the
 /// variance of the others if they are normal: 1 - 2 q phi(q) / 0.8 with q = 1.2816.

@@ -13,8 +13,9 @@ import { freshProject } from "./fresh.mjs";
 import { LONG } from "./long.mjs";
 
 /**
- * Native code and wasm sum in different orders and compute other sines. Limits of the differences between their reports: of the estimate
- * in units of its sigma, of other numbers and of the likelihood's curves relative to the largest number of their list.
+ * Native code and wasm sum in different orders and compute other sines. Limits of the differences between their reports. That of the
+ * estimate is in units of its sigma. Those of other numbers and of the likelihood's curves are relative to the largest number in the same
+ * list.
  */
 const ROUNDING = { sigmas: 1e-4, relative: 1e-4, curves: 0.01 };
 /** On some rendered rigs, rounding decides whether a point counts, and the estimate moves by up to a hundredth of a sigma. */

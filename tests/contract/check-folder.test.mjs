@@ -189,7 +189,7 @@ describe("exit codes", () => {
   test("0 for --help, which names every code", () => {
     const { status, stdout } = check("--help");
     assert.equal(status, 0);
-    assert.match(stdout, /0 consistent, 1 off, 2 undecided or settled with a warning, 3 /);
+    assert.match(stdout, /0 consistent, 1 off, 2 undecided or consistent with a warning, 3 /);
   });
 
   test("2 is for what makes a doubt, and not for what was left out", () => {

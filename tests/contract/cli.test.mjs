@@ -68,8 +68,8 @@ function alike(told, report, degrees) {
 describe("command line", LONG, () => {
   before(async () => {
     await init();
-    // With all features and an example, as the Rust tests are built: cargo keeps one build of the library for all choices of features, and the
-    // documentation's examples would otherwise be linked with another build.
+    // Built with all features and an example, as the Rust tests are. Cargo keeps one build of the library, and the examples of the
+    // documentation would otherwise be linked with one of other features.
     const { status } = spawnSync(
       "cargo",
       ["build", "--quiet", "--all-features", "--bin", "bimodal-stereo", "--example", "pair"],

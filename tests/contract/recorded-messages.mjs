@@ -3,7 +3,7 @@
 import { sampleRig } from "../../pkg/index.js";
 import { definitionOf, driver, encoded } from "./recordings.mjs";
 
-/** A colour of the small picture is the mean of 3x3 pixels around pixel 4 x + 1 of the large one. A depth is that of this pixel. */
+/** Pixel x of the small picture lies at pixel 4 x + 1 of the large one: its colour is the mean of the 3x3 pixels there, its depth that of this one pixel. */
 const STEP = 4;
 const OFFSET = 1;
 const smaller = ({ fx, fy, cx, cy, distortion }) => ({

@@ -39,7 +39,8 @@ test("lasers above each other and a coarse clock cost neither rows nor points", 
   assert.equal(image.how, "order");
   const found = measured(scan, VIEW, image);
   holds(found, "64 lasers in two blocks");
-  // The two blocks of lasers are 0.1 m apart in height, which changes elevations by about a degree from 3 to 9 m: twice the spacing of rows.
+  // The two blocks of lasers are 0.1 m apart in height. A row's elevation therefore differs by about a degree, twice the spacing of rows,
+  // between points at 3 and at 9 m.
   assert.ok(found.ofColumn < 0.5, `${found.ofColumn}`);
 });
 

@@ -26,7 +26,7 @@ const lines: readonly Line[] = [
 ];
 
 const DIGITS = 3;
-/** Pixels of a window below which the card is wider than half of it. */
+/** Width of a window, pixels, below which the card covers more than half of it. */
 const NARROW = 720;
 
 export class Card {

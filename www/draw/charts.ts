@@ -138,7 +138,7 @@ const FEW = 12;
 export interface PlotOptions {
   xLabel: string;
   curves: readonly Curve[];
-  /** Whether x is a count: the axis then begins at one and has no ticks in between. */
+  /** Whether x is a count. The axis then begins at one, and all ticks are whole numbers. */
   whole: boolean;
   /** Whether the chart draws nothing before `begin` is called. */
   waits?: boolean;

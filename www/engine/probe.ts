@@ -6,7 +6,8 @@ import { depthAt, placesOf } from "./rasters";
 import type { Run } from "./drawings";
 
 /**
- * Largest distance of a counterpart from its pixel, pixels of the depth map, because not every depth pixel corresponds to an image pixel.
+ * Largest distance of a counterpart from its pixel, pixels of the depth map. It is above zero because not every depth pixel corresponds to
+ * an image pixel.
  */
 const NEAR = 2;
 

@@ -37,7 +37,7 @@ export class RunRecord {
   add(reports: readonly StepReport[]): void {
     this.#frames++;
     for (const report of reports) {
-      // Whether this is the first report of a run: a search has found its pose before the first iteration.
+      // The pose where the registration starts. A search has found it before the first iteration.
       this.from ??= report.pose;
       this.report = report;
       if (report.iteration > (this.history.at(-1)?.iteration ?? 0)) this.history.push(report);

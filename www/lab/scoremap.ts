@@ -1,6 +1,5 @@
 /**
- * The map of scores during the search. The horizontal axis is the rotation about the vertical axis of the object, the vertical axis that
- * about the horizontal axis.
+ * The map of scores during the search. Columns show the rotation about the object's vertical axis, rows that about its horizontal axis.
  */
 
 import type { Pose } from "../../pkg/index.js";

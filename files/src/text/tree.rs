@@ -342,7 +342,7 @@ fn dotted(node: &Node) -> Vec<(String, Node)> {
     groups.into_iter().map(|(name, value)| (name, members(value))).collect()
 }
 
-/// The name for a member's cameras and poses: members that only state their kind take their parent's name.
+/// The name for the cameras and poses of a member. If the member's key only states a kind, it is the parent's key.
 fn name_of<'a>(key: &'a str, parent: &'a str) -> &'a str {
     let is_kind = matches!(
         key,

@@ -64,7 +64,7 @@ export class Findings implements Calibration {
     return found;
   }
 
-  /** Puts the pose between the frames of two poses first; both poses lead into the same frame. */
+  /** Adds a pose in front of the others: the one between the origins of two poses, both of which lead into the same frame. */
   relate(from: NamedPose | undefined, to: NamedPose | undefined): void {
     if (from?.from === undefined || to?.from === undefined) return;
     this.poses.unshift({

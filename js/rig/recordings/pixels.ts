@@ -57,7 +57,7 @@ const PACKED: Record<string, readonly [y0: number, y1: number, u: number, v: num
   yuyv: [0, 2, 1, 3],
   yuy2: [0, 2, 1, 3],
 };
-/** A plane of luma, then rows of chroma at half the width: the number of pixel rows that share a chroma row, and whether v comes first. */
+/** Formats with a plane of luma before rows of chroma at half the width: how many pixel rows share a chroma row, and whether v comes first. */
 const PLANAR: Record<string, readonly [rows: number, vFirst: boolean]> = {
   nv12: [2, false],
   nv21: [2, true],

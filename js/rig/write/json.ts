@@ -50,7 +50,7 @@ function realsenseDistortion({ model, distortion }: Camera): { model: string; co
   return { model: reaches(distortion, 0) ? "Brown Conrady" : "None", coeffs: padded(distortion, 5) };
 }
 
-/** Both are written or none, because readers take intrinsics without distortion for those of a camera that has none. */
+/** Intrinsics and distortion are written together or not at all: without a distortion, readers assume that the camera has none. */
 function realsenseCamera(camera: Camera | undefined, key: string, name: string, notes: string[]): string[] {
   if (camera === undefined) {
     notes.push(`the ${name} camera's intrinsics are not known`);

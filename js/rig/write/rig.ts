@@ -116,7 +116,7 @@ function camera(
   return { model, fx, fy, cx, cy, distortion, size: known };
 }
 
-/** The rig that consists of a pose and what else is known. */
+/** Makes a rig of a pose and of what else is known about the cameras. */
 export function rigOf(given: PoseInput, context: RigContext): Rig {
   const pose = poseOf(given, "pose") as Pose;
   like({}, pose, "pose");

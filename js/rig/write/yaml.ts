@@ -49,7 +49,7 @@ function kalibrDistortion({ model, distortion }: Camera): { word: string; coeffi
   return { word: "radtan", coefficients: padded(distortion, 4) };
 }
 
-/** Both are written or none, because readers take intrinsics without distortion for those of a camera that has none. */
+/** Intrinsics and distortion are written together or not at all: without a distortion, readers assume that the camera has none. */
 function kalibrCamera(camera: Camera | undefined, name: string, notes: string[]): string[] {
   const leftOut = (why: string): string[] => {
     notes.push(why);

@@ -8,7 +8,7 @@ use crate::pose::increment::{PoseMatrix, PoseVector};
 use crate::pose::jackknife::{SECTORS, covariance, sectors};
 use crate::pose::similarity::Similarity;
 
-/// Number of steps that start from the final pose and leave out a sector. It is larger than for photometric
+/// Number of steps from the final pose, for each sector that is left out. It is larger than for photometric
 /// registration, because the local means converge slowly.
 const STEPS: usize = 8;
 /// Factor on the weight of samples that are left out. A sample surrounded by weights of zero would have no local mean.

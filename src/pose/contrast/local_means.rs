@@ -6,8 +6,8 @@
 //! the varying albedo; edges and small relief remain. H is linear for fixed weights, so it applies to derivatives in
 //! the same way as to values.
 
-/// Reach of the Gaussian in sigmas. Its weight has fallen to 4 % there, and the mean of constant values is exact
-/// anyway.
+/// Reach of the Gaussian in sigmas. Its weight has fallen to 4 % there. With any reach, H of a constant is exactly
+/// zero.
 const REACH: f64 = 2.5;
 
 /// Maximum number of values of a pixel.

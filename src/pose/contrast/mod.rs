@@ -7,10 +7,11 @@
 //!   sample on the depth view. It removes most of the albedo and whatever a light of nine harmonics cannot represent.
 //! - B are the harmonics of the depth view's own normals. Orders up to two are closed under rotation, so under a free
 //!   light L no pose changes their span, and the pose enters through positions in the image alone.
-//! - Samples off the mask cost by their distance from it. Where the surface turns away from the image's camera (the
-//!   occluding contour), points have to lie on the silhouette, neither outside nor inside it; the sum over them is
+//! - Samples off the mask cost more the farther they are from it. Where the surface turns away from the image's camera
+//!   (the occluding contour), points have to lie on the silhouette, neither outside nor inside it; the sum over them is
 //!   divided by the length of the mask's border.
-//! - The apparent size is held near that of the initial pose; where poses are compared, near that of the units.
+//! - A registration holds the apparent size near that of the initial pose. Comparisons of poses hold it near the size
+//!   that follows from the units.
 //!
 //! Method: rounds of damped Gauss-Newton with the light eliminated. A round fixes the visible samples and the weights
 //! within H, because weights that moved with the pose would reward sliding to places of low weight. The robust scale

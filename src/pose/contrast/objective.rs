@@ -69,8 +69,8 @@ pub(super) struct Objective {
     silhouette: Silhouette,
     /// Number of pixels on the mask's border, by which the sum over contour points is divided.
     border: f64,
-    /// For each grid pixel: its weight in the local means, zero if it takes no part; the harmonics with their local
-    /// means removed; the latest v; v with its local means removed; the derivatives of v.
+    /// Five values for each grid pixel. They are its weight in the local means (zero if it takes no part), the harmonics without their
+    /// local means, the latest v, v without its local means, and the derivatives of v.
     weights: Vec<f32>,
     shades: Vec<[f32; SHADES]>,
     seen_values: Vec<[f32; CHANNELS]>,

@@ -5,7 +5,7 @@
 //! instrument (the Z of sum w Z^T r = 0, as in the last rounds of photometric registration) it lets only the explained
 //! part of the image determine the pose.
 //!
-//! Limits: the gradient belongs to a light that fits, so it is valid only near the right pose.
+//! Limits: the gradient is computed with the fitted light, so it is valid only near the right pose.
 
 use super::equations::{Lights, SHADES};
 use super::problem::ContrastProblem;

@@ -46,8 +46,8 @@ const RANKING_NOISE: f64 = 0.05;
 const RIVAL_MARGIN: f64 = 0.1;
 /// Smallest distance of a rival, degrees.
 const RIVAL_APART: f64 = 3.0;
-/// Ends of one rotation count as two if their log sizes differ by more than this, half a step between the initial
-/// sizes. Otherwise a wrong size that ranks better at first would hide the right one.
+/// Two ends with the same rotation are both kept if their log sizes differ by more than this, half a step between the
+/// initial sizes. Otherwise a wrong size that ranks better at first would hide the right one.
 const SIZE_APART: f64 = 0.1;
 
 /// An end of a registration, with its rank.

@@ -50,9 +50,9 @@ impl Linearised<'_> {
     }
 }
 
-/// The covariance of the linearisation in the objective, zero for held unknowns. The silhouette adds to the scores as
-/// it does to the information, because its errors are as real as those of the contrast. Student's correction is
-/// omitted, because the jackknife has one.
+/// The covariance from the linearised objective, zero for held unknowns. The silhouette contributes to the scores as
+/// well as to the information, because it has errors just as the contrast has. Student's correction is omitted, because
+/// the jackknife has one.
 fn covariance(linearised: &Linearised<'_>, held: &[bool; UNKNOWNS]) -> PoseMatrix {
     let [contrast, silhouette] = linearised.tiles();
     let mut scores = Scores::of(contrast.iter());

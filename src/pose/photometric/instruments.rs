@@ -19,8 +19,8 @@ const MOST_INSTRUMENTAL_STEPS: usize = 12;
 /// annealing and then on all of them.
 const SETTLED_SIGMAS: f64 = 0.02;
 /// The instrumental rounds are undone if they raise the objective by more than this share, because they should only trade noise.
-/// Least squares favours positions between pixels, where a cubic spline leaves 0.572 of the variance of white noise
-/// (0.756 along either axis), and loses that gain at the pixels.
+/// Least squares favours positions between pixels, where a cubic spline leaves 0.572 of the variance of white noise (0.756 along either
+/// axis). The rounds may give up this gain, but no more.
 const LARGEST_RISE: f64 = 1.0 / 0.572 - 1.0;
 
 impl Photometric {
@@ -40,8 +40,8 @@ impl Photometric {
     }
 
     /// Takes a step of such a round. The step is not damped, because there is no objective to lower. Steps of the first
-    /// round may grow. Later rounds reject a step that is longer than the previous one. The solution may repel a pose
-    /// that rounding put beside it, and each step would then grow by a third.
+    /// round may grow. Later rounds reject a step that is longer than the previous one, because the solution may be an unstable fixed point
+    /// of these steps, from which rounding errors grow by a third in each step.
     pub(super) fn step_by_instruments(
         &mut self,
         problem: &PhotometricProblem<'_>,

@@ -25,7 +25,7 @@ const MOST_POINTS: usize = 2000;
 /// (docs/lab/thresholds.md).
 const OFF_WEIGHT: f64 = 0.5;
 /// Distance off the mask at which a point's weight has fallen to a quarter, pixels, for each level of the image. It is
-/// the reach of the level; a sharper level corrects smaller distances.
+/// about the error of the pose that the level can correct.
 const SCALES: [f64; 4] = [6.0, 6.0, 12.0, 20.0];
 /// Sigma of the distance on all levels but the sharp one, as a share of the prior's.
 const DISTANCE_FIRST: f64 = 0.1;

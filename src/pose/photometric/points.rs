@@ -20,7 +20,7 @@ const ENOUGH_KNOWN: usize = 100;
 /// Minimum number of points for a coarse level under an unknown light: 30 for each unknown, because the 27 unknowns of
 /// the light may fit the image under a wrong pose (docs/lab/thresholds.md).
 const ENOUGH_UNKNOWN: usize = 1000;
-/// (5^(1/2) - 1) / 2.
+/// The golden section, (5^(1/2) - 1) / 2.
 const GOLDEN_SECTION: f64 = 0.618_033_988_749_895;
 
 /// Thinning of the visible points.

@@ -14,8 +14,8 @@ use crate::view::{ColourView, DepthNoise, Normals, Points, Size};
 
 /// The coarsest level of the image.
 pub(super) const COARSEST: usize = 2;
-/// The coarsest level of the image near an initial pose, which prevents an unknown light from fitting a blurred image
-/// under any pose.
+/// The coarsest level of the image near an initial pose. The pose is held there, so that an unknown light does not fit a blurred image
+/// under a wrong pose.
 pub(crate) const COARSEST_NEAR: usize = 3;
 
 /// Depth pixels whose points are processed side by side.

@@ -60,7 +60,7 @@ pub struct Photometric {
     pub(super) rounds: usize,
     pub(super) options: PhotometricOptions,
     pub(super) iterations: usize,
-    /// Whether the rounds with instrumental variables still run on the points of the annealing although there are more.
+    /// Whether the rounds with instrumental variables still run on the points that annealing took from all.
     pub(super) thinned: bool,
     /// Negligible steps of each unknown, if there are more points than annealing needs.
     pub(super) settled_step: Option<PoseVector>,

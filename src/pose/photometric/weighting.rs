@@ -37,7 +37,7 @@ pub(super) fn final_robust_scale(noise: f64) -> f64 {
 }
 
 /// Weight of the prior at a light: that of a Gaussian near the natural lights, with the tails of Student's t for lights
-/// that no landscape has.
+/// unlike any natural one.
 pub(super) fn prior_weight(problem: &PhotometricProblem<'_>, light: &Light, noise: f64) -> f64 {
     let distance = problem.prior.squared_distance(light);
     let tail = (PRIOR_DEGREES_OF_FREEDOM + COEFFICIENTS as f64) / (PRIOR_DEGREES_OF_FREEDOM + distance);

@@ -16,7 +16,8 @@ const MOST_PATCHES: usize = 1000;
 const FEWEST_PATCHES: usize = 16;
 /// A block whose mean unit normal is shorter than this has no direction, because its normals disagree.
 const LEAST_AGREEMENT: f64 = 0.3;
-/// Largest area of a patch in medians: steeper patches are seen edge on by the depth camera, or span a discontinuity.
+/// Largest area of a patch relative to the median. Larger ones are seen at a grazing angle by the depth camera, or span
+/// a discontinuity.
 const LARGEST_AREA: f64 = 5.0;
 
 /// A patch of the surface, in the depth camera's frame and unit.

@@ -14,8 +14,8 @@ use crate::numeric::eigen::symmetric_eigen;
 use crate::numeric::fourier::planes::{Field, PlaneFourier};
 use crate::view::ColourView;
 
-/// Side of the grid in cells. The mask spans 18, so the template can move by 14 before it enters again on the other
-/// side, where the overlap is negligible.
+/// Side of the grid in cells. The mask spans 18, so the template can move by 14 cells before it wraps around, where the
+/// overlap is negligible.
 pub const SIDE: usize = 32;
 /// Number of cells of the grid.
 pub const CELLS: usize = SIDE * SIDE;

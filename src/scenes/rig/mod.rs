@@ -1,8 +1,9 @@
 //! Rigs with a known calibration: a colour and a depth camera, scenes of solids in front of backgrounds, and the
 //! outputs of both sensors (docs/lab/protocols.md).
 //!
-//! [`render`] draws cameras and extrinsics from the seed and a scene from seed and frame (`layout`, of `solids` and
-//! `sheet`, with `pattern`), and passes the scene through two z-buffers (`raster`) to both sensors (`colour`, `depth`).
+//! [`render`] draws cameras and extrinsics at random from the seed, and a scene from seed and frame (`layout`, which
+//! uses `solids`, `sheet` and `pattern`). Two z-buffers (`raster`) project the scene into both sensors (`colour`,
+//! `depth`).
 
 mod cameras;
 mod colour;

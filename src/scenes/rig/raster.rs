@@ -16,8 +16,8 @@ const NEAR: f64 = 0.1;
 /// Distance, in samples of a row, between exactly computed rays. Cubic polynomials interpolate between them, with an
 /// error of 1e-4 pixels at 160 columns and far less at 640.
 const NODES: usize = 8;
-/// Margin in samples around the corners of a triangle in which it may show: a constant for rounding, and a share of its
-/// size for the bending of its edges by a lens.
+/// Margin around the bounding box of a triangle's corners, samples: a constant because of rounding, and a share of the
+/// triangle's size because a lens bends its edges.
 const MARGIN: f64 = 0.5;
 const MARGIN_SHARE: f64 = 0.05;
 /// The mark of a ray that meets nothing.

@@ -8,8 +8,9 @@
 //! B and C. Each call tries one more start, so that no call takes long, and continues from the best surface so far.
 //!
 //! A large image is halved until a level is small. The starts are tried at that level, and the best surface moves up
-//! from level to level, with a few steps at each. It serves both cameras. Limits: unconnected parts of the mask are
-//! solved independently, each at an arbitrary offset; detail with ambiguous shading is decided at the coarsest level.
+//! from level to level, with a few steps at each. The solver takes orthographic and pinhole views. Limits: unconnected
+//! parts of the mask are solved independently, each at an arbitrary offset; detail with ambiguous shading is decided at
+//! the coarsest level.
 
 use super::domain::HeightDomain;
 use super::problem::LAST_SCALE;

@@ -13,11 +13,11 @@ use crate::view::{ColourView, Size};
 
 /// Work on a start at each scale.
 const FROM_START: Effort = Effort { steps: 15, iterations: 40, tolerance: 0.03, damping: FAR_DAMPING };
-/// Work on a surface that has changed resolution, or on the best one while starts are left.
+/// Work on a surface whose resolution has changed, or on the best surface while other starts are still to come.
 pub const INTERMEDIATE: Effort = Effort { steps: 5, iterations: 20, tolerance: 0.03, damping: FAR_DAMPING };
-/// Work on a large surface that stays the best while starts are left. It is close to its optimum, so two steps with
-/// little damping achieve as much as [`INTERMEDIATE`] in less time. With a single step, shapes would count as settled
-/// too early.
+/// Work on a large surface that stays the best while other starts are still to come. It is close to its optimum, so two
+/// steps with little damping achieve as much as [`INTERMEDIATE`] in less time. With a single step, shapes would count
+/// as settled too early.
 pub const EARLY_CALL: Effort = Effort { steps: 2, iterations: 30, tolerance: 0.03, damping: 1e-3 };
 /// Work on a surface that every call improves a little. The next call linearises again, so a few iterations achieve
 /// most of the gain. Set by the gain per round at 64x64 to 640x480 (docs/lab/thresholds.md).

@@ -18,8 +18,8 @@ use crate::view::Normals;
 /// digits.
 const MOST_PIXELS: usize = 400;
 const DIRECTIONS: usize = 300;
-/// The first exposure is the best of a grid: its step in log units (a parabola then reduces the error to a fifth of the
-/// step), and the number of steps to either side of equal medians.
+/// The first exposure is the best one of a grid around equal medians: the distance of its points, log units, and the
+/// number of points on either side. A parabola then reduces the error to a fifth of that distance.
 const GRID_STEP: f64 = 0.05;
 const GRID_STEPS: i32 = 60;
 /// Robust scale of the grid's objective in log units.
@@ -31,8 +31,8 @@ const GRID_PRIOR: f64 = 1e-3;
 const LONGEST_STEP: f64 = 0.2;
 /// Robust scale of a step: the residual, log units, at which a pixel keeps a quarter of its weight.
 const STEP_SCALE: f32 = 0.1;
-/// Weight of each pixel for the first exposure, in squared log residual. A light of almost a single chromaticity leaves
-/// the exposure almost free, and this weight limits its steps.
+/// Weight of a term that holds the exposure near the first one, for each pixel, in squared log residuals. A light of
+/// almost a single chromaticity leaves the exposure almost free, and this weight limits its steps.
 const STEP_PRIOR: f64 = 1e-3;
 
 /// The offset of log S that shifts the image's colours onto those of the light.

@@ -89,7 +89,8 @@ const MICROSOFT: readonly Row[] = [
     sample: "kinect-v2-pose",
     reads: "poses",
     warnings: [],
-    taken: "Cameras and the pose. `calib_depth.yaml` is refused by name: its shift of depths is not applied.",
+    taken:
+      "Cameras and the pose. `calib_depth.yaml` is refused with a message that names it, because its shift of depths is not applied.",
     guessed: NOTHING,
     exported: SEE_PRODUCT,
   },

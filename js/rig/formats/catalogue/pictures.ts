@@ -158,7 +158,7 @@ export const DEPTHS: readonly Row[] = [
     sample: "depth-colmap",
     reads: "depth",
     warnings: ["unit-guessed"],
-    taken: "Depths. Normal maps are refused by name.",
+    taken: "Depths. Normal maps are refused, and a message names them.",
     guessed: "The scale is that of COLMAP's reconstruction: give the unit.",
     exported: "`colmap patch_match_stereo` writes it",
   },

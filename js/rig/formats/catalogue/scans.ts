@@ -50,7 +50,7 @@ export const SCANS: readonly Row[] = [
     sample: "scan-laz",
     reads: "depth",
     warnings: ["points-sorted", "point-times"],
-    taken: "As above. Wave packets (formats 4, 5, 9 and 10) are refused by name.",
+    taken: "As above. Wave packets (formats 4, 5, 9 and 10) are refused, and a message names them.",
     guessed: NO_RINGS,
     exported: "As above.",
   },

@@ -50,7 +50,7 @@ const CALIBRATORS: readonly Row[] = [
     reads: "cameras",
     warnings: [],
     taken: "Pinhole cameras with their lens and size.",
-    guessed: "Nothing. The model MEI is refused by name.",
+    guessed: "Nothing. The model MEI is refused, and a message names it.",
     exported: SEE_PRODUCT,
   },
   {
@@ -161,7 +161,7 @@ const CALIBRATORS: readonly Row[] = [
     reads: "cameras",
     warnings: [],
     taken: "The camera, and the resulting pose. If the file has no result, the initial guess, with a warning.",
-    guessed: "Nothing. Omnidirectional cameras are refused by name.",
+    guessed: "Nothing. Omnidirectional cameras are refused, and a message names them.",
     exported: "`ros2 run direct_visual_lidar_calibration calibrate FOLDER` writes it into the folder",
   },
   {

@@ -54,8 +54,8 @@ export function firstOf<T>(
 }
 
 /**
- * Numbers of files: those that fit on the first page of a printed report with two lines each, those with one line each, and those on a
- * second page if there are more.
+ * How many files fit on a page of a printed report: on the first page with two lines for each file, on the first page with one line for
+ * each, and on a second page.
  */
 const [FEW, BESIDE, ON_A_PAGE] = [5, 10, 60];
 
