@@ -164,7 +164,7 @@ test(
     await page.keyboard.press("a");
     await expect(exercise(page).locator("details")).toBeHidden();
     await expect(dialog(page).locator(".learn-figure")).toBeVisible();
-    // On the page of a lesson there is none.
+    // The text of a lesson shows no exercise.
     await page.keyboard.press("Escape");
     await expect(page.locator(".learn-main .learn-asked")).toBeHidden();
     let found = 0;
