@@ -10,7 +10,7 @@ const names = readdirSync(inRoot(FOLDER));
 
 /** Words that are the same in English, by language. */
 const SAME = {
-  de: ["Albedo", "B", "G", "Link", "Orange", "R", "Status", "log S", "nx"],
+  de: ["Albedo", "B", "G", "Link", "Orange", "Pose", "R", "Status", "log S", "nx"],
 };
 /** The sign before the decimals of a number. */
 const DECIMAL_SIGN = { de: "," };

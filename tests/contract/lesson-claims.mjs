@@ -65,20 +65,33 @@ const orders = [
   claim("orders", "under a single lamp in the dark its error is [larger|smaller]", () =>
     change(numberOf("orders&around=0.02", "direct"), numberOf("orders&around=0.02", "byLog"), ["larger", "smaller"]),
   ),
-  claim("orders", "How many of them can a picture determine?\n[Nine|Ten|Four]", () =>
+  claim("orders", "restores every intensity?\n[It is added to the three squares|No change can]", () =>
     ["order0", "order2"].every(
       (key) => Math.abs(numberOf("orders&constant=0.6", key) - numberOf("orders", key)) > 0.1,
     ) && numberOf("orders&constant=0.6", "change") < 1e-6
-      ? "Nine"
-      : "Ten",
+      ? "It is added to the three squares"
+      : "No change can",
   ),
+  claim("orders", "Its part of degree 3 is [zero|large]", () =>
+    numberOf("orders", "degree3") < 1e-4 ? "zero" : "large",
+  ),
+  claim("orders", "a large part of degree 1 and a [smaller|larger] one of degree 2", () =>
+    change(numberOf("orders", "degree1"), numberOf("orders", "degree2"), ["larger", "smaller"]),
+  ),
+  claim("orders", "all higher ones together are [small|large]", () =>
+    numberOf("orders", "byDegree") / 100 < 0.3 * numberOf("orders", "degree2") ? "small" : "large",
+  ),
+  claim("orders", "The curve of degree 3 stays at [zero|one]", () =>
+    numberOf("orders", "degree3") < 1e-4 ? "zero" : "one",
+  ),
+  claim("orders", "together come within [#] % of the cosine", () => numberOf("orders", "byDegree")),
 ];
 
 const surface = [
-  claim("surface", "But slopes are [blind|sensitive] to a step", () =>
+  claim("surface", "slopes are [blind|sensitive] to a step", () =>
     Math.abs(numberOf("surface&step=8&through=1", "jump")) < 0.1 ? "blind" : "sensitive",
   ),
-  claim("surface", "The normals of both are [unaffected|changed] by it", () =>
+  claim("surface", "the normals of both are [unaffected|changed] by it", () =>
     Math.abs(numberOf("surface&step=8&through=1", "jump") - numberOf("surface&step=4&through=1", "jump")) < 0.1
       ? "unaffected"
       : "changed",
@@ -127,38 +140,14 @@ const prior = [
   ),
 ];
 
+const SEARCH = ["pose&run=search", "error"];
+const HOME = ["pose&offset=20&run=register", "error"];
 const pose = [
   claim("pose", "Move the pose away from 0°. Watch the residual [rise|fall]", () => {
     const away = [-30, -14, 0, 14, 30].map((offset) => numberOf(`pose&offset=${offset}`, "residual"));
     const isValley = away[0] > away[1] && away[1] > away[2] && away[2] < away[3] && away[3] < away[4];
     return isValley ? "rise" : "fall";
   }),
-  claim("pose", "A small {lambda} leaves [several minima|one minimum]", () =>
-    [0, 20].every((offset) => numberOf(`pose&offset=${offset}&weight=-3`, "minima") > 1)
-      ? "several minima"
-      : "one minimum",
-  ),
-  claim("pose", "With a larger one they [merge into one|split]", () =>
-    [0, 20].every((offset) => numberOf(`pose&offset=${offset}&weight=0`, "minima") === 1) ? "merge into one" : "split",
-  ),
-  claim("pose", "Raise λ until the minima of the pixel have [merged|split]", () =>
-    [0, 20].every((offset) => numberOf(`pose&offset=${offset}&weight=0`, "minima") === 1) ? "merged" : "split",
-  ),
-  claim("pose", "far from the true normal: [#]° off at λ = 1", () => numberOf("pose&offset=20&weight=0", "end")),
-  claim("pose", "If the pose is right, the prior is [near|far from] the true normal", () =>
-    ["off", "end"].every((key) => numberOf("pose&offset=0&weight=0", key) < 4) ? "near" : "far from",
-  ),
-  claim("pose", "the minimum moves [away from|toward] the true normal", () =>
-    change(numberOf("pose&offset=20&weight=-3", "end"), numberOf("pose&offset=20&weight=0", "end"), [
-      "away from",
-      "toward",
-    ]),
-  ),
-  claim("pose", "a prior that is far off is [ignored|followed]", () =>
-    numberOf("pose&offset=40&weight=-1.3&robust=1", "end") < 0.3 * numberOf("pose&offset=40&weight=-1.3", "end")
-      ? "ignored"
-      : "followed",
-  ),
   claim("pose", "the tolerance, so the given pose is [kept|left] and the status is ambiguous.", () =>
     Math.abs(numberOf("pose&offset=40&run=register", "error") - 40) < 0.01 ? "kept" : "left",
   ),
@@ -169,6 +158,50 @@ const pose = [
     const isNear = [20, -20].every((offset) => numberOf(`pose&offset=${offset}&run=register`, "error") < 1);
     return isNear && numberOf("pose&offset=40&run=register", "error") > 30 ? "beyond" : "within";
   }),
+  claim("pose", "the residual falls from [#] there", () => numberOf("pose&offset=40", "residual")),
+  claim("pose", "to [#] at 10°, where the tolerance ends", () => numberOf("pose&offset=10", "residual")),
+  claim("pose", "it would fall on to [#] at the true pose", () => numberOf("pose&offset=0", "residual")),
+  claim("pose", "From 20° it reaches the [true|given] pose", () => (numberOf(...HOME) < 1 ? "true" : "given")),
+];
+
+const loop = [
+  claim("loop", "A small {lambda} leaves [several minima|one minimum]", () =>
+    [0, 20].every((offset) => numberOf(`loop&offset=${offset}&weight=-3`, "minima") > 1)
+      ? "several minima"
+      : "one minimum",
+  ),
+  claim("loop", "With a larger one they [merge into one|split]", () =>
+    [0, 20].every((offset) => numberOf(`loop&offset=${offset}&weight=0`, "minima") === 1) ? "merge into one" : "split",
+  ),
+  claim("loop", "Raise λ until the minima of the pixel have [merged|split]", () =>
+    [0, 20].every((offset) => numberOf(`loop&offset=${offset}&weight=0`, "minima") === 1) ? "merged" : "split",
+  ),
+  claim("loop", "far from the true normal: [#]° off at λ = 1", () => numberOf("loop&offset=20&weight=0", "end")),
+  claim("loop", "If the pose is right, the prior is [near|far from] the true normal", () =>
+    ["off", "end"].every((key) => numberOf("loop&offset=0&weight=0", key) < 4) ? "near" : "far from",
+  ),
+  claim("loop", "the minimum moves [away from|toward] the true normal", () =>
+    change(numberOf("loop&offset=20&weight=-3", "end"), numberOf("loop&offset=20&weight=0", "end"), [
+      "away from",
+      "toward",
+    ]),
+  ),
+  claim("loop", "a prior that is far off is [ignored|followed]", () =>
+    numberOf("loop&offset=40&weight=-1.3&robust=1", "end") < 0.3 * numberOf("loop&offset=40&weight=-1.3", "end")
+      ? "ignored"
+      : "followed",
+  ),
+  claim("loop", "near the true normal: at λ = 1 the solver is [#]° off", () =>
+    numberOf("loop&offset=0&weight=0", "end"),
+  ),
+  claim("loop", "The solver ends [#]° off; with", () => numberOf("loop&offset=40&weight=-1.3&robust=1", "end")),
+  claim("loop", "with the plain prior it was [#]°", () => numberOf("loop&offset=40&weight=-1.3", "end")),
+  claim("loop", "the error of the solver?\nIt [grows|falls|stays]", () =>
+    change(numberOf("loop&offset=20&weight=-3", "end"), numberOf("loop&offset=20&weight=0", "end"), ["grows", "falls"]),
+  ),
+  claim("loop", "It grows, from [#]° to", () => numberOf("loop&offset=20&weight=-3", "end")),
+  claim("loop", "to [#]°. The larger λ", () => numberOf("loop&offset=20&weight=0", "end")),
+  claim("loop", "a prior that is wrong by [#]°", () => numberOf("loop&offset=20", "off")),
 ];
 
 /** Mean error of the normals of a depth map without noise, whose side has this many pixels. */
@@ -235,8 +268,19 @@ const failure = [
   claim("failure", "At 100 % the rotation [cannot|can] be determined, and the report names the axis", () =>
     /rotation about z is not observable/.test(statusOf("failure&case=symmetry&amount=100")) ? "cannot" : "can",
   ),
-  claim("failure", "the width at which the status [stops|starts] being converged", () =>
-    wordOf("failure") === "converged" && wordOf("failure&amount=100") !== "converged" ? "stops" : "starts",
+  claim("failure", "At 5 % of its width no pose fits, and the status is [lost|ambiguous|converged]", () =>
+    wordOf("failure&amount=100"),
+  ),
+  claim("failure", "Widen it to 10 %: now the status is [converged|ambiguous|lost]", () => wordOf("failure&amount=95")),
+  claim("failure", "with a sigma of [#]°", () => numberOf("failure&amount=95", "sigma")),
+  claim("failure", "instead of the [#]° at full width", () => numberOf("failure", "sigma")),
+  claim("failure", "errors of two or three sigmas are [rare|usual]", () =>
+    [0, 25, 50, 75].every((amount) => {
+      const { error, sigma } = figure(`failure&amount=${amount}`);
+      return error < 2 * sigma;
+    })
+      ? "rare"
+      : "usual",
   ),
   claim("failure", "with the print at 100 %, [more|less] of the colour stays unexplained than with none", () =>
     change(numberOf("failure&case=texture", "residual"), numberOf("failure&case=texture&amount=100", "residual"), [
@@ -252,7 +296,7 @@ const failure = [
   ),
   // A rotation counts as found within 3 degrees.
   claim("failure", "“Ambiguous” and “lost” do [not|always] mean that the pose is wrong", () =>
-    wordOf("failure&case=turn&amount=75") !== "converged" && numberOf("failure&case=turn&amount=75", "error") < 3
+    wordOf("failure&case=turn&amount=100") !== "converged" && numberOf("failure&case=turn&amount=100", "error") < 3
       ? "not"
       : "always",
   ),
@@ -260,7 +304,7 @@ const failure = [
 
 /** Error of the solver in the states of exercise 4. */
 const solver = (offset, weight, robust = 0) =>
-  numberOf(`pose&offset=${offset}&weight=${weight}&robust=${robust}`, "end");
+  numberOf(`loop&offset=${offset}&weight=${weight}&robust=${robust}`, "end");
 const MERGE = "When minima merge";
 /** Logarithms of the weights that the slider is set to, from left to right. */
 const WEIGHTS = [-3, -2.5, -2, -1.75, -1.5, -1.3, -1, 0, 1];
@@ -268,18 +312,18 @@ const WEIGHTS = [-3, -2.5, -2, -1.75, -1.5, -1.3, -1, 0, 1];
 const merging = [
   claim(MERGE, "a single minimum is left from about λ = [#]", () => {
     const isSingle = (weight) =>
-      [0, 20].every((offset) => numberOf(`pose&offset=${offset}&weight=${weight}`, "minima") === 1);
+      [0, 20].every((offset) => numberOf(`loop&offset=${offset}&weight=${weight}`, "minima") === 1);
     return 10 ** WEIGHTS.find((weight, at) => WEIGHTS.slice(at).every(isSingle) && isSingle(weight));
   }),
-  claim(MERGE, "With the right pose the prior is [#]° off", () => numberOf("pose&offset=0", "off")),
-  claim(MERGE, "With the pose 20° off the prior is [#]° off", () => numberOf("pose&offset=20", "off")),
+  claim(MERGE, "With the right pose the prior is [#]° off", () => numberOf("loop&offset=0", "off")),
+  claim(MERGE, "With the pose 20° off the prior is [#]° off", () => numberOf("loop&offset=20", "off")),
   claim(MERGE, "at every λ: [#]° off at 0.001", () => solver(0, -3)),
   claim(MERGE, "1.9° off at 0.001, [#]° at 0.05", () => solver(0, -1.3)),
   claim(MERGE, "2.2° at 0.05, [#]° at 10", () => solver(0, 1)),
   claim(MERGE, "The solver then ends [#]° off at 0.001", () => solver(20, -3)),
   claim(MERGE, "2.4° off at 0.001, but [#]° at 0.05", () => solver(20, -1.3)),
   claim(MERGE, "at 10 the pixel simply [repeats|ignores] the prior", () =>
-    Math.abs(solver(20, 1) - numberOf("pose&offset=20", "off")) < 2 ? "repeats" : "ignores",
+    Math.abs(solver(20, 1) - numberOf("loop&offset=20", "off")) < 2 ? "repeats" : "ignores",
   ),
   claim(MERGE, "So with a wrong pose the [smallest|largest] λ is the best one", () => {
     const errors = [-3, -2, -1.3, -1, 0, 1].map((weight) => solver(20, weight));
@@ -326,8 +370,6 @@ function isGood(overlap) {
 
 const bump = [claim("Bump or dent", "At [#]°. A dent has", () => grey[0].holds())];
 
-const SEARCH = ["pose&run=search", "error"];
-const HOME = ["pose&offset=20&run=register", "error"];
 /** The answers of the guesses, each after the end of its question. */
 const guessed = [
   claim("pixel", "curves of log S?\nAll fall by log 2, about [#]", () => -Math.log(0.5)),
@@ -380,6 +422,6 @@ const guessed = [
 
 export const claims = [
   ...[normal, lambert, relief, strips, orders],
-  ...[pixel, grey, colours, surface, prior, pose, sensor, paint, failure],
+  ...[pixel, grey, colours, surface, prior, pose, loop, sensor, paint, failure],
   ...[guessed, bump, step, merging, hidden],
 ].flat();

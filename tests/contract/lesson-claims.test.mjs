@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import { claims } from "./lesson-claims.mjs";
-import { chapters, contour, exercises, learn, lessons, taskOf } from "./lesson-figures.mjs";
+import { chapters, contour, exercises, figure, learn, lessons, taskOf } from "./lesson-figures.mjs";
 import { LONG } from "./long.mjs";
 
 /** All sentences of a lesson, or of an exercise, under the name that a claim gives it. */
@@ -52,7 +52,7 @@ function check(text, claim) {
 }
 
 /** Lessons whose figures take over three seconds. */
-const SLOW = new Set(["prior", "pose", "failure", "When minima merge", "A rotation that cannot be seen"]);
+const SLOW = new Set(["prior", "pose", "loop", "failure", "When minima merge", "A rotation that cannot be seen"]);
 
 describe("what the text says, the figure shows", () => {
   for (const where of new Set(claims.map((claim) => claim.where)))
@@ -135,6 +135,39 @@ test("each lesson has a guess before its surprise, which the figure answers", ()
   }
 });
 
+/** Words of a lesson that answer its questions, in the order of the questions. */
+const ANSWERS = {
+  normal: ["the nose before and after"],
+  lambert: ["half of the intensity is left"],
+  relief: ["together with another albedo", "It needs no other albedo"],
+  strips: ["has its slopes somewhere on one isophote"],
+  orders: ["moved from the zeroth order to the squares"],
+  pixel: ["all three logarithms fall by the same number"],
+  grey: ["by half a turn"],
+  colours: ["Its three curves almost coincide"],
+  surface: ["are unaffected by it"],
+  prior: ["at first more than proportionally"],
+  pose: ["the status is ambiguous"],
+  loop: ["the minimum moves away from the true normal"],
+  sensor: ["gives slopes from pixel to pixel"],
+  paint: ["takes nearly all of it for albedo"],
+  failure: ["No method can detect that rotation"],
+};
+
+test("each question stands before the paragraph that answers it, and nothing above gives the answer", () => {
+  for (const { id, gist, text, guesses } of lessons)
+    for (const [index, { before }] of guesses.entries()) {
+      const words = ANSWERS[id]?.[index] ?? "";
+      assert.ok(words !== "" && text[before]?.includes(words), `${id}: "${words}" is not in paragraph ${before}`);
+      assert.ok(![gist, ...text.slice(0, before)].join("\n").includes(words), `${id}: "${words}" stands above`);
+    }
+});
+
+test("no lamp is reported to have moved while it stays where it was", () => {
+  assert.ok(figure("relief&stretch=0.4&lamp=0").lamp < 0.1);
+  assert.ok(figure("relief&stretch=0.4&lamp=1").lamp > 10);
+});
+
 test("a line of equal value lies where the value is, and leaves out what is not known", () => {
   const side = 64;
   const distance = Float32Array.from({ length: side * side }, (_, at) =>
@@ -165,10 +198,16 @@ test("the ambiguity of a grey picture is not said to be removed by a light or a 
 test("each formula's albedo is in it or said to be constant, and the order of the lessons is as their texts say", () => {
   const at = (id) => 1 + lessons.findIndex((lesson) => lesson.id === id);
   assert.match(texts.get("grey"), new RegExp(`to lesson ${at("paint") - 1} the whole object has one albedo`));
-  assert.match(texts.get("orders"), new RegExp(`albedo is 1, whose logarithm is 0; lesson ${at("pixel")} adds it`));
+  assert.match(
+    texts.get("orders"),
+    new RegExp(
+      `\\(albedo 1\\).+Lesson ${at("pixel")} adds the albedo, lesson ${at("grey")} puts it into \\{M\\}, and lesson ${at("paint")} gives`,
+    ),
+  );
   for (const [id, named] of [
     ["lambert", ["normal"]],
-    ["relief", ["prior"]],
+    ["relief", ["surface", "prior"]],
+    ["loop", ["surface", "pose", "sensor"]],
     ["colours", ["lambert"]],
     ["prior", ["sensor"]],
     ["failure", ["paint"]],

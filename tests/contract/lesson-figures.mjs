@@ -10,7 +10,7 @@ const file = (path) => fileURLToPath(new URL(`../../${path}`, import.meta.url));
 
 const NAMES = [
   ...["normal", "lambert", "relief", "strips", "orders", "pixel", "grey", "colours"],
-  ...["surface", "prior", "pose", "sensor", "paint", "failure"],
+  ...["surface", "prior", "pose", "loop", "sensor", "paint", "failure"],
 ];
 const ENTRY = [
   ...NAMES.map((name) => `export { ${name} } from "./www/learn/compute/${name}.ts";`),

@@ -1,5 +1,6 @@
 // Statements of the first four lessons that their figures must confirm; lesson-claims.mjs says how a claim is written.
 import { figure, normalColour } from "./lesson-figures.mjs";
+import { shadeLamp } from "../../pkg/index.js";
 
 const change = (from, to, [more, less]) => (to > from ? more : less);
 const claim = (where, words, holds) => ({ where, words, holds });
@@ -51,6 +52,18 @@ const angleAt = (level) => numberOf(`lambert&level=${level}`, "angle");
 export const lambert = [
   claim("lambert", "At [#]° half of the intensity is left", () => angleAt(0.5)),
   claim("lambert", "for half of the largest intensity, on the cone of [#]°", () => angleAt(0.5)),
+  claim("lambert", "so two lamps leave at most [two|three|four] normals", () => {
+    const lamps = [
+      [0.6, 0, -0.8],
+      [-0.28, 0, -0.96],
+    ];
+    const counts = [
+      [0.9, 0.8],
+      [0.7, 0.6],
+      [0.5, 0.4],
+    ].map((levels) => normalsUnder(lamps, levels));
+    return Math.max(...counts) === 2 ? "two" : "four";
+  }),
   claim("lambert", "The cosine is [flat|steep] near 0°", () =>
     angleAt(0.9) > 4 * (angleAt(0.05) - angleAt(0.1)) ? "flat" : "steep",
   ),
@@ -70,16 +83,35 @@ export const lambert = [
   ),
 ];
 
+/** The clusters of directions that two lamps at these places light with these intensities. */
+function normalsUnder(lamps, levels) {
+  const count = 200_000;
+  // A spiral of directions all over the sphere.
+  const directions = Float32Array.from({ length: 3 * count }, (_, at) => {
+    const [i, axis] = [Math.floor(at / 3), at % 3];
+    const [z, turn] = [1 - (2 * (i + 0.5)) / count, i * Math.PI * (3 - Math.sqrt(5))];
+    return [Math.sqrt(1 - z * z) * Math.cos(turn), Math.sqrt(1 - z * z) * Math.sin(turn), z][axis];
+  });
+  const lit = lamps.map((lamp) => shadeLamp(lamp, directions));
+  const found = [];
+  for (let i = 0; i < count; i++) {
+    if (lit.some((values, lamp) => Math.abs(values[i] - levels[lamp]) > 0.01)) continue;
+    const one = [...directions.subarray(3 * i, 3 * i + 3)];
+    if (!found.some((each) => Math.hypot(...each.map((part, axis) => part - one[axis])) < 0.2)) found.push(one);
+  }
+  return found.length;
+}
+
 const ZERO = 1e-4;
 const reliefs = [-1.5, -1, -0.5, 0.2, 0.5, 1.5];
 export const relief = [
   claim("relief", "can make [exactly|roughly] the same picture", () =>
     reliefs.every((s) => numberOf(`relief&stretch=${s}&slope=0.3`, "difference") < ZERO) ? "exactly" : "roughly",
   ),
-  claim("relief", "the same picture, under another lamp and with [another|the same] albedo", () =>
+  claim("relief", "a lamp in another place, together with [another|the same] albedo, restores the picture", () =>
     numberOf("relief&stretch=0.5", "paint") > 1.2 ? "another" : "the same",
   ),
-  claim("relief", "The two pictures [stay the same|differ], while the section collapses", () =>
+  claim("relief", "The two pictures [stay the same|differ], while the cross-section collapses", () =>
     numberOf("relief&stretch=0.2", "difference") < ZERO ? "stay the same" : "differ",
   ),
   claim("relief", "The pictures now [differ|agree]: the lamp has to move", () =>
@@ -97,8 +129,13 @@ export const relief = [
   claim("relief", "It needs [no other|another] albedo, only a lamp", () =>
     numberOf("relief&stretch=-1&paint=0", "difference") < ZERO ? "no other" : "another",
   ),
-  claim("relief", "do the two pictures differ?\n[Not at all|By a lot].", () =>
-    numberOf("relief&stretch=0.5", "difference") < ZERO ? "Not at all" : "By a lot",
+  claim("relief", "two pictures the same?\nOne that [changes from place to place|is the same everywhere]", () => {
+    const { paint, difference } = figure("relief&stretch=0.5");
+    return paint > 1.2 && difference < ZERO ? "changes from place to place" : "is the same everywhere";
+  }),
+  claim("relief", "Its brightest value is [#] times its darkest", () => numberOf("relief&stretch=0.5", "paint")),
+  claim("relief", "its matrix keeps every [length|direction]", () =>
+    Math.abs(numberOf("relief&stretch=-1", "paint") - 1) < ZERO ? "length" : "direction",
   ),
 ];
 

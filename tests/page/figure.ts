@@ -4,7 +4,7 @@ import { expect, type Locator, type Page } from "@playwright/test";
 
 export const LESSONS = [
   ...["normal", "lambert", "relief", "strips", "orders", "pixel", "grey", "colours"],
-  ...["surface", "prior", "pose", "sensor", "paint", "failure"],
+  ...["surface", "prior", "pose", "loop", "sensor", "paint", "failure"],
 ];
 
 export const figure = (page: Page): Locator => page.locator(".learn-figure");

@@ -60,14 +60,16 @@ test("a choice is compared with the answer, after the figure has shown it", asyn
   const guess = page.locator(".learn-guess").first();
   const compare = guess.getByRole("button", { name: "Compare" });
   await expect(compare).toBeDisabled();
-  await guess.getByLabel("By a lot").check();
+  await guess.getByLabel("No albedo can").check();
   // The state that the question is about.
   await expect(input(page, "stretch")).toHaveValue("1");
   await expect(guess.getByRole("status")).toBeEmpty();
   await compare.click();
-  await expect(guess.getByRole("status")).toHaveText(/^Not quite\. You guessed: By a lot\. Not at all\./);
+  await expect(guess.getByRole("status")).toHaveText(
+    /^Not quite\. You guessed: No albedo can\. One that changes from place to place\./,
+  );
   await expect(input(page, "stretch")).toHaveValue("0.5");
-  await guess.getByLabel("Not at all").check();
+  await guess.getByLabel("One that changes").check();
   await compare.click();
   await expect(guess.getByRole("status")).toHaveText(/^Right\./);
   expect(lab.complaints).toEqual([]);

@@ -90,7 +90,7 @@ test("all of a figure is in view beside its text, with pictures that are large e
       const sides = await figure(page)
         .locator(":is(.learn-canvas, .learn-plot-box)")
         .evaluateAll((all) => all.map(({ clientWidth, clientHeight }) => Math.min(clientWidth, clientHeight)));
-      expect(Math.min(...sides), `${id} at ${width} px`).toBeGreaterThanOrEqual(112);
+      expect(Math.min(...sides), `${id} at ${width} px`).toBeGreaterThanOrEqual(128);
       expect(await lonely(page), `${id} at ${width} px`).toEqual([]);
     }
   }

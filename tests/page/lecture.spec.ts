@@ -3,9 +3,12 @@
 import type { Page } from "@playwright/test";
 import { LESSONS, control, figure, open, settled, slide } from "./figure";
 import { LONG, expect, test } from "./lab";
+import { type SlideText, textsIn, tooSmall } from "./slide-text";
 
 const dialog = (page: Page) => page.locator("dialog.learn-slides");
 const asked = (page: Page) => dialog(page).locator(".learn-guess[data-asked]");
+/** The exercise on a slide. */
+const exercise = (page: Page) => dialog(page).locator(".learn-asked[data-asked]");
 const count = (page: Page) => dialog(page).locator(".learn-count");
 
 /** Guesses the first choice or a number, and compares. */
@@ -17,27 +20,22 @@ async function guess(page: Page): Promise<void> {
   await form.locator("button[type=submit]").click();
 }
 
-/** What is wrong with a slide: text below 18 px, text that is cut off or outside the card, and parts below the edge. */
-const faults = (page: Page): Promise<string[]> =>
-  page.locator(".learn-slide").evaluate((slide) => {
-    const found: string[] = [];
-    const over = slide.scrollHeight - slide.clientHeight;
-    if (over > 0) found.push(`${over} px below the slide`);
-    const card = slide.querySelector(".learn-figure")?.getBoundingClientRect() ?? new DOMRect();
-    const walk = document.createTreeWalker(slide, NodeFilter.SHOW_TEXT);
-    for (let node = walk.nextNode(); node; node = walk.nextNode()) {
-      const [words, element] = [node.textContent?.trim() ?? "", node.parentElement];
-      const range = document.createRange();
-      range.selectNodeContents(node);
-      const place = range.getBoundingClientRect();
-      if (!words || !element || !place.width || element.closest("math, option, svg")) continue;
-      const size = Number.parseFloat(getComputedStyle(element).fontSize);
-      if (size < 18) found.push(`${size} px: ${words}`);
-      if (element.closest(".learn-figure") && place.bottom > card.bottom) found.push(`below the card: ${words}`);
-      if (place.right > innerWidth) found.push(`beyond the edge: ${words}`);
-    }
-    return found;
-  });
+/** What is wrong with a slide: small text, text outside the card or the window, and parts below the edge. */
+async function faults(page: Page): Promise<string[]> {
+  const over = await page
+    .locator(".learn-slide")
+    .evaluate(({ scrollHeight, clientHeight }) => scrollHeight - clientHeight);
+  const card = await page.locator(".learn-slide .learn-figure").boundingBox();
+  const width = page.viewportSize()?.width ?? 0;
+  const texts = (await textsIn(page, ".learn-slide")).filter(({ drawing }) => drawing === undefined);
+  const below = ({ isInFigure, bottom }: SlideText) => isInFigure && card !== null && bottom > card.y + card.height;
+  return [
+    ...(over > 0 ? [`${over} px below the slide`] : []),
+    ...tooSmall(texts),
+    ...texts.filter(below).map(({ words }) => `below the card: ${words}`),
+    ...texts.filter(({ right }) => right > width).map(({ words }) => `beyond the edge: ${words}`),
+  ];
+}
 
 test("each question fits its slide, and its answer comes after the guess", LONG, async ({ lab, page }) => {
   await page.emulateMedia({ reducedMotion: "reduce" });
@@ -58,9 +56,21 @@ test("each question fits its slide, and its answer comes after the guess", LONG,
       await settled(page);
       expect(await faults(page), `${id}, answer ${at + 1}`).toEqual([]);
     }
+    const exercises = await dialog(page).locator(".learn-asked").count();
+    for (let at = 0; at < exercises; at++) {
+      await page.keyboard.press("q");
+      await expect(exercise(page)).toBeVisible();
+      await settled(page);
+      expect(await faults(page), `${id}, exercise ${at + 1}`).toEqual([]);
+      await exercise(page).locator("summary").click();
+      await expect(dialog(page).locator(".learn-figure")).toBeHidden();
+      expect(await faults(page), `${id}, answer of exercise ${at + 1}`).toEqual([]);
+    }
     await page.keyboard.press("q");
     await expect(asked(page)).toHaveCount(0);
+    await expect(exercise(page)).toHaveCount(0);
     await expect(dialog(page).locator(".learn-gist")).toBeVisible();
+    await expect(dialog(page).locator(".learn-figure")).toBeVisible();
   }
   expect(lab.complaints).toEqual([]);
 });
@@ -135,6 +145,37 @@ test("a link hides every answer until a button or a key shows it", async ({ lab,
   await expect(asked(page).locator(".learn-answer")).toBeHidden();
   expect(lab.complaints).toEqual([]);
 });
+
+test(
+  "each exercise is on a slide, with its states as buttons and an answer that a link hides",
+  LONG,
+  async ({ lab, page }) => {
+    await page.emulateMedia({ reducedMotion: "reduce" });
+    await open(page, "at=loop&answers=hidden&slides");
+    await page.keyboard.press("q");
+    await page.keyboard.press("q");
+    await expect(exercise(page).locator("details")).toBeHidden();
+    await expect(control(page, "offset")).toHaveValue("0");
+    await exercise(page).locator("button").nth(1).click();
+    await expect(control(page, "offset")).toHaveValue("20");
+    await page.keyboard.press("a");
+    await exercise(page).locator("summary").click();
+    await expect(exercise(page).locator("details p").first()).toBeVisible();
+    await page.keyboard.press("a");
+    await expect(exercise(page).locator("details")).toBeHidden();
+    await expect(dialog(page).locator(".learn-figure")).toBeVisible();
+    // The text of a lesson shows no exercise.
+    await page.keyboard.press("Escape");
+    await expect(page.locator(".learn-main .learn-asked")).toBeHidden();
+    let found = 0;
+    for (const id of LESSONS) {
+      await open(page, `at=${id}`);
+      found += await page.locator(".learn-asked").count();
+    }
+    expect(found).toBe(5);
+    expect(lab.complaints).toEqual([]);
+  },
+);
 
 test("without the link there is no such button at a lesson, and answers are shown", async ({ page, say }) => {
   await open(page, "at=relief");
@@ -213,7 +254,7 @@ test("slides are counted, chosen by a link in its order, and found in a list", a
   await expect(dialog(page)).toBeVisible();
   await page.keyboard.press("Escape");
   await page.getByRole("button", { name: say("interface.slides", "Slides") }).click();
-  await expect(count(page)).toHaveText(/^11 \/ 14/);
+  await expect(count(page)).toHaveText(/^11 \/ 15/);
   await expect(page).toHaveURL(/&slides$/);
   expect(lab.complaints).toEqual([]);
 });

@@ -19,7 +19,7 @@ const status = (page: Page) => page.locator('[data-number="status"]');
 const source = (path: string) => readFile(new URL(`../../${path}`, import.meta.url), "utf8");
 
 test(
-  "14: the line between ambiguous and lost is where the text says, and the figures keep to it",
+  "15: the line between ambiguous and lost is where the text says, and the figures keep to it",
   LONG,
   async ({ page }) => {
     const verdict = await source("src/estimator/ending/verdict.rs");
@@ -27,7 +27,7 @@ test(
     const [largest, unobservable] = ["LOST_SIGMA", "UNOBSERVABLE"].map((name) =>
       Number(new RegExp(`const ${name}: f64 = ([\\d.]+);`).exec(verdict)?.[1]),
     ) as [number, number];
-    for (const state of ["overlap&amount=0", "overlap&amount=100", "texture&amount=50"]) {
+    for (const state of ["overlap&amount=0", "turn&amount=100", "texture&amount=50"]) {
       const { sigma } = await numbers(page, `failure&case=${state}`, "sigma");
       await expect(status(page), state).toHaveText(
         sigma > largest ? /^lost: / : sigma > doubtful ? /^ambiguous: / : "converged",

@@ -185,6 +185,11 @@ test("a stage explains itself", async ({ lab, page }) => {
   await expect(page.locator("#explanation")).toContainText("Equations 12 to 16");
   await page.keyboard.press("Escape");
   await expect(page.locator("#explanation")).toBeHidden();
+  // The signs of the lessons: a letter that every font has for the transposed normal, which has a fourth component.
+  await page.getByRole("button", { name: /^light/ }).click();
+  await expect(page.locator("#explanation math")).toContainText("ñTMñ");
+  await expect(page.locator("#explanation")).toContainText("ñ has a fourth component 1");
+  await page.keyboard.press("Escape");
 });
 
 test("after a panic a new worker takes the same input up again", async ({ lab, page }) => {

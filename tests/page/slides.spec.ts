@@ -3,6 +3,7 @@
 import type { Locator, Page } from "@playwright/test";
 import { LESSONS, open } from "./figure";
 import { LONG, expect, test } from "./lab";
+import { textsIn, tooSmall } from "./slide-text";
 
 /** The states with the longest texts. */
 const WORDIEST = ["pose&run=register&offset=40", "failure&case=symmetry&amount=100", "failure&amount=100"];
@@ -26,35 +27,39 @@ test("each slide fits its screen, whatever its figure has to say", LONG, async (
   expect(lab.complaints).toEqual([]);
 });
 
-/** Sizes of the visible text of a slide in px, and the axis labels that end outside their plot. */
-const textOf = (page: Page): Promise<{ smallest: string; cut: string[] }> =>
-  page.locator(".learn-slide").evaluate((slide) => {
-    const found: { size: number; words: string }[] = [];
-    const cut: string[] = [];
-    const walk = document.createTreeWalker(slide, NodeFilter.SHOW_TEXT);
-    for (let node = walk.nextNode(); node; node = walk.nextNode()) {
-      const [words, element] = [node.textContent?.trim() ?? "", node.parentElement];
-      const range = document.createRange();
-      range.selectNodeContents(node);
-      const place = range.getBoundingClientRect();
-      // A formula has its own small letters, and the options of a closed select are not drawn.
-      if (!words || !element || !place.width || element.closest("math, option")) continue;
-      const drawing = element.closest("svg");
-      const box = drawing?.getBoundingClientRect();
-      const enlarged = box && drawing ? box.width / drawing.viewBox.baseVal.width : 1;
-      found.push({ size: enlarged * Number.parseFloat(getComputedStyle(element).fontSize), words });
-      if (box && (place.left < box.left - 1 || place.right > box.right + 1)) cut.push(words);
-    }
-    const [least] = found.sort((a, b) => a.size - b.size);
-    return { smallest: least && least.size < 18 ? `${least.size} px: ${least.words}` : "", cut };
-  });
+/** The smallest text of a slide if it is too small, and the axis labels that end outside their plot. */
+async function textOf(page: Page): Promise<{ small: string[]; cut: string[] }> {
+  const texts = await textsIn(page, ".learn-slide");
+  const cut = texts.filter(
+    ({ drawing, left, right }) => drawing && (left < drawing.left - 1 || right > drawing.right + 1),
+  );
+  return { small: tooSmall(texts), cut: cut.map(({ words }) => words) };
+}
+
+test("the bar and the list of the slides show their text, whole and large enough", async ({ lab, page }) => {
+  await page.setViewportSize({ width: 1280, height: 720 });
+  await open(page, "at=normal&answers=hidden&slides");
+  await page.locator(".learn-count").click();
+  await expect(page.locator(".learn-overview")).toBeVisible();
+  const texts = [
+    ...(await textsIn(page, ".learn-slide-bar > .learn-overview")),
+    ...(await textsIn(page, ".learn-slide-bar")),
+  ];
+  expect(texts.length).toBeGreaterThan(LESSONS.length);
+  expect(tooSmall(texts)).toEqual([]);
+  expect(texts.filter(({ isCut }) => isCut)).toEqual([]);
+  expect(texts.filter(({ left, right, top, bottom }) => left < 0 || right > 1280 || top < 0 || bottom > 720)).toEqual(
+    [],
+  );
+  expect(lab.complaints).toEqual([]);
+});
 
 test("text of a slide can be read from the last row, and no axis label is cut", LONG, async ({ lab, page }) => {
   await page.setViewportSize({ width: 1280, height: 720 });
   for (const state of LESSONS) {
     await open(page, `at=${state}&slides`);
     await expect(page.locator(".learn-slide .learn-figure")).toHaveAttribute("aria-busy", "false");
-    await expect.poll(() => textOf(page), { message: state }).toEqual({ smallest: "", cut: [] });
+    await expect.poll(() => textOf(page), { message: state }).toEqual({ small: [], cut: [] });
   }
   expect(lab.complaints).toEqual([]);
 });

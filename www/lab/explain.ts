@@ -28,6 +28,8 @@ const o = (sign: string) => `<mo>${sign}</mo>`;
 const row = (...parts: string[]) => `<mrow>${parts.join("")}</mrow>`;
 const sub = (base: string, index: string) => `<msub>${base}${index}</msub>`;
 const sup = (base: string, index: string) => `<msup>${base}${index}</msup>`;
+/** The sign of a transposed vector, as a letter that every font has. */
+const transposed = (vector: string) => sup(vector, '<mi mathvariant="normal">T</mi>');
 const squared = (...parts: string[]) => sup(row(o("‖"), ...parts, o("‖")), "<mn>2</mn>");
 const least = (what: string) => `<munder><mi>min</mi>${what}</munder>`;
 const sum = o("∑");
@@ -39,11 +41,13 @@ const math = (...parts: string[]) => `<math display="block">${parts.join("")}</m
 const space = "<mspace width='0.1667em'></mspace>";
 const logS = row(i("log"), space, i("S"));
 const n = bold("n");
+/** The normal with a fourth component 1, as in the lessons. */
+const extended = bold("ñ");
 const nR = sub(bold("n"), i("R"));
 const R = bold("R");
 const model = (normal: string) => row(i("B"), o("("), normal, o(")"), i("L"));
 const lambda = (index: string) => sub(i("λ"), `<mn>${index}</mn>`);
-const unit = row(o("+"), lambda("3"), sup(row(o("("), sup(n, i("⊤")), n, o("−"), "<mn>1</mn>", o(")")), "<mn>2</mn>"));
+const unit = row(o("+"), lambda("3"), sup(row(o("("), transposed(n), n, o("−"), "<mn>1</mn>", o(")")), "<mn>2</mn>"));
 
 const SEARCH: Text = {
   title: "Search",
@@ -62,13 +66,13 @@ const SEARCH: Text = {
 };
 
 function light({ lightIsKnown }: Method): Text {
-  const formula = math(logS, o("="), sup(n, i("⊤")), bold("M"), n, o("="), model(n));
+  const formula = math(logS, o("="), transposed(extended), bold("M"), extended, o("="), model(n));
   if (lightIsKnown) {
     return {
       title: "Light, known",
       formula,
       words:
-        "The 27 numbers L are given and stay fixed. Only the exposure of the image, one offset of its logarithm, is estimated along with the normals.",
+        "The normal ñ has a fourth component 1, and the matrix M of each colour holds 9 of the 27 numbers L. These are given and stay fixed. Only the exposure of the image, one offset of its logarithm, is estimated along with the normals.",
       source: "Equations 3 and 5",
     };
   }
@@ -76,7 +80,7 @@ function light({ lightIsKnown }: Method): Text {
     title: "Light",
     formula,
     words:
-      "With the normals held, the logarithm of every colour is linear in 27 numbers L, nine spherical harmonics for each channel. Robust least squares fits them, with a Gaussian prior learned from natural lights.",
+      "The normal ñ has a fourth component 1, and the matrix M of each colour holds 9 of the 27 numbers L. With the normals held, the logarithm of every colour is linear in L, nine spherical harmonics for each channel. Robust least squares fits them, with a Gaussian prior learned from natural lights.",
     source: "Equations 2, 3 and 5",
   };
 }
@@ -236,7 +240,7 @@ const terms: Readonly<Record<Term, (method: Method) => Text>> = {
   inliers: () => ({
     title: "Inliers",
     words:
-      "Share of these pixels whose colours or distances agree with the pose within the noise. Below 40 % the pose is not trusted.",
+      "Share of the overlap's pixels whose residual, of colour or of distance, is within the noise. Below 40 % the pose is not trusted.",
   }),
   residual: () => ({
     title: "Colour residual",

@@ -6,7 +6,7 @@ import { phrase } from "../words";
 import { sentence } from "./maths";
 import { translated } from "./translation";
 
-interface Exercise {
+export interface Exercise {
   title: string;
   /** Addresses of the states, with the words of the links. */
   links: readonly (readonly [address: string, words: string])[];
@@ -21,7 +21,7 @@ export const exercises: readonly Exercise[] = [
     question:
       "Find the angle of the lamp at which the two pictures agree. Use the image model to show why it must be this angle. Would three coloured lamps help?",
     answer: [
-      "At 180°. A dent has the normals ({−n_x}, {−n_y}, {n_z}) where the bump has ({n_x}, {n_y}, {n_z}): every normal is rotated by 180° about the line of sight. A light {L} rotated by the same Q gives each rotated normal the old intensity, because {M} becomes Q {M} Qᵀ and the two rotations cancel.",
+      "At 180°. A dent has the normals ({−n_x}, {−n_y}, {n_z}) where the bump has ({n_x}, {n_y}, {n_z}): every normal is rotated by 180° about the line of sight. Call that rotation D, a matrix that leaves a fourth component as it is. The light {L} rotated by D gives each rotated normal D{N} the old intensity: {M} becomes D{M}Dᵀ, and the two rotations cancel.",
       "Coloured lamps do not help as long as the light is unknown: each of the three lights can be rotated in the same way. They help once the light is known.",
     ],
   },
@@ -54,8 +54,8 @@ export const exercises: readonly Exercise[] = [
   {
     title: "When minima merge",
     links: [
-      ["#learn&at=pose&offset=0&weight=-3&robust=0", "Open the right pose"],
-      ["#learn&at=pose&offset=20&weight=-3&robust=0", "Open a pose 20° off"],
+      ["#learn&at=loop&offset=0&weight=-3&robust=0", "Open the right pose"],
+      ["#learn&at=loop&offset=20&weight=-3&robust=0", "Open a pose 20° off"],
     ],
     question:
       "Raise λ from the left until the pixel has a single minimum. Note λ and how far the solver ends from the truth. Repeat with the pose 20° off, and then with the robust prior. Which λ would you choose for a loop that starts with a wrong pose?",
@@ -105,14 +105,18 @@ export function exerciseList(...tools: HTMLElement[]): HTMLElement {
           make("h3", {}, title),
           make("p", {}, ...sentence(question)),
           make("p", { class: "learn-links" }, ...links.map(([address, words]) => make("a", { href: address }, words))),
-          make(
-            "details",
-            {},
-            make("summary", {}, phrase("answer", "Answer")),
-            ...answer.map((words) => make("p", {}, ...sentence(words))),
-          ),
+          answerOf(answer),
         ),
       ),
     ),
   );
 }
+
+/** An answer, which is folded at first. */
+export const answerOf = (answer: readonly string[]): HTMLDetailsElement =>
+  make(
+    "details",
+    {},
+    make("summary", {}, phrase("answer", "Answer")),
+    ...answer.map((words) => make("p", {}, ...sentence(words))),
+  );

@@ -5,6 +5,7 @@ import { inFigures, phrase } from "../words";
 import type { Guess, Lesson, Try } from "./lesson";
 import { sentence } from "./maths";
 import { decimals, withUnit } from "./digits";
+import { exercisesOf, type Form } from "./asked";
 import type { Drawing, Values } from "./protocol";
 
 interface Hooks {
@@ -16,14 +17,10 @@ interface Hooks {
   areHidden(): boolean;
 }
 
-interface Form {
-  element: HTMLElement;
-  /** On a slide: puts the question, without an earlier guess, or takes it away. */
-  ask(isAsked: boolean): void;
-}
-
 export class Guesses {
   readonly elements: readonly HTMLElement[];
+  /** The exercises that begin at this lesson, for its slide. */
+  readonly exercises: readonly HTMLElement[];
   readonly #forms: readonly Form[];
   readonly #hooks: Hooks;
   /** Called with the next complete drawing. */
@@ -31,13 +28,21 @@ export class Guesses {
   /** Reveals the answer to the last guess that was made while answers were hidden. */
   #held: (() => void) | undefined;
 
-  constructor({ guesses }: Lesson, hooks: Hooks) {
+  constructor(lesson: Lesson, hooks: Hooks) {
     this.#hooks = hooks;
-    this.#forms = guesses.map((guess) => this.#form(guess));
-    this.elements = this.#forms.map(({ element }) => element);
+    const forms = lesson.guesses.map((guess) => this.#form(guess));
+    const exercises = exercisesOf(lesson, (values) => hooks.set(values));
+    this.elements = forms.map(({ element }) => element);
+    this.exercises = exercises.map(({ element }) => element);
+    this.#forms = [...forms, ...exercises];
   }
 
-  /** Puts one question on a slide, or none. */
+  /** The number of questions for a slide, with the exercises. */
+  get count(): number {
+    return this.#forms.length;
+  }
+
+  /** Puts one question or exercise on a slide, or none. */
   ask(index: number | undefined): void {
     this.#held = undefined;
     this.#forms.forEach((form, at) => form.ask(at === index));
@@ -63,6 +68,7 @@ export class Guesses {
     const form = make(
       "form",
       { class: "learn-guess" },
+      make("p", { class: "soft learn-guess-head" }, phrase("guess", "Predict, then look")),
       make("fieldset", {}, make("legend", {}, ...sentence(guess.question)), field.element),
       compare,
       noted,

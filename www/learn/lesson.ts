@@ -53,6 +53,8 @@ export interface Try {
 /** A question before a surprise, which is answered by a choice or a number and then compared with the figure. */
 export interface Guess {
   question: string;
+  /** The paragraph that answers it: the question stands before this one. */
+  before: number;
   /** The state of the figure that the question is about. */
   at: Values;
   choices?: readonly string[];
@@ -74,6 +76,8 @@ export interface Lesson {
   /** The formula in words. */
   formulaWords: string;
   text: readonly string[];
+  /** The stages of a loop, drawn in a row that leads back to its beginning. */
+  stages?: readonly string[];
   /** Things to try with the figure: the first sentence says what its button does, the rest what to look for. */
   tasks: readonly string[];
   /** The effects of the tasks' buttons, in the same order. */

@@ -82,7 +82,15 @@ export const SYMBOLS = {
   z: { make: () => mi("z"), ink: "truth", name: "depth" },
   d: { make: () => mi("d"), ink: "sensor", name: "depth measured by the sensor" },
   mu: { make: () => mi("μ"), ink: "sensor", name: "weight of the measured depth" },
-  sigma: { make: () => mi("σ"), ink: "error", name: "standard deviation, the usual size of an error" },
+  r: { make: () => mi("r"), ink: "error", name: "residual: the colours that the pose does not explain" },
+  sigma: { make: () => mi("σ"), ink: "error", name: "standard deviation of the noise in log S" },
+  sigmaR: { make: () => sub(mi("σ"), mi("R")), ink: "pose", name: "standard deviation of the rotation" },
+  sigmaS: { make: () => sub(mi("σ"), mi("S")), ink: "error", name: "scatter of the log colours about the model" },
+  sigmad: {
+    make: () => sub(mi("σ"), mi("d")),
+    ink: "sensor",
+    name: "scatter of the measured depths: the sensor's noise",
+  },
   j: { make: () => mi("j"), ink: "colour", name: "red, green or blue" },
   ej: {
     make: () => sub(mi("e"), mi("j")),
@@ -120,9 +128,12 @@ export function symbolList(formula: Element): HTMLElement {
 /** The shading of the model: the extended normal on both sides of the light's matrix. */
 export const shading = (normal: () => Element = () => symbol("N")): Element =>
   row(transposed(normal()), symbol("M"), normal());
+/** The squared difference of one colour of a pixel from its prediction. */
+const mismatch = (normal?: () => Element): Element => squared(log(symbol("S")), mo("−"), shading(normal));
 /** The cost of a normal by the colours alone. */
-export const colourTerm = (normal?: () => Element): Element =>
-  row(sum(mi("j")), squared(log(symbol("S")), mo("−"), shading(normal)));
+export const colourTerm = (normal?: () => Element): Element => row(sum(mi("j")), mismatch(normal));
+/** The same over all pixels. */
+export const overPixels = (): Element => row(sum(math("mtext", {}, phrase("pixels", "pixels"))), colourTerm());
 
 export const inline = (...children: Element[]): Element => math("math", {}, row(...children));
 export const block = (...children: Element[]): Element => math("math", { display: "block" }, row(...children));
@@ -130,8 +141,8 @@ export const block = (...children: Element[]): Element => math("math", { display
 export const lines = (...blocks: Element[]): Element => make("div", {}, ...blocks);
 
 /**
- * A sentence in which {n} is the symbol n, {−n_x} its negative component along x, {link|address} a link, and {=key} the value of the control
- * with that key, which can be dragged.
+ * A sentence in which {n} is the symbol n, {−n_x} its negative component along x, {z′} a primed z, {link|address} a link, and {=key} the
+ * value of the control with that key, which can be dragged.
  */
 export function sentence(words: string): (Node | string)[] {
   return words.split(/(\{[^}]+\})/).map((part) => {
@@ -146,9 +157,10 @@ export function sentence(words: string): (Node | string)[] {
       });
     const [label = "", address] = inside.split("|");
     if (address !== undefined) return make("a", { href: address }, label);
-    const [, minus, name = "", index] = /^(−?)([^_]+)(?:_(.+))?$/.exec(inside) ?? [];
+    const [, minus, name = "", prime, index] = /^(−?)([^_′]+)(′?)(?:_(.+))?$/.exec(inside) ?? [];
     if (!(name in SYMBOLS)) return inside;
-    const drawn = symbol(name as SymbolName);
+    const plain = symbol(name as SymbolName);
+    const drawn = prime ? primed(plain) : plain;
     return inline(...(minus ? [mo(minus)] : []), index ? sub(drawn, mi(index)) : drawn);
   });
 }

@@ -1,6 +1,7 @@
 /** Learn: lessons in three chapters, each a short text beside a live figure, with exercises and slides. */
 
 import "../style/learn.css";
+import "../style/learn-prose.css";
 import "../style/embed.css";
 import "../style/learn-figure.css";
 import "../style/learn-blank.css";
@@ -22,14 +23,15 @@ import { Guesses } from "./guesses";
 import type { Kept } from "./kept";
 import { languageInAddress } from "./language";
 import { type Lesson, computed, followedIn, valuesFrom } from "./lesson";
-import { beside, chapters, lessonNamed, lessons, titleOf } from "./lessons";
+import { chapters, lessonNamed, lessons, titleOf } from "./lessons";
 import { lightTogether } from "./lit";
-import { sentence, symbolList } from "./maths";
+import { sentence } from "./maths";
 import { TextNumbers } from "./numbers";
 import { Player } from "./player";
+import { proseOf } from "./prose";
 import type { Drawing, LessonId, Values } from "./protocol";
 import { Readouts } from "./readouts";
-import { referencesOf, teachersLink } from "./references";
+import { teachersLink } from "./references";
 import { Session } from "./session";
 import { Slides, type Slide } from "./slides";
 import { drawingIn } from "./translation";
@@ -260,7 +262,7 @@ export class LearnPage {
       showFigure(box);
       player.play(what);
     });
-    const text = this.#text(lesson, embed, guesses.elements, tries);
+    const text = this.#text(lesson, embed, guesses, tries);
     const numbers = new TextNumbers(text, lesson, controls);
     const article = make("article", { class: "learn-lesson", "data-lesson": lesson.id }, text, box);
     lightTogether(article);
@@ -268,54 +270,15 @@ export class LearnPage {
     return { ...parts, lesson, article, box, alert, drawing: undefined };
   }
 
-  #text(lesson: Lesson, embed: Embed, guesses: readonly HTMLElement[], tries: HTMLElement): HTMLElement {
-    const formula = make(
-      "div",
-      { class: "learn-formula", role: "group", tabindex: "0", "aria-label": lesson.formulaWords },
-      lesson.formula(),
-    );
+  #text(lesson: Lesson, embed: Embed, guesses: Guesses, tries: HTMLElement): HTMLElement {
     const slides = make("button", { type: "button", class: "learn-slides-button" }, phrase("slides", "Slides"));
     slides.addEventListener("click", () => {
       this.#chosen = chosenBy("");
       this.#startSlides();
       this.#writeAddress("another");
     });
-    return make(
-      "div",
-      { class: "learn-text" },
-      make("div", { class: "learn-head" }, make("h2", { tabindex: "-1" }, titleOf(lesson)), embed.button, slides),
-      embed.element,
-      make("p", { class: "learn-gist" }, lesson.gist),
-      formula,
-      symbolList(formula),
-      ...lesson.text.map((words) => make("p", {}, ...sentence(words))),
-      make("h3", {}, phrase("guess", "Predict, then look")),
-      ...guesses,
-      this.#answers.button(),
-      make("h3", {}, phrase("try", "Try")),
-      tries,
-      make(
-        "div",
-        { class: "learn-can" },
-        make("p", {}, make("strong", {}, `${phrase("short", "In short")}: `), lesson.gist),
-        make("p", {}, make("strong", {}, `${phrase("can", "Now")}: `), lesson.can),
-      ),
-      make("h3", {}, phrase("more", "More")),
-      referencesOf(lesson.more),
-      this.#ends(lesson),
-    );
-  }
-
-  #ends({ id }: Lesson): HTMLElement {
-    const [before, after] = [beside(id, -1), beside(id, 1)];
-    return make(
-      "p",
-      { class: "learn-ends" },
-      ...(before ? [make("a", { href: `#learn&${this.#kept.inAddress(before.id)}` }, `← ${before.title}`)] : []),
-      after
-        ? make("a", { href: `#learn&${this.#kept.inAddress(after.id)}` }, `${after.title} →`)
-        : make("a", { href: "#learn&at=exercises" }, `${phrase("exercises", "Exercises")} →`),
-    );
+    const linkTo = ({ id }: Lesson) => `#learn&${this.#kept.inAddress(id)}`;
+    return proseOf(lesson, { embed, slides, guesses, answers: this.#answers.button(), tries, linkTo });
   }
 
   /** Sets the two sliders of a panel's axes from a place on it, given as shares of its sides. */
@@ -413,7 +376,7 @@ export class LearnPage {
 
   #slideOf({ article, lesson: { id, title }, guesses }: Shown): Slide {
     const ask = (index: number | undefined) => guesses.ask(index);
-    return { article, id, title, chosen: this.#chosen, questions: guesses.elements.length, ask };
+    return { article, id, title, chosen: this.#chosen, questions: guesses.count, ask };
   }
 
   #endSlides(): void {

@@ -19,6 +19,7 @@ export const LESSONS = [
   "surface",
   "prior",
   "pose",
+  "loop",
   "sensor",
   "paint",
   "failure",
@@ -26,7 +27,7 @@ export const LESSONS = [
 export type LessonId = (typeof LESSONS)[number];
 
 /** Ends of the slider of the last lesson: the narrowest depth map as a share of its width, and the largest rotation in degrees. */
-export const [LEAST_OVERLAP, LARGEST_TURN] = [0.08, 90];
+export const [LEAST_OVERLAP, LARGEST_TURN] = [0.05, 90];
 /** The largest constant that lesson 5 moves between its orders. */
 export const LARGEST_CONSTANT = 0.6;
 

@@ -5,7 +5,7 @@ import type { Drawing, Panel, Said } from "./protocol";
 
 /** Fields whose strings are read by people; a choice, a pair of strings, is read by its second one. */
 export const READ = new Set([
-  ...["title", "gist", "formulaWords", "text", "tasks", "label", "hint", "unit", "choices", "paper"],
+  ...["title", "gist", "formulaWords", "text", "tasks", "label", "hint", "unit", "choices", "paper", "stages"],
   ...["can", "links", "question", "answer"],
 ]);
 /** Units that are the same in all languages. */

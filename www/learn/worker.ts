@@ -7,6 +7,7 @@ import { colours } from "./compute/colours";
 import { failure } from "./compute/failure";
 import { grey } from "./compute/grey";
 import { lambert } from "./compute/lambert";
+import { loop } from "./compute/loop";
 import { normal } from "./compute/normal";
 import { orders } from "./compute/orders";
 import { paint } from "./compute/paint";
@@ -32,6 +33,7 @@ const lessons: Record<LessonId, Compute> = {
   surface,
   prior,
   pose,
+  loop,
   sensor,
   paint,
   failure,

@@ -9,6 +9,10 @@ import { numberOf, scene, watched } from "./scenes";
 import { wordsOf } from "./status";
 
 const SIZE = 64;
+/** Side of the scenes whose sigma is followed as they become harder, and their noise: at 64 pixels, errors of sampling exceed it. */
+const [FINE, FINE_NOISE] = [96, 0.03];
+/** Depths from the middle that have different colours, as a share of a scene's side. */
+const DEEP = 14 / 64;
 /** Side of the disc's grid of heights. */
 const DISC = 128;
 /** Share of the depth map's columns in the turned view. */
@@ -32,6 +36,7 @@ function disc(nose: number): Relief {
 /** Each case, with its difficulty from 0 to 100 percent. */
 function sceneOf(what: string, amount: number): { made: Sample; pair: Pick<Sample, "image" | "depth"> } {
   const base = { surface: "bust", light: "colourful", size: SIZE, noise: 0.01, angles: { beta: 20 } };
+  const fine = { ...base, size: FINE, noise: FINE_NOISE };
   const share = amount / 100;
   switch (what) {
     case "symmetry": {
@@ -39,7 +44,7 @@ function sceneOf(what: string, amount: number): { made: Sample; pair: Pick<Sampl
       return { made, pair: made };
     }
     case "overlap": {
-      const made = scene({ ...base, angles: { beta: 40 }, overlap: 1 - (1 - LEAST_OVERLAP) * share });
+      const made = scene({ ...fine, angles: { beta: 40 }, overlap: 1 - (1 - LEAST_OVERLAP) * share });
       return { made, pair: made };
     }
     case "texture": {
@@ -47,7 +52,7 @@ function sceneOf(what: string, amount: number): { made: Sample; pair: Pick<Sampl
       return { made, pair: textured(made, share) };
     }
     default: {
-      const made = scene({ ...base, angles: { beta: LARGEST_TURN * share }, overlap: NARROW });
+      const made = scene({ ...fine, angles: { beta: LARGEST_TURN * share }, overlap: NARROW });
       return { made, pair: made };
     }
   }
@@ -89,7 +94,7 @@ export function* failure(values: Values): Generator<Drawing> {
           },
           made.depth,
           depth,
-          { min: -14, max: 14 },
+          { min: -DEEP * grid.width, max: DEEP * grid.width },
         ),
         cloudsOf(estimator),
         scalarOf(

@@ -1,9 +1,10 @@
-/** The orders of the image model as balls that add up, and nine numbers for an intensity or for its logarithm. */
+/** The orders of the image model as balls that add up, and curves that show why nine numbers are enough. */
 
-import { secondOrder, shadeLamp, shadeNormals } from "../../../pkg/index.js";
+import { shadeNormals } from "../../../pkg/index.js";
 import { ballNormals } from "../../engine/ball";
 import { LARGEST_CONSTANT, type Drawing, type Mark, type Values } from "../protocol";
-import { brightest, onDisc, pictureOf, plot } from "./draw";
+import { curveNumbers, plotOfDegrees, plotOfLamp } from "./cosine";
+import { brightest, onDisc, pictureOf } from "./draw";
 import { rms } from "./measure";
 import { lightNamed, normalAt, numberOf, ofOrder } from "./scenes";
 
@@ -11,9 +12,6 @@ const SIDE = 192;
 const GRID = { width: SIDE, height: SIDE };
 const normals = ballNormals(SIDE);
 const TITLES = ["Order 0", "Order 1", "Order 2"] as const;
-/** Number of intervals of the curve. They divide the component of the direction toward the lamp. */
-const STEPS = 400;
-const FRONT = [0, 0, -1];
 
 /**
  * log S of one order; order 0 gives a constant to the squares of order 2, which add up to 1.
@@ -31,20 +29,6 @@ function part(light: Float64Array, order: 0 | 1 | 2, constant: number, of: Float
 const total = (parts: readonly Float32Array[]): Float32Array =>
   (parts[0] ?? new Float32Array()).map((value, at) => value + (parts[1]?.[at] ?? NaN) + (parts[2]?.[at] ?? NaN));
 
-/** One lamp, and light from all around: the true intensity, and both approximations with nine numbers. */
-function approximations(around: number) {
-  const components = Array.from({ length: STEPS }, (_, i) => (2 * (i + 0.5)) / STEPS - 1);
-  const directions = components.flatMap((c) => [Math.sqrt(1 - c * c), 0, -c]);
-  const intensity = shadeLamp(FRONT, Float32Array.from(directions)).map((value) => value + around);
-  const log = intensity.map(Math.log);
-  return {
-    components,
-    intensity,
-    direct: secondOrder(intensity),
-    byLog: secondOrder(log).map(Math.exp),
-  };
-}
-
 const ALT = ["the same everywhere", "bright on one side", "the same on opposite sides"] as const;
 
 export function* orders(values: Values): Generator<Drawing> {
@@ -61,9 +45,7 @@ export function* orders(values: Values): Generator<Drawing> {
   // Whatever constant is moved, a ball keeps its white, so that the balls of order 0 and 2 show it.
   const whiteOf = (order: 0 | 1 | 2) =>
     brightest(part(light, order, 0, normals).map(Math.exp)) * (order === 1 ? 1 : Math.exp(LARGEST_CONSTANT));
-  const { components, intensity, direct, byLog } = approximations(numberOf(values, "around"));
-  const curve = (of: Float32Array) =>
-    components.flatMap((c, i) => [(180 / Math.PI) * Math.acos(c), of[i] ?? NaN]).filter((_, i) => i % 8 < 2);
+  const around = numberOf(values, "around");
   yield {
     panels: [
       ...([0, 1, 2] as const).map((order) =>
@@ -76,21 +58,7 @@ export function* orders(values: Values): Generator<Drawing> {
         whole,
         "the sum of the three logarithms",
       ),
-      plot(
-        {
-          key: "fit",
-          title: "One lamp by nine numbers",
-          alt: "Intensity against the angle to the lamp: true, by nine numbers, and by nine numbers for its logarithm.",
-        },
-        "angle, °",
-        "intensity",
-        [
-          { name: "true", ink: "truth", points: curve(intensity) },
-          { name: "nine for the intensity", ink: "colour", points: curve(direct) },
-          { name: "nine for its logarithm", ink: "light", points: curve(byLog) },
-        ],
-        { range: [-0.1, 1.2] },
-      ),
+      String(values.curves) === "degrees" ? plotOfDegrees() : plotOfLamp(around),
     ],
     numbers: {
       order0: o0,
@@ -98,10 +66,7 @@ export function* orders(values: Values): Generator<Drawing> {
       order2: o2,
       whole: o0 + o1 + o2,
       change: rms(whole, shadeNormals(light, normals)),
-      least: Math.min(...direct),
-      leastLog: Math.min(...byLog),
-      direct: 100 * rms(direct, intensity),
-      byLog: 100 * rms(byLog, intensity),
+      ...curveNumbers(around),
     },
   };
 }

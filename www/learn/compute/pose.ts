@@ -1,12 +1,11 @@
-/** Finding the pose: the residual reveals a wrong pose, registration and search find the right one, and a pixel's prior follows it. */
+/** Finding the pose: the residual reveals a wrong pose, registration and search find the right one. */
 
 import type { Estimator, Options, Sample } from "../../../pkg/index.js";
 import type { CloudPanel, Drawing, Values } from "../protocol";
-import { atPixel, pictureOf, plot, scalarOf } from "./draw";
+import { pictureOf, plot, scalarOf } from "./draw";
 import { cloudsOf } from "./clouds";
-import { landscapeOf } from "./landscape";
-import { aboutY, angleBetween, degreesBetween, meanOf, product, turned } from "./measure";
-import { afterStages, isOn, logAt, numberOf, pixelAt, scene, vectorAt, watched } from "./scenes";
+import { aboutY, degreesBetween, meanOf, product, turned } from "./measure";
+import { afterStages, numberOf, scene, watched } from "./scenes";
 import { statusOf, wordsOf, type Status } from "./status";
 
 const SIZE = 64;
@@ -19,7 +18,7 @@ const MOST_RESIDUAL: Readonly<Record<string, number>> = { colourful: 0.7, window
 /** Stages of an iteration up to the light, whose fit leaves the residual, and up to the image's surface. */
 const [TO_LIGHT, TO_SURFACE] = [1, 3];
 
-const picture = (values: Values): Sample =>
+export const picture = (values: Values): Sample =>
   scene({ surface: "bust", light: String(values.light), size: SIZE, angles: { beta: BETA }, noise: 0.01 });
 
 const middles = new WeakMap<Sample, number[]>();
@@ -76,13 +75,15 @@ const stateOf = (estimator: Estimator, status: Status): State => {
   };
 };
 
+/** The state under a pose that is off by this angle, after one pass up to the image's surface. */
+export const held = (made: Sample, offset: number): State =>
+  afterStages(made, told(made, offset, "fixed"), TO_SURFACE, (estimator) => stateOf(estimator, statusOf("held")));
+
 export function* pose(values: Values): Generator<Drawing> {
   const made = picture(values);
   const offset = numberOf(values, "offset");
   const curve: number[] = [];
-  let state = afterStages(made, told(made, offset, "fixed"), TO_SURFACE, (estimator) =>
-    stateOf(estimator, statusOf("held")),
-  );
+  let state = held(made, offset);
   const draw = (): Drawing => drawing(values, made, state, curve);
   yield draw();
   const run = String(values.run);
@@ -105,37 +106,9 @@ export function* pose(values: Values): Generator<Drawing> {
 
 function drawing(values: Values, made: Sample, state: State, curve: number[]): Drawing {
   const grid = made.image;
-  const chosen = pixelAt(grid.mask, grid.width, grid.height, numberOf(values, "px"), numberOf(values, "py"));
-  const truth = vectorAt(made.truth.imageNormals, chosen);
-  const seen = state.correspondence[chosen] ?? -1;
-  const prior = seen < 0 ? undefined : turned(state.rotation, vectorAt(state.normals, seen));
-  const known = prior?.every(Number.isFinite) ? prior : undefined;
-  const weight = numberOf(values, "weight");
-  const landscape = landscapeOf(
-    {
-      log: logAt(made, chosen),
-      light: made.light,
-      weight: known ? weight : 0,
-      robust: isOn(values, "robust"),
-      start: known ?? [0, 0, -1],
-      ...(known ? { prior: known } : {}),
-    },
-    { truth },
-  );
-  const ring = [{ ink: "pixel", shape: "ring", points: atPixel(chosen, grid), size: 3 } as const];
   const error = degreesBetween(state.rotation, made.pose.rotation);
   const panels: Drawing["panels"] = [
-    pictureOf(
-      {
-        key: "picture",
-        title: "The picture",
-        alt: "A bust; the ring marks the pixel of the cost map.",
-        legend: "drag to choose a pixel",
-      },
-      grid,
-      made.image.data as Float32Array,
-      ring,
-    ),
+    pictureOf({ key: "picture", title: "The picture", alt: "A bust." }, grid, made.image.data as Float32Array),
     state.panel,
     scalarOf(
       {
@@ -148,9 +121,7 @@ function drawing(values: Values, made: Sample, state: State, curve: number[]): D
       state.residual,
       { min: 0, max: 0.5 },
       "magma",
-      ring,
     ),
-    landscape.panel,
   ];
   if (String(values.run) === "hold") {
     panels.push(
@@ -167,15 +138,5 @@ function drawing(values: Values, made: Sample, state: State, curve: number[]): D
       ),
     );
   }
-  return {
-    panels,
-    numbers: {
-      error,
-      residual: meanOf([state.explained]),
-      minima: landscape.minima,
-      off: known ? angleBetween(known, truth) : NaN,
-      end: angleBetween(landscape.end, truth),
-    },
-    ...wordsOf(state.status),
-  };
+  return { panels, numbers: { error, residual: meanOf([state.explained]) }, ...wordsOf(state.status) };
 }

@@ -9,7 +9,7 @@ import { SIDE, degreesOf, grey, intensities, shaded, shapeNamed } from "./lamp";
 import { isOn, numberOf } from "./scenes";
 
 const LAMP = [0.45, -0.35, -0.82] as const;
-/** The row of the section as a share of the height: through the nose. */
+/** The row of the cross-section as a share of the height: through the nose. */
 const ROW = 0.5;
 
 /** Heights of the new surface along a row, from its middle, pixels. */
@@ -35,9 +35,10 @@ export function* relief(values: Values): Generator<Drawing> {
   const [isMoved, isPainted] = [isOn(values, "lamp"), isOn(values, "paint")];
   const first = intensities(lamp, shape);
   // A lamp left in place keeps its strength as well.
-  const plain = shadeLamp(isMoved ? other.lamp : lamp, other.normals);
+  const now = isMoved ? other.lamp : lamp;
+  const plain = shadeLamp(now, other.normals);
   const second = isPainted ? product(plain, other.albedo) : plain;
-  const strength = Math.hypot(...other.lamp);
+  const strength = Math.hypot(...now);
   const [darkest, brightest] = [least(other.albedo), most(other.albedo)];
   yield {
     panels: [
@@ -77,7 +78,7 @@ export function* relief(values: Values): Generator<Drawing> {
     ],
     numbers: {
       difference: 100 * rms(grey(second), grey(first)),
-      lamp: degreesOf(lamp.reduce((sum, part, axis) => sum + (part * (other.lamp[axis] ?? NaN)) / strength, 0)),
+      lamp: degreesOf(lamp.reduce((sum, part, axis) => sum + (part * (now[axis] ?? NaN)) / strength, 0)),
       paint: isPainted ? brightest / darkest : 1,
     },
   };

@@ -75,7 +75,7 @@ export function* sensor(values: Values): Generator<Drawing> {
         plot(
           {
             key: "profile",
-            title: "A section through the face",
+            title: "A cross-section of the face",
             alt: "Heights along one row: measured, refined and true.",
           },
           "column, px",

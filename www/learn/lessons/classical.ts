@@ -13,7 +13,7 @@ const change = (name: SymbolName) => primed(symbol(name));
 export const relief: Lesson = {
   id: "relief",
   title: "One picture, many shapes",
-  gist: "A flattened or an inverted surface can make exactly the same picture, under another lamp and with another albedo.",
+  gist: "A flattened or an inverted surface can make exactly the same picture.",
   formula: () =>
     block(
       primed(symbol("z")),
@@ -30,13 +30,14 @@ export const relief: Lesson = {
     ),
   formulaWords: "The new depth is s times the depth plus t times x, and the new intensity is the old one.",
   text: [
-    "Sculptors of coins and medals have always known it: a portrait a few millimetres deep looks like a whole head. Multiply all depths by a factor s, here {=stretch}. Every normal changes, and yet a lamp in another place, together with another albedo, restores the picture pixel by pixel. This is the bas-relief ambiguity. It holds for any factor s and any added tilt t, for one picture or a hundred under different lamps. In the formula, a prime marks the other surface and its picture. The plot cuts through both surfaces and shows heights: a height is a depth with the opposite sign.",
-    "The reason is a matrix. Scale each normal by its albedo and call the result b, so that the intensity is b·l. For any invertible matrix A, the vectors A b and A⁻ᵀ l have the same product. Most such matrices turn the normals into vectors that belong to no surface, because around a loop their slopes do not add up to zero (lesson 9). Those that flatten, tilt or invert depth are the ones that leave a surface.",
-    "The most famous case is s = −1: near and far are exchanged, and a face becomes its mould. It needs no other albedo, only a lamp rotated by half a turn about the line of sight. People see the mould of a face as a face, because they expect faces, and light from above.",
+    "Sculptors of coins and medals have always known it: a portrait a few millimetres deep looks like a whole head. Multiply all depths {z} by a factor {s}, here {=stretch}, and add a tilt: a depth that grows by {t} with each step {x} to the right. In this formula a prime marks the other surface and its picture: its depth is {z′}, and its intensity {E′} is to be the old {E}. The plot shows a cross-section of both surfaces as heights: a height is a depth with the opposite sign.",
+    "Every normal changes, and yet a lamp in another place, together with another albedo, restores the picture pixel by pixel. This is the bas-relief ambiguity. It holds for any factor {s} and any tilt {t}, for one picture or a hundred under different lamps.",
+    "The reason is a matrix. Scale each normal by its albedo and call the result b: the length of b is the albedo, and the intensity is b·{l}, where the length of {l} is the strength of the lamp. For any invertible matrix A, the vectors A b and A⁻ᵀ {l} have the same product. The length of A b is the other surface's albedo; it changes from place to place, because A stretches vectors of different directions by different factors. Most matrices turn the normals into vectors that belong to no surface: along a loop, a closed path in the picture, their slopes do not add up to zero (lesson 9). Those that flatten, tilt or invert depth are the ones that leave a surface.",
+    "The most famous case is {s} = −1: near and far are exchanged, and a face becomes its mould. It needs no other albedo, only a lamp rotated by half a turn about the line of sight, because its matrix keeps every length. People see the mould of a face as a face, because they expect faces, and light from above.",
     "So a single picture does not determine a shape. Something else has to be known: the lamp, the albedo, the silhouette, or a depth map. From lesson 10 on, this page uses the depth map.",
   ],
   tasks: [
-    "Flatten the bust to a fifth of its depth. The two pictures stay the same, while the section collapses.",
+    "Flatten the bust to a fifth of its depth. The two pictures stay the same, while the cross-section collapses.",
     "Leave the lamp where it was. The pictures now differ: the lamp has to move with the relief.",
     "Use one albedo for the flat relief. The pictures now differ: only its own albedo hides the flattening.",
     "Turn the surface inside out. The pictures are the same again, and the albedo is white everywhere.",
@@ -50,15 +51,18 @@ export const relief: Lesson = {
   guesses: [
     {
       question:
-        "A bust and a relief of half its depth, each under its own lamp and with its own albedo. How much do the two pictures differ?",
+        "The bust is flattened to half its depth, and its lamp moves to match. Which albedo makes the two pictures the same?",
+      before: 1,
       at: { stretch: 1, slope: 0, lamp: 1, paint: 1 },
-      choices: ["By a lot", "A little, where the surface is steep", "Not at all"],
-      right: 2,
+      choices: ["That of the bust, one value everywhere", "One that changes from place to place", "No albedo can"],
+      right: 1,
       reveal: { sweep: { key: "stretch", to: 0.5 } },
-      answer: "Not at all. The difference is zero for every depth: the ambiguity is exact.",
+      answer:
+        "One that changes from place to place. Its brightest value is 1.9 times its darkest, and the difference of the pictures is zero: the ambiguity is exact.",
     },
     {
       question: "The bust is turned inside out and the lamp moves to match. Which albedo makes the picture the same?",
+      before: 3,
       at: { stretch: 1, slope: 0, lamp: 1, paint: 1 },
       choices: ["The albedo of the bust, one value everywhere", "A darker albedo on the nose", "No albedo can"],
       right: 0,
@@ -111,8 +115,9 @@ export const strips: Lesson = {
   formulaWords:
     "The intensity of the picture is the reflectance map of the slopes. A strip moves in the picture along the gradient of the map, and its slopes change along the gradient of the picture. Its depth changes by each slope times the step along it.",
   text: [
-    "Write the surface as a depth {z} that depends on the place {x}, {y} in the picture. Its slopes {p} and {q} say how fast the depth changes to the right and down; together they say the same as the normal. Under a known lamp, Lambert's law gives each pair of slopes an intensity. All pairs together are the reflectance map {map}, a picture whose axes are slopes. So a pixel of intensity {E} has its slopes somewhere on one isophote of that map. This is the first line of the formula: one equation, two unknowns.",
-    "But neighbours have to fit together. Suppose that the slopes at one point are known, and take a small step; a prime on a letter now marks its change. Step in the picture along grad {map}, the direction in the map in which the intensity grows. Then the slopes change by grad {E}, the direction in the picture in which it grows, and that can be seen. This is the second line. It follows from the first: along {x}, {E_x} = {map_p}{p_x} + {map_q}{q_x}, and {q_x} = {p_y}, because both are the second derivative of {z} along {x} and {y}. So {E_x} is the change of {p} in the step ({map_p}, {map_q}). In the third line, the depth changes by each slope times the step along it. So place, slopes and depth are carried on, step by step, along a characteristic strip.",
+    "Write the surface as a depth {z} that depends on the place {x}, {y} in the picture. Its slopes {p} and {q} say how fast the depth changes to the right and down; together they say the same as the normal. Under a known lamp, Lambert's law gives each pair of slopes an intensity. All pairs together are the reflectance map {map}, a picture whose axes are slopes.",
+    "A pixel of intensity {E} has its slopes somewhere on one isophote of that map. This is the first line of the formula: one equation, two unknowns.",
+    "But neighbours have to fit together. Suppose that the slopes at one point are known, and take a small step. In this lesson, a prime marks the change of a quantity in that step: {x′} is the step to the right, and {p′} the change of the slope. Step in the picture along grad {map}, the direction in the map in which the intensity grows. Then the slopes change by grad {E}, the direction in the picture in which it grows, and that can be seen. This is the second line. It follows from the first: along {x}, {E_x} = {map_p}{p_x} + {map_q}{q_x}, and {q_x} = {p_y}, because both are the second derivative of {z} along {x} and {y}. So {E_x} is the change of {p} in the step ({map_p}, {map_q}). In the third line, the depth changes by each slope times the step along it. So place, slopes and depth are carried on, step by step, along a characteristic strip.",
     "A strip starts at a bright spot. There the surface faces the lamp, so its slopes are known. The curvature of the picture gives that of the surface, except for its sign: the spot may be a bump or a dent.",
     "Horn invented this in his thesis in 1970, the first computed shape from shading. Strips drift with noise and leave gaps, so later methods solve for all heights at once: his paper of 1989 computes heights and slopes together. Tests of such methods used the bust of Mozart; here, the built-in bust stands in for it.",
     "The method needs one lamp, known exactly, one albedo, and somebody who says whether the spot is a bump. It fails at a saddle, where the surface rises in one direction and falls in the other: strips part there, and the smallest error decides to which side they go.",
@@ -130,6 +135,7 @@ export const strips: Lesson = {
   guesses: [
     {
       question: "A pixel has the intensity 0.7. How many pairs of slopes p, q explain it?",
+      before: 1,
       at: { px: 0.4, py: 0.45 },
       choices: ["One", "Two", "A whole curve of them"],
       right: 2,

@@ -50,6 +50,7 @@ export const normal: Lesson = {
   guesses: [
     {
       question: "A surface faces to the left and up. Which colour does it have in the normal map?",
+      before: 3,
       at: { surface: "ball", px: 0.5, py: 0.5, turn: 0 },
       choices: ["Orange", "Turquoise", "Purple"],
       right: 1,
@@ -105,7 +106,7 @@ export const lambert: Lesson = {
     "Hold a sheet of paper under a lamp. It is brightest when it faces the lamp. Tilt it, and the same light is spread over more paper, so each part gets less. This is Lambert's law: the intensity {E} is the albedo {rho}, the share of light that the surface reflects, times the cosine {n}·{l} of the angle between the normal {n} and the direction {l} to the lamp. A matte surface looks equally bright wherever the camera is.",
     "The cosine is flat near 0° and steep near 90°. At 60° half of the intensity is left, and beyond 90° the surface is in its own shadow. Light does not add up to less than nothing, hence the maximum in the formula.",
     "A line of equal intensity is called an isophote. The figure marks that of {=level}; drag this number to change it. On a ball, an isophote is a circle around the point that faces the lamp, because all normals on it have the same angle to the lamp. On any other surface, an isophote still joins all points with that angle, but now the line runs wherever the surface has such normals. Bright spots mark the places that face the lamp.",
-    "One intensity fixes only one angle. The normal may lie anywhere on a cone around the lamp: for half of the largest intensity, on the cone of 60°. To see the cone, follow one isophote on the ball: all its colours in the normal map of lesson 1 differ, and all its pixels look the same.",
+    "One intensity fixes only one angle. The normal may lie anywhere on a cone around the lamp: for half of the largest intensity, on the cone of 60°. To see the cone, follow one isophote on the ball: all its colours in the normal map of lesson 1 differ, and all its pixels look the same. A second lamp in another place gives a second cone. Two cones meet in at most two lines, so two lamps leave at most two normals.",
   ],
   tasks: [
     "Move the lamp from the left to the right. The isophotes follow it, and the shadow grows on the other side.",
@@ -120,6 +121,7 @@ export const lambert: Lesson = {
   guesses: [
     {
       question: "At which angle between normal and lamp has the intensity fallen to one half?",
+      before: 1,
       at: { level: 0.95 },
       number: { key: "angle", unit: "°", digits: 0, within: 5 },
       reveal: { sweep: { key: "level", to: 0.5 } },

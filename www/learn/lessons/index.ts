@@ -7,8 +7,9 @@ import { relief, strips } from "./classical";
 import { lambert, normal } from "./first";
 import { colours, grey, pixel } from "./light";
 import { failure, paint } from "./limits";
+import { loop, sensor } from "./loop";
 import { orders } from "./orders";
-import { pose, sensor } from "./pose";
+import { pose } from "./pose";
 import { prior, surface } from "./shape";
 
 interface Chapter {
@@ -21,7 +22,7 @@ interface Chapter {
 const english: readonly Chapter[] = [
   { id: "pixel", title: "One pixel", lessons: [normal, lambert, relief, strips, orders, pixel, grey, colours] },
   { id: "surface", title: "A surface", lessons: [surface, prior] },
-  { id: "views", title: "Two views", lessons: [pose, sensor, paint, failure] },
+  { id: "views", title: "Two views", lessons: [pose, loop, sensor, paint, failure] },
 ];
 
 /** In the language of the page. */

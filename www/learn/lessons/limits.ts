@@ -5,12 +5,12 @@ import { LIGHTS } from "../lesson";
 import { phrase } from "../../words";
 import { decimals, withUnit } from "../digits";
 import { LARGEST_TURN, LEAST_OVERLAP } from "../protocol";
-import { block, frac, log, mi, mn, mo, row, shading, sub, sup, symbol } from "../maths";
+import { block, frac, log, mi, mn, mo, row, shading, sup, symbol } from "../maths";
 
 export const paint: Lesson = {
   id: "paint",
   title: "Shadows and paint",
-  gist: "The image model ignores shadows and assumes one albedo. The ratio of the three colours separates paint from shading, but not from shadow.",
+  gist: "The image model ignores shadows and assumes one albedo. The ratio of the three colours separates paint from shading.",
   formula: () => block(log(symbol("S")), mo("="), symbol("aj"), mo("+"), shading(), mo("+"), symbol("ej")),
   formulaWords: "The log intensity of colour j is its log albedo plus its shading plus a remainder.",
   text: [
@@ -33,6 +33,7 @@ export const paint: Lesson = {
   guesses: [
     {
       question: "A deep shadow falls on a surface without paint. What does the program mistake it for?",
+      before: 2,
       at: { light: "window", paint: 0, shadow: 0 },
       choices: ["Shading, so the normals bend", "Dark paint", "A remainder that nothing explains"],
       right: 1,
@@ -81,7 +82,7 @@ export const failure: Lesson = {
   gist: "Some scenes do not contain the answer. A good program says so; this one usually does.",
   formula: () =>
     block(
-      sup(sub(symbol("sigma"), symbol("R")), mn("2")),
+      sup(symbol("sigmaR"), mn("2")),
       mo("≈"),
       frac(sup(symbol("sigma"), mn("2")), row(mi(phrase("information", "information")), mo("("), symbol("R"), mo(")"))),
     ),
@@ -90,12 +91,12 @@ export const failure: Lesson = {
   text: [
     "Here nothing is given: light and pose are both unknown, and the search starts from scratch. The report at the end contains more than a pose: a status, a reason, a sigma of the rotation, and alternative poses that fit the image equally well. “Ambiguous” and “lost” do not mean that the pose is wrong. They mean that the data do not show that it is right.",
     "Symmetry: a round object looks the same when it is rotated about its axis. No method can detect that rotation. Little overlap: if the depth map covers only a narrow strip, a few normals have to explain everything. Texture: fine print that changes from pixel to pixel hides the shading. A large turn: the cameras share less and less of the object, and they see the shared part at a grazing angle.",
-    "Compare the true error, which is known here because the scene is synthetic, with the reported sigma and status. Sigma is the size of error to expect; errors of two or three sigmas are rare but possible. It counts the noise, not what the model leaves out: a shadow that passes for albedo (lesson 13) can shift the result and stay unnoticed. Once the status is lost, sigma is only a lower bound. In the formula, {sigma} without an index is the noise of the picture, and the information is the curvature of the sum of squares at its minimum: how fast the residual rises when the rotation changes. A good method is allowed to fail. It should not be confident when it does.",
+    "Compare the true error, which is known here because the scene is synthetic, with the reported sigma and status. Sigma is the size of error to expect; errors of two or three sigmas are rare but possible. It counts the noise, not what the model leaves out: a shadow that passes for albedo (lesson 14) can shift the result and stay unnoticed. Once the status is lost, sigma is only a lower bound: expect the error to be larger, even much larger. In the formula, {sigmaR} is the sigma of the rotation and {sigma} the noise of the picture. The information is the curvature of the sum of squares at its minimum: it says how fast the residual rises when the rotation changes. A good method is allowed to fail. It should not be confident when it does.",
     "The reported sigma is that of the rotation about its least certain axis; the degrees quoted in a status are also one sigma. Above 1.5° the status is ambiguous, because two sigmas then exceed the 3° within which a pose counts as found. Above 5° it is lost: a rotation this uncertain is useless. Above 25° the rotation counts as not observable. Converged means that sigma is below 1.5°, no other pose fits as well, and the colours are explained; a wider overlap, a smaller turn, a less symmetric object or an initial pose help to get there. A status can have other reasons: it is ambiguous if other poses fit the image equally well, and lost if too much of the colours remains unexplained.",
   ],
   tasks: [
     "Remove the nose of the disc. At 100 % the rotation cannot be determined, and the report names the axis.",
-    "Make the depth map as narrow as possible. Then find the width at which the status stops being converged.",
+    "Make the depth map as narrow as possible. At 5 % of its width no pose fits, and the status is lost. Widen it to 10 %: now the status is converged, with a sigma of 0.46° instead of the 0.06° at full width.",
     "Print texture on the object. Now, with the print at 100 %, more of the colour stays unexplained than with none, and the rotation is so uncertain that the status is lost. The report names the axis.",
     "Increase the rotation between the views. Here at 90° and with a narrow depth map, little remains to compare.",
   ],
@@ -108,6 +109,7 @@ export const failure: Lesson = {
   guesses: [
     {
       question: "The disc loses its nose and is round. What will the report say about its pose?",
+      before: 1,
       at: { case: "symmetry", amount: 0 },
       choices: ["Converged, with a small sigma", "Lost, and which rotation cannot be seen", "A wrong pose, converged"],
       right: 1,
