@@ -86,7 +86,7 @@ export const DEPTHS: readonly Row[] = [
     sample: "depth-exr",
     reads: "depth",
     warnings: ["unit-guessed"],
-    taken: "The channel of depth (`Z`, `V`, ..), or equal colours.",
+    taken: "The channel of depth (`Z`, `V`, ..), or one of three colours that are equal.",
     guessed: METRES,
     exported: SEE_PRODUCT,
   },
