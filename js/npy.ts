@@ -52,7 +52,7 @@ const KINDS: Record<string, Kind> = {
   b1: { size: 1, read: (memory, count) => new Uint8Array(memory, 0, count) },
 };
 
-/** Types that a raster cannot have become 32-bit floats. */
+/** Converts the types that a raster cannot have to 32-bit floats. */
 function pixelsOf(stored: Stored): Pixels {
   if (stored instanceof Uint8Array || stored instanceof Uint16Array || stored instanceof Float32Array) return stored;
   if (stored instanceof BigInt64Array || stored instanceof BigUint64Array) return Float32Array.from(stored, Number);
@@ -189,7 +189,7 @@ export function readSmall(bytes: Uint8Array, most: number): { axes: number[]; va
   return { axes, values: header.byColumns ? inRows(values, height, width, 1) : values };
 }
 
-/** Two or three planes without negative values are not a cloud. If values exceed 1, they are not colours. */
+/** Whether two or three planes are a stack: a cloud would have negative values, and colours would not exceed 1. */
 const isStack = (data: Pixels): boolean =>
   !data.some((value) => value < 0) && data.some((value) => value > 1 && value < Infinity);
 

@@ -114,7 +114,7 @@ async function page() {
   return watch(process.execPath, [modules("@playwright/test/cli.js"), "test", ...(LONG ? [] : short)], { env });
 }
 
-/** Reports an optional tool that is missing among the tests that did not run. */
+/** Adds what needs a missing optional tool to the tests that did not run. */
 function without(what, reason) {
   const output = `skipped: ${what} # ${reason}\n`;
   print(output);
@@ -188,7 +188,7 @@ const rust = () =>
     ...SHORT,
   ]);
 
-/** Accuracy does not decide: aims are shown with their verdicts. The part fails if a cell throws or the JSON lacks a key. */
+/** This part shows missed aims but does not fail because of them. It fails if a cell throws or the JSON lacks a key. */
 async function tables() {
   const file = inRoot("target/tables/quick.json");
   rmSync(file, { force: true });

@@ -1,4 +1,4 @@
-// Edits the features that a compiled module declares to the tools after the linker.
+// Edits the features that a compiled module declares to the tools that run after the linker.
 
 const CUSTOM = 0;
 const MAGIC = 8;

@@ -38,7 +38,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FOLDER")]
     pub out: Option<PathBuf>,
 
-    /// Prints JSON: the names of the JavaScript contract's report, one line for each pair of a folder
+    /// Prints the report as JSON with the names of the JavaScript package, one line for each pair of a folder
     #[arg(long)]
     pub json: bool,
 
@@ -55,8 +55,8 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE")]
     pub cameras: Vec<PathBuf>,
 
-    /// Metres for each stored number of the depth map, 0.001 for millimetres; pixels if it has no camera [default:
-    /// guessed, 1]
+    /// Unit of the depth map's numbers, in metres (0.001 for millimetres), or in pixels if it has no camera [default:
+    /// guessed, or 1 without a camera]
     #[arg(long, value_name = "UNIT", value_parser = positive)]
     pub depth_unit: Option<f64>,
 

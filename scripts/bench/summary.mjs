@@ -151,7 +151,7 @@ export function aims({
     ["the same with two workers, 128x128", seconds("128x128", "browser, 2 workers"), "s", 3],
     ["longest slice of a search", most(slices), "ms", 8],
     ["wasm against native, worst step", most(ratios), "x", 1.8],
-    ["growth of a step with the pixels", growth.step, "", 1.1],
+    ["exponent of a step's time against the pixels", growth.step, "", 1.1],
     ["page playing 640x480: tasks over 50 ms", playing?.longTasks.length ?? null, "", 0],
     // The aim is at least 55 frames a second.
     ["page playing 640x480: mean frame", playing ? 1000 / playing.framesPerSecond : null, "ms", 1000 / 55],

@@ -6,7 +6,8 @@
 //! the sum over points and channels of log p(c | patch) / p(c), with both densities measured in the image under the
 //! same pose.
 //!
-//! If a scanner's intensities are known, their levels are further groups of the samples, with lightness as the channel.
+//! If a scanner's intensities are known, each level of them forms a group of samples, as a patch does. Its channel is
+//! lightness.
 //! Points of equal intensity look alike, whatever curve relates intensity to lightness (Koide, Oishi, Yokozuka and
 //! Banno 2023).
 //!

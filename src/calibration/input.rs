@@ -23,7 +23,7 @@ const BEYOND: f32 = crate::view::FARTHEST as f32;
 const MANY_HOLES: f64 = 0.4;
 /// Largest level of 8 bits; integer depths with a higher level have more bits.
 const LEVELS_OF_A_BYTE: u16 = 255;
-/// Share of neighbours that differ by a tenth of their depth above which a depth map is probably not one.
+/// If more than this share of the neighbours differ by a tenth of their depth, the input is probably not a depth map.
 const ROUGH_SHARE: f64 = 0.25;
 const ROUGH_JUMP: f32 = 0.1;
 /// Range of intensities, 0 .. 1, below which an image is blank.

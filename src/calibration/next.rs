@@ -33,7 +33,7 @@ const NEARER: f64 = 0.35;
 /// Least distance of the nearest tenth of the edges, metres, because depth cameras measure nothing nearer.
 const NEAREST: f64 = 0.4;
 
-/// The place of the scene of the next frame in front of the rig, relative to the scene of a frame of the check.
+/// How to move the scene in front of the rig for the next frame, starting from its place in one frame of the check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
 pub enum NextMotion {

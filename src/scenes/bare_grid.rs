@@ -1,5 +1,4 @@
-//! The pair of the paper's easy reading (docs/lab/protocols.md, Table 2A): one bare grid, seen twice without occlusion
-//! and without resampling.
+//! The pair of Table 2A (docs/lab/protocols.md): one bare grid, seen twice without occlusion and without resampling.
 
 use nalgebra::{Matrix3, Vector3};
 

@@ -17,9 +17,9 @@ pub fn laws(cases: u32) -> ProptestConfig {
     if cfg!(target_arch = "wasm32") { ProptestConfig { rng_seed: RngSeed::Fixed(1), ..drawn } } else { drawn }
 }
 
-/// Folder of other people's data, which is never part of the project. A test that needs it is marked `#[ignore]` with
-/// that reason, so that no summary counts it as passed if it could not run; `npm test` includes it if the data are
-/// there.
+/// Folder of other people's data, which is never part of the project. A test that needs it is marked
+/// `#[ignore = "needs ../shared/data"]`, so that no summary counts it as passed without the data. `npm test` includes
+/// it if the data are there.
 pub fn data_dir() -> PathBuf {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
     assert!(folder.is_dir(), "no data in {}", folder.display());

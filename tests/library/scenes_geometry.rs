@@ -11,7 +11,8 @@ const SIDE: usize = 256;
 /// Radius of the sphere in samples, and radius of the cap that the relief shows.
 const SPHERE: f64 = 150.0;
 const CAP: f64 = 100.0;
-/// Radius that is compared: smoothing of the heights flattens the last four samples, and the triangles there end.
+/// Radius within which depths and normals are compared. Beyond it lies the border of the triangles, where smoothing has
+/// flattened the last four samples.
 const COMPARED: f64 = 92.0;
 /// Height of the cap's border in samples, above the background's limit of 5.
 const RIM: f64 = 6.0;

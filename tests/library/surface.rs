@@ -39,7 +39,7 @@ fn integrate(
     (z, report)
 }
 
-/// Largest difference over the selected pixels, with each side's mean there removed.
+/// Largest deviation of `a - b` from its mean, both over the selected pixels.
 fn largest(a: &[f32], b: &[f32], select: impl Fn(usize) -> bool) -> f64 {
     let chosen: Vec<f64> = (0..a.len()).filter(|&i| select(i)).map(|i| f64::from(a[i]) - f64::from(b[i])).collect();
     let mean = chosen.iter().sum::<f64>() / chosen.len() as f64;

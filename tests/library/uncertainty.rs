@@ -64,7 +64,7 @@ fn a_bowl_under_an_unknown_light_is_not_sure_of_its_pose() {
     assert!(off < 3.0 * sigmas.iter().map(|sigma| sigma * sigma).sum::<f64>().sqrt(), "{off} {sigmas:?}");
 }
 
-/// On the coarse level and later ones, a few pixels fit this cloud best, which must not make the scale collapse.
+/// This cloud fits best if it shrinks onto a few pixels, on the coarse level as on later ones. The scale must not collapse.
 #[test]
 fn a_cloud_does_not_shrink_away_from_the_true_pose() {
     let pillow = relief(|x, y| -0.35 * (x.powi(4) + y.powi(4)) - 0.15 * x * x - 0.1 * x * y);

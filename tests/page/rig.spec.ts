@@ -143,7 +143,7 @@ test("a verdict comes with its numbers, curves, shares and advice", async ({ lab
   await expect(page.locator(".rig-curves figure")).toHaveCount(6);
   await expect(page.locator(".rig-curves")).toContainText(/Minimum at −?\d+\.\d+°; ± \d+\.\d+° \(95 %\)/);
   await expect(page.getByRole("row", { name: /frame 1 50 %/ })).toBeVisible();
-  // The minimum of all cues about y lies outside the narrow interval, and the minimum along z inside its own.
+  // The curve about y covers a narrow interval, and its minimum over all cues lies outside. Along z the minimum lies inside.
   const curve = (title: string) => page.locator(".rig-curves figure", { hasText: title });
   await expect(curve("Rotation about y")).toContainText("your calibration at 2.04°");
   await expect(curve("Rotation about y")).toContainText("the minimum lies outside this interval");

@@ -85,7 +85,7 @@ const REPORT_EVERY = 200;
 
 type Bound = { end(): void };
 
-/** Members that follow the kernel. The element ignores a value that is equal to its own. */
+/** Copies these members from the kernel to the element at each change. The element ignores a value equal to its own. */
 function follow(model: Model, element: object, names: Record<string, (value: unknown) => unknown>): Bound {
   const ends = Object.entries(names).map(([name, convert]) => {
     const own = name.replace(/^_/, "");

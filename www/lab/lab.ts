@@ -198,7 +198,7 @@ export class Lab {
     void this.#start(this.#saved);
   }
 
-  /** Pictures and true values of the previous pair are removed from the screen. */
+  /** Removes the pictures and true values of the previous pair from the screen. */
   #vacate(): void {
     this.#good = undefined;
     this.#record.clear();
@@ -354,7 +354,7 @@ export class Lab {
     return !this.#record.isFinished;
   }
 
-  /** The state that the last run showed. */
+  /** Clears the record and the panels of the last run. */
   #forget(): void {
     this.#record.restart();
     this.#panels.clear();

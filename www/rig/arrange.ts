@@ -2,7 +2,7 @@
 
 import type { RigState } from "./state";
 
-/** Candidates from files that were arranged before keep the visitor's choices. */
+/** Arranges the files. Candidates from files that were arranged earlier keep the visitor's choices. */
 export async function arrange(rig: RigState): Promise<void> {
   const frames = rig.complete.flatMap(({ colour, depth }) =>
     colour === undefined || depth === undefined ? [] : [{ colour, depth }],

@@ -5,7 +5,7 @@ import type { Doubt, RigState, Side } from "./state";
 /** A principal point farther from the middle than this share of the picture's side probably belongs to another picture size. */
 const OFF_CENTRE = 0.2;
 
-/** Parameters for another image size are the second most common mistake. */
+/** A warning if a camera's parameters may be for another image size, the second most common mistake; empty if not. */
 export function cameraDoubt(rig: RigState, side: Side): string {
   if (side === "depth" && !rig.needsDepthCamera) return "";
   const file = rig.given.find(({ source }) => source === rig.cameras[side].source)?.camera;

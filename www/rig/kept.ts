@@ -157,7 +157,7 @@ export class Kept {
     own(owner);
   }
 
-  /** Files that were stored earlier must not come back. */
+  /** Deletes the stored files, so that a reload does not restore them. */
   async #forget(): Promise<void> {
     if (this.#isStored) await change("rig", (store) => store.clear()).catch(() => {});
     this.#stored = new Map();

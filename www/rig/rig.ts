@@ -165,7 +165,7 @@ export class Rig implements RigState {
     this.#chooseCameras();
   }
 
-  /** A pose that leads away from the colour camera, or to the depth camera or a LiDAR, by the names of its frames is inverted. */
+  /** Inverts a pose whose frame names say that it leads from the colour camera, or to the depth camera or a LiDAR. */
   addPose({ name, pose, from, to }: Summary["poses"][number], origin: string, file?: number): Candidate {
     const isBackward = isBackwards({ from, to });
     const direction = isBackward
@@ -219,13 +219,13 @@ export class Rig implements RigState {
     this.#chooseCameras();
   }
 
-  /** Removed files, and everything derived from them. */
+  /** Removes files, and everything derived from them. */
   leave(items: readonly Item[]): void {
     this.items = this.items.filter((each) => !items.includes(each));
     for (const item of items) this.#unlink(item);
   }
 
-  /** Frames drop a file that was removed or has changed its kind. */
+  /** Removes from the frames a file that was removed or has changed its kind. */
   #unlink({ id }: Item): void {
     for (const frame of this.frames) {
       for (const role of ["colour", "depth", "mask"] as const) {
@@ -238,7 +238,7 @@ export class Rig implements RigState {
     this.frames = this.frames.filter(({ colour, depth }) => colour !== undefined || depth !== undefined);
   }
 
-  /** A running check refers to files that are removed. */
+  /** Removes everything, and ends a running check, which refers to the removed files. */
   clear(): void {
     this.live.stop();
     this.session.cancel();

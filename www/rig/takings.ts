@@ -22,7 +22,7 @@ export class Takings {
     this.#rig = rig;
   }
 
-  /** Frames that were taken from it before are removed. */
+  /** Takes frames from a recording. Those that were taken from it earlier are removed. */
   async take(item: Item, changes: Partial<Pick<Taking, "colour" | "depth" | "frames">> = {}): Promise<void> {
     const { chosen = {} } = item.summary ?? {};
     const before = item.taking;

@@ -102,7 +102,7 @@ export class Undo {
     this.#rig.changed();
   }
 
-  /** Files are released once no undo step refers to them. */
+  /** Releases the files to which neither the rig nor an undo step refers. */
   #forget(): void {
     const needed = new Set(
       [...this.#rig.items, ...this.#steps.flatMap(({ lists }) => lists.items)].map(({ id }) => id),

@@ -90,7 +90,7 @@ const NAMED: Row[] = [
 const TEXTS: Row[] = [
   [
     /^#\s*Rig calib list|^(?:#[^\n]*\n)*#\s*RIG_ID/,
-    "the rigs of COLMAP (rigs.txt), whose sensors have only numbers; write the pose of the second camera as a 4x4 matrix, and take the cameras from cameras.txt",
+    "the rigs of COLMAP (rigs.txt), whose sensors are numbered, not named; write the pose of the second camera as a 4x4 matrix, and take the cameras from cameras.txt",
   ],
   [
     /^\s*(?:(?:Pinhole|RadTan|EquiDistant|KannalaBrandt|FOV|ATAN)\s+)?(?:[-\d.eE+]+\s+){4,8}[-\d.eE+]+\s*\n\s*\d+\s+\d+\s*\n\s*(?:crop|full|none|[-\d.eE+\s]{9,})\s*\n\s*\d+\s+\d+\s*$/i,

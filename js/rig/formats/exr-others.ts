@@ -46,7 +46,7 @@ function names({ channels, compression }: Header, used: number[]): string[] {
   const isDwa = compression === DWAA || compression === DWAB;
   if (isDwa && channels.some(({ name }, index) => used.includes(index) && name !== given[index]))
     throw badFile(
-      "this EXR is compressed with DWA (DWAA or DWAB), which is supported for R, G and B, for Y alone and for channels with other names; save it with ZIP compression",
+      "this EXR is compressed with DWA (DWAA or DWAB), which is supported only for R, G and B together, for Y, or for one channel of another name; save it with ZIP compression",
     );
   return isDwa ? channels.map(({ name }) => name) : given;
 }

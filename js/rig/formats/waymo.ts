@@ -16,7 +16,7 @@ const contextOf = (root: Node): Node => {
 const cameras = (root: Node): Node[] =>
   nodesOf(contextOf(root).cameraCalibrations ?? contextOf(root).camera_calibrations);
 const lasers = (root: Node): Node[] => nodesOf(contextOf(root).laserCalibrations ?? contextOf(root).laser_calibrations);
-/** A member of protobuf's text, in which every member is a list, because any may be repeated. */
+/** The value of a member. In protobuf's text every member is read as a list, because any may be repeated. */
 const single = (value: unknown): unknown => (Array.isArray(value) && value.length === 1 ? value[0] : value);
 const transform = (each: Node) => {
   const extrinsic = single(each.extrinsic);

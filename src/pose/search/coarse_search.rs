@@ -66,7 +66,7 @@ impl Search {
         Self::with_grid(problem, ImageGrid::new(problem.image)?)
     }
 
-    /// [`new`](Self::new) with a grid of its image prepared in advance, which is half of the preparation.
+    /// As [`new`](Self::new), with the image's grid made in advance, which saves half of the preparation.
     pub(crate) fn with_grid(problem: &SearchProblem<'_>, grid: ImageGrid) -> Result<Self> {
         positive("scale", problem.scale.unwrap_or(problem.unit_scale))?;
         let matcher = Matcher::new(problem, grid)?;

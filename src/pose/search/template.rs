@@ -13,8 +13,8 @@ use crate::light::{HARMONICS, basis};
 
 /// Smallest cosine between a normal and the direction to the camera; more oblique patches are slivers on the grid.
 const GRAZING: f32 = 0.1;
-/// Depth in cells behind the nearest patch of a cell at which a patch is hidden. It allows for the slope of a visible
-/// surface over a cell and its neighbours.
+/// A patch is hidden if it lies more than this many cells behind the nearest patch of its cell. The limit allows for the
+/// slope of a visible surface over a cell and its neighbours.
 const HIDDEN: f32 = 2.5;
 
 /// Number of values that are added and multiplied at once.

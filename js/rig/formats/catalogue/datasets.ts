@@ -240,7 +240,7 @@ const INDOOR: readonly Row[] = [
     reads: "cameras",
     warnings: [],
     taken: "Both cameras and the baseline.",
-    guessed: "Nothing. Its disparities are refused with the formula that converts them to depths.",
+    guessed: "Nothing. Its disparities are refused, with a message that gives the formula for depths.",
     exported: DOWNLOAD,
   },
 ];

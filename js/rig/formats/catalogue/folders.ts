@@ -138,7 +138,7 @@ export const FOLDERS: readonly Row[] = [
     sample: "colmap-folder",
     reads: "folder",
     warnings: ["unit-guessed", "camera-shared"],
-    taken: "Pairs by the names of the images; geometric depth maps before photometric ones.",
+    taken: "Pairs by the names of the images; geometric depth maps are preferred to photometric ones.",
     guessed: "The scale, which is that of the reconstruction.",
     exported: "`colmap image_undistorter`, then `colmap patch_match_stereo`",
   },

@@ -86,7 +86,7 @@ export const DEPTHS: readonly Row[] = [
     sample: "depth-exr",
     reads: "depth",
     warnings: ["unit-guessed"],
-    taken: "The channel of depth (`Z`, `V`, ..), or equal colours.",
+    taken: "The channel of depth (`Z`, `V`, ..), or one of three colours that are equal.",
     guessed: METRES,
     exported: SEE_PRODUCT,
   },
@@ -135,7 +135,7 @@ export const DEPTHS: readonly Row[] = [
     reads: "depth",
     warnings: ["unit-guessed"],
     taken: "Depths; holes are zero, empty or NaN.",
-    guessed: "The unit. Whether the first row and the first column are numbers of pixels.",
+    guessed: "The unit. Whether the first row and the first column hold pixel indices.",
     exported: '`numpy.savetxt("depth.csv", depth, delimiter=",")`, `writematrix(depth, "depth.csv")`',
   },
   {
