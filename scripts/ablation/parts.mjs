@@ -115,7 +115,7 @@ export const PARTS = [
   {
     name: "cubics",
     what: "normals of third order with their errors (central differences, all with equal weight)",
-    changes: [{ file: "src/estimator/finder/photometric.rs", from: "if !depth.normals_given {", to: "if false {" }],
+    changes: [{ file: "src/estimator/photometric.rs", from: "if !depth.normals_given {", to: "if false {" }],
   },
   {
     name: "confirmed",

@@ -17,7 +17,7 @@ use crate::view::{Camera, ColourView, DepthView, Points};
 /// Two orthographic masks that overlap less than this (intersection over union) are centred on each other first.
 const LEAST_MASK_OVERLAP: f64 = 0.5;
 /// Factor of the apparent size, or its inverse, beyond which a pose is not plausible beside a given one. The search covers
-/// 0.7 to 1.4, and a single registration may change the size by `finder::COLLAPSE`.
+/// 0.7 to 1.4, and a single registration may change the size by `photometric::COLLAPSE`.
 const LARGEST_SIZE_RATIO: f64 = 2.0;
 
 /// s0: length of one unit of the depth view in the colour view.

@@ -18,6 +18,7 @@ mod gauge;
 mod memory;
 mod objective;
 mod pair;
+mod photometric;
 mod reporting;
 mod run;
 mod searching;
@@ -252,7 +253,7 @@ impl Estimator {
         if let Some(light) = fitted {
             self.solution.light.light = light;
         }
-        if let Some(found) = self.stages.registration.found_by_colours() {
+        if let Some(found) = self.stages.registration.found_photometrically() {
             (self.solution.light.light, self.solution.light.exposure) = (found.light, found.exposure);
         }
         if let Some(found) = self.stages.albedo.found() {
@@ -283,7 +284,7 @@ impl Estimator {
     /// Normals of the image (Eq. 6 to 9), and the exposure of a known light unless the registration found it.
     fn find_normals(&mut self) {
         let exposure_is_free =
-            self.pair.known_light().is_some() && self.stages.registration.found_by_colours().is_none();
+            self.pair.known_light().is_some() && self.stages.registration.found_photometrically().is_none();
         let Parts { inputs, shape, solution: Solution { light, image, .. }, .. } = self.parts();
         shape.find_normals(inputs, exposure_is_free, light, &mut image.normals);
     }

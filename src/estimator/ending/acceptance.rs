@@ -147,9 +147,11 @@ impl Estimator {
             Some(Decided::Initial(staying)) => Answer::Initial(*staying),
             Some(Decided::Silhouettes(found)) => Answer::Silhouettes(SilhouetteEvidence::of(found)),
             Some(Decided::Contrast(found)) => Answer::Contrast(ContrastEvidence::of(&found.report)),
-            Some(Decided::Photometric) | None => registration.found_by_colours().map_or(Answer::Surfaces, |found| {
-                Answer::Photometric(PhotometricEvidence::of(found, self.pair.image.log_spread()))
-            }),
+            Some(Decided::Photometric) | None => {
+                registration.found_photometrically().map_or(Answer::Surfaces, |found| {
+                    Answer::Photometric(PhotometricEvidence::of(found, self.pair.image.log_spread()))
+                })
+            }
         }
     }
 
@@ -161,8 +163,9 @@ impl Estimator {
         if !(is_joint && (ended.0 == Status::Converged || has_rivals)) {
             return ended;
         }
-        let colours = self.stages.registration.memory().as_mut();
-        let reason = colours.and_then(|colours| checks::other_unit(colours, &self.pair, &self.solution.pose));
+        let photometric = self.stages.registration.memory().as_mut();
+        let reason =
+            photometric.and_then(|photometric| checks::other_unit(photometric, &self.pair, &self.solution.pose));
         reason.map_or(ended, verdict::capped)
     }
 

@@ -29,7 +29,6 @@
 //! | `trust_region` | an initial pose, and how far from it the answer may lie |
 //! | `nearby` | registrations near an initial pose, before the search |
 //! | `candidates` | the search, and the registration of its candidates |
-//! | `photometric` | photometric registration, with its normals and memory |
 //! | `task` | parts of the search that a worker may take, and their results |
 //! | `local_optima` | ends of the registrations; the best pose and its rivals |
 //! | `local_contrast`, `silhouettes` | the methods for varying albedo |
@@ -42,7 +41,6 @@ mod local_contrast;
 pub mod local_optima;
 mod nearby;
 mod opening;
-mod photometric;
 mod silhouettes;
 pub mod task;
 mod trust_region;
@@ -55,6 +53,7 @@ use crate::reason::Activity;
 
 use super::gauge;
 use super::pair::ViewPair;
+use super::photometric::PhotometricRegistration;
 use candidates::{Candidates, EVERYWHERE};
 use local_contrast::CleanedImage;
 use local_optima::{Choice, LocalOptima};
@@ -66,7 +65,6 @@ pub use candidates::search;
 pub use decision::{Decision, Method, Staying};
 pub use nearby::explains;
 pub use opening::Opening;
-pub use photometric::{COLLAPSE, PhotometricRegistration};
 pub use trust_region::TrustRegion;
 
 /// Share of the work that precedes local contrast.
@@ -136,13 +134,13 @@ impl Finder {
         opening: Option<Box<Opening>>,
         grid: ImageGrid,
     ) -> Result<Self> {
-        let (pair, colours) = match &opening {
-            Some(opening) => (&opening.pair, &opening.colours),
+        let (pair, photometric) = match &opening {
+            Some(opening) => (&opening.pair, &opening.photometric),
             None => (pair, &*PhotometricRegistration::prepared(memory, pair)),
         };
         let optima = LocalOptima::new(EVERYWHERE.most, pair.residuals_of_noise(0.0));
-        let may_vary = local_contrast::may_be_called_for(pair, colours);
-        let candidates = Candidates::new(search(pair, grid, colours)?, optima, EVERYWHERE, may_vary);
+        let may_vary = local_contrast::may_be_called_for(pair, photometric);
+        let candidates = Candidates::new(search(pair, grid, photometric)?, optima, EVERYWHERE, may_vary);
         let phase = Phase::Candidates(Box::new(candidates));
         Ok(Self { scope: Scope::Everywhere(opening), phase, chosen: Choice::default() })
     }
@@ -252,10 +250,10 @@ impl Finder {
         mut candidates: Box<Candidates>,
     ) -> Result<Next> {
         let choice = match &mut self.scope {
-            Scope::Everywhere(Some(opening)) => candidates.advance(&opening.pair, &mut opening.colours, |_| true),
+            Scope::Everywhere(Some(opening)) => candidates.advance(&opening.pair, &mut opening.photometric, |_| true),
             scope => {
-                let colours = PhotometricRegistration::prepared(memory, pair);
-                candidates.advance(pair, colours, |pose| scope.holds(pair, pose))
+                let photometric = PhotometricRegistration::prepared(memory, pair);
+                candidates.advance(pair, photometric, |pose| scope.holds(pair, pose))
             }
         };
         let Some(mut choice) = choice else { return Ok(Next::Phase(Phase::Candidates(candidates))) };
@@ -277,9 +275,9 @@ impl Finder {
         mut looked_at: Vec<Similarity>,
     ) -> Result<Next> {
         self.chosen = choice;
-        let colours = PhotometricRegistration::prepared(memory, pair);
-        colours.keep_ends(self.chosen.ends.clone());
-        let Some(cleaned) = local_contrast::cleaned(pair, colours, self.chosen.best.as_deref()) else {
+        let photometric = PhotometricRegistration::prepared(memory, pair);
+        photometric.keep_ends(self.chosen.ends.clone());
+        let Some(cleaned) = local_contrast::cleaned(pair, photometric, self.chosen.best.as_deref()) else {
             return self.next_method(pair, memory, None);
         };
         let starts = match &self.scope {
@@ -290,7 +288,7 @@ impl Finder {
             }
             Scope::Near(near) => local_contrast::around(pair, &near.region.initial),
         };
-        let search = ContrastSearch::new(&colours.contrast_problem(pair, cleaned.image(pair)), starts);
+        let search = ContrastSearch::new(&photometric.contrast_problem(pair, cleaned.image(pair)), starts);
         Ok(Next::Phase(Phase::Contrast(Box::new(ByContrast { cleaned, search }))))
     }
 
@@ -302,11 +300,11 @@ impl Finder {
         mut contrast: Box<ByContrast>,
     ) -> Result<Next> {
         let ByContrast { cleaned, search } = &mut *contrast;
-        let colours = &*PhotometricRegistration::prepared(memory, pair);
-        if !search.advance(&colours.contrast_problem(pair, cleaned.image(pair))) {
+        let photometric = &*PhotometricRegistration::prepared(memory, pair);
+        if !search.advance(&photometric.contrast_problem(pair, cleaned.image(pair))) {
             return Ok(Next::Phase(Phase::Contrast(contrast)));
         }
-        let found = local_contrast::conclude(pair, colours, cleaned, search);
+        let found = local_contrast::conclude(pair, photometric, cleaned, search);
         self.next_method(pair, memory, found)
     }
 
@@ -320,21 +318,21 @@ impl Finder {
 
     /// The decision, or the method that comes next after local contrast, which `found` a pose or did not.
     fn next_method(&mut self, pair: &ViewPair, memory: &mut Memory, found: Option<Decision>) -> Result<Next> {
-        let colours = PhotometricRegistration::prepared(memory, pair);
+        let photometric = PhotometricRegistration::prepared(memory, pair);
         if let Scope::Near(near) = &mut self.scope {
             let choice = std::mem::take(&mut self.chosen);
-            if found.is_none() && near.begins_again(pair, colours, &choice) {
-                colours.keep_near(near.region.prior(pair));
+            if found.is_none() && near.begins_again(pair, photometric, &choice) {
+                photometric.keep_near(near.region.prior(pair));
                 let nearby = Nearby::again(pair, near.region.clone(), near.silhouettes.take());
                 return Ok(Next::Phase(Phase::Nearby(Box::new(nearby))));
             }
-            return near.conclude(pair, colours, choice, found).map(Next::Decision);
+            return near.conclude(pair, photometric, choice, found).map(Next::Decision);
         }
         let decision = match found {
             Some(decision) => decision,
             None => {
                 let anywhere = silhouettes::are_called_for(pair, self.chosen.best.as_deref())
-                    .then(|| Anywhere::new(pair, colours.normals()));
+                    .then(|| Anywhere::new(pair, photometric.normals()));
                 if let Some(anywhere) = anywhere.flatten() {
                     return Ok(Next::Phase(Phase::Silhouettes(Box::new(anywhere))));
                 }
@@ -376,16 +374,16 @@ impl Scope {
 
 impl Near {
     /// Whether to repeat the registrations near the initial pose: once, and only if a single albedo does not explain the image.
-    fn begins_again(&self, pair: &ViewPair, colours: &PhotometricRegistration, choice: &Choice) -> bool {
+    fn begins_again(&self, pair: &ViewPair, photometric: &PhotometricRegistration, choice: &Choice) -> bool {
         let is_explained = choice.best.as_ref().is_some_and(|best| !silhouettes::has_varying_albedo(pair, best));
-        !colours.is_kept_near() && !is_explained && self.region.prior(pair).is_some()
+        !photometric.is_kept_near() && !is_explained && self.region.prior(pair).is_some()
     }
 
     /// Takes the first pose within the trust region: from local contrast, the image or silhouettes. Otherwise keeps the initial pose.
     fn conclude(
         &mut self,
         pair: &ViewPair,
-        colours: &mut PhotometricRegistration,
+        photometric: &mut PhotometricRegistration,
         Choice { best, rivals, .. }: Choice,
         found: Option<Decision>,
     ) -> Result<Decision> {
@@ -409,24 +407,24 @@ impl Near {
             None => true,
         };
         let Some(best) = best.filter(|best| is_trusted(best)) else {
-            return Ok(Decision::of(silhouettes.map_or_else(|| stay(pair, colours, region), Method::Silhouettes)));
+            return Ok(Decision::of(silhouettes.map_or_else(|| stay(pair, photometric, region), Method::Silhouettes)));
         };
         // Candidates are registered on a sample of the points; all points follow.
-        let found = colours.register_all(pair, *best)?;
+        let found = photometric.register_all(pair, *best)?;
         Ok(match region.holds(pair, &found.pose) {
             true => Decision { by: Method::Photometric(Box::new(found)), rivals: Some(rivals) },
-            false => Decision::of(stay(pair, colours, region)),
+            false => Decision::of(stay(pair, photometric, region)),
         })
     }
 }
 
 /// Keeps the initial pose.
-fn stay(pair: &ViewPair, colours: &mut PhotometricRegistration, region: &TrustRegion) -> Method {
+fn stay(pair: &ViewPair, photometric: &mut PhotometricRegistration, region: &TrustRegion) -> Method {
     // An object shrunk to a few pixels fits any image, so its size must be plausible as well.
     let of_size = Similarity { scale: gauge::unit_scale(pair), ..region.initial };
     let explains = |found: Box<PhotometricReport>| found.noise < pair.image.log_spread();
     let has_size = gauge::keeps_size(pair, &region.initial, &of_size);
-    Method::Initial(match has_size && colours.judge(pair, &region.initial).is_some_and(explains) {
+    Method::Initial(match has_size && photometric.judge(pair, &region.initial).is_some_and(explains) {
         true => Staying::Explains,
         false => Staying::ExplainsNothing,
     })

@@ -1,8 +1,9 @@
 //! The registration stage: runs the finder or matches the surfaces, depending on the options, and keeps the result.
 
-use crate::estimator::finder::{Decision, Finder, Method, PhotometricRegistration, Staying, TrustRegion, explains};
+use crate::estimator::finder::{Decision, Finder, Method, Staying, TrustRegion, explains};
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
+use crate::estimator::photometric::PhotometricRegistration;
 use crate::estimator::solution::Solution;
 use crate::light::Light;
 use crate::options::{Registration, Start};
@@ -44,7 +45,7 @@ impl Registered {
 /// Registers the depth view to the image, photometrically or by matching surfaces.
 pub struct RegistrationStage {
     /// Present only if the options require it, because it holds splines of the image.
-    colours: Option<PhotometricRegistration>,
+    photometric: Option<PhotometricRegistration>,
     surfaces: SurfaceRegistration,
     /// Region around the initial pose, if there is one.
     region: Option<TrustRegion>,
@@ -75,12 +76,12 @@ impl Registering {
 }
 
 impl RegistrationStage {
-    /// Leaves photometric registration out if `colours_wait`; the finder then makes it after the search.
-    pub fn new(pair: &ViewPair, colours_wait: bool) -> Self {
-        let by_colours = pair.options.start == Start::Search || pair.options.registration == Registration::Joint;
-        let by_colours = by_colours && !colours_wait;
+    /// Leaves photometric registration out if `photometric_waits`; the finder then makes it after the search.
+    pub fn new(pair: &ViewPair, photometric_waits: bool) -> Self {
+        let is_photometric = pair.options.start == Start::Search || pair.options.registration == Registration::Joint;
+        let is_photometric = is_photometric && !photometric_waits;
         Self {
-            colours: by_colours.then(|| PhotometricRegistration::new(pair)),
+            photometric: is_photometric.then(|| PhotometricRegistration::new(pair)),
             surfaces: SurfaceRegistration::new(),
             region: TrustRegion::of(pair),
             decided: None,
@@ -89,26 +90,30 @@ impl RegistrationStage {
 
     /// The photometric registration, for a finder to use or to make.
     pub const fn memory(&mut self) -> &mut Option<PhotometricRegistration> {
-        &mut self.colours
+        &mut self.photometric
     }
 
     /// The registration that this pair needs now: with noisy depth, photometric registration finds the pose and ICP settles it.
     pub fn kind(&self, pair: &ViewPair) -> Registration {
-        let settled_by_surface = |colours: &PhotometricRegistration| colours.is_coarse() && colours.found().is_some();
+        let settled_by_surface =
+            |photometric: &PhotometricRegistration| photometric.is_coarse() && photometric.found().is_some();
         match pair.options.registration {
-            Registration::Joint if self.colours.as_ref().is_some_and(settled_by_surface) => Registration::Icp,
+            Registration::Joint if self.photometric.as_ref().is_some_and(settled_by_surface) => Registration::Icp,
             asked => asked,
         }
     }
 
     /// Result of the photometric registration, unless depth noise leaves pose and light to other stages.
-    pub fn found_by_colours(&self) -> Option<&PhotometricReport> {
-        self.colours.as_ref().filter(|colours| !colours.is_coarse()).and_then(PhotometricRegistration::found)
+    pub fn found_photometrically(&self) -> Option<&PhotometricReport> {
+        self.photometric
+            .as_ref()
+            .filter(|photometric| !photometric.is_coarse())
+            .and_then(PhotometricRegistration::found)
     }
 
     /// The best measured normals of the depth view.
     pub fn measured_normals<'a>(&'a self, pair: &'a ViewPair) -> &'a Normals {
-        self.colours.as_ref().map_or(&pair.depth.normals, PhotometricRegistration::normals)
+        self.photometric.as_ref().map_or(&pair.depth.normals, PhotometricRegistration::normals)
     }
 
     /// Adopts the finder's decision.
@@ -144,8 +149,8 @@ impl RegistrationStage {
                 self.decided = Some(Decided::Photometric);
                 let registered = self.registered(pair, &found, present);
                 let size = self.region.is_some().then(|| check_size(pair, &found.pose, present));
-                if let Some(colours) = &mut self.colours {
-                    colours.adopt(*found);
+                if let Some(photometric) = &mut self.photometric {
+                    photometric.adopt(*found);
                 }
                 size.transpose()?;
                 registered
@@ -181,7 +186,7 @@ impl RegistrationStage {
                     Some(Decided::Contrast(found)) => found.stands(),
                     Some(Decided::Photometric) | None => false,
                 };
-                stands || self.colours.as_ref().is_some_and(|colours| colours.ended_in(pose))
+                stands || self.photometric.as_ref().is_some_and(|photometric| photometric.ended_in(pose))
             }
             Registration::Icp => false,
         }
@@ -206,7 +211,7 @@ impl RegistrationStage {
             Registration::Joint if self.region.is_some() && self.decided.is_none() => {
                 self.register_initial(pair, &solution.pose)
             }
-            Registration::Joint => self.register_colours(pair, albedo, &solution.pose).map(Registering::of),
+            Registration::Joint => self.register_photometrically(pair, albedo, &solution.pose).map(Registering::of),
             Registration::Icp => {
                 let Matched { mut pose, mut improved, uncertainty } = self.surfaces.register(inputs, solution)?;
                 if self.region.as_ref().is_some_and(|region| !region.holds(pair, &pose)) {
@@ -222,38 +227,38 @@ impl RegistrationStage {
     /// Registers from the initial pose. A result that explains the image is the answer; otherwise a finder searches
     /// around it.
     fn register_initial(&mut self, pair: &ViewPair, present: &Similarity) -> Result<Registering, Reason> {
-        let (Some(colours), Some(region)) = (&mut self.colours, &self.region) else {
+        let (Some(photometric), Some(region)) = (&mut self.photometric, &self.region) else {
             return Ok(Registering::Done(None));
         };
-        let found = colours.register(pair, &region.initial).ok().cloned();
+        let found = photometric.register(pair, &region.initial).ok().cloned();
         let is_answer = |found: &PhotometricReport| region.holds(pair, &found.pose) && explains(pair, found);
         match found {
             Some(found) if is_answer(&found) => {
                 self.adopt(pair, Decision::of(Method::Photometric(Box::new(found))), present).map(Registering::of)
             }
             _ => {
-                let plain = colours.take_found();
+                let plain = photometric.take_found();
                 Ok(Registering::Finding(Box::new(Finder::near(pair, region.clone(), plain))))
             }
         }
     }
 
     /// Finds pose and light together photometrically, or keeps the pose of the method that decided.
-    fn register_colours(
+    fn register_photometrically(
         &mut self,
         pair: &ViewPair,
         albedo: &AlbedoStage,
         start: &Similarity,
     ) -> Result<Option<Registered>, Reason> {
-        let Some(colours) = &mut self.colours else { return Ok(None) };
+        let Some(photometric) = &mut self.photometric else { return Ok(None) };
         match &mut self.decided {
             Some(Decided::Initial(_) | Decided::Silhouettes(_)) => Ok(None),
             Some(Decided::Contrast(found)) => {
-                let pose = found.follow(pair, colours, albedo, self.region.as_ref());
+                let pose = found.follow(pair, photometric, albedo, self.region.as_ref());
                 Ok(pose.map(|pose| Registered::of_pose(with_gauge_of(pair, pose, start))))
             }
             Some(Decided::Photometric) | None => {
-                let found = colours.register(pair, start)?.clone();
+                let found = photometric.register(pair, start)?.clone();
                 check_size(pair, &found.pose, start)?;
                 Ok(Some(self.registered(pair, &found, start)))
             }
@@ -263,7 +268,7 @@ impl RegistrationStage {
     fn registered(&self, pair: &ViewPair, found: &PhotometricReport, present: &Similarity) -> Registered {
         let pose = with_gauge_of(pair, found.pose, present);
         // Normals flattened by noise bias the exposure, so the stages find it again.
-        let is_coarse = self.colours.as_ref().is_some_and(PhotometricRegistration::is_coarse);
+        let is_coarse = self.photometric.as_ref().is_some_and(PhotometricRegistration::is_coarse);
         Registered {
             pose,
             light: Some(found.light),

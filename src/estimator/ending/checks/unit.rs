@@ -3,9 +3,9 @@
 //! Applies only to depth maps under a parallel projection: behind a pinhole, the unit scales all three axes alike.
 
 use crate::diagnosis::{Alternative, Diagnosis};
-use crate::estimator::finder::{COLLAPSE, PhotometricRegistration};
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
+use crate::estimator::photometric::{COLLAPSE, PhotometricRegistration};
 use crate::pose::{PhotometricReport, Similarity};
 use crate::reason::Reason;
 
@@ -27,26 +27,26 @@ const BETTER_COVARIANCE: f64 = 0.5;
 const SIGMAS_OF_NOISE: f64 = 4.0 * 0.56;
 
 /// The reason to cap a verdict if relief in another unit explains an image that the given unit does not explain.
-pub fn other_unit(colours: &mut PhotometricRegistration, pair: &ViewPair, pose: &Similarity) -> Option<Reason> {
-    better_unit(colours, pair, pose).map(|times| Reason::OtherUnit { times: f64::from(times) })
+pub fn other_unit(photometric: &mut PhotometricRegistration, pair: &ViewPair, pose: &Similarity) -> Option<Reason> {
+    better_unit(photometric, pair, pose).map(|times| Reason::OtherUnit { times: f64::from(times) })
 }
 
 /// The factor by which relief would have to be deeper.
-fn better_unit(colours: &mut PhotometricRegistration, pair: &ViewPair, pose: &Similarity) -> Option<f32> {
+fn better_unit(photometric: &mut PhotometricRegistration, pair: &ViewPair, pose: &Similarity) -> Option<f32> {
     // White noise leaves nothing for another unit to explain, neither in all points nor in the few that are tried here.
     let is_explained =
         |found: &PhotometricReport| pair.residuals(found).diagnose(Alternative::DepthUnit) == Diagnosis::Explained;
-    if !pair.depth.camera.is_orthographic() || colours.found().is_some_and(is_explained) {
+    if !pair.depth.camera.is_orthographic() || photometric.found().is_some_and(is_explained) {
         return None;
     }
     // All units are compared on the points that are visible in the given one.
-    colours.judge(pair, pose)?;
-    let own = colours.register_relief(pair, pose, 1.0, UNIT_ROUNDS).filter(|own| !is_explained(own))?;
+    photometric.judge(pair, pose)?;
+    let own = photometric.register_relief(pair, pose, 1.0, UNIT_ROUNDS).filter(|own| !is_explained(own))?;
     let uncertainty = SIGMAS_OF_NOISE / (own.visible as f64).sqrt();
     let (mut better, mut noise) = (None, (1.0 - uncertainty) * own.noise);
     for way in UNITS {
         for unit in way {
-            let Some(found) = colours.register_relief(pair, pose, unit, UNIT_ROUNDS) else { continue };
+            let Some(found) = photometric.register_relief(pair, pose, unit, UNIT_ROUNDS) else { continue };
             if found.noise > AWAY * own.noise {
                 break;
             }

@@ -1,4 +1,5 @@
-//! Photometric registration as a stage of the loop: the normals it uses, its memory, and its last result.
+//! Photometric registration of a pair, for the finder, the registration stage and the check of the depth unit: the
+//! normals it uses, its memory, and its last result.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimator::gauge;
