@@ -12,6 +12,8 @@
 //! Each stage owns its memory, and its signature shows what it reads and writes ([`stages`]). This file holds the order
 //! in which they run, [`ending`] the end of an iteration and of the run, [`reporting`] what it reports.
 
+mod contrasted;
+mod decision;
 mod ending;
 mod finder;
 mod gauge;

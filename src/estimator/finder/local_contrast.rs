@@ -3,8 +3,9 @@
 
 use nalgebra::{Rotation3, Vector3};
 
-use super::decision::{Decision, Method};
 use crate::diagnosis::{Alternative, Diagnosis};
+use crate::estimator::contrasted::Contrasted;
+use crate::estimator::decision::{Decision, Method};
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
 use crate::estimator::photometric::PhotometricRegistration;
@@ -133,9 +134,12 @@ pub fn conclude(
     };
     Some(match plain {
         Some(plain) if is_believed(&plain, search) => {
-            Decision { by: Method::Photometric(Box::new(plain)), rivals: Some(Vec::new()) }
+            Decision { rivals: Some(Vec::new()), ..Decision::of(Method::Photometric(Box::new(plain))) }
         }
-        _ => Decision { by: Method::Contrast(Box::new(contrast.best)), rivals: Some(contrast.rivals) },
+        _ => {
+            let found = Contrasted::new(contrast.best);
+            Decision { rivals: Some(contrast.rivals), ..Decision::of(Method::Contrast(Box::new(found))) }
+        }
     })
 }
 

@@ -33,10 +33,8 @@
 //! | `local_optima` | ends of the registrations; the best pose and its rivals |
 //! | `local_contrast`, `silhouettes` | the methods for varying albedo |
 //! | `opening` | the halved pair in which large views are searched |
-//! | `decision` | the outcome |
 
 mod candidates;
-mod decision;
 mod local_contrast;
 pub mod local_optima;
 mod nearby;
@@ -51,19 +49,18 @@ use crate::error::Result;
 use crate::pose::{ContrastSearch, ImageGrid, PhotometricReport, SilhouetteReport, Similarity};
 use crate::reason::Activity;
 
+use super::decision::{Decision, Method, Staying};
 use super::gauge;
 use super::pair::ViewPair;
 use super::photometric::PhotometricRegistration;
 use candidates::{Candidates, EVERYWHERE};
 use local_contrast::CleanedImage;
 use local_optima::{Choice, LocalOptima};
-use nearby::{Nearby, Progress};
+use nearby::{Nearby, Progress, explains};
 use silhouettes::Anywhere;
 use task::{Finding, Task};
 
 pub use candidates::search;
-pub use decision::{Decision, Method, Staying};
-pub use nearby::explains;
 pub use opening::Opening;
 pub use trust_region::TrustRegion;
 
@@ -75,6 +72,14 @@ pub enum Advance {
     /// Not done: share of the work done, and the current activity.
     Ongoing(f64, Activity),
     Done(Decision),
+    /// Nothing could be registered.
+    Nothing,
+}
+
+/// The beginning near an initial pose.
+pub enum Beginning {
+    Done(Decision),
+    Ongoing(Box<Finder>),
 }
 
 /// Where the pose is looked for.
@@ -111,6 +116,7 @@ struct ByContrast {
 enum Next {
     Phase(Phase),
     Decision(Decision),
+    Nothing,
 }
 
 /// Memory of the photometric registration; the search of a halved pair needs none.
@@ -145,13 +151,20 @@ impl Finder {
         Ok(Self { scope: Scope::Everywhere(opening), phase, chosen: Choice::default() })
     }
 
-    /// Starts from an initial pose from which registration did not explain the image; `plain` is its result, inside the region or not.
-    pub fn near(pair: &ViewPair, region: TrustRegion, plain: Option<PhotometricReport>) -> Self {
-        let plain = plain.map(Box::new).filter(|found| region.holds(pair, &found.pose));
+    /// Registers from an initial pose. A result in its region that explains the image is the decision; otherwise a finder
+    /// looks around the pose.
+    pub fn near(pair: &ViewPair, region: &TrustRegion, photometric: &mut PhotometricRegistration) -> Beginning {
+        let plain = photometric.register(pair, &region.initial).ok().map(Box::new);
+        let plain = match plain.filter(|found| region.holds(pair, &found.pose)) {
+            Some(found) if explains(pair, &found) => {
+                return Beginning::Done(Decision::of(Method::Photometric(found)));
+            }
+            plain => plain,
+        };
         let noisy = plain.as_deref().filter(|found| pair.residuals(found).is_noise()).map(|found| found.pose);
         let phase = Phase::Nearby(Box::new(Nearby::new(pair, region.clone(), plain)));
-        let near = Near { region, noisy, silhouettes: None };
-        Self { scope: Scope::Near(Box::new(near)), phase, chosen: Choice::default() }
+        let near = Near { region: region.clone(), noisy, silhouettes: None };
+        Beginning::Ongoing(Box::new(Self { scope: Scope::Near(Box::new(near)), phase, chosen: Choice::default() }))
     }
 
     /// Whether it looks near an initial pose.
@@ -214,10 +227,11 @@ impl Finder {
             Phase::Candidates(candidates) => self.register_candidates(pair, memory, candidates)?,
             Phase::Contrast(contrast) => self.compare_contrast(pair, memory, contrast)?,
             Phase::Silhouettes(anywhere) => self.compare_silhouettes(pair, memory, anywhere),
-            Phase::Done => Next::Decision(Decision::of(Method::Nothing)),
+            Phase::Done => Next::Nothing,
         };
         Ok(match next {
             Next::Decision(decision) => Advance::Done(decision),
+            Next::Nothing => Advance::Nothing,
             Next::Phase(phase) => {
                 let (share, activity) = phase.progress();
                 self.phase = phase;
@@ -276,7 +290,6 @@ impl Finder {
     ) -> Result<Next> {
         self.chosen = choice;
         let photometric = PhotometricRegistration::prepared(memory, pair);
-        photometric.keep_ends(self.chosen.ends.clone());
         let Some(cleaned) = local_contrast::cleaned(pair, photometric, self.chosen.best.as_deref()) else {
             return self.next_method(pair, memory, None);
         };
@@ -311,7 +324,7 @@ impl Finder {
     /// A slice of the registrations by silhouettes without an initial pose.
     fn compare_silhouettes(&mut self, pair: &ViewPair, memory: &mut Memory, mut anywhere: Box<Anywhere>) -> Next {
         if anywhere.advance(pair, PhotometricRegistration::prepared(memory, pair).normals()) {
-            return Next::Decision(everywhere_by(anywhere.best(), std::mem::take(&mut self.chosen)));
+            return everywhere_by(anywhere.best(), std::mem::take(&mut self.chosen));
         }
         Next::Phase(Phase::Silhouettes(anywhere))
     }
@@ -328,30 +341,29 @@ impl Finder {
             }
             return near.conclude(pair, photometric, choice, found).map(Next::Decision);
         }
-        let decision = match found {
-            Some(decision) => decision,
-            None => {
-                let anywhere = silhouettes::are_called_for(pair, self.chosen.best.as_deref())
-                    .then(|| Anywhere::new(pair, photometric.normals()));
-                if let Some(anywhere) = anywhere.flatten() {
-                    return Ok(Next::Phase(Phase::Silhouettes(Box::new(anywhere))));
-                }
-                everywhere_by(None, std::mem::take(&mut self.chosen))
-            }
-        };
-        Ok(Next::Decision(decision))
+        if let Some(decision) = found {
+            return Ok(Next::Decision(decision));
+        }
+        let are_called_for = silhouettes::are_called_for(pair, self.chosen.best.as_deref());
+        Ok(match are_called_for.then(|| Anywhere::new(pair, photometric.normals())).flatten() {
+            Some(anywhere) => Next::Phase(Phase::Silhouettes(Box::new(anywhere))),
+            None => everywhere_by(None, std::mem::take(&mut self.chosen)),
+        })
     }
 }
 
 /// The decision for silhouettes, or else for the best registration.
-fn everywhere_by(silhouettes: Option<SilhouetteReport>, Choice { best, rivals, ends }: Choice) -> Decision {
+fn everywhere_by(silhouettes: Option<SilhouetteReport>, Choice { best, rivals, ends }: Choice) -> Next {
     match (silhouettes, best) {
-        (Some(found), _) => Decision { by: Method::Silhouettes(Box::new(found)), rivals: Some(Vec::new()) },
+        (Some(found), _) => {
+            let by = Method::Silhouettes(Box::new(found));
+            Next::Decision(Decision { rivals: Some(Vec::new()), ..Decision::of(by) })
+        }
         (None, Some(mut best)) => {
             best.uncertainty.add_spread(&best.pose, &ends);
-            Decision { by: Method::Photometric(best), rivals: Some(rivals) }
+            Next::Decision(Decision { by: Method::Photometric(best), rivals: Some(rivals), ends })
         }
-        (None, None) => Decision { by: Method::Nothing, rivals: Some(rivals) },
+        (None, None) => Next::Nothing,
     }
 }
 
@@ -384,7 +396,7 @@ impl Near {
         &mut self,
         pair: &ViewPair,
         photometric: &mut PhotometricRegistration,
-        Choice { best, rivals, .. }: Choice,
+        Choice { best, rivals, ends }: Choice,
         found: Option<Decision>,
     ) -> Result<Decision> {
         let region = &self.region;
@@ -392,7 +404,7 @@ impl Near {
         if let Some(mut found) = found.filter(is_near) {
             if let (Method::Contrast(contrast), Some(rivals)) = (&found.by, &mut found.rivals) {
                 // A pose that leaves only the image's own noise is a rival, however large the spatial covariance of its residuals.
-                local_contrast::add_rival(contrast, rivals, self.noisy);
+                local_contrast::add_rival(&contrast.report, rivals, self.noisy);
             }
             return Ok(found);
         }
@@ -406,13 +418,14 @@ impl Near {
             }
             None => true,
         };
-        let Some(best) = best.filter(|best| is_trusted(best)) else {
+        let Some(mut best) = best.filter(|best| is_trusted(best)) else {
             return Ok(Decision::of(silhouettes.map_or_else(|| stay(pair, photometric, region), Method::Silhouettes)));
         };
         // Candidates are registered on a sample of the points; all points follow.
-        let found = photometric.register_all(pair, *best)?;
-        Ok(match region.holds(pair, &found.pose) {
-            true => Decision { by: Method::Photometric(Box::new(found)), rivals: Some(rivals) },
+        let sampled = best.pose;
+        photometric.register_again(pair, &mut best, &sampled, &ends)?;
+        Ok(match region.holds(pair, &best.pose) {
+            true => Decision { by: Method::Photometric(best), rivals: Some(rivals), ends },
             false => Decision::of(stay(pair, photometric, region)),
         })
     }

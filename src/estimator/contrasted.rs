@@ -8,10 +8,10 @@
 //! Limits: cast shadows are mistaken for albedo, so a round counts only if shading explains more of the remainder than
 //! before.
 
-use super::albedo::AlbedoStage;
-use crate::estimator::finder::TrustRegion;
-use crate::estimator::pair::ViewPair;
-use crate::estimator::photometric::PhotometricRegistration;
+use super::finder::TrustRegion;
+use super::pair::ViewPair;
+use super::photometric::PhotometricRegistration;
+use super::stages::AlbedoStage;
 use crate::pose::{ContrastReport, Similarity, register_again};
 
 /// Largest number of rounds of pose and albedo. Set on photographs at 20 and 60 degrees (docs/lab/thresholds.md).
