@@ -8,7 +8,7 @@
 //! Limits: cast shadows are mistaken for albedo, so a round counts only if shading explains more of the remainder than
 //! before.
 
-use super::finder::TrustRegion;
+use super::finder::initial_pose::TrustRegion;
 use super::pair::ViewPair;
 use super::photometric::PhotometricRegistration;
 use super::stages::AlbedoStage;

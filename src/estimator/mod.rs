@@ -12,6 +12,7 @@
 //! Each stage owns its memory, and its signature shows what it reads and writes ([`stages`]). This file holds the order
 //! in which they run, [`ending`] the end of an iteration and of the run, [`reporting`] what it reports.
 
+mod checks;
 mod contrasted;
 mod decision;
 mod ending;
@@ -39,6 +40,7 @@ use crate::shape::Scratch;
 use crate::view::{ColourImage, DepthMap};
 use ending::settling::{self, Settling};
 use finder::Opening;
+use finder::initial_pose::first_pose;
 pub use finder::task::{Finding, Task};
 use pair::ViewPair;
 use reporting::measurement::PixelResiduals;
@@ -111,7 +113,7 @@ impl Estimator {
     }
 
     fn of(pair: ViewPair) -> Result<Self> {
-        let pose = gauge::first_pose(&pair);
+        let pose = first_pose(&pair);
         let light = pair.known_light().copied().unwrap_or_else(|| pair.prior.mean());
         // The parts that need much more memory during construction than afterwards come first.
         let registration = RegistrationStage::new(&pair, Opening::is_called_for(&pair));

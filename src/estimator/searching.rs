@@ -4,8 +4,8 @@
 use nalgebra::Matrix3;
 
 use super::Estimator;
+use super::checks;
 use super::decision::Decision;
-use super::ending::checks;
 use super::finder::{Advance, Finder, Opening};
 use super::gauge;
 use super::run::Run;

@@ -1,10 +1,10 @@
 //! The end of an iteration: the solution is accepted or rejected, shapes settle, and the loop continues or ends.
 
-use super::checks;
 use super::evidence::Evidence;
 use super::settling;
 use super::verdict::{self, Verdict};
 use crate::estimator::Estimator;
+use crate::estimator::checks;
 use crate::estimator::decision::Decision;
 use crate::estimator::objective::{self, Trial};
 use crate::estimator::run::{History, Run};

@@ -12,9 +12,9 @@ use crate::estimator::photometric::{Attempt, PhotometricRegistration};
 use crate::pose::{ImageGrid, Search, SearchProblem, Similarity, TaskResults};
 use crate::reason::Activity;
 
+use super::initial_pose::TrustRegion;
 use super::local_optima::{Choice, LocalOptima, Origin, Ranking, RegisteredCandidate};
 use super::task::{Finding, Found, Task, Work};
-use super::trust_region::TrustRegion;
 
 /// Numbers of candidates to register.
 #[derive(Clone, Copy)]

@@ -26,8 +26,7 @@
 //!
 //! | file | what it holds |
 //! |---|---|
-//! | `trust_region` | an initial pose, and how far from it the answer may lie |
-//! | `nearby` | registrations near an initial pose, before the search |
+//! | `initial_pose/` | how an initial pose is treated: its region and prior, the registrations near it, the decision |
 //! | `candidates` | the search, and the registration of its candidates |
 //! | `task` | parts of the search that a worker may take, and their results |
 //! | `local_optima` | ends of the registrations; the best pose and its rivals |
@@ -35,34 +34,31 @@
 //! | `opening` | the halved pair in which large views are searched |
 
 mod candidates;
+pub mod initial_pose;
 mod local_contrast;
 pub mod local_optima;
-mod nearby;
 mod opening;
 mod silhouettes;
 pub mod task;
-mod trust_region;
 
 use nalgebra::Matrix3;
 
 use crate::error::Result;
-use crate::pose::{ContrastSearch, ImageGrid, PhotometricReport, SilhouetteReport, Similarity};
+use crate::pose::{ContrastSearch, ImageGrid, SilhouetteReport, Similarity};
 use crate::reason::Activity;
 
-use super::decision::{Decision, Method, Staying};
-use super::gauge;
+use super::decision::{Decision, Method};
 use super::pair::ViewPair;
 use super::photometric::PhotometricRegistration;
 use candidates::{Candidates, EVERYWHERE};
+use initial_pose::{Near, Nearby, Progress, TrustRegion, explains};
 use local_contrast::CleanedImage;
 use local_optima::{Choice, LocalOptima};
-use nearby::{Nearby, Progress, explains};
 use silhouettes::Anywhere;
 use task::{Finding, Task};
 
 pub use candidates::search;
 pub use opening::Opening;
-pub use trust_region::TrustRegion;
 
 /// Share of the work that precedes local contrast.
 const BEFORE_CONTRAST: f64 = 0.75;
@@ -87,14 +83,6 @@ enum Scope {
     /// A halved pair stands in for large views.
     Everywhere(Option<Box<Opening>>),
     Near(Box<Near>),
-}
-
-/// What is known about the surroundings of an initial pose.
-struct Near {
-    region: TrustRegion,
-    /// The pose registered from the initial one, if it leaves no more than the image's own noise.
-    noisy: Option<Similarity>,
-    silhouettes: Option<Box<SilhouetteReport>>,
 }
 
 /// The current phase.
@@ -161,9 +149,8 @@ impl Finder {
             }
             plain => plain,
         };
-        let noisy = plain.as_deref().filter(|found| pair.residuals(found).is_noise()).map(|found| found.pose);
+        let near = Near::new(pair, region.clone(), plain.as_deref());
         let phase = Phase::Nearby(Box::new(Nearby::new(pair, region.clone(), plain)));
-        let near = Near { region: region.clone(), noisy, silhouettes: None };
         Beginning::Ongoing(Box::new(Self { scope: Scope::Near(Box::new(near)), phase, chosen: Choice::default() }))
     }
 
@@ -335,9 +322,7 @@ impl Finder {
         if let Scope::Near(near) = &mut self.scope {
             let choice = std::mem::take(&mut self.chosen);
             if found.is_none() && near.begins_again(pair, photometric, &choice) {
-                photometric.keep_near(near.region.prior(pair));
-                let nearby = Nearby::again(pair, near.region.clone(), near.silhouettes.take());
-                return Ok(Next::Phase(Phase::Nearby(Box::new(nearby))));
+                return Ok(Next::Phase(Phase::Nearby(Box::new(near.begin_again(pair, photometric)))));
             }
             return near.conclude(pair, photometric, choice, found).map(Next::Decision);
         }
@@ -382,65 +367,6 @@ impl Scope {
             Self::Everywhere(_) => true,
         }
     }
-}
-
-impl Near {
-    /// Whether to repeat the registrations near the initial pose: once, and only if a single albedo does not explain the image.
-    fn begins_again(&self, pair: &ViewPair, photometric: &PhotometricRegistration, choice: &Choice) -> bool {
-        let is_explained = choice.best.as_ref().is_some_and(|best| !silhouettes::has_varying_albedo(pair, best));
-        !photometric.is_kept_near() && !is_explained && self.region.prior(pair).is_some()
-    }
-
-    /// Takes the first pose within the trust region: from local contrast, the image or silhouettes. Otherwise keeps the initial pose.
-    fn conclude(
-        &mut self,
-        pair: &ViewPair,
-        photometric: &mut PhotometricRegistration,
-        Choice { best, rivals, ends }: Choice,
-        found: Option<Decision>,
-    ) -> Result<Decision> {
-        let region = &self.region;
-        let is_near = |found: &Decision| found.pose().is_some_and(|pose| region.holds(pair, pose));
-        if let Some(mut found) = found.filter(is_near) {
-            if let (Method::Contrast(contrast), Some(rivals)) = (&found.by, &mut found.rivals) {
-                // A pose that leaves only the image's own noise is a rival, however large the spatial covariance of its residuals.
-                local_contrast::add_rival(&contrast.report, rivals, self.noisy);
-            }
-            return Ok(found);
-        }
-        let silhouettes = self.silhouettes.take();
-        // If the albedo varies, a photometric pose counts less than silhouettes when it hardly fits or is less certain.
-        let is_trusted = |best: &PhotometricReport| match &silhouettes {
-            Some(_) if !silhouettes::has_varying_albedo(pair, best) => true,
-            Some(found) => {
-                !pair.residuals(best).is_unexplained()
-                    && best.uncertainty.largest_rotation() <= found.uncertainty.largest_rotation()
-            }
-            None => true,
-        };
-        let Some(mut best) = best.filter(|best| is_trusted(best)) else {
-            return Ok(Decision::of(silhouettes.map_or_else(|| stay(pair, photometric, region), Method::Silhouettes)));
-        };
-        // Candidates are registered on a sample of the points; all points follow.
-        let sampled = best.pose;
-        photometric.register_again(pair, &mut best, &sampled, &ends)?;
-        Ok(match region.holds(pair, &best.pose) {
-            true => Decision { by: Method::Photometric(best), rivals: Some(rivals), ends },
-            false => Decision::of(stay(pair, photometric, region)),
-        })
-    }
-}
-
-/// Keeps the initial pose.
-fn stay(pair: &ViewPair, photometric: &mut PhotometricRegistration, region: &TrustRegion) -> Method {
-    // An object shrunk to a few pixels fits any image, so its size must be plausible as well.
-    let of_size = Similarity { scale: gauge::unit_scale(pair), ..region.initial };
-    let explains = |found: Box<PhotometricReport>| found.noise < pair.image.log_spread();
-    let has_size = gauge::keeps_size(pair, &region.initial, &of_size);
-    Method::Initial(match has_size && photometric.judge(pair, &region.initial).is_some_and(explains) {
-        true => Staying::Explains,
-        false => Staying::ExplainsNothing,
-    })
 }
 
 impl Phase {

@@ -1,7 +1,8 @@
 //! The registration stage: runs the finder or matches the surfaces, depending on the options, and keeps the decision.
 
 use crate::estimator::decision::{Decision, Method};
-use crate::estimator::finder::{Beginning, Finder, TrustRegion};
+use crate::estimator::finder::initial_pose::TrustRegion;
+use crate::estimator::finder::{Beginning, Finder};
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
 use crate::estimator::photometric::PhotometricRegistration;

@@ -1,8 +1,9 @@
 //! Performs parts of an estimator's work in another thread, with a separate instance of the module.
 
 use crate::error::Result;
+use crate::estimator::finder::initial_pose::TrustRegion;
 use crate::estimator::finder::local_optima::RegisteredCandidate;
-use crate::estimator::finder::{Opening, TrustRegion, search};
+use crate::estimator::finder::{Opening, search};
 use crate::estimator::pair::ViewPair;
 use crate::estimator::photometric::PhotometricRegistration;
 use crate::options::Options;

@@ -8,13 +8,13 @@
 
 use crate::diagnosis::{Alternative, Diagnosis};
 use crate::error::Result;
+use crate::estimator::finder::candidates::{Candidates, NEARBY, search};
+use crate::estimator::finder::local_optima::{Choice, LocalOptima, Origin, RegisteredCandidate};
+use crate::estimator::finder::silhouettes;
 use crate::estimator::pair::ViewPair;
 use crate::estimator::photometric::{Attempt, FIRST_LEVEL_NEAR, PhotometricRegistration};
 use crate::pose::{COARSEST_NEAR, ImageGrid, PhotometricReport, Search, SilhouetteReport, Similarity};
 
-use super::candidates::{Candidates, NEARBY, search};
-use super::local_optima::{Choice, LocalOptima, Origin, RegisteredCandidate};
-use super::silhouettes;
 use super::trust_region::TrustRegion;
 
 /// Result of a slice.
