@@ -35,7 +35,7 @@ export const PARTS = [
     name: "following",
     what: "the rounds in which pose and albedo are improved in turn",
     changes: [
-      { file: "src/estimator/stages/contrasted.rs", from: "const ROUNDS: usize = 3;", to: "const ROUNDS: usize = 0;" },
+      { file: "src/estimator/contrasted.rs", from: "const ROUNDS: usize = 3;", to: "const ROUNDS: usize = 0;" },
     ],
   },
   {

@@ -10,7 +10,8 @@
 //! never takes back a pose that it moved.
 //!
 //! Each stage owns its memory, and its signature shows what it reads and writes ([`stages`]). This file holds the order
-//! in which they run, [`ending`] the end of an iteration and of the run, [`reporting`] what it reports.
+//! in which they run, [`ending`] the end of an iteration and of the run, [`reporting`] what it reports. The [`decision`]
+//! of the finder names the method that the pose rests on; the stages, the verdict and the report follow it.
 
 mod checks;
 mod contrasted;

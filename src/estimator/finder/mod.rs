@@ -32,6 +32,8 @@
 //! | `local_optima` | ends of the registrations; the best pose and its rivals |
 //! | `local_contrast`, `silhouettes` | the methods for varying albedo |
 //! | `opening` | the halved pair in which large views are searched |
+//!
+//! The outcome is a [`Decision`].
 
 mod candidates;
 pub mod initial_pose;
